@@ -1,0 +1,42 @@
+# make demo: set up and run the main job.   make test: set up and pass every check.
+PYTHON ?= python3
+BIN := .venv/bin
+# Small dense systems gain nothing from BLAS threads and lose much where cores are busy.
+export OPENBLAS_NUM_THREADS ?= 1
+
+.PHONY: demo test lint docs clean
+
+demo: .venv/installed
+	$(BIN)/active-surface run examples/two_actuators.toml
+
+test: lint
+	@echo "== tests in plain Python, with coverage (1 of 2)"
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q --cov --cov-report=term:skip-covered -m "not slow and not compiled"
+	@echo "== tests with compiled kernels (2 of 2)"
+	$(BIN)/python -m pytest -q
+
+lint: .venv/developer
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+docs: .venv/installed
+	$(BIN)/python docs/pictures.py
+
+.venv/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed; try make PYTHON=python3.12"; exit 2; }
+	$(PYTHON) -m venv .venv
+	@touch $@
+
+.venv/installed: .venv/python pyproject.toml constraints.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
+	@touch $@
+
+.venv/developer: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev]"
+	@touch $@
+
+clean:
+	rm -rf .venv results .coverage .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

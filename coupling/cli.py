@@ -1,0 +1,108 @@
+"""The command `active-surface`. Heavy imports wait until a command needs them."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn, TypeVar
+
+import click
+
+if TYPE_CHECKING:
+    from coupling.case import Case
+
+Answer = TypeVar("Answer")
+
+DEFAULT_OUTPUT = Path("results")
+STAGES = 5
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="active-surface")
+def main() -> None:
+    """Simulate microparts on active surfaces: thin plates pushed from below by point actuators."""
+
+
+@main.command()
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option(
+    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
+)
+@click.option("--quiet", "-q", is_flag=True, help="Print nothing but errors.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
+def run(case: Path, output: Path | None, quiet: bool, as_json: bool) -> None:
+    """Run CASE, write its result files and a picture, and say what happened."""
+    read = _read(case)
+    from coupling.progress import StageBar
+    from coupling.run import run_case
+
+    with StageBar(STAGES) as bar:
+        result = _refusing(run_case, read, output or DEFAULT_OUTPUT, bar)
+    if as_json:
+        click.echo(json.dumps(result.summary.as_dict(), indent=2))
+    elif not quiet:
+        for label, text in result.summary.lines():
+            click.echo(f"{label:<12}{text}")
+        for warning in result.summary.warnings:
+            click.secho(f"{'warning':<12}{warning}", fg="yellow")
+        for file in result.files:
+            click.echo(f"{'wrote':<12}{file}")
+
+
+@main.command()
+@click.argument("case", type=click.Path(path_type=Path))
+def check(case: Path) -> None:
+    """Read CASE and report every mistake in it, without running it."""
+    read = _read(case)
+    from coupling.run import build_friction
+
+    _refusing(lambda: build_friction(read).law)
+    count = len(read.actuators)
+    click.echo(f"{case}: fine; {count} actuator{'s' * (count != 1)}, {read.run.duration * 1e3:g} ms")
+
+
+@main.command()
+@click.option(
+    "--json", "file", type=click.Path(path_type=Path, dir_okay=False), help="Also write every figure to FILE."
+)
+def verify(file: Path | None) -> None:
+    """Solve the plate's verification cases on three meshes; exit 1 when an error or an order misses its bound."""
+    from coupling import verification
+
+    checks = verification.verify()
+    for done in checks:
+        click.echo(f"{done.name}: {'passed' if done.passed else 'FAILED'}")
+        click.echo(f"  {'unknowns':<10}" + "".join(f"{n:>11}" for n in done.unknowns) + f"{'order':>9}{'bounds':>16}")
+        for k, name in enumerate(verification.QUANTITIES):
+            order = done.orders[name]
+            said = "rounding" if order is None else f"{order:.2f}"
+            bounds = f"{verification.ERROR_BOUNDS[k]:.0e}, {verification.ORDER_BOUNDS[k]:g}"
+            click.echo(f"  {name:<10}" + "".join(f"{e:>11.2e}" for e in done.errors[name]) + f"{said:>9}{bounds:>16}")
+        for failure in done.failures:
+            click.secho(f"  {failure}", fg="red")
+    if file is not None:
+        partial = file.with_name(file.name + ".partial")
+        partial.write_text(json.dumps([done.as_dict() for done in checks], indent=2) + "\n")
+        partial.replace(file)
+    sys.exit(0 if all(done.passed for done in checks) else 1)
+
+
+def _read(path: Path) -> Case:
+    from coupling.case import read_case
+
+    return _refusing(read_case, path)
+
+
+def _refusing(work: Callable[..., Answer], *arguments: object) -> Answer:
+    """work(*arguments), with a refused input said in one message and exit code 2."""
+    try:
+        return work(*arguments)
+    except (ValueError, OSError) as error:
+        _refuse(str(error))
+
+
+def _refuse(message: str) -> NoReturn:
+    click.echo(message, err=True)
+    sys.exit(2)

@@ -1,0 +1,101 @@
+"""The picture of a run: the plate from above with the path, height and speed over time, stick and slip marked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
+from numpy.typing import NDArray
+
+from coupling.case import Case
+from fem_plate import InfluenceShapes
+from particle import State, SurfaceMotion, Trajectory
+
+FloatArray = NDArray[np.float64]
+
+MICRO, MILLI = 1e6, 1e3
+SLIP_COLOUR, STICK_COLOUR = "#c8371b", "#1b4f9c"
+SAMPLES = 4000
+
+
+def draw_run(case: Case, shapes: InfluenceShapes, surface: SurfaceMotion, trajectory: Trajectory, path: Path) -> None:
+    """Draws the run into a PNG file."""
+    figure = Figure(figsize=(12.0, 6.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.05, 1))
+    _draw_path(figure.add_subplot(grid[:, 0]), case, shapes, trajectory)
+    height, speed = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
+    times = np.linspace(0, trajectory.time[-1], SAMPLES)
+    position, velocity, _ = trajectory.at(times)
+    radius = np.maximum(np.hypot(*position.T) / case.plate.radius, 1.0)
+    place = position / radius[:, None]
+    heights = [surface.evaluate(xy, t).w[0] for xy, t in zip(place, times.tolist(), strict=True)]
+    _draw_over_time(height, trajectory, times, np.array(heights) * MICRO, "height of the part [µm]")
+    _draw_over_time(speed, trajectory, times, np.hypot(*velocity.T), "speed in the plane [m/s]")
+    height.tick_params(labelbottom=False)
+    speed.set_xlabel("time [ms]")
+    figure.suptitle(f"{case.name}: {trajectory.outcome.sentence}")
+    partial = path.with_suffix(".partial.png")
+    figure.savefig(partial, dpi=110)
+    partial.replace(path)
+
+
+def _draw_path(axes: Axes, case: Case, shapes: InfluenceShapes, trajectory: Trajectory) -> None:
+    """The plate from above: contours of all strokes up at once, the actuators and the path."""
+    radius = case.plate.radius
+    side = np.linspace(-radius, radius, 161)
+    x, y = np.meshgrid(side, side)
+    inside = np.hypot(x, y) <= radius
+    w = np.full(x.shape, np.nan)
+    strokes = [actuator.stroke for actuator in case.actuators]
+    w[inside] = shapes.evaluate(np.stack([x[inside], y[inside]], axis=1), strokes)[0]
+    filled = axes.contourf(x * MICRO, y * MICRO, w * MICRO, levels=14, cmap="Greys", alpha=0.75)
+    axes.figure.colorbar(filled, ax=axes, label="deflection, all strokes up [µm]", shrink=0.8)
+    axes.add_patch(Circle((0, 0), radius * MICRO, fill=False, color="black", linewidth=1.5))
+    points = trajectory.position * MICRO
+    fine = np.linspace(0, trajectory.time[-1], SAMPLES)
+    line = trajectory.at(fine)[0] * MICRO
+    axes.add_collection(LineCollection([line], colors=SLIP_COLOUR, linewidths=1.5))
+    rests = trajectory.state == State.STICK
+    axes.plot(*points[rests].T, "o", color=STICK_COLOUR, markersize=4, zorder=3)
+    axes.plot(*(shapes.points.T * MICRO), "^", color="white", markeredgecolor="black", markersize=9, zorder=4)
+    axes.plot(*points[0], "s", color="gold", markeredgecolor="black", markersize=8, zorder=5)
+    axes.plot(*points[-1], "*", color="gold", markeredgecolor="black", markersize=14, zorder=5)
+    axes.set_aspect("equal")
+    axes.set_xlabel("x [µm]")
+    axes.set_ylabel("y [µm]")
+    keys = [
+        Line2D([], [], color=SLIP_COLOUR, label="path"),
+        Line2D([], [], color=STICK_COLOUR, marker="o", linestyle="", markersize=5, label="rests here"),
+        Line2D(
+            [], [], color="white", marker="^", markeredgecolor="black", linestyle="", markersize=9, label="actuator"
+        ),
+        Line2D([], [], color="gold", marker="s", markeredgecolor="black", linestyle="", markersize=8, label="start"),
+        Line2D([], [], color="gold", marker="*", markeredgecolor="black", linestyle="", markersize=13, label="end"),
+    ]
+    axes.get_figure(root=True).legend(handles=keys, loc="outside lower center", ncols=5, frameon=False)
+
+
+def _draw_over_time(axes: Axes, trajectory: Trajectory, times: FloatArray, values: FloatArray, label: str) -> None:
+    """A curve over time with the stuck stretches shaded."""
+    axes.plot(times * MILLI, values, color="black", linewidth=1.2)
+    stuck = trajectory.state == State.STICK
+    edges = trajectory.time * MILLI
+    for begin, end in _stretches(stuck):
+        axes.axvspan(edges[begin], edges[end], color=STICK_COLOUR, alpha=0.18, linewidth=0)
+    axes.set_xlim(0, edges[-1])
+    axes.set_ylabel(label)
+    axes.grid(alpha=0.3)
+    axes.set_title("shaded: stuck", loc="right", fontsize=9, color=STICK_COLOUR)
+
+
+def _stretches(stuck: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First and last row of each stretch of rows during which the part is stuck."""
+    change = np.diff(np.concatenate([[0], stuck[:-1].astype(int), [0]]))
+    return list(zip(np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist(), strict=True))

@@ -1,0 +1,55 @@
+"""Progress: stages with a clock, shown only once the work has taken two seconds."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+
+Progress = Callable[[str], AbstractContextManager[object]]
+
+PATIENCE = 2.0  # s of silence
+
+
+def silent(stage: str) -> AbstractContextManager[None]:
+    """No progress."""
+    return nullcontext()
+
+
+class StageBar:
+    """A bar over known stages on the terminal's error stream; nothing where that is not a terminal."""
+
+    def __init__(self, stages: int) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
+        from rich.progress import Progress as Bar
+
+        console = Console(stderr=True)
+        self._bar = Bar(
+            SpinnerColumn(),
+            BarColumn(bar_width=20),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("{task.description}"),
+            console=console,
+            transient=True,
+            disable=not console.is_terminal,
+        )
+        self._task = self._bar.add_task("", total=stages)
+        self._timer = threading.Timer(PATIENCE, self._bar.start)
+        self._timer.daemon = True
+
+    def __enter__(self) -> StageBar:
+        self._timer.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._timer.cancel()
+        self._timer.join()
+        self._bar.stop()
+
+    @contextmanager
+    def __call__(self, stage: str) -> Iterator[None]:
+        self._bar.update(self._task, description=stage)
+        yield
+        self._bar.advance(self._task)

@@ -1,0 +1,94 @@
+"""One run, from case to result: this file reads as the pipeline.
+
+case -> mesh -> plate influence shapes -> surface motion -> trajectory -> summary -> result files and picture
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import fem_plate
+import meshes
+import particle
+from coupling.case import Case, ConstantCase, CoulombCase
+from coupling.progress import Progress, silent
+from coupling.results import write_results
+from coupling.summary import Summary, summarise
+from coupling.surface import surface_motion
+from fem_plate import InfluenceShapes
+from particle import Drive, SurfaceMotion, Trajectory
+from particle.friction import Contact
+
+# Without a cell size the plate starts with this many cells from centre to rim and is refined until the unit shapes'
+# estimated error is below PLATE_TOLERANCE, which keeps the end point of a usual path to 1e-6 of it.
+CELLS_FROM_CENTRE = 13
+PLATE_TOLERANCE = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What a run found; `files` are those it wrote."""
+
+    case: Case
+    shapes: InfluenceShapes = field(repr=False)
+    surface: SurfaceMotion = field(repr=False)
+    trajectory: Trajectory = field(repr=False)
+    summary: Summary
+    files: tuple[Path, ...] = ()
+
+
+def run_case(case: Case, output: str | Path | None = None, progress: Progress = silent) -> Result:
+    """Run a case; with `output`, a folder, also write NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png there."""
+    with progress("Solving the plate"):
+        shapes = solve_plate(case)
+    with progress("Fitting the surface"):
+        drives = build_drives(case)
+        surface = surface_motion(shapes, drives)
+    with progress("Following the part (the first run on a machine compiles the integrator, about half a minute)"):
+        trajectory = follow_part(case, surface, case.run.tolerance)
+        tighter = follow_part(case, surface, max(case.run.tolerance / 100, 1e-13))
+    with progress("Checking the model's validity"):
+        summary = summarise(case, shapes, surface, trajectory, tighter, drives)
+    result = Result(case, shapes, surface, trajectory, summary)
+    if output is None:
+        return result
+    with progress("Writing the results"):
+        files = write_results(case, shapes, surface, drives, trajectory, summary, Path(output))
+    return Result(case, shapes, surface, trajectory, summary, files)
+
+
+def build_surface(case: Case) -> SurfaceMotion:
+    """The moving surface of a case."""
+    return surface_motion(solve_plate(case), build_drives(case))
+
+
+def solve_plate(case: Case) -> InfluenceShapes:
+    """The influence shapes of the case's actuators."""
+    plate = case.plate
+    section = fem_plate.PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
+    mesh = meshes.disc(plate.radius, plate.cell_size or plate.radius / CELLS_FROM_CENTRE)
+    tolerance = None if plate.cell_size else PLATE_TOLERANCE
+    points = [actuator.position for actuator in case.actuators]
+    return fem_plate.Plate(mesh, section, plate.supports, tolerance).influence(points)
+
+
+def build_drives(case: Case) -> list[Drive]:
+    """The actuators' drives."""
+    return [Drive(a.stroke, a.frequency, a.cycle, a.cycles, a.delay) for a in case.actuators]
+
+
+def build_friction(case: Case) -> Contact:
+    """The friction law between part and surface."""
+    law = case.friction
+    if isinstance(law, ConstantCase):
+        return particle.ConstantFriction(law.limit)
+    if isinstance(law, CoulombCase):
+        return particle.CoulombAdhesion(law.coefficient, law.adhesion, law.static_coefficient)
+    return particle.KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
+
+
+def follow_part(case: Case, surface: SurfaceMotion, tolerance: float) -> Trajectory:
+    """The part's path over the surface."""
+    part = particle.Micropart(case.part.mass, case.part.position, case.part.velocity)
+    return particle.simulate(surface, part, build_friction(case), case.run.duration, case.run.gravity, tolerance)

@@ -1,0 +1,202 @@
+"""Quantities with units: text such as "150 um" becomes a float in SI units.
+
+Each alias at the end of this module (`Length`, `Time`, ...) is a float to a type checker. As the type of a pydantic
+field it also accepts text with a unit of the right dimension. A bare number is taken as SI, or is an error where the
+validation context is `UNITS_REQUIRED`, as it is for a case file.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import math
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cache
+from numbers import Real
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+from pydantic import GetCoreSchemaHandler, ValidationInfo
+from pydantic_core import CoreSchema, core_schema
+
+if TYPE_CHECKING:
+    import pint
+
+UNITS_REQUIRED: Final = {"units_required": True}
+"""The validation context in which a bare number is not accepted as a quantity."""
+
+DIMENSIONS: Final = {
+    "m": "a length", "m^2": "an area", "m^3": "a volume", "rad": "an angle",
+    "s": "a time", "Hz": "a frequency", "rad/s": "an angular velocity", "m/s": "a velocity", "m/s^2": "an acceleration",
+    "kg": "a mass", "kg/m^3": "a density", "N": "a force", "Pa": "a pressure",
+    "J": "an energy", "J/m^2": "an energy per area", "W": "a power", "K": "a temperature", "1": "a plain number",
+}  # fmt: skip
+"""SI units, and what a quantity in each is called in a message."""
+
+_USUAL_UNITS: Final = [
+    *("m", "cm", "mm", "um", "nm", "m^2", "mm^2", "um^2", "nm^2", "m^3", "meter", "micrometer", "nanometer", "micron"),
+    *("s", "ms", "us", "s^2", "second", "Hz", "kHz", "MHz", "hertz", "kg", "g", "mg", "ug", "ng", "gram"),
+    *("N", "mN", "uN", "nN", "newton", "Pa", "kPa", "MPa", "GPa", "pascal", "J", "mJ", "uJ", "nJ", "joule"),
+]
+
+# Other characters are refused here because pint skips them: it would read "1,5 mm" as 15 mm, and a typographic minus
+# sign as nothing at all.
+_NUMBER_AND_UNIT: Final = re.compile(
+    r"(?P<number>[+-]?(?:(?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?|(?:nan|inf)\b))"
+    r"[ \t]*(?P<unit>[\w \t.*/^()+⁻·⋅°%-]*)"
+)
+
+_NONSENSE: Final = ", which is not a number and a unit"
+_NO_UNIT: Final = ", which has no unit"
+_NOT_FINITE: Final = ", which is not finite"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Marks a float as a quantity in the SI unit `unit`, a key of `DIMENSIONS`; `example` shows how to write one."""
+
+    unit: str
+    example: str
+
+    @property
+    def wanted(self) -> str:
+        """What a value must be, in words: a length such as "150 um"."""
+        return f'{DIMENSIONS[self.unit]} such as "{self.example}"'
+
+    def parse(self, text: str) -> float:
+        """Return the quantity that `text` states, in `unit`; ValueError unless it is a finite one of this dimension."""
+        import pint  # Here, because loading pint takes longer than the rest of the package.
+
+        match = _NUMBER_AND_UNIT.fullmatch(text.strip())
+        if match is None:
+            raise self._error(text, "; write decimals with a point" if "," in text else _NONSENSE)
+        number, unit = match["number"], match["unit"]
+        if not unit:
+            raise self._error(text, _NO_UNIT)
+        try:
+            fits = self._fits(unit)
+            value = float(_registry().Quantity(Decimal(number), unit).m_as(self.unit)) if fits else math.nan
+        except pint.UndefinedUnitError as error:
+            raise self._error(text, self._unknown_unit(number, unit, error)) from None
+        except Exception:  # On nonsense pint raises anything from AssertionError to TokenError.
+            raise self._error(text, _NONSENSE) from None
+        if not fits:
+            raise self._error(text, f", {_dimension(unit)}")
+        if not math.isfinite(value):
+            raise self._error(text, _NOT_FINITE)
+        return value
+
+    def validate(self, value: object, info: ValidationInfo) -> float:
+        """Return a number as it is and text in `unit`; ValueError for what is neither, or lacks a unit it needs."""
+        if isinstance(value, str):
+            return self.parse(value)
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise self._error(value)
+        if info.context and info.context.get("units_required"):
+            raise self._error(value, _NO_UNIT)
+        if not math.isfinite(value):
+            raise self._error(value, _NOT_FINITE)
+        return float(value)
+
+    def _fits(self, unit: str) -> bool:
+        return _root(unit) == _root(self.unit)
+
+    def _unknown_unit(self, number: str, unit: str, error: pint.UndefinedUnitError) -> str:
+        name = error.unit_names if isinstance(error.unit_names, str) else next(iter(error.unit_names))
+        for near in _respelt(unit, name):
+            with suppress(Exception):  # There may be a second unknown unit in it.
+                if self._fits(near):
+                    return f', but there is no unit "{name}"; did you mean "{number} {near}"?'
+        return f', but there is no unit "{name}"'
+
+    def _error(self, value: object, reason: str = "") -> ValueError:
+        return ValueError(f"must be {self.wanted}; got {shown(value)}{reason}")
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.with_info_before_validator_function(self.validate, handler(source))
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Marks a tuple as the x and y of a point or vector; `name` is what the two are, `example` one of them."""
+
+    name: str
+    example: str
+
+    @property
+    def wanted(self) -> str:
+        """What a value must be, in words: two lengths, x and y, such as ["100 um", "100 um"]."""
+        return f"two {self.name}, x and y, such as {shown([self.example, self.example])}"
+
+    def validate(self, value: object) -> object:
+        """Return `value`; ValueError unless it is a list or tuple of two."""
+        if not isinstance(value, (list, tuple)) or len(value) != 2:
+            raise ValueError(f"must be {self.wanted}; got {shown(value)}")
+        return value
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self.validate, handler(source))
+
+
+def shown(value: object) -> str:
+    """Return `value` as a case file would write it, or in words if that is long."""
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, (list, tuple)):
+        if any(isinstance(item, dict) for item in value):
+            return "a list of tables"
+        text = "[" + ", ".join(shown(item) for item in value) + "]"
+    elif isinstance(value, (str, bool)):
+        text = json.dumps(value, ensure_ascii=False)
+    else:
+        text = str(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def shown_length(length: float) -> str:
+    """Return a length in m as text in um."""
+    return f"{length * 1e6:g} um"
+
+
+@cache
+def _registry() -> pint.UnitRegistry[Any]:
+    import pint
+
+    # Decimals, so that "100 um" gives the float 1e-4 itself and not a neighbour.
+    return pint.UnitRegistry(non_int_type=Decimal)
+
+
+def _root(unit: str) -> pint.Unit:
+    # Dimensions do not tell Hz from rad/s, and pint would turn 60 rpm into 6.28 Hz; root units differ.
+    return _registry().get_root_units(_registry().parse_units(unit))[1]
+
+
+def _dimension(unit: str) -> str:
+    """Return what a quantity in `unit` is called."""
+    root = _root(unit)
+    return next((name for si, name in DIMENSIONS.items() if _root(si) == root), f"a quantity in {root:~}")
+
+
+def _respelt(unit: str, name: str) -> Iterator[str]:
+    """Yield `unit` with the unknown `name` in it replaced by usual units of nearly that spelling, nearest first."""
+    same = [usual for usual in _USUAL_UNITS if usual.lower() == name.lower()]
+    for usual in same + difflib.get_close_matches(name, _USUAL_UNITS):
+        yield unit.replace(name, usual)
+
+
+Length = Annotated[float, Quantity("m", "150 um")]
+Area = Annotated[float, Quantity("m^2", "1e4 um^2")]
+Time = Annotated[float, Quantity("s", "50 ms")]
+Frequency = Annotated[float, Quantity("Hz", "300 Hz")]
+Speed = Annotated[float, Quantity("m/s", "0.1 m/s")]
+Acceleration = Annotated[float, Quantity("m/s^2", "9.80665 m/s^2")]
+Mass = Annotated[float, Quantity("kg", "2e-9 kg")]
+Density = Annotated[float, Quantity("kg/m^3", "2330 kg/m^3")]
+Force = Annotated[float, Quantity("N", "2 uN")]
+Pressure = Annotated[float, Quantity("Pa", "169 GPa")]
+SurfaceEnergy = Annotated[float, Quantity("J/m^2", "1 J/m^2")]
+Point = Annotated[tuple[Length, Length], Pair("lengths", "100 um")]
+Velocity = Annotated[tuple[Speed, Speed], Pair("velocities", "0 m/s")]

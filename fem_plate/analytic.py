@@ -1,0 +1,89 @@
+"""Closed forms for the clamped disc: the theory that the finite elements are checked against.
+
+Central load: equation (2) of the paper,  w = P / (16 pi D) (2 r^2 ln(r/a) + a^2 - r^2).
+Any load: Boggio's function (Boggio, 1905), on the unit disc with rigidity 1
+    G(x, y) = (R ln(R/S) + S - R) / (16 pi),   R = |x - y|^2,   S = |x|^2 |y|^2 - 2 x.y + 1.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fem_plate.influence import Shapes, check_points
+from fem_plate.singular import point_load
+from meshes import Circle
+
+FloatArray = NDArray[np.float64]
+Fields = tuple[FloatArray, FloatArray, FloatArray]
+
+
+def central_load(r: ArrayLike, radius: float, rigidity: float, force: float) -> FloatArray:
+    """Deflection [m] of a clamped disc under a central force, at the distance r [m] (any shape) from the centre.
+
+    radius: m.  rigidity: N m.  force: N.
+    """
+    r = np.asarray(r, dtype=float)
+    logarithm = np.log(np.where(r > 0, r, radius) / radius)
+    return np.asarray(force / (16 * np.pi * rigidity) * (2 * r**2 * logarithm + radius**2 - r**2))
+
+
+def disc_green(xy: ArrayLike, source: ArrayLike, radius: float, rigidity: float) -> Fields:
+    """Deflection of a clamped disc around the origin under a unit force at `source`.
+
+    xy: (n, 2) m.  source: (2,) m, inside the disc.  radius: m.  rigidity: N m.
+    Returns w (n,) m/N, gradient (n, 2) 1/N, Hessian (n, 2, 2) 1/(m N); the Hessian is -inf at the source.
+    Raises ValueError when the source does not lie inside the disc.
+    """
+    x, y = np.asarray(xy, dtype=float) / radius, np.asarray(source, dtype=float)[None] / radius
+    if not np.sum(y**2) < 1:
+        raise ValueError(f"Input source of disc_green must lie inside the radius {radius!r} m; got {source!r}")
+    value, gradient, hessian = (a[:, 0] + b[:, 0] for a, b in zip(point_load(x, y), smooth_part(x, y), strict=True))
+    factor = radius**2 / rigidity
+    return factor * value, factor / radius * gradient, factor / radius**2 * hessian
+
+
+def smooth_part(x: FloatArray, sources: FloatArray) -> Fields:
+    """Boggio's function without its singular part: (-R ln S + S - R) / (16 pi), on the unit disc with rigidity 1.
+
+    x: (n, 2).  sources: (N, 2).  Returns the value (n, N), gradient (n, N, 2) and Hessian (n, N, 2, 2); it is smooth
+    up to the rim and somewhat beyond.
+    """
+    offset = x[:, None] - sources  # half the gradient of R
+    square = (sources**2).sum(axis=1)
+    image = x[:, None] * square[:, None] - sources  # half the gradient of S
+    big_r = (offset**2).sum(axis=-1)
+    big_s = (x**2).sum(axis=1)[:, None] * square - 2 * x @ sources.T + 1
+    logarithm, ratio = np.log(big_s), big_r / big_s
+    by_r, by_s = -logarithm - 1, 1 - ratio
+    value = -big_r * logarithm + big_s - big_r
+    gradient = 2 * (by_r[..., None] * offset + by_s[..., None] * image)
+    cross = offset[..., :, None] * image[..., None, :]
+    both = image[..., :, None] * image[..., None, :]
+    hessian = 4 / big_s[..., None, None] * (ratio[..., None, None] * both - cross - np.swapaxes(cross, -1, -2))
+    for axis in range(2):
+        hessian[..., axis, axis] += 2 * (by_r + by_s * square)
+    return value / (16 * np.pi), gradient / (16 * np.pi), hessian / (16 * np.pi)
+
+
+class DiscShapes(Shapes):
+    """The influence functions of a clamped disc in closed form (Boggio): what `Plate.influence` computes, exactly.
+
+    points: (N, 2) m, inside the radius [m], around the origin.
+    Raises ValueError when a point does not lie inside the disc or two coincide.
+    """
+
+    def __init__(self, points: ArrayLike, radius: float) -> None:
+        points = np.atleast_2d(np.asarray(points, dtype=float))
+        check_points(points, radius - np.hypot(*points.T), radius)
+        scaled = points / radius
+        compliance = point_load(scaled, scaled)[0] + smooth_part(scaled, scaled)[0]
+        super().__init__(points, radius, Circle(radius), compliance)
+
+    def loaded(self, x: FloatArray, strengths: FloatArray) -> Fields:
+        value, gradient, hessian = smooth_part(x, self.points / self.size)
+        return (
+            value @ strengths,
+            np.einsum("njd,jk->nkd", gradient, strengths),
+            np.einsum("njde,jk->nkde", hessian, strengths),
+        )

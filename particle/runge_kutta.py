@@ -1,0 +1,114 @@
+"""One step of an embedded Runge-Kutta pair, for sliding and for the slow manifold after break-away."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import DOP853, RK45
+
+from particle.breakaway import manifold_rate
+from particle.fields import within_cell
+from particle.friction import friction_limit
+from particle.jit import jit
+from particle.motion import Part, margin, slide_rate
+
+FloatArray = NDArray[np.float64]
+
+SLIDING, MANIFOLD = 0, 1
+LOOSE = 1e-6  # tolerances from here on are met most cheaply by the pair of order 5
+
+
+class Tableau(NamedTuple):
+    """An embedded pair: coefficients of Dormand and Prince (1980; order 8 by Hairer, Norsett and Wanner, 1993)."""
+
+    a: FloatArray  # (stages + 1, stages): the last row is the step itself, evaluated for its error
+    c: FloatArray  # (stages + 1,)
+    error: FloatArray  # (2, stages + 1): error weights; the second row is zero when there is only one
+    order: int
+
+
+@cache
+def tableau(tolerance: float) -> Tableau:
+    """Order 5 for loose tolerances, order 8 for tight ones."""
+    if tolerance >= LOOSE:
+        return _tableau(RK45, np.stack([RK45.E, 0 * RK45.E]), 5)
+    return _tableau(DOP853, np.stack([DOP853.E5, DOP853.E3]), 8)
+
+
+def _tableau(pair: Any, error: FloatArray, order: int) -> Tableau:
+    stages = len(pair.B)
+    a = np.zeros((stages + 1, stages))
+    a[:stages, : pair.A.shape[1]] = pair.A[:stages, :stages]
+    a[stages] = pair.B
+    return Tableau(a, np.append(pair.C[:stages], 1.0), error, order)
+
+
+class Step(NamedTuple):
+    """Scratch memory and result of a step."""
+
+    rates: FloatArray  # (stages + 1, 4)
+    loads: FloatArray  # (stages + 1,) N, normal force at each stage
+    margins: FloatArray  # (stages + 1,) how far each stage is from the end of contact
+    stage: FloatArray  # (4,)
+    end: FloatArray  # (4,)
+
+
+@jit
+def new_step(pair: Tableau) -> Step:
+    return Step(np.zeros((len(pair.c), 4)), np.zeros(len(pair.c)), np.zeros(len(pair.c)), np.zeros(4), np.zeros(4))
+
+
+@jit
+def rate(mode: int, surface: Any, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
+    """The right side: of (x, y, v_x, v_y) while sliding, of (x, y, u, -) on the slow manifold; returns the load [N]."""
+    if mode == SLIDING:
+        return slide_rate(surface, local, part, time, state, out)
+    return manifold_rate(surface, local, part, time, state, out)
+
+
+@jit
+def attempt(
+    mode: int, surface: Any, local: Any, part: Part, pair: Tableau, step: Step, time: float, state: FloatArray, h: float
+) -> bool:
+    """Tries a step of h [s] from `state`, whose rate is step.rates[0]; the end goes to step.end, its rate to the last row.
+
+    False when a stage leaves the cell's polynomials, or turns the velocity back under friction, which would then point
+    the wrong way.
+    """
+    dry = friction_limit(part.law, step.loads[0]) > 0.0
+    stages = len(pair.c)
+    for k in range(1, stages):
+        for i in range(4):
+            total = 0.0
+            for j in range(k):
+                total += pair.a[k, j] * step.rates[j, i]
+            step.stage[i] = state[i] + h * total
+        if not within_cell(surface, local, step.stage[0], step.stage[1]):
+            return False
+        if dry and mode == SLIDING and step.stage[2] * state[2] + step.stage[3] * state[3] <= 0.0:
+            return False
+        load = rate(mode, surface, local, part, time + pair.c[k] * h, step.stage, step.rates[k])
+        step.loads[k], step.margins[k] = load, margin(surface, part, load, step.stage[0], step.stage[1])
+    step.end[:] = step.stage
+    return True
+
+
+@jit
+def error(pair: Tableau, step: Step, h: float, weight: float) -> float:
+    """The step's error as a distance [m]; errors of velocity count `weight` [s] of travel."""
+    total = np.zeros(2)
+    for row in range(2):
+        for i in range(4):
+            e = 0.0
+            for k in range(len(pair.c)):
+                e += pair.error[row, k] * step.rates[k, i]
+            e *= h if i < 2 else h * weight
+            total[row] += e * e
+    if total[0] == 0.0:
+        return 0.0
+    # Hairer's combination: the fifth-order estimate, damped by the third-order one.
+    return total[0] / math.sqrt(total[0] + 0.01 * total[1])

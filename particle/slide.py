@@ -1,0 +1,173 @@
+"""One accepted step of a sliding part, or its stop, whichever comes first."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.breakaway import lag, slope, velocity
+from particle.fields import fields, rim_gap
+from particle.jit import jit
+from particle.motion import Part
+from particle.runge_kutta import MANIFOLD, SLIDING, Step, Tableau, attempt, error, rate
+from particle.stop import stop_ahead
+
+FloatArray = NDArray[np.float64]
+
+# With SLIDING and MANIFOLD, what the part does; TURNED: it came to rest on a slope that at once pulls it back.
+RESTING, TURNED = 2, 3
+# How a path ends.
+GOES_ON, DETACHED, LEFT_PLATE, OVERLOADED, WORK_LIMIT = range(5)
+
+SHORTEST = 1e-13  # of a stroke: no step is shorter
+TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
+GROWTH, SAFETY = 5.0, 0.9
+
+
+class Request(NamedTuple):
+    """One path to find."""
+
+    part: Part
+    start: FloatArray  # (4,) m, m, m/s, m/s
+    duration: float  # s
+    tolerance: float  # m, error of one step
+    stroke_time: float  # s, the shortest stroke
+
+
+@jit
+def slide(
+    surface: Any,
+    local: Any,
+    request: Request,
+    pair: Tableau,
+    step: Step,
+    count: NDArray[np.int64],
+    mode: int,
+    time: float,
+    h: float,
+    span_end: float,
+    state: FloatArray,
+) -> tuple[int, float, float, int]:
+    """Moves `state` on by one step of about h [s], not beyond `span_end`; count[2] counts evaluations.
+
+    Returns what the part does then, the time, the next h and how the path ended (GOES_ON: it did not).
+    """
+    part, tolerance = request.part, request.tolerance
+    step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
+    count[2] += 1
+    weight_limit = math.inf
+    if mode == SLIDING:
+        straight, pace = 0.01 * tolerance / request.stroke_time, 0.01 * surface.size / request.stroke_time
+        stop, miss = stop_ahead(surface, local, part, time, state, straight, pace)
+        count[2] += 2
+        if time + stop.time <= span_end and miss < 0.1 * tolerance:
+            state[0] += stop.x
+            state[1] += stop.y
+            state[2] = state[3] = 0.0
+            return (TURNED if stop.reverses else RESTING), time + stop.time, h, GOES_ON
+        # A step ends short of the stop, where the friction turns.
+        h = min(h, 0.9 * stop.time)
+        a = slope(fields(surface, local, state[0], state[1], time), part)
+        if a.limit > 0.0:
+            weight_limit = 2 * math.hypot(state[2], state[3]) / a.limit
+    remaining = span_end - time
+    shortest = SHORTEST * request.stroke_time
+    while True:
+        h = remaining if h >= 0.9 * remaining else h
+        if h < shortest and h < remaining:
+            return mode, time, h, WORK_LIMIT
+        count[2] += len(pair.c)
+        if not attempt(mode, surface, local, part, pair, step, time, state, h):
+            h *= 0.5
+            continue
+        wrong = error(pair, step, h, min(h, weight_limit)) / tolerance
+        if wrong > 1.0:
+            h *= max(0.2, SAFETY * wrong ** (-1 / pair.order))
+            continue
+        if mode == MANIFOLD and step.end[2] <= 0.0:
+            if h > TOUCH * request.stroke_time:
+                h *= 0.5
+                continue
+            state[2] = state[3] = 0.0
+            return RESTING, time + h, h, GOES_ON
+        if mode == MANIFOLD and _manifold_error(surface, local, part, time + h, step.end) > tolerance:
+            h *= 0.5
+            continue
+        last = len(pair.c) - 1
+        if step.margins[last] < 0.0:
+            h = _locate_end(surface, local, part, pair, step, count, mode, time, state, h)
+            state[:] = step.end
+            return mode, time + h, h, reason(surface, part, step.loads[last], state)
+        if step.margins[1:].min() < 0.0:
+            h *= 0.5
+            continue
+        break
+    state[:] = step.end
+    time = span_end if h == remaining else time + h
+    if mode == MANIFOLD:
+        mode = _leave_manifold(surface, local, request, time, state)
+    return mode, time, h * min(GROWTH, SAFETY * max(wrong, 1e-12) ** (-1 / pair.order)), GOES_ON
+
+
+@jit
+def _manifold_error(surface: Any, local: Any, part: Part, time: float, state: FloatArray) -> float:
+    """What the slow manifold's next term would move the part by [m]."""
+    f = fields(surface, local, state[0], state[1], time)
+    a = slope(f, part)
+    kappa = lag(surface, local, part, time, state[0], state[1], state[2], f, a)
+    return 3 * abs(kappa) * state[2] ** 3 / a.limit if a.limit > 0.0 else math.inf
+
+
+@jit
+def _leave_manifold(surface: Any, local: Any, request: Request, time: float, state: FloatArray) -> int:
+    """Turns (x, y, u) into (x, y, v_x, v_y) once the part is fast enough for plain steps, or slows down again."""
+    part, u = request.part, state[2]
+    f = fields(surface, local, state[0], state[1], time)
+    a = slope(f, part)
+    fast = u > 0.03 * a.limit * request.stroke_time
+    if not fast and a.demand >= a.limit:
+        if _manifold_error(surface, local, part, time, state) <= 0.1 * request.tolerance:
+            return MANIFOLD
+    state[2], state[3] = velocity(u, lag(surface, local, part, time, state[0], state[1], u, f, a), a)
+    return SLIDING
+
+
+@jit
+def _locate_end(
+    surface: Any,
+    local: Any,
+    part: Part,
+    pair: Tableau,
+    step: Step,
+    count: NDArray[np.int64],
+    mode: int,
+    time: float,
+    state: FloatArray,
+    h: float,
+) -> float:
+    """The step that ends where contact does: halving, on whole steps; just beyond the end."""
+    last = len(pair.c) - 1
+    low, high = 0.0, h
+    while high - low > 1e-15 * (time + high) and high - low > 1e-14 * h:
+        middle = 0.5 * (low + high)
+        count[2] += len(pair.c)
+        good = attempt(mode, surface, local, part, pair, step, time, state, middle)
+        if good and step.margins[last] >= 0.0:
+            low = middle
+        else:
+            high = middle
+    attempt(mode, surface, local, part, pair, step, time, state, high)
+    return high
+
+
+@jit
+def reason(surface: Any, part: Part, load: float, state: FloatArray) -> int:
+    """Why contact ends where the margin is negative."""
+    if rim_gap(surface, state[0], state[1]) < 0.0:
+        return LEFT_PLATE
+    if load < -part.law.pull_off:
+        return DETACHED
+    return OVERLOADED

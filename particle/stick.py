@@ -1,0 +1,189 @@
+"""How long a part that rests on the surface stays: a search that can miss no break-away.
+
+At a fixed place the surface is polynomial in time, and so are C = N s / m, the square of the force along the surface
+times s^2, and s^2 itself. In Bernstein form a polynomial lies between its smallest and largest coefficient, so positive
+coefficients of
+
+    Q^2 s^2 - (m s x force along the surface)^2     with the least Q that the subinterval's loads allow,
+
+prove that the part sticks throughout it. What is not proved is halved, the earlier half first.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.drive import ORDER
+from particle.fields import standing
+from particle.friction import friction_limit
+from particle.jit import jit
+from particle.motion import Part
+
+FloatArray = NDArray[np.float64]
+
+DEGREE = 16  # of the squared force along the surface; everything else is raised to it
+DEEPEST = 44  # halvings: a break-away is located to 2^-44 of the span
+
+
+class Rest(NamedTuple):
+    """Scratch memory of the search: subintervals still to be proved, the earliest on top."""
+
+    polynomials: FloatArray  # (DEEPEST + 2, 3, DEGREE + 1): C, squared force times s^2, s^2, in Bernstein form
+    low: FloatArray  # (DEEPEST + 2,)
+    width: FloatArray  # (DEEPEST + 2,)
+
+
+@jit
+def new_rest() -> Rest:
+    return Rest(np.zeros((DEEPEST + 2, 3, DEGREE + 1)), np.zeros(DEEPEST + 2), np.zeros(DEEPEST + 2))
+
+
+@jit
+def leaves_rest(surface: Any, local: Any, part: Part, rest: Rest, x: float, y: float, begin: float) -> float:
+    """When a part at rest at (x, y) [m] first slips, comes off or is overloaded; inf when it does not.
+
+    Times are fractions of the pinned span; the search goes from `begin` to 1.
+    """
+    _polynomials(surface, local, part, x, y, begin, rest.polynomials[0])
+    rest.low[0], rest.width[0] = begin, 1 - begin
+    narrowest = (1 - begin) * 0.5**DEEPEST
+    top = 0
+    while top >= 0:
+        if _proved_safe(part, rest.polynomials[top]):
+            top -= 1
+        elif rest.width[top] <= narrowest:
+            # Neither provable nor divisible: a slip if the far end says so, else the limit was only touched.
+            c, force, square = rest.polynomials[top, :, -1]
+            if not holds(part, c, force, square):
+                return float(rest.low[top] + rest.width[top])
+            top -= 1
+        else:
+            half = 0.5 * rest.width[top]
+            rest.low[top + 1] = rest.low[top]
+            rest.low[top] += half
+            rest.width[top] = rest.width[top + 1] = half
+            for row in range(3):
+                _halve(rest.polynomials[top, row], rest.polynomials[top + 1, row])
+            top += 1
+    return math.inf
+
+
+@jit
+def holds(part: Part, c: float, force: float, square: float) -> bool:
+    """Whether the part stays, given C, the squared force along the surface times s^2 (per kg) and s^2."""
+    s = math.sqrt(square)
+    load = part.mass * c / s
+    limit = part.law.static_ratio * friction_limit(part.law, load) / part.mass
+    return -part.law.pull_off <= load <= part.law.largest_load and force <= limit * limit * square
+
+
+@jit
+def _proved_safe(part: Part, rest: FloatArray) -> bool:
+    c_low, c_high = rest[0].min(), rest[0].max()
+    s_low, s_high = math.sqrt(max(1.0, rest[2].min())), math.sqrt(max(1.0, rest[2].max()))
+    load_low = part.mass * c_low / (s_high if c_low > 0 else s_low)
+    load_high = part.mass * c_high / (s_low if c_high > 0 else s_high)
+    if load_low < -part.law.pull_off or load_high > part.law.largest_load:
+        return False
+    limit = part.law.static_ratio * friction_limit(part.law, load_low) / part.mass
+    for k in range(DEGREE + 1):
+        if rest[1, k] > limit * limit * rest[2, k]:
+            return False
+    return True
+
+
+@jit
+def _polynomials(surface: Any, local: Any, part: Part, x: float, y: float, begin: float, out: FloatArray) -> None:
+    """C, the squared force along the surface times s^2 and s^2 as Bernstein coefficients on [begin, 1], (3, 17)."""
+    motion = np.zeros((3, ORDER))
+    standing(surface, local, x, y, motion)
+    unit = local.frame[1]
+    w_tt = _second(_from(motion[0], begin), unit * (1 - begin))
+    g_x, g_y = _from(motion[1], begin), _from(motion[2], begin)
+    b_x, b_y = np.zeros(ORDER - 2), np.zeros(ORDER - 2)
+    if surface.moving_base:
+        n = surface.strengths.shape[1]
+        b_x = _second(_from(local.heights[n], begin), unit * (1 - begin))
+        b_y = _second(_from(local.heights[n + 1], begin), unit * (1 - begin))
+    upright = w_tt.copy()
+    upright[0] += part.gravity
+    q_2 = _plus(_times(g_x, g_x), _times(g_y, g_y))
+    b_g = _plus(_times(b_x, g_x), _times(b_y, g_y))
+    b_2 = _plus(_times(b_x, b_x), _times(b_y, b_y))
+    c = _plus(upright, -b_g)
+    # s^2 |force|^2 = |b|^2 s^2 + upright^2 q^2 + 2 upright (b.g) - (b.g)^2: what gravity and inertia leave along it.
+    force = _plus(b_2, _times(b_2, q_2))
+    force = _plus(force, _times(_times(upright, upright), q_2))
+    force = _plus(force, _plus(2 * _times(upright, b_g), -_times(b_g, b_g)))
+    square = q_2.copy()
+    square[0] += 1.0
+    _to_bernstein(c, out[0])
+    _to_bernstein(force, out[1])
+    _to_bernstein(square, out[2])
+
+
+@jit
+def _from(c: FloatArray, begin: float) -> FloatArray:
+    """The polynomial of s on [begin, 1] as one of r on [0, 1]."""
+    out = c.copy()
+    n = len(c) - 1
+    for k in range(n):
+        for j in range(n - 1, k - 1, -1):
+            out[j] += begin * out[j + 1]
+    factor = 1.0
+    for k in range(n + 1):
+        out[k] *= factor
+        factor *= 1 - begin
+    return out
+
+
+@jit
+def _second(c: FloatArray, unit: float) -> FloatArray:
+    """The second derivative in time of a polynomial of s = t / unit."""
+    out = np.zeros(len(c) - 2)
+    for k in range(len(out)):
+        out[k] = (k + 2) * (k + 1) * c[k + 2] / (unit * unit)
+    return out
+
+
+@jit
+def _times(a: FloatArray, b: FloatArray) -> FloatArray:
+    out = np.zeros(len(a) + len(b) - 1)
+    for i in range(len(a)):
+        for j in range(len(b)):
+            out[i + j] += a[i] * b[j]
+    return out
+
+
+@jit
+def _plus(a: FloatArray, b: FloatArray) -> FloatArray:
+    out = np.zeros(max(len(a), len(b)))
+    out[: len(a)] += a
+    out[: len(b)] += b
+    return out
+
+
+@jit
+def _to_bernstein(c: FloatArray, out: FloatArray) -> None:
+    """Bernstein coefficients of degree 16 on [0, 1]: b_i = sum_k C(i, k) / C(16, k) c_k."""
+    out[:] = 0.0
+    total = 1.0  # C(16, k)
+    for k in range(len(c)):
+        choose = 1.0  # C(i, k)
+        for i in range(k, DEGREE + 1):
+            out[i] += choose / total * c[k]
+            choose *= (i + 1) / (i + 1 - k)
+        total *= (DEGREE - k) / (k + 1)
+
+
+@jit
+def _halve(right: FloatArray, left: FloatArray) -> None:
+    """de Casteljau at 1/2: `right` holds the whole polynomial before and its right half after."""
+    for k in range(DEGREE + 1):
+        left[k] = right[0]
+        for i in range(DEGREE - k):
+            right[i] = 0.5 * (right[i] + right[i + 1])
