@@ -1,7 +1,7 @@
 """From the plate's shapes and the drives to the moving surface: where statics meets time.
 
-The shapes' logarithms are kept; their smooth parts are fitted by polynomials on square cells of a grid. The grid is made
-finer until the fit, checked at points that it has not seen, is as good as asked for.
+The shapes' logarithms are kept; their smooth parts are fitted by polynomials on square cells of a grid. The grid is
+made finer until the fit, checked at points that it has not seen, is as good as asked for.
 """
 
 from __future__ import annotations

@@ -109,7 +109,7 @@ class InfluenceShapes(Shapes):
     @property
     def compliance(self) -> FloatArray:
         """Deflection at i under a unit force at j, (N, N) [m/N]."""
-        return np.asarray(np.linalg.inv(self.strengths) * self.size**2 / self.plate.section.rigidity
+        return np.asarray(np.linalg.inv(self.strengths) * self.size**2 / self.plate.section.rigidity)
 
     @property
     def stiffness(self) -> FloatArray:

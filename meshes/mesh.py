@@ -39,7 +39,7 @@ class PlateMesh:
         return np.min([curve.gap(xy) for curve in self.curves.values()], axis=0)
 
     def arcs(self, name: str, s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """A boundary's edges as arcs of its true curve: points (k, n, 2) m and their derivatives, at s (n,) in [0, 1]."""
+        """A boundary's edges along its true curve at s (n,) in [0, 1]: points (k, n, 2) m and derivatives in s."""
         start, end = self.points[self.boundaries[name].T]
         return self.curves[name].arc(start, end, s)
 

@@ -1,11 +1,12 @@
 """The first moments of sliding, on the slow manifold.
 
-At a small sliding speed u friction turns the velocity towards the pull at the rate Q/u, so that explicit steps from rest
-fall to first order. The slow solution is known: the velocity lags behind the pull's direction d by the angle kappa u,
+At a small sliding speed u friction turns the velocity towards the pull at the rate Q/u, so that explicit steps from
+rest fall to first order. The slow solution is known: the velocity lags behind the pull's direction d by the angle kappa u,
 
     v = u (sqrt(1 - kappa^2 u^2) d - kappa u n),     kappa = turning rate of d / (2 A - Q),     u' = A_d - Q,
 
-with A the pull along the surface, n at right angles to d (both of unit length along the surface). It is regular at u = 0.
+with A the pull along the surface, n at right angles to d (both of unit length along the surface). It is regular at
+u = 0.
 """
 
 from __future__ import annotations
@@ -52,7 +53,6 @@ def slope(f: Fields, part: Part) -> Slope:
 @jit
 def lag(surface: Any, local: Any, part: Part, time: float, x: float, y: float, u: float, f: Fields, a: Slope) -> float:
     """kappa [s/m] at the sliding speed u [m/s]."""
-    p = pull(f, 0.0, 0.0, part)
     if a.demand == 0.0 or 2 * a.demand <= a.limit:
         return 0.0
     if surface.moving_base:

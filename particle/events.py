@@ -51,7 +51,7 @@ class Record(NamedTuple):
 
 @jit
 def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, FloatArray, int, int]:
-    """The path from one request: rows (n, COLUMNS), events (m, 5), how it ended and how often the surface was evaluated."""
+    """The path from one request: rows (n, COLUMNS), events (m, 5), how it ended, evaluations of the surface."""
     part, end = request.part, request.duration
     local, rest, step = new_local(surface), new_rest(), new_step(pair)
     record = Record(np.zeros((1024, COLUMNS)), np.zeros((256, 5)), np.zeros(4, dtype=np.int64))

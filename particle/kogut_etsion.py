@@ -5,8 +5,8 @@ than the separation d is pressed by z - d, in units of the critical interference
 
     I^b = ((z - d)/w_c)^b phi dz,      J_c^b = I^b (eps/w_c)^c,      J_nc = (4/3) [(eps/x)^2 - 0.25 (eps/x)^8] phi dz
 
-where x = eps + d - z is the gap of an asperity that does not touch, equations (3)-(5) of the paper are sums of integrals
-over ranges of interference. Corrections to their printed form are listed in docs/conventions.md.
+where x = eps + d - z is the gap of an asperity that does not touch, equations (3)-(5) of the paper are sums of
+integrals over ranges of interference. Corrections to their printed form are listed in docs/conventions.md.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ class KogutEtsion:
         least, peak = int(np.argmin(net)), int(np.argmax(limit))
         if not (0 < least < len(grid) - 1 and net[least] < 0 and peak < least):
             raise ValueError(
-                "Inputs of KogutEtsion must give a contact with a pull-off force and friction that grows with the load; "
+                "Inputs of KogutEtsion must give a pull-off force and a friction limit that grows with the load; "
                 f"these do not (least net load {net[least]:.3g} N at d = {grid[least]:.3g} sigma)"
             )
         off = minimize_scalar(
@@ -178,7 +178,7 @@ class KogutEtsion:
 
     @cached_property
     def law(self) -> FrictionLaw:
-        """Cubic spline of ln Q over u = ln(1 + sqrt((N + pull_off) / pull_off)), in which the fold at pull-off is smooth.
+        """Cubic spline of ln Q over u = ln(1 + sqrt((N + pull_off) / pull_off)), smooth at the fold of pull-off.
 
         It is sampled anew on knots uniform in u, so that a lookup needs no search.
         """

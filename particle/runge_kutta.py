@@ -74,7 +74,7 @@ def rate(mode: int, surface: Any, local: Any, part: Part, time: float, state: Fl
 def attempt(
     mode: int, surface: Any, local: Any, part: Part, pair: Tableau, step: Step, time: float, state: FloatArray, h: float
 ) -> bool:
-    """Tries a step of h [s] from `state`, whose rate is step.rates[0]; the end goes to step.end, its rate to the last row.
+    """Tries a step of h [s] from `state`, whose rate is step.rates[0]; the end goes to step.end.
 
     False when a stage leaves the cell's polynomials, or turns the velocity back under friction, which would then point
     the wrong way.

@@ -128,9 +128,9 @@ def _leave_manifold(surface: Any, local: Any, request: Request, time: float, sta
     f = fields(surface, local, state[0], state[1], time)
     a = slope(f, part)
     fast = u > 0.03 * a.limit * request.stroke_time
-    if not fast and a.demand >= a.limit:
-        if _manifold_error(surface, local, part, time, state) <= 0.1 * request.tolerance:
-            return MANIFOLD
+    near = _manifold_error(surface, local, part, time, state) <= 0.1 * request.tolerance
+    if near and not fast and a.demand >= a.limit:
+        return MANIFOLD
     state[2], state[3] = velocity(u, lag(surface, local, part, time, state[0], state[1], u, f, a), a)
     return SLIDING
 

@@ -1,11 +1,13 @@
 """Coming to rest, in closed form.
 
-Close to rest pull and friction limit hardly change. With both frozen (A along d, p and r the velocity along d and across
-it), |A| < Q stops the part after
+Close to rest pull and friction limit hardly change. With both frozen (A along d, p and r the velocity along d and
+across it), |A| < Q stops the part after
 
-    T = (u Q + A p)/(Q^2 - A^2),   X = (A p^2 + 2 Q p u + A u^2)/(4 (Q^2 - A^2)) along d,   Y = r (2 Q u + A p)/(4 Q^2 - A^2)
+    T = (u Q + A p)/(Q^2 - A^2)
+    X = (A p^2 + 2 Q p u + A u^2)/(4 (Q^2 - A^2)) along d
+    Y = r (2 Q u + A p)/(4 Q^2 - A^2) across it.
 
-across it. A pull A > Q instead turns a part that moves straight against it: T = u/(A + Q), X = p u/(2 (A + Q)).
+A pull A > Q instead turns a part that moves straight against it: T = u/(A + Q), X = p u/(2 (A + Q)).
 """
 
 from __future__ import annotations

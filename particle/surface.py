@@ -2,8 +2,9 @@
 
     w(x, t) = sum_i h_i(t) v_i(x) + sum_j f_j(t) r_j^2 ln(r_j) / (8 pi),   f_j = sum_i strengths[j, i] h_i(t)
 
-The logarithms around the sources are kept explicitly; the smooth shapes v_i are polynomials on the cells of a background
-grid. Between two kinks of the drives h_i is one quintic, so that a cell's whole smooth part is one polynomial in x, y, t.
+The logarithms around the sources are kept explicitly; the smooth shapes v_i are polynomials on the cells of a
+background grid. Between two kinks of the drives h_i is one quintic, so that a cell's whole smooth part is one
+polynomial in x, y, t.
 """
 
 from __future__ import annotations
