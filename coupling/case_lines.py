@@ -89,9 +89,9 @@ def find_problems(
     `tables` gives the model of each table by name, those of [friction] by their `model` and the whole file's as "".
     """
     lines = _lines(text)
-    # A default that follows from another field cannot be had while fields are wrong, which is no mistake of its own.
+    # That a default which depends on a wrong field is lacking is no mistake of its own.
     details = [detail for detail in error.errors() if detail["type"] != "default_factory_not_called"]
-    # Nor is a key that is missing because it is misspelt.
+    # Nor is it one that a key is missing where it is only misspelt.
     misspelt = {
         (*detail["loc"][:-1], _near(detail["loc"], tables)) for detail in details if detail["type"] == "extra_forbidden"
     }

@@ -29,7 +29,7 @@ def draw_run(case: Case, shapes: InfluenceShapes, surface: SurfaceMotion, trajec
     figure = Figure(figsize=(12.0, 6.0), layout="constrained")
     FigureCanvasAgg(figure)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.05, 1))
-    _draw_path(figure.add_subplot(grid[:, 0]), case, shapes, trajectory)
+    _draw_path(figure, figure.add_subplot(grid[:, 0]), case, shapes, trajectory)
     height, speed = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
     times = np.linspace(0, trajectory.time[-1], SAMPLES)
     position, velocity, _ = trajectory.at(times)
@@ -46,7 +46,7 @@ def draw_run(case: Case, shapes: InfluenceShapes, surface: SurfaceMotion, trajec
     partial.replace(path)
 
 
-def _draw_path(axes: Axes, case: Case, shapes: InfluenceShapes, trajectory: Trajectory) -> None:
+def _draw_path(figure: Figure, axes: Axes, case: Case, shapes: InfluenceShapes, trajectory: Trajectory) -> None:
     """The plate from above: contours of all strokes up at once, the actuators and the path."""
     radius = case.plate.radius
     side = np.linspace(-radius, radius, 161)
@@ -56,7 +56,7 @@ def _draw_path(axes: Axes, case: Case, shapes: InfluenceShapes, trajectory: Traj
     strokes = [actuator.stroke for actuator in case.actuators]
     w[inside] = shapes.evaluate(np.stack([x[inside], y[inside]], axis=1), strokes)[0]
     filled = axes.contourf(x * MICRO, y * MICRO, w * MICRO, levels=14, cmap="Greys", alpha=0.75)
-    axes.figure.colorbar(filled, ax=axes, label="deflection, all strokes up [µm]", shrink=0.8)
+    figure.colorbar(filled, ax=axes, label="deflection, all strokes up [µm]", shrink=0.8)
     axes.add_patch(Circle((0, 0), radius * MICRO, fill=False, color="black", linewidth=1.5))
     points = trajectory.position * MICRO
     fine = np.linspace(0, trajectory.time[-1], SAMPLES)
@@ -79,7 +79,7 @@ def _draw_path(axes: Axes, case: Case, shapes: InfluenceShapes, trajectory: Traj
         Line2D([], [], color="gold", marker="s", markeredgecolor="black", linestyle="", markersize=8, label="start"),
         Line2D([], [], color="gold", marker="*", markeredgecolor="black", linestyle="", markersize=13, label="end"),
     ]
-    axes.get_figure(root=True).legend(handles=keys, loc="outside lower center", ncols=5, frameon=False)
+    figure.legend(handles=keys, loc="outside lower center", ncols=5, frameon=False)
 
 
 def _draw_over_time(axes: Axes, trajectory: Trajectory, times: FloatArray, values: FloatArray, label: str) -> None:

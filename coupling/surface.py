@@ -38,10 +38,13 @@ def surface_motion(shapes: Shapes, drives: Sequence[Drive], tolerance: float = S
         raise ValueError(f"Input drives must be one an actuator, {len(shapes.points)}; got {len(drives)}")
     # Many small systems: BLAS threads would only wait for each other (a hundred times slower on two busy cores).
     with threadpool_limits(limits=1, user_api="blas"):
-        for across in CELLS_ACROSS:
-            fit = CellFit(shapes, across)
-            if fit.error <= tolerance:
+        fit = CellFit(shapes, CELLS_ACROSS[0])
+        for across in CELLS_ACROSS[1:]:
+            finer = CellFit(shapes, across) if fit.error > tolerance else fit
+            # Once smaller cells gain nothing, what is left is the finite elements' own error.
+            if finer.error > 0.5 * fit.error:
                 break
+            fit = finer
     return SurfaceMotion(
         drives=drive_table(drives),
         sources=shapes.points,

@@ -11,7 +11,6 @@ import difflib
 import json
 import math
 import re
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
@@ -106,7 +105,9 @@ class Quantity:
 
     def _unknown_unit(self, number: str, unit: str, error: pint.UndefinedUnitError) -> str:
         name = error.unit_names if isinstance(error.unit_names, str) else next(iter(error.unit_names))
-        for near in _respelt(unit, name):
+        same = [usual for usual in _USUAL_UNITS if usual.lower() == name.lower()]
+        for usual in same + difflib.get_close_matches(name, _USUAL_UNITS):
+            near = unit.replace(name, usual)
             with suppress(Exception):  # There may be a second unknown unit in it.
                 if self._fits(near):
                     return f', but there is no unit "{name}"; did you mean "{number} {near}"?'
@@ -178,13 +179,6 @@ def _dimension(unit: str) -> str:
     """Return what a quantity in `unit` is called."""
     root = _root(unit)
     return next((name for si, name in DIMENSIONS.items() if _root(si) == root), f"a quantity in {root:~}")
-
-
-def _respelt(unit: str, name: str) -> Iterator[str]:
-    """Yield `unit` with the unknown `name` in it replaced by usual units of nearly that spelling, nearest first."""
-    same = [usual for usual in _USUAL_UNITS if usual.lower() == name.lower()]
-    for usual in same + difflib.get_close_matches(name, _USUAL_UNITS):
-        yield unit.replace(name, usual)
 
 
 Length = Annotated[float, Quantity("m", "150 um")]

@@ -27,7 +27,7 @@ class Shapes(ABC):
         self.points = points
         self.size = size
         self.outline = outline
-        self.strengths: FloatArray = np.linalg.inv((compliance + compliance.T) / 2)
+        self.strengths: FloatArray = np.asarray(np.linalg.inv((compliance + compliance.T) / 2), dtype=float)
 
     @abstractmethod
     def loaded(self, x: FloatArray, strengths: FloatArray) -> Fields:

@@ -1,7 +1,8 @@
 """The first moments of sliding, on the slow manifold.
 
 At a small sliding speed u friction turns the velocity towards the pull at the rate Q/u, so that explicit steps from
-rest fall to first order. The slow solution is known: the velocity lags behind the pull's direction d by the angle kappa u,
+rest fall to first order. The slow solution is known: the velocity lags behind the pull's direction d by the angle
+kappa u,
 
     v = u (sqrt(1 - kappa^2 u^2) d - kappa u n),     kappa = turning rate of d / (2 A - Q),     u' = A_d - Q,
 
