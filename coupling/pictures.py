@@ -26,8 +26,9 @@ SAMPLES = 4000
 
 def draw_run(case: Case, shapes: InfluenceShapes, surface: SurfaceMotion, trajectory: Trajectory, path: Path) -> None:
     """Draws the run into a PNG file."""
-    figure = Figure(figsize=(12.0, 6.0), layout="constrained")
+    figure = Figure(figsize=(12.0, 6.0))
     FigureCanvasAgg(figure)
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.06)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.05, 1))
     _draw_path(figure, figure.add_subplot(grid[:, 0]), case, shapes, trajectory)
     height, speed = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
@@ -64,7 +65,7 @@ def _draw_path(figure: Figure, axes: Axes, case: Case, shapes: InfluenceShapes, 
     axes.add_collection(LineCollection([line], colors=SLIP_COLOUR, linewidths=1.5))
     rests = trajectory.state == State.STICK
     axes.plot(*points[rests].T, "o", color=STICK_COLOUR, markersize=4, zorder=3)
-    axes.plot(*(shapes.points.T * MICRO), "^", color="white", markeredgecolor="black", markersize=9, zorder=4)
+    axes.plot(*(shapes.points.T * MICRO), "^", color="white", markeredgecolor="black", markersize=6, zorder=6)
     axes.plot(*points[0], "s", color="gold", markeredgecolor="black", markersize=8, zorder=5)
     axes.plot(*points[-1], "*", color="gold", markeredgecolor="black", markersize=14, zorder=5)
     axes.set_aspect("equal")

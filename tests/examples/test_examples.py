@@ -1,0 +1,65 @@
+"""Every example runs; its files are read back by VTK's own reader, and the part stands on the surface."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista
+
+from coupling import read_case, run_case
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+pytestmark = pytest.mark.compiled
+
+
+@pytest.fixture(scope="module", params=EXAMPLES, ids=lambda path: path.stem)
+def result(request, tmp_path_factory):
+    return run_case(read_case(request.param), output=tmp_path_factory.mktemp("results"))
+
+
+def test_writes_one_file_of_each_kind_and_nothing_partial(result):
+    folder = result.files[0].parent
+    assert sorted(file.name for file in folder.iterdir()) == sorted(
+        f"{result.case.name}.{end}" for end in ("plate.vtkhdf", "part.vtkhdf", "png")
+    )
+
+
+def test_part_stands_on_the_surface_at_every_step(result):
+    plate, part = (pyvista.get_reader(str(file)).reader for file in result.files[:2])
+    plate.UpdateInformation()
+    part.UpdateInformation()
+    steps = part.GetNumberOfSteps()
+    assert steps == plate.GetNumberOfSteps() >= 100
+    times = []
+    for step in range(steps):
+        part.SetStep(step)
+        part.Update()
+        time = part.GetTimeValue()
+        times.append(time)
+        x, y, z = pyvista.wrap(part.GetOutputDataObject(0)).points[0]
+        radius = result.case.plate.radius
+        inward = min(1.0, radius / np.hypot(x, y))  # a part that left is drawn at the rim
+        assert z == pytest.approx(result.surface.evaluate((x * inward, y * inward), time).w[0], abs=1e-11)
+    assert times[0] == 0.0
+    assert times[-1] == pytest.approx(result.trajectory.time[-1])
+
+
+def test_plate_is_lifted_by_the_drives_at_every_step(result):
+    reader = pyvista.get_reader(str(result.files[0])).reader
+    reader.UpdateInformation()
+    actuators = np.array([actuator.position for actuator in result.case.actuators])
+    for step in range(reader.GetNumberOfSteps()):
+        reader.SetStep(step)
+        reader.Update()
+        grid = pyvista.wrap(reader.GetOutputDataObject(0))
+        found = grid.points[: len(actuators), :2]
+        assert np.abs(found - actuators).max() < 1e-12
+        heights = result.surface.evaluate(actuators, reader.GetTimeValue()).w
+        assert grid["deflection"][: len(actuators)] == pytest.approx(
+            heights, abs=1e-6 * result.case.actuators[0].stroke
+        )
+
+
+def test_summary_warns_where_the_model_ends(result):
+    assert result.summary.deflection_over_thickness > 1
+    assert any("thicknesses" in warning for warning in result.summary.warnings)

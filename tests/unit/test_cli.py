@@ -1,0 +1,109 @@
+"""The command line: exit codes, messages, and what is left behind when a case is refused."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from coupling import verification
+from coupling.cli import main
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+BROKEN = """\
+[plate]
+shape = "disc"
+radius = "300 um"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.6
+thicknes = "5 um"
+
+[[actuators]]
+position = ["400 um", "0 um"]
+stroke = 150
+frequency = "300 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["100 um", "100 um"]
+
+[run]
+duration = "50 ms"
+"""
+
+
+@pytest.fixture
+def broken(tmp_path):
+    path = tmp_path / "broken.toml"
+    path.write_text(BROKEN)
+    return path
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_bad_case_exits_2_with_every_mistake_and_leaves_nothing(command, broken, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(main, [command, str(broken)])
+    assert done.exit_code == 2
+    for word in ("plate.poisson_ratio", "plate.thicknes", "actuators[1].position", "actuators[1].stroke", "friction"):
+        assert word in done.output
+    assert "Traceback" not in done.output
+    assert list(tmp_path.iterdir()) == [broken]
+
+
+def test_missing_file_exits_2():
+    done = CliRunner().invoke(main, ["check", "nowhere.toml"])
+    assert done.exit_code == 2
+    assert "nowhere.toml" in done.output
+
+
+def test_contact_without_a_stable_branch_is_refused(tmp_path):
+    text = (EXAMPLES / "one_actuator.toml").read_text()
+    path = tmp_path / "sticky.toml"
+    path.write_text(text.replace('preset = "paper"', 'adhesion_energy = "1e9 J/m^2"'))
+    done = CliRunner().invoke(main, ["check", str(path)])
+    assert done.exit_code == 2
+    assert "Inputs of KogutEtsion" in done.output
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_examples_are_fine(path):
+    done = CliRunner().invoke(main, ["check", str(path)])
+    assert done.exit_code == 0
+    assert "fine" in done.output
+
+
+def test_verify_passes_and_writes_every_figure(tmp_path):
+    file = tmp_path / "verify.json"
+    done = CliRunner().invoke(main, ["verify", "--json", str(file)])
+    assert done.exit_code == 0
+    checks = json.loads(file.read_text())
+    assert [check["passed"] for check in checks] == [True, True]
+    for check in checks:
+        for figure in check["errors"]["hessian"]:
+            assert f"{figure:.2e}" in done.output
+
+
+def test_verify_exits_1_when_a_bound_fails(monkeypatch):
+    monkeypatch.setattr(verification, "ERROR_BOUNDS", (1e-12, 1e-5, 1e-3))
+    done = CliRunner().invoke(main, ["verify"])
+    assert done.exit_code == 1
+    assert "FAILED" in done.output
+
+
+@pytest.mark.compiled
+def test_run_prints_the_summary_as_json(tmp_path):
+    done = CliRunner().invoke(
+        main, ["run", str(EXAMPLES / "one_actuator.toml"), "--output", str(tmp_path / "out"), "--json"]
+    )
+    assert done.exit_code == 0
+    assert json.loads(done.stdout)["outcome"] == "stuck"
+    assert len(list((tmp_path / "out").glob("*.vtkhdf"))) == 2
+
+
+def test_help_loads_no_solver():
+    code = "import sys; from coupling.cli import main; main(['--help'], standalone_mode=False); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert not loaded & {"skfem", "pyvista", "numba", "numpy", "matplotlib", "h5py", "pydantic"}
