@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.linalg import SuperLU, splu
+from scipy.spatial import cKDTree
 
 from fem_plate.influence import Fields, Shapes, check_points
 from fem_plate.section import PlateSection
@@ -18,6 +19,7 @@ from meshes import PlateMesh
 FloatArray = NDArray[np.float64]
 
 MOST_UNKNOWNS = 100_000  # refinement to a tolerance stops here
+FAR = 0.7  # of the plate's size: an actuator that far from the rim needs no smaller cells there
 REFINEMENT_GAIN = 2.0**5  # halving the cells divides the error of w by this at least (observed: 2^5.5 and more)
 
 
@@ -47,6 +49,22 @@ class Plate:
             self._finer = Plate(self.mesh.refined(), self.section)
         return self._finer
 
+    def graded(self, points: FloatArray) -> Plate:
+        """This plate, or one with smaller cells where actuators at points (N, 2) [m] are near the rim.
+
+        The smooth part varies over the distance to the actuators' mirror images beyond the rim; cells stay as small
+        in comparison as they are for an actuator at FAR from the rim.
+        """
+        mesh, images = self.mesh, cKDTree(self.mesh.mirrored(points))
+        slope = float(np.median(mesh.cell_sizes)) / (FAR * mesh.size)
+        while True:
+            distance, _ = images.query(mesh.points[mesh.triangles].mean(axis=1))
+            large = mesh.cell_sizes > slope * distance
+            if not large.any():
+                break
+            mesh = mesh.refined(large)
+        return self if mesh is self.mesh else Plate(mesh, self.section)
+
     def influence(self, points: ArrayLike) -> InfluenceShapes:
         """The influence shapes of actuators at points (N, 2) [m].
 
@@ -54,7 +72,7 @@ class Plate:
         """
         points = np.atleast_2d(np.asarray(points, dtype=float))
         check_points(points, self.mesh.rim_gap(points), self.mesh.size)
-        shapes = InfluenceShapes(self, points)
+        shapes = InfluenceShapes(self.graded(points), points)
         if self.tolerance is None:
             return shapes
         estimate = np.inf
@@ -72,7 +90,8 @@ class Plate:
         points, forces = np.atleast_2d(np.asarray(points, dtype=float)), np.atleast_1d(np.asarray(forces, dtype=float))
         if forces.shape != points.shape[:1]:
             raise ValueError(f"Input forces of deflection must be one a point, {len(points)}; got shape {forces.shape}")
-        return Deflection(InfluenceShapes(self, points), forces)
+        check_points(points, self.mesh.rim_gap(points), self.mesh.size)
+        return Deflection(InfluenceShapes(self.graded(points), points), forces)
 
     @cached_property
     def space(self) -> PlateSpace:

@@ -26,8 +26,9 @@ class Circle:
         return np.asarray(self.radius - np.hypot(offset[..., 0], offset[..., 1]))
 
     def project(self, xy: ArrayLike) -> FloatArray:
-        """The nearest points of the circle to points (..., 2) [m]."""
+        """The nearest points of the circle to points (..., 2) [m]; for its centre, one of them."""
         offset = np.asarray(xy, dtype=float) - np.asarray(self.centre)
+        offset = np.where((offset == 0).all(axis=-1, keepdims=True), (1.0, 0.0), offset)
         distance = np.hypot(offset[..., 0], offset[..., 1])[..., None]
         return np.asarray(self.centre) + self.radius * offset / distance
 

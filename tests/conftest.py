@@ -1,0 +1,57 @@
+"""What all tests share: the paper's plate, an off-centre layout of two actuators, and the `compiled` marker."""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+import pytest
+
+from fem_plate import PlateSection
+from fem_plate.analytic import DiscShapes
+
+RADIUS = 300e-6  # m
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "compiled: too slow in plain Python, runs only with the kernels compiled")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    if numba.config.DISABLE_JIT:
+        skip = pytest.mark.skip(reason="NUMBA_DISABLE_JIT is set: this march takes too long in plain Python")
+        for item in items:
+            if "compiled" in item.keywords:
+                item.add_marker(skip)
+
+
+@pytest.fixture(scope="session")
+def radius() -> float:
+    """Radius of the paper's plate [m]."""
+    return RADIUS
+
+
+@pytest.fixture(scope="session")
+def section() -> PlateSection:
+    """The paper's plate: silicon, 5 um thick."""
+    return PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6, density=2330)
+
+
+@pytest.fixture(scope="session")
+def layout() -> np.ndarray:
+    """Two actuators off the centre and off every axis of symmetry [m]."""
+    return np.array([[90e-6, 40e-6], [-60e-6, 120e-6]])
+
+
+@pytest.fixture(scope="session")
+def exact(layout: np.ndarray) -> DiscShapes:
+    """The influence shapes of that layout in closed form."""
+    return DiscShapes(layout, RADIUS)
+
+
+@pytest.fixture(scope="session")
+def spots(layout: np.ndarray) -> np.ndarray:
+    """Points all over the plate, at least 0.02 radii away from the actuators [m]."""
+    rng = np.random.default_rng(1)
+    r, angle = RADIUS * np.sqrt(rng.uniform(0, 1, 2000)), rng.uniform(0, 2 * np.pi, 2000)
+    xy = np.stack([r * np.cos(angle), r * np.sin(angle)], axis=1)
+    return xy[np.linalg.norm(xy[:, None] - layout, axis=-1).min(axis=1) > 0.02 * RADIUS]

@@ -1,0 +1,131 @@
+"""The disc's mesh: orientation, boundary, true rim and refinement."""
+
+import re
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from meshes import Circle, disc
+
+RADIUS = 300e-6
+
+
+def area(mesh):
+    """Signed areas of the triangles, positive counter-clockwise."""
+    a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
+    return ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
+
+
+def edge_uses(mesh):
+    """How many triangles share each edge."""
+    pairs = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    return Counter(map(tuple, pairs.tolist()))
+
+
+@pytest.fixture(params=["disc", "refined", "refined twice"])
+def mesh(request):
+    mesh = disc(RADIUS, RADIUS / 3)
+    return {"disc": mesh, "refined": mesh.refined(), "refined twice": mesh.refined().refined()}[request.param]
+
+
+def test_all_triangles_run_counter_clockwise(mesh):
+    assert area(mesh).min() > 0
+
+
+def test_the_rim_is_every_edge_of_only_one_triangle(mesh):
+    uses = edge_uses(mesh)
+    assert set(uses.values()) == {1, 2}
+    rim = {tuple(sorted(pair)) for pair in mesh.boundaries["rim"].tolist()}
+    assert rim == {edge for edge, count in uses.items() if count == 1}
+    assert len(rim) == len(mesh.boundaries["rim"])
+
+
+def test_rim_points_lie_on_the_circle_to_rounding(mesh):
+    corners = mesh.points[np.unique(mesh.boundaries["rim"])]
+    assert np.abs(np.hypot(*corners.T) / RADIUS - 1).max() < 4e-16
+
+
+def test_the_rim_is_one_closed_walk(mesh):
+    follower = dict(mesh.boundaries["rim"].tolist())
+    here, seen = next(iter(follower)), 0
+    while seen == 0 or here != start:
+        start = here if seen == 0 else start
+        here, seen = follower[here], seen + 1
+    assert seen == len(follower)
+
+
+def test_no_point_is_unused_or_doubled(mesh):
+    assert np.array_equal(np.unique(mesh.triangles), np.arange(len(mesh.points)))
+    assert len(np.unique(np.round(mesh.points / RADIUS, 9), axis=0)) == len(mesh.points)
+
+
+def test_size_is_the_radius(mesh):
+    assert mesh.size == pytest.approx(RADIUS, rel=1e-15)
+
+
+@pytest.mark.parametrize("refine", [False, True])
+def test_area_tends_to_the_circles_at_second_order(refine):
+    meshes = [disc(1.0, 1 / 4)]
+    for k in (8, 16):
+        meshes.append(meshes[-1].refined() if refine else disc(1.0, 1 / k))
+    missing = np.array([np.pi - area(mesh).sum() for mesh in meshes])
+    assert np.log2(missing[:-1] / missing[1:]) == pytest.approx(2.0, abs=0.01)
+    assert 0 < missing[-1] < 3e-3
+
+
+def test_refining_cuts_every_triangle_in_four():
+    mesh = disc(RADIUS, RADIUS / 3)
+    fine = mesh.refined()
+    assert len(fine.triangles) == 4 * len(mesh.triangles)
+    assert len(fine.boundaries["rim"]) == 2 * len(mesh.boundaries["rim"])
+    assert np.array_equal(fine.points[: len(mesh.points)], mesh.points)
+
+
+def test_cells_are_as_small_as_asked_for():
+    mesh = disc(1.0, 0.13)
+    sides = np.linalg.norm(np.diff(mesh.points[mesh.triangles[:, [0, 1, 2, 0]]], axis=1), axis=-1)
+    assert sides.max() < 1.1 * 0.13
+
+
+def test_a_cell_size_that_divides_the_radius_gives_that_many_rings():
+    assert len(disc(0.3, 0.1).points) == 1 + 6 + 12 + 18
+    assert len(disc(300e-6, 100e-6).points) == 1 + 6 + 12 + 18
+
+
+def test_a_disc_has_at_least_two_rings():
+    assert len(disc(1.0, 10.0).points) == 1 + 6 + 12
+
+
+def test_rim_gap_is_the_distance_from_the_circle():
+    mesh = disc(2.0, 0.5)
+    gap = mesh.rim_gap([[0.0, 0.0], [1.2, 0.9], [0.0, 2.0], [-3.0, 0.0]])
+    assert gap == pytest.approx([2.0, 0.5, 0.0, -1.0], abs=1e-15)
+
+
+@pytest.mark.parametrize("value", [0.0, -1e-6, float("inf"), float("nan")])
+@pytest.mark.parametrize("name", ["radius", "cell_size"])
+def test_a_length_that_is_not_positive_is_refused_by_name(name, value):
+    lengths = {"radius": 1.0, "cell_size": 0.5} | {name: value}
+    message = re.escape(f"Input {name} of disc must be a positive length in m; got {value!r}")
+    with pytest.raises(ValueError, match=message):
+        disc(**lengths)
+
+
+def test_circle_projects_to_the_nearest_point():
+    circle = Circle(2.0, (1.0, -1.0))
+    assert circle.project([[4.0, 3.0], [1.3, -0.6]]) == pytest.approx(np.array([[2.2, 0.6], [2.2, 0.6]]), abs=1e-15)
+    assert circle.gap([4.0, 3.0]) == pytest.approx(-3.0, abs=1e-15)
+
+
+def test_arcs_take_the_short_way_also_over_the_branch_of_the_angle():
+    circle = Circle(2.0, (1.0, -1.0))
+    angle = np.array([[3.0, -3.0], [-3.0, 3.0], [0.2, 0.5]])
+    ends = [np.array(circle.centre) + 2 * np.stack([np.cos(a), np.sin(a)], axis=1) for a in angle.T]
+    s = np.linspace(0, 1, 2001)
+    points, tangents = circle.arc(*ends, s)
+    assert np.abs(circle.gap(points)).max() < 1e-15
+    assert points[:, [0, -1]] == pytest.approx(np.stack(ends, axis=1), abs=1e-15)
+    lengths = np.linalg.norm(np.diff(points, axis=1), axis=-1).sum(axis=1)
+    assert lengths == pytest.approx(2 * np.array([2 * np.pi - 6, 2 * np.pi - 6, 0.3]), rel=1e-7)
+    assert tangents[:, 1:-1] == pytest.approx((points[:, 2:] - points[:, :-2]) / (s[2] - s[0]), abs=1e-7)
