@@ -22,6 +22,7 @@ LINEAR_ERROR = 0.08
 THICKNESSES_WARNED = 0.2
 SLOPE_WARNED = 0.2
 CURVATURE_WARNED = 0.1
+ERROR_WARNED = 1e-6  # of a unit stroke
 
 
 @dataclass(frozen=True)
@@ -132,12 +133,24 @@ def summarise(
         in_plane_motion=case.plate.thickness / 2 * slope,
         part_curvature=curvature,
         part_sag=_part_sag(shapes, trajectory),
-        warnings=tuple(_warnings(over_thickness, linear, slope, curvature)),
+        warnings=tuple(_warnings(shapes.error_estimate, surface.error, over_thickness, linear, slope, curvature)),
     )
 
 
-def _warnings(over_thickness: float, linear: float, slope: float, curvature: float | None) -> list[str]:
+def _warnings(
+    plate_error: float,
+    surface_error: float,
+    over_thickness: float,
+    linear: float,
+    slope: float,
+    curvature: float | None,
+) -> list[str]:
     said = []
+    if max(plate_error, surface_error) > ERROR_WARNED:
+        said.append(
+            f"The plate's shapes are only good to {max(plate_error, surface_error):.1e} of a stroke; a smaller "
+            "plate.cell_size, or actuators further from the rim, make them better."
+        )
     if over_thickness > THICKNESSES_WARNED:
         said.append(
             f"The plate deflects by {over_thickness:.3g} thicknesses; small-deflection theory holds to about "

@@ -82,10 +82,14 @@ def test_refining_cuts_every_triangle_in_four():
     assert np.array_equal(fine.points[: len(mesh.points)], mesh.points)
 
 
-def test_cells_are_as_small_as_asked_for():
-    mesh = disc(1.0, 0.13)
+@pytest.mark.parametrize("cell_size", [0.3, 0.13, 0.05])
+def test_cells_are_about_as_wide_as_asked_for_and_none_is_thin(cell_size):
+    mesh = disc(1.0, cell_size)
     sides = np.linalg.norm(np.diff(mesh.points[mesh.triangles[:, [0, 1, 2, 0]]], axis=1), axis=-1)
-    assert sides.max() < 1.1 * 0.13
+    assert sides.max() < 1.45 * cell_size
+    # Twice the area over the product of two sides is the sine of the angle between them.
+    sine = 2 * area(mesh)[:, None] / (sides * np.roll(sides, 1, axis=1))
+    assert np.rad2deg(np.arcsin(sine.min())) > 40
 
 
 def test_a_cell_size_that_divides_the_radius_gives_that_many_rings():
@@ -129,3 +133,42 @@ def test_arcs_take_the_short_way_also_over_the_branch_of_the_angle():
     lengths = np.linalg.norm(np.diff(points, axis=1), axis=-1).sum(axis=1)
     assert lengths == pytest.approx(2 * np.array([2 * np.pi - 6, 2 * np.pi - 6, 0.3]), rel=1e-7)
     assert tangents[:, 1:-1] == pytest.approx((points[:, 2:] - points[:, :-2]) / (s[2] - s[0]), abs=1e-7)
+
+
+@pytest.fixture(params=[1, 4], ids=["once", "four times"])
+def graded(request):
+    """A mesh refined only near one point of the rim."""
+    mesh = disc(RADIUS, RADIUS / 4)
+    for _ in range(request.param):
+        middle = mesh.points[mesh.triangles].mean(axis=1)
+        distance = np.linalg.norm(middle - [RADIUS, 0.0], axis=1)
+        mesh = mesh.refined(distance < 0.5 * RADIUS)
+    return mesh
+
+
+def test_refining_in_one_place_leaves_no_hanging_node(graded):
+    uses = edge_uses(graded)
+    rim = {tuple(sorted(pair)) for pair in graded.boundaries["rim"].tolist()}
+    assert set(uses.values()) == {1, 2}
+    assert rim == {edge for edge, count in uses.items() if count == 1}
+    assert area(graded).min() > 0
+    assert np.abs(np.hypot(*graded.points[np.unique(graded.boundaries["rim"])].T) / RADIUS - 1).max() < 4e-16
+
+
+def test_refining_in_one_place_leaves_far_cells_alone(graded):
+    far = np.linalg.norm(graded.points[graded.triangles].mean(axis=1) - [-RADIUS, 0.0], axis=1) < 0.6 * RADIUS
+    plain = disc(RADIUS, RADIUS / 4)
+    before = np.linalg.norm(plain.points[plain.triangles].mean(axis=1) - [-RADIUS, 0.0], axis=1) < 0.6 * RADIUS
+    assert np.count_nonzero(far) == np.count_nonzero(before)
+
+
+def test_refining_in_one_place_makes_no_thin_triangles(graded):
+    sides = np.linalg.norm(np.diff(graded.points[graded.triangles[:, [0, 1, 2, 0]]], axis=1), axis=-1)
+    sine = 2 * area(graded)[:, None] / (sides * np.roll(sides, 1, axis=1))
+    assert np.rad2deg(np.arcsin(sine.min())) > 20
+
+
+def test_marking_nothing_refines_nothing():
+    mesh = disc(RADIUS, RADIUS / 4)
+    same = mesh.refined(np.zeros(len(mesh.triangles), dtype=bool))
+    assert len(same.triangles) == len(mesh.triangles)
