@@ -1,0 +1,135 @@
+"""Drives: quintic strokes 10 s^3 - 15 s^4 + 6 s^5, their kinks, and what they refuse."""
+
+import math
+
+import numpy as np
+import pytest
+
+from particle import Drive
+from particle.drive import drive_piece, drive_table, next_kink
+
+
+def quintic(s):
+    return 10 * s**3 - 15 * s**4 + 6 * s**5
+
+
+DRIVES = {
+    "up-down": Drive(150e-6, 300),
+    "up": Drive(150e-6, 450, cycle="up"),
+    "late": Drive(-40e-6, 250, delay=1.3e-3),
+    "two cycles": Drive(80e-6, 500, cycles=2, delay=0.4e-3),
+}
+TIMES = np.linspace(0, 9e-3, 1001) + 1e-7  # never on a kink
+
+
+def expected(drive, time):
+    """The stroke as the paper describes it, at one time."""
+    since = (time - drive.delay) * drive.frequency
+    if since < 0:
+        return 0.0
+    if drive.cycle == "up":
+        return drive.stroke * quintic(min(since, 1.0))
+    if drive.cycles is not None and since >= drive.cycles:
+        return 0.0
+    phase = 2 * (since % 1)
+    return drive.stroke * (quintic(phase) if phase < 1 else 1 - quintic(phase - 1))
+
+
+@pytest.mark.parametrize("name", DRIVES)
+def test_stroke_is_the_quintic_up_and_down(name):
+    drive = DRIVES[name]
+    h, _, _ = drive.evaluate(TIMES)
+    assert np.abs(h - [expected(drive, t) for t in TIMES]).max() < 2e-14 * abs(drive.stroke)
+
+
+@pytest.mark.parametrize("name", DRIVES)
+def test_velocity_and_acceleration_are_the_derivatives(name):
+    drive, step = DRIVES[name], 1e-7
+    (before, v_before, _), (_, v, a), (after, v_after, _) = (drive.evaluate(TIMES + k * step) for k in (-1, 0, 1))
+    assert np.abs((after - before) / (2 * step) - v).max() < 1e-6 * np.abs(v).max()
+    # The third derivative jumps at kinks, which a difference across one feels at first order.
+    assert np.abs((v_after - v_before) / (2 * step) - a).max() < 2e-3 * np.abs(a).max()
+
+
+@pytest.mark.parametrize("name", DRIVES)
+def test_stroke_velocity_and_acceleration_are_continuous_at_kinks(name):
+    drive, kinks, time = DRIVES[name], [], -1.0
+    table = drive_table([drive])
+    while (time := next_kink(table, time)) < 9e-3:
+        kinks.append(time)
+    assert kinks
+    before, after = (drive.evaluate(np.array(kinks) + shift) for shift in (-1e-12, 1e-12))
+    for one, other, scale in zip(before, after, (1, 1e3, 1e7), strict=True):
+        assert np.abs(one - other).max() < 1e-6 * scale * abs(drive.stroke)
+    assert np.abs(after[1]).max() < 1e-9 * abs(drive.stroke) * drive.frequency + 1e-9
+
+
+def test_kinks_come_at_delay_half_periods_and_the_last_end():
+    table = drive_table([DRIVES["two cycles"], DRIVES["up"]])
+    kinks, time = [], -1.0
+    while (time := next_kink(table, time)) < math.inf:
+        kinks.append(time)
+    assert kinks == pytest.approx(sorted([0.4e-3, 1.4e-3, 2.4e-3, 3.4e-3, 4.4e-3, 0.0, 1 / 450]), abs=1e-15)
+
+
+def test_an_endless_drive_has_a_kink_each_half_period_and_never_the_same_twice():
+    table, kinks, time = drive_table([Drive(1e-6, 300)]), [], 0.0
+    for _ in range(1000):
+        time = next_kink(table, time)
+        kinks.append(time)
+    assert kinks == pytest.approx(np.arange(1, 1001) / 600, rel=1e-14)
+
+
+def test_a_surface_without_drives_has_no_kink():
+    assert next_kink(drive_table([]), 0.0) == math.inf
+
+
+@pytest.mark.parametrize("name", DRIVES)
+@pytest.mark.parametrize("time", [0.0, 0.7e-3, 2.0e-3, 3.1e-3])
+def test_a_piece_is_the_stroke_up_to_the_next_kink(name, time):
+    drive = DRIVES[name]
+    table, unit = drive_table([drive]), 0.37e-3
+    piece = drive_piece(table, 0, time, unit)
+    end = min(next_kink(table, time), time + unit)
+    times = np.linspace(time, end, 9)[:-1]
+    values = np.polynomial.polynomial.polyval((times - time) / unit, piece)
+    assert np.abs(values - drive.evaluate(times)[0]).max() < 1e-13 * abs(drive.stroke)
+
+
+def test_a_stroke_of_up_is_held_for_ever_and_a_counted_one_ends_at_0():
+    assert DRIVES["up"].evaluate(1e3)[0] == pytest.approx(150e-6, rel=1e-15)
+    h, v, a = DRIVES["two cycles"].evaluate([4.4e-3 + 1e-9, 1.0])
+    assert np.abs(h).max() < 1e-20 and not v.any() and not a.any()
+
+
+def test_values_keep_the_shape_of_the_times():
+    for values in DRIVES["up"].evaluate(np.zeros((2, 3))):
+        assert values.shape == (2, 3)
+    assert DRIVES["up"].evaluate(1e-3)[0].shape == ()
+
+
+@pytest.mark.parametrize(
+    "wrong, says",
+    [
+        ({"stroke": math.nan}, "stroke"),
+        ({"stroke": math.inf}, "stroke"),
+        ({"frequency": 0.0}, "frequency"),
+        ({"frequency": -1.0}, "frequency"),
+        ({"cycle": "down"}, "cycle"),
+        ({"cycles": 0}, "cycles"),
+        ({"cycles": 1.5}, "cycles"),
+        ({"cycle": "up", "cycles": 2}, "cycles"),
+        ({"delay": -1e-3}, "delay"),
+        ({"delay": math.inf}, "delay"),
+    ],
+)
+def test_a_wrong_field_is_refused_by_name(wrong, says):
+    with pytest.raises(ValueError, match=f"^Input {says} of Drive must be [^;]*; got [^;]*$"):
+        Drive(**{"stroke": 1e-4, "frequency": 300.0} | wrong)
+
+
+def test_all_mistakes_are_told_at_once():
+    with pytest.raises(ValueError) as caught:
+        Drive(math.nan, 0.0, cycle="x", cycles=0, delay=-1.0)
+    for name in ("stroke", "frequency", "cycle", "cycles", "delay"):
+        assert f"Input {name} of Drive" in str(caught.value)

@@ -1,0 +1,170 @@
+"""The surface as the part sees it: polynomials, and the plate's shapes under drives."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.polynomial import polynomial
+
+from coupling.surface import CellFit, surface_motion
+from fem_plate import Plate
+from fem_plate.analytic import DiscShapes
+from meshes import disc
+from particle import Drive, polynomial_surface
+
+DRIVES = [Drive(150e-6, 300), Drive(-60e-6, 450, cycle="up", delay=0.2e-3)]
+NAMES = ("w", "w_t", "w_tt", "gradient", "gradient_t", "hessian")
+TIMES = [0.0, 0.1e-3, 1.3e-3, 1 / 600, 2.9e-3, 10e-3]
+
+
+@pytest.fixture(scope="module")
+def surface(exact):
+    return surface_motion(exact, DRIVES)
+
+
+def close(found, expected, bound):
+    scale = np.abs(expected).max()
+    assert np.abs(np.asarray(found) - expected).max() <= bound * scale + 1e-300
+
+
+@pytest.mark.parametrize("size", [1.0, 0.02])
+@pytest.mark.parametrize("shape", [(1, 1), (3, 2), (2, 4, 3), (4, 3, 6)], ids=str)
+def test_a_polynomial_surface_is_its_polynomial_with_all_derivatives(shape, size):
+    rng = np.random.default_rng(0)
+    c = rng.normal(size=shape)
+    surface, xy = polynomial_surface(c, size=size), rng.uniform(-1, 1, (20, 2))
+    cube = c[:, :, None] if c.ndim == 2 else c
+    for time in (0.0, 0.37, 2.1):
+
+        def derived(i, j, k, time=time):
+            table = cube
+            for axis, order in enumerate((i, j, k)):
+                table = polynomial.polyder(table, order, axis=axis) if order else table
+            return polynomial.polyval3d(*xy.T, np.full(len(xy), time), table)
+
+        state = surface.evaluate(xy, time)
+        expected = {
+            "w": derived(0, 0, 0),
+            "w_t": derived(0, 0, 1),
+            "w_tt": derived(0, 0, 2),
+            "gradient": np.stack([derived(1, 0, 0), derived(0, 1, 0)], axis=1),
+            "gradient_t": np.stack([derived(1, 0, 1), derived(0, 1, 1)], axis=1),
+            "hessian": np.stack(
+                [derived(2, 0, 0), derived(1, 1, 0), derived(1, 1, 0), derived(0, 2, 0)], axis=1
+            ).reshape(-1, 2, 2),
+        }
+        for name in NAMES:
+            assert np.abs(getattr(state, name) - expected[name]).max() < 1e-11 * max(1, np.abs(expected[name]).max())
+
+
+@pytest.mark.parametrize("shape", [(3,), (2, 2, 7), (1, 1, 1, 1), (2, 2, 0)], ids=str)
+def test_a_polynomial_surface_of_another_shape_is_refused(shape):
+    with pytest.raises(ValueError, match="^Input coefficients"):
+        polynomial_surface(np.zeros(shape))
+
+
+def test_a_polynomial_surface_has_no_rim():
+    assert polynomial_surface([[1.0, 2.0]]).evaluate([[1e6, 1e6]], 0.0).w == pytest.approx(1 + 2e6)
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_the_surface_is_the_shapes_raised_by_their_drives(surface, exact, spots, time):
+    strokes = np.array([drive.evaluate(time) for drive in DRIVES])
+    state = surface.evaluate(spots, time)
+    shape, slope, bend = exact.evaluate(spots)
+    scale = 150e-6
+    for order, (height, tilt) in enumerate([("w", "gradient"), ("w_t", "gradient_t"), ("w_tt", None)]):
+        h = strokes[:, order]
+        unit = scale * 300.0**order
+        assert np.abs(getattr(state, height) - shape @ h).max() < 1e-8 * unit * 40**order
+        if tilt:
+            tilts = np.einsum("nid,i->nd", slope, h)
+            assert np.abs(getattr(state, tilt) - tilts).max() < 1e-7 * np.abs(slope).max() * unit * 40**order
+    bends = np.einsum("nide,i->nde", bend, strokes[:, 0])
+    assert np.abs(state.hessian - bends).max() < 1e-6 * np.abs(bend).max() * scale
+
+
+def test_the_fields_are_each_others_derivatives(surface, spots, radius):
+    inner, time = spots[np.hypot(*spots.T) < 0.95 * radius][:300], 0.9e-3
+    step, dt = 1e-4 * radius, 1e-7
+    state = surface.evaluate(inner, time)
+    for axis in range(2):
+        shift = step * np.eye(2)[axis]
+        after, before = surface.evaluate(inner + shift, time), surface.evaluate(inner - shift, time)
+        for value, derivative in [("w", "gradient"), ("w_t", "gradient_t"), ("gradient", "hessian")]:
+            by_steps = (getattr(after, value) - getattr(before, value)) / (2 * step)
+            close(by_steps, getattr(state, derivative)[:, axis], 3e-5)
+    after, before = surface.evaluate(inner, time + dt), surface.evaluate(inner, time - dt)
+    for value, derivative in [("w", "w_t"), ("w_t", "w_tt"), ("gradient", "gradient_t")]:
+        close((getattr(after, value) - getattr(before, value)) / (2 * dt), getattr(state, derivative), 1e-5)
+
+
+def test_the_stated_error_is_that_of_the_unit_shapes(surface, exact, spots, layout):
+    """Each shape alone, raised by 1 m; the worst of it within a factor 3 of what the record states."""
+    held = [Drive(1.0, 1.0, cycle="up"), Drive(0.0, 1.0, cycle="up")]
+    shape, worst = exact.evaluate(spots)[0], 0.0
+    for i, drives in enumerate([held, held[::-1]]):
+        found = surface_motion(exact, drives).evaluate(spots, 2.0).w
+        worst = max(worst, np.abs(found - shape[:, i]).max())
+    assert surface.error <= 1e-8
+    assert surface.error / 3 < worst < 3 * surface.error
+
+
+def test_a_smaller_tolerance_takes_finer_cells_and_meets_it(exact):
+    coarse, fine = (surface_motion(exact, DRIVES, tolerance=t) for t in (1e-6, 1e-12))
+    assert fine.cell_width < coarse.cell_width
+    assert fine.error <= 1e-12 < coarse.error <= 1e-6
+
+
+def test_cells_hold_a_little_beyond_their_sides(exact):
+    """A step of the integrator may end up to `overhang` half widths from a cell's centre."""
+    fit = CellFit(exact, 16)
+    middle = len(fit.centres) // 2
+    local = 1.25 * np.array([[1, 1], [-1, 1], [1, -1], [-1, -1], [1, 0], [0, -1]])
+    powers = [(i, j) for i in range(9) for j in range(9 - i)]
+    monomials = np.stack([local[:, 0] ** i * local[:, 1] ** j for i, j in powers], axis=1)
+    values = exact.smooth(fit.centres[middle] + local * fit.width / 2)
+    assert np.abs(monomials @ fit.cells[middle].T - values).max() < 1e-8
+
+
+def test_there_must_be_one_drive_an_actuator(exact):
+    with pytest.raises(ValueError, match="^Input drives must be one an actuator, 2; got 1$"):
+        surface_motion(exact, DRIVES[:1])
+
+
+def test_a_point_beyond_the_rim_is_refused_and_one_on_it_is_not(surface, radius):
+    surface.evaluate([[0.6 * radius, 0.8 * radius]], 1e-3)
+    with pytest.raises(ValueError, match="^Input xy of evaluate must lie on the surface; got"):
+        surface.evaluate([[0.0, 0.0], [0.0, 1.001 * radius]], 1e-3)
+
+
+def test_the_hessian_stays_finite_at_an_actuator_and_stops_growing_at_the_floor(surface, layout):
+    for shift in (0.0, 0.3, 0.99):
+        state = surface.evaluate(layout + shift * np.array([surface.floor, 0.0]), 1e-3)
+        assert np.isfinite(state.hessian).all()
+    assert surface.floor == pytest.approx(1e-6 * surface.size)
+    reach = surface.evaluate(layout[:1] + [[2 * surface.floor, 0]], 1e-3).hessian[0, 1, 1]
+    top = surface.evaluate(layout[:1] + [[0.5 * surface.floor, 0]], 1e-3).hessian[0, 1, 1]
+    assert abs(top) > abs(reach)
+
+
+def test_finite_elements_give_the_closed_forms_surface(section, radius, layout, exact, spots, surface):
+    shapes = Plate(disc(radius, radius / 8), section).influence(layout)
+    found, truth = surface_motion(shapes, DRIVES).evaluate(spots, 1.1e-3), surface.evaluate(spots, 1.1e-3)
+    for name, bound in zip(NAMES, (1e-7, 1e-7, 1e-7, 3e-6, 3e-6, 5e-5), strict=True):
+        close(getattr(found, name), getattr(truth, name), bound)
+
+
+def test_a_surface_from_finite_elements_needs_no_finer_cells_than_the_exact_one(section, radius, layout, surface):
+    shapes = Plate(disc(radius, radius / 12), section).influence(layout)
+    assert surface_motion(shapes, DRIVES).cells.shape == surface.cells.shape
+
+
+def test_a_close_pair_of_actuators_is_fitted_relative_to_its_steep_shapes(radius):
+    shapes = DiscShapes([[100e-6, 0.0], [110e-6, 0.0]], radius)
+    assert surface_motion(shapes, DRIVES).error <= 1e-8
+
+
+def test_time_may_lie_before_the_start(surface):
+    assert surface.evaluate([[0.0, 0.0]], -1e-3).w == 0.0
+    assert math.isfinite(surface.evaluate([[0.0, 0.0]], 1e3).w_tt[0])
