@@ -46,10 +46,11 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
         drives = build_drives(case)
         surface = surface_motion(shapes, drives)
     with progress("Following the part (the first run on a machine compiles the integrator, about half a minute)"):
-        trajectory = follow_part(case, surface, case.run.tolerance)
-        tighter = follow_part(case, surface, max(case.run.tolerance / 100, 1e-13))
+        friction = build_friction(case)
+        trajectory = follow_part(case, surface, friction, case.run.tolerance)
+        tighter = follow_part(case, surface, friction, max(case.run.tolerance / 100, 1e-13))
     with progress("Checking the model's validity"):
-        summary = summarise(case, shapes, surface, trajectory, tighter, drives)
+        summary = summarise(case, shapes, surface, trajectory, tighter, drives, friction)
     result = Result(case, shapes, surface, trajectory, summary)
     if output is None:
         return result
@@ -88,7 +89,7 @@ def build_friction(case: Case) -> Contact:
     return particle.KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
 
 
-def follow_part(case: Case, surface: SurfaceMotion, tolerance: float) -> Trajectory:
+def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tolerance: float) -> Trajectory:
     """The part's path over the surface."""
     part = particle.Micropart(case.part.mass, case.part.position, case.part.velocity)
-    return particle.simulate(surface, part, build_friction(case), case.run.duration, case.run.gravity, tolerance)
+    return particle.simulate(surface, part, friction, case.run.duration, case.run.gravity, tolerance)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from coupling.case import Case, KogutEtsionCase
 from fem_plate import InfluenceShapes
 from particle import Drive, EventKind, State, SurfaceMotion, Trajectory
+from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
 
@@ -43,6 +44,7 @@ class Summary:
     plate_error: float  # of unit shapes, estimated
     hold_residual: float  # largest |phi_i(x_j) - delta_ij|
     surface_error: float  # of unit shapes' fit, measured
+    contact_error: float  # relative, of the tabulated friction limit, measured
     path_error: float | None  # m, end point against a run at a hundredth of the tolerance; None: not the same events
     deflection_over_thickness: float
     linear_path_error: float  # relative, of small-deflection theory
@@ -76,7 +78,10 @@ class Summary:
                 f"{self.plate_unknowns} unknowns; unit shapes to {self.plate_error:.1e} (estimated), "
                 f"held to {self.hold_residual:.1e}",
             ),
-            ("surface", f"fitted to {self.surface_error:.1e} of a unit stroke"),
+            (
+                "surface",
+                f"fitted to {self.surface_error:.1e} of a unit stroke; friction tabulated to {self.contact_error:.1e}",
+            ),
             ("integrator", f"end point against a run 100 times tighter: {path_error}; {self.evaluations} evaluations"),
             (
                 "model",
@@ -102,6 +107,7 @@ def summarise(
     trajectory: Trajectory,
     tighter: Trajectory,
     drives: Sequence[Drive],
+    friction: Contact,
 ) -> Summary:
     """The run's summary; `tighter` is the same run at a hundredth of the tolerance."""
     step = np.diff(trajectory.position, axis=0)
@@ -126,6 +132,7 @@ def summarise(
         plate_error=shapes.error_estimate,
         hold_residual=float(np.abs(shapes.evaluate(shapes.points)[0] - np.eye(len(shapes.points))).max()),
         surface_error=surface.error,
+        contact_error=friction.table_error,
         path_error=moved if same else None,
         deflection_over_thickness=over_thickness,
         linear_path_error=linear,

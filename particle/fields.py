@@ -1,7 +1,7 @@
 """The surface where the part is: one polynomial in (x, y, t) per cell and stroke piece, plus the logarithms.
 
 `Local` is scratch memory: `pin_time` fills in the drives' quintics for one span of time, `pin_cell` contracts the
-cell's shapes with them. After that an evaluation costs the same for any number of shapes.
+cell's shapes with them. After that the smooth part costs the same for any number of shapes.
 """
 
 from __future__ import annotations

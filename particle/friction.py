@@ -36,6 +36,9 @@ class Contact(Protocol):
     @property
     def law(self) -> FrictionLaw: ...
 
+    @property
+    def table_error(self) -> float: ...
+
 
 @jit
 def friction_limit(law: FrictionLaw, load: float) -> float:
@@ -69,6 +72,8 @@ class ConstantFriction:
     def __post_init__(self) -> None:
         _require(self.limit >= 0, "limit", "ConstantFriction", "0 or a positive force in N", self.limit)
 
+    table_error = 0.0
+
     @property
     def pull_off(self) -> float:
         return math.inf
@@ -98,6 +103,8 @@ class CoulombAdhesion:
             at_least = f"at least the coefficient {self.coefficient!r}, which must then be positive"
             good = static >= self.coefficient > 0
             _require(good, "static_coefficient", "CoulombAdhesion", at_least, static)
+
+    table_error = 0.0
 
     @property
     def pull_off(self) -> float:

@@ -6,7 +6,7 @@ than the separation d is pressed by z - d, in units of the critical interference
     I^b = ((z - d)/w_c)^b phi dz,      J_c^b = I^b (eps/w_c)^c,      J_nc = (4/3) [(eps/x)^2 - 0.25 (eps/x)^8] phi dz
 
 where x = eps + d - z is the gap of an asperity that does not touch, equations (3)-(5) of the paper are sums of
-integrals over ranges of interference. Corrections to their printed form are listed in docs/conventions.md.
+integrals over ranges of interference. Corrections to their printed form are listed in docs/contact.md.
 """
 
 from __future__ import annotations
@@ -193,6 +193,15 @@ class KogutEtsion:
         return FrictionLaw(
             TABLE, 0.0, 0.0, 1.0, 0.0, self.pull_off, self.largest_load, float(knots[1]), np.ascontiguousarray(table.c)
         )
+
+    @cached_property
+    def table_error(self) -> float:
+        """The largest relative error of `friction_limit` against the contact itself, measured between the knots."""
+        low, high = self.branch
+        # Not at the fold itself, where rounding of the load alone moves Q by its square root.
+        d = np.linspace(low, high, 402)[1:-2]
+        net, limit = self._net_and_limit(d)
+        return float(np.abs(self.friction_limit(net) / limit - 1).max())
 
     def _net_and_limit(self, d: FloatArray) -> tuple[FloatArray, FloatArray]:
         load, adhesion, limit = self.forces(d)

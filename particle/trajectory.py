@@ -17,7 +17,6 @@ class State(enum.IntEnum):
 
     STICK = 0
     SLIP = 1
-    FLIGHT = 2
 
 
 class EventKind(enum.IntEnum):

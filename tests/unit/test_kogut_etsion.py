@@ -67,16 +67,20 @@ def test_the_stable_branch_ends_at_pull_off_and_at_the_peak_of_friction(contact)
     assert net[-1] == pytest.approx(-contact.pull_off, rel=1e-10)
     for step in (1e-3, -1e-3):
         assert contact.net_load(off + step) > -contact.pull_off
-        assert contact.forces(top + step)[2] < contact.forces(top)[2]
+        # Unrounded, friction grows up to d = 0, where the search ends.
+        if contact.coefficients == "printed":
+            assert contact.forces(top + step)[2] < contact.forces(top)[2]
+        else:
+            assert top == pytest.approx(0.0, abs=1e-8)
 
 
 def loads(contact, count):
     """Net loads over the whole stable branch, both ends among them, dense around pull-off and zero.
 
-    At pull-off a rounding error of the load, e, moves the separation by its root: none but the end is closer than 1e-6.
+    At pull-off a rounding error of the load, e, moves the separation by its root: none but the end is closer than 1e-3.
     """
     low, high = -contact.pull_off, contact.largest_load
-    near = low * (1 - np.geomspace(1e-6, 1, count))
+    near = low * (1 - np.geomspace(1e-3, 1, count))
     return np.concatenate([[low, 0.0, high], near, high * np.geomspace(1e-6, 1, count)])
 
 
@@ -98,9 +102,11 @@ def test_the_table_is_exact_between_all_of_its_knots(contact):
     load, adhesion, limit = contact.forces(d)
     net = np.clip(load - adhesion, -contact.pull_off, contact.largest_load)
     error = np.abs(contact.friction_limit(net) / limit - 1)
-    fold = net < -contact.pull_off * (1 - 1e-6)  # where the load's own rounding shows
-    assert error[~fold].max() < 1e-9
-    assert error[fold].max() < 1e-5
+    room = 1 + net / contact.pull_off
+    assert error[room > 1e-3].max() < 1e-9
+    # At pull-off the load's own rounding, some 1e-12, enters by its root.
+    assert error[room > 1e-6].max() < 1e-7
+    assert error.max() < 1e-5
     assert contact.friction_limit(-contact.pull_off) == pytest.approx(contact.forces(off)[2], rel=1e-12)
 
 

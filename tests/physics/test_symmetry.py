@@ -1,0 +1,60 @@
+"""A path turned or mirrored with plate, actuators and part is the same path, to the integrator's tolerance."""
+
+import numpy as np
+import pytest
+
+from coupling.surface import surface_motion
+from fem_plate.analytic import DiscShapes
+from particle import ConstantFriction, Drive, KogutEtsion, Micropart, simulate
+
+MASS = 2e-9
+DRIVES = [Drive(150e-6, 300, cycle="up"), Drive(90e-6, 450, cycle="up", delay=0.4e-3)]
+START = np.array([-40e-6, -70e-6])
+TURN = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
+MAPS = {
+    "turned by 0.7": TURN,
+    "turned by 90 degrees": np.array([[0.0, -1.0], [1.0, 0.0]]),
+    "mirrored": np.diag([1.0, -1.0]),
+    "mirrored and turned": TURN @ np.diag([-1.0, 1.0]),
+}
+
+
+def path(layout, start, radius, friction):
+    surface = surface_motion(DiscShapes(layout, radius), DRIVES, tolerance=1e-12)
+    return simulate(surface, Micropart(MASS, tuple(start)), friction, 4e-3, tolerance=1e-11)
+
+
+@pytest.mark.parametrize("friction", [ConstantFriction(20.9 * MASS), KogutEtsion.paper()], ids=["constant", "rough"])
+@pytest.mark.parametrize("name", MAPS)
+def test_the_path_moves_with_its_plate(layout, radius, name, friction):
+    plain, moved = (path(layout @ m.T, m @ START, radius, friction) for m in (np.eye(2), MAPS[name]))
+    assert plain.distance > 20e-6
+    assert np.abs(moved.position[-1] - MAPS[name] @ plain.position[-1]).max() < 2e-9 * radius
+    assert [event.kind for event in moved.events] == [event.kind for event in plain.events]
+    assert [e.time for e in moved.events] == pytest.approx([e.time for e in plain.events], abs=1e-6 * 4e-3)
+
+
+def test_the_order_of_the_actuators_does_not_matter(layout, radius):
+    friction = ConstantFriction(20.9 * MASS)
+    plain = path(layout, START, radius, friction)
+    surface = surface_motion(DiscShapes(layout[::-1], radius), DRIVES[::-1], tolerance=1e-12)
+    swapped = simulate(surface, Micropart(MASS, tuple(START)), friction, 4e-3, tolerance=1e-11)
+    assert np.abs(swapped.position[-1] - plain.position[-1]).max() < 2e-9 * radius
+
+
+def test_a_part_twice_as_heavy_under_twice_the_friction_takes_the_same_path(layout, radius):
+    plain = path(layout, START, radius, ConstantFriction(20.9 * MASS))
+    surface = surface_motion(DiscShapes(layout, radius), DRIVES, tolerance=1e-12)
+    heavy = simulate(surface, Micropart(2 * MASS, tuple(START)), ConstantFriction(41.8 * MASS), 4e-3, tolerance=1e-11)
+    assert np.abs(heavy.position[-1] - plain.position[-1]).max() < 1e-12 * radius
+    assert heavy.normal_force[-1] == pytest.approx(2 * plain.normal_force[-1], rel=1e-9)
+
+
+def test_all_lengths_times_ten_and_accelerations_likewise_scale_the_path(layout, radius):
+    """Lengths by 10 at the same times: gravity and Q/m by 10 as well."""
+    plain = path(layout, START, radius, ConstantFriction(20.9 * MASS))
+    drives = [Drive(10 * d.stroke, d.frequency, d.cycle, d.cycles, d.delay) for d in DRIVES]
+    surface = surface_motion(DiscShapes(10 * layout, 10 * radius), drives, tolerance=1e-12)
+    part = Micropart(MASS, tuple(10 * START))
+    large = simulate(surface, part, ConstantFriction(209 * MASS), 4e-3, gravity=98.0665, tolerance=1e-11)
+    assert np.abs(large.position[-1] / 10 - plain.position[-1]).max() < 2e-9 * radius

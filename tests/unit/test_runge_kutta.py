@@ -1,0 +1,75 @@
+"""The embedded Runge-Kutta pairs of Dormand and Prince (1980) and of Hairer, Norsett and Wanner (DOP853, 1993)."""
+
+import math
+
+import numpy as np
+import pytest
+
+from particle import ConstantFriction, polynomial_surface
+from particle.fields import new_local, pin_cell, pin_time
+from particle.motion import Part
+from particle.runge_kutta import SLIDING, attempt, error, new_step, rate, tableau
+
+OMEGA = 3.0  # 1/s
+
+
+def bowl():
+    """A bowl so shallow that its slope's square does not count: gravity makes a harmonic oscillator of it."""
+    return polynomial_surface([[0, 0, 0.5 * OMEGA**2 * 1e-9], [0, 0, 0], [0.5 * OMEGA**2 * 1e-9, 0, 0]])
+
+
+def march(pair, steps):
+    """Position and velocity after 1 s by `steps` steps, and the pair's estimate for the first of them."""
+    surface, part = bowl(), Part(1.0, 1e9, ConstantFriction(0.0).law)
+    local, step = new_local(surface), new_step(pair)
+    pin_time(surface, local, 0.0, 1.0)
+    pin_cell(surface, local, 0.0, 0.0)
+    state, h, first = np.array([0.1, 0.0, 0.0, 0.2]), 1 / steps, 0.0
+    for k in range(steps):
+        step.loads[0] = rate(SLIDING, surface, local, part, k * h, state, step.rates[0])
+        assert attempt(SLIDING, surface, local, part, pair, step, k * h, state, h)
+        first = error(pair, step, h, 1.0) if k == 0 else first
+        state[:] = step.end
+    return state, first
+
+
+def truth():
+    c, s = math.cos(OMEGA), math.sin(OMEGA)
+    return np.array([0.1 * c, 0.2 / OMEGA * s, -0.1 * OMEGA * s, 0.2 * c])
+
+
+@pytest.mark.parametrize("tolerance, order, steps", [(1e-6, 5, (16, 32)), (1e-9, 8, (4, 8))])
+def test_the_error_falls_at_the_pairs_order(tolerance, order, steps):
+    pair = tableau(tolerance)
+    errors = [np.linalg.norm(march(pair, n)[0] - truth()) for n in steps]
+    assert math.log2(errors[0] / errors[1]) > order - 0.3
+    assert errors[1] < 1e-6
+
+
+@pytest.mark.parametrize("tolerance, order", [(1e-6, 5), (1e-9, 8)])
+def test_the_estimate_falls_with_the_step_and_is_not_below_the_error(tolerance, order):
+    pair = tableau(tolerance)
+    coarse, fine = march(pair, 4)[1], march(pair, 8)[1]
+    assert math.log2(coarse / fine) > order - 1.2
+    one = march(pair, 8)[0]
+    assert np.linalg.norm(one - truth()) < 8 * 3 * fine
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-6, 9e-7, 1e-12])
+def test_the_tableau_is_consistent(tolerance):
+    pair = tableau(tolerance)
+    assert pair.order == (5 if tolerance >= 1e-6 else 8)
+    assert pair.a.sum(axis=1) == pytest.approx(pair.c, abs=1e-14)
+    assert np.abs(pair.error.sum(axis=1)).max() < 1e-14
+    assert not np.triu(pair.a).any()
+
+
+def test_the_part_does_not_slide_back_within_a_step_under_friction():
+    surface, part, pair = polynomial_surface([[0.0]]), Part(1.0, 9.81, ConstantFriction(1.0).law), tableau(1e-9)
+    local, step, state = new_local(surface), new_step(pair), np.array([0.0, 0.0, 1.0, 0.0])
+    pin_time(surface, local, 0.0, 10.0)
+    pin_cell(surface, local, 0.0, 0.0)
+    step.loads[0] = rate(SLIDING, surface, local, part, 0.0, state, step.rates[0])
+    assert attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 0.9)
+    assert step.end == pytest.approx([0.9 - 0.5 * 0.81, 0, 0.1, 0], abs=1e-14)
+    assert not attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 1.5)

@@ -1,0 +1,114 @@
+"""The search for the end of rest, against brute force: it misses no break-away and invents none."""
+
+import math
+
+import numpy as np
+import pytest
+
+from particle import ConstantFriction, CoulombAdhesion, Drive, KogutEtsion, polynomial_surface
+from particle.fields import fields, new_local, pin_cell, pin_time
+from particle.friction import friction_limit
+from particle.motion import Part, length, pull
+from particle.stick import leaves_rest, new_rest
+
+SAMPLES = 400
+MASS = 2e-9
+
+
+def moving(rng):
+    """A surface whose slope and height follow random quintics in time, and half of the time a base that moves."""
+    c = np.zeros((2, 2, 6))
+    c[0, 0] = rng.normal(size=6) * [0, 0, 4, 4, 4, 4]
+    c[1, 0], c[0, 1] = 0.4 * rng.normal(size=(2, 6))
+    base = None
+    if rng.random() < 0.5:
+        base = [Drive(rng.normal(), 0.5, cycle="up"), Drive(rng.normal(), 0.5, cycle="up")]
+    return polynomial_surface(c, base=base)
+
+
+def law(rng, kind):
+    if kind == "constant":
+        return ConstantFriction(MASS * 10 ** rng.uniform(0, 1.5)).law
+    if kind == "coulomb":
+        return CoulombAdhesion(0.4, MASS * rng.uniform(2, 30), static_coefficient=rng.choice([0.4, 0.7])).law
+    return KOGUT_ETSION
+
+
+KOGUT_ETSION = KogutEtsion.paper().law
+
+
+def stays(surface, local, part, time):
+    """Whether a part at rest at the origin is held at one time: the definition, from the equations of motion."""
+    f = fields(surface, local, 0.0, 0.0, time)
+    p = pull(f, 0.0, 0.0, part)
+    limit = part.law.static_ratio * friction_limit(part.law, p.normal) / part.mass
+    return -part.law.pull_off <= p.normal <= part.law.largest_load and length(f, p.x, p.y) <= limit
+
+
+def search(surface, part, begin=0.0):
+    local = new_local(surface)
+    pin_time(surface, local, 0.0, 1.0)
+    pin_cell(surface, local, 0.0, 0.0)
+    return leaves_rest(surface, local, part, new_rest(), 0.0, 0.0, begin), local
+
+
+@pytest.mark.parametrize("kind, gravity", [("constant", 9.81), ("coulomb", 9.81), ("coulomb", 0.0), ("kogut-etsion", 9.81)])
+def test_a_break_away_is_never_missed_and_never_early(kind, gravity):
+    rng, found = np.random.default_rng(7), []
+    for _ in range(60):
+        surface, begin = moving(rng), rng.choice([0.0, rng.uniform(0, 0.9)])
+        part = Part(MASS, gravity, law(rng, kind))
+        leaves, local = search(surface, part, begin)
+        times = begin + (1 - begin) * np.linspace(0, 1, SAMPLES)
+        held = np.array([stays(surface, local, part, t) for t in times])
+        first = times[~held][0] if (~held).any() else math.inf
+        assert leaves <= first + 1e-12
+        if leaves < 1:
+            # Held until the moment found, not any more right after it.
+            assert not stays(surface, local, part, leaves + 1e-12)
+            assert all(stays(surface, local, part, t) for t in times if t < leaves - 1e-9)
+        found.append(leaves)
+    assert 10 < np.isfinite(found).sum() < 60 or kind == "kogut-etsion"
+    assert np.isfinite(found).any()
+
+
+def hump(height):
+    """Slope over time with its peak at t = 0.37."""
+    c = np.zeros((2, 1, 6))
+    c[1, 0, :3] = height * np.array([1 - 0.37**2, 2 * 0.37, -1.0])
+    return polynomial_surface(c)
+
+
+def test_a_peak_of_a_hundred_thousandth_of_the_stroke_is_found():
+    """The slope exceeds what friction holds, 0.3 (Coulomb), for 1e-5 of the time."""
+    part, half = Part(MASS, 9.81, CoulombAdhesion(0.3).law), 0.5e-5
+    leaves, _ = search(hump(0.3 / (1 - half**2)), part)
+    assert leaves == pytest.approx(0.37 - half, abs=1e-9)
+
+
+def test_a_peak_that_stays_just_below_the_limit_moves_nothing():
+    part = Part(MASS, 9.81, CoulombAdhesion(0.3).law)
+    assert search(hump(0.3 * (1 - 1e-12)), part)[0] == math.inf
+
+
+def test_the_moment_of_break_away_is_exact():
+    """An incline that steepens as t: Coulomb friction holds up to the slope mu."""
+    c = np.zeros((2, 1, 2))
+    c[1, 0, 1] = 0.7
+    leaves, _ = search(polynomial_surface(c), Part(MASS, 9.81, CoulombAdhesion(0.3).law))
+    assert leaves == pytest.approx(0.3 / 0.7, abs=1e-12)
+
+
+def test_a_part_that_the_surface_leaves_behind_comes_off_in_time():
+    """w = -c t^3 / 6: the normal force is m (g - c t)."""
+    c = np.zeros((1, 1, 4))
+    c[0, 0, 3] = -40 / 6
+    part = Part(MASS, 9.81, CoulombAdhesion(0.3, adhesion=MASS * 5.0).law)
+    assert search(polynomial_surface(c), part)[0] == pytest.approx((9.81 + 5) / 40, abs=1e-12)
+
+
+def test_a_static_coefficient_holds_longer_than_the_kinetic_one():
+    c = np.zeros((2, 1, 2))
+    c[1, 0, 1] = 0.7
+    part = Part(MASS, 9.81, CoulombAdhesion(0.3, static_coefficient=0.5).law)
+    assert search(polynomial_surface(c), part)[0] == pytest.approx(0.5 / 0.7, abs=1e-12)
