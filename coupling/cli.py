@@ -30,22 +30,27 @@ def main() -> None:
 @click.option(
     "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
 )
-@click.option("--quiet", "-q", is_flag=True, help="Print nothing but errors.")
+@click.option("--quiet", "-q", is_flag=True, help="Print no summary.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 def run(case: Path, output: Path | None, quiet: bool, as_json: bool) -> None:
-    """Run CASE, write its result files and a picture, and say what happened."""
+    """Run CASE and write its results."""
     read = _read(case)
+    from coupling import report
     from coupling.progress import StageBar
+    from coupling.results import check_folder
     from coupling.run import run_case
 
+    folder = output or DEFAULT_OUTPUT
+    _refusing(check_folder, folder)
     with StageBar(STAGES) as bar:
-        result = _refusing(run_case, read, output or DEFAULT_OUTPUT, bar)
+        result = _refusing(run_case, read, folder, bar)
     if as_json:
-        click.echo(json.dumps(result.summary.as_dict(), indent=2))
+        said = {"warnings": report.warnings(result.summary), "files": [str(file) for file in result.files]}
+        click.echo(json.dumps(result.summary.as_dict() | said, indent=2))
     elif not quiet:
-        for label, text in result.summary.lines():
+        for label, text in report.lines(result.summary):
             click.echo(f"{label:<12}{text}")
-        for warning in result.summary.warnings:
+        for warning in report.warnings(result.summary):
             click.secho(f"{'warning':<12}{warning}", fg="yellow")
         for file in result.files:
             click.echo(f"{'wrote':<12}{file}")
@@ -54,7 +59,7 @@ def run(case: Path, output: Path | None, quiet: bool, as_json: bool) -> None:
 @main.command()
 @click.argument("case", type=click.Path(path_type=Path))
 def check(case: Path) -> None:
-    """Read CASE and report every mistake in it, without running it."""
+    """Report every mistake in CASE."""
     read = _read(case)
     from coupling.run import build_friction
 
@@ -68,13 +73,22 @@ def check(case: Path) -> None:
     "--json", "file", type=click.Path(path_type=Path, dir_okay=False), help="Also write every figure to FILE."
 )
 def verify(file: Path | None) -> None:
-    """Solve the plate's verification cases on three meshes; exit 1 when an error or an order misses its bound."""
-    from coupling import verification
+    """Check the plate against theory.
 
+    Solves equation (2) and an off-centre layout on three meshes; exits with 1 when an error on the finest mesh or an
+    observed order misses its bound.
+    """
+    from coupling import verification
+    from coupling.results import check_folder
+
+    if file is not None:
+        _refusing(check_folder, file.parent)
     checks = verification.verify()
     for done in checks:
         click.echo(f"{done.name}: {'passed' if done.passed else 'FAILED'}")
-        click.echo(f"  {'unknowns':<10}" + "".join(f"{n:>11}" for n in done.unknowns) + f"{'order':>9}{'bounds':>16}")
+        click.echo(
+            f"  {'unknowns':<10}" + "".join(f"{n:>11}" for n in done.unknowns) + f"{'order':>9}{'bound, order':>16}"
+        )
         for k, name in enumerate(verification.QUANTITIES):
             order = done.orders[name]
             said = "rounding" if order is None else f"{order:.2f}"
@@ -83,6 +97,7 @@ def verify(file: Path | None) -> None:
         for failure in done.failures:
             click.secho(f"  {failure}", fg="red")
     if file is not None:
+        file.parent.mkdir(parents=True, exist_ok=True)
         partial = file.with_name(file.name + ".partial")
         partial.write_text(json.dumps([done.as_dict() for done in checks], indent=2) + "\n")
         partial.replace(file)
@@ -99,7 +114,7 @@ def _refusing(work: Callable[..., Answer], *arguments: object) -> Answer:
     """work(*arguments), with a refused input said in one message and exit code 2."""
     try:
         return work(*arguments)
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, RuntimeError) as error:
         _refuse(str(error))
 
 

@@ -56,8 +56,13 @@ def _draw_path(figure: Figure, axes: Axes, case: Case, shapes: InfluenceShapes, 
     w = np.full(x.shape, np.nan)
     strokes = [actuator.stroke for actuator in case.actuators]
     w[inside] = shapes.evaluate(np.stack([x[inside], y[inside]], axis=1), strokes)[0]
-    filled = axes.contourf(x * MICRO, y * MICRO, w * MICRO, levels=14, cmap="Greys", alpha=0.75)
-    figure.colorbar(filled, ax=axes, label="deflection, all strokes up [µm]", shrink=0.8)
+    w *= MICRO
+    low, high = np.nanmin(w), np.nanmax(w)
+    if high > low:
+        # Rounding and faint counter-deflection do not deserve a band below zero.
+        levels = np.linspace(0.0 if -low < 0.01 * high else low, high, 13)
+        filled = axes.contourf(x * MICRO, y * MICRO, w, levels=levels, cmap="Greys", alpha=0.75, extend="min")
+        figure.colorbar(filled, ax=axes, label="deflection with all strokes up at once [µm]", shrink=0.8, format="%.3g")
     axes.add_patch(Circle((0, 0), radius * MICRO, fill=False, color="black", linewidth=1.5))
     points = trajectory.position * MICRO
     fine = np.linspace(0, trajectory.time[-1], SAMPLES)

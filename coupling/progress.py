@@ -5,8 +5,11 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import TypeVar
 
 Progress = Callable[[str], AbstractContextManager[object]]
+
+Answer = TypeVar("Answer")
 
 PATIENCE = 2.0  # s of silence
 
@@ -14,6 +17,29 @@ PATIENCE = 2.0  # s of silence
 def silent(stage: str) -> AbstractContextManager[None]:
     """No progress."""
     return nullcontext()
+
+
+def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
+    """work(*arguments) on another thread, so that Ctrl-C ends the wait for it.
+
+    A signal that arrives inside a compiled kernel would otherwise be handled when the kernel returns, if at all.
+    """
+    done: list[Answer] = []
+    failed: list[BaseException] = []
+
+    def run() -> None:
+        try:
+            done.append(work(*arguments))
+        except BaseException as error:  # handed to the caller below
+            failed.append(error)
+
+    thread = threading.Thread(target=run, daemon=True)
+    thread.start()
+    while thread.is_alive():
+        thread.join(0.1)
+    if failed:
+        raise failed[0]
+    return done[0]
 
 
 class StageBar:

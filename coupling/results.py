@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -25,6 +26,15 @@ FloatArray = NDArray[np.float64]
 FRAMES_PER_CYCLE = 20
 FRAMES = (100, 1000)  # least and most without a wish in the case
 RINGS = 24  # of the drawn plate
+UNITS = {
+    "time": "s",
+    "points": "m",
+    "deflection": "m",
+    "velocity": "m/s",
+    "normal_force": "N",
+    "friction_force": "N",
+    "state": "0: stuck, 1: slipping",
+}
 
 
 def write_results(
@@ -43,6 +53,7 @@ def write_results(
     value = shapes.evaluate(points)[0]
     heights = stroke_heights(drives, times)
     metadata = {"case": case.source or case.model_dump_json(), "summary": json.dumps(summary.as_dict())}
+    metadata["units"] = json.dumps(UNITS)
     metadata |= {
         "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")})
     }
@@ -65,6 +76,15 @@ def write_results(
     picture = folder / f"{case.name}.png"
     draw_run(case, shapes, surface, trajectory, picture)
     return folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf", picture
+
+
+def check_folder(folder: Path) -> None:
+    """Raises ValueError unless the folder can be made and written to: better before the work than after it."""
+    made = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
+    if not made.is_dir():
+        raise ValueError(f"Input output must be a folder; got {folder}, but {made} is a file")
+    if not os.access(made, os.W_OK):
+        raise ValueError(f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it")
 
 
 def frame_times(case: Case, end: float) -> FloatArray:

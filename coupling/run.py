@@ -12,7 +12,7 @@ import fem_plate
 import meshes
 import particle
 from coupling.case import Case, ConstantCase, CoulombCase
-from coupling.progress import Progress, silent
+from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
 from coupling.summary import Summary, summarise
 from coupling.surface import surface_motion
@@ -45,10 +45,10 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
     with progress("Fitting the surface"):
         drives = build_drives(case)
         surface = surface_motion(shapes, drives)
-    with progress("Following the part (the first run on a machine compiles the integrator, about half a minute)"):
+    with progress("Following the part (the first run compiles: half a minute)"):
         friction = build_friction(case)
-        trajectory = follow_part(case, surface, friction, case.run.tolerance)
-        tighter = follow_part(case, surface, friction, max(case.run.tolerance / 100, 1e-13))
+        trajectory = interruptible(follow_part, case, surface, friction, case.run.tolerance)
+        tighter = interruptible(follow_part, case, surface, friction, max(case.run.tolerance / 100, 1e-13))
     with progress("Checking the model's validity"):
         summary = summarise(case, shapes, surface, trajectory, tighter, drives, friction)
     result = Result(case, shapes, surface, trajectory, summary)

@@ -69,7 +69,7 @@ class Shapes(ABC):
 
 def check_points(points: FloatArray, gap: FloatArray, size: float) -> None:
     """Raises ValueError, naming every point (N, 2) that is not inside the rim (by its gap) or stands on another."""
-    wrong = []
+    wrong = [] if points.size else ["at least one point is needed"]
     for i, (point, room) in enumerate(zip(points.tolist(), gap.tolist(), strict=True)):
         if not room > 1e-9 * size:
             wrong.append(f"point {i + 1} at {point} m must lie inside the rim; it is {-room:.3g} m beyond it")

@@ -70,7 +70,7 @@ class Plate:
 
         Raises ValueError, naming every point that is not inside the rim or stands on another.
         """
-        points = np.atleast_2d(np.asarray(points, dtype=float))
+        points = np.asarray(points, dtype=float).reshape(-1, 2)
         check_points(points, self.mesh.rim_gap(points), self.mesh.size)
         shapes = InfluenceShapes(self.graded(points), points)
         if self.tolerance is None:

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from particle import ConstantFriction, CoulombAdhesion, Drive, EventKind, Micropart, polynomial_surface, simulate
 
 G, MU = 9.80665, 0.3
-STROKE, FREQUENCY = 0.05, 2.0
+STROKE, FREQUENCY = 0.05, 3.4  # at most 3.3 m/s^2, a little more than friction gives
 UP = Drive(STROKE, FREQUENCY, cycle="up")
 STILL = Drive(0.0, FREQUENCY, cycle="up")
 Q = MU * G
@@ -19,11 +19,11 @@ def acceleration(time):
 
 
 def closed_form():
-    """When the block slips, stops, and where: relative velocity is -h' + h'(slip) + Q (t - slip) while it slides back."""
-    peak = 0.5 / FREQUENCY * (1 - 1 / np.sqrt(3))
+    """When the block slips, stops, and where: its relative velocity is h'(slip) + Q (t - slip) - h'(t)."""
+    peak = 0.5 / FREQUENCY * (1 - 1 / np.sqrt(3))  # of the acceleration
     slip = brentq(lambda t: acceleration(t) - Q, 1e-6, peak, xtol=1e-15)
     h_0, v_0 = float(UP.evaluate(slip)[0]), float(UP.evaluate(slip)[1])
-    stop = brentq(lambda t: v_0 + Q * (t - slip) - float(UP.evaluate(t)[1]), slip + 0.02, 0.5, xtol=1e-15)
+    stop = brentq(lambda t: v_0 + Q * (t - slip) - float(UP.evaluate(t)[1]), peak, 0.5, xtol=1e-15)
     way = h_0 + v_0 * (stop - slip) + Q * (stop - slip) ** 2 / 2 - float(UP.evaluate(stop)[0])
     return slip, stop, way
 
@@ -55,30 +55,41 @@ def test_the_direction_of_the_platform_is_that_of_the_block():
 
 
 def test_a_platform_that_turns_its_direction_agrees_with_an_independent_solution():
-    """Two drives out of step: the block breaks away along a turning pull. From 1e-4 s after break-away on, DOP853."""
-    drives = (UP, Drive(0.7 * STROKE, FREQUENCY, cycle="up", delay=0.06))
+    """Two drives out of step: the block breaks away along a turning pull. From 5 ms after break-away on, DOP853."""
+    drives = (UP, Drive(0.7 * STROKE, FREQUENCY, cycle="up", delay=0.01))
+    end = 0.13
     surface = polynomial_surface([[0.0]], base=drives)
-    end = 0.25
     ours = simulate(surface, Micropart(1.0, (0.0, 0.0)), CoulombAdhesion(MU), end, tolerance=1e-11)
-    slip = ours.events[0].time
+    assert [event.kind for event in ours.events] == [EventKind.SLIPS]
+    assert ours.events[0].time > 0.01
+    row = np.searchsorted(ours.time, ours.events[0].time + 5e-3)
 
     def rate(time, state):
         pull = -np.array([float(drive.evaluate(time)[2]) for drive in drives])
-        speed = np.hypot(*state[2:])
-        return [*state[2:], *(pull - Q * state[2:] / speed)]
+        return [*state[2:], *(pull - Q * state[2:] / np.hypot(*state[2:]))]
 
-    later = slip + 5e-3
-    start = ours.at(later)
-    row = np.searchsorted(ours.time, later)
-    first = np.concatenate([ours.position[row], ours.velocity[row]])
-    assert start[2] == row - 1 and len(ours.events) == 1
-    solution = solve_ivp(rate, (ours.time[row], 0.06), first, method="DOP853", rtol=1e-12, atol=1e-15) if (
-        ours.time[row] < 0.06
-    ) else None
-    if solution is not None:
-        first, begin = solution.y[:, -1], 0.06
-    else:
-        begin = ours.time[row]
-    solution = solve_ivp(rate, (begin, end), first, method="DOP853", rtol=1e-12, atol=1e-15)
-    assert ours.position[-1] == pytest.approx(solution.y[:2, -1], abs=1e-9)
-    assert abs(ours.position[-1, 1]) > 1e-4
+    start = np.concatenate([ours.position[row], ours.velocity[row]])
+    theirs = solve_ivp(rate, (ours.time[row], end), start, method="DOP853", rtol=1e-12, atol=1e-15).y[:, -1]
+    assert ours.position[-1] == pytest.approx(theirs[:2], abs=1e-10)
+    assert ours.velocity[-1] == pytest.approx(theirs[2:], abs=1e-9)
+    turn = np.arctan2(*ours.velocity[[row, -1]].T)
+    assert abs(turn[1] - turn[0]) > 0.1
+
+
+def test_break_away_on_a_platform_that_turns_its_direction_is_that_of_a_fine_solution():
+    """The stiff first moments as well: Radau from rest, in the direction of the pull, with a speed of 1e-12 m/s."""
+    drives = (UP, Drive(0.7 * STROKE, FREQUENCY, cycle="up", delay=0.01))
+    surface = polynomial_surface([[0.0]], base=drives)
+    ours = simulate(surface, Micropart(1.0, (0.0, 0.0)), CoulombAdhesion(MU), 0.13, tolerance=1e-11)
+
+    def pull(time):
+        return -np.array([float(drive.evaluate(time)[2]) for drive in drives])
+
+    def rate(time, state):
+        return [*state[2:], *(pull(time) - Q * state[2:] / np.hypot(*state[2:]))]
+
+    slip = ours.events[0].time
+    assert np.hypot(*pull(slip)) == pytest.approx(Q, rel=1e-9)
+    start = [0.0, 0.0, *(1e-9 * pull(slip) / Q)]
+    theirs = solve_ivp(rate, (slip, 0.13), start, method="Radau", rtol=1e-9, atol=1e-14).y[:2, -1]
+    assert ours.position[-1] == pytest.approx(theirs, abs=1e-8)

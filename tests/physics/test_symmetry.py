@@ -8,8 +8,8 @@ from fem_plate.analytic import DiscShapes
 from particle import ConstantFriction, Drive, KogutEtsion, Micropart, simulate
 
 MASS = 2e-9
-DRIVES = [Drive(150e-6, 300, cycle="up"), Drive(90e-6, 450, cycle="up", delay=0.4e-3)]
-START = np.array([-40e-6, -70e-6])
+DRIVES = [Drive(150e-6, 300), Drive(90e-6, 450, delay=0.4e-3)]
+START = np.array([0.0, 100e-6])
 TURN = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
 MAPS = {
     "turned by 0.7": TURN,
@@ -19,42 +19,48 @@ MAPS = {
 }
 
 
-def path(layout, start, radius, friction):
-    surface = surface_motion(DiscShapes(layout, radius), DRIVES, tolerance=1e-12)
+@pytest.fixture(scope="module")
+def surfaces(layout, radius):
+    """The surface of the layout as it is and after each map."""
+    maps = {"plain": np.eye(2)} | MAPS
+    return {name: surface_motion(DiscShapes(layout @ m.T, radius), DRIVES, 1e-10) for name, m in maps.items()}
+
+
+def path(surface, start, friction):
     return simulate(surface, Micropart(MASS, tuple(start)), friction, 4e-3, tolerance=1e-11)
 
 
 @pytest.mark.parametrize("friction", [ConstantFriction(20.9 * MASS), KogutEtsion.paper()], ids=["constant", "rough"])
 @pytest.mark.parametrize("name", MAPS)
-def test_the_path_moves_with_its_plate(layout, radius, name, friction):
-    plain, moved = (path(layout @ m.T, m @ START, radius, friction) for m in (np.eye(2), MAPS[name]))
+def test_the_path_moves_with_its_plate(surfaces, radius, name, friction):
+    plain, moved = path(surfaces["plain"], START, friction), path(surfaces[name], MAPS[name] @ START, friction)
     assert plain.distance > 20e-6
     assert np.abs(moved.position[-1] - MAPS[name] @ plain.position[-1]).max() < 2e-9 * radius
     assert [event.kind for event in moved.events] == [event.kind for event in plain.events]
     assert [e.time for e in moved.events] == pytest.approx([e.time for e in plain.events], abs=1e-6 * 4e-3)
 
 
-def test_the_order_of_the_actuators_does_not_matter(layout, radius):
+def test_the_order_of_the_actuators_does_not_matter(surfaces, layout, radius):
     friction = ConstantFriction(20.9 * MASS)
-    plain = path(layout, START, radius, friction)
-    surface = surface_motion(DiscShapes(layout[::-1], radius), DRIVES[::-1], tolerance=1e-12)
-    swapped = simulate(surface, Micropart(MASS, tuple(START)), friction, 4e-3, tolerance=1e-11)
+    plain = path(surfaces["plain"], START, friction)
+    swapped = path(surface_motion(DiscShapes(layout[::-1].copy(), radius), DRIVES[::-1], 1e-10), START, friction)
     assert np.abs(swapped.position[-1] - plain.position[-1]).max() < 2e-9 * radius
 
 
-def test_a_part_twice_as_heavy_under_twice_the_friction_takes_the_same_path(layout, radius):
-    plain = path(layout, START, radius, ConstantFriction(20.9 * MASS))
-    surface = surface_motion(DiscShapes(layout, radius), DRIVES, tolerance=1e-12)
-    heavy = simulate(surface, Micropart(2 * MASS, tuple(START)), ConstantFriction(41.8 * MASS), 4e-3, tolerance=1e-11)
+def test_a_part_twice_as_heavy_under_twice_the_friction_takes_the_same_path(surfaces, radius):
+    plain = path(surfaces["plain"], START, ConstantFriction(20.9 * MASS))
+    heavy = simulate(
+        surfaces["plain"], Micropart(2 * MASS, tuple(START)), ConstantFriction(41.8 * MASS), 4e-3, tolerance=1e-11
+    )
     assert np.abs(heavy.position[-1] - plain.position[-1]).max() < 1e-12 * radius
     assert heavy.normal_force[-1] == pytest.approx(2 * plain.normal_force[-1], rel=1e-9)
 
 
-def test_all_lengths_times_ten_and_accelerations_likewise_scale_the_path(layout, radius):
+def test_all_lengths_times_ten_and_accelerations_likewise_scale_the_path(surfaces, layout, radius):
     """Lengths by 10 at the same times: gravity and Q/m by 10 as well."""
-    plain = path(layout, START, radius, ConstantFriction(20.9 * MASS))
+    plain = path(surfaces["plain"], START, ConstantFriction(20.9 * MASS))
     drives = [Drive(10 * d.stroke, d.frequency, d.cycle, d.cycles, d.delay) for d in DRIVES]
-    surface = surface_motion(DiscShapes(10 * layout, 10 * radius), drives, tolerance=1e-12)
+    surface = surface_motion(DiscShapes(10 * layout, 10 * radius), drives, 1e-10)
     part = Micropart(MASS, tuple(10 * START))
     large = simulate(surface, part, ConstantFriction(209 * MASS), 4e-3, gravity=98.0665, tolerance=1e-11)
     assert np.abs(large.position[-1] / 10 - plain.position[-1]).max() < 2e-9 * radius

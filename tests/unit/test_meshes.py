@@ -48,11 +48,11 @@ def test_rim_points_lie_on_the_circle_to_rounding(mesh):
 
 def test_the_rim_is_one_closed_walk(mesh):
     follower = dict(mesh.boundaries["rim"].tolist())
-    here, seen = next(iter(follower)), 0
-    while seen == 0 or here != start:
-        start = here if seen == 0 else start
+    start = next(iter(follower))
+    here, seen = follower[start], 1
+    while here != start:
         here, seen = follower[here], seen + 1
-    assert seen == len(follower)
+    assert seen == len(follower) == len(mesh.boundaries["rim"])
 
 
 def test_no_point_is_unused_or_doubled(mesh):

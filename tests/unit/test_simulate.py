@@ -181,7 +181,9 @@ def test_a_part_driven_uphill_turns_back_where_friction_cannot_hold_it():
 def test_a_part_at_rest_comes_off_when_the_surface_falls_away():
     """w = -c t^3 / 6 leaves the load m (g - c t) at rest: it comes off at t = (g + pull-off / m) / c."""
     surface = polynomial_surface([[[0.0, 0.0, 0.0, -40 / 6]]])
-    trajectory = simulate(surface, Micropart(MASS, (0.0, 0.0)), CoulombAdhesion(0.3, adhesion=5 * MASS), 1.0, gravity=9.0)
+    trajectory = simulate(
+        surface, Micropart(MASS, (0.0, 0.0)), CoulombAdhesion(0.3, adhesion=5 * MASS), 1.0, gravity=9.0
+    )
     assert trajectory.outcome is Outcome.DETACHED
     assert trajectory.events[-1].kind is EventKind.DETACHES
     assert trajectory.time[-1] == trajectory.events[-1].time == pytest.approx(14 / 40, rel=1e-10)

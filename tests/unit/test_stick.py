@@ -52,7 +52,9 @@ def search(surface, part, begin=0.0):
     return leaves_rest(surface, local, part, new_rest(), 0.0, 0.0, begin), local
 
 
-@pytest.mark.parametrize("kind, gravity", [("constant", 9.81), ("coulomb", 9.81), ("coulomb", 0.0), ("kogut-etsion", 9.81)])
+@pytest.mark.parametrize(
+    "kind, gravity", [("constant", 9.81), ("coulomb", 9.81), ("coulomb", 0.0), ("kogut-etsion", 9.81)]
+)
 def test_a_break_away_is_never_missed_and_never_early(kind, gravity):
     rng, found = np.random.default_rng(7), []
     for _ in range(60):

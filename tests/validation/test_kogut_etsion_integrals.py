@@ -14,7 +14,9 @@ PRINTED = (-0.01, 0.09, -0.4, 0.85)
 UNROUNDED = [1.03 * c for c in (-0.007, 0.085, -0.389, 0.822)]
 
 
-def literal(d, shear=PRINTED, psi=2.5, nu=0.3, beta=0.0601, eps=0.3 / 20, h=1.96133e9, area=1e-8, energy=1.0, sigma=20e-9):
+def literal(
+    d, shear=PRINTED, psi=2.5, nu=0.3, beta=0.0601, eps=0.3 / 20, h=1.96133e9, area=1e-8, energy=1.0, sigma=20e-9
+):
     """P, F_s and Q [N] at d [sigma], all lengths over sigma."""
     s = math.sqrt(1 - 3.717e-4 / beta**2)
     w = s / psi**2
@@ -27,7 +29,9 @@ def literal(d, shear=PRINTED, psi=2.5, nu=0.3, beta=0.0601, eps=0.3 / 20, h=1.96
     def integral(f, low, high):
         low, high = (d + w * low), min(d + w * high, d + 12.0)
         cuts = [low + (high - low) * i / 24 for i in range(25)] if high > low else []
-        return math.fsum(quad(f, a, b, epsabs=0, epsrel=1e-12, limit=200)[0] for a, b in zip(cuts, cuts[1:], strict=False))
+        return math.fsum(
+            quad(f, a, b, epsabs=0, epsrel=1e-12, limit=200)[0] for a, b in zip(cuts, cuts[1:], strict=False)
+        )
 
     def i(b, low, high):
         return integral(lambda z: ((z - d) / w) ** b * phi(z), low, high)

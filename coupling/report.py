@@ -1,0 +1,87 @@
+"""The summary in words: the lines that a run prints, and its warnings."""
+
+from __future__ import annotations
+
+from coupling.summary import Summary
+
+MICRO, MILLI = 1e6, 1e3
+
+# Where the model stops holding to about a per cent.
+MOST_THICKNESSES, STEEPEST, MOST_CURVED = 0.2, 0.2, 0.1
+NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
+
+
+def lines(summary: Summary) -> list[tuple[str, str]]:
+    """Rows (label, text) to print."""
+    s = summary
+    rest = "" if s.at_rest_since is None else f" It has rested since {s.at_rest_since * MILLI:.3f} ms."
+    x, y = (c * MICRO for c in s.end_position)
+    cut = "" if s.end_time >= s.duration else f", of {s.duration * MILLI:g} ms asked for"
+    rows = [
+        ("outcome", f"{s.outcome}. {s.sentence}{rest}"),
+        ("end", f"({x:.4f}, {y:.4f}) um at {s.end_time * MILLI:.4f} ms{cut}"),
+        ("distance", f"{s.distance * MICRO:.4f} um from the start, over a path of {s.path_length * MICRO:.2f} um"),
+        (
+            "contact",
+            f"stuck {s.time_stuck * MILLI:.3f} ms, slipping {s.time_slipping * MILLI:.3f} ms, "
+            f"{_count(s.slips, 'slip')}",
+        ),
+        (
+            "plate",
+            f"{s.plate_unknowns} unknowns; unit shapes good to {s.plate_error:.1e} (estimated), "
+            f"held at the actuators to {s.hold_residual:.1e}",
+        ),
+        ("surface", f"fitted to {s.surface_error:.1e} of a unit stroke; friction tabulated to {s.contact_error:.1e}"),
+        ("integrator", f"{_path_error(s)}; {_count(s.evaluations, 'evaluation')}"),
+        (
+            "model",
+            f"deflection {s.deflection_over_thickness:.3g} thicknesses (path error of linear theory "
+            f"{_percent(s.linear_path_error)}), slope {s.largest_slope:.3g}, "
+            f"in-plane motion left out {s.in_plane_motion * MICRO:.3g} um",
+        ),
+        ("", f"the plate gives {s.part_sag * MICRO:.1e} um under the part's own force"),
+    ]
+    if s.part_curvature is not None:
+        rows.append(("", f"part size times curvature {s.part_curvature:.2g}"))
+    return rows
+
+
+def warnings(summary: Summary) -> list[str]:
+    """What a user must know before trusting the numbers."""
+    s = summary
+    said = []
+    error = max(s.plate_error, s.surface_error)
+    if error > NUMERICAL_ERROR:
+        said.append(
+            f"The plate's shapes are only good to {error:.1e} of a stroke; a smaller plate.cell_size, or actuators "
+            "further from the rim, make them better."
+        )
+    if s.path_error is None or s.path_error > NUMERICAL_ERROR * max(s.path_length, s.distance):
+        said.append("The path magnifies small errors: trust the statistics of many starts more than the digits of one.")
+    if s.deflection_over_thickness > MOST_THICKNESSES:
+        said.append(
+            f"The plate deflects by {s.deflection_over_thickness:.3g} thicknesses; small-deflection theory holds to "
+            f"about {MOST_THICKNESSES}. Expect a path error of {_percent(s.linear_path_error)}."
+        )
+    if s.largest_slope > STEEPEST:
+        said.append(f"The surface is as steep as {s.largest_slope:.2g}; small-slope theory holds to about {STEEPEST}.")
+    if s.part_curvature is not None and s.part_curvature > MOST_CURVED:
+        said.append(
+            f"Part size times curvature reaches {s.part_curvature:.2g}; a part stands for a point up to about "
+            f"{MOST_CURVED}."
+        )
+    return said
+
+
+def _path_error(s: Summary) -> str:
+    if s.path_error is None:
+        return "a run 100 times tighter sees other events"
+    return f"the end point moves by {s.path_error * MICRO:.1e} um in a run 100 times tighter"
+
+
+def _percent(share: float) -> str:
+    return "more than 50 %" if share > 0.5 else f"about {100 * share:.2g} %"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
