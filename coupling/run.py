@@ -22,8 +22,8 @@ from particle.friction import Contact
 
 # Without a cell size the plate starts with this many cells from centre to rim and is refined until the unit shapes'
 # estimated error is below PLATE_TOLERANCE, which keeps the end point of a usual path to 1e-6 of it.
-CELLS_FROM_CENTRE = 13
-PLATE_TOLERANCE = 1e-7
+CELLS_FROM_CENTRE = 8
+PLATE_TOLERANCE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)

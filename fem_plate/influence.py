@@ -24,7 +24,7 @@ class Shapes(ABC):
     """
 
     def __init__(self, points: FloatArray, size: float, outline: Circle, compliance: FloatArray) -> None:
-        self.points = points
+        self.points = np.ascontiguousarray(points)  # kernels would be compiled anew for another layout
         self.size = size
         self.outline = outline
         self.strengths: FloatArray = np.asarray(np.linalg.inv((compliance + compliance.T) / 2), dtype=float)

@@ -132,8 +132,9 @@ class PlateSpace:
         point = xy[:, None]
         area = _cross(b - a, c - a)
         a, b, c = a - point, b - point, c - point
-        inside = np.min([_cross(b, c), _cross(c, a), _cross(a, b)], axis=0)
-        return np.asarray(candidates[np.arange(len(xy)), np.argmax(inside / area, axis=1)])
+        # scikit-fem sorts corners by number, so that triangles run either way round: divide by the area first.
+        barycentric = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)]) / area
+        return np.asarray(candidates[np.arange(len(xy)), np.argmax(barycentric.min(axis=0), axis=1)])
 
 
 def _rim_edges(mesh: PlateMesh) -> SimpleNamespace:

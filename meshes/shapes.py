@@ -13,7 +13,8 @@ from meshes.mesh import PlateMesh
 def disc(radius: float, cell_size: float) -> PlateMesh:
     """A disc around the origin, in rings: ring k has 6 k points, so that all triangles are nearly equilateral.
 
-    radius, cell_size: m; the cells are at most about `cell_size` wide, and at least two rings are made.
+    radius, cell_size: m; rings are at most `cell_size` wide (a cell's longest edge 1.45 times
+    that), and at least two are made.
     Raises ValueError when either is not positive and finite.
     """
     for name, value in (("radius", radius), ("cell_size", cell_size)):

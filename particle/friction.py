@@ -70,7 +70,7 @@ class ConstantFriction:
     limit: float  # N
 
     def __post_init__(self) -> None:
-        _require(self.limit >= 0, "limit", "ConstantFriction", "0 or a positive force in N", self.limit)
+        _require(0 <= self.limit < math.inf, "limit", "ConstantFriction", "0 or a positive force in N", self.limit)
 
     table_error = 0.0
 
@@ -96,8 +96,10 @@ class CoulombAdhesion:
     static_coefficient: float | None = None
 
     def __post_init__(self) -> None:
-        _require(self.coefficient >= 0, "coefficient", "CoulombAdhesion", "0 or positive", self.coefficient)
-        _require(self.adhesion >= 0, "adhesion", "CoulombAdhesion", "0 or a positive force in N", self.adhesion)
+        _require(0 <= self.coefficient < math.inf, "coefficient", "CoulombAdhesion", "0 or positive", self.coefficient)
+        _require(
+            0 <= self.adhesion < math.inf, "adhesion", "CoulombAdhesion", "0 or a positive force in N", self.adhesion
+        )
         static = self.static_coefficient
         if static is not None:
             at_least = f"at least the coefficient {self.coefficient!r}, which must then be positive"

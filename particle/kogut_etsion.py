@@ -147,7 +147,7 @@ class KogutEtsion:
 
     @cached_property
     def largest_load(self) -> float:
-        """The net load [N] at which Q peaks; the model says nothing reliable beyond."""
+        """The net load [N] where Q peaks, or at d = 0 if it has not by then; the law ends there."""
         return float(self.net_load(self.branch[0]))
 
     def separation(self, net_load: ArrayLike) -> FloatArray:
@@ -185,8 +185,8 @@ class KogutEtsion:
         low, high = self.branch
         d = high - (high - low) * np.linspace(0, 1, KNOTS)
         net, limit = self._net_and_limit(d)
-        u = self._stretched(net)
-        u[0] = 0.0
+        # The first is pull-off: one rounding of it apart would show in the root.
+        u = self._stretched(net - (net[0] + self.pull_off))
         fine = CubicSpline(u, np.log(limit))
         knots = np.linspace(0, u[-1], KNOTS)
         table = CubicSpline(knots, fine(knots))
@@ -212,7 +212,7 @@ class KogutEtsion:
         return np.log1p(np.sqrt(above))
 
     def _check(self, loads: FloatArray) -> None:
-        below, above = loads < -self.pull_off, loads > self.largest_load
+        below, above = ~(loads >= -self.pull_off), loads > self.largest_load
         if below.any():
             raise ValueError(
                 f"Input net_load must be at least minus the pull-off force, {-self.pull_off:.6g} N; "
@@ -220,6 +220,6 @@ class KogutEtsion:
             )
         if above.any():
             raise ValueError(
-                f"Input net_load must be at most {self.largest_load:.6g} N, where the friction limit peaks; "
+                f"Input net_load must be at most {self.largest_load:.6g} N, where the friction law ends; "
                 f"got {loads[above].max():.6g} N"
             )

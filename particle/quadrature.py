@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,18 @@ FloatArray = NDArray[np.float64]
 POINTS = 40
 REACH = 9.0  # widths beyond which a Gaussian adds nothing: exp(-9^2/2) = 3e-18
 PANEL = 1.5  # widths that one Gauss rule covers
+
+
+@cache
+def _legendre() -> tuple[FloatArray, FloatArray]:
+    return np.polynomial.legendre.leggauss(POINTS)
+
+
+@cache
+def _jacobi(power: float) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights for the weight (1 + t)^power on [-1, 1]."""
+    nodes, weights = roots_jacobi(POINTS, 0.0, power)
+    return nodes, weights
 
 
 def gaussian(z: FloatArray, width: float) -> FloatArray:
@@ -33,10 +46,10 @@ def from_power(d: FloatArray, power: float, low: float, high: float, unit: float
         end = min(high, low + panel, low + max(low, 1.0))
         span = end - low
         if low == 0:
-            nodes, weights = roots_jacobi(POINTS, 0.0, power)
+            nodes, weights = _jacobi(power)
             x, w = span * (nodes + 1) / 2, weights * (span / 2) ** (power + 1)
         else:
-            nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+            nodes, weights = _legendre()
             x = low + span * (nodes + 1) / 2
             w = weights * span / 2 * x**power
         total += gaussian(d[:, None] + unit * x, width) @ w
@@ -46,7 +59,7 @@ def from_power(d: FloatArray, power: float, low: float, high: float, unit: float
 
 def on_panels(d: FloatArray, eps: float, width: float) -> FloatArray:
     """The integral of [(eps/x)^2 - 0.25 (eps/x)^8] phi(d - (x - eps)) dx for gaps x from eps to infinity, (n,)."""
-    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+    nodes, weights = _legendre()
     total = np.zeros(len(d))
     low, high = eps, eps + REACH * width + float(d.max())
     while low < high:

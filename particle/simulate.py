@@ -62,6 +62,8 @@ def simulate(
         raise ValueError(f"Input scheme of simulate must be 'events'; got {scheme!r}")
     if not (math.isfinite(duration) and duration > 0):
         raise ValueError(f"Input duration of simulate must be a positive time in s; got {duration!r}")
+    if not math.isfinite(gravity):
+        raise ValueError(f"Input gravity of simulate must be a finite acceleration in m/s^2; got {gravity!r}")
     if not 1e-13 <= tolerance <= 1e-2:
         raise ValueError(f"Input tolerance of simulate must be in [1e-13, 1e-2]; got {tolerance!r}")
     if not rim_gap(surface, *map(float, part.position)) >= 0:

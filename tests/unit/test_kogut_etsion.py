@@ -126,7 +126,7 @@ def test_a_load_below_pull_off_is_refused_with_both_numbers(paper, ask):
 @pytest.mark.parametrize("ask", ["separation", "friction_limit"])
 def test_a_load_above_the_peak_of_friction_is_refused_with_both_numbers(paper, ask):
     load = 1.01 * paper.largest_load
-    message = f"at most {paper.largest_load:.6g} N, where the friction limit peaks; got {load:.6g} N"
+    message = f"at most {paper.largest_load:.6g} N, where the friction law ends; got {load:.6g} N"
     with pytest.raises(ValueError, match=re.escape(message)):
         getattr(paper, ask)([0.0, load])
 
