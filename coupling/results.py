@@ -19,7 +19,8 @@ from coupling.summary import Summary, stroke_heights
 from coupling.vtkhdf import part_file, plate_file
 from fem_plate import InfluenceShapes
 from meshes import PlateMesh, disc
-from particle import Drive, SurfaceMotion, Trajectory
+from particle import Drive, SurfaceMotion, Trajectory, contact_forces
+from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
 
@@ -44,6 +45,7 @@ def write_results(
     drives: Sequence[Drive],
     trajectory: Trajectory,
     summary: Summary,
+    friction: Contact,
     folder: Path,
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths."""
@@ -58,6 +60,7 @@ def write_results(
         "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")})
     }
     position, velocity, row = trajectory.at(times)
+    normal, held = contact_forces(surface, trajectory, friction, case.part.mass, case.run.gravity, times)
     with (
         plate_file(folder, case.name, points, triangles, metadata) as plate,
         part_file(folder, case.name, metadata) as part,
@@ -70,8 +73,8 @@ def write_results(
                 (*xy, float(surface.evaluate(xy, time).w[0])),
                 velocity=(*velocity[k], 0.0),
                 state=int(trajectory.state[row[k]]),
-                normal_force=float(trajectory.normal_force[row[k]]),
-                friction_force=float(trajectory.friction_force[row[k]]),
+                normal_force=normal[k],
+                friction_force=held[k],
             )
     picture = folder / f"{case.name}.png"
     draw_run(case, shapes, surface, trajectory, picture)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from coupling.case import Case, KogutEtsionCase
 from fem_plate import InfluenceShapes
-from particle import Drive, EventKind, State, SurfaceMotion, Trajectory
+from particle import Drive, EventKind, State, SurfaceMotion, Trajectory, contact_forces
 from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
@@ -68,6 +68,8 @@ def summarise(
     step = np.diff(trajectory.position, axis=0)
     slope, deflection = _extremes(shapes, drives, case.run.duration)
     over_thickness = deflection / case.plate.thickness
+    times = np.linspace(0, trajectory.time[-1], SAMPLES)
+    normal, _ = contact_forces(surface, trajectory, friction, case.part.mass, case.run.gravity, times)
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
     return Summary(
@@ -94,7 +96,7 @@ def summarise(
         largest_slope=slope,
         in_plane_motion=case.plate.thickness / 2 * slope,
         part_curvature=_part_curvature(case, surface, trajectory),
-        part_sag=_part_sag(shapes, trajectory),
+        part_sag=_part_sag(shapes, trajectory, float(np.nanmax(np.abs(normal)))),
     )
 
 
@@ -135,12 +137,12 @@ def rim_rows(surface: SurfaceMotion, trajectory: Trajectory) -> NDArray[np.bool_
     return np.hypot(*trajectory.position.T) <= surface.rim[0]
 
 
-def _part_sag(shapes: InfluenceShapes, trajectory: Trajectory) -> float:
-    """How far [m] the plate, its actuators held, gives under the part's largest force where it began."""
+def _part_sag(shapes: InfluenceShapes, trajectory: Trajectory, force: float) -> float:
+    """How far [m] the plate, its actuators held, gives under the part's largest force [N] where it began."""
     start = trajectory.position[0]
     try:
         with_part = InfluenceShapes(shapes.plate, np.concatenate([shapes.points, start[None]]))
     except np.linalg.LinAlgError:  # the part stands on an actuator, which does not give
         return 0.0
     give = 1 / float(with_part.stiffness[-1, -1])
-    return give * float(np.abs(trajectory.normal_force).max()) if give > 0 else 0.0
+    return give * force if give > 0 else 0.0

@@ -48,23 +48,31 @@ class Shapes(ABC):
         (n, 2, 2), times the weights' unit. At an actuator the Hessian is infinite (a point load bends without bound).
         Raises ValueError when a point lies beyond the rim.
         """
+        strengths = self.strengths
+        if weights is not None:
+            strengths = strengths @ np.asarray(weights, dtype=float)[:, None]
+        fields = self.under_forces(xy, strengths)
+        return fields if weights is None else (fields[0][:, 0], fields[1][:, 0], fields[2][:, 0])
+
+    def under_forces(self, xy: ArrayLike, strengths: FloatArray) -> Fields:
+        """The plate under dimensionless forces (N, k) at the actuators, with none of them holding it.
+
+        Returns value (n, k), gradient (n, k, 2) 1/m and Hessian (n, k, 2, 2) 1/m^2 at points (n, 2) [m].
+        Raises ValueError when a point lies beyond the rim.
+        """
         xy = np.asarray(xy, dtype=float)
         beyond = self.outline.gap(xy) < -1e-9 * self.size
         if np.any(beyond):
             raise ValueError(f"Input xy of evaluate must lie on the plate; got {xy[beyond][0].tolist()} m")
-        strengths = self.strengths
-        if weights is not None:
-            strengths = strengths @ np.asarray(weights, dtype=float)[:, None]
         x = xy / self.size
         value, gradient, hessian = self.loaded(x, strengths)
         f, f_x, f_xx = point_load(x, self.points / self.size)
         with np.errstate(invalid="ignore"):
-            fields = (
+            return (
                 value + f @ strengths,
                 (gradient + np.einsum("njd,jk->nkd", f_x, strengths)) / self.size,
                 (hessian + np.einsum("njde,jk->nkde", f_xx, strengths)) / self.size**2,
             )
-        return fields if weights is None else (fields[0][:, 0], fields[1][:, 0], fields[2][:, 0])
 
 
 def check_points(points: FloatArray, gap: FloatArray, size: float) -> None:

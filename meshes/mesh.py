@@ -35,7 +35,7 @@ class PlateMesh:
         return float(np.max(np.ptp(self.points, axis=0)) / 2)
 
     def mirrored(self, xy: FloatArray) -> FloatArray:
-        """Points (n, 2) [m] reflected at each boundary: (n boundaries, 2)."""
+        """Points (n, 2) [m] reflected at each of b boundaries: (b n, 2)."""
         return np.concatenate([2 * curve.project(xy) - xy for curve in self.curves.values()])
 
     def rim_gap(self, xy: ArrayLike) -> FloatArray:

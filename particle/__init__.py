@@ -1,6 +1,7 @@
 """The micropart: contact and friction laws, drives, the moving surface as arrays, and the integrator."""
 
 from particle.drive import Drive
+from particle.forces import contact_forces
 from particle.friction import ConstantFriction, CoulombAdhesion
 from particle.kogut_etsion import KogutEtsion
 from particle.simulate import Micropart, simulate
@@ -20,6 +21,7 @@ __all__ = [
     "SurfaceMotion",
     "SurfaceState",
     "Trajectory",
+    "contact_forces",
     "polynomial_surface",
     "simulate",
 ]

@@ -164,6 +164,8 @@ def next_kink(table: DriveTable, time: float) -> float:
             nearest = min(nearest, table.delay[i])
             continue
         passes = math.floor(since / span)
+        if table.delay[i] + span * (passes + 1) <= after:  # rounding at late times
+            passes += 1
         if passes >= table.repeats[i]:
             continue
         kink = table.delay[i] + span * (passes + 1)

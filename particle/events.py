@@ -64,7 +64,11 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             if time >= end:
                 break
             span_end = min(next_kink(surface.drives, time), end)
+            if span_end <= time:
+                verdict = WORK_LIMIT
+                break
             pin_time(surface, local, time, span_end)
+            h = max(h, 1e-4 * request.stroke_time)
             record.counts[3] += 1
         if rim_gap(surface, state[0], state[1]) < 0.0 or not pin_cell(surface, local, state[0], state[1]):
             verdict = LEFT_PLATE

@@ -93,11 +93,22 @@ def cell_at(surface: Any, x: float, y: float) -> int:
     """Row of the cell that holds a point [m]; NOWHERE when there is no plate."""
     if not math.isfinite(surface.cell_width):
         return 0
-    i = int(math.floor((x - surface.origin[0]) / surface.cell_width))
-    j = int(math.floor((y - surface.origin[1]) / surface.cell_width))
-    if i < 0 or j < 0 or i >= surface.cell_rows.shape[0] or j >= surface.cell_rows.shape[1]:
+    i = _place(x - surface.origin[0], surface.cell_width, surface.cell_rows.shape[0])
+    j = _place(y - surface.origin[1], surface.cell_width, surface.cell_rows.shape[1])
+    if i == NOWHERE or j == NOWHERE:
         return NOWHERE
     return int(surface.cell_rows[i, j])
+
+
+@jit
+def _place(along: float, width: float, count: int) -> int:
+    """Which of `count` intervals of a width holds a coordinate; the outer edges belong to the outer ones."""
+    place = int(math.floor(along / width))
+    if place == count and along <= (count + 1e-6) * width:
+        return count - 1
+    if place == -1 and along >= -1e-6 * width:
+        return 0
+    return place if 0 <= place < count else NOWHERE
 
 
 @jit
@@ -111,8 +122,10 @@ def pin_cell(surface: Any, local: Local, x: float, y: float) -> bool:
     width = surface.cell_width
     local.frame[CELL] = cell
     if math.isfinite(width):
-        local.frame[X] = surface.origin[0] + width * (math.floor((x - surface.origin[0]) / width) + 0.5)
-        local.frame[Y] = surface.origin[1] + width * (math.floor((y - surface.origin[1]) / width) + 0.5)
+        i = _place(x - surface.origin[0], width, surface.cell_rows.shape[0])
+        j = _place(y - surface.origin[1], width, surface.cell_rows.shape[1])
+        local.frame[X] = surface.origin[0] + width * (i + 0.5)
+        local.frame[Y] = surface.origin[1] + width * (j + 0.5)
         local.frame[HALF] = 0.5 * width
     else:
         local.frame[HALF] = surface.size

@@ -67,7 +67,9 @@ def slide(
             state[0] += stop.x
             state[1] += stop.y
             state[2] = state[3] = 0.0
-            return (TURNED if stop.reverses else RESTING), time + stop.time, h, GOES_ON
+            a = slope(fields(surface, local, state[0], state[1], time + stop.time), part)
+            back = stop.reverses and a.demand > part.law.static_ratio * a.limit
+            return (TURNED if back else RESTING), time + stop.time, h, GOES_ON
         # A step ends short of the stop, where the friction turns.
         h = min(h, 0.9 * stop.time)
         a = slope(fields(surface, local, state[0], state[1], time), part)
@@ -84,9 +86,14 @@ def slide(
             h *= 0.5
             continue
         wrong = error(pair, step, h, min(h, weight_limit)) / tolerance
-        if wrong > 1.0:
-            h *= max(0.2, SAFETY * wrong ** (-1 / pair.order))
+        if not wrong <= 1.0:
+            h *= max(0.2, SAFETY * wrong ** (-1 / pair.order)) if wrong > 1.0 else 0.2
             continue
+        last = len(pair.c) - 1
+        if step.margins[last] < 0.0:
+            h = _locate_end(surface, local, part, pair, step, count, mode, time, state, h)
+            state[:] = step.end
+            return mode, time + h, h, reason(surface, part, step.loads[last], state)
         if mode == MANIFOLD and step.end[2] <= 0.0:
             if h > TOUCH * request.stroke_time:
                 h *= 0.5
@@ -96,11 +103,6 @@ def slide(
         if mode == MANIFOLD and _manifold_error(surface, local, part, time + h, step.end) > tolerance:
             h *= 0.5
             continue
-        last = len(pair.c) - 1
-        if step.margins[last] < 0.0:
-            h = _locate_end(surface, local, part, pair, step, count, mode, time, state, h)
-            state[:] = step.end
-            return mode, time + h, h, reason(surface, part, step.loads[last], state)
         if step.margins[1:].min() < 0.0:
             h *= 0.5
             continue
@@ -155,10 +157,10 @@ def _locate_end(
         middle = 0.5 * (low + high)
         count[2] += len(pair.c)
         good = attempt(mode, surface, local, part, pair, step, time, state, middle)
-        if good and step.margins[last] >= 0.0:
-            low = middle
-        else:
+        if good and step.margins[last] < 0.0:
             high = middle
+        else:
+            low = middle
     attempt(mode, surface, local, part, pair, step, time, state, high)
     return high
 

@@ -84,6 +84,8 @@ def polynomial_surface(
         raise ValueError(
             f"Input coefficients must have shape (I, J) or (I, J, K) with K <= 6; got {np.shape(coefficients)}"
         )
+    if base is not None and len(base) != 2:
+        raise ValueError(f"Input base of polynomial_surface must be two drives, for x and y; got {len(base)}")
     degree = c.shape[0] + c.shape[1] - 2
     square = np.zeros((degree + 1, degree + 1, c.shape[2]))
     square[: c.shape[0], : c.shape[1]] = c

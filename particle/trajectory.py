@@ -30,7 +30,7 @@ class EventKind(enum.IntEnum):
     OVERLOADS = 5
 
 
-class Outcome(enum.Enum):
+class Outcome(enum.StrEnum):
     """How a run ended; `sentence` says it in full."""
 
     STUCK = "stuck"
@@ -94,7 +94,8 @@ class Trajectory:
     def at(self, times: ArrayLike) -> tuple[FloatArray, FloatArray, NDArray[np.int64]]:
         """Position (k, 2) [m], velocity (k, 2) [m/s] and row (k,) at times (k,) within the run [s].
 
-        Between rows positions follow cubics that meet the rows' positions and velocities.
+        Between rows positions follow cubics that meet the rows' positions and velocities: good to about 1e-8 m in a
+        usual run, less than the rows themselves.
         """
         times = np.clip(np.asarray(times, dtype=float), self.time[0], self.time[-1])
         row = np.clip(np.searchsorted(self.time, times, side="right") - 1, 0, len(self.time) - 1)
