@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from coupling.case import Case
@@ -60,7 +61,7 @@ def _draw_path(figure: Figure, axes: Axes, case: Case, shapes: InfluenceShapes, 
     low, high = np.nanmin(w), np.nanmax(w)
     if high > low:
         # Rounding and faint counter-deflection do not deserve a band below zero.
-        levels = np.linspace(0.0 if -low < 0.01 * high else low, high, 13)
+        levels = MaxNLocator(12).tick_values(0.0 if -low < 0.01 * high else low, high)
         filled = axes.contourf(x * MICRO, y * MICRO, w, levels=levels, cmap="Greys", alpha=0.75, extend="min")
         figure.colorbar(filled, ax=axes, label="deflection with all strokes up at once [µm]", shrink=0.8, format="%.3g")
     axes.add_patch(Circle((0, 0), radius * MICRO, fill=False, color="black", linewidth=1.5))
