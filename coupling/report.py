@@ -8,6 +8,7 @@ MICRO, MILLI = 1e6, 1e3
 
 # Where the model stops holding to about a per cent.
 MOST_THICKNESSES, STEEPEST, MOST_CURVED = 0.2, 0.2, 0.1
+FASTEST = 0.003  # of the plate's first frequency
 NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
 
 
@@ -39,6 +40,7 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
             f"{_percent(s.linear_path_error)}), slope {s.largest_slope:.3g}, "
             f"in-plane motion left out {s.in_plane_motion * MICRO:.3g} um",
         ),
+        ("", _dynamics(s)),
         ("", f"the plate gives {s.part_sag * MICRO:.1e} um under the part's own force"),
     ]
     if s.part_curvature is not None:
@@ -65,6 +67,11 @@ def warnings(summary: Summary) -> list[str]:
         )
     if s.largest_slope > STEEPEST:
         said.append(f"The surface is as steep as {s.largest_slope:.2g}; small-slope theory holds to about {STEEPEST}.")
+    if s.drive_over_first is not None and s.drive_over_first > FASTEST:
+        said.append(
+            f"The drive is at {s.drive_over_first:.2g} of the plate's first frequency; the plate follows at once up to "
+            f"about {FASTEST}."
+        )
     if s.part_curvature is not None and s.part_curvature > MOST_CURVED:
         said.append(
             f"Part size times curvature reaches {s.part_curvature:.2g}; a part stands for a point up to about "
@@ -77,6 +84,15 @@ def _path_error(s: Summary) -> str:
     if s.path_error is None:
         return "a run 100 times tighter sees other events"
     return f"the end point moves by {s.path_error * MICRO:.1e} um in a run 100 times tighter"
+
+
+def _dynamics(s: Summary) -> str:
+    if s.first_frequency is None or s.drive_over_first is None or s.quasi_static_error is None:
+        return "drive over the plate's first frequency not known: plate.density is not given"
+    return (
+        f"drive {s.drive_over_first:.2g} of the plate's first frequency with the actuators held, "
+        f"{s.first_frequency / 1e3:.4g} kHz (quasi-static error of the acceleration {_percent(s.quasi_static_error)})"
+    )
 
 
 def _percent(share: float) -> str:

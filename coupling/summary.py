@@ -20,6 +20,8 @@ SAMPLES = 201  # moments of the run at which the plate's extremes are sought
 
 # The path error of small-deflection theory, measured on separate solvers: 8 % of the path at one thickness.
 LINEAR_ERROR = 0.08
+# The quasi-static model's error of w_tt, measured likewise, over the drive's frequency by the plate's first.
+QUASI_STATIC_ERROR = 3.3
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,9 @@ class Summary:
     linear_path_error: float  # relative, of small-deflection theory
     largest_slope: float
     in_plane_motion: float  # m, of the top face
+    first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
+    drive_over_first: float | None  # fastest drive over that frequency
+    quasi_static_error: float | None  # relative, of the surface's acceleration
     part_curvature: float | None  # part size times largest curvature on its path; None: size not given
     part_sag: float  # m, the plate's deflection under the part's largest force
 
@@ -72,6 +77,9 @@ def summarise(
     normal, _ = contact_forces(surface, trajectory, friction, case.part.mass, case.run.gravity, times)
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
+    plate = shapes.plate
+    first = None if plate.section.density is None else float(plate.frequencies(1, held=shapes.points)[0])
+    ratio = None if first is None else max(drive.frequency for drive in drives) / first
     return Summary(
         outcome=trajectory.outcome.value,
         sentence=trajectory.outcome.sentence,
@@ -95,6 +103,9 @@ def summarise(
         linear_path_error=LINEAR_ERROR * over_thickness**2,
         largest_slope=slope,
         in_plane_motion=case.plate.thickness / 2 * slope,
+        first_frequency=first,
+        drive_over_first=ratio,
+        quasi_static_error=None if ratio is None else QUASI_STATIC_ERROR * ratio,
         part_curvature=_part_curvature(case, surface, trajectory),
         part_sag=_part_sag(shapes, trajectory, float(np.nanmax(np.abs(normal)))),
     )

@@ -47,6 +47,12 @@ def bending(poisson_ratio: float) -> BilinearForm:
     return form
 
 
+@BilinearForm
+def mass(v: Field, q: Field, _: Field) -> Field:
+    """int v q, for vibrations."""
+    return v * q
+
+
 def clamped_rim(poisson_ratio: float) -> BilinearForm:
     """The rim's integrals with v and q; needs the outward normal `n` and the cells' `edge` length h at the rim."""
 

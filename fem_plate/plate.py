@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 from scipy.spatial import cKDTree
 
 from fem_plate.influence import Fields, Shapes, check_points
@@ -92,6 +93,42 @@ class Plate:
             raise ValueError(f"Input forces of deflection must be one a point, {len(points)}; got shape {forces.shape}")
         check_points(points, self.mesh.rim_gap(points), self.mesh.size)
         return Deflection(InfluenceShapes(self.graded(points), points), forces)
+
+    def frequencies(self, count: int, held: ArrayLike | None = None) -> FloatArray:
+        """The lowest natural frequencies (count,) [Hz], ascending, repeated ones repeated.
+
+        held: points (N, 2) [m] that actuators hold still; the plate bends there as under point loads, which polynomials
+        follow only to about three digits.
+        Raises ValueError when the section has no density, the count is not positive, or a point is not inside the rim.
+        """
+        density = self.section.density
+        if density is None:
+            raise ValueError("Input density of PlateSection must be given for frequencies; got None")
+        if not 1 <= count < self.space.unknowns // 2:
+            raise ValueError(f"Input count of frequencies must be at least 1; got {count!r}")
+        solve = self._factor.solve
+        if held is not None:
+            points = np.asarray(held, dtype=float).reshape(-1, 2)
+            check_points(points, self.mesh.rim_gap(points), self.mesh.size)
+            solve = self._held(points / self.mesh.size)
+        mass = self.space.mass()
+        inverse = LinearOperator(mass.shape, matvec=solve, dtype=float)
+        start = np.ones(self.space.unknowns)  # a start of its own would make results differ from run to run
+        inertia, stiffness = density * self.section.thickness * self.mesh.size**4, self.section.rigidity
+        squares = eigsh(mass, count, M=mass, sigma=0, OPinv=inverse, v0=start, return_eigenvectors=False)
+        return np.asarray(np.sqrt(np.sort(squares) * stiffness / inertia) / (2 * np.pi))
+
+    def _held(self, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+        """The plate's answer (unknowns,) to a load while it is held at points (N, 2), dimensionless."""
+        values = self.space.point_values(points)
+        answers = self._factor.solve(values.T.toarray())
+        reactions = np.linalg.inv(values @ answers)
+
+        def solve(load: FloatArray) -> FloatArray:
+            free = self._factor.solve(load)
+            return np.asarray(free - answers @ (reactions @ (values @ free)))
+
+        return solve
 
     @cached_property
     def space(self) -> PlateSpace:

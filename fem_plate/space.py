@@ -45,6 +45,22 @@ class PlateSpace:
         parts = [bending.assemble(self.inner), bending.assemble(self.curved)]
         return sum(parts, start=forms.clamped_rim(poisson_ratio).assemble(rim, **extra)).tocsc()
 
+    def mass(self) -> csc_matrix:
+        """The matrix of int v q."""
+        element = ElementArgyris(self.polynomials, derivatives=1)
+        inner = CellBasis(
+            self.grid, element, intorder=10, elements=self.inner.tind, dofs=self.inner.dofs, disable_doflocs=True
+        )
+        return (forms.mass.assemble(inner) + forms.mass.assemble(self.curved)).tocsc()
+
+    def point_values(self, xy: FloatArray) -> csc_matrix:
+        """The matrix (n, unknowns) whose product with a function's unknowns is its value at points (n, 2)."""
+        triangle = self._locate(xy)
+        data = self.polynomials.evaluate(xy[:, None], triangle, 0)[0, :, 0]
+        columns = self.inner.dofs.element_dofs[:, triangle].T
+        rows = np.broadcast_to(np.arange(len(xy))[:, None], columns.shape)
+        return coo_matrix((data.ravel(), (rows.ravel(), columns.ravel())), shape=(len(xy), self.unknowns)).tocsc()
+
     def rim_operator(self, poisson_ratio: float) -> csc_matrix:
         """The matrix (unknowns, 3 points) that turns g, g_x, g_y at the rim's quadrature points into a right side."""
         rim, extra = self.rim
