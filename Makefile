@@ -4,7 +4,7 @@ BIN := .venv/bin
 # Small dense systems gain nothing from BLAS threads and lose much where cores are busy.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test lint docs clean
+.PHONY: demo test lint docs benchmark clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/two_actuators.toml
@@ -20,6 +20,9 @@ lint: .venv/developer
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+benchmark: .venv/installed
+	$(BIN)/python benchmarks/assembly.py
 
 docs: .venv/installed
 	$(BIN)/python docs/pictures.py
