@@ -26,6 +26,8 @@ from particle.motion import Part
 FloatArray = NDArray[np.float64]
 
 DEGREE = 16  # of the squared force along the surface; everything else is raised to it
+# A part sticks up to the limit itself, as on a slope at the angle of friction: rounding must not decide.
+ROUNDING = 1 + 1e-14
 DEEPEST = 44  # halvings: a break-away is located to 2^-44 of the span
 
 
@@ -78,7 +80,7 @@ def holds(part: Part, c: float, force: float, square: float) -> bool:
     s = math.sqrt(square)
     load = part.mass * c / s
     limit = part.law.static_ratio * friction_limit(part.law, load) / part.mass
-    return -part.law.pull_off <= load <= part.law.largest_load and force <= limit * limit * square
+    return -part.law.pull_off <= load <= part.law.largest_load and force <= limit * limit * square * ROUNDING
 
 
 @jit
@@ -91,7 +93,7 @@ def _proved_safe(part: Part, rest: FloatArray) -> bool:
         return False
     limit = part.law.static_ratio * friction_limit(part.law, load_low) / part.mass
     for k in range(DEGREE + 1):
-        if rest[1, k] > limit * limit * rest[2, k]:
+        if rest[1, k] > limit * limit * rest[2, k] * ROUNDING:
             return False
     return True
 

@@ -80,3 +80,12 @@ def test_forces_between_rows_are_those_of_the_moment():
         force = mass * (gravity + at.w_tt[0]) / np.sqrt(1 + at.gradient[0, 0] ** 2)
         assert n == pytest.approx(force, rel=1e-12)
         assert q == pytest.approx(abs(force * at.gradient[0, 0]), rel=1e-9, abs=1e-20)
+
+
+@pytest.mark.parametrize("slope", [0.1, 0.2, 0.3, 0.4, 0.5, 0.577, 0.7, 1.0])
+def test_a_slope_at_the_angle_of_friction_holds(slope):
+    """Rounding once let go of the part for some slopes (0.2, 0.3) and not for others."""
+    incline = polynomial_surface([[0.0], [slope]])
+    path = simulate(incline, Micropart(1e-9, (0, 0)), CoulombAdhesion(slope), duration=1.0)
+    assert path.outcome is Outcome.STUCK
+    assert path.distance == 0
