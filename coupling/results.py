@@ -54,10 +54,11 @@ def write_results(
     points, triangles = drawn_plate(disc(case.plate.radius, case.plate.radius / RINGS), shapes.points)
     value = shapes.evaluate(points)[0]
     heights = stroke_heights(drives, times)
-    metadata = {"case": case.source or case.model_dump_json(), "summary": json.dumps(summary.as_dict())}
-    metadata["units"] = json.dumps(UNITS)
-    metadata |= {
-        "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")})
+    metadata = {
+        "case": case.source or case.model_dump_json(),
+        "summary": json.dumps(summary.as_dict()),
+        "units": json.dumps(UNITS),
+        "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")}),
     }
     position, velocity, row = trajectory.at(times)
     normal, held = contact_forces(surface, trajectory, friction, case.part.mass, case.run.gravity, times)

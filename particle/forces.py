@@ -15,9 +15,11 @@ from particle.friction import Contact, friction_limit
 from particle.jit import jit
 from particle.motion import Part, pull
 from particle.surface import SurfaceMotion
-from particle.trajectory import Trajectory
+from particle.trajectory import State, Trajectory
 
 FloatArray = NDArray[np.float64]
+
+STICK = int(State.STICK)  # kernels take plain numbers
 
 
 def contact_forces(
@@ -46,7 +48,7 @@ def _forces(
         if not pin_cell(surface, local, x, y):
             continue
         f = fields(surface, local, x, y, time)
-        if state[k] == 0:
+        if state[k] == STICK:
             a = slope(f, part)
             out[k, 0], out[k, 1] = a.load, part.mass * a.demand
         else:

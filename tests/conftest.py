@@ -12,10 +12,6 @@ from fem_plate.analytic import DiscShapes
 RADIUS = 300e-6  # m
 
 
-def pytest_configure(config: pytest.Config) -> None:
-    config.addinivalue_line("markers", "compiled: too slow in plain Python, runs only with the kernels compiled")
-
-
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     if numba.config.DISABLE_JIT:
         skip = pytest.mark.skip(reason="NUMBA_DISABLE_JIT is set: this march takes too long in plain Python")
