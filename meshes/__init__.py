@@ -1,7 +1,8 @@
 """Triangle meshes of plate outlines, with named boundaries and their true curves."""
 
-from meshes.curves import Circle
-from meshes.mesh import PlateMesh
+from meshes.curves import Circle, Ellipse, Parabolas
+from meshes.mesh import Corner, PlateMesh
+from meshes.outline import Outline
 from meshes.shapes import disc
 
-__all__ = ["Circle", "PlateMesh", "disc"]
+__all__ = ["Circle", "Corner", "Ellipse", "Outline", "Parabolas", "PlateMesh", "disc"]

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshes.nearest import nearest_on_edges, nearest_on_ellipse, nearest_parameter, on_edges, powers
+
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Circle:
-    """A circle that bounds the plate from outside.
+    """A circle.
 
     radius: m.  centre: m.
     """
@@ -21,7 +23,7 @@ class Circle:
     centre: tuple[float, float] = (0.0, 0.0)
 
     def gap(self, xy: ArrayLike) -> FloatArray:
-        """Distance [m] of points (..., 2) from the circle, positive on the plate's side."""
+        """Distance [m] of points (..., 2) from the circle, positive inside."""
         offset = np.asarray(xy, dtype=float) - np.asarray(self.centre)
         return np.asarray(self.radius - np.hypot(offset[..., 0], offset[..., 1]))
 
@@ -37,11 +39,75 @@ class Circle:
 
         start, end: (k, 2) m.  s: (n,).  Returns the points (k, n, 2) m and their derivative with respect to s.
         """
-        centre = np.asarray(self.centre)
-        first = np.arctan2(start[:, 1] - centre[1], start[:, 0] - centre[0])
-        sweep = np.arctan2(end[:, 1] - centre[1], end[:, 0] - centre[0]) - first
-        sweep = (sweep + np.pi) % (2 * np.pi) - np.pi
-        angle = first[:, None] + sweep[:, None] * s
-        radial = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-        tangent = np.stack([-radial[..., 1], radial[..., 0]], axis=-1)
-        return centre + self.radius * radial, self.radius * sweep[:, None, None] * tangent
+        return _elliptic_arc((self.radius, self.radius), np.asarray(self.centre), start, end, s)
+
+
+@dataclass(frozen=True)
+class Ellipse:
+    """An ellipse around the origin.
+
+    semi_axis_x, semi_axis_y: m.
+    """
+
+    semi_axis_x: float
+    semi_axis_y: float
+
+    def gap(self, xy: ArrayLike) -> FloatArray:
+        """Distance [m] of points (..., 2) from the ellipse, positive inside."""
+        xy = np.asarray(xy, dtype=float)
+        distance = np.linalg.norm(self.project(xy) - xy, axis=-1)
+        return np.copysign(distance, 1 - np.hypot(xy[..., 0] / self.semi_axis_x, xy[..., 1] / self.semi_axis_y))
+
+    def project(self, xy: ArrayLike) -> FloatArray:
+        """The nearest points of the ellipse to points (..., 2) [m]; of several equally near ones, one."""
+        xy = np.asarray(xy, dtype=float)
+        return nearest_on_ellipse(xy.reshape(-1, 2), (self.semi_axis_x, self.semi_axis_y)).reshape(xy.shape)
+
+    def arc(self, start: FloatArray, end: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The shorter arcs between points on the ellipse; s (n,) runs from 0 to 1 with the eccentric angle.
+
+        start, end: (k, 2) m.  Returns the points (k, n, 2) m and their derivative with respect to s.
+        """
+        return _elliptic_arc((self.semi_axis_x, self.semi_axis_y), np.zeros(2), start, end, s)
+
+
+@dataclass(frozen=True, eq=False)
+class Parabolas:
+    """Quadratic edges, as second-order meshes have them.
+
+    pieces: (k, 3, 2) m, start, middle and end of each: its points at parameter 0, 1/2 and 1.
+    """
+
+    pieces: FloatArray
+
+    def project(self, xy: ArrayLike) -> FloatArray:
+        """The nearest points of the edges to points (..., 2) [m]; of several equally near ones, one."""
+        xy = np.asarray(xy, dtype=float)
+        return nearest_on_edges(xy.reshape(-1, 2), self.pieces)[0].reshape(xy.shape)
+
+    def arc(self, start: FloatArray, end: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The arcs between points on the same edge; s (n,) runs from 0 to 1 with the edge's parameter.
+
+        start, end: (k, 2) m.  Returns the points (k, n, 2) m and their derivative with respect to s.
+        """
+        pieces = self.pieces[nearest_on_edges((start + end) / 2, self.pieces)[1]]
+        first, last = nearest_parameter(start, pieces), nearest_parameter(end, pieces)
+        t = first[:, None] + (last - first)[:, None] * s
+        _, slope, bend = powers(pieces)
+        derivative = slope[:, None] + 2 * t[..., None] * bend[:, None]
+        return on_edges(pieces, t), (last - first)[:, None, None] * derivative
+
+
+Curve = Circle | Ellipse | Parabolas
+
+
+def _elliptic_arc(
+    axes: tuple[float, float], centre: FloatArray, start: FloatArray, end: FloatArray, s: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    # y / b over x / a, so that a circle's angles have no more rounding than they must
+    first, last = (np.arctan2(p[:, 1] * (axes[0] / axes[1]), p[:, 0]) for p in (start - centre, end - centre))
+    sweep = (last - first + np.pi) % (2 * np.pi) - np.pi
+    angle = first[:, None] + sweep[:, None] * s
+    radial = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    tangent = np.stack([-radial[..., 1], radial[..., 0]], axis=-1)
+    return centre + np.asarray(axes) * radial, np.asarray(axes) * sweep[:, None, None] * tangent

@@ -9,43 +9,68 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshes.curves import Circle
+from meshes.curves import Circle, Curve, Ellipse, Parabolas
+from meshes.nearest import FloatArray, IntArray
+from meshes.outline import Outline, straight
+from meshes.refine import edge_numbers, refine
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+CORNER = np.deg2rad(15)  # a tangent that turns by more than this turns at a corner
+CUT = "cut"  # the boundary along which a part was cut out
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A boundary point where the rim turns sharply or the boundary's name changes.
+
+    row: of the mesh's points.  angle: between the true tangents, through the plate [rad].
+    sides: the names of the boundaries before and after it, walking with the plate on the left.
+    """
+
+    row: int
+    angle: float
+    sides: tuple[str, str]
 
 
 @dataclass(frozen=True, eq=False)
 class PlateMesh:
-    """A conforming triangulation of a plate, centred on the origin.
+    """A conforming triangulation of a plate.
 
     points: (n, 2) m.  triangles: (m, 3) rows of points, counter-clockwise.
-    boundaries: name -> (k, 2) rows of points, the edges on that boundary.
-    curves: name -> the curve that those edges approximate.
+    boundaries: name -> (k, 2) rows of points, the edges on that boundary, with the plate on their left.
+    curves: name -> the curve that those edges approximate; the edges of other boundaries are straight.
+    outline: the plate's true rim; by default made of boundaries and curves.
     """
 
     points: FloatArray
     triangles: IntArray
     boundaries: Mapping[str, IntArray]
-    curves: Mapping[str, Circle] = field(default_factory=dict)
+    curves: Mapping[str, Curve] = field(default_factory=dict)
+    outline: Outline = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        if self.outline is None:
+            object.__setattr__(self, "outline", _outline(self.points, self.boundaries, self.curves))
 
     @cached_property
     def size(self) -> float:
         """Half of the larger side of the box around the plate [m]: the length that makes equations dimensionless."""
         return float(np.max(np.ptp(self.points, axis=0)) / 2)
 
-    def mirrored(self, xy: FloatArray) -> FloatArray:
-        """Points (n, 2) [m] reflected at each of b boundaries: (b n, 2)."""
-        return np.concatenate([2 * curve.project(xy) - xy for curve in self.curves.values()])
+    def mirrored(self, xy: ArrayLike) -> FloatArray:
+        """Points (n, 2) [m] reflected at every boundary of the outline: (r, 2), all off the plate."""
+        return self.outline.mirrored(xy)
 
     def rim_gap(self, xy: ArrayLike) -> FloatArray:
         """Distance [m] of points (..., 2) from the nearest boundary, negative beyond it."""
-        return np.min([curve.gap(xy) for curve in self.curves.values()], axis=0)
+        return self.outline.gap(xy)
 
     def arcs(self, name: str, s: FloatArray) -> tuple[FloatArray, FloatArray]:
         """A boundary's edges along its true curve at s (n,) in [0, 1]: points (k, n, 2) m and derivatives in s."""
         start, end = self.points[self.boundaries[name].T]
-        return self.curves[name].arc(start, end, s)
+        if name in self.curves:
+            return self.curves[name].arc(start, end, s)
+        along = np.repeat((end - start)[:, None], len(s), axis=1)
+        return start[:, None] + np.asarray(s)[:, None] * along, along
 
     @cached_property
     def cell_sizes(self) -> FloatArray:
@@ -53,61 +78,71 @@ class PlateMesh:
         corners = self.points[self.triangles]
         return np.asarray(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1))
 
+    @cached_property
+    def corners(self) -> tuple[Corner, ...]:
+        """The points where the rim turns by more than 15 degrees or the boundary's name changes."""
+        names = [name for name, pairs in self.boundaries.items() for _ in pairs]
+        before, after = np.concatenate(list(self.boundaries.values())).T[::-1]  # points that edges run to and from
+        tangents = np.concatenate([self.arcs(name, np.array([0.0, 1.0]))[1] for name in self.boundaries])
+        direction = np.arctan2(tangents[..., 1], tangents[..., 0])
+        order = np.argsort(before, kind="stable")
+        first, count = np.searchsorted(before[order], after), np.bincount(before, minlength=len(self.points))[after]
+        corners = []
+        for leaving in np.argsort(after, kind="stable"):
+            arriving = order[first[leaving] : first[leaving] + count[leaving]]
+            # Where cells touch only in a point, the edge that arrives next counter-clockwise bounds the same cells.
+            angles = (direction[arriving, 1] + np.pi - direction[leaving, 0]) % (2 * np.pi)
+            k = int(np.argmin(angles))
+            sides = (names[arriving[k]], names[leaving])
+            if abs(angles[k] - np.pi) > CORNER or sides[0] != sides[1]:
+                corners.append(Corner(int(after[leaving]), float(angles[k]), sides))
+        return tuple(corners)
+
+    def part(self, keep: NDArray[np.bool_]) -> PlateMesh:
+        """The mesh of the triangles to keep (m,); new boundary edges are straight and named "cut".
+
+        The outline stays that of the whole plate.
+        """
+        triangles = self.triangles[keep]
+        sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+        number = edge_numbers(sides, len(self.points))
+        _, where, count = np.unique(number, return_index=True, return_counts=True)
+        rim = np.sort(where[count == 1])
+        kept = {name: np.isin(edge_numbers(p, len(self.points)), number[rim]) for name, p in self.boundaries.items()}
+        boundaries = {name: self.boundaries[name][there] for name, there in kept.items() if there.any()}
+        known = [edge_numbers(pairs, len(self.points)) for pairs in boundaries.values()]
+        cut = sides[rim[~np.isin(number[rim], np.concatenate([*known, []]))]]
+        if len(cut):
+            boundaries[CUT] = np.concatenate([boundaries.get(CUT, np.empty((0, 2), dtype=np.int64)), cut])
+        used, rows = np.unique(triangles, return_inverse=True)
+        return PlateMesh(
+            self.points[used],
+            rows.reshape(-1, 3),
+            {name: np.searchsorted(used, pairs) for name, pairs in boundaries.items()},
+            {name: curve for name, curve in self.curves.items() if name in boundaries},
+            self.outline,
+        )
+
     def refined(self, marked: NDArray[np.bool_] | None = None) -> PlateMesh:
         """The mesh with marked triangles (m,) cut in four, all by default, and their neighbours cut to fit.
 
-        An edge is only cut along with the longest edge of its triangles, so that angles stay as they are (red, green
-        and blue refinement). New boundary points lie on the true curve.
+        Cells cut in four keep their angles, their neighbours are cut along their longest edge. New boundary points lie
+        on the true curve.
         """
-        sides = np.stack([self.triangles, np.roll(self.triangles, -1, axis=1)], axis=2)  # side k: corners k, k+1
-        length = np.linalg.norm(np.diff(self.points[sides], axis=2)[:, :, 0], axis=2)
-        # Every triangle starts at its longest side.
-        order = (np.argmax(length, axis=1)[:, None] + np.arange(3)) % 3
-        triangles = np.take_along_axis(self.triangles, order, axis=1)
-        sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
-        edges, edge_of = np.unique(np.sort(sides.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
-        edge_of = edge_of.reshape(-1, 3)
-        cut = np.zeros(len(edges), dtype=bool)
-        cut[edge_of if marked is None else edge_of[marked]] = True
-        while True:
-            longest = edge_of[cut[edge_of].any(axis=1), 0]
-            if cut[longest].all():
-                break
-            cut[longest] = True
-        middle = np.full(len(edges), -1)
-        middle[cut] = len(self.points) + np.arange(cut.sum())
-        new_points = self.points[edges[cut]].mean(axis=1)
-        row = {(a, b): int(middle[index]) for index, (a, b) in enumerate(edges.tolist())}
-        boundaries = {}
-        for name, pairs in self.boundaries.items():
-            between = np.array([row[min(a, b), max(a, b)] for a, b in pairs.tolist()])
-            if name in self.curves:
-                new = between[between >= 0] - len(self.points)
-                new_points[new] = self.curves[name].project(new_points[new])
-            whole, halves = pairs[between < 0], np.insert(pairs, 1, between, axis=1)[between >= 0]
-            boundaries[name] = np.concatenate([whole, halves[:, :2], halves[:, 1:]])
-        pieces = _cut(triangles, middle[edge_of])
-        return PlateMesh(np.concatenate([self.points, new_points]), pieces, boundaries, self.curves)
+        points, triangles, boundaries = refine(self.points, self.triangles, self.boundaries, self.curves, marked)
+        return PlateMesh(points, triangles, boundaries, self.curves, self.outline)
 
 
-def _cut(triangles: IntArray, middle: IntArray) -> IntArray:
-    """The pieces of triangles abc (m, 3) whose sides ab, bc, ca have middles (m, 3), -1 where a side is whole.
-
-    Where any side is cut, ab is.
-    """
-    (a, b, c), (ab, bc, ca) = triangles.T, middle.T
-    cut = middle >= 0
-    patterns = {
-        (False, False, False): [(a, b, c)],
-        (True, False, False): [(a, ab, c), (ab, b, c)],
-        (True, True, False): [(a, ab, c), (ab, b, bc), (ab, bc, c)],
-        (True, False, True): [(a, ab, ca), (ca, ab, c), (ab, b, c)],
-        (True, True, True): [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)],
-    }
-    return np.concatenate(
-        [
-            np.stack(piece, axis=1)[(cut == pattern).all(axis=1)]
-            for pattern, pieces in patterns.items()
-            for piece in pieces
-        ]
-    )
+def _outline(points: FloatArray, boundaries: Mapping[str, IntArray], curves: Mapping[str, Curve]) -> Outline:
+    conics, edges = [np.empty((0, 4))], [np.empty((0, 3, 2))]
+    for name, pairs in boundaries.items():
+        match curves.get(name):
+            case Circle(radius, centre):
+                conics.append(np.array([[*centre, radius, radius]]))
+            case Ellipse(semi_axis_x, semi_axis_y):
+                conics.append(np.array([[0.0, 0.0, semi_axis_x, semi_axis_y]]))
+            case Parabolas() as curve:
+                edges.append(curve.pieces)
+            case None:
+                edges.append(straight(*points[pairs.T]))
+    return Outline(np.concatenate(conics), np.concatenate(edges))

@@ -1,0 +1,160 @@
+"""Outline: the true rim of a plate, whatever the mesh; distances from it and reflections at it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshes.curves import Circle, Ellipse
+from meshes.nearest import CHUNK, IntArray, nearest_on_edges, nearest_parameter, on_edges, powers
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+REFLECTED = 64  # with no more edges than this, points are reflected at each; else at the NEAREST ones
+NEAREST = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """The boundaries of a plate: whole ellipses and edges that close, crossing neither themselves nor each other.
+
+    conics: (k, 4) m, centre x, y and semi-axes in x, y.
+    edges: (m, 3, 2) m, start, middle and end of quadratic edges (their points at parameter 0, 1/2, 1); straight edges
+    have their middle in the middle.
+    """
+
+    conics: FloatArray = field(default_factory=lambda: np.empty((0, 4)))
+    edges: FloatArray = field(default_factory=lambda: np.empty((0, 3, 2)))
+
+    def gap(self, xy: ArrayLike) -> FloatArray:
+        """Distance [m] of points (..., 2) from the nearest boundary, positive on the plate and negative off it."""
+        points = np.asarray(xy, dtype=float)
+        flat = points.reshape(-1, 2)
+        distance, inside = np.full(len(flat), np.inf), self._inside_edges(flat)
+        for centre, curve in self._curves:
+            gap = curve.gap(flat - centre)
+            distance, inside = np.minimum(distance, np.abs(gap)), inside ^ (gap > 0)
+        if len(self.edges):
+            foot, _, _ = nearest_on_edges(flat, self.edges)
+            distance = np.minimum(distance, np.hypot(*(foot - flat).T))
+        return np.where(inside, distance, -distance).reshape(points.shape[:-1])
+
+    def project(self, xy: ArrayLike) -> FloatArray:
+        """The nearest points of the rim to points (n, 2) [m]; of several equally near ones, one."""
+        xy = np.asarray(xy, dtype=float)
+        feet = [centre + curve.project(xy - centre) for centre, curve in self._curves]
+        if len(self.edges):
+            feet.append(nearest_on_edges(xy, self.edges)[0])
+        nearest = np.argmin([np.hypot(*(foot - xy).T) for foot in feet], axis=0)
+        return np.asarray(np.stack(feet)[nearest, np.arange(len(xy))])
+
+    def mirrored(self, xy: ArrayLike) -> FloatArray:
+        """Points (n, 2) [m] reflected at every boundary, each at its nearest point there: (r, 2), all off the plate.
+
+        A reflection that falls on the plate again, across a hole or a slot, is moved towards the rim until it is off
+        the plate; across a re-entrant corner there is none. Of more than 64 edges the nearest 16 count.
+        """
+        xy = np.asarray(xy, dtype=float)
+        feet = [centre + curve.project(xy - centre) for centre, curve in self._curves]
+        if len(self.edges):
+            feet.extend(self._feet(xy))
+        foot, point = np.concatenate(feet), np.tile(xy, (len(feet), 1))
+        image = 2 * foot - point
+        inside = self.inside(image)
+        for _ in range(6):
+            image[inside] = (image[inside] + foot[inside]) / 2
+            inside[inside] = self.inside(image[inside])
+        return np.asarray(image[~inside])
+
+    def inside(self, xy: FloatArray) -> BoolArray:
+        """Whether points (n, 2) [m] are on the plate, by the parity of the boundaries around them: (n,)."""
+        inside = self._inside_edges(xy)
+        for centre, curve in self._curves:
+            inside = inside ^ (curve.gap(xy - centre) > 0)
+        return inside
+
+    @cached_property
+    def box(self) -> FloatArray:
+        """The lower left and the upper right corner of the smallest box around the plate, (2, 2) m."""
+        start, slope, bend = powers(self.edges)
+        turn = np.clip(-slope / np.where(bend == 0, np.inf, 2 * bend), 0.0, 1.0)  # where x and where y stand still
+        extremes = start + turn * (slope + turn * bend)
+        low = np.concatenate([self.conics[:, :2] - self.conics[:, 2:], extremes, *self.edges[:, [0, 2]].swapaxes(0, 1)])
+        high = np.concatenate(
+            [self.conics[:, :2] + self.conics[:, 2:], extremes, *self.edges[:, [0, 2]].swapaxes(0, 1)]
+        )
+        return np.stack([low.min(axis=0), high.max(axis=0)])
+
+    @cached_property
+    def _curves(self) -> list[tuple[FloatArray, Circle | Ellipse]]:
+        """The conics around the origin, with their centres."""
+        return [(np.array([x, y]), Circle(a) if a == b else Ellipse(a, b)) for x, y, a, b in self.conics.tolist()]
+
+    def _feet(self, xy: FloatArray) -> list[FloatArray]:
+        """The nearest points (n, 2) of each edge, or of the nearest ones, to points (n, 2)."""
+        count = len(self.edges)
+        if count <= REFLECTED:
+            chosen = np.tile(np.arange(count), (len(xy), 1))
+        else:
+            chosen = _chunked(self._nearest_edges, xy, count)
+        edges = [self.edges[column] for column in chosen.T]
+        return [on_edges(edge, nearest_parameter(xy, edge)[:, None])[:, 0] for edge in edges]
+
+    def _nearest_edges(self, xy: FloatArray) -> IntArray:
+        distance = np.linalg.norm(xy[:, None] - self.edges[:, 1], axis=-1)
+        return np.argpartition(distance, NEAREST, axis=1)[:, :NEAREST]
+
+    def _inside_edges(self, xy: FloatArray) -> BoolArray:
+        """Whether a ray in x from points (n, 2) crosses the edges an odd number of times, (n,)."""
+        if not len(self.edges):
+            return np.zeros(len(xy), dtype=bool)
+        return _chunked(self._odd_crossings, xy, len(self.edges))
+
+    def _odd_crossings(self, xy: FloatArray) -> BoolArray:
+        edge, first, last, low, high = self._monotone
+        # A piece counts from its lower end, which it has, to its upper one, which it has not: so a ray through a
+        # vertex crosses one of two pieces that go on upwards, and none or two of pieces that turn back there.
+        row, piece = np.nonzero((low > xy[:, 1:]) != (high > xy[:, 1:]))
+        start, slope, bend = powers(self.edges[edge[piece]])
+        width = (last - first)[piece]
+        rate = (slope[:, 1] + 2 * bend[:, 1] * first[piece]) * width
+        rise = xy[row, 1] - low[piece]
+        root = np.sqrt(np.maximum(rate**2 + 4 * bend[:, 1] * width**2 * rise, 0.0))
+        below = rate + np.copysign(root, (high - low)[piece])
+        t = first[piece] + width * np.clip(2 * rise / np.where(below == 0, np.inf, below), 0.0, 1.0)
+        crossed = start[:, 0] + t * (slope[:, 0] + t * bend[:, 0]) > xy[row, 0]
+        return np.asarray(np.bincount(row[crossed], minlength=len(xy)) % 2 == 1)
+
+    @cached_property
+    def _monotone(self) -> tuple[IntArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """The edges in pieces along which y rises or falls: edge, first and last parameter, first and last y."""
+        start, slope, bend = powers(self.edges[:, :, 1:])
+        turn = (-slope / np.where(bend == 0, np.inf, 2 * bend))[:, 0]
+        split = np.flatnonzero((turn > 0) & (turn < 1))
+        whole = np.setdiff1d(np.arange(len(self.edges)), split)
+        top = (start + turn[:, None] * (slope + turn[:, None] * bend))[split, 0]
+        zero, one = np.zeros(len(self.edges)), np.ones(len(self.edges))
+        low, high = self.edges[:, 0, 1], self.edges[:, 2, 1]
+        return (
+            np.concatenate([whole, split, split]),
+            np.concatenate([zero[whole], zero[split], turn[split]]),
+            np.concatenate([one[whole], turn[split], one[split]]),
+            np.concatenate([low[whole], low[split], top]),
+            np.concatenate([high[whole], top, high[split]]),
+        )
+
+
+def straight(start: FloatArray, end: FloatArray) -> FloatArray:
+    """Straight edges (k, 3, 2) between points (k, 2)."""
+    return np.stack([start, (start + end) / 2, end], axis=1)
+
+
+def _chunked(function: Callable[[FloatArray], NDArray], xy: FloatArray, edges: int) -> NDArray:
+    """A function of points (n, 2), applied to so many at once that pairs with edges stay below CHUNK."""
+    step = max(1, CHUNK // edges)
+    return np.concatenate([function(xy[i : i + step]) for i in range(0, max(1, len(xy)), step)])
