@@ -23,17 +23,17 @@ def nearest_on_ellipse(xy: FloatArray, semi_axes: tuple[float, float]) -> FloatA
     z0, z1 = np.abs(xy[:, long]) / axes[long], np.abs(xy[:, short]) / axes[short]
     # With t = 1 + s / b^2 the left side falls and is convex, so Newton's steps from a point left of the root never
     # pass it; at either of these two points one of the terms is 1 already.
-    t = np.maximum(z1, ratio * (z0 - 1) + 1)
+    t = np.maximum(z1, ratio * z0 - (ratio - 1))
     on_axis = t <= 0  # between the ends of the evolute on the long axis, the centre of a circle among them
     t = np.where(on_axis, 1.0, t)
     for _ in range(200):
-        c0, c1 = ratio * z0 / (t + ratio - 1), z1 / t
-        slope = 2 * (c0**2 / (t + ratio - 1) + c1**2 / t)
+        c0, c1 = ratio * z0 / (t + (ratio - 1)), z1 / t
+        slope = 2 * (c0**2 / (t + (ratio - 1)) + c1**2 / t)
         step = (c0**2 + c1**2 - 1) / np.where(on_axis, 1.0, slope)
         t = t + np.where(on_axis, 0.0, np.maximum(step, 0.0))
         if not np.any((step > 1e-15 * t) & ~on_axis):
             break
-    c0, c1 = ratio * z0 / (t + ratio - 1), z1 / t
+    c0, c1 = ratio * z0 / (t + (ratio - 1)), z1 / t
     if ratio > 1:
         c0 = np.where(on_axis, ratio * z0 / (ratio - 1), c0)
     c1 = np.where(on_axis, np.sqrt(np.clip(1 - c0**2, 0, None)), c1)

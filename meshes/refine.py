@@ -18,7 +18,7 @@ def refine(
     curves: Mapping[str, Curve],
     marked: NDArray[np.bool_] | None,
 ) -> tuple[FloatArray, IntArray, dict[str, IntArray]]:
-    """Points, triangles and boundaries once marked triangles (m,), all by default, are cut in four (`PlateMesh.refined`).
+    """Points, triangles and boundaries once marked triangles (m,), all by default, are cut in four (see `PlateMesh`).
 
     An edge is only cut along with the longest edge of its triangles, so that angles stay as they are (red, green and
     blue refinement: R. Verfuerth, A Posteriori Error Estimation Techniques, 2013, section 2.1).
