@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from coupling.rim import rim_curves
 from fem_plate.influence import Shapes
 from particle import Drive, SurfaceMotion
 from particle.drive import drive_table
-from particle.surface import DISC
 
 FloatArray = NDArray[np.float64]
 
@@ -51,40 +51,46 @@ def surface_motion(shapes: Shapes, drives: Sequence[Drive], tolerance: float = S
         strengths=shapes.strengths,
         size=shapes.size,
         floor=FLOOR * shapes.size,
-        origin=np.array([-shapes.size, -shapes.size]),
+        origin=fit.origin,
         cell_width=fit.width,
         cell_rows=fit.rows,
         cells=fit.cells,
         degree=DEGREE,
         overhang=OVERHANG,
-        outline=DISC,
-        rim=np.array([shapes.outline.radius]),
+        conics=np.ascontiguousarray(shapes.outline.conics),
+        edges=np.ascontiguousarray(shapes.outline.edges),
         moving_base=False,
         error=fit.error,
     )
 
 
 class CellFit:
-    """Polynomials of the smooth parts on a grid of `across` x `across` cells around the plate.
+    """Polynomials of the smooth parts on a grid of square cells over the plate's box, `across` along its longer side.
 
-    rows (across, across): a cell's row in `cells`, -1 off the plate.  cells: (C, N, M).  error: largest one measured.
+    origin: (2,) m, the grid's lower left corner.  rows (nx, ny): a cell's row in `cells`, -1 off the plate.
+    cells: (C, N, M).  error: largest one measured.
     """
 
     def __init__(self, shapes: Shapes, across: int) -> None:
         self.shapes = shapes
-        self.width = 2 * shapes.size / across
-        centres = self.width * (np.arange(across) + 0.5) - shapes.size
-        grid = np.stack(np.meshgrid(centres, centres, indexing="ij"), axis=-1)
-        self.rows = np.full((across, across), -1, dtype=np.int64)
-        nearest = np.sign(grid) * np.maximum(np.abs(grid) - self.width / 2, 0)  # the cell's point nearest the centre
-        on_plate = shapes.outline.gap(nearest) > 0
-        self.rows[on_plate] = np.arange(on_plate.sum())
+        low, high = shapes.outline.box
+        self.width = float((high - low).max()) / across
+        counts = np.ceil((high - low) / self.width * (1 - 1e-9)).astype(int)
+        self.origin = (low + high - counts * self.width) / 2
+        places = [
+            self.width * (np.arange(count) + 0.5) + start for count, start in zip(counts, self.origin, strict=True)
+        ]
+        grid = np.stack(np.meshgrid(*places, indexing="ij"), axis=-1)
+        gap = shapes.outline.gap(grid)
+        on_plate = gap > -self.width / np.sqrt(2)  # the circle around the cell reaches the plate
+        self.rows = np.where(on_plate, np.cumsum(on_plate).reshape(on_plate.shape) - 1, -1)
         self.centres = grid[on_plate]
-        inside = shapes.outline.gap(self.centres) > OVERHANG * self.width / np.sqrt(2)
-        self.cells = np.empty((len(self.centres), len(shapes.points), (DEGREE + 1) * (DEGREE + 2) // 2))
+        inside = gap[on_plate] > OVERHANG * self.width / np.sqrt(2)
+        self.cells = np.zeros((len(self.centres), len(shapes.points), (DEGREE + 1) * (DEGREE + 2) // 2))
         self._fit_inner(np.flatnonzero(inside))
+        rim = np.concatenate(rim_curves(shapes.outline, self.width / NODES))
         for cell in np.flatnonzero(~inside).tolist():
-            self.cells[cell] = self._fit_at_rim(cell)
+            self._fit_at_rim(cell, rim)
         self.error = self._measure()
 
     def _fit_inner(self, inner: NDArray[np.int64]) -> None:
@@ -95,24 +101,23 @@ class CellFit:
         values = self.shapes.smooth(points.reshape(-1, 2)).reshape(len(inner), len(local), -1)
         self.cells[inner] = np.einsum("mp,cpi->cim", np.linalg.pinv(_monomials(local)), values, optimize=True)
 
-    def _fit_at_rim(self, cell: int) -> FloatArray:
-        """A cell that the rim cuts is fitted to its points on the plate."""
+    def _fit_at_rim(self, cell: int, rim: FloatArray) -> None:
+        """A cell that the rim cuts is fitted to its points on the plate and on the rim (r, 2) [m]."""
         side = np.linspace(-OVERHANG, OVERHANG, 4 * NODES)
-        local = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
-        points = self.centres[cell] + local * self.width / 2
-        on_plate = self.shapes.outline.gap(points) >= 0
-        # Points near the edges of what there is matter most to a polynomial: keep those on the rim as well.
-        points = self.shapes.outline.project(points[~on_plate])
-        reach = np.abs(points - self.centres[cell]).max(axis=1) <= OVERHANG * self.width / 2
-        local = np.concatenate([local[on_plate][::3], (points[reach][::3] - self.centres[cell]) / (self.width / 2)])
-        values = self.shapes.smooth(self.centres[cell] + local * self.width / 2)
-        return np.asarray(np.linalg.lstsq(_monomials(local), values, rcond=1e-12)[0].T)
+        grid = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+        grid = grid[self.shapes.outline.inside(self.centres[cell] + grid * self.width / 2)][::3]
+        # Points near the edges of what there is matter most to a polynomial: hence those on the rim as well.
+        rim = (rim - self.centres[cell]) / (self.width / 2)
+        local = np.concatenate([grid, rim[np.abs(rim).max(axis=1) <= OVERHANG]])
+        if len(local):
+            values = self.shapes.smooth(self.centres[cell] + local * self.width / 2)
+            self.cells[cell] = np.linalg.lstsq(_monomials(local), values, rcond=1e-12)[0].T
 
     def _measure(self) -> float:
         """The largest error at points between those of the fits."""
         local = np.random.default_rng(0).uniform(-1, 1, (16, 2))
         points = self.centres[:, None] + local * self.width / 2
-        on_plate = self.shapes.outline.gap(points) >= 0
+        on_plate = self.shapes.outline.inside(points.reshape(-1, 2)).reshape(points.shape[:2])
         fitted = np.einsum("pm,cim->cpi", _monomials(local), self.cells, optimize=True)
         return float(np.abs(fitted[on_plate] - self.shapes.smooth(points[on_plate])).max())
 

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from particle.breakaway import lag, slope, velocity
 from particle.drive import next_kink
-from particle.fields import fields, new_local, pin_cell, pin_time, rim_gap
+from particle.fields import fields, new_local, pin_cell, pin_time
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.motion import Part, margin, pull
+from particle.rim import rim_gap
 from particle.runge_kutta import MANIFOLD, SLIDING, Tableau, new_step
 from particle.slide import (
     DETACHED,
@@ -82,7 +83,7 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             time = local.frame[0] + leaves * local.frame[1] if leaves < 1.0 else span_end
             if leaves < 1.0:
                 load = pull(fields(surface, local, state[0], state[1], time), 0.0, 0.0, part).normal
-                if margin(surface, part, load, state[0], state[1]) < 0.0:
+                if margin(surface, part, load, 0.0) < 0.0:
                     verdict = reason(surface, part, load, state)
                 else:
                     mode, h = _start(part, load), 0.02 * request.stroke_time

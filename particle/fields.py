@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from particle.drive import ORDER, drive_piece, next_kink
 from particle.jit import jit
+from particle.rim import rim_gap
 
 FloatArray = NDArray[np.float64]
 
@@ -256,14 +257,6 @@ def standing(surface: Any, local: Local, x: float, y: float, out: FloatArray) ->
             out[0, k] += f * 0.5 * square * logarithm
             out[1, k] += f * slope * d_x
             out[2, k] += f * slope * d_y
-
-
-@jit
-def rim_gap(surface: Any, x: float, y: float) -> float:
-    """Distance [m] from the rim, negative beyond it; the plate's size where there is no rim."""
-    if surface.outline == 0:
-        return float(surface.size)
-    return float(surface.rim[0] - math.hypot(x, y))
 
 
 @jit

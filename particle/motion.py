@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.fields import Fields, fields, rim_gap
+from particle.fields import Fields, fields
 from particle.friction import friction_limit
 from particle.jit import jit
 
@@ -77,12 +77,13 @@ def slide_rate(surface: Any, local: Any, part: Part, time: float, state: FloatAr
 
 
 @jit
-def margin(surface: Any, part: Part, load: float, x: float, y: float) -> float:
+def margin(surface: Any, part: Part, load: float, gap: float) -> float:
     """How far the part is from the end of its contact: negative beyond the rim, below pull-off, above the largest load.
 
-    A dimensionless measure, continuous along a path, that the integrator takes to zero to locate such an end.
+    gap: m, the distance from the rim, or a positive lower bound of it.  A dimensionless measure, whose sign the
+    integrator follows to locate such an end.
     """
-    least = rim_gap(surface, x, y) / surface.size
+    least = gap / surface.size
     weight = part.mass * max(1.0, abs(part.gravity))
     if math.isfinite(part.law.pull_off):
         least = min(least, (load + part.law.pull_off) / weight)

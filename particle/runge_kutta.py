@@ -15,6 +15,7 @@ from particle.fields import within_cell
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.motion import Part, margin, slide_rate
+from particle.rim import rim_gap
 
 FloatArray = NDArray[np.float64]
 
@@ -55,11 +56,13 @@ class Step(NamedTuple):
     margins: FloatArray  # (stages + 1,) how far each stage is from the end of contact
     stage: FloatArray  # (4,)
     end: FloatArray  # (4,)
+    start_gap: FloatArray  # (1,) m, the step's start from the rim
 
 
 @jit
 def new_step(pair: Tableau) -> Step:
-    return Step(np.zeros((len(pair.c), 4)), np.zeros(len(pair.c)), np.zeros(len(pair.c)), np.zeros(4), np.zeros(4))
+    stages = len(pair.c)
+    return Step(np.zeros((stages, 4)), np.zeros(stages), np.zeros(stages), np.zeros(4), np.zeros(4), np.zeros(1))
 
 
 @jit
@@ -74,7 +77,7 @@ def rate(mode: int, surface: Any, local: Any, part: Part, time: float, state: Fl
 def attempt(
     mode: int, surface: Any, local: Any, part: Part, pair: Tableau, step: Step, time: float, state: FloatArray, h: float
 ) -> bool:
-    """Tries a step of h [s] from `state`, whose rate is step.rates[0]; the end goes to step.end.
+    """Tries a step of h [s] from `state`, whose rate is step.rates[0] and gap step.start_gap; the end goes to step.end.
 
     False when a stage leaves the cell's polynomials, or turns the velocity back under friction, which would then point
     the wrong way.
@@ -92,7 +95,10 @@ def attempt(
         if dry and mode == SLIDING and step.stage[2] * state[2] + step.stage[3] * state[3] <= 0.0:
             return False
         load = rate(mode, surface, local, part, time + pair.c[k] * h, step.stage, step.rates[k])
-        step.loads[k], step.margins[k] = load, margin(surface, part, load, step.stage[0], step.stage[1])
+        # As far from the rim as the start is, less the way from there: where that does not settle it, look.
+        gap = step.start_gap[0] - math.hypot(step.stage[0] - state[0], step.stage[1] - state[1])
+        gap = gap if gap > 0.0 else rim_gap(surface, step.stage[0], step.stage[1])
+        step.loads[k], step.margins[k] = load, margin(surface, part, load, gap)
     step.end[:] = step.stage
     return True
 

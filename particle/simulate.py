@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from particle.events import march
-from particle.fields import rim_gap
 from particle.friction import Contact
 from particle.motion import Part
+from particle.rim import rim_gap
 from particle.runge_kutta import tableau
 from particle.slide import DETACHED, GOES_ON, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
 from particle.surface import SurfaceMotion

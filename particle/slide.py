@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.breakaway import lag, slope, velocity
-from particle.fields import fields, rim_gap
+from particle.fields import fields
 from particle.jit import jit
 from particle.motion import Part
+from particle.rim import ROUNDING, first_beyond, rim_gap
 from particle.runge_kutta import MANIFOLD, SLIDING, Step, Tableau, attempt, error, rate
-from particle.stop import stop_ahead
+from particle.stop import Stop, stop_ahead
 
 FloatArray = NDArray[np.float64]
 
@@ -58,12 +59,14 @@ def slide(
     part, tolerance = request.part, request.tolerance
     step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
     count[2] += 1
+    step.start_gap[0] = rim_gap(surface, state[0], state[1])
     weight_limit = math.inf
     if mode == SLIDING:
         straight, pace = 0.01 * tolerance / request.stroke_time, 0.01 * surface.size / request.stroke_time
         stop, miss = stop_ahead(surface, local, part, time, state, straight, pace)
         count[2] += 2
-        if time + stop.time <= span_end and miss < 0.1 * tolerance:
+        near = time + stop.time <= span_end and miss < 0.1 * tolerance
+        if near and _stops_on_plate(surface, step, state, stop):
             state[0] += stop.x
             state[1] += stop.y
             state[2] = state[3] = 0.0
@@ -90,6 +93,11 @@ def slide(
             h *= max(0.2, SAFETY * wrong ** (-1 / pair.order)) if wrong > 1.0 else 0.2
             continue
         last = len(pair.c) - 1
+        on_plate = first_beyond(surface, step.start_gap[0], state, step.end, step.rates[0], step.rates[last], h)
+        # A path that leaves and comes back ends where it first leaves; where it ends beyond, the end is located below.
+        if on_plate < (0.9 if step.margins[last] < 0.0 else 1.0):
+            h *= on_plate
+            continue
         if step.margins[last] < 0.0:
             h = _locate_end(surface, local, part, pair, step, count, mode, time, state, h)
             state[:] = step.end
@@ -112,6 +120,14 @@ def slide(
     if mode == MANIFOLD:
         mode = _leave_manifold(surface, local, request, time, state)
     return mode, time, h * min(GROWTH, SAFETY * max(wrong, 1e-12) ** (-1 / pair.order)), GOES_ON
+
+
+@jit
+def _stops_on_plate(surface: Any, step: Step, state: FloatArray, stop: Stop) -> bool:
+    """Whether the way to a stop lies on the plate."""
+    step.end[0], step.end[1] = state[0] + stop.x, state[1] + stop.y
+    way = first_beyond(surface, step.start_gap[0], state, step.end, state[2:], np.zeros(2), stop.time)
+    return way == 1.0 and rim_gap(surface, step.end[0], step.end[1]) >= -ROUNDING * surface.size
 
 
 @jit

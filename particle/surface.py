@@ -21,8 +21,6 @@ from particle.fields import evaluate_points
 
 FloatArray = NDArray[np.float64]
 
-UNBOUNDED, DISC = 0, 1  # outline kinds
-
 
 class SurfaceState(NamedTuple):
     """The surface at points (n, 2) and one time."""
@@ -49,8 +47,8 @@ class SurfaceMotion(NamedTuple):
     cells: FloatArray  # (C, N, M), coefficients in (x - centre) / half a width, sorted by powers of x, then of y
     degree: int  # of those polynomials
     overhang: float  # a cell's polynomials hold out to this many half widths
-    outline: int  # UNBOUNDED or DISC
-    rim: FloatArray  # DISC: (1,) m, its radius
+    conics: FloatArray  # (k, 4) m, the rim's whole ellipses: centre x, y and semi-axes
+    edges: FloatArray  # (m, 3, 2) m, its other edges: start, middle and end of parabolas; no rim where both are empty
     moving_base: bool  # whether two more drives carry the base in its plane
     error: float  # largest measured error of the shapes, relative to a unit stroke
 
@@ -103,8 +101,8 @@ def polynomial_surface(
         cells=cells[None],
         degree=degree,
         overhang=math.inf,
-        outline=UNBOUNDED,
-        rim=np.zeros(0),
+        conics=np.zeros((0, 4)),
+        edges=np.zeros((0, 3, 2)),
         moving_base=base is not None,
         error=0.0,
     )
