@@ -3,6 +3,19 @@
 from meshes.curves import Circle, Ellipse, Parabolas
 from meshes.mesh import Corner, PlateMesh
 from meshes.outline import Outline
-from meshes.shapes import disc
+from meshes.polygon import polygon
+from meshes.shapes import annulus, disc, ellipse, rectangle
 
-__all__ = ["Circle", "Corner", "Ellipse", "Outline", "Parabolas", "PlateMesh", "disc"]
+__all__ = [
+    "Circle",
+    "Corner",
+    "Ellipse",
+    "Outline",
+    "Parabolas",
+    "PlateMesh",
+    "annulus",
+    "disc",
+    "ellipse",
+    "polygon",
+    "rectangle",
+]

@@ -6,8 +6,28 @@ import math
 
 import numpy as np
 
-from meshes.curves import Circle, FloatArray
+from meshes.curves import Circle, Ellipse
+from meshes.fill import Rim, fill
 from meshes.mesh import PlateMesh
+from meshes.nearest import FloatArray, nearest_on_ellipse
+from meshes.outline import Outline, straight
+
+LONGEST_ARC = 2 / 3  # rim edges of an ellipse are at most this long in radii of curvature
+
+
+def check_lengths(shape: str, **lengths: float) -> list[str]:
+    """What is wrong with the lengths of a shape: one line for each that is not positive and finite."""
+    return [
+        f"Input {name} of {shape} must be a positive length in m; got {value!r}"
+        for name, value in lengths.items()
+        if not (math.isfinite(value) and value > 0)
+    ]
+
+
+def refuse(wrong: list[str]) -> None:
+    """Raises ValueError with everything that is wrong, if anything is."""
+    if wrong:
+        raise ValueError("\n".join(wrong))
 
 
 def disc(radius: float, cell_size: float) -> PlateMesh:
@@ -17,9 +37,7 @@ def disc(radius: float, cell_size: float) -> PlateMesh:
     that), and at least two are made.
     Raises ValueError when either is not positive and finite.
     """
-    for name, value in (("radius", radius), ("cell_size", cell_size)):
-        if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"Input {name} of disc must be a positive length in m; got {value!r}")
+    refuse(check_lengths("disc", radius=radius, cell_size=cell_size))
     rings = max(2, math.ceil(radius / cell_size * (1 - 1e-12)))
     points = np.concatenate([np.zeros((1, 2)), *(_ring(k, radius * k / rings) for k in range(1, rings + 1))])
     triangles = []
@@ -32,6 +50,101 @@ def disc(radius: float, cell_size: float) -> PlateMesh:
                     triangles.append((_row(k, inner), _row(k + 1, outer + 1), _row(k, inner + 1)))
     rim = np.array([(_row(rings, i), _row(rings, i + 1)) for i in range(6 * rings)])
     return PlateMesh(points, np.array(triangles), {"rim": rim}, {"rim": Circle(radius)})
+
+
+def rectangle(width: float, height: float, cell_size: float) -> PlateMesh:
+    """A rectangle around the origin, in an even number of nearly square boxes either way, each cut along a diagonal.
+
+    The diagonals alternate, so that the mesh has the rectangle's symmetries.
+    width (along x), height, cell_size: m; boxes are at most `cell_size` wide and high, and at least two by two.
+    Boundaries: left, right, bottom, top.  Raises ValueError, naming each, for lengths that are not positive and finite.
+    """
+    refuse(check_lengths("rectangle", width=width, height=height, cell_size=cell_size))
+    lengths = np.array([width, height])
+    count = 2 * np.ceil(lengths / (2 * cell_size) * (1 - 1e-12))
+    nx, ny = np.maximum(count, 2 * np.round(lengths / (2 * (lengths / count).min()))).astype(int).tolist()
+    i, j = np.meshgrid(np.arange(nx + 1), np.arange(ny + 1), indexing="ij")
+    points = np.stack([(2 * i - nx) / (2 * nx) * width, (2 * j - ny) / (2 * ny) * height], axis=-1).reshape(-1, 2)
+    row = i * (ny + 1) + j
+    a, b, c, d = (x.ravel() for x in (row[:-1, :-1], row[1:, :-1], row[1:, 1:], row[:-1, 1:]))
+    rising = ((i + j) % 2 == 0)[:-1, :-1].ravel()[:, None]
+    first = np.where(rising, np.stack([a, b, c], axis=1), np.stack([a, b, d], axis=1))
+    second = np.where(rising, np.stack([a, c, d], axis=1), np.stack([b, c, d], axis=1))
+    walks = {"left": row[0, ::-1], "right": row[-1], "bottom": row[:, 0], "top": row[::-1, -1]}
+    boundaries = {name: np.stack([walk[:-1], walk[1:]], axis=1) for name, walk in walks.items()}
+    corners = points[[row[0, 0], row[-1, 0], row[-1, -1], row[0, -1]]]
+    outline = Outline(edges=straight(corners, np.roll(corners, -1, axis=0)))
+    return PlateMesh(points, np.concatenate([first, second]), boundaries, {}, outline)
+
+
+def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> PlateMesh:
+    """A ring around the origin, of nearly equilateral cells that grow outwards with the radius.
+
+    It is the image of a hexagonal lattice under the exponential function, which keeps angles.
+    inner_radius, outer_radius, cell_size: m; the edges on the outer rim are at most `cell_size` long. At least two
+    rings are made, of at least twelve cells.
+    Boundaries: inner, outer.  Raises ValueError, naming each, for lengths that are not positive and finite, and for an
+    inner radius that is not smaller than the outer one.
+    """
+    lengths = {"inner_radius": inner_radius, "outer_radius": outer_radius, "cell_size": cell_size}
+    wrong = check_lengths("annulus", **lengths)
+    if not wrong and inner_radius >= outer_radius:
+        wrong.append(
+            f"Input inner_radius of annulus must be less than its outer_radius, {outer_radius!r}; got {inner_radius!r}"
+        )
+    refuse(wrong)
+    growth = math.log(outer_radius / inner_radius)
+    around = max(12.0, 2 * math.pi * outer_radius / cell_size * (1 - 1e-12))
+    per_ring = math.sqrt(3) * math.pi  # log of a ring's radii times the cells around, for equilateral cells
+    rings = max(2, round(growth * around / per_ring))
+    # A multiple of four, so that the mesh mirrors in both axes.
+    around = 4 * math.ceil(max(around, rings * per_ring / growth) / 4 * (1 - 1e-12))
+    k, i = np.meshgrid(np.arange(rings + 1), np.arange(around), indexing="ij")
+    radius = inner_radius * (outer_radius / inner_radius) ** (np.arange(rings + 1) / rings)
+    radius[[0, -1]] = inner_radius, outer_radius
+    angle = 2 * np.pi * ((i + k / 2) % around) / around
+    points = (radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)).reshape(-1, 2)
+    row = k * around + i
+    after = np.roll(row, -1, axis=1)
+    a, b, c, d = (x.ravel() for x in (row[:-1], after[:-1], row[1:], after[1:]))
+    triangles = np.concatenate([np.stack([a, c, b], axis=1), np.stack([b, c, d], axis=1)])
+    inner, outer = np.stack([after[0], row[0]], axis=1), np.stack([row[-1], after[-1]], axis=1)
+    curves = {"inner": Circle(inner_radius), "outer": Circle(outer_radius)}
+    return PlateMesh(points, triangles, {"inner": inner, "outer": outer}, curves)
+
+
+def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMesh:
+    """An ellipse around the origin; cells get smaller towards its sharper ends.
+
+    semi_axis_x, semi_axis_y, cell_size: m; cells are about `cell_size` large, at most half of the smaller semi-axis.
+    Raises ValueError, naming each, for lengths that are not positive and finite.
+    """
+    lengths = {"semi_axis_x": semi_axis_x, "semi_axis_y": semi_axis_y, "cell_size": cell_size}
+    refuse(check_lengths("ellipse", **lengths))
+    axes = np.array([semi_axis_x, semi_axis_y])
+    curve, size = Ellipse(semi_axis_x, semi_axis_y), min(cell_size, axes.min() / 2)
+    # A quarter is divided by the wanted length of edges, and the others mirror it.
+    angle = np.linspace(0, np.pi / 2, 4001)
+    middle = (angle[1:] + angle[:-1]) / 2
+    speed = np.hypot(axes[0] * np.sin(middle), axes[1] * np.cos(middle))
+    wanted = np.minimum(size, LONGEST_ARC * speed**3 / axes.prod())
+    number = np.concatenate([[0], np.cumsum(speed * np.diff(angle) / wanted)])
+    count = math.ceil(number[-1])
+    quarter = np.interp(np.arange(count) * number[-1] / count, number, angle)
+    angle = np.concatenate([quarter, np.pi - np.append(quarter[1:], np.pi / 2)[::-1]])
+    angle = np.concatenate([angle, angle + np.pi])
+    rim_points = axes * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    row = np.arange(len(angle))
+
+    rim = Rim(
+        np.stack([row, np.roll(row, -1)], axis=1),
+        np.zeros(len(row), dtype=np.int64),
+        lambda middle, _: nearest_on_ellipse(middle, (semi_axis_x, semi_axis_y)),
+        lambda start, end, _: np.zeros(len(start)),
+    )
+    outline = Outline(conics=np.array([[0.0, 0.0, semi_axis_x, semi_axis_y]]))
+    points, triangles = fill(rim_points, rim, outline, size)
+    return PlateMesh(points, triangles, {"rim": rim.edges}, {"rim": curve}, outline)
 
 
 def _ring(k: int, radius: float) -> FloatArray:
