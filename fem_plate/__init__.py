@@ -1,7 +1,10 @@
 """The elastic plate: Kirchhoff-Love finite elements under point actuators, and the theory they are checked against."""
 
 from fem_plate import analytic
-from fem_plate.plate import Deflection, InfluenceShapes, Plate
+from fem_plate.deflection import Deflection
+from fem_plate.influence import InfluenceShapes, Shapes
+from fem_plate.plate import Plate
 from fem_plate.section import PlateSection
+from fem_plate.vibration import Modes
 
-__all__ = ["Deflection", "InfluenceShapes", "Plate", "PlateSection", "analytic"]
+__all__ = ["Deflection", "InfluenceShapes", "Modes", "Plate", "PlateSection", "Shapes", "analytic"]

@@ -10,12 +10,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fem_plate.field import Fields
 from fem_plate.influence import Shapes, check_points
-from fem_plate.singular import point_load
-from meshes import Circle
+from fem_plate.singular import point_load, point_value
+from meshes import Outline
 
 FloatArray = NDArray[np.float64]
-Fields = tuple[FloatArray, FloatArray, FloatArray]
 
 
 def central_load(r: ArrayLike, radius: float, rigidity: float, force: float) -> FloatArray:
@@ -76,14 +76,23 @@ class DiscShapes(Shapes):
     def __init__(self, points: ArrayLike, radius: float) -> None:
         points = np.atleast_2d(np.asarray(points, dtype=float))
         check_points(points, radius - np.hypot(*points.T), radius)
-        scaled = points / radius
-        compliance = point_load(scaled, scaled)[0] + smooth_part(scaled, scaled)[0]
-        super().__init__(points, radius, Circle(radius), compliance)
+        self.points, self.size = np.ascontiguousarray(points), radius
+        self.outline = Outline(conics=np.array([[0.0, 0.0, radius, radius]]))
+        x = points / radius
+        compliance = point_value(x, x) + smooth_part(x, x)[0]
+        self.strengths = np.asarray(np.linalg.inv((compliance + compliance.T) / 2))
 
-    def loaded(self, x: FloatArray, strengths: FloatArray) -> Fields:
-        value, gradient, hessian = smooth_part(x, self.points / self.size)
+    def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:
+        strengths = self.strengths if weights is None else self.strengths @ weights
+        sources = self.points / self.size
+        parts = zip(smooth_part(x, sources), point_load(x, sources), strict=True)
+        value, gradient, hessian = (smooth + singular for smooth, singular in parts)
         return (
             value @ strengths,
             np.einsum("njd,jk->nkd", gradient, strengths),
             np.einsum("njde,jk->nkde", hessian, strengths),
         )
+
+    def smooth(self, xy: ArrayLike) -> FloatArray:
+        value, _, _ = smooth_part(np.asarray(xy, dtype=float) / self.size, self.points / self.size)
+        return np.asarray(value @ self.strengths)

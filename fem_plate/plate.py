@@ -2,200 +2,144 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
-from scipy.spatial import cKDTree
 
-from fem_plate.influence import Fields, Shapes, check_points
+from fem_plate import vibration
+from fem_plate.deflection import Deflection
+from fem_plate.field import Estimated
+from fem_plate.grading import corner_rows, fineness, graded, singular_corners
+from fem_plate.influence import InfluenceShapes, check_points
+from fem_plate.model import PlateModel
 from fem_plate.section import PlateSection
-from fem_plate.singular import point_load
-from fem_plate.space import PlateSpace
+from fem_plate.supports import by_boundary
+from fem_plate.vibration import Modes
 from meshes import PlateMesh
 
 FloatArray = NDArray[np.float64]
+Answer = TypeVar("Answer", bound=Estimated)
 
 MOST_UNKNOWNS = 100_000  # refinement to a tolerance stops here
-FAR = 0.7  # of the plate's size: an actuator that far from the rim needs no smaller cells there
 REFINEMENT_GAIN = 2.0**5  # halving the cells divides the error of w by this at least (observed: 2^5.5 and more)
 
 
 class Plate:
-    """A Kirchhoff-Love plate, clamped at its rim.
+    """A Kirchhoff-Love plate.
 
-    mesh: its outline.  section: its material and thickness.  supports: "clamped".
-    tolerance: with one, `influence` refines until its own error estimate (of unit shapes) meets it, or until 100 000
-    unknowns; `error_estimate` says what was reached.
-    Raises ValueError for any other support.
+    mesh: its outline.  section: its material and thickness.
+    supports: of the whole rim or by boundary, "clamped", "simply-supported" or "free"; boundaries left out are free.
+    tolerance: with one, answers are refined until their own error estimate (relative to the largest deflection) meets
+    it, or until 100 000 unknowns; their `error_estimate` says what was reached.
+    Raises ValueError, naming every support and boundary that is not known.
     """
 
     def __init__(
-        self, mesh: PlateMesh, section: PlateSection, supports: str = "clamped", tolerance: float | None = None
+        self,
+        mesh: PlateMesh,
+        section: PlateSection,
+        supports: str | Mapping[str, str] = "clamped",
+        tolerance: float | None = None,
     ) -> None:
-        if supports != "clamped":
-            raise ValueError(f"Input supports of Plate must be 'clamped'; got {supports!r}")
+        self.supports = by_boundary(supports, mesh.boundaries)
         self.mesh = mesh
         self.section = section
         self.tolerance = tolerance
-        self._finer: Plate | None = None
+        self._fineness = fineness(mesh)
+        self._corners = singular_corners(mesh, self.supports, section.poisson_ratio)
+        self._models: dict[bytes, PlateModel] = {}
 
-    @property
-    def finer(self) -> Plate:
-        """The same plate on cells of half the size."""
-        if self._finer is None:
-            self._finer = Plate(self.mesh.refined(), self.section)
-        return self._finer
+    def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
+        """The plate on cells graded towards its corners and for actuators at points (N, 2) [m], halved some times."""
+        mesh = self.mesh
+        for _ in range(halvings):
+            mesh = mesh.refined()
+        mesh = graded(mesh, self._fineness / 2**halvings, self._corners, points)
+        key = mesh.points.tobytes()
+        if key not in self._models:
+            rows = corner_rows(mesh, self._corners)
+            self._models = {key: PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)}
+        return self._models[key]
 
-    def graded(self, points: FloatArray) -> Plate:
-        """This plate, or one with smaller cells where actuators at points (N, 2) [m] are near the rim.
-
-        The smooth part varies over the distance to the actuators' mirror images beyond the rim; cells stay as small
-        in comparison as they are for an actuator at FAR from the rim.
-        """
-        mesh, images = self.mesh, cKDTree(self.mesh.mirrored(points))
-        slope = float(np.median(mesh.cell_sizes)) / (FAR * mesh.size)
-        while True:
-            distance, _ = images.query(mesh.points[mesh.triangles].mean(axis=1))
-            large = mesh.cell_sizes > slope * distance
-            if not large.any():
-                break
-            mesh = mesh.refined(large)
-        return self if mesh is self.mesh else Plate(mesh, self.section)
-
-    def influence(self, points: ArrayLike) -> InfluenceShapes:
+    def influence(self, points: ArrayLike, stiffness: ArrayLike | None = None) -> InfluenceShapes:
         """The influence shapes of actuators at points (N, 2) [m].
 
-        Raises ValueError, naming every point that is not inside the rim or stands on another.
+        stiffness: (N,) N/m or one for all, of springs in series with the actuators; inf is a rigid one (the default),
+        0 one that floats and is driven by a force.
+        Raises ValueError, naming every point that is not inside the rim or stands on another and every stiffness below
+        0, or when supports and actuators leave the plate a rigid motion.
         """
         points = np.asarray(points, dtype=float).reshape(-1, 2)
-        check_points(points, self.mesh.rim_gap(points), self.mesh.size)
-        shapes = InfluenceShapes(self.graded(points), points)
-        if self.tolerance is None:
-            return shapes
-        estimate = np.inf
-        while estimate > self.tolerance and 4 * shapes.unknowns < MOST_UNKNOWNS:
-            coarse, shapes = shapes, InfluenceShapes(shapes.plate.finer, points)
-            estimate = _difference(coarse, shapes) / REFINEMENT_GAIN
-            shapes.error_estimate = estimate
-        return shapes
+        springs = np.full(len(points), np.inf)
+        if stiffness is not None:
+            springs = _one_each(stiffness, points, "stiffness of influence")
+            if not np.all(springs >= 0):
+                row = int(np.flatnonzero(~(springs >= 0))[0])
+                raise ValueError(
+                    f"Input stiffness of influence must be 0 or more; got {springs[row]} N/m for point {row + 1}"
+                )
+        check_points(points, self.mesh.outline.gap(points), self.mesh.size)
+        rigidity = self.section.rigidity
+        return self._estimated(points, lambda model: InfluenceShapes(model, points, rigidity, springs))
 
-    def deflection(self, points: ArrayLike, forces: ArrayLike) -> Deflection:
-        """The plate under forces (N,) [N] at points (N, 2) [m], with no actuator holding it.
+    def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
+        """The plate under forces (N,) [N] at points (N, 2) [m] and a uniform pressure [Pa], positive up.
 
-        Raises ValueError as `influence` does, and when there is not one force a point.
+        Where supports leave the plate a rigid motion, the answer is the one without mean deflection and slope.
+        Raises ValueError as `influence` does, when there is not one force a point, and when the loads on a plate that
+        can move rigidly are not in balance.
         """
-        points, forces = np.atleast_2d(np.asarray(points, dtype=float)), np.atleast_1d(np.asarray(forces, dtype=float))
-        if forces.shape != points.shape[:1]:
-            raise ValueError(f"Input forces of deflection must be one a point, {len(points)}; got shape {forces.shape}")
-        check_points(points, self.mesh.rim_gap(points), self.mesh.size)
-        return Deflection(InfluenceShapes(self.graded(points), points), forces)
+        points = np.asarray(points, dtype=float).reshape(-1, 2)
+        loads = _one_each(forces, points, "forces of deflection")
+        if points.size:
+            check_points(points, self.mesh.outline.gap(points), self.mesh.size)
+        rigidity = self.section.rigidity
+        return self._estimated(points, lambda model: Deflection(model, points, loads, float(pressure), rigidity))
+
+    def pressure(self, load: float) -> Deflection:
+        """The plate under a uniform pressure [Pa], positive up; raises as `deflection` does."""
+        return self.deflection(np.empty((0, 2)), np.empty(0), load)
 
     def frequencies(self, count: int, held: ArrayLike | None = None) -> FloatArray:
-        """The lowest natural frequencies (count,) [Hz], ascending, repeated ones repeated.
+        """The lowest natural frequencies (count,) [Hz], ascending, repeated ones repeated; raises as `modes` does."""
+        return self.modes(count, held).frequencies
 
-        held: points (N, 2) [m] that actuators hold still; the plate bends there as under point loads, which polynomials
-        follow only to about three digits.
-        Raises ValueError when the section has no density, the count is not positive, or a point is not inside the rim.
+    def modes(self, count: int, held: ArrayLike | None = None) -> Modes:
+        """The lowest `count` modes of vibration, rigid motions left out.
+
+        held: points (N, 2) [m] that actuators hold still.
+        Raises ValueError when the section has no density, the count is not positive, or a held point is not inside the
+        rim or stands on another.
         """
         density = self.section.density
         if density is None:
             raise ValueError("Input density of PlateSection must be given for frequencies; got None")
-        if not 1 <= count < self.space.unknowns // 2:
+        points = np.empty((0, 2)) if held is None else np.asarray(held, dtype=float).reshape(-1, 2)
+        if points.size:
+            check_points(points, self.mesh.outline.gap(points), self.mesh.size)
+        model = self.model(points)
+        if not 1 <= count < model.unknowns // 2:
             raise ValueError(f"Input count of frequencies must be at least 1; got {count!r}")
-        solve = self._factor.solve
-        if held is not None:
-            points = np.asarray(held, dtype=float).reshape(-1, 2)
-            check_points(points, self.mesh.rim_gap(points), self.mesh.size)
-            solve = self._held(points / self.mesh.size)
-        mass = self.space.mass()
-        inverse = LinearOperator(mass.shape, matvec=solve, dtype=float)
-        start = np.ones(self.space.unknowns)  # a start of its own would make results differ from run to run
-        inertia, stiffness = density * self.section.thickness * self.mesh.size**4, self.section.rigidity
-        squares = eigsh(mass, count, M=mass, sigma=0, OPinv=inverse, v0=start, return_eigenvectors=False)
-        return np.asarray(np.sqrt(np.sort(squares) * stiffness / inertia) / (2 * np.pi))
+        inertia = density * self.section.thickness * self.mesh.size**4
+        return vibration.modes(model, points, count, self.section.rigidity / inertia)
 
-    def _held(self, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
-        """The plate's answer (unknowns,) to a load while it is held at points (N, 2), dimensionless."""
-        values = self.space.point_values(points)
-        answers = self._factor.solve(values.T.toarray())
-        reactions = np.linalg.inv(values @ answers)
-
-        def solve(load: FloatArray) -> FloatArray:
-            free = self._factor.solve(load)
-            return np.asarray(free - answers @ (reactions @ (values @ free)))
-
-        return solve
-
-    @cached_property
-    def space(self) -> PlateSpace:
-        return PlateSpace(self.mesh)
-
-    @cached_property
-    def _factor(self) -> SuperLU:
-        # Symmetric ordering without pivoting: the matrix is positive definite, and rounding stays at 1e-11.
-        matrix = self.space.stiffness(self.section.poisson_ratio)
-        return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-
-    def solve_point_loads(self, sources: FloatArray) -> FloatArray:
-        """The unknowns (unknowns, N) of the smooth parts under unit forces at sources (N, 2), all dimensionless."""
-        f, f_x, _ = point_load(self.space.rim_points, sources)
-        data = np.concatenate([f, f_x[..., 0], f_x[..., 1]])
-        return np.asarray(self._factor.solve(-(self.space.rim_operator(self.section.poisson_ratio) @ data)))
+    def _estimated(self, points: FloatArray, answer: Callable[[PlateModel], Answer]) -> Answer:
+        """An answer that can estimate its error, refined to the tolerance where there is one."""
+        result, halvings = answer(self.model(points)), 0
+        if self.tolerance is not None:
+            while 4 * result.unknowns < MOST_UNKNOWNS and (not halvings or result.error_estimate > self.tolerance):
+                halvings += 1
+                coarse, result = result, answer(self.model(points, halvings))
+                result.error_estimate = result.difference(coarse) / REFINEMENT_GAIN
+        result.refine = lambda: answer(self.model(points, halvings + 1))
+        return result
 
 
-class InfluenceShapes(Shapes):
-    """Influence shapes found by finite elements on one mesh; made by `Plate.influence`."""
-
-    def __init__(self, plate: Plate, points: FloatArray) -> None:
-        self.plate = plate
-        scaled = points / plate.mesh.size
-        self._unknowns = plate.solve_point_loads(scaled)
-        compliance = point_load(scaled, scaled)[0] + plate.space.evaluate(scaled, self._unknowns)[0]
-        super().__init__(points, plate.mesh.size, plate.mesh.curves["rim"], compliance)
-
-    @property
-    def unknowns(self) -> int:
-        """How many unknowns the mesh has."""
-        return self.plate.space.unknowns
-
-    @property
-    def compliance(self) -> FloatArray:
-        """Deflection at i under a unit force at j, (N, N) [m/N]."""
-        return np.asarray(np.linalg.inv(self.strengths) * self.size**2 / self.plate.section.rigidity)
-
-    @property
-    def stiffness(self) -> FloatArray:
-        """Force at i that raises j by one metre while the others hold 0, (N, N) [N/m]."""
-        return self.strengths * self.plate.section.rigidity / self.size**2
-
-    @cached_property
-    def error_estimate(self) -> float:
-        """Largest error of the unit shapes, estimated: their difference from those on cells of half the size."""
-        return _difference(self, InfluenceShapes(self.plate.finer, self.points))
-
-    def loaded(self, x: FloatArray, strengths: FloatArray) -> Fields:
-        return self.plate.space.evaluate(x, self._unknowns @ strengths)
-
-
-@dataclass(frozen=True)
-class Deflection:
-    """The plate under given forces [N] at the shapes' points."""
-
-    shapes: InfluenceShapes
-    forces: FloatArray
-
-    def evaluate(self, xy: ArrayLike) -> Fields:
-        """w (n,) m, gradient (n, 2), Hessian (n, 2, 2) 1/m at points (n, 2) [m]; raises as the shapes do."""
-        unit = self.shapes.size**2 / self.shapes.plate.section.rigidity
-        value, gradient, hessian = self.shapes.under_forces(xy, unit * self.forces[:, None])
-        return value[:, 0], gradient[:, 0], hessian[:, 0]
-
-
-def _difference(one: InfluenceShapes, other: InfluenceShapes) -> float:
-    """The largest difference of two sets of unit shapes, over the finer mesh's points."""
-    xy = max(one, other, key=lambda shapes: shapes.unknowns).plate.mesh.points
-    return float(np.max(np.abs(one.evaluate(xy)[0] - other.evaluate(xy)[0])))
+def _one_each(values: ArrayLike, points: FloatArray, name: str) -> FloatArray:
+    """One number for each point, (N,), from one or N."""
+    array = np.asarray(values, dtype=float)
+    if array.shape not in ((), (len(points),)):
+        raise ValueError(f"Input {name} must be one a point, {len(points)}; got shape {array.shape}")
+    return np.broadcast_to(array, len(points)).copy()

@@ -1,6 +1,7 @@
-"""The free-space deflection under a unit force: the part of a point load's answer that no polynomial can follow.
+"""Known answers to a plate's loads: what finite elements need not find.
 
-F(r) = r^2 ln(r) / (8 pi), in dimensionless variables, satisfies laplace^2 F = delta.
+Under a unit force a plate without rim deflects as F(r) = r^2 ln(r) / (8 pi), which no polynomial can follow, and under
+a unit pressure as r^4 / 64, in dimensionless variables (laplace^2 F = delta, laplace^2 r^4 / 64 = 1).
 """
 
 from __future__ import annotations
@@ -32,3 +33,41 @@ def point_load(xy: FloatArray, sources: FloatArray) -> tuple[FloatArray, FloatAr
     hessian[..., 0, 0] += logarithm + 1
     hessian[..., 1, 1] += logarithm + 1
     return value, gradient, UNIT_STRENGTH * hessian
+
+
+def point_value(xy: FloatArray, sources: FloatArray) -> FloatArray:
+    """F alone, (n, N)."""
+    square = ((xy[:, None] - sources) ** 2).sum(axis=-1)
+    return UNIT_STRENGTH * 0.5 * square * np.log(np.where(square == 0, 1.0, square))
+
+
+def point_derivatives(xy: FloatArray, source: FloatArray) -> list[FloatArray]:
+    """F around one source (2,) at points (k, n, 2) off it: its derivatives of orders 0 to 3, each (d, k, n)."""
+    x, y = np.moveaxis(xy - source, -1, 0)
+    square = x**2 + y**2
+    logarithm = np.log(square) + 1
+    orders = [
+        [0.5 * square * (logarithm - 1)],
+        [logarithm * x, logarithm * y],
+        [logarithm + 2 * x**2 / square, 2 * x * y / square, logarithm + 2 * y**2 / square],
+        [
+            (6 * x - 4 * x**3 / square) / square,
+            (2 * y - 4 * x**2 * y / square) / square,
+            (2 * x - 4 * x * y**2 / square) / square,
+            (6 * y - 4 * y**3 / square) / square,
+        ],
+    ]
+    return [UNIT_STRENGTH * np.stack(order) for order in orders]
+
+
+def pressure_derivatives(xy: FloatArray) -> list[FloatArray]:
+    """r^4 / 64 at points (..., 2): its derivatives of orders 0 to 3, each (d, ...)."""
+    x, y = np.moveaxis(xy, -1, 0)
+    square = x**2 + y**2
+    orders = [
+        [square**2],
+        [4 * x * square, 4 * y * square],
+        [4 * square + 8 * x**2, 8 * x * y, 4 * square + 8 * y**2],
+        [24 * x, 8 * y, 8 * x, 24 * y],
+    ]
+    return [np.stack(order) / 64 for order in orders]

@@ -1,188 +1,185 @@
-"""The discrete plate: Argyris space, quadrature up to the true rim, stiffness matrix and point evaluation."""
+"""The discrete plate: Argyris functions on a mesh, its matrices up to the true rim, and evaluation at points."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from types import SimpleNamespace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csc_matrix
 from scipy.spatial import cKDTree
-from skfem import CellBasis, DiscreteField, MeshTri
 
 from fem_plate import forms
-from fem_plate.argyris import ArgyrisBasis, ElementArgyris
+from fem_plate.argyris import Triangles
+from fem_plate.assembly import sum_up
+from fem_plate.corners import continuity, split
+from fem_plate.rim import rim_of
 from meshes import PlateMesh
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# A rim triangle's integrands are polynomials along a curve: this many points a side leave rounding errors only.
-RIM_POINTS = 8
-CHUNK = 20_000  # points evaluated at once, to bound memory
+CHUNK = 100_000  # points times functions evaluated at once, to bound memory
+QUADRATURE = 6  # points a side of a triangle, where integrands are not polynomials
+NEAREST = (12, 200)  # triangles searched for a point: first few, then for the points not found many
 
 
 class PlateSpace:
-    """Argyris functions on a mesh whose lengths are divided by the plate's size."""
+    """Argyris functions on a mesh whose lengths are divided by the plate's size.
 
-    def __init__(self, mesh: PlateMesh) -> None:
-        self.grid = MeshTri(np.ascontiguousarray(mesh.points.T) / mesh.size, np.ascontiguousarray(mesh.triangles.T))
-        self.polynomials = ArgyrisBasis(self.grid)
-        self._rim = _rim_edges(mesh)
-        inner = np.setdiff1d(np.arange(self.grid.nelements), self._rim.triangle)
-        element = ElementArgyris(self.polynomials)
-        self.inner = CellBasis(self.grid, element, intorder=6, elements=inner, disable_doflocs=True)
+    supports: that of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
+    """
 
-    @property
-    def unknowns(self) -> int:
-        return int(self.inner.N)
+    def __init__(self, mesh: PlateMesh, supports: Mapping[str, str], free_corners: Sequence[int] = ()) -> None:
+        self.triangles = Triangles(mesh.points / mesh.size, mesh.triangles)
+        self.rim, self.slivers = rim_of(mesh, supports)
+        corners, copies = split(mesh.triangles, list(free_corners), len(mesh.points))
+        self._entities, self._first = _entities(mesh.triangles, corners)
+        points, edges = self._first[self._entities[:, :3]], self._first[self._entities[:, 3:]]
+        self.dofs = np.concatenate([(points[:, :, None] + np.arange(6)).reshape(-1, 18), edges], axis=1)
+        self._points = len(mesh.points)
+        self._edges = int(self._first[-1]) - 6 * (self._points + len(copies))
+        self._continuity = continuity(mesh.points, copies, self._edges) if copies else None
+        self.unknowns = int(self._first[-1]) if self._continuity is None else self._continuity.shape[1]
 
     def stiffness(self, poisson_ratio: float) -> csc_matrix:
-        """The symmetric positive definite matrix of the clamped plate."""
-        bending = forms.bending(poisson_ratio)
-        rim, extra = self.rim
-        parts = [bending.assemble(self.inner), bending.assemble(self.curved)]
-        return sum(parts, start=forms.clamped_rim(poisson_ratio).assemble(rim, **extra)).tocsc()
+        """The symmetric matrix of the bending energy and the supports; what rigid motions are left have no energy."""
+        matrices = forms.bending(self.triangles, poisson_ratio)
+        sliver, (triangle, points, weights) = self.triangles, self.slivers
+        np.add.at(
+            matrices,
+            triangle,
+            forms.bending_at(sliver.derivatives(points, triangle, 2), weights, poisson_ratio),
+        )
+        coupling, _ = forms.rim_forms(self.rim)
+        traces = self._traces(poisson_ratio)
+        at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)
+        np.add.at(matrices, self.rim.triangle, at_rim)
+        return self._assemble(matrices)
 
     def mass(self) -> csc_matrix:
         """The matrix of int v q."""
-        element = ElementArgyris(self.polynomials, derivatives=1)
-        inner = CellBasis(
-            self.grid, element, intorder=10, elements=self.inner.tind, dofs=self.inner.dofs, disable_doflocs=True
-        )
-        return (forms.mass.assemble(inner) + forms.mass.assemble(self.curved)).tocsc()
+        matrices = forms.mass(self.triangles)
+        triangle, points, weights = self.slivers
+        np.add.at(matrices, triangle, forms.mass_at(self.triangles.derivatives(points, triangle, 0)[0], weights))
+        return self._assemble(matrices)
+
+    def _assemble(self, matrices: FloatArray) -> csc_matrix:
+        return self._to_continuous(self._to_continuous(sum_up(matrices, self._entities, self._first)).T).tocsc()
+
+    def _to_continuous(self, matrix: csc_matrix) -> csc_matrix:
+        """Rows for all unknowns summed up for those that are independent."""
+        return matrix if self._continuity is None else self._continuity.T @ matrix
+
+    def all_unknowns(self, unknowns: FloatArray) -> FloatArray:
+        """Those of every triangle's own points, from the independent ones (unknowns, ...)."""
+        return unknowns if self._continuity is None else np.asarray(self._continuity @ unknowns)
+
+    def _traces(self, poisson_ratio: float) -> FloatArray:
+        derivatives = [self.triangles.derivatives(self.rim.points, self.rim.triangle, k) for k in range(4)]
+        return forms.rim_traces(derivatives, self.rim.normal, poisson_ratio)
+
+    def load(self, poisson_ratio: float) -> csc_matrix:
+        """The matrix (unknowns, 6 points) that turns the traces (6, points) of given rim data into a right side."""
+        traces, (_, coupling) = self._traces(poisson_ratio), forms.rim_forms(self.rim)
+        data = np.einsum("ckni,kncd->dkni", traces, coupling, optimize=True)  # (6, k, n, 21)
+        columns = np.arange(data[..., 0].size).reshape(data.shape[:3])
+        rows = np.broadcast_to(self.dofs[self.rim.triangle][:, None], data.shape)
+        columns = np.broadcast_to(columns[..., None], data.shape)
+        shape = (self._first[-1], columns[..., 0].size)
+        matrix = coo_matrix((data.ravel(), (rows.ravel(), columns.ravel())), shape=shape).tocsc()
+        matrix.eliminate_zeros()
+        return self._to_continuous(matrix)
 
     def point_values(self, xy: FloatArray) -> csc_matrix:
         """The matrix (n, unknowns) whose product with a function's unknowns is its value at points (n, 2)."""
         triangle = self._locate(xy)
-        data = self.polynomials.evaluate(xy[:, None], triangle, 0)[0, :, 0]
-        columns = self.inner.dofs.element_dofs[:, triangle].T
+        data = self.triangles.derivatives(xy[:, None], triangle, 0)[0, :, 0]
+        columns = self.dofs[triangle]
         rows = np.broadcast_to(np.arange(len(xy))[:, None], columns.shape)
-        return coo_matrix((data.ravel(), (rows.ravel(), columns.ravel())), shape=(len(xy), self.unknowns)).tocsc()
+        matrix = coo_matrix((data.ravel(), (columns.ravel(), rows.ravel())), shape=(self._first[-1], len(xy))).tocsc()
+        return self._to_continuous(matrix).T.tocsc()
 
-    def rim_operator(self, poisson_ratio: float) -> csc_matrix:
-        """The matrix (unknowns, 3 points) that turns g, g_x, g_y at the rim's quadrature points into a right side."""
-        rim, extra = self.rim
-        columns = np.arange(rim.dx.size).reshape(rim.dx.shape)
-        rows, cols, data = [], [], []
-        for k, density in enumerate(forms.rim_data(poisson_ratio)):
-            for i in range(rim.Nbfun):
-                data.append(density(rim.basis[i][0], SimpleNamespace(**extra)) * rim.dx)
-                rows.append(np.broadcast_to(rim.element_dofs[i][:, None], columns.shape))
-                cols.append(columns + k * columns.size)
-        flat = [np.concatenate([part.ravel() for part in parts]) for parts in (data, rows, cols)]
-        return coo_matrix((flat[0], (flat[1], flat[2])), shape=(self.unknowns, 3 * columns.size)).tocsc()
-
-    @property
-    def rim_points(self) -> FloatArray:
-        """The rim's quadrature points, (n, 2)."""
-        return self._rim.points.reshape(-1, 2)
-
-    @cached_property
-    def curved(self) -> CellBasis:
-        """The cells at the rim, integrated up to the true curve: rays from the inner corner, times the curve."""
-        edge, (ray, weight) = self._rim, _unit_gauss(RIM_POINTS)
-        apex = edge.apex[:, None]
-        points = apex[:, None] + ray[:, None, None] * (edge.points - apex)[:, None]  # (k, ray, along, 2)
-        fan = _cross(edge.points - apex, edge.tangents)
-        weights = (ray * weight)[:, None] * (edge.weights * fan)[:, None]
-        flat = points.reshape(len(points), -1, 2)
-        return self._cells(flat, np.abs(weights).reshape(len(points), -1), derivatives=2)
-
-    @cached_property
-    def rim(self) -> tuple[CellBasis, dict[str, DiscreteField]]:
-        """The rim itself with its outward normals `n` and its edge lengths `edge`."""
-        edge = self._rim
-        speed = np.linalg.norm(edge.tangents, axis=-1)
-        length = edge.weights * speed
-        normal = np.stack([edge.tangents[..., 1], -edge.tangents[..., 0]], axis=0) / speed
-        h = np.broadcast_to(length.sum(axis=1, keepdims=True), length.shape)
-        return self._cells(edge.points, length, derivatives=3), {"n": DiscreteField(normal), "edge": DiscreteField(h)}
-
-    def _cells(self, points: FloatArray, weights: FloatArray, derivatives: int) -> CellBasis:
-        """A scikit-fem basis on the rim's triangles with quadrature points (k, n, 2) of their own."""
-        triangle, mapping = self._rim.triangle, self.grid.mapping()
-        reference = mapping.invF(points.transpose(2, 0, 1), tind=triangle)
-        scaled = weights / np.abs(mapping.detDF(reference, tind=triangle))
-        element = ElementArgyris(self.polynomials, derivatives)
-        return CellBasis(
-            self.grid,
-            element,
-            elements=triangle,
-            quadrature=(reference, scaled),
-            dofs=self.inner.dofs,
-            disable_doflocs=True,
-        )
-
-    def evaluate(self, xy: FloatArray, unknowns: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def evaluate(self, xy: FloatArray, unknowns: FloatArray, orders: int) -> list[FloatArray]:
         """Functions given by their unknowns (unknowns, k) at points (n, 2).
 
-        Returns value (n, k), gradient (n, k, 2), Hessian (n, k, 2, 2). Beyond a rim triangle's chord its polynomial
-        goes on, as in the integrals.
+        Returns the first `orders` of value (n, k), gradient (n, k, 2), Hessian (n, k, 2, 2). Beyond a rim triangle's
+        chord its polynomial goes on, as in the integrals.
         """
         n, k = len(xy), unknowns.shape[1]
-        value, gradient, hessian = np.empty((n, k)), np.empty((n, k, 2)), np.empty((n, k, 2, 2))
-        for start in range(0, n, CHUNK):
-            part = slice(start, start + CHUNK)
+        unknowns = self.all_unknowns(unknowns)
+        fields = [np.empty((n, k, *[2] * order)) for order in range(orders)]
+        step = max(1, CHUNK // k)
+        for start in range(0, n, step):
+            part = slice(start, start + step)
             triangle = self._locate(xy[part])
-            local = unknowns[self.inner.dofs.element_dofs[:, triangle].T]  # (n, 21, k)
-            table = [self.polynomials.evaluate(xy[part, None], triangle, order)[:, :, 0] for order in range(3)]
-            values = [np.einsum("dni,nik->dnk", t, local, optimize=True) for t in table]
-            value[part] = values[0][0]
-            gradient[part] = np.moveaxis(values[1], 0, -1)
-            xx, xy_, yy = values[2]
-            hessian[part] = np.stack([np.stack([xx, xy_], -1), np.stack([xy_, yy], -1)], -1)
-        return value, gradient, hessian
+            local = unknowns[self.dofs[triangle]]  # (n, 21, k)
+            for order, into in enumerate(fields):
+                table = self.triangles.derivatives(xy[part, None], triangle, order)[:, :, 0]
+                values = [row[:, None] @ local for row in table]  # (n, 1, k) each
+                for place in np.ndindex(*into.shape[2:]):
+                    into[(part, slice(None), *place)] = values[sum(place)][:, 0]
+        return fields
+
+    def linear(self) -> FloatArray:
+        """The unknowns of 1, x and y, (unknowns, 3)."""
+        functions = np.zeros((self._first[-1], 3))
+        corners = self.dofs[:, [0, 6, 12]]
+        functions[corners] = np.concatenate([np.ones((*corners.shape, 1)), self.triangles.points], axis=2)
+        functions[corners + 1, 1] = 1.0
+        functions[corners + 2, 2] = 1.0
+        functions[self.dofs[:, 18:], 1:] = self.triangles.normals
+        if self._continuity is None:
+            return functions
+        # Independent are those of the mesh's points and edges, then the jumps, of which these functions have none.
+        copies = self._continuity.shape[1] - self._points * 6 - self._edges
+        return np.concatenate([functions[: 6 * self._points], functions[-self._edges :], np.zeros((copies, 3))])
+
+    @cached_property
+    def quadrature(self) -> tuple[FloatArray, FloatArray]:
+        """Points (n, 2) and weights (n,) over the plate, up to its true rim."""
+        xy, weights = forms.square(QUADRATURE)
+        inside = self.triangles.centre[:, None] + np.einsum("mij,nj->mni", self.triangles.jacobian, xy)
+        area = self.triangles.determinant[:, None] * weights
+        points = np.concatenate([inside.reshape(-1, 2), self.slivers.points.reshape(-1, 2)])
+        return points, np.concatenate([area.ravel(), self.slivers.weights.ravel()])
+
+    @property
+    def points(self) -> FloatArray:
+        """The mesh's points, (n, 2)."""
+        return np.unique(self.triangles.points.reshape(-1, 2), axis=0)
 
     @cached_property
     def _tree(self) -> cKDTree:
-        return cKDTree(self.polynomials.centre)
+        return cKDTree(self.triangles.centre)
 
     def _locate(self, xy: FloatArray) -> IntArray:
         """The triangle that holds each point (n, 2), or the nearest one for a point between a chord and the rim."""
-        count = min(12, self.grid.nelements)
-        _, candidates = self._tree.query(xy, k=count)
-        corners = self.grid.p.T[self.grid.t.T[candidates]]  # (n, count, 3, 2)
-        a, b, c = np.moveaxis(corners, 2, 0)
-        point = xy[:, None]
-        area = _cross(b - a, c - a)
-        a, b, c = a - point, b - point, c - point
-        # scikit-fem sorts corners by number, so that triangles run either way round: divide by the area first.
-        barycentric = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)]) / area
-        return np.asarray(candidates[np.arange(len(xy)), np.argmax(barycentric.min(axis=0), axis=1)])
+        found = np.empty(len(xy), dtype=np.int64)
+        missing = np.arange(len(xy))
+        for nearest in NEAREST:
+            count = min(nearest, len(self.triangles.centre))
+            _, candidates = self._tree.query(xy[missing], k=range(1, count + 1))
+            x = self.triangles.reference(xy[missing].repeat(count, 0)[:, None], candidates.reshape(-1)) + 1 / 3
+            u, v = x.reshape(-1, count, 2).transpose(2, 0, 1)
+            inside = np.minimum(np.minimum(u, v), 1 - u - v)  # the smallest barycentric coordinate
+            best = np.argmax(inside, axis=1)
+            found[missing] = candidates[np.arange(len(missing)), best]
+            missing = missing[inside.max(axis=1) < -1e-9]
+            if not missing.size:
+                break
+        return found
 
 
-def _rim_edges(mesh: PlateMesh) -> SimpleNamespace:
-    """The rim's edges, dimensionless: their triangle, its inner corner, and Gauss points on the true curve.
+def _entities(points: IntArray, corners: IntArray) -> tuple[IntArray, IntArray]:
+    """What carries the unknowns of each triangle, its corners and then its edges (m, 6), and their first unknowns.
 
-    triangle (k,), apex (k, 2), points and tangents d/ds (k, n, 2), weights in s (n,).
+    points: (m, 3), the mesh points of each triangle, which tell edges apart.  corners: (m, 3), numbered from 0.
     """
-    s, weights = _unit_gauss(RIM_POINTS)
-    edges = np.concatenate(list(mesh.boundaries.values()))
-    owner = {tuple(sorted(pair)): t for t, tri in enumerate(mesh.triangles.tolist()) for pair in _pairs(tri)}
-    triangle = np.array([owner[tuple(sorted(edge))] for edge in edges.tolist()])
-    apex = (mesh.triangles[triangle].sum(axis=1) - edges.sum(axis=1)).astype(np.int64)
-    arcs = [mesh.arcs(name, s) for name in mesh.boundaries]
-    return SimpleNamespace(
-        triangle=triangle,
-        apex=mesh.points[apex] / mesh.size,
-        points=np.concatenate([points for points, _ in arcs]) / mesh.size,
-        tangents=np.concatenate([tangents for _, tangents in arcs]) / mesh.size,
-        weights=weights,
-    )
-
-
-def _pairs(triangle: list[int]) -> list[tuple[int, int]]:
-    a, b, c = triangle
-    return [(a, b), (b, c), (c, a)]
-
-
-def _unit_gauss(count: int) -> tuple[FloatArray, FloatArray]:
-    """Gauss-Legendre points and weights on [0, 1]."""
-    x, w = np.polynomial.legendre.leggauss(count)
-    return (x + 1) / 2, w / 2
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+    sides = np.sort(np.stack([points, np.roll(points, -1, axis=1)], axis=2), axis=2)
+    edges, edge = np.unique(sides[..., 0] * (points.max() + 1) + sides[..., 1], return_inverse=True)
+    count = int(corners.max()) + 1
+    entities = np.concatenate([corners, count + edge.reshape(-1, 3)], axis=1)
+    first = np.concatenate([6 * np.arange(count), 6 * count + np.arange(len(edges) + 1)])
+    return entities, first

@@ -1,0 +1,75 @@
+"""Where cells must be small: towards corners, and where an actuator is near the rim."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from fem_plate.corners import MOST, exponent
+from meshes import PlateMesh
+
+FloatArray = NDArray[np.float64]
+
+FAR = 0.7  # of the plate's size: an actuator that far from the rim needs no smaller cells there
+CORNER_SLOPE = 3.0  # cells at a corner may be this much larger against their distance than an image allows
+CORNER_ERROR = 1e-2  # of the error that cells of the plate's fineness leave anyhow
+
+
+@dataclass(frozen=True)
+class Singular:
+    """A corner of the plate where w ~ r^(exponent + 1)."""
+
+    point: FloatArray  # (2,) m
+    exponent: float
+
+
+def singular_corners(mesh: PlateMesh, supports: Mapping[str, str], poisson_ratio: float) -> list[Singular]:
+    """The corners where the deflection is not smooth."""
+    found = []
+    for corner in mesh.corners:
+        before, after = (supports[name] for name in corner.sides)
+        smallest = exponent(round(corner.angle, 9), before, after, poisson_ratio)
+        if smallest < MOST:
+            found.append(Singular(mesh.points[corner.row], smallest))
+    return found
+
+
+def fineness(mesh: PlateMesh) -> float:
+    """The mean size of the cells over the plate's area, of the plate's size."""
+    a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
+    area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    return float(np.average(mesh.cell_sizes, weights=area) / mesh.size)
+
+
+def graded(mesh: PlateMesh, fine: float, corners: list[Singular], points: FloatArray | None = None) -> PlateMesh:
+    """The mesh with smaller cells at corners, and at the rim where actuators at points (N, 2) [m] are near it.
+
+    The smooth part of a force's answer varies over the distance to its mirror images beyond the rim: cells stay as
+    small in comparison as cells of `fine` times the plate's size are for an actuator at FAR from the rim. Towards a
+    corner they shrink in proportion to their distance, until what is left there changes w by less than those do.
+    """
+    images = cKDTree(mesh.mirrored(points)) if points is not None and len(points) else None
+    error = CORNER_ERROR * fine**6
+    least = np.array([mesh.size * max(error ** (1 / (2 * c.exponent)), 1e-12) for c in corners])
+    places = np.array([c.point for c in corners]).reshape(-1, 2)
+    while True:
+        centre = mesh.points[mesh.triangles].mean(axis=1)
+        allowed = np.full(len(centre), np.inf)
+        if images is not None:
+            allowed = fine / FAR * images.query(centre)[0]
+        for place, smallest in zip(places, least, strict=True):
+            distance = np.hypot(*(centre - place).T)
+            allowed = np.minimum(allowed, np.maximum(min(CORNER_SLOPE * fine, 0.7) * distance, smallest))
+        large = mesh.cell_sizes > allowed
+        if not large.any():
+            return mesh
+        mesh = mesh.refined(large)
+
+
+def corner_rows(mesh: PlateMesh, corners: list[Singular]) -> list[int]:
+    """The rows of the mesh's points at corners."""
+    return [int(np.argmin(((mesh.points - corner.point) ** 2).sum(axis=1))) for corner in corners]

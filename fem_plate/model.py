@@ -1,0 +1,91 @@
+"""The discrete plate: a graded mesh, its stiffness factorised, and its answers to unit loads; all dimensionless."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix, diags
+from scipy.sparse.linalg import splu
+
+from fem_plate.forms import rim_traces
+from fem_plate.singular import point_derivatives, pressure_derivatives
+from fem_plate.space import PlateSpace
+from fem_plate.supports import rigid_modes
+from meshes import PlateMesh
+
+FloatArray = NDArray[np.float64]
+
+
+class PlateModel:
+    """A plate on one mesh.
+
+    supports: that of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
+    """
+
+    def __init__(
+        self, mesh: PlateMesh, supports: Mapping[str, str], poisson_ratio: float, free_corners: Iterable[int] = ()
+    ) -> None:
+        self.mesh = mesh
+        self.poisson_ratio = poisson_ratio
+        self.space = PlateSpace(mesh, supports, list(free_corners))
+        self.rigid = rigid_modes(self.space.rim)  # (3, r), coefficients of 1, x, y
+
+    @property
+    def unknowns(self) -> int:
+        return self.space.unknowns
+
+    @cached_property
+    def pins(self) -> csc_matrix:
+        """(r, unknowns), the deflections at points that, held, would stop every rigid motion."""
+        xy = self.mesh.points / self.mesh.size
+        chosen: list[int] = []
+        motions = np.column_stack([np.ones(len(xy)), xy]) @ self.rigid
+        for _ in range(self.rigid.shape[1]):
+            row = int(np.argmax((motions**2).sum(axis=1)))
+            chosen.append(row)
+            direction = motions[row] / np.linalg.norm(motions[row])
+            motions = motions - np.outer(motions @ direction, direction)
+        return self.space.point_values(xy[chosen])
+
+    @cached_property
+    def solve(self) -> Callable[[FloatArray], FloatArray]:
+        """The plate's answer (unknowns, ...) to a load (unknowns, ...).
+
+        Springs of unit stiffness at the pins stop rigid motions; loads in balance do not feel them.
+        """
+        matrix = self.space.stiffness(self.poisson_ratio) + self.pins.T @ self.pins
+        # Unknowns of small and large cells differ by many powers of ten until they are scaled alike. Symmetric
+        # ordering without pivoting: the matrix is positive definite, and rounding stays at 1e-11.
+        scale = 1 / np.sqrt(matrix.diagonal())
+        scaled = (diags(scale) @ matrix @ diags(scale)).tocsc()
+        factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+        def solve(load: FloatArray) -> FloatArray:
+            scales = scale if load.ndim == 1 else scale[:, None]
+            return np.asarray(scales * factor.solve(scales * load))
+
+        return solve
+
+    @cached_property
+    def _load(self) -> csc_matrix:
+        return self.space.load(self.poisson_ratio)
+
+    def _answer(self, known: list[list[FloatArray]]) -> FloatArray:
+        """The smooth parts (unknowns, k) that make k known functions, by their derivatives at the rim, hold there."""
+        traces = [rim_traces(one, self.space.rim.normal, self.poisson_ratio).ravel() for one in known]
+        return self.solve(-(self._load @ np.stack(traces, axis=1)))
+
+    def under_forces(self, sources: FloatArray) -> FloatArray:
+        """The smooth parts (unknowns, N) of the answers to unit forces at sources (N, 2)."""
+        return self._answer([point_derivatives(self.space.rim.points, source) for source in sources])
+
+    def under_pressure(self) -> FloatArray:
+        """The smooth part (unknowns, 1) of the answer to a unit pressure."""
+        return self._answer([pressure_derivatives(self.space.rim.points)])
+
+    def motions(self, xy: FloatArray) -> FloatArray:
+        """The rigid motions at points (n, 2): (n, r)."""
+        return np.asarray(np.column_stack([np.ones(len(xy)), xy]) @ self.rigid)
