@@ -16,7 +16,7 @@ from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
 from coupling.summary import Summary, summarise
 from coupling.surface import surface_motion
-from fem_plate import InfluenceShapes
+from fem_plate import InfluenceShapes, Plate
 from particle import Drive, SurfaceMotion, Trajectory
 from particle.friction import Contact
 
@@ -41,7 +41,8 @@ class Result:
 def run_case(case: Case, output: str | Path | None = None, progress: Progress = silent) -> Result:
     """Run a case; with `output`, a folder, also write NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png there."""
     with progress("Solving the plate"):
-        shapes = solve_plate(case)
+        plate = build_plate(case)
+        shapes = plate.influence([actuator.position for actuator in case.actuators])
     with progress("Fitting the surface"):
         drives = build_drives(case)
         surface = surface_motion(shapes, drives)
@@ -50,7 +51,7 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
         trajectory = interruptible(follow_part, case, surface, friction, case.run.tolerance)
         tighter = interruptible(follow_part, case, surface, friction, max(case.run.tolerance / 100, 1e-13))
     with progress("Checking the model's validity"):
-        summary = summarise(case, shapes, surface, trajectory, tighter, drives, friction)
+        summary = summarise(case, plate, shapes, surface, trajectory, tighter, drives, friction)
     result = Result(case, shapes, surface, trajectory, summary)
     if output is None:
         return result
@@ -61,17 +62,17 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
 
 def build_surface(case: Case) -> SurfaceMotion:
     """The moving surface of a case."""
-    return surface_motion(solve_plate(case), build_drives(case))
+    shapes = build_plate(case).influence([actuator.position for actuator in case.actuators])
+    return surface_motion(shapes, build_drives(case))
 
 
-def solve_plate(case: Case) -> InfluenceShapes:
-    """The influence shapes of the case's actuators."""
+def build_plate(case: Case) -> Plate:
+    """The plate, not yet loaded."""
     plate = case.plate
     section = fem_plate.PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
     mesh = meshes.disc(plate.radius, plate.cell_size or plate.radius / CELLS_FROM_CENTRE)
     tolerance = None if plate.cell_size else PLATE_TOLERANCE
-    points = [actuator.position for actuator in case.actuators]
-    return fem_plate.Plate(mesh, section, plate.supports, tolerance).influence(points)
+    return Plate(mesh, section, plate.supports, tolerance)
 
 
 def build_drives(case: Case) -> list[Drive]:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.case import Case, KogutEtsionCase
-from fem_plate import InfluenceShapes
+from coupling.case import SAME_PLACE, Case, KogutEtsionCase
+from fem_plate import InfluenceShapes, Plate
 from particle import Drive, EventKind, State, SurfaceMotion, Trajectory, contact_forces
 from particle.friction import Contact
 
@@ -62,6 +62,7 @@ class Summary:
 
 def summarise(
     case: Case,
+    plate: Plate,
     shapes: InfluenceShapes,
     surface: SurfaceMotion,
     trajectory: Trajectory,
@@ -71,13 +72,12 @@ def summarise(
 ) -> Summary:
     """The run's summary; `tighter` is the same run at a hundredth of the tolerance."""
     step = np.diff(trajectory.position, axis=0)
-    slope, deflection = _extremes(shapes, drives, case.run.duration)
+    slope, deflection = _extremes(plate, shapes, drives, case.run.duration)
     over_thickness = deflection / case.plate.thickness
     times = np.linspace(0, trajectory.time[-1], SAMPLES)
     normal, _ = contact_forces(surface, trajectory, friction, case.part.mass, case.run.gravity, times)
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
-    plate = shapes.plate
     first = None if plate.section.density is None else float(plate.frequencies(1, held=shapes.points)[0])
     ratio = None if first is None else max(drive.frequency for drive in drives) / first
     return Summary(
@@ -107,7 +107,7 @@ def summarise(
         drive_over_first=ratio,
         quasi_static_error=None if ratio is None else QUASI_STATIC_ERROR * ratio,
         part_curvature=_part_curvature(case, surface, trajectory),
-        part_sag=_part_sag(shapes, trajectory, float(np.nanmax(np.abs(normal)))),
+        part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(normal)))),
     )
 
 
@@ -118,9 +118,9 @@ def _at_rest_since(trajectory: Trajectory) -> float | None:
     return float(trajectory.time[moving[-1] + 1]) if moving[-1] + 1 < len(trajectory.time) else None
 
 
-def _extremes(shapes: InfluenceShapes, drives: Sequence[Drive], end: float) -> tuple[float, float]:
+def _extremes(plate: Plate, shapes: InfluenceShapes, drives: Sequence[Drive], end: float) -> tuple[float, float]:
     """The largest slope and deflection [m] over the mesh's points and the time asked for, wherever the run ended."""
-    value, gradient, _ = shapes.evaluate(shapes.plate.mesh.points)
+    value, gradient, _ = shapes.evaluate(plate.mesh.points)
     heights = stroke_heights(drives, np.linspace(0, end, SAMPLES))
     slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
     return slope, float(np.abs(heights @ value.T).max())
@@ -148,12 +148,11 @@ def rim_rows(surface: SurfaceMotion, trajectory: Trajectory) -> NDArray[np.bool_
     return np.hypot(*trajectory.position.T) <= surface.rim[0]
 
 
-def _part_sag(shapes: InfluenceShapes, trajectory: Trajectory, force: float) -> float:
+def _part_sag(plate: Plate, shapes: InfluenceShapes, trajectory: Trajectory, force: float) -> float:
     """How far [m] the plate, its actuators held, gives under the part's largest force [N] where it began."""
-    start = trajectory.position[0]
-    try:
-        with_part = InfluenceShapes(shapes.plate, np.concatenate([shapes.points, start[None]]))
-    except np.linalg.LinAlgError:  # the part stands on an actuator, which does not give
-        return 0.0
-    give = 1 / float(with_part.stiffness[-1, -1])
-    return give * force if give > 0 else 0.0
+    start = trajectory.position[:1]
+    if np.hypot(*(shapes.points - start).T).min() < SAME_PLACE * shapes.size:
+        return 0.0  # the part stands on an actuator, which does not give
+    springs = np.append(shapes.springs, 0.0)
+    with_part = plate.influence(np.concatenate([shapes.points, start]), springs)
+    return float(with_part.evaluate(start)[0][0, -1]) * force

@@ -86,7 +86,7 @@ def _points(actuators: FloatArray) -> FloatArray:
 
 
 def _check(name: str, plates: list[Plate], found: list[Any], exact: tuple[FloatArray, ...]) -> Check:
-    unknowns = tuple(plate.space.unknowns for plate in plates)
+    unknowns = tuple(plate.model().unknowns for plate in plates)
     errors, orders, failures = {}, {}, []
     if max(unknowns) > MOST_UNKNOWNS:
         failures.append(f"{max(unknowns)} unknowns, more than {MOST_UNKNOWNS}")
