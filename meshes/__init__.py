@@ -4,6 +4,7 @@ from meshes.curves import Circle, Ellipse, Parabolas
 from meshes.mesh import Corner, PlateMesh
 from meshes.outline import Outline
 from meshes.polygon import polygon
+from meshes.read import read
 from meshes.shapes import annulus, disc, ellipse, rectangle
 
 __all__ = [
@@ -17,5 +18,6 @@ __all__ = [
     "disc",
     "ellipse",
     "polygon",
+    "read",
     "rectangle",
 ]

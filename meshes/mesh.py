@@ -60,10 +60,6 @@ class PlateMesh:
         """Points (n, 2) [m] reflected at every boundary of the outline: (r, 2), all off the plate."""
         return self.outline.mirrored(xy)
 
-    def rim_gap(self, xy: ArrayLike) -> FloatArray:
-        """Distance [m] of points (..., 2) from the nearest boundary, negative beyond it."""
-        return self.outline.gap(xy)
-
     def arcs(self, name: str, s: FloatArray) -> tuple[FloatArray, FloatArray]:
         """A boundary's edges along its true curve at s (n,) in [0, 1]: points (k, n, 2) m and derivatives in s."""
         start, end = self.points[self.boundaries[name].T]

@@ -101,9 +101,9 @@ def test_a_disc_has_at_least_two_rings():
     assert len(disc(1.0, 10.0).points) == 1 + 6 + 12
 
 
-def test_rim_gap_is_the_distance_from_the_circle():
+def test_gap_is_the_distance_from_the_circle():
     mesh = disc(2.0, 0.5)
-    gap = mesh.rim_gap([[0.0, 0.0], [1.2, 0.9], [0.0, 2.0], [-3.0, 0.0]])
+    gap = mesh.outline.gap([[0.0, 0.0], [1.2, 0.9], [0.0, 2.0], [-3.0, 0.0]])
     assert gap == pytest.approx([2.0, 0.5, 0.0, -1.0], abs=1e-15)
 
 
