@@ -15,8 +15,9 @@ from meshes import PlateMesh
 FloatArray = NDArray[np.float64]
 
 FAR = 0.7  # of the plate's size: an actuator that far from the rim needs no smaller cells there
-CORNER_SLOPE = 3.0  # cells at a corner may be this much larger against their distance than an image allows
+CORNER_SLOPE = 4.0  # times the fineness: what the size of a cell at a corner may be of its distance
 CORNER_ERROR = 1e-2  # of the error that cells of the plate's fineness leave anyhow
+LEAST = 1e-6  # of the plate's size: cells any smaller add more rounding than accuracy
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ def graded(mesh: PlateMesh, fine: float, corners: list[Singular], points: FloatA
     """
     images = cKDTree(mesh.mirrored(points)) if points is not None and len(points) else None
     error = CORNER_ERROR * fine**6
-    least = np.array([mesh.size * max(error ** (1 / (2 * c.exponent)), 1e-12) for c in corners])
+    least = np.array([mesh.size * max(error ** (1 / (2 * c.exponent)), LEAST) for c in corners])
     places = np.array([c.point for c in corners]).reshape(-1, 2)
     while True:
         centre = mesh.points[mesh.triangles].mean(axis=1)
@@ -63,7 +64,7 @@ def graded(mesh: PlateMesh, fine: float, corners: list[Singular], points: FloatA
             allowed = fine / FAR * images.query(centre)[0]
         for place, smallest in zip(places, least, strict=True):
             distance = np.hypot(*(centre - place).T)
-            allowed = np.minimum(allowed, np.maximum(min(CORNER_SLOPE * fine, 0.7) * distance, smallest))
+            allowed = np.minimum(allowed, np.maximum(min(CORNER_SLOPE * fine, 1.0) * distance, smallest))
         large = mesh.cell_sizes > allowed
         if not large.any():
             return mesh

@@ -54,8 +54,8 @@ def rim_of(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[Rim, Slivers]:
     chord, bulge, growth = chord[curved, None], bulge[curved, None], growth[curved, None]  # (k, 1, along, 2)
     across = s[:, None, None]
     area = _cross(bulge, (end - start)[curved, None, None] + across * growth) * way[curved, None, None]
-    inside = (chord + across * bulge).reshape(len(bulge), -1, 2)
-    return rim, Slivers(triangle[curved], inside, (np.outer(weights, weights) * area).reshape(len(bulge), -1))
+    inside = (chord + across * bulge).reshape(len(bulge), RIM_POINTS**2, 2)
+    return rim, Slivers(triangle[curved], inside, (np.outer(weights, weights) * area).reshape(len(bulge), RIM_POINTS**2))
 
 
 def _owners(mesh: PlateMesh, edges: IntArray) -> IntArray:
