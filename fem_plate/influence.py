@@ -156,7 +156,8 @@ def check_points(points: FloatArray, gap: FloatArray, size: float) -> None:
         wrong.append(
             f"point {i + 1} at {points[i].tolist()} m must lie inside the rim; it is {-gap[i]:.3g} m beyond it"
         )
-    for i, j in sorted(cKDTree(points).query_pairs(1e-9 * size)) if points.size else []:
+    rows = np.flatnonzero(np.isfinite(points).all(axis=1))
+    for i, j in rows[sorted(cKDTree(points[rows]).query_pairs(1e-9 * size))].tolist():
         wrong.append(f"points {i + 1} and {j + 1} must differ; both are at {points[i].tolist()} m")
     if wrong:
         raise ValueError("Input points of influence: " + "; ".join(wrong))
