@@ -9,74 +9,61 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
-from itertools import combinations
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal, Self, TypeVar
+from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import (
     BaseModel,
-    ConfigDict,
     Field,
     ModelWrapValidatorHandler,
     StrictFloat,
     StrictInt,
     ValidationError,
     ValidationInfo,
-    ValidatorFunctionWrapHandler,
-    WrapValidator,
     field_validator,
     model_validator,
 )
 
 from coupling import units
 from coupling.case_lines import CaseError as CaseError
-from coupling.case_lines import Location, find_problems, load, shown_location
 from coupling.case_lines import Problem as Problem
-from coupling.units import Length, Point, shown_length
+from coupling.case_lines import find_problems, load
+from coupling.places import Places
+from coupling.plate_case import PLATES, AnyPlate, Table
+from coupling.units import Length, Point
 
 PAPER_PLASTICITY_INDEX: Final = 4.9128
-SAME_PLACE: Final = 1e-9
-"""Places closer than this fraction of the plate's radius count as one."""
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+class ActuatorCase(Table):
+    """A point actuator: `position` and `stroke` in m, `stiffness` in N/m, `frequency` in Hz, `delay` in s.
 
-
-class PlateCase(_Table):
-    """The plate: `radius`, `thickness` and `cell_size` in m, `youngs_modulus` in Pa, `density` in kg/m^3."""
-
-    shape: Literal["disc"]
-    radius: Length = Field(gt=0)
-    supports: Literal["clamped"] = "clamped"
-    youngs_modulus: units.Pressure = Field(gt=0)
-    poisson_ratio: StrictFloat = Field(ge=0, lt=0.5)
-    thickness: Length = Field(gt=0)
-    density: units.Density | None = Field(default=None, gt=0)
-    cell_size: Length | None = Field(default=None, gt=0)
-
-    @field_validator("cell_size")
-    @classmethod
-    def _fits_plate(cls, cell_size: float | None, info: ValidationInfo) -> float | None:
-        radius = info.data.get("radius")
-        if cell_size is not None and radius is not None and cell_size > radius:
-            raise ValueError(f"must not exceed the radius, {shown_length(radius)}; got {shown_length(cell_size)}")
-        return cell_size
-
-
-class ActuatorCase(_Table):
-    """A point actuator: `position` and `stroke` in m, `frequency` in Hz, `delay` in s.
-
-    `cycles` is the number of up-down cycles, None for no end.
+    It has either a stroke or, in N, a `force`. `stiffness` is that of a spring between it and the plate,
+    None for rigid. `cycles` is the number of up-down cycles, None for no end.
     """
 
     position: Point
-    stroke: Length
+    stroke: Length | None = None
+    force: units.Force | None = None
+    stiffness: units.Stiffness | None = Field(default=None, gt=0)
     frequency: units.Frequency = Field(gt=0)
     cycle: Literal["up-down", "up"] = "up-down"
     cycles: StrictInt | None = Field(default=None, ge=1)
     delay: units.Time = Field(default=0.0, ge=0)
+
+    @field_validator("force")
+    @classmethod
+    def _not_with_stroke(cls, force: float | None, info: ValidationInfo) -> float | None:
+        if force is not None and info.data.get("stroke") is not None:
+            raise ValueError("must not be given with a stroke; an actuator is driven by one of the two")
+        return force
+
+    @field_validator("stiffness")
+    @classmethod
+    def _not_with_force(cls, stiffness: float | None, info: ValidationInfo) -> float | None:
+        if stiffness is not None and info.data.get("force") is not None:
+            raise ValueError("must not be given with a force, which is the same whatever the stiffness")
+        return stiffness
 
     @field_validator("cycles")
     @classmethod
@@ -86,7 +73,12 @@ class ActuatorCase(_Table):
         return cycles
 
 
-class PartCase(_Table):
+def amplitude(actuator: ActuatorCase) -> float:
+    """The stroke [m] of an actuator, or its force [N]."""
+    return actuator.stroke if actuator.stroke is not None else actuator.force or 0.0
+
+
+class PartCase(Table):
     """The micropart at the start: `mass` in kg, `position` in m, `velocity` in m/s, `size` (side length) in m."""
 
     mass: units.Mass = Field(gt=0)
@@ -99,7 +91,7 @@ def _plasticity_index(data: dict[str, Any]) -> float:
     return PAPER_PLASTICITY_INDEX if data.get("preset") == "paper" else 2.5
 
 
-class KogutEtsionCase(_Table):
+class KogutEtsionCase(Table):
     """Friction of rough surfaces with adhesion, after Kogut and Etsion.
 
     `roughness` and `intermolecular_distance` in m, `contact_area` in m^2, `hardness` in Pa, `adhesion_energy` in
@@ -136,14 +128,14 @@ class KogutEtsionCase(_Table):
         return coefficients
 
 
-class ConstantCase(_Table):
+class ConstantCase(Table):
     """A friction force of at most `limit`, in N, whatever the normal force."""
 
     model: Literal["constant"] = "constant"
     limit: units.Force = Field(ge=0)
 
 
-class CoulombCase(_Table):
+class CoulombCase(Table):
     """Friction in proportion to the normal force and `adhesion`, in N; `static_coefficient` is for a part at rest."""
 
     model: Literal["coulomb"] = "coulomb"
@@ -160,7 +152,7 @@ class CoulombCase(_Table):
         return static_coefficient
 
 
-class RunCase(_Table):
+class RunCase(Table):
     """The run: `duration` in s, `gravity` in m/s^2 towards the plate, `tolerance` without dimension.
 
     `frames` is the number of time steps in the result files.
@@ -172,60 +164,10 @@ class RunCase(_Table):
     frames: StrictInt | None = Field(default=None, ge=2)
 
 
-_T = TypeVar("_T")
-
-
-def _none_if_wrong(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
-    try:
-        return handler(value)
-    except ValidationError:
-        return None
-
-
-_IfValid = Annotated[_T | None, WrapValidator(_none_if_wrong)]
-
-
-class _Disc(BaseModel, from_attributes=True):
-    radius: _IfValid[Annotated[Length, Field(gt=0)]] = None
-
-
-class _Spot(BaseModel, from_attributes=True):
-    position: _IfValid[Point] = None
-
-
-class _Places(BaseModel, from_attributes=True):
-    """The places in a case; each is None where it is missing or wrong, whatever else is."""
-
-    plate: _IfValid[_Disc] = None
-    actuators: _IfValid[tuple[_IfValid[_Spot], ...]] = None
-    part: _IfValid[_Spot] = None
-
-    def mistakes(self) -> Iterator[tuple[Location, str]]:
-        """Yield where a place is wrong, and why."""
-        if self.actuators == ():
-            yield ("actuators",), "must be at least one table, written [[actuators]]; got none"
-        radius = self.plate.radius if self.plate else None
-        if radius is None:
-            return
-        spots = [(("actuators", index), spot) for index, spot in enumerate(self.actuators or ())]
-        places = {(*table, "position"): spot.position for table, spot in spots if spot and spot.position}
-        part = {("part", "position"): self.part.position} if self.part and self.part.position else {}
-        for location, place in [*places.items(), *part.items()]:
-            distance = math.hypot(*place)
-            if distance >= radius * (1 - SAME_PLACE):
-                limit = f"inside the rim, less than {shown_length(radius)} from the centre"
-                yield location, f"must be {limit}; got a point {shown_length(distance)} from it"
-        shared = set()
-        for (one, here), (other, there) in combinations(places.items(), 2):
-            if other not in shared and math.dist(here, there) < SAME_PLACE * radius:
-                shared.add(other)
-                yield other, f"must differ from {shown_location(one)}; got the same point"
-
-
-class _CaseTables(_Table):
+class _CaseTables(Table):
     """All that a case file holds."""
 
-    plate: PlateCase
+    plate: AnyPlate
     actuators: tuple[ActuatorCase, ...]
     part: PartCase
     friction: Annotated[KogutEtsionCase | ConstantCase | CoulombCase, Field(discriminator="model")]
@@ -240,11 +182,11 @@ class _CaseTables(_Table):
         except ValidationError as error:
             if not isinstance(data, dict):
                 raise
-            places = _Places.model_validate(data, context=info.context)
+            mistakes = Places.model_validate(data, context=info.context).mistakes(info.context)
             errors: list[Any] = list(error.errors())
         else:
-            places, errors = _Places.model_validate(case), []
-        for location, message in places.mistakes():
+            mistakes, errors = Places.model_validate(case).mistakes(), []
+        for location, message in mistakes:
             context = {"error": ValueError(message)}
             errors.append({"type": "value_error", "loc": location, "input": None, "ctx": context})
         if errors:
@@ -266,7 +208,6 @@ _FRICTION: dict[str, type[BaseModel]] = {
 }
 _TABLES: dict[str, type[BaseModel]] = {
     "": _CaseTables,
-    "plate": PlateCase,
     "actuators": ActuatorCase,
     "part": PartCase,
     "run": RunCase,
@@ -277,7 +218,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     """Read the case file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read."""
     text, data = load(path)
     try:
-        tables = _CaseTables.model_validate(data, context=units.UNITS_REQUIRED)
+        tables = _CaseTables.model_validate(data, context=units.UNITS_REQUIRED | {"folder": Path(path).parent})
     except ValidationError as error:
-        raise CaseError(os.fspath(path), find_problems(error, text, data, _TABLES | _FRICTION)) from None
+        raise CaseError(os.fspath(path), find_problems(error, text, data, _TABLES | _FRICTION | PLATES)) from None
     return Case(**dict(tables), name=Path(path).stem, source=text)

@@ -16,6 +16,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
+from coupling.plate_case import TAGS
 from coupling.units import shown
 
 Location = tuple[int | str, ...]
@@ -97,11 +98,12 @@ def find_problems(
     }
     problems = []
     for detail in details:
-        if detail["type"] == "missing" and detail["loc"] in misspelt:
-            continue
         location = _in_file(detail)
+        message = _message(detail, _value(data, location), tables)
+        if message.startswith("is missing") and detail["loc"] in misspelt:
+            continue
         line = next((lines[location[:n]] for n in range(len(location), 0, -1) if location[:n] in lines), None)
-        problems.append(Problem(line, shown_location(location), _message(detail, _value(data, location), tables)))
+        problems.append(Problem(line, shown_location(location), message))
     return problems
 
 
@@ -140,8 +142,8 @@ def _message(detail: ErrorDetails, value: object, tables: Mapping[str, type[Base
 
 
 def _in_file(detail: ErrorDetails) -> Location:
-    """Return where in the file an error is: without the model that stands between [friction] and its keys."""
-    location = detail["loc"]
+    """Return where in the file an error is: without what validation chose between, as the model of [friction]."""
+    location = tuple(key for key in detail["loc"] if key not in TAGS)
     if detail["type"].startswith("union_tag"):
         return (*location, "model")
     return ("friction", *location[2:]) if location[0] == "friction" else location
@@ -175,6 +177,7 @@ def _known(location: Location, tables: Mapping[str, type[BaseModel]]) -> str:
     if len(location) == 1:
         return "a case file has " + ", ".join(_header((key,)) for key in keys)
     model = f' with model = "{location[1]}"' if location[0] == "friction" else ""
+    model = f" with {location[1]}" if location[0] == "plate" else model
     return f"{_header(location)}{model} has {', '.join(keys)}"
 
 

@@ -10,11 +10,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from coupling.case import Case
+from coupling.rim import onto_plate, rim_curves
 from fem_plate import InfluenceShapes
 from particle import State, SurfaceMotion, Trajectory
 
@@ -25,18 +25,23 @@ SLIP_COLOUR, STICK_COLOUR = "#c8371b", "#1b4f9c"
 SAMPLES = 4000
 
 
-def draw_run(case: Case, shapes: InfluenceShapes, surface: SurfaceMotion, trajectory: Trajectory, path: Path) -> None:
+Plate = tuple[FloatArray, NDArray[np.int64], FloatArray]
+"""Points (n, 2) [m], triangles (m, 3) and the deflection (n,) [m] with all drives up at once."""
+
+
+def draw_run(
+    case: Case, shapes: InfluenceShapes, surface: SurfaceMotion, trajectory: Trajectory, plate: Plate, path: Path
+) -> None:
     """Draws the run into a PNG file."""
     figure = Figure(figsize=(12.0, 6.0))
     FigureCanvasAgg(figure)
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.06)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.05, 1))
-    _draw_path(figure, figure.add_subplot(grid[:, 0]), case, shapes, trajectory)
+    _draw_path(figure, figure.add_subplot(grid[:, 0]), shapes, plate, trajectory)
     height, speed = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
     times = np.linspace(0, trajectory.time[-1], SAMPLES)
     position, velocity, _ = trajectory.at(times)
-    radius = np.maximum(np.hypot(*position.T) / case.plate.radius, 1.0)
-    place = position / radius[:, None]
+    place = onto_plate(shapes.outline, position)
     heights = [surface.evaluate(xy, t).w[0] for xy, t in zip(place, times.tolist(), strict=True)]
     _draw_over_time(height, trajectory, times, np.array(heights) * MICRO, "height of the part [µm]")
     _draw_over_time(speed, trajectory, times, np.hypot(*velocity.T), "speed in the plane [m/s]")
@@ -48,23 +53,17 @@ def draw_run(case: Case, shapes: InfluenceShapes, surface: SurfaceMotion, trajec
     partial.replace(path)
 
 
-def _draw_path(figure: Figure, axes: Axes, case: Case, shapes: InfluenceShapes, trajectory: Trajectory) -> None:
-    """The plate from above: contours of all strokes up at once, the actuators and the path."""
-    radius = case.plate.radius
-    side = np.linspace(-radius, radius, 161)
-    x, y = np.meshgrid(side, side)
-    inside = np.hypot(x, y) <= radius
-    w = np.full(x.shape, np.nan)
-    strokes = [actuator.stroke for actuator in case.actuators]
-    w[inside] = shapes.evaluate(np.stack([x[inside], y[inside]], axis=1), strokes)[0]
-    w *= MICRO
-    low, high = np.nanmin(w), np.nanmax(w)
+def _draw_path(figure: Figure, axes: Axes, shapes: InfluenceShapes, plate: Plate, trajectory: Trajectory) -> None:
+    """The plate from above: contours with all drives up at once, its rim, the actuators and the path."""
+    xy, triangles, w = plate[0] * MICRO, plate[1], plate[2] * MICRO
+    low, high = w.min(), w.max()
     if high > low:
         # Rounding and faint counter-deflection do not deserve a band below zero.
         levels = MaxNLocator(12).tick_values(0.0 if -low < 0.01 * high else low, high)
-        filled = axes.contourf(x * MICRO, y * MICRO, w, levels=levels, cmap="Greys", alpha=0.75, extend="min")
-        figure.colorbar(filled, ax=axes, label="deflection with all strokes up at once [µm]", shrink=0.8, format="%.3g")
-    axes.add_patch(Circle((0, 0), radius * MICRO, fill=False, color="black", linewidth=1.5))
+        filled = axes.tricontourf(*xy.T, triangles, w, levels=levels, cmap="Greys", alpha=0.75, extend="min")
+        figure.colorbar(filled, ax=axes, label="deflection with all drives up at once [µm]", shrink=0.8, format="%.3g")
+    rim = rim_curves(shapes.outline, shapes.size / 100)
+    axes.add_collection(LineCollection([curve * MICRO for curve in rim], colors="black", linewidths=1.5))
     points = trajectory.position * MICRO
     fine = np.linspace(0, trajectory.time[-1], SAMPLES)
     line = trajectory.at(fine)[0] * MICRO
@@ -74,6 +73,7 @@ def _draw_path(figure: Figure, axes: Axes, case: Case, shapes: InfluenceShapes, 
     axes.plot(*(shapes.points.T * MICRO), "^", color="white", markeredgecolor="black", markersize=6, zorder=6)
     axes.plot(*points[0], "s", color="gold", markeredgecolor="black", markersize=8, zorder=5)
     axes.plot(*points[-1], "*", color="gold", markeredgecolor="black", markersize=14, zorder=5)
+    axes.use_sticky_edges = False  # the rim is drawn whole
     axes.set_aspect("equal")
     axes.set_xlabel("x [µm]")
     axes.set_ylabel("y [µm]")

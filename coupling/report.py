@@ -41,6 +41,7 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
             f"in-plane motion left out {s.in_plane_motion * MICRO:.3g} um",
         ),
         ("", _dynamics(s)),
+        *([("", _each_drive(s))] if s.drives_over_first else []),
         ("", f"the plate gives {s.part_sag * MICRO:.1e} um under the part's own force"),
     ]
     if s.part_curvature is not None:
@@ -93,6 +94,14 @@ def _dynamics(s: Summary) -> str:
         f"drive {s.drive_over_first:.2g} of the plate's first frequency with the actuators held, "
         f"{s.first_frequency / 1e3:.4g} kHz (quasi-static error of the acceleration {_percent(s.quasi_static_error)})"
     )
+
+
+def _each_drive(s: Summary) -> str:
+    drives, strokes = (
+        ", ".join(f"{ratio:.2g}" for ratio in sorted(set(ratios or ()), reverse=True))
+        for ratios in (s.drives_over_first, s.strokes_over_first)
+    )
+    return f"each drive over it {drives}; its stroke, at one over its time from rest to rest, {strokes}"
 
 
 def _percent(share: float) -> str:

@@ -11,14 +11,14 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import Delaunay
 
-from coupling.case import Case
+from coupling.case import Case, amplitude
+from coupling.drawn_plate import drawn_plate
 from coupling.pictures import draw_run
+from coupling.rim import onto_plate
 from coupling.summary import Summary, stroke_heights
 from coupling.vtkhdf import part_file, plate_file
 from fem_plate import InfluenceShapes
-from meshes import PlateMesh, disc
 from particle import Drive, SurfaceMotion, Trajectory, contact_forces
 from particle.friction import Contact
 
@@ -26,7 +26,6 @@ FloatArray = NDArray[np.float64]
 
 FRAMES_PER_CYCLE = 20
 FRAMES = (100, 1000)  # least and most without a wish in the case
-RINGS = 24  # of the drawn plate
 UNITS = {
     "time": "s",
     "points": "m",
@@ -51,7 +50,7 @@ def write_results(
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths."""
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case, float(trajectory.time[-1]))
-    points, triangles = drawn_plate(disc(case.plate.radius, case.plate.radius / RINGS), shapes.points)
+    points, triangles = drawn_plate(case.plate.build_mesh(), shapes.points)
     value = shapes.evaluate(points)[0]
     heights = stroke_heights(drives, times)
     metadata = {
@@ -61,6 +60,7 @@ def write_results(
         "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")}),
     }
     position, velocity, row = trajectory.at(times)
+    place = onto_plate(shapes.outline, position)
     normal, held = contact_forces(surface, trajectory, friction, case.part.mass, case.run.gravity, times)
     with (
         plate_file(folder, case.name, points, triangles, metadata) as plate,
@@ -68,17 +68,17 @@ def write_results(
     ):
         for k, time in enumerate(times.tolist()):
             plate.append(time, deflection=value @ heights[k])
-            xy = _on_plate(position[k], case.plate.radius)
             part.append(
                 time,
-                (*xy, float(surface.evaluate(xy, time).w[0])),
+                (*place[k], float(surface.evaluate(place[k], time).w[0])),
                 velocity=(*velocity[k], 0.0),
                 state=int(trajectory.state[row[k]]),
                 normal_force=normal[k],
                 friction_force=held[k],
             )
     picture = folder / f"{case.name}.png"
-    draw_run(case, shapes, surface, trajectory, picture)
+    all_up = value @ [amplitude(actuator) for actuator in case.actuators]
+    draw_run(case, shapes, surface, trajectory, (points, triangles, all_up), picture)
     return folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf", picture
 
 
@@ -98,17 +98,3 @@ def frame_times(case: Case, end: float) -> FloatArray:
     fastest = max(actuator.frequency for actuator in case.actuators)
     count = math.ceil(end * fastest * FRAMES_PER_CYCLE) + 1
     return np.linspace(0, end, min(max(count, FRAMES[0]), FRAMES[1]))
-
-
-def drawn_plate(mesh: PlateMesh, actuators: FloatArray) -> tuple[FloatArray, NDArray[np.int64]]:
-    """Points (n, 2) [m], the actuators first, and triangles (m, 3) for drawing the plate."""
-    room = 0.4 * np.min(np.ptp(mesh.points[mesh.triangles[0]], axis=0))
-    far = np.min(np.linalg.norm(mesh.points[:, None] - actuators, axis=2), axis=1) > room
-    far[np.unique(np.concatenate(list(mesh.boundaries.values())))] = True
-    points = np.concatenate([actuators, mesh.points[far]])
-    return points, Delaunay(points).simplices.astype(np.int64)
-
-
-def _on_plate(xy: FloatArray, radius: float) -> FloatArray:
-    """The point itself, or the nearest one on the rim for a part that is just past it."""
-    return np.asarray(xy * min(1.0, radius / max(float(np.hypot(*xy)), 1e-300)))

@@ -8,21 +8,21 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import fem_plate
-import meshes
+import numpy as np
+from numpy.typing import NDArray
+
 import particle
-from coupling.case import Case, ConstantCase, CoulombCase
+from coupling.case import Case, ConstantCase, CoulombCase, amplitude
 from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
 from coupling.summary import Summary, summarise
 from coupling.surface import surface_motion
-from fem_plate import InfluenceShapes, Plate
+from fem_plate import InfluenceShapes, Plate, PlateSection
 from particle import Drive, SurfaceMotion, Trajectory
 from particle.friction import Contact
 
-# Without a cell size the plate starts with this many cells from centre to rim and is refined until the unit shapes'
-# estimated error is below PLATE_TOLERANCE, which keeps the end point of a usual path to 1e-6 of it.
-CELLS_FROM_CENTRE = 8
+# Without a cell size the plate is refined until the unit shapes' estimated error is below this, which keeps the end
+# point of a usual path to 1e-6 of it.
 PLATE_TOLERANCE = 1e-8
 
 
@@ -42,7 +42,7 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
     """Run a case; with `output`, a folder, also write NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png there."""
     with progress("Solving the plate"):
         plate = build_plate(case)
-        shapes = plate.influence([actuator.position for actuator in case.actuators])
+        shapes = find_shapes(case, plate)
     with progress("Fitting the surface"):
         drives = build_drives(case)
         surface = surface_motion(shapes, drives)
@@ -62,22 +62,30 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
 
 def build_surface(case: Case) -> SurfaceMotion:
     """The moving surface of a case."""
-    shapes = build_plate(case).influence([actuator.position for actuator in case.actuators])
-    return surface_motion(shapes, build_drives(case))
+    return surface_motion(find_shapes(case, build_plate(case)), build_drives(case))
 
 
 def build_plate(case: Case) -> Plate:
     """The plate, not yet loaded."""
     plate = case.plate
-    section = fem_plate.PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
-    mesh = meshes.disc(plate.radius, plate.cell_size or plate.radius / CELLS_FROM_CENTRE)
-    tolerance = None if plate.cell_size else PLATE_TOLERANCE
-    return Plate(mesh, section, plate.supports, tolerance)
+    section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
+    tolerance = None if plate.cell_size_given else PLATE_TOLERANCE
+    return Plate(plate.build_mesh(), section, plate.supports, tolerance)
+
+
+def find_shapes(case: Case, plate: Plate) -> InfluenceShapes:
+    """The influence shapes of the case's actuators."""
+    return plate.influence([actuator.position for actuator in case.actuators], springs(case))
+
+
+def springs(case: Case) -> NDArray[np.float64]:
+    """The stiffness (N,) [N/m] with which each actuator holds its place, 0 where a force drives it."""
+    return np.array([0.0 if a.force is not None else a.stiffness or np.inf for a in case.actuators])
 
 
 def build_drives(case: Case) -> list[Drive]:
-    """The actuators' drives."""
-    return [Drive(a.stroke, a.frequency, a.cycle, a.cycles, a.delay) for a in case.actuators]
+    """The actuators' drives; those of forces are in N."""
+    return [Drive(amplitude(a), a.frequency, a.cycle, a.cycles, a.delay) for a in case.actuators]
 
 
 def build_friction(case: Case) -> Contact:

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.case import SAME_PLACE, Case, KogutEtsionCase
+from coupling.case import Case, KogutEtsionCase
+from coupling.places import SAME_PLACE
 from fem_plate import InfluenceShapes, Plate
+from meshes import Outline
 from particle import Drive, EventKind, State, SurfaceMotion, Trajectory, contact_forces
 from particle.friction import Contact
 
@@ -42,7 +44,7 @@ class Summary:
     evaluations: int
     plate_unknowns: int
     plate_error: float  # of unit shapes, estimated
-    hold_residual: float  # largest |phi_i(x_j) - delta_ij|
+    hold_residual: float  # largest |phi_i(x_j) - delta_ij|, what springs give added; 0 where only forces act
     surface_error: float  # of unit shapes' fit, measured
     contact_error: float  # relative, of the tabulated friction limit, measured
     path_error: float | None  # m, end point against a run at a hundredth of the tolerance; None: other events
@@ -52,6 +54,8 @@ class Summary:
     in_plane_motion: float  # m, of the top face
     first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
     drive_over_first: float | None  # fastest drive over that frequency
+    drives_over_first: tuple[float, ...] | None  # each drive over it
+    strokes_over_first: tuple[float, ...] | None  # each inverse time of one stroke over it
     quasi_static_error: float | None  # relative, of the surface's acceleration
     part_curvature: float | None  # part size times largest curvature on its path; None: size not given
     part_sag: float  # m, the plate's deflection under the part's largest force
@@ -72,13 +76,14 @@ def summarise(
 ) -> Summary:
     """The run's summary; `tighter` is the same run at a hundredth of the tolerance."""
     step = np.diff(trajectory.position, axis=0)
-    slope, deflection = _extremes(plate, shapes, drives, case.run.duration)
+    slope, deflection = _extremes(shapes, drives, case.run.duration)
     over_thickness = deflection / case.plate.thickness
     times = np.linspace(0, trajectory.time[-1], SAMPLES)
     normal, _ = contact_forces(surface, trajectory, friction, case.part.mass, case.run.gravity, times)
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
-    first = None if plate.section.density is None else float(plate.frequencies(1, held=shapes.points)[0])
+    held = shapes.points[shapes.springs > 0]
+    first = None if plate.section.density is None else float(plate.frequencies(1, held if len(held) else None)[0])
     ratio = None if first is None else max(drive.frequency for drive in drives) / first
     return Summary(
         outcome=trajectory.outcome.value,
@@ -95,7 +100,7 @@ def summarise(
         evaluations=trajectory.evaluations,
         plate_unknowns=shapes.unknowns,
         plate_error=shapes.error_estimate,
-        hold_residual=float(np.abs(shapes.evaluate(shapes.points)[0] - np.eye(len(shapes.points))).max()),
+        hold_residual=_hold_residual(shapes),
         surface_error=surface.error,
         contact_error=friction.table_error,
         path_error=moved if same else None,
@@ -105,8 +110,10 @@ def summarise(
         in_plane_motion=case.plate.thickness / 2 * slope,
         first_frequency=first,
         drive_over_first=ratio,
+        drives_over_first=None if first is None else tuple(drive.frequency / first for drive in drives),
+        strokes_over_first=None if first is None else tuple(1 / stroke_time(drive) / first for drive in drives),
         quasi_static_error=None if ratio is None else QUASI_STATIC_ERROR * ratio,
-        part_curvature=_part_curvature(case, surface, trajectory),
+        part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(normal)))),
     )
 
@@ -118,12 +125,23 @@ def _at_rest_since(trajectory: Trajectory) -> float | None:
     return float(trajectory.time[moving[-1] + 1]) if moving[-1] + 1 < len(trajectory.time) else None
 
 
-def _extremes(plate: Plate, shapes: InfluenceShapes, drives: Sequence[Drive], end: float) -> tuple[float, float]:
+def _hold_residual(shapes: InfluenceShapes) -> float:
+    held = shapes.springs > 0
+    heights = shapes.evaluate(shapes.points)[0] + shapes.stiffness / np.where(held, shapes.springs, 1.0)[:, None]
+    return float(np.abs(heights - np.eye(len(held)))[held].max(initial=0.0))
+
+
+def _extremes(shapes: InfluenceShapes, drives: Sequence[Drive], end: float) -> tuple[float, float]:
     """The largest slope and deflection [m] over the mesh's points and the time asked for, wherever the run ended."""
-    value, gradient, _ = shapes.evaluate(plate.mesh.points)
+    value, gradient, _ = shapes.evaluate(shapes.model.mesh.points)
     heights = stroke_heights(drives, np.linspace(0, end, SAMPLES))
     slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
     return slope, float(np.abs(heights @ value.T).max())
+
+
+def stroke_time(drive: Drive) -> float:
+    """The time [s] of one stroke, from rest to rest: half a cycle of an up-down drive."""
+    return (0.5 if drive.cycle == "up-down" else 1.0) / drive.frequency
 
 
 def stroke_heights(drives: Sequence[Drive], times: FloatArray) -> FloatArray:
@@ -131,21 +149,16 @@ def stroke_heights(drives: Sequence[Drive], times: FloatArray) -> FloatArray:
     return np.stack([drive.evaluate(times)[0] for drive in drives], axis=1)
 
 
-def _part_curvature(case: Case, surface: SurfaceMotion, trajectory: Trajectory) -> float | None:
+def _part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, trajectory: Trajectory) -> float | None:
     """The part's size times the largest curvature under it at the rows of its path."""
     size = case.part.size
     if size is None and isinstance(case.friction, KogutEtsionCase):
         size = float(np.sqrt(case.friction.contact_area))
     if size is None:
         return None
-    on_plate = rim_rows(surface, trajectory)
+    on_plate = outline.gap(trajectory.position) >= 0  # all but the last of a part that slid over the rim
     places = zip(trajectory.position[on_plate], trajectory.time[on_plate], strict=True)
     return size * max(float(np.abs(np.linalg.eigvalsh(surface.evaluate(xy, t).hessian)).max()) for xy, t in places)
-
-
-def rim_rows(surface: SurfaceMotion, trajectory: Trajectory) -> NDArray[np.bool_]:
-    """Rows (n,) whose position is on the plate: all but the last of a part that slid over the rim."""
-    return np.hypot(*trajectory.position.T) <= surface.rim[0]
 
 
 def _part_sag(plate: Plate, shapes: InfluenceShapes, trajectory: Trajectory, force: float) -> float:

@@ -38,9 +38,10 @@ def surface_motion(shapes: Shapes, drives: Sequence[Drive], tolerance: float = S
         raise ValueError(f"Input drives must be one an actuator, {len(shapes.points)}; got {len(drives)}")
     # Many small systems: BLAS threads would only wait for each other (a hundred times slower on two busy cores).
     with threadpool_limits(limits=1, user_api="blas"):
-        fit = CellFit(shapes, CELLS_ACROSS[0])
+        heights = np.abs(np.diag(shapes.evaluate(shapes.points)[0]))
+        fit = CellFit(shapes, heights, CELLS_ACROSS[0])
         for across in CELLS_ACROSS[1:]:
-            finer = CellFit(shapes, across) if fit.error > tolerance else fit
+            finer = CellFit(shapes, heights, across) if fit.error > tolerance else fit
             # Once smaller cells gain nothing, what is left is the finite elements' own error.
             if finer.error > 0.5 * fit.error:
                 break
@@ -68,11 +69,11 @@ class CellFit:
     """Polynomials of the smooth parts on a grid of square cells over the plate's box, `across` along its longer side.
 
     origin: (2,) m, the grid's lower left corner.  rows (nx, ny): a cell's row in `cells`, -1 off the plate.
-    cells: (C, N, M).  error: largest one measured.
+    cells: (C, N, M).  error: largest one measured, relative to the shapes' heights (N,), 1 where not driven by a force.
     """
 
-    def __init__(self, shapes: Shapes, across: int) -> None:
-        self.shapes = shapes
+    def __init__(self, shapes: Shapes, heights: FloatArray, across: int) -> None:
+        self.shapes, self.heights = shapes, heights
         low, high = shapes.outline.box
         self.width = float((high - low).max()) / across
         counts = np.ceil((high - low) / self.width * (1 - 1e-9)).astype(int)
@@ -119,7 +120,8 @@ class CellFit:
         points = self.centres[:, None] + local * self.width / 2
         on_plate = self.shapes.outline.inside(points.reshape(-1, 2)).reshape(points.shape[:2])
         fitted = np.einsum("pm,cim->cpi", _monomials(local), self.cells, optimize=True)
-        return float(np.abs(fitted[on_plate] - self.shapes.smooth(points[on_plate])).max())
+        wrong = np.abs(fitted[on_plate] - self.shapes.smooth(points[on_plate])).max(axis=0)
+        return float((wrong / self.heights).max())
 
 
 def _monomials(local: FloatArray) -> FloatArray:

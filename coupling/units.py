@@ -31,7 +31,8 @@ DIMENSIONS: Final = {
     "m": "a length", "m^2": "an area", "m^3": "a volume", "rad": "an angle",
     "s": "a time", "Hz": "a frequency", "rad/s": "an angular velocity", "m/s": "a velocity", "m/s^2": "an acceleration",
     "kg": "a mass", "kg/m^3": "a density", "N": "a force", "Pa": "a pressure",
-    "J": "an energy", "J/m^2": "an energy per area", "W": "a power", "K": "a temperature", "1": "a plain number",
+    "J": "an energy", "J/m^2": "an energy per area", "N/m": "a stiffness",
+    "W": "a power", "K": "a temperature", "1": "a plain number",
 }  # fmt: skip
 """SI units, and what a quantity in each is called in a message."""
 
@@ -190,6 +191,7 @@ Acceleration = Annotated[float, Quantity("m/s^2", "9.80665 m/s^2")]
 Mass = Annotated[float, Quantity("kg", "2e-9 kg")]
 Density = Annotated[float, Quantity("kg/m^3", "2330 kg/m^3")]
 Force = Annotated[float, Quantity("N", "2 uN")]
+Stiffness = Annotated[float, Quantity("N/m", "1e4 N/m")]
 Pressure = Annotated[float, Quantity("Pa", "169 GPa")]
 SurfaceEnergy = Annotated[float, Quantity("J/m^2", "1 J/m^2")]
 Point = Annotated[tuple[Length, Length], Pair("lengths", "100 um")]

@@ -50,7 +50,7 @@ class SurfaceMotion(NamedTuple):
     conics: FloatArray  # (k, 4) m, the rim's whole ellipses: centre x, y and semi-axes
     edges: FloatArray  # (m, 3, 2) m, its other edges: start, middle and end of parabolas; no rim where both are empty
     moving_base: bool  # whether two more drives carry the base in its plane
-    error: float  # largest measured error of the shapes, relative to a unit stroke
+    error: float  # largest measured error of the shapes, relative to each one's height at its own actuator
 
     def evaluate(self, xy: ArrayLike, time: float) -> SurfaceState:
         """The surface at points (n, 2) [m] and a time [s].

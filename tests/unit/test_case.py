@@ -21,11 +21,11 @@ from coupling.case import (
     CoulombCase,
     KogutEtsionCase,
     PartCase,
-    PlateCase,
     Problem,
     RunCase,
     read_case,
 )
+from coupling.plate_case import DiscCase
 from coupling.units import Quantity
 
 GOOD = """\
@@ -103,9 +103,9 @@ def problems(folder: Path, text: str) -> list[str]:
     return [line.strip() for line in lines]
 
 
-def plate(**changes: Any) -> PlateCase:
+def plate(**changes: Any) -> DiscCase:
     values = {"shape": "disc", "radius": 3e-4, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6}
-    return PlateCase(**{**values, **changes})
+    return DiscCase(**{**values, **changes})
 
 
 def python_case(**changes: Any) -> Case:
@@ -266,7 +266,10 @@ def test_an_angular_velocity_is_not_a_frequency(tmp_path: Path) -> None:
 BROKEN = [
     # Keys and tables
     ((STROKE, ""), 'line 8  actuators[1].stroke is missing; it must be a length such as "150 um"'),
-    (('shape = "disc"', ""), 'line 1  plate.shape is missing; it must be "disc"'),
+    (
+        ('shape = "disc"', ""),
+        'line 1  plate.shape is missing; it must be "disc", "rectangle", "annulus", "ellipse" or "polygon", or',
+    ),
     ((POISSON, ""), "line 1  plate.poisson_ratio is missing; it must be a number"),
     ((PART, ""), 'two lengths, x and y, such as ["100 um", "100 um"]'),
     (("[part]", "[prat]"), "line 23  prat is not known; did you mean part?"),
@@ -284,11 +287,17 @@ BROKEN = [
     (("cycles = 5", "cycles = true"), "actuators[2].cycles must be a whole number; got true"),
     (("cycles = 5", 'cycles = 5\ncycle = "up"'), 'line 20  actuators[2].cycles must not be given with cycle = "up"'),
     (("cycles = 5", 'cycle = "down"'), 'actuators[2].cycle must be "up-down" or "up"; got "down"'),
-    (('shape = "disc"', 'shape = "square"'), 'line 2  plate.shape must be "disc"; got "square"'),
+    (
+        ('shape = "disc"', 'shape = "square"'),
+        'line 2  plate.shape must be "disc", "rectangle", "annulus", "ellipse" or "polygon"; got "square"',
+    ),
     (('"300 Hz"', '"0 Hz"'), 'actuators[1].frequency must be greater than 0; got "0 Hz"'),
     (('"1 ms"', '"-1 ms"'), 'actuators[2].delay must be at least 0; got "-1 ms"'),
     ((RADIUS, 'radius = "-3 um"'), 'plate.radius must be greater than 0; got "-3 um"'),
-    ((RADIUS, RADIUS + '\ncell_size = "301 um"'), "plate.cell_size must not exceed the radius, 300 um; got 301 um"),
+    (
+        (RADIUS, RADIUS + '\ncell_size = "301 um"'),
+        "plate.cell_size must not exceed half of the plate's smallest width, 300 um; got 301 um",
+    ),
     ((DURATION, DURATION + "\ntolerance = 0.1"), "line 32  run.tolerance must be at most 0.01; got 0.1"),
     ((DURATION, DURATION + "\nframes = 1"), "run.frames must be at least 2; got 1"),
     # Positions
@@ -301,8 +310,8 @@ BROKEN = [
         (PART, PART + "\nvelocity = 0"),
         'part.velocity must be two velocities, x and y, such as ["0 m/s", "0 m/s"]; got 0',
     ),
-    ((PART, 'position = ["300 um", "0 um"]'), "part.position must be inside the rim, less than 300 um from the centre"),
-    (('"0.15 mm"', '"-0.3 mm"'), "line 14  actuators[2].position must be inside the rim"),
+    ((PART, 'position = ["300 um", "0 um"]'), "part.position must be inside the rim; got a point on it"),
+    (('"0.15 mm"', '"-0.3 mm"'), "line 14  actuators[2].position must be inside the rim; got a point on it"),
     (('"0.15 mm"', '"0 m"'), "line 14  actuators[2].position must differ from actuators[1].position; got the same"),
     # Friction
     ((FRICTION, ""), 'line 27  friction.model is missing; it must be "kogut-etsion", "constant" or "coulomb"'),
@@ -353,15 +362,16 @@ def test_places_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
         (PART, 'position = ["0 um", "-1 mm"]'),
         ('mass = "2e-9 kg"\n', ""),
     )
-    outside = "must be inside the rim, less than 300 um from the centre; got a point"
+    outside = "must be inside the rim; got a point"
     assert problems(tmp_path, text) == [
         'line 2   plate.density must be a density such as "2330 kg/m^3"; got "1 s", a time',
-        f"line 10  actuators[1].position {outside} 400 um from it",
-        "line 11  actuators[1].speed is not known; [[actuators]] has position, stroke, frequency, cycle, cycles, delay",
-        f"line 16  actuators[2].position {outside} 400 um from it",
+        f"line 10  actuators[1].position {outside} 100 um beyond it",
+        "line 11  actuators[1].speed is not known; "
+        "[[actuators]] has position, stroke, force, stiffness, frequency, cycle, cycles, delay",
+        f"line 16  actuators[2].position {outside} 100 um beyond it",
         "line 16  actuators[2].position must differ from actuators[1].position; got the same point",
         'line 25  part.mass is missing; it must be a mass such as "2e-9 kg"',
-        f"line 26  part.position {outside} 1000 um from it",
+        f"line 26  part.position {outside} 700 um beyond it",
     ]
 
 
@@ -409,7 +419,6 @@ def test_lines_of_dotted_keys_and_inline_tables(tmp_path: Path) -> None:
         'actuators = [{ stroke = "1 s" }]\n[run]\nduration = """\n[plate]\n"""\n  # tab\n  frames = 1\n'
     )
     found = {line.split()[2]: int(line.split()[1]) for line in problems(tmp_path, text) if line.startswith("line")}
-    assert found["plate.radius"] == 2
     assert found["plate.thickness"] == 2
     assert found["plate.shape"] == 3
     assert found["part.mass"] == found["part.position"] == 4

@@ -1,0 +1,288 @@
+"""The plate of a case: its shape, material and supports, with one model for each shape."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    StrictFloat,
+    StrictStr,
+    Tag,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+)
+
+from coupling import units
+from coupling.units import Length, Point, shown, shown_length
+
+if TYPE_CHECKING:
+    from meshes import PlateMesh
+
+CELLS_OF_A_DISC = 64 * math.pi
+"""Without a cell size a plate has as many cells as a disc with 8 from centre to rim."""
+
+
+class Table(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+SupportName = Literal["clamped", "simply-supported", "free"]
+ONE_SUPPORT, SUPPORT_OF_EACH = "one support", "a support of each boundary"
+Supports = Annotated[
+    Annotated[SupportName, Tag(ONE_SUPPORT)] | Annotated[dict[str, SupportName], Tag(SUPPORT_OF_EACH)],
+    Discriminator(lambda value: SUPPORT_OF_EACH if isinstance(value, dict) else ONE_SUPPORT),
+]
+
+
+class PlateCase(Table, ABC):
+    """The plate: `thickness` in m, `youngs_modulus` in Pa, `density` in kg/m^3, `pressure` in Pa, positive up.
+
+    supports: how the whole rim is held, or each boundary by name; those left out are free.
+    """
+
+    outlined_by: ClassVar[str] = "shape"
+    """The key at which a mistake in the outline as a whole is reported."""
+
+    supports: Supports = "clamped"
+    youngs_modulus: units.Pressure = Field(gt=0)
+    poisson_ratio: StrictFloat = Field(ge=0, lt=0.5)
+    thickness: Length = Field(gt=0)
+    density: units.Density | None = Field(default=None, gt=0)
+
+    @abstractmethod
+    def build_mesh(self) -> PlateMesh:
+        """The plate's mesh; ValueError or OSError where there is none."""
+
+    @cached_property
+    def coarse_mesh(self) -> PlateMesh:
+        """A mesh that is quickly made, for its outline and its boundaries' names; raises as `build_mesh`."""
+        return self.build_mesh()
+
+    @property
+    def cell_size_given(self) -> bool:
+        """Whether the mesh is to stay as fine as it is."""
+        return False
+
+    def supports_of(self, boundaries: list[str]) -> dict[str, str]:
+        """The support of each boundary."""
+        if isinstance(self.supports, str):
+            return dict.fromkeys(boundaries, self.supports)
+        return {name: self.supports.get(name, "free") for name in boundaries}
+
+
+class ShapeCase(PlateCase):
+    """A plate given by a few lengths, around the origin; `cell_size` in m."""
+
+    cell_size: Length | None = Field(default=None, gt=0)
+
+    @property
+    @abstractmethod
+    def measures(self) -> tuple[float, float]:
+        """The smallest width [m] and the area [m^2]."""
+
+    @property
+    def cell_size_given(self) -> bool:
+        return self.cell_size is not None
+
+    def build_mesh(self) -> PlateMesh:
+        width, area = self.measures
+        return self.mesh_of(self.cell_size or min(width / 4, math.sqrt(area / CELLS_OF_A_DISC)))
+
+    @cached_property
+    def coarse_mesh(self) -> PlateMesh:
+        return self.mesh_of(self.measures[0] / 2)
+
+    def mesh_of(self, cell_size: float) -> PlateMesh:
+        """The mesh with cells of a size [m]."""
+        import meshes  # Here, because reading a case is to be quick.
+
+        own = [key for key in type(self).model_fields if key not in ShapeCase.model_fields and key != "shape"]
+        return getattr(meshes, self.shape)(*(getattr(self, key) for key in own), cell_size)  # type: ignore[attr-defined]
+
+
+class DiscCase(ShapeCase):
+    """A disc; `radius` in m."""
+
+    shape: Literal["disc"]
+    radius: Length = Field(gt=0)
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        return 2 * self.radius, math.pi * self.radius**2
+
+
+class RectangleCase(ShapeCase):
+    """A rectangle; `width` along x and `height` along y in m."""
+
+    shape: Literal["rectangle"]
+    width: Length = Field(gt=0)
+    height: Length = Field(gt=0)
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        return min(self.width, self.height), self.width * self.height
+
+
+class AnnulusCase(ShapeCase):
+    """A disc with a round hole in its middle; both radii in m."""
+
+    shape: Literal["annulus"]
+    inner_radius: Length = Field(gt=0)
+    outer_radius: Length = Field(gt=0)
+
+    @field_validator("outer_radius")
+    @classmethod
+    def _around_inner(cls, outer: float, info: ValidationInfo) -> float:
+        inner = info.data.get("inner_radius")
+        if inner is not None and outer <= inner:
+            raise ValueError(f"must exceed inner_radius, {shown_length(inner)}; got {shown_length(outer)}")
+        return outer
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        return self.outer_radius - self.inner_radius, math.pi * (self.outer_radius**2 - self.inner_radius**2)
+
+
+class EllipseCase(ShapeCase):
+    """An ellipse; its semi-axes along x and y in m."""
+
+    shape: Literal["ellipse"]
+    semi_axis_x: Length = Field(gt=0)
+    semi_axis_y: Length = Field(gt=0)
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        return 2 * min(self.semi_axis_x, self.semi_axis_y), math.pi * self.semi_axis_x * self.semi_axis_y
+
+
+class PolygonCase(ShapeCase):
+    """A polygon; `corners` in m, in either sense; `sides` names the sides, each from its corner to the next."""
+
+    outlined_by = "corners"
+
+    shape: Literal["polygon"]
+    corners: tuple[Point, ...]
+    sides: tuple[StrictStr, ...] | None = None
+
+    @field_validator("corners", mode="before")
+    @classmethod
+    def _three_points(cls, corners: Any) -> Any:
+        if not isinstance(corners, (list, tuple)) or len(corners) < 3:
+            example = '[["0 um", "0 um"], ["2 um", "0 um"], ["0 um", "1 um"]]'
+            raise ValueError(f"must be three points or more, such as {example}; got {shown(corners)}")
+        return corners
+
+    @field_validator("sides", mode="before")
+    @classmethod
+    def _one_a_side(cls, sides: Any, info: ValidationInfo) -> Any:
+        corners = info.data.get("corners")
+        if not isinstance(sides, (list, tuple)) or (corners and len(sides) != len(corners)):
+            count = f"{len(corners)} names" if corners else "a list of names"
+            raise ValueError(f"must be {count}, one a side; got {shown(sides)}")
+        return sides
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        width = min(max(places) - min(places) for places in zip(*self.corners, strict=True))
+        ahead = zip(self.corners, self.corners[1:] + self.corners[:1], strict=True)
+        return width, abs(sum(x * v - u * y for (x, y), (u, v) in ahead)) / 2
+
+    def mesh_of(self, cell_size: float) -> PlateMesh:
+        import meshes
+
+        return meshes.polygon(self.corners, cell_size, self.sides)
+
+
+class MeshCase(PlateCase):
+    """A plate read from a mesh file; `mesh` is its path, `mesh_unit` the length in m that its coordinates count."""
+
+    outlined_by = "mesh"
+
+    mesh: StrictStr
+    mesh_unit: Length = Field(default=1.0, gt=0)
+
+    @field_validator("mesh")
+    @classmethod
+    def _beside_the_case(cls, mesh: str, info: ValidationInfo) -> str:
+        return str(Path((info.context or {}).get("folder", ""), mesh))
+
+    def build_mesh(self) -> PlateMesh:
+        import meshes
+
+        return meshes.read(self.mesh, self.mesh_unit)
+
+
+class _Wanted:
+    wanted = '"disc", "rectangle", "annulus", "ellipse" or "polygon", or have mesh = "file.msh" in its place'
+
+
+class ShapelessCase(PlateCase):
+    """A plate whose shape is missing or unknown: it fails on that, and on what is wrong with the rest."""
+
+    model_config = ConfigDict(extra="ignore")
+
+    shape: Annotated[Literal["disc", "rectangle", "annulus", "ellipse", "polygon"], _Wanted()]
+
+    def build_mesh(self) -> PlateMesh:
+        raise NotImplementedError
+
+
+PLATES: dict[str, type[PlateCase]] = {
+    'shape = "disc"': DiscCase,
+    'shape = "rectangle"': RectangleCase,
+    'shape = "annulus"': AnnulusCase,
+    'shape = "ellipse"': EllipseCase,
+    'shape = "polygon"': PolygonCase,
+    "a mesh": MeshCase,
+    "no shape": ShapelessCase,
+}
+"""The models by what messages call them."""
+
+
+def kind(plate: Any) -> str:
+    """Which of PLATES a plate is, given as a table or as a model."""
+    keys = plate if isinstance(plate, dict) else getattr(plate, "__dict__", {})
+    named = f'shape = "{keys.get("shape")}"'
+    if named in PLATES:
+        return named
+    return "a mesh" if "mesh" in keys and "shape" not in keys else "no shape"
+
+
+TAGS: Final = frozenset({*PLATES, ONE_SUPPORT, SUPPORT_OF_EACH})
+"""What validation puts into the location of a mistake, but is no key of the file."""
+
+AnyPlate = Annotated[
+    Annotated[DiscCase, Tag('shape = "disc"')]
+    | Annotated[RectangleCase, Tag('shape = "rectangle"')]
+    | Annotated[AnnulusCase, Tag('shape = "annulus"')]
+    | Annotated[EllipseCase, Tag('shape = "ellipse"')]
+    | Annotated[PolygonCase, Tag('shape = "polygon"')]
+    | Annotated[MeshCase, Tag("a mesh")]
+    | Annotated[ShapelessCase, Tag("no shape")],
+    Discriminator(kind),
+]
+
+_ANY_MATERIAL = {"youngs_modulus": "1 Pa", "poisson_ratio": 0.3, "thickness": "1 m"}
+
+
+def outline_of(plate: Any, context: Any) -> PlateCase | None:
+    """The plate as far as its outline goes, whatever else is wrong with it; None where that is wrong too."""
+    if not isinstance(plate, dict):
+        return plate if isinstance(plate, PlateCase) else None
+    model = PLATES[kind(plate)]
+    own = {
+        key: value for key, value in plate.items() if key in model.model_fields.keys() - ShapeCase.model_fields.keys()
+    }
+    try:
+        return model.model_validate(own | _ANY_MATERIAL, context=context)
+    except ValidationError:
+        return None
