@@ -7,8 +7,6 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 
 def load(path: Path) -> Any:
     """The file as a meshio.Mesh; raises ValueError, naming the file, when it cannot be read."""
@@ -28,25 +26,28 @@ def load(path: Path) -> Any:
         ) from error
 
 
-def line_names(mesh: Any) -> list[str]:
-    """The name of each line of the file, in its order; empty where it has none."""
+def line_names(mesh: Any) -> list[set[str]]:
+    """The names of each line of the file, in its order: of its physical curves, or else its number."""
     blocks = [k for k, block in enumerate(mesh.cells) if block.type in ("line", "line3")]
-    named = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 1}
-    sets = {name: parts for name, parts in mesh.cell_sets.items() if not name.startswith("gmsh:")}
-    integers = [name for name, parts in mesh.cell_data.items() if all(np.asarray(p).dtype.kind in "iu" for p in parts)]
-    key = next((name for name in ("gmsh:physical", "boundary") if name in integers), None)
-    if key is None and sets:
-        names: list[str] = []
-        for k in blocks:
-            own = [""] * len(mesh.cells[k].data)
-            for name, parts in sets.items():
-                for row in np.asarray(parts[k], dtype=np.int64) if parts[k] is not None else ():
-                    own[row] = name
-            names += own
-        return names
-    if key is None and len(integers) == 1:
-        key = integers[0]
-    if key is None:
-        return [""] * sum(len(mesh.cells[k].data) for k in blocks)
-    tags = [int(tag) for k in blocks for tag in np.asarray(mesh.cell_data[key][k])]
-    return ["" if tag == 0 and key == "gmsh:physical" else named.get(tag, str(tag)) for tag in tags]
+    names: list[set[str]] = []
+    for k in blocks:
+        own: list[set[str]] = [set() for _ in mesh.cells[k].data]
+        for name, parts in mesh.cell_sets.items():
+            for row in parts[k].astype(int) if not name.startswith("gmsh:") else ():
+                own[row].add(name)
+        names += own
+    key = _number_key(mesh.cell_data)
+    if key is not None:
+        known = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 1}
+        tags = [int(tag) for k in blocks for tag in mesh.cell_data[key][k]]
+        for given, tag in zip(names, tags, strict=True):
+            if not given and not (tag == 0 and key == "gmsh:physical"):  # there, 0 is for no physical curve
+                given.add(known.get(tag, str(tag)))
+    return names
+
+
+def _number_key(data: dict[str, Any]) -> str | None:
+    """The cell data that number boundaries: those of gmsh, those called so, or the only integers."""
+    integers = [name for name, parts in data.items() if all(part.dtype.kind in "iu" for part in parts)]
+    known = [name for name in ("gmsh:physical", "boundary") if name in integers]
+    return known[0] if known else integers[0] if len(integers) == 1 else None

@@ -107,7 +107,7 @@ class PlateMesh:
         kept = {name: np.isin(edge_numbers(p, len(self.points)), number[rim]) for name, p in self.boundaries.items()}
         boundaries = {name: self.boundaries[name][there] for name, there in kept.items() if there.any()}
         known = [edge_numbers(pairs, len(self.points)) for pairs in boundaries.values()]
-        cut = sides[rim[~np.isin(number[rim], np.concatenate([*known, []]))]]
+        cut = sides[rim[~np.isin(number[rim], np.concatenate([np.empty(0, np.int64), *known]))]]
         if len(cut):
             boundaries[CUT] = np.concatenate([boundaries.get(CUT, np.empty((0, 2), dtype=np.int64)), cut])
         used, rows = np.unique(triangles, return_inverse=True)

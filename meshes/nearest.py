@@ -83,25 +83,31 @@ def nearest_parameter(xy: FloatArray, edges: FloatArray) -> FloatArray:
     Around its vertex a parabola is V + T u + C u^2 with T normal to C, and |V + T u + C u^2 - x|^2 is stationary where
     u^3 + p u + q = 0, p = (T.T - 2 C.(x - V)) / 2 C.C, q = -T.(x - V) / 2 C.C.
     """
-    start, slope, bend = powers(edges)
+    _, slope, bend = powers(edges)
     chord = edges[:, 2] - edges[:, 0]
-    bent = _dot(bend, bend) > 1e-24 * _dot(slope, slope)
-    square = np.where(bent, _dot(bend, bend), 1.0)
+    t = _dot(xy - edges[:, 0], chord) / np.maximum(_dot(chord, chord), np.finfo(float).tiny)
+    t = np.clip(t, 0.0, 1.0)
+    bent = np.flatnonzero(_dot(bend, bend) > 1e-24 * _dot(slope, slope))
+    t[bent] = _parabola_parameter(xy[bent], edges[bent])
+    return t
+
+
+def _parabola_parameter(xy: FloatArray, edges: FloatArray) -> FloatArray:
+    start, slope, bend = powers(edges)
+    square = _dot(bend, bend)
     vertex = -_dot(slope, bend) / (2 * square)
     tangent = slope + 2 * vertex[:, None] * bend
     offset = xy - start - vertex[:, None] * (slope + vertex[:, None] * bend)
-    u = vertex + _outer_roots(
+    t = vertex + _outer_roots(
         (_dot(tangent, tangent) - 2 * _dot(bend, offset)) / (2 * square), -_dot(tangent, offset) / (2 * square)
     )
     # The vertex of a nearly straight edge is far away, and its root inexact.
     for _ in range(3):
-        from_x = start - xy + u[..., None] * (slope + u[..., None] * bend)
-        along = slope + 2 * u[..., None] * bend
+        from_x = start - xy + t[..., None] * (slope + t[..., None] * bend)
+        along = slope + 2 * t[..., None] * bend
         growth = _dot(along, along) + 2 * _dot(from_x, bend)
-        u = u - np.where(growth > 0, _dot(from_x, along) / np.where(growth > 0, growth, 1.0), 0.0)
-    straight = _dot(xy - start, chord) / np.maximum(_dot(chord, chord), np.finfo(float).tiny)
-    t = np.clip(np.where(bent, u, straight), 0.0, 1.0)
-    t = np.concatenate([t, np.zeros((1, len(xy))), np.ones((1, len(xy)))])
+        t = t - np.where(growth > 0, _dot(from_x, along) / np.where(growth > 0, growth, 1.0), 0.0)
+    t = np.concatenate([np.clip(t, 0.0, 1.0), np.zeros((1, len(xy))), np.ones((1, len(xy)))])
     distance = np.linalg.norm(start - xy + t[..., None] * (slope + t[..., None] * bend), axis=-1)
     return np.take_along_axis(t, np.argmin(distance, axis=0)[None], axis=0)[0]
 

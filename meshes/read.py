@@ -128,9 +128,8 @@ def _names(mesh: Any, points: FloatArray, edges: IntArray, wrong: list[str]) -> 
     lines = [np.asarray(block.data, dtype=np.int64)[:, :2] for block in mesh.cells if block.type in ("line", "line3")]
     numbers = edge_numbers(np.concatenate([*lines, np.empty((0, 2), dtype=np.int64)]), len(points)).tolist()
     found: dict[int, set[str]] = {}
-    for number, name in zip(numbers, line_names(mesh), strict=True):
-        if name:
-            found.setdefault(number, set()).add(name)
+    for number, given_names in zip(numbers, line_names(mesh), strict=True):
+        found.setdefault(number, set()).update(given_names)
     given = [found.get(number, set()) for number in edge_numbers(edges, len(points)).tolist()]
     without = np.array([not names for names in given])
     if without.any():

@@ -122,7 +122,7 @@ def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMe
     lengths = {"semi_axis_x": semi_axis_x, "semi_axis_y": semi_axis_y, "cell_size": cell_size}
     refuse(check_lengths("ellipse", **lengths))
     axes = np.array([semi_axis_x, semi_axis_y])
-    curve, size = Ellipse(semi_axis_x, semi_axis_y), min(cell_size, axes.min() / 2)
+    size = min(cell_size, axes.min() / 2)
     # A quarter is divided by the wanted length of edges, and the others mirror it.
     angle = np.linspace(0, np.pi / 2, 4001)
     middle = (angle[1:] + angle[:-1]) / 2
@@ -144,7 +144,7 @@ def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMe
     )
     outline = Outline(conics=np.array([[0.0, 0.0, semi_axis_x, semi_axis_y]]))
     points, triangles = fill(rim_points, rim, outline, size)
-    return PlateMesh(points, triangles, {"rim": rim.edges}, {"rim": curve}, outline)
+    return PlateMesh(points, triangles, {"rim": rim.edges}, {"rim": Ellipse(semi_axis_x, semi_axis_y)})
 
 
 def _ring(k: int, radius: float) -> FloatArray:

@@ -1,5 +1,6 @@
 // An L of 400 um with a round hole, in um; second-order cells, written by gmsh 4 with
 //   gmsh -2 -order 2 -format msh41 l_with_hole.geo
+// and, with -bin, l_with_hole_binary.msh
 SetFactory("Built-in");
 h = 60;
 Point(1) = {0, 0, 0, h};
