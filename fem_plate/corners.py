@@ -34,12 +34,14 @@ def exponent(angle: float, before: str, after: str, poisson_ratio: float) -> flo
     padded[:, 0] = padded[:, 2]  # conjugates mirror each other
     around = [np.roll(padded, shift, (0, 1))[1:-1, 1:-1] for shift in ((1, 0), (-1, 0), (0, 1), (0, -1))]
     for i, j in np.argwhere((grid <= np.min(around, axis=0)) & (grid < 0.05)).tolist():
+        start = np.array([real[i, j], imaginary[i, j]])
         found = minimize(
             lambda p: _least(np.array(p[0] + 1j * p[1]), angle, before, after, poisson_ratio).item(),
-            (real[i, j], imaginary[i, j]),
+            start,
             method="Nelder-Mead",
             bounds=[(STEP / 2, MOST + 1), (0.0, 2.0)],
-            options={"xatol": 1e-9, "fatol": 1e-12},
+            # Small enough for exponents close to each other.
+            options={"initial_simplex": start + STEP / 2 * np.eye(3, 2, -1), "xatol": 1e-9, "fatol": 1e-12},
         )
         whole = np.hypot(found.x[0] - round(found.x[0]), found.x[1]) < 1e-5  # w is a polynomial
         if found.fun < 1e-6 and found.x[0] > STEP / 2 and not whole:
