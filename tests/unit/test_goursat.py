@@ -13,7 +13,7 @@ SPOTS = np.array([(0.0, 0.0), (0.1, 0.05), (-0.2, 0.3), (0.31, -0.44)])
 CENTRE = [(0.0, 0.0)]
 
 
-@pytest.mark.parametrize(("source", "degree"), [((0.0, 0.0), 20), ((0.5, 0.3), 60), ((0.0, -0.8), 160)])
+@pytest.mark.parametrize(("source", "degree"), [((0.0, 0.0), 20), ((0.5, 0.3), 60), ((0.0, -0.7), 100)])
 def test_clamped_disc_is_boggios(source, degree):
     plate = goursat.solve([[Arc(0, (1, 1))]], [source], [1], degree=degree, poles=0)
     spots = SPOTS[1:]
