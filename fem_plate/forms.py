@@ -11,7 +11,11 @@ free T = 0, c = 0. With v to be g where it is prescribed and the moments and she
     int M(v):H(q) - R(v; q) - R(q; v - g) + rim[ gamma1/h T grad(v - g).grad q + gamma2/h^3 c (v - g) q ]
         = rim[ (M(g) n).(1 - T) grad q - (1 - c)(div M(g).n) q ],
 
-where R(v; q) = rim[ (M(v) n).T grad q - c (div M(v).n) q ].
+where R(v; q) = rim[ (M(v) n).T grad q - c (div M(v).n) q ] + ends[ +-(t.M(v) n) q ].
+
+The ends are those of free edges at held ones, + where such an edge ends and - where it starts, along t: what a free
+edge lacks is not the twist t.M n itself but the shear (d/dt)(t.M n) + div M.n, and integrating by parts along the edge
+leaves the twist at its ends, a force on the corner. On the right side the ends count for g too, with a minus.
 
 The rim is its true curve: only there does a curved clamped plate have no slope.
 """
@@ -45,6 +49,7 @@ class Rim(NamedTuple):
     slope: FloatArray  # (k, n, 2, 2), T
     value: FloatArray  # (k, n), c
     length: FloatArray  # (k,), h
+    twist: FloatArray  # (k, n, 2), t at the end of a free edge at a held one, -t at its start, 0 elsewhere
 
 
 def bending_law(poisson_ratio: float) -> FloatArray:
@@ -126,6 +131,9 @@ def rim_forms(at: Rim) -> tuple[FloatArray, FloatArray]:
     natural[..., 0, 5] = at.value - 1
     penalty[..., 1:3, 1:3] = NITSCHE_SLOPE / at.length[:, None, None, None] * at.slope
     penalty[..., 0, 0] = NITSCHE_VALUE / at.length[:, None] ** 3 * at.value
-    turned = np.swapaxes(reaction, -1, -2)
     weights = at.weights[..., None, None]
-    return weights * (penalty - reaction - turned), weights * (penalty - turned + natural)
+    corner = np.zeros_like(reaction)
+    corner[..., 0, 3:5] = at.twist
+    reaction = weights * reaction + corner
+    turned = np.swapaxes(reaction, -1, -2)
+    return weights * penalty - reaction - turned, weights * (penalty + natural) - turned - corner

@@ -29,7 +29,8 @@ class Slivers(NamedTuple):
 
 def rim_of(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[Rim, Slivers]:
     """The rim of a mesh and what its triangles lack of the plate, both dimensionless."""
-    s, weights = _unit_gauss(RIM_POINTS)
+    gauss, weights = _unit_gauss(RIM_POINTS)
+    s = np.concatenate([[0.0], gauss, [1.0]])  # the ends have no weight, but see `Rim.twist`
     edges = np.concatenate(list(mesh.boundaries.values()))
     triangle = _owners(mesh, edges)
     start, end = mesh.points[edges.T] / mesh.size
@@ -41,21 +42,27 @@ def rim_of(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[Rim, Slivers]:
     tangents = np.concatenate([tangents for _, tangents in arcs]) / mesh.size
     speed = np.linalg.norm(tangents, axis=-1)
     normal = np.stack([tangents[..., 1], -tangents[..., 0]], axis=-1) * (way[:, None] / speed)[..., None]
-    length = weights * speed
+    length = np.pad(weights, 1) * speed
     kinds = np.repeat([supports[name] for name in mesh.boundaries], [len(e) for e in mesh.boundaries.values()])
     slope, value = np.empty((*points.shape, 2)), np.empty(length.shape)
     for kind in set(kinds.tolist()):
         slope[kinds == kind], value[kinds == kind] = prescribed(kind, normal[kinds == kind])
-    rim = Rim(triangle, points, length, normal, slope, value, length.sum(axis=1))
+    held, twist = value[:, 0] > 0, np.zeros(points.shape)
+    for side, at, sign in ((0, 0, -1.0), (1, -1, 1.0)):
+        meets = ~held & np.isin(edges[:, side], edges[held])
+        twist[meets, at] = sign * tangents[meets, at] / speed[meets, at, None]
+    rim = Rim(triangle, points, length, normal, slope, value, length.sum(axis=1), twist)
 
-    chord = start[:, None] + s[:, None] * (end - start)[:, None]
-    bulge, growth = points - chord, tangents - (end - start)[:, None]
+    chord = start[:, None] + gauss[:, None] * (end - start)[:, None]
+    bulge, growth = points[:, 1:-1] - chord, tangents[:, 1:-1] - (end - start)[:, None]
     curved = np.abs(bulge).max(axis=(1, 2)) > 1e-14
     chord, bulge, growth = chord[curved, None], bulge[curved, None], growth[curved, None]  # (k, 1, along, 2)
-    across = s[:, None, None]
+    across = gauss[:, None, None]
     area = _cross(bulge, (end - start)[curved, None, None] + across * growth) * way[curved, None, None]
     inside = (chord + across * bulge).reshape(len(bulge), RIM_POINTS**2, 2)
-    return rim, Slivers(triangle[curved], inside, (np.outer(weights, weights) * area).reshape(len(bulge), RIM_POINTS**2))
+    return rim, Slivers(
+        triangle[curved], inside, (np.outer(weights, weights) * area).reshape(len(bulge), RIM_POINTS**2)
+    )
 
 
 def _owners(mesh: PlateMesh, edges: IntArray) -> IntArray:
