@@ -64,9 +64,10 @@ def modes(model: PlateModel, held: FloatArray, count: int, unit: float) -> Modes
         c = to_forces @ v
         return np.asarray(mass @ v + cross @ c + to_forces.T @ (cross.T @ v + inner @ c))
 
-    # K's inverse knows the pins and not the held points; rows of correction with their weights turn it into the
-    # inverse of the stiffness wanted, in which rigid motions are moved out of the way.
-    pinned = model.pins.toarray() + (model.pins @ answers) @ to_forces
+    # K's inverse knows the springs and not the held points; rows of correction with their weights turn it into the
+    # inverse of the stiffness wanted, in which rigid motions are moved out of the way. The springs bear a unit force:
+    # that is what psi_j weighs on each motion.
+    sprung = model.mean.T + model.motions(x).T @ to_forces
     rigid = space.linear() @ model.rigid
     if rigid.size:
         free = np.linalg.svd(take @ rigid)[2] if len(x) else np.eye(rigid.shape[1])
@@ -75,8 +76,8 @@ def modes(model: PlateModel, held: FloatArray, count: int, unit: float) -> Modes
     moved = with_mass(rigid)
     if rigid.size:
         moved = moved @ np.linalg.inv(np.linalg.cholesky(rigid.T @ moved)).T
-    rows = np.concatenate([take.toarray(), pinned, moved.T])
-    shares = np.concatenate([np.ones(len(pinned)), np.full(moved.shape[1], -1 / RIGID_SHIFT)])
+    rows = np.concatenate([take.toarray(), sprung, moved.T])
+    shares = np.concatenate([np.ones(len(sprung)), np.full(moved.shape[1], -1 / RIGID_SHIFT)])
     inverse_weights = np.zeros((len(rows), len(rows)))
     inverse_weights[: len(x), : len(x)] = green
     inverse_weights[len(x) :, len(x) :] = np.diag(shares)
