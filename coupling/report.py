@@ -53,11 +53,15 @@ def warnings(summary: Summary) -> list[str]:
     """What a user must know before trusting the numbers."""
     s = summary
     said = []
-    error = max(s.plate_error, s.surface_error)
-    if error > NUMERICAL_ERROR:
+    if s.plate_error > NUMERICAL_ERROR:
         said.append(
-            f"The plate's shapes are only good to {error:.1e} of a stroke; a smaller plate.cell_size, or actuators "
-            "further from the rim, make them better."
+            f"The plate's shapes are only good to {s.plate_error:.1e} of a stroke; a smaller plate.cell_size, or "
+            "actuators further from the rim, make them better."
+        )
+    if s.surface_error > max(NUMERICAL_ERROR, s.plate_error):
+        said.append(
+            f"The surface that the part sees follows the plate's shapes only to {s.surface_error:.1e} of a stroke: so "
+            "it is next to a re-entrant corner, a narrow slot, or an actuator near the rim."
         )
     if s.path_error is None or s.path_error > NUMERICAL_ERROR * max(s.path_length, s.distance):
         said.append("The path magnifies small errors: trust the statistics of many starts more than the digits of one.")

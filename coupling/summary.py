@@ -167,5 +167,6 @@ def _part_sag(plate: Plate, shapes: InfluenceShapes, trajectory: Trajectory, for
     if np.hypot(*(shapes.points - start).T).min() < SAME_PLACE * shapes.size:
         return 0.0  # the part stands on an actuator, which does not give
     springs = np.append(shapes.springs, 0.0)
-    with_part = plate.influence(np.concatenate([shapes.points, start]), springs)
+    coarse = Plate(plate.mesh, plate.section, plate.supports)  # three digits are enough
+    with_part = coarse.influence(np.concatenate([shapes.points, start]), springs)
     return float(with_part.evaluate(start)[0][0, -1]) * force

@@ -7,6 +7,7 @@ import pytest
 import pyvista
 
 from coupling import read_case, report, run_case
+from coupling.rim import onto_plate
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 pytestmark = pytest.mark.compiled
@@ -37,11 +38,24 @@ def test_part_stands_on_the_surface_at_every_step(result):
         time = part.GetTimeValue()
         times.append(time)
         x, y, z = pyvista.wrap(part.GetOutputDataObject(0)).points[0]
-        radius = result.case.plate.radius
-        inward = min(1.0, radius / np.hypot(x, y))  # a part that left is drawn at the rim
-        assert z == pytest.approx(result.surface.evaluate((x * inward, y * inward), time).w[0], abs=1e-11)
+        place = onto_plate(result.shapes.outline, np.array([[x, y]]))  # a part that left is drawn at the rim
+        assert z == pytest.approx(result.surface.evaluate(place, time).w[0], abs=1e-11)
     assert times[0] == 0.0
     assert times[-1] == pytest.approx(result.trajectory.time[-1])
+
+
+def test_the_drawn_plate_is_the_plate(result):
+    """Its area is that of the solved mesh, and no cell of it is turned over."""
+    grid = pyvista.read(str(result.files[0]))
+    drawn = areas(grid.points[:, :2].astype(float), grid.cells_dict[5])
+    solved = result.shapes.model.mesh
+    assert (drawn > 0).all()
+    assert drawn.sum() == pytest.approx(areas(solved.points, solved.triangles).sum(), rel=1e-3)
+
+
+def areas(points, triangles):
+    (a, b), (c, d) = (points[triangles[:, k]].T - points[triangles[:, 0]].T for k in (1, 2))
+    return (a * d - b * c) / 2
 
 
 def test_plate_is_lifted_by_the_drives_at_every_step(result):
