@@ -15,6 +15,7 @@ from meshes import Outline
 
 FloatArray = NDArray[np.float64]
 
+ROWS = 4096  # unknowns combined at once
 MOST_DENSE = 2000  # actuators whose compliance and stiffness are worth a dense matrix
 
 
@@ -81,44 +82,8 @@ class InfluenceShapes(Shapes, Estimated):
         self.outline = model.mesh.outline
         self.springs = springs
         self._force_unit = rigidity / self.size**2  # N/m: of strengths per metre
-        x = points / self.size
-        answers = model.under_forces(x)
-        green = point_value(x, x) + np.asarray(model.space.point_values(x) @ answers)
-        self._green = (green + green.T) / 2
-        self.strengths, rigid = self._solve(x)
-        count = len(points)
-        self.field = Field(
-            model.space, answers @ self.strengths, x, self.strengths, model.rigid @ rigid, np.zeros(count)
-        )
-
-    def _solve(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Forces (N, N) and rigid motions (r, N) of the shapes.
-
-        The held: (G + 1/k) P + R c = h.  The floating: P given.  All: R^T P = 0.
-        """
-        held = self.springs > 0
-        motions = self.model.motions(x)
-        r = motions.shape[1]
-        if r and np.linalg.matrix_rank(motions[held], tol=1e-9) < r:
-            raise ValueError(
-                "Input points of influence leave the plate a rigid motion: its supports and the actuators that hold "
-                f"it, {int(held.sum())}, must fix three points that are not on one line"
-            )
-        drives = np.eye(len(x))
-        given = drives[~held] / self._force_unit
-        matrix = np.block(
-            [
-                [self._green[np.ix_(held, held)] + np.diag(self._force_unit / self.springs[held]), motions[held]],
-                [motions[held].T, np.zeros((r, r))],
-            ]
-        )
-        right = np.concatenate(
-            [drives[held] - self._green[np.ix_(held, ~held)] @ given, -motions[~held].T @ given], axis=0
-        )
-        answer = np.linalg.solve(matrix, right)
-        strengths = np.empty((len(x), len(x)))
-        strengths[held], strengths[~held] = answer[: held.sum()], given
-        return strengths, answer[held.sum() :]
+        self.field, self._green = held_shapes(model, points / self.size, springs, self._force_unit)
+        self.strengths = self.field.forces
 
     @property
     def compliance(self) -> FloatArray:
@@ -140,6 +105,43 @@ class InfluenceShapes(Shapes, Estimated):
 
     def smooth(self, xy: ArrayLike) -> FloatArray:
         return self.field.smooth(np.asarray(xy, dtype=float) / self.size)[0]
+
+
+def held_shapes(
+    model: PlateModel, x: FloatArray, springs: FloatArray, force_unit: float, wanted: NDArray[np.int64] | None = None
+) -> tuple[Field, FloatArray]:
+    """The shapes of actuators at x (N, 2), all of them or the wanted, and the compliance (N, N); dimensionless.
+
+    springs: (N,) N/m.  force_unit: N/m, of dimensionless stiffness.  For the held, with forces P and rigid motions c,
+    (G + 1/springs) P + R c = h; the forces of the floating are given, one newton; and R^T P = 0 over all.
+    Raises ValueError when supports and actuators leave the plate a rigid motion.
+    """
+    answers = model.under_forces(x)
+    green = point_value(x, x) + np.asarray(model.space.point_values(x) @ answers)
+    green = (green + green.T) / 2
+    held = springs > 0
+    motions = model.motions(x)
+    r = motions.shape[1]
+    if r and (held.sum() < r or np.linalg.matrix_rank(motions[held], tol=1e-9) < r):
+        raise ValueError(
+            "Input points of influence leave the plate a rigid motion: its supports and the actuators that hold "
+            f"it, {int(held.sum())}, must fix three points that are not on one line"
+        )
+    drives = np.eye(len(x)) if wanted is None else np.eye(len(x))[:, wanted]
+    drives = drives * np.where(held if wanted is None else held[wanted], 1.0, 1 / force_unit)
+    stiff = green[np.ix_(held, held)] + np.diag(force_unit / springs[held])
+    matrix = np.block([[stiff, motions[held]], [motions[held].T, np.zeros((r, r))]])
+    lifted = drives[held] - green[np.ix_(held, ~held)] @ drives[~held]
+    answer = np.linalg.solve(matrix, np.concatenate([lifted, -motions[~held].T @ drives[~held]]))
+    forces = drives.copy()
+    forces[held] = answer[: held.sum()]
+    rigid = model.rigid @ answer[held.sum() :]
+    if wanted is None:
+        for start in range(0, len(answers), ROWS):  # in place: there is not always room for two
+            answers[start : start + ROWS] = answers[start : start + ROWS] @ forces
+    else:
+        answers = answers @ forces
+    return Field(model.space, answers, x, forces, rigid, np.zeros(forces.shape[1])), green
 
 
 def check_on_plate(outline: Outline, xy: FloatArray, size: float) -> None:

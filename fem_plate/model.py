@@ -19,6 +19,9 @@ from meshes import PlateMesh
 FloatArray = NDArray[np.float64]
 
 
+TOGETHER = 128  # forces answered at once, to bound memory
+
+
 class PlateModel:
     """A plate on one mesh.
 
@@ -106,7 +109,10 @@ class PlateModel:
 
     def under_forces(self, sources: FloatArray) -> FloatArray:
         """The smooth parts (unknowns, N) of the answers to unit forces at sources (N, 2)."""
-        answers = self._answer([point_derivatives(self.space.rim.points, source) for source in sources])
+        answers = np.empty((self.unknowns, len(sources)), order="F")
+        for start in range(0, len(sources), TOGETHER):
+            part = slice(start, start + TOGETHER)
+            answers[:, part] = self._answer([point_derivatives(self.space.rim.points, at) for at in sources[part]])
         # The springs answer to the known functions too, by a rigid motion.
         return answers - self.space.linear() @ (self.rigid @ self._known_means(sources)) if self.rigid.size else answers
 

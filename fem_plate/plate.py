@@ -9,11 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fem_plate import vibration
+from fem_plate.cutting import Cutter
 from fem_plate.deflection import Deflection
 from fem_plate.field import Estimated
 from fem_plate.grading import corner_rows, fineness, graded, singular_corners
-from fem_plate.influence import InfluenceShapes, check_points
+from fem_plate.influence import MOST_DENSE, InfluenceShapes, check_points
 from fem_plate.model import PlateModel
+from fem_plate.patched import PatchedShapes
+from fem_plate.patches import Array, spacing
 from fem_plate.section import PlateSection
 from fem_plate.supports import by_boundary
 from fem_plate.vibration import Modes
@@ -22,6 +25,7 @@ from meshes import PlateMesh
 FloatArray = NDArray[np.float64]
 Answer = TypeVar("Answer", bound=Estimated)
 
+TRUNCATION = 1e-6  # of unit shapes, where they are found on patches
 MOST_UNKNOWNS = 100_000  # refinement to a tolerance stops here
 REFINEMENT_GAIN = 2.0**5  # halving the cells divides the error of w by this at least (observed: 2^5.5 and more)
 
@@ -63,9 +67,13 @@ class Plate:
             self._models = {key: PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)}
         return self._models[key]
 
-    def influence(self, points: ArrayLike, stiffness: ArrayLike | None = None) -> InfluenceShapes:
+    def influence(
+        self, points: ArrayLike, stiffness: ArrayLike | None = None, truncation: float | None = None
+    ) -> InfluenceShapes | PatchedShapes:
         """The influence shapes of actuators at points (N, 2) [m].
 
+        truncation: with one, shapes are found on patches and end where they are below it; more than 2 000 actuators
+        are always taken so, with a truncation of 1e-6 unless given.
         stiffness: (N,) N/m or one for all, of springs in series with the actuators; inf is a rigid one (the default),
         0 one that floats and is driven by a force.
         Raises ValueError, naming every point that is not inside the rim or stands on another and every stiffness below
@@ -82,6 +90,8 @@ class Plate:
                 )
         check_points(points, self.mesh.outline.gap(points), self.mesh.size)
         rigidity = self.section.rigidity
+        if truncation is not None or len(points) > MOST_DENSE:
+            return self._patched(points, springs, truncation or TRUNCATION)
         return self._estimated(points, lambda model: InfluenceShapes(model, points, rigidity, springs))
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
@@ -124,6 +134,12 @@ class Plate:
             raise ValueError(f"Input count of frequencies must be at least 1; got {count!r}")
         inertia = density * self.section.thickness * self.mesh.size**4
         return vibration.modes(model, points, count, self.section.rigidity / inertia)
+
+    def _patched(self, points: FloatArray, springs: FloatArray, truncation: float) -> PatchedShapes:
+        pitch, rigidity = spacing(points), self.section.rigidity
+        cutter = Cutter(self.mesh, self.supports, self._fineness, self._corners, points, pitch)
+        array = Array(cutter, points, springs, rigidity, self.section.poisson_ratio)
+        return PatchedShapes(array, truncation, self.mesh.size, self.mesh.outline)
 
     def _estimated(self, points: FloatArray, answer: Callable[[PlateModel], Answer]) -> Answer:
         """An answer that can estimate its error, refined to the tolerance where there is one."""

@@ -22,6 +22,7 @@ IntArray = NDArray[np.int64]
 
 CHUNK = 100_000  # points times functions evaluated at once, to bound memory
 QUADRATURE = 6  # points a side of a triangle, where integrands are not polynomials
+BEYOND = 0.1  # of a triangle: points this far beyond the mesh still count as on it, as between chord and rim
 NEAREST = (12, 200)  # triangles searched for a point: first few, then for the points not found many
 
 
@@ -154,22 +155,31 @@ class PlateSpace:
     def _tree(self) -> cKDTree:
         return cKDTree(self.triangles.centre)
 
+    def holds(self, xy: FloatArray) -> NDArray[np.bool_]:
+        """Whether points (n, 2) lie in the mesh or hardly beyond it, (n,)."""
+        return self._find(xy)[1] > -BEYOND
+
     def _locate(self, xy: FloatArray) -> IntArray:
         """The triangle that holds each point (n, 2), or the nearest one for a point between a chord and the rim."""
-        found = np.empty(len(xy), dtype=np.int64)
+        return self._find(xy)[0]
+
+    def _find(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
+        """The triangle of each point (n, 2) and the smallest of the barycentric coordinates there."""
+        found, inside = np.empty(len(xy), dtype=np.int64), np.empty(len(xy))
         missing = np.arange(len(xy))
         for nearest in NEAREST:
             count = min(nearest, len(self.triangles.centre))
             _, candidates = self._tree.query(xy[missing], k=range(1, count + 1))
             x = self.triangles.reference(xy[missing].repeat(count, 0)[:, None], candidates.reshape(-1)) + 1 / 3
             u, v = x.reshape(-1, count, 2).transpose(2, 0, 1)
-            inside = np.minimum(np.minimum(u, v), 1 - u - v)  # the smallest barycentric coordinate
-            best = np.argmax(inside, axis=1)
+            smallest = np.minimum(np.minimum(u, v), 1 - u - v)
+            best = np.argmax(smallest, axis=1)
             found[missing] = candidates[np.arange(len(missing)), best]
-            missing = missing[inside.max(axis=1) < -1e-9]
+            inside[missing] = smallest.max(axis=1)
+            missing = missing[inside[missing] < -1e-9]
             if not missing.size:
                 break
-        return found
+        return found, inside
 
 
 def _entities(points: IntArray, corners: IntArray) -> tuple[IntArray, IntArray]:

@@ -1,0 +1,102 @@
+"""The influence shapes of a large array, put together from patches."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import coo_matrix, csr_matrix
+
+from fem_plate.field import Fields
+from fem_plate.influence import Shapes
+from fem_plate.patches import Array
+from fem_plate.singular import point_value
+from meshes import Outline
+
+FloatArray = NDArray[np.float64]
+
+MOST_VALUES = 20_000_000  # points times actuators of which all shapes may be asked for at once
+
+
+class PatchedShapes(Shapes):
+    """Influence shapes of many actuators, each 0 beyond its patch; made by `Plate.influence`.
+
+    strengths: (N, N) sparse.  truncation_error: the largest deflection left out of a shape, measured.
+    """
+
+    def __init__(self, array: Array, truncation: float, size: float, outline: Outline) -> None:
+        self.tiles = array.tiles(truncation)
+        self.points, self.springs = np.ascontiguousarray(array.points), array.springs
+        self.size, self.outline = size, outline
+        self._array = array
+        self._force_unit = array.rigidity / size**2
+        self.truncation_error = max(tile.patch.truncation for tile in self.tiles)
+        self.strengths: csr_matrix = self._strengths()
+
+    def _strengths(self) -> csr_matrix:
+        data, rows, columns = [], [], []
+        for tile in self.tiles:
+            patch = tile.patch
+            forces = patch.field.forces * (self.size / patch.size) ** 2  # of the same dimensionless unit
+            core = tile.rows[patch.core]
+            data.append(forces.ravel())
+            rows.append(np.repeat(tile.rows, len(core)))
+            columns.append(np.tile(core, len(tile.rows)))
+        flat = [np.concatenate(parts) for parts in (data, rows, columns)]
+        return coo_matrix((flat[0], (flat[1], flat[2])), shape=(len(self.points),) * 2).tocsr()
+
+    @property
+    def unknowns(self) -> int:
+        """How many unknowns the largest patch has."""
+        return max(tile.patch.field.space.unknowns for tile in self.tiles)
+
+    @cached_property
+    def error_estimate(self) -> float:
+        """Largest error in w of a unit shape: what is left out, or what cells of half the size change on a patch."""
+        inner = max(self.tiles, key=lambda tile: len(tile.rows))
+        outer = max(self.tiles, key=lambda tile: tile.patch.field.space.unknowns)
+        return max(self.truncation_error, self._array.difference(inner), self._array.difference(outer))
+
+    @property
+    def stiffness(self) -> csr_matrix:
+        """Force at i that a unit stroke of j takes, (N, N) sparse [N/m]; of a floating one, per unit of its force."""
+        return self.strengths * self._force_unit
+
+    @property
+    def compliance(self) -> FloatArray:
+        """Raises ValueError: every entry counts, and there are too many."""
+        raise ValueError(
+            f"Input points of influence must be at most 2000 for a compliance, which is dense; got {len(self.points)}"
+        )
+
+    def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:
+        n, count = len(x), len(self.points)
+        if weights is None and n * count > MOST_VALUES:
+            raise ValueError(
+                f"Input xy of evaluate must be at most {MOST_VALUES // count} points for all {count} shapes at once; "
+                f"got {n}; give weights for their sum"
+            )
+        width = count if weights is None else weights.shape[1]
+        value, gradient, hessian = np.zeros((n, width)), np.zeros((n, width, 2)), np.zeros((n, width, 2, 2))
+        for tile in self.tiles:
+            patch = tile.patch
+            ratio, core = self.size / patch.size, tile.rows[patch.core]
+            local = (x * self.size - tile.cut.origin) / patch.size
+            box = patch.box / patch.size
+            near = np.flatnonzero(((local >= box[0]) & (local <= box[1])).all(axis=1))
+            near = near[patch.field.space.holds(local[near])]
+            if not near.size:
+                continue
+            field = patch.field if weights is None else patch.field.weighted(weights[core])
+            at = np.ix_(near, core) if weights is None else near
+            w, slope, bend = field.evaluate(local[near])
+            value[at] += w
+            gradient[at] += slope * ratio
+            hessian[at] += bend * ratio**2
+        return value, gradient, hessian
+
+    def smooth(self, xy: ArrayLike) -> FloatArray:
+        x = np.asarray(xy, dtype=float) / self.size
+        singular = point_value(x, self.points / self.size)
+        return self.fields(x, None)[0] - np.asarray((self.strengths.T @ singular.T).T)
