@@ -18,6 +18,7 @@ from coupling.results import write_results
 from coupling.summary import Summary, summarise
 from coupling.surface import surface_motion
 from fem_plate import InfluenceShapes, Plate, PlateSection
+from fem_plate.influence import MOST_DENSE
 from particle import Drive, SurfaceMotion, Trajectory
 from particle.friction import Contact
 
@@ -74,8 +75,11 @@ def build_plate(case: Case) -> Plate:
 
 
 def find_shapes(case: Case, plate: Plate) -> InfluenceShapes:
-    """The influence shapes of the case's actuators."""
-    return plate.influence([actuator.position for actuator in case.actuators], springs(case))
+    """The influence shapes of the case's actuators; ValueError when they are too many for a run."""
+    shapes = plate.influence([actuator.position for actuator in case.actuators], springs(case))
+    if not isinstance(shapes, InfluenceShapes):
+        raise ValueError(f"Input actuators of a run must be at most {MOST_DENSE}; got {len(case.actuators)}")
+    return shapes
 
 
 def springs(case: Case) -> NDArray[np.float64]:

@@ -88,7 +88,8 @@ class CellFit:
         self.centres = grid[on_plate]
         inside = gap[on_plate] > OVERHANG * self.width / np.sqrt(2)
         self.cells = np.zeros((len(self.centres), len(shapes.points), (DEGREE + 1) * (DEGREE + 2) // 2))
-        self._fit_inner(np.flatnonzero(inside))
+        if inside.any():
+            self._fit_inner(np.flatnonzero(inside))
         rim = np.concatenate(rim_curves(shapes.outline, self.width / NODES))
         for cell in np.flatnonzero(~inside).tolist():
             self._fit_at_rim(cell, rim)
