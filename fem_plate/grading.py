@@ -53,7 +53,10 @@ def graded(mesh: PlateMesh, fine: float, corners: list[Singular], points: FloatA
     small in comparison as cells of `fine` times the plate's size are for an actuator at FAR from the rim. Towards a
     corner they shrink in proportion to their distance, until what is left there changes w by less than those do.
     """
-    images = cKDTree(mesh.mirrored(points)) if points is not None and len(points) else None
+    images, nearest = None, 0.0
+    if points is not None and len(points):
+        # An image across a hole may come to lie on the plate's other rim. None is nearer to the plate than its point.
+        images, nearest = cKDTree(mesh.mirrored(points)), mesh.outline.gap(points).min()
     error = CORNER_ERROR * fine**6
     least = np.array([mesh.size * max(error ** (1 / (2 * c.exponent)), LEAST) for c in corners])
     places = np.array([c.point for c in corners]).reshape(-1, 2)
@@ -61,7 +64,7 @@ def graded(mesh: PlateMesh, fine: float, corners: list[Singular], points: FloatA
         centre = mesh.points[mesh.triangles].mean(axis=1)
         allowed = np.full(len(centre), np.inf)
         if images is not None:
-            allowed = fine / FAR * images.query(centre)[0]
+            allowed = fine / FAR * np.maximum(images.query(centre)[0], nearest)
         for place, smallest in zip(places, least, strict=True):
             distance = np.hypot(*(centre - place).T)
             allowed = np.minimum(allowed, np.maximum(min(CORNER_SLOPE * fine, 1.0) * distance, smallest))
