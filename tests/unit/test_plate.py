@@ -37,6 +37,13 @@ def test_an_actuator_near_the_rim_makes_cells_smaller_there_and_hardly_elsewhere
     assert np.abs(np.hypot(*mesh.points[mesh.boundaries["rim"][:, 0]].T) / radius - 1).max() < 1e-15
 
 
+def test_an_actuator_whose_image_falls_on_the_other_rim_of_a_hole_is_like_any_other(section):
+    """At (0.5, 0) the hole of radius 0.1 reflects it to (-0.3, 0), and halfway back is the hole's rim."""
+    plate = Plate(annulus(0.1, 1.0, 0.4), section)
+    exactly, nearly = (plate.model(np.array([[x, 0.0]])).unknowns for x in (0.5, 0.51))
+    assert exactly < 2 * nearly
+
+
 def test_cells_shrink_towards_singular_corners_only(section):
     clamped = Plate(polygon(L_SHAPE, 0.25), section).model().mesh
     size = clamped.cell_sizes

@@ -1,0 +1,139 @@
+"""Modes: what they are by definition, what is refused, and points that hold them."""
+
+import numpy as np
+import plate_modes
+import pytest
+
+from fem_plate import Plate, PlateSection
+from meshes import annulus, disc, rectangle
+
+UNIT = PlateSection(youngs_modulus=12 * (1 - 0.3**2), poisson_ratio=0.3, thickness=1.0, density=1.0)
+HELD = np.array([[0.37, 0.21], [-0.6, 0.1], [0.1, -0.7]])
+
+
+def omega(plate, count, held=None):
+    return 2 * np.pi * plate.frequencies(count, held)
+
+
+@pytest.fixture(scope="module")
+def plate():
+    return Plate(disc(1.0, 0.2), UNIT)
+
+
+def test_frequencies_ascend_and_repeat_the_repeated_ones(plate):
+    found = omega(plate, 8)
+    assert (np.diff(found) >= -1e-9).all()
+    assert found[1] == pytest.approx(found[2], rel=1e-10) and found[3] == pytest.approx(found[4], rel=1e-10)
+
+
+def test_same_bits_every_time(plate):
+    assert (plate.frequencies(3, HELD) == plate.frequencies(3, HELD)).all()
+
+
+def test_frequencies_go_with_the_thickness_over_the_square_of_the_size(section):
+    small = Plate(disc(300e-6, 60e-6), section).frequencies(3)
+    unit = Plate(disc(1.0, 0.2), UNIT).frequencies(3)
+    factor = np.sqrt(section.rigidity / (section.density * section.thickness)) / 300e-6**2
+    assert small == pytest.approx(unit * factor, rel=1e-10)
+
+
+@pytest.mark.parametrize("supports", ["clamped", "simply-supported", "free"])
+@pytest.mark.parametrize("held", [None, HELD], ids=["plain", "held"])
+def test_modes_are_1_at_most_and_orthogonal_over_the_plate(supports, held):
+    modes = Plate(disc(1.0, 0.2), UNIT, supports).modes(5, held)
+    xy, weights = modes.model.space.quadrature
+    shapes = modes.field.values(xy)
+    products = shapes.T @ (weights[:, None] * shapes)
+    scale = np.sqrt(np.diag(products))
+    assert np.abs(products / scale / scale[:, None] - np.eye(5)).max() < 1e-6
+    assert np.abs(modes.field.values(modes.model.space.points)).max(axis=0) == pytest.approx(np.ones(5), abs=1e-12)
+    if held is not None:
+        assert np.abs(modes.evaluate(held)[0]).max() < 1e-8
+
+
+def test_free_modes_are_in_balance():
+    """No rigid motion is left in them."""
+    modes = Plate(rectangle(2.0, 1.4, 0.4), UNIT, "free").modes(4)
+    xy, weights = modes.model.space.quadrature
+    for function in (np.ones(len(xy)), *xy.T):
+        assert np.abs((weights * function) @ modes.field.values(xy)).max() < 1e-8
+
+
+def test_derivatives_of_modes_are_those_of_their_values(plate):
+    modes, spots, step = plate.modes(3, HELD), np.array([[0.2, -0.3], [-0.5, 0.4]]), 1e-4
+    _, gradient, hessian = modes.evaluate(spots)
+    for axis in range(2):
+        shift = step * np.eye(2)[axis]
+        after, before = modes.evaluate(spots + shift), modes.evaluate(spots - shift)
+        assert np.abs((after[0] - before[0]) / (2 * step) - gradient[..., axis]).max() < 1e-6
+        assert np.abs((after[1] - before[1]) / (2 * step) - hessian[..., axis]).max() < 1e-4
+
+
+@pytest.mark.parametrize("supports", ["clamped", "simply-supported", "free", {"left": "simply-supported"}])
+def test_rayleighs_quotient_of_a_held_plate_rises_with_every_point(supports):
+    """Courant: each new point raises no frequency above the next one before."""
+    plate = Plate(rectangle(2.0, 1.4, 0.4), UNIT, supports)
+    points = np.array([[0.37, 0.21], [-0.6, 0.1], [0.1, -0.5], [0.7, 0.6]])
+    rigid = {"free": 3}.get(supports, 0) if isinstance(supports, str) else 1
+    before = np.concatenate([np.zeros(rigid), omega(plate, 8 - rigid)])
+    for k in range(1, 5):
+        left = max(0, rigid - k)
+        now = np.concatenate([np.zeros(left), omega(plate, 7 - left, points[:k])])
+        assert (now >= before[:7] * (1 - 1e-5)).all() and (now <= before[1:8] * (1 + 1e-5)).all()
+        before = np.append(now, np.inf)
+
+
+HELD_PLATES = {
+    "simply supported": (dict.fromkeys(("left", "right", "bottom", "top"), "simply-supported"), HELD, 6e-3),
+    "free": ({}, HELD, 3e-3),
+    "hinge": ({"left": "simply-supported"}, HELD[:1], 3e-3),
+    "free on one point": ({}, HELD[:1], 3e-3),
+}
+
+
+@pytest.mark.parametrize("name", HELD_PLATES)
+def test_a_held_plate_is_just_below_ritzs_upper_bounds(name):
+    """Polynomials converge slowly at a held point, from above; finite elements of two sizes agree much better."""
+    supports, held, gap = HELD_PLATES[name]
+    kinds = tuple(supports.get(side, "free") for side in ("left", "right", "bottom", "top"))
+    all_of, evaluate = plate_modes.ritz_rectangle(2.0, 2.0, kinds, degree=24)
+    values = evaluate(held)
+    basis = np.linalg.svd(values)[2][len(held) :].T  # combinations of modes that vanish at the held points
+    bounds = np.sqrt(np.maximum(np.linalg.eigvalsh(basis.T @ (all_of[:, None] ** 2 * basis)), 0))
+    bounds = bounds[bounds > 1e-3][:4]
+    coarse, fine = (omega(Plate(rectangle(2.0, 2.0, h), UNIT, supports), 4, held) for h in (0.4, 0.25))
+    assert coarse == pytest.approx(fine, rel=1e-5)
+    assert ((fine < bounds * (1 + 1e-6)) & (fine > bounds * (1 - gap))).all()
+
+
+def test_very_many_held_points_are_allowed():
+    held = np.random.default_rng(1).uniform(-0.6, 0.6, (60, 2))
+    assert omega(Plate(disc(1.0, 0.25), UNIT), 1, held)[0] > 30
+
+
+def test_an_annulus_vibrates_faster_than_its_disc():
+    assert omega(Plate(annulus(0.3, 1.0, 0.3), UNIT), 1)[0] > 2 * omega(Plate(disc(1.0, 0.3), UNIT), 1)[0]
+
+
+def test_without_density_it_says_what_is_missing():
+    bare = Plate(disc(1.0, 0.5), PlateSection(169e9, 0.3, 5e-6))
+    with pytest.raises(ValueError, match="^Input density of PlateSection must be given for frequencies; got None$"):
+        bare.frequencies(1)
+
+
+@pytest.mark.parametrize("count", [0, -1, 10**6])
+def test_the_count_must_be_possible(plate, count):
+    with pytest.raises(ValueError, match=f"^Input count of frequencies must be .* got {count}$"):
+        plate.frequencies(count)
+
+
+def test_a_held_point_beyond_the_rim_or_twice_is_refused(plate):
+    with pytest.raises(ValueError, match="inside the rim"):
+        plate.frequencies(1, held=[(2.0, 0)])
+    with pytest.raises(ValueError, match="points 1 and 2 must differ"):
+        plate.frequencies(1, held=[(0.2, 0), (0.2, 0)])
+
+
+def test_evaluating_beyond_the_rim_is_refused(plate):
+    with pytest.raises(ValueError, match="must lie on the plate"):
+        plate.modes(1).evaluate([[1.0, 1.0]])
