@@ -11,6 +11,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 CELLS = 3000  # at least
+ON_EDGE = 1e-9  # of a cell's area: smaller pieces are none
 LEAST_AREA = 0.2  # of the smallest cell around a point, below which a cell must not shrink when the point is moved
 
 
@@ -26,7 +27,8 @@ def drawn_plate(mesh: PlateMesh, actuators: FloatArray) -> tuple[FloatArray, Int
     fixed[np.concatenate(list(mesh.boundaries.values())).ravel()] = True
     rows = []
     for place in actuators:
-        cell = int(np.argmax(_coordinates(points, triangles, place).min(axis=1)))
+        shares = _coordinates(points, triangles, place)
+        cell = int(np.argmax(shares.min(axis=1)))
         corners = triangles[cell]
         row = int(corners[np.argmin(np.linalg.norm(points[corners] - place, axis=1))])
         moved = points.copy()
@@ -37,8 +39,10 @@ def drawn_plate(mesh: PlateMesh, actuators: FloatArray) -> tuple[FloatArray, Int
         else:
             row = len(points)
             points = np.concatenate([points, place[None]])
-            pieces = np.stack([corners, np.roll(corners, -1), np.full(3, row)], axis=1)
-            triangles = np.concatenate([np.delete(triangles, cell, axis=0), pieces])
+            cells = triangles[shares.min(axis=1) > -ON_EDGE]  # two where the place is on an edge
+            sides = np.stack([cells, np.roll(cells, -1, axis=1), np.full(cells.shape, row)], axis=2)
+            pieces = sides[np.roll(shares, -2, axis=1)[shares.min(axis=1) > -ON_EDGE] > ON_EDGE]
+            triangles = np.concatenate([triangles[shares.min(axis=1) <= -ON_EDGE], pieces])
         fixed[row] = True
         rows.append(row)
     order = np.concatenate([rows, np.setdiff1d(np.arange(len(points)), rows)]).astype(np.int64)

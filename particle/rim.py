@@ -34,14 +34,21 @@ def rim_gap(surface: Any, x: float, y: float) -> float:
         gap = ellipse_gap(x - conic[0], y - conic[1], conic[2], conic[3])
         inside = inside != (gap > 0.0)
         nearest = min(nearest, abs(gap))
-    for k in range(len(surface.edges)):
-        edge = surface.edges[k]
-        inside = inside != crosses(edge, x, y)
-        m_x, m_y = edge[1]
-        # No point of an edge is farther from its middle than its farther end.
-        reach = max(math.hypot(edge[0, 0] - m_x, edge[0, 1] - m_y), math.hypot(edge[2, 0] - m_x, edge[2, 1] - m_y))
-        if math.hypot(x - m_x, y - m_y) - reach < nearest:
-            nearest = min(nearest, edge_distance(edge, x, y))
+    e, square = surface.edges, nearest * nearest
+    for k in range(len(e)):
+        square = min(square, (x - e[k, 1, 0]) ** 2 + (y - e[k, 1, 1]) ** 2)
+    nearest = math.sqrt(square)
+    for k in range(len(e)):
+        m_x, m_y = e[k, 1, 0], e[k, 1, 1]
+        # No point of an edge is farther from its middle than its farther end: far edges need no closer look.
+        reach = max(
+            (e[k, 0, 0] - m_x) ** 2 + (e[k, 0, 1] - m_y) ** 2, (e[k, 2, 0] - m_x) ** 2 + (e[k, 2, 1] - m_y) ** 2
+        )
+        away = (x - m_x) ** 2 + (y - m_y) ** 2
+        if (e[k, 0, 1] > y) != (e[k, 2, 1] > y) or away <= 1.01 * reach:
+            inside = inside != crosses(e[k], x, y)
+        if away < (nearest + math.sqrt(reach)) ** 2:
+            nearest = min(nearest, edge_distance(e[k], x, y))
     return nearest if inside else -nearest
 
 
