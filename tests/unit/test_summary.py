@@ -1,0 +1,66 @@
+"""The summary of runs with springs, forces and slow and fast drives."""
+
+import numpy as np
+import pytest
+
+from coupling import report, run_case
+from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
+
+PLATE = {
+    "shape": "rectangle",
+    "width": 6e-4,
+    "height": 4e-4,
+    "supports": {"left": "clamped", "right": "simply-supported"},
+    "youngs_modulus": 169e9,
+    "poisson_ratio": 0.3,
+    "thickness": 5e-6,
+    "density": 2330,
+    "cell_size": 8e-5,
+}
+ACTUATORS = [
+    ActuatorCase(position=(-1e-4, 0.0), stroke=2e-7, frequency=400),
+    ActuatorCase(position=(1e-4, 5e-5), stroke=2e-7, frequency=300, cycle="up", stiffness=50.0),
+    ActuatorCase(position=(1e-4, -1e-4), force=1e-6, frequency=200),
+]
+
+
+@pytest.fixture(scope="module")
+def result():
+    case = Case(
+        plate=PLATE,
+        actuators=ACTUATORS,
+        part=PartCase(mass=2e-9, position=(0.0, 0.0)),
+        friction=CoulombCase(coefficient=0.3, adhesion=1e-6),
+        run=RunCase(duration=2e-3),
+    )
+    return run_case(case)
+
+
+def test_each_drive_and_its_stroke_are_stated_over_the_first_frequency(result):
+    s = result.summary
+    assert s.drives_over_first == pytest.approx([f / s.first_frequency for f in (400, 300, 200)])
+    assert s.strokes_over_first == pytest.approx([f / s.first_frequency for f in (800, 300, 400)])
+    assert s.drive_over_first == max(s.drives_over_first)
+    said = dict.fromkeys(text for _, text in report.lines(s))
+    assert any("each drive over it" in text and f"{s.strokes_over_first[0]:.2g}" in text for text in said)
+
+
+def test_springs_give_and_the_residual_says_how_well_the_rest_is_held(result):
+    """Moved by its base, a spring lifts the plate by less than its own stroke; where a force acts nothing is held."""
+    heights = result.shapes.evaluate(result.shapes.points)[0]
+    assert heights[0] == pytest.approx([1, 0, 0], abs=1e-7)
+    assert 0 < heights[1, 1] < 0.99
+    assert result.summary.hold_residual < 1e-7
+
+
+def test_the_surface_rises_by_stroke_spring_and_force(result):
+    """At 1.25 ms: the first drive has its full stroke, the others are on their way."""
+    time = 1.25e-3
+    drives = np.array([2e-7, 2e-7 * quintic(0.375), 1e-6 * quintic(0.5)])
+    spots = np.array([[0.0, 0.0], [-1e-4, 0.0], [2e-4, 1.5e-4]])
+    expected = result.shapes.evaluate(spots, drives)[0]
+    assert result.surface.evaluate(spots, time).w == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
+
+
+def quintic(s):
+    return 10 * s**3 - 15 * s**4 + 6 * s**5
