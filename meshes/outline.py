@@ -56,20 +56,20 @@ class Outline:
     def mirrored(self, xy: ArrayLike) -> FloatArray:
         """Points (n, 2) [m] reflected at every boundary, each at its nearest point there: (r, 2), all off the plate.
 
-        A reflection that falls on the plate again, across a hole or a slot, is moved towards the rim until it is off
-        the plate; across a re-entrant corner there is none. Of more than 64 edges the nearest 16 count.
+        A reflection across a hole or a slot is moved half-way to the rim until it is off the plate and no nearer to the
+        far side than to this one; across a re-entrant corner there is none. Of more than 64 edges the nearest 16 count.
         """
         xy = np.asarray(xy, dtype=float)
         feet = [centre + curve.project(xy - centre) for centre, curve in self._curves]
         if len(self.edges):
             feet.extend(self._feet(xy))
         foot, point = np.concatenate(feet), np.tile(xy, (len(feet), 1))
-        image = 2 * foot - point
-        inside = self.inside(image)
+        depth = foot - point
+        across = self.inside(foot + depth) | self.inside(foot + 2 * depth)
         for _ in range(6):
-            image[inside] = (image[inside] + foot[inside]) / 2
-            inside[inside] = self.inside(image[inside])
-        return np.asarray(image[~inside])
+            depth[across] /= 2
+            across[across] = self.inside((foot + depth)[across]) | self.inside((foot + 2 * depth)[across])
+        return np.asarray((foot + depth)[~self.inside(foot + depth)])
 
     def inside(self, xy: FloatArray) -> BoolArray:
         """Whether points (n, 2) [m] are on the plate, by the parity of the boundaries around them: (n,)."""

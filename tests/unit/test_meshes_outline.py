@@ -148,7 +148,7 @@ def test_standard_outlines_have_one_piece_a_side():
 
 def test_reflections_at_a_circle_are_twice_the_foot_less_the_point():
     xy = np.array([[0.0, 0.0], [0.3, 0.4], [-1.5, 0.1]])
-    assert np.array_equal(disc(2.0, 0.5).mirrored(xy), 2 * Circle(2.0).project(xy) - xy)
+    np.testing.assert_allclose(disc(2.0, 0.5).mirrored(xy), 2 * Circle(2.0).project(xy) - xy, rtol=1e-15)
 
 
 def test_reflections_in_a_rectangle_are_the_four_images():
