@@ -105,11 +105,8 @@ def test_a_force_on_ellipses_of_every_support():
         assert np.abs(found[2] - truth[2]).max() < 1e-4 * np.abs(truth[2]).max()
 
 
-@pytest.mark.parametrize("outer", [C, S, F])
-@pytest.mark.parametrize("inner", [C, S, F])
+@pytest.mark.parametrize("inner, outer", [(i, o) for i in (C, S, F) for o in (C, S, F) if C in (i, o) or S in (i, o)])
 def test_pressure_on_the_annulus(inner, outer):
-    if inner == outer == F:
-        pytest.skip("pressure on a free plate is not in balance")
     mesh, supports = annulus(0.4, 1.0, 0.12), {"inner": inner, "outer": outer}
     found = errors(mesh, supports, *PRESSURE, lambda xy: theory.annulus_pressure(xy, 0.4, 1.0, (inner, outer)))
     assert (found < (1e-6, 1e-5, 3e-4)).all()
