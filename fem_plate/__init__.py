@@ -2,9 +2,22 @@
 
 from fem_plate import analytic
 from fem_plate.deflection import Deflection
+from fem_plate.export import neighbour_coupling, save_influence
 from fem_plate.influence import InfluenceShapes, Shapes
+from fem_plate.patched import PatchedShapes
 from fem_plate.plate import Plate
 from fem_plate.section import PlateSection
 from fem_plate.vibration import Modes
 
-__all__ = ["Deflection", "InfluenceShapes", "Modes", "Plate", "PlateSection", "Shapes", "analytic"]
+__all__ = [
+    "Deflection",
+    "InfluenceShapes",
+    "Modes",
+    "PatchedShapes",
+    "Plate",
+    "PlateSection",
+    "Shapes",
+    "analytic",
+    "neighbour_coupling",
+    "save_influence",
+]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from fem_plate.grading import Singular, corner_rows, graded
+from fem_plate.grading import Fineness, Singular, corner_rows, graded
 from fem_plate.supports import CLAMPED
 from meshes import Outline, PlateMesh, rectangle
 
@@ -47,7 +47,7 @@ class Cutter:
         self,
         mesh: PlateMesh,
         supports: Mapping[str, str],
-        fine: float,
+        fine: Fineness,
         corners: list[Singular],
         points: FloatArray,
         pitch: FloatArray,
@@ -61,7 +61,7 @@ class Cutter:
     def halved(self) -> Cutter:
         """One with cells of half the size."""
         cell = self.cell / float(self.pitch.min()) / 2
-        return Cutter(self.plate, self.supports, self.fine / 2, self.corners, self.points, self.pitch, cell)
+        return Cutter(self.plate, self.supports, self.fine.halved(), self.corners, self.points, self.pitch, cell)
 
     def cut(self, middle: FloatArray, reach: FloatArray) -> Cut:
         """The patch that reaches from `middle` (2,) along x and y by `reach` (2,) [m], as far as there is plate."""

@@ -12,7 +12,7 @@ from fem_plate import vibration
 from fem_plate.cutting import Cutter
 from fem_plate.deflection import Deflection
 from fem_plate.field import Estimated
-from fem_plate.grading import corner_rows, fineness, graded, singular_corners
+from fem_plate.grading import Fineness, corner_rows, graded, singular_corners
 from fem_plate.influence import MOST_DENSE, InfluenceShapes, check_points
 from fem_plate.model import PlateModel
 from fem_plate.patched import PatchedShapes
@@ -51,7 +51,7 @@ class Plate:
         self.mesh = mesh
         self.section = section
         self.tolerance = tolerance
-        self._fineness = fineness(mesh)
+        self._fineness = Fineness.of(mesh)
         self._corners = singular_corners(mesh, self.supports, section.poisson_ratio)
         self._models: dict[bytes, PlateModel] = {}
 
@@ -60,7 +60,7 @@ class Plate:
         mesh = self.mesh
         for _ in range(halvings):
             mesh = mesh.refined()
-        mesh = graded(mesh, self._fineness / 2**halvings, self._corners, points)
+        mesh = graded(mesh, self._fineness.halved(halvings), self._corners, points)
         key = mesh.points.tobytes()
         if key not in self._models:
             rows = corner_rows(mesh, self._corners)
@@ -79,7 +79,7 @@ class Plate:
         Raises ValueError, naming every point that is not inside the rim or stands on another and every stiffness below
         0, or when supports and actuators leave the plate a rigid motion.
         """
-        points = np.asarray(points, dtype=float).reshape(-1, 2)
+        points = _places(points, "points of influence")
         springs = np.full(len(points), np.inf)
         if stiffness is not None:
             springs = _one_each(stiffness, points, "stiffness of influence")
@@ -101,7 +101,7 @@ class Plate:
         Raises ValueError as `influence` does, when there is not one force a point, and when the loads on a plate that
         can move rigidly are not in balance.
         """
-        points = np.asarray(points, dtype=float).reshape(-1, 2)
+        points = _places(points, "points of deflection")
         loads = _one_each(forces, points, "forces of deflection")
         if points.size:
             check_points(points, self.mesh.outline.gap(points), self.mesh.size)
@@ -126,7 +126,7 @@ class Plate:
         density = self.section.density
         if density is None:
             raise ValueError("Input density of PlateSection must be given for frequencies; got None")
-        points = np.empty((0, 2)) if held is None else np.asarray(held, dtype=float).reshape(-1, 2)
+        points = _places([] if held is None else held, "held of modes")
         if points.size:
             check_points(points, self.mesh.outline.gap(points), self.mesh.size)
         model = self.model(points)
@@ -151,6 +151,14 @@ class Plate:
                 result.error_estimate = result.difference(coarse) / REFINEMENT_GAIN
         result.refine = lambda: answer(self.model(points, halvings + 1))
         return result
+
+
+def _places(points: ArrayLike, name: str) -> FloatArray:
+    """Points as an array (N, 2)."""
+    array = np.asarray(points, dtype=float)
+    if array.size and (array.ndim > 2 or array.shape[-1] != 2):
+        raise ValueError(f"Input {name} must have shape (N, 2); got {array.shape}")
+    return array.reshape(-1, 2)
 
 
 def _one_each(values: ArrayLike, points: FloatArray, name: str) -> FloatArray:

@@ -81,7 +81,7 @@ def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> Plate
     """A ring around the origin, of nearly equilateral cells that grow outwards with the radius.
 
     It is the image of a hexagonal lattice under the exponential function, which keeps angles.
-    inner_radius, outer_radius, cell_size: m; the edges on the outer rim are at most `cell_size` long. At least two
+    inner_radius, outer_radius, cell_size: m; cells are at most `cell_size` high (a side 1.15 times that). At least two
     rings are made, of at least twelve cells.
     Boundaries: inner, outer.  Raises ValueError, naming each, for lengths that are not positive and finite, and for an
     inner radius that is not smaller than the outer one.
@@ -94,7 +94,7 @@ def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> Plate
         )
     refuse(wrong)
     growth = math.log(outer_radius / inner_radius)
-    around = max(12.0, 2 * math.pi * outer_radius / cell_size * (1 - 1e-12))
+    around = max(12.0, math.sqrt(3) * math.pi * outer_radius / cell_size * (1 - 1e-12))
     per_ring = math.sqrt(3) * math.pi  # log of a ring's radii times the cells around, for equilateral cells
     rings = max(2, round(growth * around / per_ring))
     # A multiple of four, so that the mesh mirrors in both axes.

@@ -90,7 +90,7 @@ def test_a_force_on_ellipses_of_every_support():
     """Against the least-squares plate, up to a rigid motion on the free one, where four forces balance."""
     four = np.array([[0.5, 0.15], [-0.3, 0.3], [-0.45, -0.25], [0.25, -0.35]])
     balanced = np.linalg.svd(np.column_stack([np.ones(4), four]).T)[2][3]
-    mesh = ellipse(1.0, 0.6, 0.12)
+    mesh = ellipse(1.0, 0.6, 0.075)
     for support in (C, S, F):
         spots = scattered(mesh, four)
         plate = goursat.solve([[Arc(0, (1, 0.6), support)]], four, balanced, degree=100, poles=0)
