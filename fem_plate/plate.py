@@ -121,12 +121,14 @@ class Plate:
 
         held: points (N, 2) [m] that actuators hold still.
         Raises ValueError when the section has no density, the count is not positive, or a held point is not inside the
-        rim or stands on another.
+        rim or stands on another, and for more than 2 000 of them.
         """
         density = self.section.density
         if density is None:
             raise ValueError("Input density of PlateSection must be given for frequencies; got None")
         points = _places([] if held is None else held, "held of modes")
+        if len(points) > MOST_DENSE:
+            raise ValueError(f"Input held of modes must be at most {MOST_DENSE} points; got {len(points)}")
         if points.size:
             check_points(points, self.mesh.outline.gap(points), self.mesh.size)
         model = self.model(points)
