@@ -145,13 +145,20 @@ class Plate:
 
     def _estimated(self, points: FloatArray, answer: Callable[[PlateModel], Answer]) -> Answer:
         """An answer that can estimate its error, refined to the tolerance where there is one."""
-        result, halvings = answer(self.model(points)), 0
-        if self.tolerance is not None:
-            while 4 * result.unknowns < MOST_UNKNOWNS and (not halvings or result.error_estimate > self.tolerance):
-                halvings += 1
-                coarse, result = result, answer(self.model(points, halvings))
-                result.error_estimate = result.difference(coarse) / REFINEMENT_GAIN
-        result.refine = lambda: answer(self.model(points, halvings + 1))
+        result = answer(self.model(points))
+        result.refine = lambda: answer(self.model(points, 1))
+        if self.tolerance is None:
+            return result
+        change, halvings = np.inf, 0
+        while 4 * result.unknowns < MOST_UNKNOWNS and (not halvings or result.error_estimate > self.tolerance):
+            halvings += 1
+            coarse, result = result, answer(self.model(points, halvings))
+            before, change = change, result.difference(coarse)
+            result.error_estimate = change * max(change / before, 1 / REFINEMENT_GAIN)
+            if change > before / 2:
+                # Halving gains no more: what is left is rounding, or the estimates were too hopeful.
+                coarse.error_estimate, result.error_estimate = before, change
+                return coarse if before < change else result
         return result
 
 
