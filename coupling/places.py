@@ -87,10 +87,11 @@ class Places(BaseModel, from_attributes=True):
                 yield ("plate", "cell_size"), f"must not exceed {limit}; got {shown_length(given.cell_size)}"
         names = list(mesh.boundaries)
         supports = given.supports if isinstance(given.supports, dict) else {}
-        for name in supports.keys() - set(names):
+        for name in (name for name in supports if name not in names):
             near = difflib.get_close_matches(name, names, 1)
             hint = f"did you mean {near[0]}? " if near else ""
-            yield ("plate", "supports", name), f"is no boundary of the plate; {hint}It has {', '.join(names)}"
+            has = f"It has {', '.join(names)}" if hint else f"it has {', '.join(names)}"
+            yield ("plate", "supports", name), f"is no boundary of the plate; {hint}{has}"
         places = {(*table, "position"): spot.position for table, spot in spots if spot.position}
         part = {("part", "position"): self.part.position} if self.part and self.part.position else {}
         size = float((mesh.outline.box[1] - mesh.outline.box[0]).max()) / 2
