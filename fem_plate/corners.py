@@ -17,6 +17,7 @@ from fem_plate.supports import CLAMPED, FREE
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+Copies = list[tuple[int, int, int, int]]
 
 MOST = 4.0  # exponents above this are smooth for all that polynomials of degree five can tell
 STEP = 0.02
@@ -75,7 +76,7 @@ def _conditions(exponents: NDArray, angle: float, support: str, poisson_ratio: f
     return [f, moment]
 
 
-def split(triangles: IntArray, rows: list[int], points: int) -> tuple[IntArray, list[tuple[int, int, int, int]]]:
+def split(triangles: IntArray, rows: list[int], points: int) -> tuple[IntArray, Copies]:
     """Give every triangle at the points `rows` a point of its own.
 
     triangles: (m, 3).  points: how many there are.  Returns the new triangles, and for every new point (new, first,
@@ -99,7 +100,7 @@ def split(triangles: IntArray, rows: list[int], points: int) -> tuple[IntArray, 
     return triangles, copies
 
 
-def continuity(xy: FloatArray, copies: list[tuple[int, int, int, int]], edges: int) -> csc_matrix:
+def continuity(xy: FloatArray, copies: Copies, edges: int) -> csc_matrix:
     """All unknowns of a mesh with split corners by those that leave it continuous with its gradient.
 
     xy: (n, 2) points before the split.  copies: of `split`.  edges: how many.  A copy shares value and gradient with

@@ -13,7 +13,8 @@ from scipy.spatial import cKDTree
 from fem_plate import forms
 from fem_plate.argyris import Triangles
 from fem_plate.assembly import sum_up
-from fem_plate.corners import continuity, split
+from fem_plate.corners import Copies, continuity, split
+from fem_plate.relative import Relative, relative
 from fem_plate.rim import rim_of
 from meshes import PlateMesh
 
@@ -41,8 +42,19 @@ class PlateSpace:
         self.dofs = np.concatenate([(points[:, :, None] + np.arange(6)).reshape(-1, 18), edges], axis=1)
         self._points = len(mesh.points)
         self._edges = int(self._first[-1]) - 6 * (self._points + len(copies))
-        self._continuity = continuity(mesh.points, copies, self._edges) if copies else None
-        self.unknowns = int(self._first[-1]) if self._continuity is None else self._continuity.shape[1]
+        self.unknowns = int(self._first[-1])
+        self._relative: Relative | None = None
+        if len(free_corners):
+            self._join(mesh.points, mesh.triangles, copies, free_corners)
+
+    def _join(self, xy: FloatArray, triangles: IntArray, copies: Copies, corners: Sequence[int]) -> None:
+        """Express the unknowns of every triangle by independent ones, near corners counted from these."""
+        joined = continuity(xy, copies, self._edges)
+        self.unknowns = joined.shape[1]
+        # An edge's unknown comes behind those of points, which have copies, and of points, which have none.
+        edges = self.dofs[:, 18:] - 6 * len(copies)
+        self._relative = relative(self.triangles, triangles, edges, corners, self.unknowns)
+        self._absolute, self._bent = joined @ self._relative.absolute, joined @ self._relative.bent
 
     def stiffness(self, poisson_ratio: float) -> csc_matrix:
         """The symmetric matrix of the bending energy and the supports; what rigid motions are left have no energy."""
@@ -56,8 +68,14 @@ class PlateSpace:
         coupling, _ = forms.rim_forms(self.rim)
         traces = self._traces(poisson_ratio)
         at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)
+        if self._relative is None:
+            np.add.at(matrices, self.rim.triangle, at_rim)
+            return self._assemble(matrices)
+        near = np.where(self._relative.inside[:, None, None], matrices, 0.0)
+        matrices -= near
         np.add.at(matrices, self.rim.triangle, at_rim)
-        return self._assemble(matrices)
+        bent = sum_up(near, self._entities, self._first)
+        return (self._bent.T @ bent @ self._bent + self._assemble(matrices)).tocsc()
 
     def mass(self) -> csc_matrix:
         """The matrix of int v q."""
@@ -67,15 +85,15 @@ class PlateSpace:
         return self._assemble(matrices)
 
     def _assemble(self, matrices: FloatArray) -> csc_matrix:
-        return self._to_continuous(self._to_continuous(sum_up(matrices, self._entities, self._first)).T).tocsc()
+        return self._to_independent(self._to_independent(sum_up(matrices, self._entities, self._first)).T).tocsc()
 
-    def _to_continuous(self, matrix: csc_matrix) -> csc_matrix:
-        """Rows for all unknowns summed up for those that are independent."""
-        return matrix if self._continuity is None else self._continuity.T @ matrix
+    def _to_independent(self, matrix: csc_matrix) -> csc_matrix:
+        """Rows for the unknowns of every triangle summed up for those that are independent."""
+        return matrix if self._relative is None else self._absolute.T @ matrix
 
     def all_unknowns(self, unknowns: FloatArray) -> FloatArray:
         """Those of every triangle's own points, from the independent ones (unknowns, ...)."""
-        return unknowns if self._continuity is None else np.asarray(self._continuity @ unknowns)
+        return unknowns if self._relative is None else np.asarray(self._absolute @ unknowns)
 
     def _traces(self, poisson_ratio: float) -> FloatArray:
         derivatives = [self.triangles.derivatives(self.rim.points, self.rim.triangle, k) for k in range(4)]
@@ -91,7 +109,7 @@ class PlateSpace:
         shape = (self._first[-1], columns[..., 0].size)
         matrix = coo_matrix((data.ravel(), (rows.ravel(), columns.ravel())), shape=shape).tocsc()
         matrix.eliminate_zeros()
-        return self._to_continuous(matrix)
+        return self._to_independent(matrix)
 
     def point_values(self, xy: FloatArray) -> csc_matrix:
         """The matrix (n, unknowns) whose product with a function's unknowns is its value at points (n, 2)."""
@@ -100,7 +118,7 @@ class PlateSpace:
         columns = self.dofs[triangle]
         rows = np.broadcast_to(np.arange(len(xy))[:, None], columns.shape)
         matrix = coo_matrix((data.ravel(), (columns.ravel(), rows.ravel())), shape=(self._first[-1], len(xy))).tocsc()
-        return self._to_continuous(matrix).T.tocsc()
+        return self._to_independent(matrix).T.tocsc()
 
     def evaluate(self, xy: FloatArray, unknowns: FloatArray, orders: int) -> list[FloatArray]:
         """Functions given by their unknowns (unknowns, k) at points (n, 2).
@@ -131,11 +149,14 @@ class PlateSpace:
         functions[corners + 1, 1] = 1.0
         functions[corners + 2, 2] = 1.0
         functions[self.dofs[:, 18:], 1:] = self.triangles.normals
-        if self._continuity is None:
+        if self._relative is None:
             return functions
         # Independent are those of the mesh's points and edges, then the jumps, of which these functions have none.
-        copies = self._continuity.shape[1] - self._points * 6 - self._edges
-        return np.concatenate([functions[: 6 * self._points], functions[-self._edges :], np.zeros((copies, 3))])
+        points, edges = functions[: 6 * self._points], functions[-self._edges :]
+        jumps = np.zeros((self.unknowns - len(points) - len(edges), 3))
+        independent = np.concatenate([points, edges, jumps])
+        independent[self._relative.planes] = 0.0
+        return independent
 
     @cached_property
     def quadrature(self) -> tuple[FloatArray, FloatArray]:
