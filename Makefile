@@ -21,8 +21,8 @@ lint: .venv/developer
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-benchmark: .venv/installed
-	$(BIN)/python benchmarks/assembly.py
+benchmark: .venv/benchmarks
+	$(BIN)/python benchmarks/plate.py
 
 docs: .venv/installed
 	$(BIN)/python docs/pictures.py
@@ -38,6 +38,10 @@ docs: .venv/installed
 
 .venv/developer: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev]"
+	@touch $@
+
+.venv/benchmarks: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[benchmarks]"
 	@touch $@
 
 clean:
