@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -53,10 +54,11 @@ class Cutter:
         pitch: FloatArray,
         cell: float = CELL,
     ) -> None:
-        self.plate, self.supports, self.fine, self.corners = mesh, supports, fine, corners
-        self.points, self.pitch = points, pitch
-        self.cell = cell * float(pitch.min())
-        self._sides = _rectangle_sides(mesh)
+        self.plate, self.supports = _without_cuts(mesh, supports)
+        self.fine, self.corners = fine, corners
+        self.points, self.pitch = points, np.minimum(pitch, mesh.size)
+        self.cell = min(cell * float(self.pitch.min()), fine.cell)
+        self._sides = _rectangle_sides(self.plate)
 
     def halved(self) -> Cutter:
         """One with cells of half the size."""
@@ -80,7 +82,7 @@ class Cutter:
             return Cut(middle, box - middle, self._edge(box - middle, names), kinds.encode(), names)
         part = self._part(box)
         edges = part.points[part.boundaries[CUT]] if CUT in part.boundaries else np.empty((0, 2, 2))
-        along = np.linspace(0, 1, 6)[:, None, None]
+        along = np.linspace(0, 1, 11)[:, None, None]
         edge = (edges[:, 0] + along * (edges[:, 1] - edges[:, 0])).reshape(-1, 2)
         return Cut(np.zeros(2), box, edge, middle.tobytes(), {})
 
@@ -91,7 +93,8 @@ class Cutter:
         """
         if not cut.sides:
             part = self._part(cut.box)
-            return part, self._supports(part), corner_rows(part, self._corners_in(cut.box))
+            corners = [c for c in self.corners if (part.points == c.point).all(axis=1).any()]
+            return part, self._supports(part), corner_rows(part, corners)
         width, height = cut.box[1] - cut.box[0]
         plain = rectangle(width, height, self.cell)
         boundaries: dict[str, list] = {}
@@ -130,15 +133,16 @@ class Cutter:
         points = [np.empty((0, 2))]
         for side, (row, axis) in SIDES.items():
             if names[side] == CUT:
-                other = np.linspace(box[0, 1 - axis], box[1, 1 - axis], 400)
+                start, end = box[:, 1 - axis]
+                other = np.linspace(start, end, math.ceil(4 * (end - start) / self.cell) + 1)
                 here = np.full_like(other, box[row, axis])
                 points.append(np.stack([here, other] if axis == 0 else [other, here], axis=1))
         return np.concatenate(points)
 
     def _part(self, box: FloatArray) -> PlateMesh:
-        mesh = self._fine_mesh
-        centre = mesh.points[mesh.triangles].mean(axis=1)
-        return mesh.part(((centre > box[0]) & (centre < box[1])).all(axis=1))
+        # Every triangle that may reach into the box, so that no actuator there is off the part.
+        corners = self._fine_mesh.points[self._fine_mesh.triangles]
+        return self._fine_mesh.part(((corners.max(axis=1) > box[0]) & (corners.min(axis=1) < box[1])).all(axis=1))
 
     @cached_property
     def _fine_mesh(self) -> PlateMesh:
@@ -152,6 +156,15 @@ class Cutter:
                 break
             mesh = mesh.refined(large)
         return graded(mesh, self.fine, self.corners, self.points)
+
+
+def _without_cuts(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[PlateMesh, dict[str, str]]:
+    """A plate and its supports with no boundary of the name that cuts have."""
+    names = {name: name + "'" if name.startswith(CUT) else name for name in mesh.boundaries}
+    boundaries = {names[name]: edges for name, edges in mesh.boundaries.items()}
+    curves = {names[name]: curve for name, curve in mesh.curves.items()}
+    renamed = replace(mesh, boundaries=boundaries, curves=curves)
+    return renamed, {names[name]: support for name, support in supports.items()}
 
 
 def _rectangle_sides(mesh: PlateMesh) -> dict[str, str]:

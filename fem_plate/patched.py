@@ -16,13 +16,14 @@ from meshes import Outline
 
 FloatArray = NDArray[np.float64]
 
+SLACK = 1e-8  # of a patch's size: points on the rim may seem to lie beyond it
 MOST_VALUES = 20_000_000  # points times actuators of which all shapes may be asked for at once
 
 
 class PatchedShapes(Shapes):
     """Influence shapes of many actuators, each 0 beyond its patch; made by `Plate.influence`.
 
-    strengths: (N, N) sparse.  truncation_error: the largest deflection left out of a shape, measured.
+    strengths: (N, N) sparse.  truncation_error: the largest deflection left out of a shape, over its largest, measured.
     """
 
     def __init__(self, array: Array, truncation: float, size: float, outline: Outline) -> None:
@@ -53,7 +54,7 @@ class PatchedShapes(Shapes):
 
     @cached_property
     def error_estimate(self) -> float:
-        """Largest error in w of a unit shape: what is left out, or what cells of half the size change on a patch."""
+        """Largest error in w over a shape's largest: of what is left out, or of what cells of half the size change."""
         inner = max(self.tiles, key=lambda tile: len(tile.rows))
         outer = max(self.tiles, key=lambda tile: tile.patch.field.space.unknowns)
         return max(self.truncation_error, self._array.difference(inner), self._array.difference(outer))
@@ -84,9 +85,11 @@ class PatchedShapes(Shapes):
             ratio, core = self.size / patch.size, tile.rows[patch.core]
             local = (x * self.size - tile.cut.origin) / patch.size
             box = patch.box / patch.size
-            near = np.flatnonzero(((local >= box[0]) & (local <= box[1])).all(axis=1))
+            near = np.flatnonzero(((local >= box[0] - SLACK) & (local <= box[1] + SLACK)).all(axis=1))
             near = near[patch.field.space.holds(local[near])]
             if not near.size:
+                continue
+            if weights is not None and not weights[core].any():
                 continue
             field = patch.field if weights is None else patch.field.weighted(weights[core])
             at = np.ix_(near, core) if weights is None else near

@@ -1,0 +1,190 @@
+"""Patches of large arrays: where they are cut, which are shared, how far they reach, and what is refused."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy.sparse import issparse
+
+from fem_plate import PatchedShapes, Plate, patched, patches
+from fem_plate.patches import spacing
+from meshes import disc, polygon, rectangle
+
+PITCH = 25e-6
+
+
+def lattice(nx, ny, dx=PITCH, dy=PITCH):
+    x, y = (np.arange(nx) - (nx - 1) / 2) * dx, (np.arange(ny) - (ny - 1) / 2) * dy
+    return np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def unlike(shapes):
+    return len({id(tile.patch) for tile in shapes.tiles})
+
+
+@pytest.fixture(autouse=True)
+def small_tiles(monkeypatch):
+    monkeypatch.setattr(patches, "TILE", 4)
+
+
+@pytest.fixture(scope="module")
+def row(section):
+    """60 actuators along a strip."""
+    return Plate(rectangle(61 * PITCH, 4 * PITCH, PITCH), section)
+
+
+def test_tiles_that_look_alike_share_a_patch(row):
+    """Towards either end tiles differ by how far they are from it, all others are alike."""
+    shapes = row.influence(lattice(60, 1), truncation=1e-3)
+    assert len(shapes.tiles) == 15 and unlike(shapes) <= 5
+    middle = [tile.patch for tile in shapes.tiles[3:-3]]
+    assert all(patch is middle[0] for patch in middle)
+    assert np.concatenate([np.sort(tile.rows[tile.patch.core]) for tile in shapes.tiles]).tolist() == list(range(60))
+
+
+@pytest.mark.parametrize("shift", [0.1234565, 0.5, 1 / 3])
+def test_rounding_and_another_order_of_the_points_do_not_keep_patches_apart(row, shift):
+    rng = np.random.default_rng(2)
+    points = lattice(60, 1) + [shift * PITCH / 10, 0.0]
+    plain = row.influence(points, truncation=1e-3)
+    order = rng.permutation(60)
+    other = row.influence((points + rng.uniform(-1e-12, 1e-12, points.shape) * PITCH)[order], truncation=1e-3)
+    assert unlike(other) == unlike(plain) <= 6
+    spots = np.array([[0.3, 0.2], [7.6, -1.2], [-29.0, 0.9]]) * PITCH
+    assert np.abs(other.evaluate(spots)[0] - plain.evaluate(spots)[0][:, order]).max() < 1e-9
+
+
+def test_actuators_out_of_line_keep_patches_apart(row):
+    points = lattice(60, 1)
+    points[30, 1] += 1e-3 * PITCH
+    assert unlike(row.influence(points, truncation=1e-3)) > unlike(row.influence(lattice(60, 1), truncation=1e-3))
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-12])
+@pytest.mark.parametrize("shift", [0.0, 0.1234565])
+@pytest.mark.parametrize("ratio", [1.0, 3.0, 1.2])
+def test_the_pitch_of_a_lattice_is_found_along_either_axis(ratio, shift, noise):
+    points = lattice(9, 7, PITCH, ratio * PITCH) + shift * PITCH
+    points = points + np.random.default_rng(0).uniform(-noise, noise, points.shape) * PITCH
+    assert spacing(points) / PITCH == pytest.approx([1.0, ratio], rel=1e-9)
+
+
+def test_the_pitch_of_another_layout_is_the_distance_of_neighbours():
+    points = np.random.default_rng(0).uniform(-1, 1, (50, 2))
+    distance = np.linalg.norm(points[:, None] - points, axis=-1) + 9 * np.eye(50)
+    assert spacing(points) == pytest.approx(np.full(2, np.median(distance.min(axis=1))))
+
+
+def test_a_smaller_truncation_takes_wider_margins_and_is_met(row):
+    found = [row.influence(lattice(60, 1), truncation=t) for t in (1e-2, 1e-4, 1e-6)]
+    assert [shapes.truncation_error <= t for shapes, t in zip(found, (1e-2, 1e-4, 1e-6), strict=True)] == [True] * 3
+    assert found[0].truncation_error > found[1].truncation_error > found[2].truncation_error > 0
+    widths = [np.ptp(shapes.tiles[7].patch.box[:, 0]) for shapes in found]
+    assert widths[0] < widths[1] < widths[2]
+
+
+@pytest.mark.parametrize("truncation", [-1.0, float("nan")])
+def test_a_truncation_must_be_positive(row, truncation):
+    with pytest.raises(ValueError, match="^Input truncation of influence must be positive; got (-1.0|nan)$"):
+        row.influence(lattice(60, 1), truncation=truncation)
+
+
+@pytest.mark.parametrize("mesh", [rectangle(1.5e-3, 1.5e-3, 0.15e-3), disc(1e-3, 0.15e-3)], ids=["rectangle", "disc"])
+@pytest.mark.parametrize("places", [[[-16, -10]], [[-16, -10], [15, 12]]], ids=["one", "two"])
+def test_clusters_on_a_big_plate_take_patches_as_large_as_needed(section, mesh, places):
+    """Beyond its last actuator the plate swings far out, and is held only by the rim."""
+    plate = Plate(mesh, section)
+    points = np.concatenate([lattice(3, 3) + np.array(place) * PITCH for place in places])
+    dense, shapes = plate.influence(points), plate.influence(points, truncation=1e-2)
+    xy = np.random.default_rng(0).uniform(-0.7e-3, 0.7e-3, (500, 2))
+    value = dense.evaluate(xy)[0]
+    assert np.abs(value).max() > 2
+    relative = np.abs(shapes.evaluate(xy)[0] - value).max(axis=0) / np.abs(value).max(axis=0)
+    assert relative.max() < 1e-2
+    assert shapes.truncation_error <= 1e-2
+
+
+def test_one_actuator_may_have_a_truncation(section, radius):
+    plate = Plate(disc(radius, radius / 8), section)
+    dense, shapes = plate.influence([[90e-6, 40e-6]]), plate.influence([[90e-6, 40e-6]], truncation=1e-3)
+    spots = np.array([[0.0, 0.0], [100e-6, -50e-6]])
+    assert isinstance(shapes, PatchedShapes)
+    assert np.abs(shapes.evaluate(spots)[0] - dense.evaluate(spots)[0]).max() < 1e-6
+
+
+def test_a_boundary_named_cut_is_not_taken_for_one(section):
+    """Its own support holds there, and cuts are clamped."""
+    corners = np.array([[-30.5, -2], [30.5, -2], [30.5, 2], [-30.5, 2.2]]) * PITCH
+    found = []
+    for name in ("cut", "other"):
+        mesh = polygon(corners, PITCH, names=["wall", "wall", name, "wall"])
+        shapes = Plate(mesh, section, {"wall": "clamped", name: "simply-supported"}).influence(lattice(60, 1), truncation=1e-3)
+        found.append(shapes)
+    assert len(found[0].tiles) == 15
+    assert found[0].truncation_error == found[1].truncation_error <= 1e-3
+    xy = np.array([[0.4, 0.3], [-12.0, 1.9], [30.2, -1.0]]) * PITCH
+    assert (found[0].evaluate(xy)[0] == found[1].evaluate(xy)[0]).all()
+
+
+def test_points_on_the_rim_and_on_cuts_belong_to_the_plate(section):
+    """On a free rim a shape does not vanish, wherever rounding puts the point."""
+    plate = Plate(rectangle(61 * PITCH, 4 * PITCH, PITCH), section, {"left": "clamped", "right": "clamped"})
+    points = lattice(60, 2, PITCH, 1.7 * PITCH)
+    dense, shapes = plate.influence(points), plate.influence(points, truncation=1e-3)
+    x = np.concatenate([np.linspace(-30.5, 30.5, 123), np.unique([t.cut.box[:, 0] / PITCH for t in shapes.tiles])])
+    x = np.clip(np.concatenate([x, (points[:, 0] / PITCH)[::8] - 0.5]), -30.5, 30.5)
+    for y in (-2.0, 0.0, 2.0):
+        xy = np.stack([x, np.full(len(x), y)], axis=1) * PITCH
+        value = dense.evaluate(xy)[0]
+        assert y == 0 or np.abs(value).max(axis=1).min() < 0.1 < np.median(np.abs(value).max(axis=1))
+        assert np.abs(shapes.evaluate(xy)[0] - value).max() < 2e-3
+
+
+def test_forces_are_sparse_and_there_is_no_compliance(row):
+    dense, shapes = row.influence(lattice(60, 1)), row.influence(lattice(60, 1), truncation=1e-3)
+    assert issparse(shapes.strengths) and issparse(shapes.stiffness) and shapes.stiffness.shape == (60, 60)
+    assert shapes.stiffness.nnz < 60 * 30
+    # The scale is the largest force; the truncation's share of it, some stiffness per deflection, is of order one.
+    assert np.abs(shapes.stiffness.toarray() - dense.stiffness).max() < 1e-3 * np.abs(dense.stiffness).max()
+    assert np.abs(shapes.strengths.toarray() - dense.strengths).max() < 1e-3 * np.abs(dense.strengths).max()
+    with pytest.raises(ValueError, match="^Input points of influence must be at most 2000 for a compliance"):
+        _ = shapes.compliance
+
+
+def test_all_shapes_at_too_many_points_are_refused_and_sums_are_not(row, monkeypatch):
+    monkeypatch.setattr(patched, "MOST_VALUES", 600)
+    shapes = row.influence(lattice(60, 1), truncation=1e-3)
+    spots = np.stack([np.linspace(-20, 20, 11), np.full(11, 0.4)], axis=1) * PITCH
+    every = shapes.evaluate(spots[:10])
+    with pytest.raises(ValueError, match=re.escape("must be at most 10 points for all 60 shapes at once; got 11")):
+        shapes.evaluate(spots)
+    weights = np.random.default_rng(4).uniform(-1, 1, 60)
+    for total, one in zip(shapes.evaluate(spots, weights), every, strict=True):
+        assert np.abs(total[:10] - np.tensordot(one, weights, (1, 0))).max() < 1e-11 * np.abs(one).max()
+
+
+def test_the_smooth_part_is_the_shape_without_its_point_forces(row):
+    dense, shapes = row.influence(lattice(60, 1)), row.influence(lattice(60, 1), truncation=1e-4)
+    spots = np.array([[0.3, 0.2], [7.6, -1.2]]) * PITCH
+    smooth = dense.smooth(spots)
+    assert np.abs(shapes.smooth(spots)[:, 10:50] - smooth[:, 10:50]).max() < 1e-2 * np.abs(smooth).max()
+
+
+def test_the_error_estimate_counts_what_is_left_out_and_the_cells(section):
+    fine, coarse = (
+        Plate(rectangle(61 * PITCH, 4 * PITCH, c), section).influence(lattice(60, 1), truncation=t)
+        for c, t in ((PITCH, 1e-2), (4 * PITCH, 1e-6))
+    )
+    assert fine.error_estimate == fine.truncation_error
+    assert coarse.truncation_error < 1e-6 < coarse.error_estimate < 1e-3
+
+
+def test_what_floats_is_left_out_by_its_own_deflection(row):
+    """A newton on a floating actuator moves it by its compliance, be it large or small; that is the scale."""
+    springs = np.where(np.arange(60) % 2, np.inf, 0.0)
+    dense = row.influence(lattice(60, 1), springs)
+    shapes = row.influence(lattice(60, 1), springs, truncation=1e-4)
+    spots = np.stack([np.linspace(-30, 30, 200), np.full(200, 0.4)], axis=1) * PITCH
+    value = dense.evaluate(spots)[0]
+    assert np.abs(value[:, ::2]).max() < 1e-2  # m/N: without the scale 1e-4 would be a hundredth of them
+    assert (np.abs(shapes.evaluate(spots)[0] - value).max(axis=0) < 2e-4 * np.abs(value).max(axis=0)).all()
