@@ -118,7 +118,9 @@ def test_a_boundary_named_cut_is_not_taken_for_one(section):
     found = []
     for name in ("cut", "other"):
         mesh = polygon(corners, PITCH, names=["wall", "wall", name, "wall"])
-        shapes = Plate(mesh, section, {"wall": "clamped", name: "simply-supported"}).influence(lattice(60, 1), truncation=1e-3)
+        shapes = Plate(mesh, section, {"wall": "clamped", name: "simply-supported"}).influence(
+            lattice(60, 1), truncation=1e-3
+        )
         found.append(shapes)
     assert len(found[0].tiles) == 15
     assert found[0].truncation_error == found[1].truncation_error <= 1e-3
