@@ -1,0 +1,100 @@
+"""Shapes on patches against those of the whole plate: values, gradients, Hessians, single ones and sums.
+
+Both are right to their error estimates, and patches to what they leave out as well. Those are of deflections; a slope
+or a curvature of what is left out is a few times larger per pitch, and how good the mesh is for them is seen by the
+whole plate on cells of half the size.
+"""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from fem_plate import PatchedShapes, Plate, patches
+from meshes import annulus, disc, polygon, rectangle
+
+PITCH = 25e-6
+TRUNCATION = 1e-2
+DERIVATIVE = (1, 3, 10)  # what is left out of w, its slope and its curvature, times the pitch to the order
+MESH = (1, 4, 4)  # of the change of the whole plate's shapes with cells of half the size
+
+
+def lattice(nx, ny):
+    x, y = (np.arange(nx) - (nx - 1) / 2) * PITCH, (np.arange(ny) - (ny - 1) / 2) * PITCH
+    return np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def inside(mesh, points, gap):
+    return points[mesh.outline.gap(points) > gap * PITCH]
+
+
+SQUARE = rectangle(15 * PITCH, 14 * PITCH, PITCH)
+DISC = disc(8 * PITCH, 1.5 * PITCH)
+RING = annulus(2 * PITCH, 8 * PITCH, PITCH)
+L = polygon(PITCH * np.array([[-7, -7], [7, -7], [7, 0], [0, 0], [0, 7], [-7, 7]]), 1.5 * PITCH)
+MIXED = {"left": "simply-supported", "bottom": "clamped", "right": "simply-supported"}
+IRREGULAR = lattice(15, 15) + np.random.default_rng(1).uniform(-0.3, 0.3, (225, 2)) * PITCH
+KINDS = np.random.default_rng(2).choice([np.inf, 20e3, 5e3, 0.0], 400, p=[0.5, 0.2, 0.2, 0.1])  # N/m
+
+CASES = {
+    "clamped rectangle": (SQUARE, "clamped", lattice(14, 13), None),
+    "rectangle, mixed sides": (SQUARE, MIXED, lattice(14, 13), None),
+    "disc, lattice": (DISC, "clamped", inside(DISC, lattice(15, 15), 0.6), None),
+    "disc, irregular": (DISC, "clamped", inside(DISC, IRREGULAR, 0.6), None),
+    "annulus": (RING, {"outer": "clamped"}, inside(RING, lattice(16, 16), 0.6), None),
+    "annulus, springs and floating": (RING, {"outer": "clamped"}, inside(RING, lattice(16, 16), 0.6), KINDS),
+    "re-entrant corner": (L, "clamped", inside(L, lattice(13, 13), 0.6), None),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_patches_give_the_shapes_of_the_whole_plate(section, monkeypatch, name):
+    monkeypatch.setattr(patches, "TILE", 3)
+    mesh, supports, points, springs = CASES[name]
+    springs = None if springs is None else springs[: len(points)]
+    plate = Plate(mesh, section, supports)
+    dense, shapes = plate.influence(points, springs), plate.influence(points, springs, truncation=TRUNCATION)
+    finer = dense.refine()
+    assert len(shapes.tiles) > 4 and shapes.truncation_error <= TRUNCATION
+    xy = np.random.default_rng(0).uniform(*mesh.outline.box, (1500, 2))
+    xy = xy[(mesh.outline.gap(xy) > 0.2 * PITCH) & (cKDTree(points).query(xy)[0] > 0.1 * PITCH)]
+    scale = np.abs(dense.evaluate(points)[0]).max(axis=0)  # of each shape: m per m, or m/N where it floats
+    weights = np.random.default_rng(3).uniform(-1, 1, len(points)) / scale
+    bound = shapes.truncation_error + shapes.error_estimate + dense.error_estimate
+    for order, (found, truth, better) in enumerate(zip(*(s.evaluate(xy) for s in (shapes, dense, finer)), strict=True)):
+        unit = PITCH**order / scale.reshape(-1, *[1] * order)
+        allowed = DERIVATIVE[order] * bound + MESH[order] * np.abs((better - truth) * unit).max()
+        assert np.abs((found - truth) * unit).max() < allowed
+    for order, (found, truth, better) in enumerate(
+        zip(*(s.evaluate(xy, weights) for s in (shapes, dense, finer)), strict=True)
+    ):
+        allowed = DERIVATIVE[order] * bound + MESH[order] * np.abs(better - truth).max() * PITCH**order
+        assert np.abs(found - truth).max() * PITCH**order < allowed
+    assert np.abs(shapes.stiffness.toarray() - dense.stiffness).max() < bound * np.abs(dense.stiffness).max()
+
+
+def test_more_than_2000_actuators_take_patches_by_themselves(section):
+    """A row in a strip, all of whose inner tiles are alike: each shape is that of a short strip."""
+    points = lattice(2100, 1)
+    shapes = Plate(rectangle(2101 * PITCH, 4 * PITCH, 2 * PITCH), section).influence(points)
+    assert isinstance(shapes, PatchedShapes) and shapes.truncation_error <= 1e-6
+    assert len(shapes.tiles) == 210 and len({id(tile.patch) for tile in shapes.tiles}) == 3
+    short = Plate(rectangle(41 * PITCH, 4 * PITCH, PITCH), section).influence(lattice(40, 1))
+    spots = np.array([[0.3, 0.2], [2.6, -1.2], [-3.9, 1.7]]) * PITCH
+    weights = np.zeros(2100)
+    weights[1030:1070] = np.random.default_rng(0).uniform(-1, 1, 40)
+    for order, (found, truth) in enumerate(
+        zip(shapes.evaluate(spots, weights), short.evaluate(spots, weights[1030:1070]), strict=True)
+    ):
+        assert np.abs(found - truth).max() * PITCH**order < 10.0**order * (shapes.error_estimate + short.error_estimate)
+
+
+@pytest.mark.slow
+def test_a_lattice_of_2025_is_1_at_each_actuator_and_0_at_the_others(section):
+    points = lattice(45, 45)
+    shapes = Plate(rectangle(46 * PITCH, 46 * PITCH, 6 * PITCH), section).influence(points)
+    assert isinstance(shapes, PatchedShapes) and shapes.truncation_error <= 1e-6
+    assert shapes.stiffness.nnz < 2025**2 / 2
+    heights = np.random.default_rng(0).uniform(-1, 1, 2025)
+    assert np.abs(shapes.evaluate(points, heights)[0] - heights).max() < 1e-5
+    row = int(np.argmin(np.hypot(*points.T)))
+    assert shapes.evaluate(points, np.eye(2025)[row])[0] == pytest.approx(np.eye(2025)[row], abs=1e-6)
