@@ -96,7 +96,8 @@ class PatchedShapes(Shapes):
             w, slope, bend = field.evaluate(local[near])
             value[at] += w
             gradient[at] += slope * ratio
-            hessian[at] += bend * ratio**2
+            with np.errstate(invalid="ignore"):  # infinities of either sign meet at an actuator
+                hessian[at] += bend * ratio**2
         return value, gradient, hessian
 
     def smooth(self, xy: ArrayLike) -> FloatArray:

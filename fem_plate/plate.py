@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -25,6 +26,7 @@ from meshes import PlateMesh
 FloatArray = NDArray[np.float64]
 Answer = TypeVar("Answer", bound=Estimated)
 
+PATCH_FINENESS = 0.16  # of the half width, eight cells: shapes at the rim are then good to 1e-6
 TRUNCATION = 1e-6  # of unit shapes, where they are found on patches
 MOST_UNKNOWNS = 100_000  # refinement to a tolerance stops here
 REFINEMENT_GAIN = 2.0**5  # halving the cells divides the error of w by this at least (observed: 2^5.5 and more)
@@ -139,7 +141,9 @@ class Plate:
 
     def _patched(self, points: FloatArray, springs: FloatArray, truncation: float) -> PatchedShapes:
         pitch, rigidity = spacing(points), self.section.rigidity
-        cutter = Cutter(self.mesh, self.supports, self._fineness, self._corners, points, pitch)
+        most = PATCH_FINENESS * self._fineness.half_width
+        fine = replace(self._fineness, cell=min(self._fineness.cell, most))
+        cutter = Cutter(self.mesh, self.supports, fine, self._corners, points, pitch)
         array = Array(cutter, points, springs, rigidity, self.section.poisson_ratio)
         return PatchedShapes(array, truncation, self.mesh.size, self.mesh.outline)
 
