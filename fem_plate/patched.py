@@ -93,7 +93,7 @@ class PatchedShapes(Shapes):
                 continue
             field = patch.field if weights is None else patch.field.weighted(weights[core])
             at = np.ix_(near, core) if weights is None else near
-            w, slope, bend = field.evaluate(local[near])
+            w, slope, bend = field.evaluate(local[near])  # at actuators the Hessians are infinite
             value[at] += w
             gradient[at] += slope * ratio
             with np.errstate(invalid="ignore"):  # infinities of either sign meet at an actuator

@@ -190,3 +190,10 @@ def test_what_floats_is_left_out_by_its_own_deflection(row):
     value = dense.evaluate(spots)[0]
     assert np.abs(value[:, ::2]).max() < 1e-2  # m/N: without the scale 1e-4 would be a hundredth of them
     assert (np.abs(shapes.evaluate(spots)[0] - value).max(axis=0) < 2e-4 * np.abs(value).max(axis=0)).all()
+
+
+def test_a_sum_may_be_asked_for_at_the_actuators(row):
+    """Its curvature is infinite there, of either sign on either patch: no warning."""
+    points, heights = lattice(60, 1), np.random.default_rng(6).uniform(-1, 1, 60)
+    value, gradient, _ = row.influence(points, truncation=1e-4).evaluate(points, heights)
+    assert np.abs(value - heights).max() < 1e-3 and np.isfinite(gradient).all()
