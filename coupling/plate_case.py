@@ -44,7 +44,7 @@ Supports = Annotated[
 
 
 class PlateCase(Table, ABC):
-    """The plate: `thickness` in m, `youngs_modulus` in Pa, `density` in kg/m^3, `pressure` in Pa, positive up.
+    """The plate: `thickness` in m, `youngs_modulus` in Pa and `density` in kg/m^3.
 
     supports: how the whole rim is held, or each boundary by name; those left out are free.
     """

@@ -19,6 +19,7 @@ from coupling.rim import onto_plate
 from coupling.summary import Summary, stroke_heights
 from coupling.vtkhdf import part_file, plate_file
 from fem_plate import InfluenceShapes
+from meshes import PlateMesh
 from particle import Drive, SurfaceMotion, Trajectory, contact_forces
 from particle.friction import Contact
 
@@ -39,6 +40,7 @@ UNITS = {
 
 def write_results(
     case: Case,
+    mesh: PlateMesh,
     shapes: InfluenceShapes,
     surface: SurfaceMotion,
     drives: Sequence[Drive],
@@ -50,7 +52,7 @@ def write_results(
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths."""
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case, float(trajectory.time[-1]))
-    points, triangles = drawn_plate(case.plate.build_mesh(), shapes.points)
+    points, triangles = drawn_plate(mesh, shapes.points)
     value = shapes.evaluate(points)[0]
     heights = stroke_heights(drives, times)
     metadata = {

@@ -52,7 +52,7 @@ class Summary:
     linear_path_error: float  # relative, of small-deflection theory
     largest_slope: float
     in_plane_motion: float  # m, of the top face
-    first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
+    first_frequency: float | None  # Hz, of the plate with its actuators held as if rigid; None: no density given
     drive_over_first: float | None  # fastest drive over that frequency
     drives_over_first: tuple[float, ...] | None  # each drive over it
     strokes_over_first: tuple[float, ...] | None  # each inverse time of one stroke over it

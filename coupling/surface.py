@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from coupling.rim import rim_curves
-from fem_plate.influence import Shapes
+from fem_plate import PatchedShapes, Shapes
 from particle import Drive, SurfaceMotion
 from particle.drive import drive_table
 
@@ -49,7 +49,7 @@ def surface_motion(shapes: Shapes, drives: Sequence[Drive], tolerance: float = S
     return SurfaceMotion(
         drives=drive_table(drives),
         sources=shapes.points,
-        strengths=shapes.strengths,
+        strengths=shapes.strengths.toarray() if isinstance(shapes, PatchedShapes) else shapes.strengths,
         size=shapes.size,
         floor=FLOOR * shapes.size,
         origin=fit.origin,

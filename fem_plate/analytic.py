@@ -75,7 +75,7 @@ class DiscShapes(Shapes):
 
     def __init__(self, points: ArrayLike, radius: float) -> None:
         points = np.atleast_2d(np.asarray(points, dtype=float))
-        check_points(points, radius - np.hypot(*points.T), radius)
+        check_points("DiscShapes", points, radius - np.hypot(*points.T), radius)
         self.points, self.size = np.ascontiguousarray(points), radius
         self.outline = Outline(conics=np.array([[0.0, 0.0, radius, radius]]))
         x = points / radius

@@ -92,7 +92,12 @@ def split(triangles: IntArray, rows: list[int], points: int) -> tuple[IntArray, 
         here = next(t for t, others in around.items() if any(ends.count(end) == 1 for end in others))
         label, current = row, around.pop(here)
         while around:
-            there, shared = next((t, min(o & current)) for t, o in around.items() if o & current)
+            following = [(t, min(o & current)) for t, o in around.items() if o & current]
+            if not following:
+                raise ValueError(
+                    f"Input mesh of Plate must not have cells that touch only in a point; they do in point {row}"
+                )
+            there, shared = following[0]
             current = around.pop(there) - {shared}
             copies.append((points, row, label, shared))
             triangles[there][triangles[there] == row] = points

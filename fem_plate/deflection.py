@@ -56,7 +56,7 @@ class Deflection(Estimated):
         points, weights = self.model.space.quadrature
         motions = self.model.motions(points)
         mean = motions.T @ (weights[:, None] * field.values(points))
-        return np.asarray(-rigid @ np.linalg.solve(motions.T @ (weights[:, None] * motions), mean))
+        return np.asarray(-rigid @ mean)  # the motions are orthonormal
 
     def evaluate(self, xy: ArrayLike) -> Fields:
         """w (n,) m, gradient (n, 2), Hessian (n, 2, 2) 1/m at points (n, 2) [m].

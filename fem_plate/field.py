@@ -19,7 +19,10 @@ Fields = tuple[FloatArray, FloatArray, FloatArray]
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """k functions w = v + sum_j forces_j F(x - sources_j) + pressure r^4 / 64 + rigid . (1, x, y), dimensionless."""
+    """k functions w = v + sum_j forces_j F(x - sources_j) + pressure r^4 / 64 + rigid . (1, x, y), dimensionless.
+
+    r counts from the middle of the plate's box.
+    """
 
     space: PlateSpace
     unknowns: FloatArray  # (unknowns, k), of v
@@ -45,7 +48,7 @@ class Field:
         (value,) = self.space.evaluate(x, self.unknowns, orders=1)
         value += np.column_stack([np.ones(len(x)), x]) @ self.rigid
         if np.any(self.pressure):
-            value += np.outer(pressure_derivatives(x)[0][0], self.pressure)
+            value += np.outer(pressure_derivatives(x - self.space.middle)[0][0], self.pressure)
         return value + point_value(x, self.sources) @ self.forces
 
     def smooth(self, x: FloatArray) -> Fields:
@@ -54,7 +57,7 @@ class Field:
         value += np.column_stack([np.ones(len(x)), x]) @ self.rigid
         gradient += self.rigid[1:].T
         if np.any(self.pressure):
-            (w,), slope, (xx, xy, yy), _ = pressure_derivatives(x)
+            (w,), slope, (xx, xy, yy), _ = pressure_derivatives(x - self.space.middle)
             value += np.outer(w, self.pressure)
             gradient += slope.T[:, None] * self.pressure[:, None]
             bend = np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -1)
@@ -99,4 +102,5 @@ class Estimated:
         here = self.field.values(x)
         # New points on a curved rim may make the refined mesh's box, and so its size, a little larger.
         there = coarser.field.values(x * (self.size / coarser.size))
-        return float(np.max(np.abs(here - there) / np.abs(here).max(axis=0)))
+        largest = np.abs(here).max(axis=0)
+        return float(np.max(np.abs(here - there) / np.where(largest > 0, largest, 1.0)))

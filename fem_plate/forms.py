@@ -48,7 +48,7 @@ class Rim(NamedTuple):
     normal: FloatArray  # (k, n, 2), outward
     slope: FloatArray  # (k, n, 2, 2), T
     value: FloatArray  # (k, n), c
-    length: FloatArray  # (k,), h
+    size: FloatArray  # (k,), h, the length of the edge or less where its cell is flat
     twist: FloatArray  # (k, n, 2), t at the end of a free edge at a held one, -t at its start, 0 elsewhere
 
 
@@ -129,8 +129,8 @@ def rim_forms(at: Rim) -> tuple[FloatArray, FloatArray]:
     reaction[..., 0, 5] = -at.value
     natural[..., 1:3, 3:5] = np.eye(2) - at.slope
     natural[..., 0, 5] = at.value - 1
-    penalty[..., 1:3, 1:3] = NITSCHE_SLOPE / at.length[:, None, None, None] * at.slope
-    penalty[..., 0, 0] = NITSCHE_VALUE / at.length[:, None] ** 3 * at.value
+    penalty[..., 1:3, 1:3] = NITSCHE_SLOPE / at.size[:, None, None, None] * at.slope
+    penalty[..., 0, 0] = NITSCHE_VALUE / at.size[:, None] ** 3 * at.value
     weights = at.weights[..., None, None]
     corner = np.zeros_like(reaction)
     corner[..., 0, 3:5] = at.twist

@@ -90,4 +90,5 @@ def graded(mesh: PlateMesh, fine: Fineness, corners: list[Singular], points: Flo
 
 def corner_rows(mesh: PlateMesh, corners: list[Singular]) -> list[int]:
     """The rows of the mesh's points at corners."""
-    return [int(np.argmin(((mesh.points - corner.point) ** 2).sum(axis=1))) for corner in corners]
+    rows = [int(np.argmin(((mesh.points - corner.point) ** 2).sum(axis=1))) for corner in corners]
+    return list(dict.fromkeys(rows))

@@ -151,8 +151,11 @@ def check_on_plate(outline: Outline, xy: FloatArray, size: float) -> None:
         raise ValueError(f"Input xy of evaluate must lie on the plate; got {xy[beyond][0].tolist()} m")
 
 
-def check_points(points: FloatArray, gap: FloatArray, size: float) -> None:
-    """Raises ValueError, naming every point (N, 2) that is not inside the rim (by its gap) or stands on another."""
+def check_points(what: str, points: FloatArray, gap: FloatArray, size: float) -> None:
+    """Raises ValueError, naming every one of the points (N, 2) that is not inside the rim or stands on another.
+
+    what: what they are an input of.  gap: (N,) m, how far inside the rim they are.
+    """
     wrong = [] if points.size else ["at least one point is needed"]
     for i in np.flatnonzero(~(gap > 1e-9 * size)).tolist():
         wrong.append(
@@ -162,4 +165,4 @@ def check_points(points: FloatArray, gap: FloatArray, size: float) -> None:
     for i, j in rows[sorted(cKDTree(points[rows]).query_pairs(1e-9 * size))].tolist():
         wrong.append(f"points {i + 1} and {j + 1} must differ; both are at {points[i].tolist()} m")
     if wrong:
-        raise ValueError("Input points of influence: " + "; ".join(wrong))
+        raise ValueError(f"Input points of {what}: " + "; ".join(wrong))

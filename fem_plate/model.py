@@ -134,7 +134,7 @@ class PlateModel:
 
     def under_pressure(self) -> FloatArray:
         """The smooth part (unknowns, 1) of the answer to a unit pressure."""
-        return self._answer([pressure_derivatives(self.space.rim.points)])
+        return self._answer([pressure_derivatives(self.space.rim.points - self.space.middle)])
 
     def motions(self, xy: FloatArray) -> FloatArray:
         """The rigid motions at points (n, 2): (n, r)."""

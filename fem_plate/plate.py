@@ -37,9 +37,10 @@ class Plate:
 
     mesh: its outline.  section: its material and thickness.
     supports: of the whole rim or by boundary, "clamped", "simply-supported" or "free"; boundaries left out are free.
-    tolerance: with one, answers are refined until their own error estimate (relative to the largest deflection) meets
-    it, or until 100 000 unknowns; their `error_estimate` says what was reached.
-    Raises ValueError, naming every support and boundary that is not known.
+    tolerance: with one, shapes and deflections are refined until their own error estimate (relative to the largest
+    deflection) meets it, or until 100 000 unknowns; their `error_estimate` says what was reached. Shapes on patches and
+    modes have none.
+    Raises ValueError, naming every support and boundary that is not known, or a tolerance that is not positive.
     """
 
     def __init__(
@@ -49,13 +50,15 @@ class Plate:
         supports: str | Mapping[str, str] = "clamped",
         tolerance: float | None = None,
     ) -> None:
+        if tolerance is not None and not tolerance > 0:
+            raise ValueError(f"Input tolerance of Plate must be greater than 0; got {tolerance!r}")
         self.supports = by_boundary(supports, mesh.boundaries)
         self.mesh = mesh
         self.section = section
         self.tolerance = tolerance
         self._fineness = Fineness.of(mesh)
         self._corners = singular_corners(mesh, self.supports, section.poisson_ratio)
-        self._models: dict[bytes, PlateModel] = {}
+        self._last: tuple[bytes, PlateModel] | None = None
 
     def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
         """The plate on cells graded towards its corners and for actuators at points (N, 2) [m], halved some times."""
@@ -64,10 +67,10 @@ class Plate:
             mesh = mesh.refined()
         mesh = graded(mesh, self._fineness.halved(halvings), self._corners, points)
         key = mesh.points.tobytes()
-        if key not in self._models:
+        if self._last is None or self._last[0] != key:
             rows = corner_rows(mesh, self._corners)
-            self._models = {key: PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)}
-        return self._models[key]
+            self._last = key, PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)
+        return self._last[1]
 
     def influence(
         self, points: ArrayLike, stiffness: ArrayLike | None = None, truncation: float | None = None
@@ -90,10 +93,10 @@ class Plate:
                 raise ValueError(
                     f"Input stiffness of influence must be 0 or more; got {springs[row]} N/m for point {row + 1}"
                 )
-        check_points(points, self.mesh.outline.gap(points), self.mesh.size)
+        check_points("influence", points, self.mesh.outline.gap(points), self.mesh.size)
         rigidity = self.section.rigidity
         if truncation is not None or len(points) > MOST_DENSE:
-            return self._patched(points, springs, truncation or TRUNCATION)
+            return self._patched(points, springs, TRUNCATION if truncation is None else truncation)
         return self._estimated(points, lambda model: InfluenceShapes(model, points, rigidity, springs))
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
@@ -105,8 +108,10 @@ class Plate:
         """
         points = _places(points, "points of deflection")
         loads = _one_each(forces, points, "forces of deflection")
+        if not (np.isfinite(loads).all() and np.isfinite(pressure)):
+            raise ValueError("Input forces and pressure of deflection must be finite; got some that are not")
         if points.size:
-            check_points(points, self.mesh.outline.gap(points), self.mesh.size)
+            check_points("deflection", points, self.mesh.outline.gap(points), self.mesh.size)
         rigidity = self.section.rigidity
         return self._estimated(points, lambda model: Deflection(model, points, loads, float(pressure), rigidity))
 
@@ -132,10 +137,11 @@ class Plate:
         if len(points) > MOST_DENSE:
             raise ValueError(f"Input held of modes must be at most {MOST_DENSE} points; got {len(points)}")
         if points.size:
-            check_points(points, self.mesh.outline.gap(points), self.mesh.size)
+            check_points("modes", points, self.mesh.outline.gap(points), self.mesh.size)
         model = self.model(points)
-        if not 1 <= count < model.unknowns // 2:
-            raise ValueError(f"Input count of frequencies must be at least 1; got {count!r}")
+        most = model.unknowns // 2
+        if not (isinstance(count, int | np.integer) and 1 <= count < most):
+            raise ValueError(f"Input count of modes must be a whole number from 1 to {most - 1}; got {count!r}")
         inertia = density * self.section.thickness * self.mesh.size**4
         return vibration.modes(model, points, count, self.section.rigidity / inertia)
 
@@ -169,7 +175,7 @@ class Plate:
 def _places(points: ArrayLike, name: str) -> FloatArray:
     """Points as an array (N, 2)."""
     array = np.asarray(points, dtype=float)
-    if array.size and (array.ndim > 2 or array.shape[-1] != 2):
+    if array.size and (array.ndim not in (1, 2) or array.shape[-1] != 2):
         raise ValueError(f"Input {name} must have shape (N, 2); got {array.shape}")
     return array.reshape(-1, 2)
 
@@ -177,6 +183,6 @@ def _places(points: ArrayLike, name: str) -> FloatArray:
 def _one_each(values: ArrayLike, points: FloatArray, name: str) -> FloatArray:
     """One number for each point, (N,), from one or N."""
     array = np.asarray(values, dtype=float)
-    if array.shape not in ((), (len(points),)):
+    if array.shape not in ((), (len(points),)) or len(points) == 0 < array.size:
         raise ValueError(f"Input {name} must be one a point, {len(points)}; got shape {array.shape}")
     return np.broadcast_to(array, len(points)).copy()

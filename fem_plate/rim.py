@@ -34,14 +34,11 @@ def rim_of(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[Rim, Slivers]:
     edges = np.concatenate(list(mesh.boundaries.values()))
     triangle = _owners(mesh, edges)
     start, end = mesh.points[edges.T] / mesh.size
-    centre = mesh.points[mesh.triangles[triangle]].mean(axis=1) / mesh.size
-    # The plate lies to the left of an edge that runs counter-clockwise; edges may run either way.
-    way = np.sign(_cross(end - start, centre - start))
     arcs = [mesh.arcs(name, s) for name in mesh.boundaries]
     points = np.concatenate([points for points, _ in arcs]) / mesh.size
     tangents = np.concatenate([tangents for _, tangents in arcs]) / mesh.size
     speed = np.linalg.norm(tangents, axis=-1)
-    normal = np.stack([tangents[..., 1], -tangents[..., 0]], axis=-1) * (way[:, None] / speed)[..., None]
+    normal = np.stack([tangents[..., 1], -tangents[..., 0]], axis=-1) / speed[..., None]
     length = np.pad(weights, 1) * speed
     kinds = np.repeat([supports[name] for name in mesh.boundaries], [len(e) for e in mesh.boundaries.values()])
     slope, value = np.empty((*points.shape, 2)), np.empty(length.shape)
@@ -51,14 +48,18 @@ def rim_of(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[Rim, Slivers]:
     for side, at, sign in ((0, 0, -1.0), (1, -1, 1.0)):
         meets = ~held & np.isin(edges[:, side], edges[held])
         twist[meets, at] = sign * tangents[meets, at] / speed[meets, at, None]
-    rim = Rim(triangle, points, length, normal, slope, value, length.sum(axis=1), twist)
+    # What a trace can be against the energy goes by the cell's height over the edge: 0.87 of it where equilateral.
+    a, b, c = np.moveaxis(mesh.points[mesh.triangles[triangle]] / mesh.size, 1, 0)
+    height = np.abs(_cross(b - a, c - a)) / np.linalg.norm(end - start, axis=1)
+    h = np.minimum(length.sum(axis=1), 2 / np.sqrt(3) * height)
+    rim = Rim(triangle, points, length, normal, slope, value, h, twist)
 
     chord = start[:, None] + gauss[:, None] * (end - start)[:, None]
     bulge, growth = points[:, 1:-1] - chord, tangents[:, 1:-1] - (end - start)[:, None]
     curved = np.abs(bulge).max(axis=(1, 2)) > 1e-14
     chord, bulge, growth = chord[curved, None], bulge[curved, None], growth[curved, None]  # (k, 1, along, 2)
     across = gauss[:, None, None]
-    area = _cross(bulge, (end - start)[curved, None, None] + across * growth) * way[curved, None, None]
+    area = _cross(bulge, (end - start)[curved, None, None] + across * growth)
     inside = (chord + across * bulge).reshape(len(bulge), RIM_POINTS**2, 2)
     return rim, Slivers(
         triangle[curved], inside, (np.outer(weights, weights) * area).reshape(len(bulge), RIM_POINTS**2)

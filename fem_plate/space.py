@@ -24,7 +24,8 @@ IntArray = NDArray[np.int64]
 CHUNK = 100_000  # points times functions evaluated at once, to bound memory
 QUADRATURE = 6  # points a side of a triangle, where integrands are not polynomials
 BEYOND = 0.1  # of a triangle: points this far beyond the mesh still count as on it, as between chord and rim
-NEAREST = (12, 200)  # triangles searched for a point: first few, then for the points not found many
+# Triangles searched for a point, first few and then more, while it lies further beyond the nearest than this.
+NEAREST = ((12, 1e-9), (200, 0.02), (2000, np.inf))
 
 
 class PlateSpace:
@@ -35,6 +36,7 @@ class PlateSpace:
 
     def __init__(self, mesh: PlateMesh, supports: Mapping[str, str], free_corners: Sequence[int] = ()) -> None:
         self.triangles = Triangles(mesh.points / mesh.size, mesh.triangles)
+        self.middle = (mesh.points.min(axis=0) + mesh.points.max(axis=0)) / 2 / mesh.size
         self.rim, self.slivers = rim_of(mesh, supports)
         corners, copies = split(mesh.triangles, list(free_corners), len(mesh.points))
         self._entities, self._first = _entities(mesh.triangles, corners)
@@ -188,7 +190,7 @@ class PlateSpace:
         """The triangle of each point (n, 2) and the smallest of the barycentric coordinates there."""
         found, inside = np.empty(len(xy), dtype=np.int64), np.empty(len(xy))
         missing = np.arange(len(xy))
-        for nearest in NEAREST:
+        for nearest, beyond in NEAREST:
             count = min(nearest, len(self.triangles.centre))
             _, candidates = self._tree.query(xy[missing], k=range(1, count + 1))
             x = self.triangles.reference(xy[missing].repeat(count, 0)[:, None], candidates.reshape(-1)) + 1 / 3
@@ -197,7 +199,7 @@ class PlateSpace:
             best = np.argmax(smallest, axis=1)
             found[missing] = candidates[np.arange(len(missing)), best]
             inside[missing] = smallest.max(axis=1)
-            missing = missing[inside[missing] < -1e-9]
+            missing = missing[inside[missing] < -beyond]
             if not missing.size:
                 break
         return found, inside

@@ -22,6 +22,8 @@ def by_boundary(supports: str | Mapping[str, str], boundaries: Mapping[str, obje
     """
     if isinstance(supports, str):
         supports = dict.fromkeys(boundaries, supports)
+    if not isinstance(supports, Mapping):
+        raise ValueError(f"Input supports of Plate must be one name or a mapping from boundaries; got {supports!r}")
     known, kinds = ", ".join(map(repr, boundaries)), ", ".join(map(repr, KINDS))
     wrong = [f"boundary {name!r} is not one of the mesh's, {known}" for name in supports if name not in boundaries]
     wrong += [

@@ -21,6 +21,7 @@ from fem_plate.singular import point_value
 
 FloatArray = NDArray[np.float64]
 
+TOGETHER = 20_000  # quadrature points taken at once, to bound memory
 RIGID_SHIFT = 1e12  # the dimensionless squared frequency that rigid motions are moved out to
 
 
@@ -109,8 +110,13 @@ def _masses(model: PlateModel, x: FloatArray, answers: FloatArray, mass) -> tupl
     """int q psi_j (unknowns, N) and int psi_i psi_j (N, N) for psi = F + answers, F by quadrature."""
     space = model.space
     points, weights = space.quadrature
-    singular = weights[:, None] * point_value(points, x)
-    with_singular = space.point_values(points).T @ singular  # int q F
+    with_singular, of_singular = np.zeros((space.unknowns, len(x))), np.zeros((len(x), len(x)))
+    for start in range(0, len(points), TOGETHER):
+        part = slice(start, start + TOGETHER)
+        value = point_value(points[part], x)
+        weighted = weights[part, None] * value
+        with_singular += space.point_values(points[part]).T @ weighted  # int q F
+        of_singular += value.T @ weighted
     cross = mass @ answers + with_singular
     inner = answers.T @ (mass @ answers) + answers.T @ with_singular + with_singular.T @ answers
-    return cross, inner + point_value(points, x).T @ singular
+    return cross, inner + of_singular

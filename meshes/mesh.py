@@ -36,9 +36,10 @@ class PlateMesh:
     """A conforming triangulation of a plate.
 
     points: (n, 2) m.  triangles: (m, 3) rows of points, counter-clockwise.
-    boundaries: name -> (k, 2) rows of points, the edges on that boundary, with the plate on their left.
+    boundaries: name -> (k, 2) rows of points, the edges on that boundary; turned to have the plate on their left.
     curves: name -> the curve that those edges approximate; the edges of other boundaries are straight.
     outline: the plate's true rim; by default made of boundaries and curves.
+    Raises ValueError when a Circle or Ellipse is not all of a rim; arcs of it can be `Parabolas`.
     """
 
     points: FloatArray
@@ -48,6 +49,7 @@ class PlateMesh:
     outline: Outline = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "boundaries", _turned(self.triangles, self.boundaries, len(self.points)))
         if self.outline is None:
             object.__setattr__(self, "outline", _outline(self.points, self.boundaries, self.curves))
 
@@ -129,16 +131,39 @@ class PlateMesh:
         return PlateMesh(points, triangles, boundaries, self.curves, self.outline)
 
 
+def _turned(triangles: IntArray, boundaries: Mapping[str, IntArray], points: int) -> dict[str, IntArray]:
+    """Boundaries whose edges run as the sides of the counter-clockwise triangles do."""
+    sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]) @ [points, 1]
+    return {
+        name: np.where(np.isin(pairs @ [points, 1], sides)[:, None], pairs, pairs[:, ::-1])
+        for name, pairs in boundaries.items()
+    }
+
+
 def _outline(points: FloatArray, boundaries: Mapping[str, IntArray], curves: Mapping[str, Curve]) -> Outline:
-    conics, edges = [np.empty((0, 4))], [np.empty((0, 3, 2))]
+    edges = [np.empty((0, 3, 2))]
+    swept: dict[tuple[float, ...], float] = {}
+
+    def sweep(conic: tuple[float, ...], pairs: IntArray) -> None:
+        centre, axes = np.array(conic).reshape(2, 2)
+        angle = np.arctan2(*np.moveaxis((points[pairs] - centre) / axes, 2, 0)[::-1])
+        turn = (np.diff(angle, axis=1) + np.pi) % (2 * np.pi) - np.pi
+        swept[conic] = swept.get(conic, 0.0) + abs(float(turn.sum()))
+
     for name, pairs in boundaries.items():
         match curves.get(name):
             case Circle(radius, centre):
-                conics.append(np.array([[*centre, radius, radius]]))
+                sweep((*centre, radius, radius), pairs)
             case Ellipse(semi_axis_x, semi_axis_y):
-                conics.append(np.array([[0.0, 0.0, semi_axis_x, semi_axis_y]]))
+                sweep((0.0, 0.0, semi_axis_x, semi_axis_y), pairs)
             case Parabolas() as curve:
                 edges.append(curve.pieces)
             case None:
                 edges.append(straight(*points[pairs.T]))
-    return Outline(np.concatenate(conics), np.concatenate(edges))
+    for conic, angle in swept.items():
+        if abs(angle - 2 * np.pi) > 1e-6:
+            raise ValueError(
+                "Input curves of PlateMesh must have circles and ellipses that are whole rims; boundaries cover "
+                f"{np.rad2deg(angle):.4g} degrees of the one around {list(conic[:2])} m"
+            )
+    return Outline(np.array(list(swept), dtype=float).reshape(-1, 4), np.concatenate(edges))

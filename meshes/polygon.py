@@ -110,7 +110,9 @@ def _mistakes(xy: FloatArray, corners: ArrayLike, cell_size: float, names: Seque
         wrong.append(f"Input corners of polygon must differ; got corner {i + 1} at corner {j + 1}, {xy[i].tolist()} m")
     if not same:
         ends = np.roll(xy, -1, axis=0)
-        crossed = [(j, i) for i in range(len(xy)) for j in range(i) if _touch(xy, ends, i, j)]
+        low, high = np.minimum(xy, ends), np.maximum(xy, ends)
+        near = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)  # only these can
+        crossed = [(j, i) for i, j in np.argwhere(np.tril(near, -1)).tolist() if _touch(xy, ends, i, j)]
         for one, other in crossed:
             wrong.append(f"Input corners of polygon must give sides that do not cross; got {one + 1} and {other + 1}")
     return wrong
