@@ -45,14 +45,15 @@ class Fineness:
 
     cell: float  # m, their mean size over the area
     half_width: float  # m, how far the plate reaches from its rim at most
-    size: float  # m, the plate's
+    size: float  # m, what corners are measured by: the plate's size, or three half widths of a slender one
 
     @staticmethod
     def of(mesh: PlateMesh) -> Fineness:
         a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
         area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
         half_width = mesh.outline.gap(np.concatenate([mesh.points, (a + b + c) / 3])).max()
-        return Fineness(float(np.average(mesh.cell_sizes, weights=area)), float(half_width), mesh.size)
+        size = min(mesh.size, 3 * half_width)
+        return Fineness(float(np.average(mesh.cell_sizes, weights=area)), float(half_width), float(size))
 
     def halved(self, times: int = 1) -> Fineness:
         """That of cells halved some times."""

@@ -123,7 +123,7 @@ def test_without_density_it_says_what_is_missing():
 
 @pytest.mark.parametrize("count", [0, -1, 10**6])
 def test_the_count_must_be_possible(plate, count):
-    with pytest.raises(ValueError, match=f"^Input count of frequencies must be .* got {count}$"):
+    with pytest.raises(ValueError, match=f"^Input count of modes must be a whole number from 1 to .* got {count}$"):
         plate.frequencies(count)
 
 
