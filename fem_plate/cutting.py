@@ -55,8 +55,7 @@ class Cutter:
         cell: float = CELL,
     ) -> None:
         self.plate, self.supports = _without_cuts(mesh, supports)
-        # Corners of a long thin plate are graded for its width: its length is none of a patch's.
-        self.fine, self.corners = replace(fine, size=fine.half_width), corners
+        self.fine, self.corners = fine, corners
         self.points, self.pitch = points, np.minimum(pitch, mesh.size)
         self.cell = min(cell * float(self.pitch.min()), fine.cell)
         self._sides = _rectangle_sides(self.plate)

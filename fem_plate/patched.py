@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
 from fem_plate.field import Fields
-from fem_plate.influence import Shapes
+from fem_plate.influence import MOST_DENSE, Shapes
 from fem_plate.patches import Array
 from fem_plate.singular import point_value
 from meshes import Outline
@@ -66,9 +66,10 @@ class PatchedShapes(Shapes):
 
     @property
     def compliance(self) -> FloatArray:
-        """Raises ValueError: every entry counts, and there are too many."""
+        """Raises ValueError: every entry counts, and patches know only those nearby."""
         raise ValueError(
-            f"Input points of influence must be at most 2000 for a compliance, which is dense; got {len(self.points)}"
+            f"Input points of influence must be at most {MOST_DENSE}, and without a truncation, for a compliance; got "
+            f"{len(self.points)} on patches"
         )
 
     def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:

@@ -6,6 +6,7 @@ import plate_theory as theory
 import pytest
 from goursat_rim import FREE, Arc, polygon
 from plate_rectangles import levy_pressure, supported_force
+from spots import scattered
 
 from fem_plate import Plate, PlateSection
 from fem_plate.analytic import disc_green
@@ -13,16 +14,6 @@ from meshes import annulus, disc, ellipse, rectangle
 
 UNIT = PlateSection(youngs_modulus=12 * (1 - 0.3**2), poisson_ratio=0.3, thickness=1.0)  # rigidity 1
 FOUR = np.array([[0.3, 0.15], [-0.2, 0.4], [-0.35, -0.25], [0.25, -0.5]])
-
-
-def scattered(mesh, away=(), count=300):
-    """Points all over a plate, at least 0.02 away from some."""
-    low, high = mesh.outline.box
-    xy = np.random.default_rng(3).uniform(low, high, (5 * count, 2))
-    xy = xy[mesh.outline.gap(xy) > 0]
-    for point in np.reshape(away, (-1, 2)):
-        xy = xy[np.hypot(*(xy - point).T) > 0.02]
-    return xy[:count]
 
 
 @pytest.fixture(scope="module", params=["clamped", "simply-supported"])
@@ -56,7 +47,7 @@ def test_deflection_is_proportional_to_the_load(plate):
 
 
 def test_it_goes_with_one_over_the_rigidity_and_the_square_of_the_size(section):
-    spots = scattered(disc(1.0, 0.25), FOUR)
+    spots = scattered(disc(1.0, 0.25), FOUR, count=300)
     small = Plate(disc(2e-3, 0.5e-3), section).deflection(2e-3 * FOUR, np.arange(4)).evaluate(2e-3 * spots)
     unit = Plate(disc(1.0, 0.25), UNIT).deflection(FOUR, np.arange(4)).evaluate(spots)
     for order, (a, b) in enumerate(zip(small, unit, strict=True)):

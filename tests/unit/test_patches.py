@@ -149,7 +149,9 @@ def test_forces_are_sparse_and_there_is_no_compliance(row):
     # The scale is the largest force; the truncation's share of it, some stiffness per deflection, is of order one.
     assert np.abs(shapes.stiffness.toarray() - dense.stiffness).max() < 1e-3 * np.abs(dense.stiffness).max()
     assert np.abs(shapes.strengths.toarray() - dense.strengths).max() < 1e-3 * np.abs(dense.strengths).max()
-    with pytest.raises(ValueError, match="^Input points of influence must be at most 2000 for a compliance"):
+    with pytest.raises(
+        ValueError, match="must be at most 2000, and without a truncation, for a compliance; got 60 on patches"
+    ):
         _ = shapes.compliance
 
 
@@ -184,14 +186,12 @@ def test_the_error_estimate_counts_what_is_left_out_and_the_cells(section):
 def test_what_floats_is_left_out_by_its_own_deflection(row):
     """A newton on a floating actuator moves it by its compliance, be it large or small; that is the scale."""
     springs = np.where(np.arange(60) % 2, np.inf, 0.0)
-    dense = row.influence(lattice(60, 1), springs)
+    dense = Plate(row.mesh.refined(), row.section).influence(lattice(60, 1), springs)
     shapes = row.influence(lattice(60, 1), springs, truncation=1e-4)
     spots = np.stack([np.linspace(-30, 30, 200), np.full(200, 0.4)], axis=1) * PITCH
     value = dense.evaluate(spots)[0]
     assert np.abs(value[:, ::2]).max() < 1e-2  # m/N: without the scale 1e-4 would be a hundredth of them
-    allowed = shapes.truncation_error + 2 * dense.error_estimate
-    assert allowed < 1e-3
-    assert (np.abs(shapes.evaluate(spots)[0] - value).max(axis=0) < allowed * np.abs(value).max(axis=0)).all()
+    assert (np.abs(shapes.evaluate(spots)[0] - value).max(axis=0) < 2e-4 * np.abs(value).max(axis=0)).all()
 
 
 def test_a_sum_may_be_asked_for_at_the_actuators(row):

@@ -8,6 +8,7 @@ import numpy as np
 import plate_theory as theory
 import pytest
 from goursat_rim import Arc
+from spots import scattered
 
 from fem_plate import Plate, PlateSection
 from meshes import annulus, disc, ellipse
@@ -15,15 +16,6 @@ from meshes import annulus, disc, ellipse
 UNIT = PlateSection(youngs_modulus=12 * (1 - 0.3**2), poisson_ratio=0.3, thickness=1.0)  # rigidity 1
 C, S, F = "clamped", "simply-supported", "free"
 SOURCE = (0.4, 0.2)
-
-
-def scattered(mesh, away=(), count=400):
-    low, high = mesh.outline.box
-    xy = np.random.default_rng(3).uniform(low, high, (5 * count, 2))
-    xy = xy[mesh.outline.gap(xy) > 0]
-    for point in np.reshape(away, (-1, 2)):
-        xy = xy[np.hypot(*(xy - point).T) > 0.02]
-    return xy[:count]
 
 
 def errors(mesh, supports, points, forces, pressure, truth, nu=0.3):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from goursat_rim import polygon as loop
 from plate_rectangles import levy_pressure, supported_force
+from spots import scattered
 
 from fem_plate import Plate, PlateSection
 from meshes import polygon, rectangle
@@ -20,19 +21,13 @@ SOURCE = (0.37, 0.21)
 L_SHAPE = [(0, 0), (1, 0), (1, 1), (-1, 1), (-1, -1), (0, -1)]
 
 
-def scattered(mesh, away=(), count=400):
-    """Points all over the plate, but not where series converge slowly, on the rim, nor at forces."""
-    low, high = mesh.outline.box
-    xy = np.random.default_rng(3).uniform(low, high, (5 * count, 2))
-    xy = xy[mesh.outline.gap(xy) > 1e-3]
-    for point in np.reshape(away, (-1, 2)):
-        xy = xy[np.hypot(*(xy - point).T) > 0.02]
-    return xy[:count]
+# Series converge slowly on the rim.
+FROM_RIM = 1e-3
 
 
 def errors(mesh, supports, points, forces, pressure, truth):
     """Largest errors of w, gradient and Hessian over their largest values."""
-    spots = scattered(mesh, points)
+    spots = scattered(mesh, points, from_rim=FROM_RIM)
     found = Plate(mesh, UNIT, supports).deflection(points, forces, pressure).evaluate(spots)
     return np.array([np.abs(f - t).max() / np.abs(t).max() for f, t in zip(found, truth(spots), strict=True)])
 
@@ -109,7 +104,7 @@ def test_balanced_forces_on_the_free_square():
     four = np.array([[0.5, 0.15], [-0.3, 0.5], [-0.45, -0.25], [0.25, -0.6]])
     balanced = np.linalg.svd(np.column_stack([np.ones(4), four]).T)[2][3]
     mesh = rectangle(2.0, 2.0, 0.15)
-    spots = scattered(mesh, four)
+    spots = scattered(mesh, four, from_rim=FROM_RIM)
     truth = goursat.solve([loop(SQUARE, F)], four, balanced, degree=35, poles=35)
     found = Plate(mesh, UNIT, F).deflection(four, balanced).evaluate(spots)
     rigid = np.column_stack([np.ones(len(spots)), spots])
