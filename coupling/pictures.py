@@ -14,9 +14,9 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from coupling.case import Case
-from coupling.rim import onto_plate, rim_curves
+from coupling.rim import rim_curves
 from fem_plate import InfluenceShapes
-from particle import State, SurfaceMotion, Trajectory
+from particle import State, Trajectory
 
 FloatArray = NDArray[np.float64]
 
@@ -29,9 +29,7 @@ Plate = tuple[FloatArray, NDArray[np.int64], FloatArray]
 """Points (n, 2) [m], triangles (m, 3) and the deflection (n,) [m] with all drives up at once."""
 
 
-def draw_run(
-    case: Case, shapes: InfluenceShapes, surface: SurfaceMotion, trajectory: Trajectory, plate: Plate, path: Path
-) -> None:
+def draw_run(case: Case, shapes: InfluenceShapes, trajectory: Trajectory, plate: Plate, path: Path) -> None:
     """Draws the run into a PNG file."""
     figure = Figure(figsize=(12.0, 6.0))
     FigureCanvasAgg(figure)
@@ -40,11 +38,9 @@ def draw_run(
     _draw_path(figure, figure.add_subplot(grid[:, 0]), shapes, plate, trajectory)
     height, speed = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
     times = np.linspace(0, trajectory.time[-1], SAMPLES)
-    position, velocity, _ = trajectory.at(times)
-    place = onto_plate(shapes.outline, position)
-    heights = [surface.evaluate(xy, t).w[0] for xy, t in zip(place, times.tolist(), strict=True)]
-    _draw_over_time(height, trajectory, times, np.array(heights) * MICRO, "height of the part [µm]")
-    _draw_over_time(speed, trajectory, times, np.hypot(*velocity.T), "speed in the plane [m/s]")
+    samples = trajectory.at(times)
+    _draw_over_time(height, trajectory, times, samples.height * MICRO, "height of the part [µm]")
+    _draw_over_time(speed, trajectory, times, np.hypot(*samples.velocity.T), "speed in the plane [m/s]")
     height.tick_params(labelbottom=False)
     speed.set_xlabel("time [ms]")
     figure.suptitle(f"{case.name}: {trajectory.outcome.sentence}")
@@ -66,7 +62,7 @@ def _draw_path(figure: Figure, axes: Axes, shapes: InfluenceShapes, plate: Plate
     axes.add_collection(LineCollection([curve * MICRO for curve in rim], colors="black", linewidths=1.5))
     points = trajectory.position * MICRO
     fine = np.linspace(0, trajectory.time[-1], SAMPLES)
-    line = trajectory.at(fine)[0] * MICRO
+    line = trajectory.at(fine).position * MICRO
     axes.add_collection(LineCollection([line], colors=SLIP_COLOUR, linewidths=1.5))
     rests = trajectory.state == State.STICK
     axes.plot(*points[rests].T, "o", color=STICK_COLOUR, markersize=4, zorder=3)

@@ -20,8 +20,7 @@ from coupling.summary import Summary, stroke_heights
 from coupling.vtkhdf import part_file, plate_file
 from fem_plate import InfluenceShapes
 from meshes import PlateMesh
-from particle import Drive, SurfaceMotion, Trajectory, contact_forces
-from particle.friction import Contact
+from particle import Drive, Trajectory
 
 FloatArray = NDArray[np.float64]
 
@@ -42,11 +41,9 @@ def write_results(
     case: Case,
     mesh: PlateMesh,
     shapes: InfluenceShapes,
-    surface: SurfaceMotion,
     drives: Sequence[Drive],
     trajectory: Trajectory,
     summary: Summary,
-    friction: Contact,
     folder: Path,
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths."""
@@ -61,9 +58,8 @@ def write_results(
         "units": json.dumps(UNITS),
         "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")}),
     }
-    position, velocity, row = trajectory.at(times)
-    place = onto_plate(shapes.outline, position)
-    normal, held = contact_forces(surface, trajectory, friction, case.part.mass, case.run.gravity, times)
+    samples = trajectory.at(times)
+    place = onto_plate(shapes.outline, samples.position)
     with (
         plate_file(folder, case.name, points, triangles, metadata) as plate,
         part_file(folder, case.name, metadata) as part,
@@ -72,15 +68,15 @@ def write_results(
             plate.append(time, deflection=value @ heights[k])
             part.append(
                 time,
-                (*place[k], float(surface.evaluate(place[k], time).w[0])),
-                velocity=(*velocity[k], 0.0),
-                state=int(trajectory.state[row[k]]),
-                normal_force=normal[k],
-                friction_force=held[k],
+                (*place[k], samples.height[k]),
+                velocity=(*samples.velocity[k], 0.0),
+                state=samples.state[k],
+                normal_force=samples.normal_force[k],
+                friction_force=samples.friction_force[k],
             )
     picture = folder / f"{case.name}.png"
     all_up = value @ [amplitude(actuator) for actuator in case.actuators]
-    draw_run(case, shapes, surface, trajectory, (points, triangles, all_up), picture)
+    draw_run(case, shapes, trajectory, (points, triangles, all_up), picture)
     return folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf", picture
 
 

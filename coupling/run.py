@@ -57,7 +57,7 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
     if output is None:
         return result
     with progress("Writing the results"):
-        files = write_results(case, plate.mesh, shapes, surface, drives, trajectory, summary, friction, Path(output))
+        files = write_results(case, plate.mesh, shapes, drives, trajectory, summary, Path(output))
     return Result(case, shapes, surface, trajectory, summary, files)
 
 

@@ -13,7 +13,7 @@ from coupling.case import Case, KogutEtsionCase
 from coupling.places import SAME_PLACE
 from fem_plate import InfluenceShapes, Plate
 from meshes import Outline
-from particle import Drive, EventKind, State, SurfaceMotion, Trajectory, contact_forces
+from particle import Drive, EventKind, State, SurfaceMotion, Trajectory
 from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
@@ -79,7 +79,7 @@ def summarise(
     slope, deflection = _extremes(shapes, drives, case.run.duration)
     over_thickness = deflection / case.plate.thickness
     times = np.linspace(0, trajectory.time[-1], SAMPLES)
-    normal, _ = contact_forces(surface, trajectory, friction, case.part.mass, case.run.gravity, times)
+    normal = trajectory.at(times).normal_force
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
     held = shapes.points[shapes.springs > 0]

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from particle.fields import Fields, fields
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.motion import Part, length, pull
+from particle.motion import Part, drag, length, pull, push
 
 FloatArray = NDArray[np.float64]
 
@@ -56,8 +56,9 @@ def lag(surface: Any, local: Any, part: Part, time: float, x: float, y: float, u
     """kappa [s/m] at the sliding speed u [m/s]."""
     if a.demand == 0.0 or 2 * a.demand <= a.limit:
         return 0.0
-    if surface.moving_base:
-        # No closed form without the base's jerk: the pull's turning is taken from a small step along the path.
+    if surface.moving_base or part.tilt_x != 0.0 or part.tilt_y != 0.0:
+        # The pull is not along grad w, and there is no closed form without the base's jerk: its turning is taken from
+        # a small step along the path.
         step = 1e-6 * local.frame[1]
         g = fields(surface, local, x + step * u * a.d_x, y + step * u * a.d_y, time + step)
         gain = step * (a.demand - a.limit)
@@ -85,7 +86,7 @@ def velocity(u: float, kappa: float, a: Slope) -> tuple[float, float]:
 
 @jit
 def manifold_rate(surface: Any, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
-    """d/dt of (x, y, u) into the first three of `out`; returns the normal force [N]."""
+    """d/dt of (x, y, u, -, work, dissipation) into `out`; returns the normal force [N]."""
     x, y, u = state[0], state[1], state[2]
     f = fields(surface, local, x, y, time)
     a = slope(f, part)
@@ -93,9 +94,13 @@ def manifold_rate(surface: Any, local: Any, part: Part, time: float, state: Floa
     d_x, d_y = velocity(1.0, kappa * u, a)
     v_x, v_y = u * d_x, u * d_y
     load = pull(f, v_x, v_y, part).normal
+    limit = friction_limit(part.law, load)
     climb = d_x * f.x + d_y * f.y
     upright = part.gravity + f.w_tt + v_x * f.xt + v_y * f.yt
+    along = d_x * (f.base_ax - part.tilt_x) + d_y * (f.base_ay - part.tilt_y)
     out[0], out[1] = v_x, v_y
-    out[2] = -d_x * f.base_x - d_y * f.base_y - climb * upright - friction_limit(part.law, load) / part.mass
+    out[2] = -along - climb * upright - limit / part.mass
     out[3] = 0.0
+    out[4] = push(f, part, load) - limit * drag(f, d_x, d_y)
+    out[5] = limit * u
     return load

@@ -36,7 +36,7 @@ class Local(NamedTuple):
 
 
 class Fields(NamedTuple):
-    """The surface at one point and time, in SI units; (base_x, base_y) is the base's acceleration in its plane."""
+    """The surface at one point and time, in SI units, with the base's place, velocity and acceleration in its plane."""
 
     w: float
     w_t: float
@@ -48,8 +48,12 @@ class Fields(NamedTuple):
     xx: float
     xy: float
     yy: float
-    base_x: float
-    base_y: float
+    base_px: float
+    base_py: float
+    base_vx: float
+    base_vy: float
+    base_ax: float
+    base_ay: float
 
 
 @jit
@@ -219,12 +223,14 @@ def fields(surface: Any, local: Local, x: float, y: float, time: float) -> Field
         h_xx += bend * (logarithm + 1 + 2 * d_x * d_x / bounded)
         h_xy += bend * 2 * d_x * d_y / bounded
         h_yy += bend * (logarithm + 1 + 2 * d_y * d_y / bounded)
-    base_x = base_y = 0.0
+    base_px = base_py = base_vx = base_vy = base_ax = base_ay = 0.0
     if surface.moving_base:
         s, n = (time - local.frame[TIME]) / local.frame[UNIT], surface.strengths.shape[1]
-        base_x = quintic(local.heights[n], s, local.frame[UNIT])[2]
-        base_y = quintic(local.heights[n + 1], s, local.frame[UNIT])[2]
-    return Fields(w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, base_x, base_y)
+        base_px, base_vx, base_ax = quintic(local.heights[n], s, local.frame[UNIT])
+        base_py, base_vy, base_ay = quintic(local.heights[n + 1], s, local.frame[UNIT])
+    return Fields(
+        w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, base_px, base_py, base_vx, base_vy, base_ax, base_ay
+    )
 
 
 @jit

@@ -26,6 +26,7 @@ class FrictionLaw(NamedTuple):
     adhesion: float  # COULOMB: N
     pull_off: float  # N
     largest_load: float  # N, above which the law says nothing
+    impact_coefficient: float  # limit of Q(N) / N under large loads, which acts at impacts
     step: float  # TABLE: width of a knot interval in u = ln(1 + sqrt((N + pull_off) / pull_off))
     cubics: FloatArray  # TABLE: (4, knots - 1), of ln(Q / N) on each interval, highest power first
 
@@ -57,7 +58,15 @@ def friction_limit(law: FrictionLaw, load: float) -> float:
 
 def _law(kind: int, pull_off: float, **fields: float) -> FrictionLaw:
     values = {"limit": 0.0, "coefficient": 0.0, "static_ratio": 1.0, "adhesion": 0.0} | fields
-    return FrictionLaw(kind, **values, pull_off=pull_off, largest_load=math.inf, step=1.0, cubics=np.zeros((4, 1)))
+    return FrictionLaw(
+        kind,
+        **values,
+        pull_off=pull_off,
+        largest_load=math.inf,
+        impact_coefficient=values["coefficient"],
+        step=1.0,
+        cubics=np.zeros((4, 1)),
+    )
 
 
 @dataclass(frozen=True)

@@ -191,7 +191,16 @@ class KogutEtsion:
         knots = np.linspace(0, u[-1], KNOTS)
         table = CubicSpline(knots, fine(knots))
         return FrictionLaw(
-            TABLE, 0.0, 0.0, 1.0, 0.0, self.pull_off, self.largest_load, float(knots[1]), np.ascontiguousarray(table.c)
+            TABLE,
+            0.0,
+            0.0,
+            1.0,
+            0.0,
+            self.pull_off,
+            self.largest_load,
+            0.0,
+            float(knots[1]),
+            np.ascontiguousarray(table.c),
         )
 
     @cached_property

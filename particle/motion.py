@@ -1,13 +1,17 @@
-"""The equations of motion of a point part on a moving surface z = w(x, y, t).
+"""The equations of motion of a point part on a moving surface z = w(x, y, t), and its energy.
 
-With v = (x', y'), the base's acceleration b in its plane and everything of w at the part's place and time:
+With v = (x', y'), a the base's acceleration in its plane less gravity's share there, and everything of w at the part's
+place and time:
 
-    B = g + w_tt + 2 v.grad(w_t) + v.H.v - b.grad(w)        s^2 = 1 + |grad w|^2
-    N = m B / s                                             normal force, from the constraint z'' = d^2 w / dt^2
+    B = g + w_tt + 2 v.grad(w_t) + v.H.v - a.grad(w)        s^2 = 1 + |grad w|^2
+    N = m B / s + squeeze                                   normal force, from the constraint z'' = d^2 w / dt^2
     u = sqrt(|v|^2 + (v.grad w)^2)                          sliding speed
-    (x'', y'') = -b - B grad(w)/s^2 - (Q(N)/m) v/u          while it slides
+    (x'', y'') = -a - B grad(w)/s^2 - (Q(N)/m) v/u          while it slides
 
-and it sticks while the force without friction, m |-b - B grad(w)/s^2| measured along the surface, is at most Q(N).
+and it sticks while the force without friction, m |-a - B grad(w)/s^2| measured along the surface, is at most Q(N).
+
+The surface does the work of the contact's force (and the squeeze's) at its own velocity, (V, w_t) with V that of the
+base; friction dissipates Q u; the rest is kinetic and potential energy of the part, both as seen by one at rest.
 """
 
 from __future__ import annotations
@@ -29,7 +33,10 @@ class Part(NamedTuple):
     """What the equations need to know of part and contact."""
 
     mass: float  # kg
-    gravity: float  # m/s^2
+    gravity: float  # m/s^2, towards the plate
+    tilt_x: float  # m/s^2, gravity along x and y, on a tilted device
+    tilt_y: float
+    squeeze: float  # N, presses the part onto the surface along its normal
     law: Any  # particle.friction.FrictionLaw
 
 
@@ -38,21 +45,22 @@ class Pull(NamedTuple):
 
     x: float  # m/s^2, acceleration without friction
     y: float
-    normal: float  # N, normal force
+    normal: float  # N, net normal force N of the contact
     speed: float  # m/s, sliding speed u
 
 
 @jit
 def pull(f: Fields, v_x: float, v_y: float, part: Part) -> Pull:
     """Acceleration without friction, normal force and sliding speed."""
+    a_x, a_y = f.base_ax - part.tilt_x, f.base_ay - part.tilt_y
     bend = v_x * (f.xx * v_x + 2 * f.xy * v_y) + v_y * f.yy * v_y
-    b = part.gravity + f.w_tt + 2 * (v_x * f.xt + v_y * f.yt) + bend - f.base_x * f.x - f.base_y * f.y
+    b = part.gravity + f.w_tt + 2 * (v_x * f.xt + v_y * f.yt) + bend - a_x * f.x - a_y * f.y
     square = 1 + f.x * f.x + f.y * f.y
     climb = v_x * f.x + v_y * f.y
     return Pull(
-        -f.base_x - b * f.x / square,
-        -f.base_y - b * f.y / square,
-        part.mass * b / math.sqrt(square),
+        -a_x - b * f.x / square,
+        -a_y - b * f.y / square,
+        part.mass * b / math.sqrt(square) + part.squeeze,
         math.sqrt(v_x * v_x + v_y * v_y + climb * climb),
     )
 
@@ -66,14 +74,38 @@ def length(f: Fields, x: float, y: float) -> float:
 
 @jit
 def slide_rate(surface: Any, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
-    """d/dt of (x, y, v_x, v_y) into `out`; returns the normal force [N]."""
-    x, y, v_x, v_y = state
+    """d/dt of (x, y, v_x, v_y, work, dissipation) into `out`; returns the normal force [N]."""
+    x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     f = fields(surface, local, x, y, time)
     p = pull(f, v_x, v_y, part)
-    slow = friction_limit(part.law, p.normal) / part.mass / p.speed if p.speed > 0.0 else 0.0
+    limit = friction_limit(part.law, p.normal)
+    slow = limit / part.mass / p.speed if p.speed > 0.0 else 0.0
     out[0], out[1] = v_x, v_y
     out[2], out[3] = p.x - slow * v_x, p.y - slow * v_y
+    out[4] = push(f, part, p.normal) - part.mass * slow * drag(f, v_x, v_y)
+    out[5] = limit * p.speed
     return p.normal
+
+
+@jit
+def push(f: Fields, part: Part, load: float) -> float:
+    """The power [W] of the surface's normal force, net of the squeeze, at the surface's velocity."""
+    s = math.sqrt(1 + f.x * f.x + f.y * f.y)
+    return (load - part.squeeze) / s * (f.w_t - f.x * f.base_vx - f.y * f.base_vy)
+
+
+@jit
+def drag(f: Fields, x: float, y: float) -> float:
+    """The surface's velocity [m/s] times a vector along it, given in the plane's coordinates."""
+    return x * f.base_vx + y * f.base_vy + (x * f.x + y * f.y) * f.w_t
+
+
+@jit
+def energy(f: Fields, x: float, y: float, v_x: float, v_y: float, part: Part) -> tuple[float, float]:
+    """Kinetic and potential energy [J] of a part on the surface."""
+    s_x, s_y, s_z = v_x + f.base_vx, v_y + f.base_vy, f.w_t + v_x * f.x + v_y * f.y
+    height = part.gravity * f.w - part.tilt_x * (x + f.base_px) - part.tilt_y * (y + f.base_py)
+    return 0.5 * part.mass * (s_x * s_x + s_y * s_y + s_z * s_z), part.mass * height
 
 
 @jit

@@ -15,11 +15,11 @@ from particle.fields import within_cell
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.motion import Part, margin, slide_rate
+from particle.record import SLIDING
 from particle.rim import rim_gap
 
 FloatArray = NDArray[np.float64]
 
-SLIDING, MANIFOLD = 0, 1
 LOOSE = 1e-6  # tolerances from here on are met most cheaply by the pair of order 5
 
 
@@ -30,6 +30,8 @@ class Tableau(NamedTuple):
     c: FloatArray  # (stages + 1,)
     error: FloatArray  # (2, stages + 1): error weights; the second row is zero when there is only one
     order: int
+    between: FloatArray  # (m,), places in the step between its stages
+    blend: FloatArray  # (m, stages + 1): a smooth quantity there, from its values at the stages
 
 
 @cache
@@ -45,29 +47,37 @@ def _tableau(pair: Any, error: FloatArray, order: int) -> Tableau:
     a = np.zeros((stages + 1, stages))
     a[:stages, : pair.A.shape[1]] = pair.A[:stages, :stages]
     a[stages] = pair.B
-    return Tableau(a, np.append(pair.C[:stages], 1.0), error, order)
+    c = np.append(pair.C[:stages], 1.0)
+    places = np.unique(c)
+    between = 0.5 * (places[1:] + places[:-1])
+    powers = np.arange(min(len(places), 6))
+    blend = between[:, None] ** powers @ np.linalg.pinv(c[:, None] ** powers)
+    return Tableau(a, c, error, order, between, blend)
 
 
 class Step(NamedTuple):
     """Scratch memory and result of a step."""
 
-    rates: FloatArray  # (stages + 1, 4)
+    rates: FloatArray  # (stages + 1, 6)
     loads: FloatArray  # (stages + 1,) N, normal force at each stage
     margins: FloatArray  # (stages + 1,) how far each stage is from the end of contact
-    stage: FloatArray  # (4,)
-    end: FloatArray  # (4,)
+    stage: FloatArray  # (6,)
+    end: FloatArray  # (6,)
     start_gap: FloatArray  # (1,) m, the step's start from the rim
 
 
 @jit
 def new_step(pair: Tableau) -> Step:
     stages = len(pair.c)
-    return Step(np.zeros((stages, 4)), np.zeros(stages), np.zeros(stages), np.zeros(4), np.zeros(4), np.zeros(1))
+    return Step(np.zeros((stages, 6)), np.zeros(stages), np.zeros(stages), np.zeros(6), np.zeros(6), np.zeros(1))
 
 
 @jit
 def rate(mode: int, surface: Any, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
-    """The right side: of (x, y, v_x, v_y) while sliding, of (x, y, u, -) on the slow manifold; returns the load [N]."""
+    """The right side: of (x, y, v_x, v_y, work, dissipation) while sliding, of (x, y, u, -, ...) on the slow manifold.
+
+    Returns the load [N].
+    """
     if mode == SLIDING:
         return slide_rate(surface, local, part, time, state, out)
     return manifold_rate(surface, local, part, time, state, out)
@@ -85,7 +95,7 @@ def attempt(
     dry = friction_limit(part.law, step.loads[0]) > 0.0
     stages = len(pair.c)
     for k in range(1, stages):
-        for i in range(4):
+        for i in range(6):
             total = 0.0
             for j in range(k):
                 total += pair.a[k, j] * step.rates[j, i]
@@ -118,3 +128,18 @@ def error(pair: Tableau, step: Step, h: float, weight: float) -> float:
         return 0.0
     # Hairer's combination: the fifth-order estimate, damped by the third-order one.
     return total[0] / math.sqrt(total[0] + 0.01 * total[1])
+
+
+@jit
+def first_excursion(part: Part, pair: Tableau, step: Step) -> float:
+    """The share of a step at which the load leaves the contact's range between two stages; 1: nowhere.
+
+    The loads between them are those of the polynomial through the stages'.
+    """
+    for k in range(len(pair.between)):
+        load = 0.0
+        for j in range(len(pair.c)):
+            load += pair.blend[k, j] * step.loads[j]
+        if not -part.law.pull_off <= load <= part.law.largest_load:
+            return float(pair.between[k])
+    return 1.0

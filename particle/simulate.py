@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from particle.events import march
 from particle.friction import Contact
 from particle.motion import Part
+from particle.resume import resume
 from particle.rim import rim_gap
 from particle.runge_kutta import tableau
 from particle.slide import DETACHED, GOES_ON, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
 from particle.surface import SurfaceMotion
-from particle.trajectory import Event, EventKind, Outcome, State, Trajectory
+from particle.trajectory import Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
+
+FloatArray = NDArray[np.float64]
 
 _OUTCOMES = {
     DETACHED: Outcome.DETACHED,
@@ -28,16 +34,19 @@ _OUTCOMES = {
 class Micropart:
     """A part, taken as a point on the surface.
 
-    Raises ValueError when the mass is not positive or a coordinate is not finite.
+    Raises ValueError when the mass is not positive or another number is not finite.
     """
 
     mass: float  # kg
     position: tuple[float, float]  # m
     velocity: tuple[float, float] = (0.0, 0.0)  # m/s
+    squeeze: float = 0.0  # N, a constant force that presses it onto the surface, along the normal
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.mass) and self.mass > 0):
             raise ValueError(f"Input mass of Micropart must be positive, in kg; got {self.mass!r}")
+        if not math.isfinite(self.squeeze):
+            raise ValueError(f"Input squeeze of Micropart must be a finite force in N; got {self.squeeze!r}")
         for name in ("position", "velocity"):
             value = getattr(self, name)
             if len(value) != 2 or not all(math.isfinite(v) for v in value):
@@ -49,46 +58,63 @@ def simulate(
     part: Micropart,
     friction: Contact,
     duration: float,
-    gravity: float = 9.80665,
+    gravity: float | Sequence[float] = 9.80665,
     tolerance: float = 1e-9,
     scheme: str = "events",
+    after_detachment: str = "stop",
 ) -> Trajectory:
     """The part's path over the moving surface, by the equations of `particle.motion`.
 
-    duration: s.  gravity: m/s^2.  tolerance: error of one step, relative to the surface's size.  scheme: "events".
-    Raises ValueError for a scheme, duration or tolerance that makes no sense and for a start beyond the rim.
+    duration: s.  gravity: m/s^2 towards the plate, or a vector along x, y, z for a tilted device: (0, 0, -9.80665) is
+    the same as 9.80665.  tolerance: error of one step, relative to the surface's size.
+    scheme: "events".
+    after_detachment: "stop" ends the run where the part comes off, "fly" follows it to where it lands.
+    Raises ValueError, naming every input that makes no sense, as a start beyond the rim.
     """
+    wrong = []
+    vector = np.atleast_1d(np.asarray(gravity, dtype=float))
+    if not (vector.shape in ((1,), (3,)) and np.isfinite(vector).all()):
+        wrong.append(f"Input gravity of simulate must be an acceleration in m/s^2 or three of them; got {gravity!r}")
     if scheme != "events":
-        raise ValueError(f"Input scheme of simulate must be 'events'; got {scheme!r}")
+        wrong.append(f"Input scheme of simulate must be 'events'; got {scheme!r}")
+    if after_detachment not in ("stop", "fly"):
+        wrong.append(f"Input after_detachment of simulate must be 'stop' or 'fly'; got {after_detachment!r}")
     if not (math.isfinite(duration) and duration > 0):
-        raise ValueError(f"Input duration of simulate must be a positive time in s; got {duration!r}")
-    if not math.isfinite(gravity):
-        raise ValueError(f"Input gravity of simulate must be a finite acceleration in m/s^2; got {gravity!r}")
+        wrong.append(f"Input duration of simulate must be a positive time in s; got {duration!r}")
     if not 1e-13 <= tolerance <= 1e-2:
-        raise ValueError(f"Input tolerance of simulate must be in [1e-13, 1e-2]; got {tolerance!r}")
+        wrong.append(f"Input tolerance of simulate must be in [1e-13, 1e-2]; got {tolerance!r}")
     if not rim_gap(surface, *map(float, part.position)) >= 0:
-        raise ValueError(f"Input position of Micropart must lie on the plate; got {tuple(part.position)!r} m")
+        wrong.append(f"Input position of Micropart must lie on the plate; got {tuple(part.position)!r} m")
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
     scales = surface.drives.scale[np.repeat(np.isfinite(surface.drives.span), np.diff(surface.drives.first))]
     request = Request(
-        part=Part(part.mass, gravity, friction.law),
+        part=Part(float(part.mass), -float(z), float(x), float(y), float(part.squeeze), friction.law),
         start=np.array([*part.position, *part.velocity], dtype=float),
         duration=float(duration),
         tolerance=tolerance * surface.size,
         stroke_time=float(min(scales.min(initial=math.inf), duration)),
+        flies=after_detachment == "fly",
     )
-    rows, events, verdict, evaluations = march(surface, request, tableau(tolerance))
+    pair = tableau(tolerance)
+    rows, events, verdict, evaluations = march(surface, request, pair)
+    return _trajectory(rows, events, verdict, evaluations, partial(resume, surface, request, pair, rows))
+
+
+def _trajectory(
+    rows: FloatArray, events: FloatArray, verdict: int, evaluations: int, sampler: Callable[[FloatArray], FloatArray]
+) -> Trajectory:
+    samples = samples_of(rows)
     if verdict == GOES_ON:
-        outcome = Outcome.MOVING if rows[-1, 7] == State.SLIP else Outcome.STUCK
+        outcome = Outcome.STUCK if samples.state[-1] == State.STICK else Outcome.MOVING
     else:
         outcome = _OUTCOMES[verdict]
     return Trajectory(
-        time=rows[:, 0],
-        position=rows[:, 1:3],
-        velocity=rows[:, 3:5],
-        normal_force=rows[:, 5],
-        friction_force=rows[:, 6],
-        state=rows[:, 7].astype(np.int64),
-        events=[Event(EventKind(int(k)), t, (x, y), load) for k, t, x, y, load in events.tolist()],
+        *samples,
+        events=[Event(EventKind(int(k)), t, (x, y), speed, load) for k, t, x, y, speed, load in events.tolist()],
         outcome=outcome,
         evaluations=evaluations,
+        energy=energy_of(rows),
+        sampler=sampler,
     )

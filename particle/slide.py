@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from particle.breakaway import lag, slope, velocity
 from particle.fields import fields
 from particle.jit import jit
-from particle.motion import Part
+from particle.motion import Part, margin
+from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
-from particle.runge_kutta import MANIFOLD, SLIDING, Step, Tableau, attempt, error, rate
-from particle.stop import Stop, stop_ahead
+from particle.runge_kutta import Step, Tableau, attempt, error, first_excursion, rate
+from particle.stop import Stop, come_to_rest, stop_ahead
 
 FloatArray = NDArray[np.float64]
 
-# With SLIDING and MANIFOLD, what the part does; TURNED: it came to rest on a slope that at once pulls it back.
-RESTING, TURNED = 2, 3
+TURNED = -1  # what a part does that came to rest on a slope which at once pulls it back
 # How a path ends.
 GOES_ON, DETACHED, LEFT_PLATE, OVERLOADED, WORK_LIMIT = range(5)
 
@@ -36,6 +36,7 @@ class Request(NamedTuple):
     duration: float  # s
     tolerance: float  # m, error of one step
     stroke_time: float  # s, the shortest stroke
+    flies: bool  # whether a part that comes off is followed to where it lands
 
 
 @jit
@@ -52,24 +53,23 @@ def slide(
     span_end: float,
     state: FloatArray,
 ) -> tuple[int, float, float, int]:
-    """Moves `state` on by one step of about h [s], not beyond `span_end`; count[2] counts evaluations.
+    """Moves `state` on by one step of about h [s], not beyond `span_end`; count[0] counts evaluations.
 
     Returns what the part does then, the time, the next h and how the path ended (GOES_ON: it did not).
     """
     part, tolerance = request.part, request.tolerance
     step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
-    count[2] += 1
+    count[0] += 1
     step.start_gap[0] = rim_gap(surface, state[0], state[1])
     weight_limit = math.inf
     if mode == SLIDING:
         straight, pace = 0.01 * tolerance / request.stroke_time, 0.01 * surface.size / request.stroke_time
         stop, miss = stop_ahead(surface, local, part, time, state, straight, pace)
-        count[2] += 2
+        count[0] += 2
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
         if near and _stops_on_plate(surface, step, state, stop):
-            state[0] += stop.x
-            state[1] += stop.y
-            state[2] = state[3] = 0.0
+            come_to_rest(surface, local, part, time, state, stop)
+            count[0] += 2
             a = slope(fields(surface, local, state[0], state[1], time + stop.time), part)
             back = stop.reverses and a.demand > part.law.static_ratio * a.limit
             return (TURNED if back else RESTING), time + stop.time, h, GOES_ON
@@ -84,7 +84,7 @@ def slide(
         h = remaining if h >= 0.9 * remaining else h
         if h < shortest and h < remaining:
             return mode, time, h, WORK_LIMIT
-        count[2] += len(pair.c)
+        count[0] += len(pair.c)
         if not attempt(mode, surface, local, part, pair, step, time, state, h):
             h *= 0.5
             continue
@@ -100,7 +100,7 @@ def slide(
             continue
         if step.margins[last] < 0.0:
             h = _locate_end(surface, local, part, pair, step, count, mode, time, state, h)
-            state[:] = step.end
+            state[:6] = step.end
             return mode, time + h, h, reason(surface, part, step.loads[last], state)
         if mode == MANIFOLD and step.end[2] <= 0.0:
             if h > TOUCH * request.stroke_time:
@@ -114,8 +114,12 @@ def slide(
         if step.margins[1:].min() < 0.0:
             h *= 0.5
             continue
+        within = first_excursion(part, pair, step)
+        if within < 1.0 and h > TOUCH * request.stroke_time:
+            h *= within
+            continue
         break
-    state[:] = step.end
+    state[:6] = step.end
     time = span_end if h == remaining else time + h
     if mode == MANIFOLD:
         mode = _leave_manifold(surface, local, request, time, state)
@@ -166,17 +170,26 @@ def _locate_end(
     state: FloatArray,
     h: float,
 ) -> float:
-    """The step that ends where contact does: halving, on whole steps; just beyond the end."""
+    """The step that ends where contact does, just beyond it: a bracket that secants (Illinois) and halving close."""
     last = len(pair.c) - 1
     low, high = 0.0, h
+    below, above = step.margins[last], margin(surface, part, step.loads[0], step.start_gap[0])
+    secant = True
     while high - low > 1e-15 * (time + high) and high - low > 1e-14 * h:
         middle = 0.5 * (low + high)
-        count[2] += len(pair.c)
+        if secant and above > 0.0:
+            share = above / (above - below)
+            # Never quite at an end, lest the other one stay for ever.
+            middle = low + min(max(share, 1e-6), 1.0 - 1e-6) * (high - low)
+        count[0] += len(pair.c)
         good = attempt(mode, surface, local, part, pair, step, time, state, middle)
+        width = high - low
         if good and step.margins[last] < 0.0:
-            high = middle
+            high, below, above = middle, step.margins[last], 0.5 * above
         else:
-            low = middle
+            low, above, below = middle, (step.margins[last] if good else 0.0), 0.5 * below
+        secant = high - low < 0.5 * width
+    count[0] += len(pair.c)
     attempt(mode, surface, local, part, pair, step, time, state, high)
     return high
 

@@ -1,8 +1,7 @@
 """How long a part that rests on the surface stays: a search that can miss no break-away.
 
-At a fixed place the surface is polynomial in time, and so are C = N s / m, the square of the force along the surface
-times s^2, and s^2 itself. In Bernstein form a polynomial lies between its smallest and largest coefficient, so positive
-coefficients of
+At a fixed place the surface is polynomial in time, and so are C = (N - squeeze) s / m, the square of the force along
+the surface times s^2, and s^2 itself. Positive Bernstein coefficients of
 
     Q^2 s^2 - (m s x force along the surface)^2     with the least Q that the subinterval's loads allow,
 
@@ -17,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from particle.bernstein import DEEPEST, halve, to_bernstein
 from particle.drive import ORDER
 from particle.fields import standing
 from particle.friction import friction_limit
@@ -28,7 +28,6 @@ FloatArray = NDArray[np.float64]
 DEGREE = 16  # of the squared force along the surface; everything else is raised to it
 # A part sticks up to the limit itself, as on a slope at the angle of friction: rounding must not decide.
 ROUNDING = 1 + 1e-14
-DEEPEST = 44  # halvings: a break-away is located to 2^-44 of the span
 
 
 class Rest(NamedTuple):
@@ -69,7 +68,7 @@ def leaves_rest(surface: Any, local: Any, part: Part, rest: Rest, x: float, y: f
             rest.low[top] += half
             rest.width[top] = rest.width[top + 1] = half
             for row in range(3):
-                _halve(rest.polynomials[top, row], rest.polynomials[top + 1, row])
+                halve(rest.polynomials[top, row], rest.polynomials[top + 1, row])
             top += 1
     return math.inf
 
@@ -78,7 +77,7 @@ def leaves_rest(surface: Any, local: Any, part: Part, rest: Rest, x: float, y: f
 def holds(part: Part, c: float, force: float, square: float) -> bool:
     """Whether the part stays, given C, the squared force along the surface times s^2 (per kg) and s^2."""
     s = math.sqrt(square)
-    load = part.mass * c / s
+    load = part.mass * c / s + part.squeeze
     limit = part.law.static_ratio * friction_limit(part.law, load) / part.mass
     return -part.law.pull_off <= load <= part.law.largest_load and force <= limit * limit * square * ROUNDING
 
@@ -87,8 +86,8 @@ def holds(part: Part, c: float, force: float, square: float) -> bool:
 def _proved_safe(part: Part, rest: FloatArray) -> bool:
     c_low, c_high = rest[0].min(), rest[0].max()
     s_low, s_high = math.sqrt(max(1.0, rest[2].min())), math.sqrt(max(1.0, rest[2].max()))
-    load_low = part.mass * c_low / (s_high if c_low > 0 else s_low)
-    load_high = part.mass * c_high / (s_low if c_high > 0 else s_high)
+    load_low = part.mass * c_low / (s_high if c_low > 0 else s_low) + part.squeeze
+    load_high = part.mass * c_high / (s_low if c_high > 0 else s_high) + part.squeeze
     if load_low < -part.law.pull_off or load_high > part.law.largest_load:
         return False
     limit = part.law.static_ratio * friction_limit(part.law, load_low) / part.mass
@@ -111,6 +110,8 @@ def _polynomials(surface: Any, local: Any, part: Part, x: float, y: float, begin
         n = surface.strengths.shape[1]
         b_x = _second(_from(local.heights[n], begin), unit * (1 - begin))
         b_y = _second(_from(local.heights[n + 1], begin), unit * (1 - begin))
+    b_x[0] -= part.tilt_x
+    b_y[0] -= part.tilt_y
     upright = w_tt.copy()
     upright[0] += part.gravity
     q_2 = _plus(_times(g_x, g_x), _times(g_y, g_y))
@@ -123,9 +124,9 @@ def _polynomials(surface: Any, local: Any, part: Part, x: float, y: float, begin
     force = _plus(force, _plus(2 * _times(upright, b_g), -_times(b_g, b_g)))
     square = q_2.copy()
     square[0] += 1.0
-    _to_bernstein(c, out[0])
-    _to_bernstein(force, out[1])
-    _to_bernstein(square, out[2])
+    to_bernstein(c, out[0])
+    to_bernstein(force, out[1])
+    to_bernstein(square, out[2])
 
 
 @jit
@@ -167,25 +168,3 @@ def _plus(a: FloatArray, b: FloatArray) -> FloatArray:
     out[: len(a)] += a
     out[: len(b)] += b
     return out
-
-
-@jit
-def _to_bernstein(c: FloatArray, out: FloatArray) -> None:
-    """Bernstein coefficients of degree 16 on [0, 1]: b_i = sum_k C(i, k) / C(16, k) c_k."""
-    out[:] = 0.0
-    total = 1.0  # C(16, k)
-    for k in range(len(c)):
-        choose = 1.0  # C(i, k)
-        for i in range(k, DEGREE + 1):
-            out[i] += choose / total * c[k]
-            choose *= (i + 1) / (i + 1 - k)
-        total *= (DEGREE - k) / (k + 1)
-
-
-@jit
-def _halve(right: FloatArray, left: FloatArray) -> None:
-    """de Casteljau at 1/2: `right` holds the whole polynomial before and its right half after."""
-    for k in range(DEGREE + 1):
-        left[k] = right[0]
-        for i in range(DEGREE - k):
-            right[i] = 0.5 * (right[i] + right[i + 1])

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from particle.breakaway import Slope, slope
 from particle.fields import Fields, fields
 from particle.jit import jit
-from particle.motion import Part
+from particle.motion import Part, drag, pull, push
 
 FloatArray = NDArray[np.float64]
 
@@ -33,6 +33,9 @@ class Stop(NamedTuple):
     x: float
     y: float
     reverses: bool
+    pull_x: float  # m/s^2, the frozen pull A d
+    pull_y: float
+    loss: float  # m^2/s^2, what friction dissipates on the way, per kg
 
 
 @jit
@@ -43,17 +46,19 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, straight: float) ->
     p = v_x * a.d_x + v_y * a.d_y + climb * climb_d
     r = v_x * a.n_x + v_y * a.n_y + climb * climb_n
     u = math.hypot(p, r)
-    q, pull = a.limit, a.demand
-    if pull < q:
-        loss = q * q - pull * pull
-        along = (pull * p * p + 2 * q * p * u + pull * u * u) / (4 * loss)
-        across = r * (2 * q * u + pull * p) / (4 * q * q - pull * pull)
-        time = (u * q + pull * p) / loss
-        return Stop(time, along * a.d_x + across * a.n_x, along * a.d_y + across * a.n_y, False)
+    q, force = a.limit, a.demand
+    if force < q:
+        loss = q * q - force * force
+        along = (force * p * p + 2 * q * p * u + force * u * u) / (4 * loss)
+        across = r * (2 * q * u + force * p) / (4 * q * q - force * force)
+        time = (u * q + force * p) / loss
+        x, y = along * a.d_x + across * a.n_x, along * a.d_y + across * a.n_y
+        return Stop(time, x, y, False, force * a.d_x, force * a.d_y, 0.5 * u * u + force * along)
     if q > 0.0 and p < 0.0 and abs(r) <= straight:
-        time = u / (pull + q)
-        return Stop(time, 0.5 * p * time * a.d_x, 0.5 * p * time * a.d_y, True)
-    return Stop(math.inf, 0.0, 0.0, False)
+        time = u / (force + q)
+        along = 0.5 * p * time
+        return Stop(time, along * a.d_x, along * a.d_y, True, force * a.d_x, force * a.d_y, 0.5 * u * u + force * along)
+    return Stop(math.inf, 0.0, 0.0, False, 0.0, 0.0, 0.0)
 
 
 @jit
@@ -65,7 +70,7 @@ def stop_ahead(
     The forces are frozen a third of the way, where a change that is linear in time has its mean effect; the error is
     taken as the difference from freezing them now.
     """
-    x, y, v_x, v_y = state
+    x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     f = fields(surface, local, x, y, time)
     now = frozen_stop(f, slope(f, part), v_x, v_y, straight)
     if not now.time < 0.5 * local.frame[1]:
@@ -76,3 +81,22 @@ def stop_ahead(
     if later.reverses != now.reverses or not math.isfinite(later.time):
         return now, math.inf
     return later, max(math.hypot(later.x - now.x, later.y - now.y), pace * abs(later.time - now.time))
+
+
+@jit
+def come_to_rest(surface: Any, local: Any, part: Part, time: float, state: FloatArray, stop: Stop) -> None:
+    """Moves `state` (x, y, v_x, v_y, work, dissipation) to a stop.
+
+    The friction's impulse on the way is known exactly, v + A d T per kg; powers are taken as linear in time, as the
+    stop itself is found.
+    """
+    x, y, v_x, v_y = state[0], state[1], state[2], state[3]
+    slow_x, slow_y = v_x + stop.pull_x * stop.time, v_y + stop.pull_y * stop.time
+    f = fields(surface, local, x, y, time)
+    g = fields(surface, local, x + 5 / 9 * stop.x, y + 5 / 9 * stop.y, time + stop.time / 3)
+    first = push(f, part, pull(f, v_x, v_y, part).normal) * stop.time - part.mass * drag(f, slow_x, slow_y)
+    later = push(g, part, pull(g, 2 / 3 * v_x, 2 / 3 * v_y, part).normal) * stop.time
+    later -= part.mass * drag(g, slow_x, slow_y)
+    state[0], state[1], state[2], state[3] = x + stop.x, y + stop.y, 0.0, 0.0
+    state[4] += 1.5 * later - 0.5 * first
+    state[5] += part.mass * stop.loss

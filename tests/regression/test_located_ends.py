@@ -13,7 +13,6 @@ from particle import (
     EventKind,
     Micropart,
     Outcome,
-    contact_forces,
     polynomial_surface,
     simulate,
 )
@@ -74,8 +73,8 @@ def test_forces_between_rows_are_those_of_the_moment():
     path = simulate(surface, Micropart(mass, (100e-6, 0)), friction, duration=5e-3)
     assert path.outcome is Outcome.STUCK
     times = np.linspace(0, 5e-3, 23)
-    normal, held = contact_forces(surface, path, friction, mass, gravity, times)
-    for time, n, q in zip(times, normal, held, strict=True):
+    samples = path.at(times)
+    for time, n, q in zip(times, samples.normal_force, samples.friction_force, strict=True):
         at = surface.evaluate(path.position[0], time)
         force = mass * (gravity + at.w_tt[0]) / np.sqrt(1 + at.gradient[0, 0] ** 2)
         assert n == pytest.approx(force, rel=1e-12)

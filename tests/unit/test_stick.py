@@ -59,7 +59,7 @@ def test_a_break_away_is_never_missed_and_never_early(kind, gravity):
     rng, found = np.random.default_rng(7), []
     for _ in range(60):
         surface, begin = moving(rng), rng.choice([0.0, rng.uniform(0, 0.9)])
-        part = Part(MASS, gravity, law(rng, kind))
+        part = Part(MASS, gravity, 0.0, 0.0, 0.0, law(rng, kind))
         leaves, local = search(surface, part, begin)
         times = begin + (1 - begin) * np.linspace(0, 1, SAMPLES)
         held = np.array([stays(surface, local, part, t) for t in times])
@@ -83,13 +83,13 @@ def hump(height):
 
 def test_a_peak_of_a_hundred_thousandth_of_the_stroke_is_found():
     """The slope exceeds what friction holds, 0.3 (Coulomb), for 1e-5 of the time."""
-    part, half = Part(MASS, 9.81, CoulombAdhesion(0.3).law), 0.5e-5
+    part, half = Part(MASS, 9.81, 0.0, 0.0, 0.0, CoulombAdhesion(0.3).law), 0.5e-5
     leaves, _ = search(hump(0.3 / (1 - half**2)), part)
     assert leaves == pytest.approx(0.37 - half, abs=1e-9)
 
 
 def test_a_peak_that_stays_just_below_the_limit_moves_nothing():
-    part = Part(MASS, 9.81, CoulombAdhesion(0.3).law)
+    part = Part(MASS, 9.81, 0.0, 0.0, 0.0, CoulombAdhesion(0.3).law)
     assert search(hump(0.3 * (1 - 1e-12)), part)[0] == math.inf
 
 
@@ -97,7 +97,7 @@ def test_the_moment_of_break_away_is_exact():
     """An incline that steepens as t: Coulomb friction holds up to the slope mu."""
     c = np.zeros((2, 1, 2))
     c[1, 0, 1] = 0.7
-    leaves, _ = search(polynomial_surface(c), Part(MASS, 9.81, CoulombAdhesion(0.3).law))
+    leaves, _ = search(polynomial_surface(c), Part(MASS, 9.81, 0.0, 0.0, 0.0, CoulombAdhesion(0.3).law))
     assert leaves == pytest.approx(0.3 / 0.7, abs=1e-12)
 
 
@@ -105,12 +105,12 @@ def test_a_part_that_the_surface_leaves_behind_comes_off_in_time():
     """w = -c t^3 / 6: the normal force is m (g - c t)."""
     c = np.zeros((1, 1, 4))
     c[0, 0, 3] = -40 / 6
-    part = Part(MASS, 9.81, CoulombAdhesion(0.3, adhesion=MASS * 5.0).law)
+    part = Part(MASS, 9.81, 0.0, 0.0, 0.0, CoulombAdhesion(0.3, adhesion=MASS * 5.0).law)
     assert search(polynomial_surface(c), part)[0] == pytest.approx((9.81 + 5) / 40, abs=1e-12)
 
 
 def test_a_static_coefficient_holds_longer_than_the_kinetic_one():
     c = np.zeros((2, 1, 2))
     c[1, 0, 1] = 0.7
-    part = Part(MASS, 9.81, CoulombAdhesion(0.3, static_coefficient=0.5).law)
+    part = Part(MASS, 9.81, 0.0, 0.0, 0.0, CoulombAdhesion(0.3, static_coefficient=0.5).law)
     assert search(polynomial_surface(c), part)[0] == pytest.approx(0.5 / 0.7, abs=1e-12)

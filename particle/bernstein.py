@@ -1,0 +1,62 @@
+"""Polynomials on [0, 1] in Bernstein form: they lie between their smallest and their largest coefficient."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.jit import jit
+
+FloatArray = NDArray[np.float64]
+
+DEEPEST = 44  # halvings: a root is located to 2^-44 of the interval
+
+
+@jit
+def to_bernstein(c: FloatArray, out: FloatArray) -> None:
+    """Bernstein coefficients (n+1,) of a polynomial c_0 + c_1 s + ...: b_i = sum_k C(i, k) / C(n, k) c_k."""
+    n = len(out) - 1
+    out[:] = 0.0
+    total = 1.0  # C(n, k)
+    for k in range(len(c)):
+        choose = 1.0  # C(i, k)
+        for i in range(k, n + 1):
+            out[i] += choose / total * c[k]
+            choose *= (i + 1) / (i + 1 - k)
+        total *= (n - k) / (k + 1)
+
+
+@jit
+def halve(right: FloatArray, left: FloatArray) -> None:
+    """de Casteljau at 1/2: `right` holds the whole polynomial before and its right half after."""
+    n = len(right) - 1
+    for k in range(n + 1):
+        left[k] = right[0]
+        for i in range(n - k):
+            right[i] = 0.5 * (right[i] + right[i + 1])
+
+
+@jit
+def first_negative(b: FloatArray) -> float:
+    """The first place in [0, 1] where a polynomial of Bernstein coefficients b becomes negative; inf: nowhere."""
+    n = len(b)
+    pieces, low, width = np.zeros((DEEPEST + 2, n)), np.zeros(DEEPEST + 2), np.zeros(DEEPEST + 2)
+    pieces[0], width[0] = b, 1.0
+    top = 0
+    while top >= 0:
+        if pieces[top].min() >= 0.0:
+            top -= 1
+        elif width[top] <= 0.5**DEEPEST or pieces[top, 0] < 0.0:
+            if pieces[top, n - 1] < 0.0 or pieces[top, 0] < 0.0:
+                return float(low[top])
+            top -= 1
+        else:
+            half = 0.5 * width[top]
+            low[top + 1] = low[top]
+            low[top] += half
+            width[top] = width[top + 1] = half
+            halve(pieces[top], pieces[top + 1])
+            top += 1
+    return math.inf
