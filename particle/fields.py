@@ -210,8 +210,11 @@ def fields(surface: Any, local: Local, x: float, y: float, time: float) -> Field
         least = (surface.floor / surface.size) ** 2
         bounded = max(square, least)
         logarithm = math.log(bounded)  # 2 ln r
+        # Within the floor the parabola in r^2 that meets r^2 ln r with two derivatives: below, `inner` is not 0.
+        inner = (square - bounded) / bounded
         f, f_t, f_tt = local.force_at[j, 0], local.force_at[j, 1], local.force_at[j, 2]
-        value, slope = 0.5 * square * logarithm, (logarithm + 1) / surface.size
+        value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
+        slope = (logarithm + 1 + inner) / surface.size
         w += f * value
         w_t += f_t * value
         w_tt += f_tt * value
@@ -220,9 +223,9 @@ def fields(surface: Any, local: Local, x: float, y: float, time: float) -> Field
         g_xt += f_t * slope * d_x
         g_yt += f_t * slope * d_y
         bend = f / surface.size**2
-        h_xx += bend * (logarithm + 1 + 2 * d_x * d_x / bounded)
+        h_xx += bend * (logarithm + 1 + inner + 2 * d_x * d_x / bounded)
         h_xy += bend * 2 * d_x * d_y / bounded
-        h_yy += bend * (logarithm + 1 + 2 * d_y * d_y / bounded)
+        h_yy += bend * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
     base_px = base_py = base_vx = base_vy = base_ax = base_ay = 0.0
     if surface.moving_base:
         s, n = (time - local.frame[TIME]) / local.frame[UNIT], surface.strengths.shape[1]
@@ -256,11 +259,13 @@ def standing(surface: Any, local: Local, x: float, y: float, out: FloatArray) ->
         d_x = (x - surface.sources[j, 0]) / surface.size
         d_y = (y - surface.sources[j, 1]) / surface.size
         square = d_x * d_x + d_y * d_y
-        logarithm = math.log(max(square, (surface.floor / surface.size) ** 2))
-        slope = (logarithm + 1) / surface.size
+        bounded = max(square, (surface.floor / surface.size) ** 2)
+        logarithm, inner = math.log(bounded), (square - bounded) / bounded
+        value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
+        slope = (logarithm + 1 + inner) / surface.size
         for k in range(ORDER):
             f = local.forces[j, k]
-            out[0, k] += f * 0.5 * square * logarithm
+            out[0, k] += f * value
             out[1, k] += f * slope * d_x
             out[2, k] += f * slope * d_y
 

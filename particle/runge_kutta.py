@@ -114,15 +114,23 @@ def attempt(
 
 
 @jit
-def error(pair: Tableau, step: Step, h: float, weight: float) -> float:
-    """The step's error as a distance [m]; errors of velocity count `weight` [s] of travel."""
+def error(pair: Tableau, step: Step, h: float, lasting: float, force: float) -> float:
+    """The step's error as a distance [m].
+
+    An error of velocity counts as what it moves the part by in `lasting` [s], one of the ledger as the way on which
+    `force` [N] does that work.
+    """
     total = np.zeros(2)
     for row in range(2):
-        for i in range(4):
+        for i in range(6):
             e = 0.0
             for k in range(len(pair.c)):
                 e += pair.error[row, k] * step.rates[k, i]
-            e *= h if i < 2 else h * weight
+            e *= h
+            if i >= 4:
+                e /= force
+            elif i >= 2:
+                e *= lasting
             total[row] += e * e
     if total[0] == 0.0:
         return 0.0

@@ -26,6 +26,7 @@ GOES_ON, DETACHED, LEFT_PLATE, OVERLOADED, WORK_LIMIT = range(5)
 SHORTEST = 1e-13  # of a stroke: no step is shorter
 TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
 GROWTH, SAFETY = 5.0, 0.9
+LEDGER = 0.1  # what an error of the energy counts, against one of the path
 
 
 class Request(NamedTuple):
@@ -61,7 +62,7 @@ def slide(
     step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
     count[0] += 1
     step.start_gap[0] = rim_gap(surface, state[0], state[1])
-    weight_limit = math.inf
+    lasting = request.stroke_time
     if mode == SLIDING:
         straight, pace = 0.01 * tolerance / request.stroke_time, 0.01 * surface.size / request.stroke_time
         stop, miss = stop_ahead(surface, local, part, time, state, straight, pace)
@@ -77,7 +78,8 @@ def slide(
         h = min(h, 0.9 * stop.time)
         a = slope(fields(surface, local, state[0], state[1], time), part)
         if a.limit > 0.0:
-            weight_limit = 2 * math.hypot(state[2], state[3]) / a.limit
+            lasting = min(lasting, 2 * math.hypot(state[2], state[3]) / a.limit)
+    force = part.mass * (abs(part.gravity) + surface.size / request.stroke_time**2) / LEDGER
     remaining = span_end - time
     shortest = SHORTEST * request.stroke_time
     while True:
@@ -88,7 +90,7 @@ def slide(
         if not attempt(mode, surface, local, part, pair, step, time, state, h):
             h *= 0.5
             continue
-        wrong = error(pair, step, h, min(h, weight_limit)) / tolerance
+        wrong = error(pair, step, h, lasting, force) / tolerance
         if not wrong <= 1.0:
             h *= max(0.2, SAFETY * wrong ** (-1 / pair.order)) if wrong > 1.0 else 0.2
             continue
