@@ -1,6 +1,8 @@
 """The micropart: contact and friction laws, drives, the moving surface as arrays, and the integrator."""
 
-from particle.drive import Drive
+from particle.drive import AnyDrive, Drive
+from particle.drive_points import HermiteDrive, TableDrive
+from particle.drive_schedule import Segment, SegmentDrive
 from particle.forces import contact_forces
 from particle.friction import ConstantFriction, CoulombAdhesion
 from particle.kogut_etsion import KogutEtsion
@@ -9,17 +11,22 @@ from particle.surface import SurfaceMotion, SurfaceState, polynomial_surface
 from particle.trajectory import Event, EventKind, Outcome, State, Trajectory
 
 __all__ = [
+    "AnyDrive",
     "ConstantFriction",
     "CoulombAdhesion",
     "Drive",
     "Event",
     "EventKind",
+    "HermiteDrive",
     "KogutEtsion",
     "Micropart",
     "Outcome",
+    "Segment",
+    "SegmentDrive",
     "State",
     "SurfaceMotion",
     "SurfaceState",
+    "TableDrive",
     "Trajectory",
     "contact_forces",
     "polynomial_surface",
