@@ -28,54 +28,14 @@ from coupling import units
 from coupling.case_lines import CaseError as CaseError
 from coupling.case_lines import Problem as Problem
 from coupling.case_lines import find_problems, load
+from coupling.drive_case import ActuatorCase as ActuatorCase
+from coupling.drive_case import SegmentCase
+from coupling.drive_case import amplitude as amplitude
 from coupling.places import Places
 from coupling.plate_case import PLATES, AnyPlate, Table
 from coupling.units import Length, Point
 
 PAPER_PLASTICITY_INDEX: Final = 4.9128
-
-
-class ActuatorCase(Table):
-    """A point actuator: `position` and `stroke` in m, `stiffness` in N/m, `frequency` in Hz, `delay` in s.
-
-    It has either a stroke or, in N, a `force`. `stiffness` is that of a spring between it and the plate,
-    None for rigid. `cycles` is the number of up-down cycles, None for no end.
-    """
-
-    position: Point
-    stroke: Length | None = None
-    force: units.Force | None = None
-    stiffness: units.Stiffness | None = Field(default=None, gt=0)
-    frequency: units.Frequency = Field(gt=0)
-    cycle: Literal["up-down", "up"] = "up-down"
-    cycles: StrictInt | None = Field(default=None, ge=1)
-    delay: units.Time = Field(default=0.0, ge=0)
-
-    @field_validator("force")
-    @classmethod
-    def _not_with_stroke(cls, force: float | None, info: ValidationInfo) -> float | None:
-        if force is not None and info.data.get("stroke") is not None:
-            raise ValueError("must not be given with a stroke; an actuator is driven by one of the two")
-        return force
-
-    @field_validator("stiffness")
-    @classmethod
-    def _not_with_force(cls, stiffness: float | None, info: ValidationInfo) -> float | None:
-        if stiffness is not None and info.data.get("force") is not None:
-            raise ValueError("must not be given with a force, which is the same whatever the stiffness")
-        return stiffness
-
-    @field_validator("cycles")
-    @classmethod
-    def _only_up_down(cls, cycles: int | None, info: ValidationInfo) -> int | None:
-        if cycles is not None and info.data.get("cycle") == "up":
-            raise ValueError('must not be given with cycle = "up"; it counts up-down cycles')
-        return cycles
-
-
-def amplitude(actuator: ActuatorCase) -> float:
-    """The stroke [m] of an actuator, or its force [N]."""
-    return actuator.stroke if actuator.stroke is not None else actuator.force or 0.0
 
 
 class PartCase(Table):
@@ -209,6 +169,7 @@ _FRICTION: dict[str, type[BaseModel]] = {
 _TABLES: dict[str, type[BaseModel]] = {
     "": _CaseTables,
     "actuators": ActuatorCase,
+    "segments": SegmentCase,
     "part": PartCase,
     "run": RunCase,
 }

@@ -37,7 +37,8 @@ _SYNTAX = {
     "Cannot overwrite a value": "this is given twice",
     r"Illegal character '\n'": "a text lacks its closing quote",
 }
-_ACTUATORS = "must be written [[actuators]], in double brackets, once for each actuator"
+_EACH = {"actuators": "actuator", "segments": "segment"}
+"""What is written in double brackets, and once for each of what."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,8 @@ def _message(detail: ErrorDetails, value: object, tables: Mapping[str, type[Base
             choices = re.findall("'([^']*)'", context["expected" if kind == "literal_error" else "expected_tags"])
             return f"must be {_one_of(choices)}{got}"
         case "tuple_type":
-            return _ACTUATORS + ("; got [actuators]" if isinstance(value, dict) else got)
+            header = _header((*location, 0))
+            return _doubled(header) + (f"; got {header[1:-1]}" if isinstance(value, dict) else got)
         case "model_type" | "model_attributes_type":
             return f"must be a table, written {_header(location)}{got}"
         case _:
@@ -159,7 +161,15 @@ def _value(data: Any, location: Location) -> object:
 
 
 def _header(location: Location) -> str:
-    return "[[actuators]]" if location[0] == "actuators" else f"[{location[0]}]"
+    """Return how the table is written that is at a location, or that holds the value there."""
+    if location[0] != "actuators":
+        return f"[{location[0]}]"
+    return "[[actuators.segments]]" if location[2:3] == ("segments",) and len(location) > 3 else "[[actuators]]"
+
+
+def _doubled(header: str) -> str:
+    """Return that a header such as [[actuators]] is written so."""
+    return f"must be written {header}, in double brackets, once for each {_EACH[header.strip('[]').split('.')[-1]]}"
 
 
 def _fields(location: Location, tables: Mapping[str, type[BaseModel]]) -> dict[str, FieldInfo]:
@@ -200,9 +210,11 @@ def _syntax_problem(error: str, text: str) -> Problem:
     found = re.match(r"line (\d+)", place)
     number = int(found[1]) if found else text.rstrip().count("\n") + 1
     line = text.split("\n")[number - 1]
-    single = re.search(r"^[ \t]*\[[ \t]*actuators[ \t]*\]", text, re.MULTILINE)
-    if single and re.match(r"\s*\[\[?\s*actuators", line):
-        return Problem(text.count("\n", 0, single.start()) + 1, "actuators", f"{_ACTUATORS}; got [actuators]")
+    for name in ("actuators", "actuators.segments"):
+        single = re.search(rf"^[ \t]*\[[ \t]*{re.escape(name)}[ \t]*\]", text, re.MULTILINE)
+        if single and re.match(rf"\s*\[\[?\s*{re.escape(name)}\s*\]", line):
+            number = text.count("\n", 0, single.start()) + 1
+            return Problem(number, name, f"{_doubled(f'[[{name}]]')}; got [{name}]")
     bare = re.search(r"[=[,]\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[^\W\d][^,\]#]*)", line)
     hint = f'; a value with a unit needs quotes, "{bare[1].strip()}"' if bare else ""
     reason = re.sub(r"\('([^']*)',\)", r"[\1]", _SYNTAX.get(reason, reason[:1].lower() + reason[1:]))

@@ -42,7 +42,6 @@ class _Plate(BaseModel, from_attributes=True):
 
 class _Spot(BaseModel, from_attributes=True):
     position: _IfValid[Point] = None
-    stroke: Any = None
     force: Any = None
 
 
@@ -58,10 +57,6 @@ class Places(BaseModel, from_attributes=True):
         if self.actuators == ():
             yield ("actuators",), "must be at least one table, written [[actuators]]; got none"
         spots = [(("actuators", index), spot) for index, spot in enumerate(self.actuators or ()) if spot]
-        for location, spot in spots:
-            if spot.stroke is None and spot.force is None:
-                wanted = 'a length such as "150 um", or have a force such as "1 mN" in its place'
-                yield (*location, "stroke"), f"is missing; it must be {wanted}"
         plate = outline_of(self.plate, context)
         if plate is None:
             return

@@ -20,7 +20,7 @@ from coupling.summary import Summary, stroke_heights
 from coupling.vtkhdf import part_file, plate_file
 from fem_plate import InfluenceShapes
 from meshes import PlateMesh
-from particle import Drive, Trajectory
+from particle import AnyDrive, Trajectory
 
 FloatArray = NDArray[np.float64]
 
@@ -41,14 +41,14 @@ def write_results(
     case: Case,
     mesh: PlateMesh,
     shapes: InfluenceShapes,
-    drives: Sequence[Drive],
+    drives: Sequence[AnyDrive],
     trajectory: Trajectory,
     summary: Summary,
     folder: Path,
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths."""
     folder.mkdir(parents=True, exist_ok=True)
-    times = frame_times(case, float(trajectory.time[-1]))
+    times = frame_times(case, drives, float(trajectory.time[-1]))
     points, triangles = drawn_plate(mesh, shapes.points)
     value = shapes.evaluate(points)[0]
     heights = stroke_heights(drives, times)
@@ -89,10 +89,10 @@ def check_folder(folder: Path) -> None:
         raise ValueError(f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it")
 
 
-def frame_times(case: Case, end: float) -> FloatArray:
+def frame_times(case: Case, drives: Sequence[AnyDrive], end: float) -> FloatArray:
     """The times of the result files' steps, from 0 to the run's end."""
     if case.run.frames:
         return np.linspace(0, end, case.run.frames)
-    fastest = max(actuator.frequency for actuator in case.actuators)
+    fastest = max(drive.frequency for drive in drives)
     count = math.ceil(end * fastest * FRAMES_PER_CYCLE) + 1
     return np.linspace(0, end, min(max(count, FRAMES[0]), FRAMES[1]))

@@ -12,14 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import particle
-from coupling.case import Case, ConstantCase, CoulombCase, amplitude
+from coupling.case import ActuatorCase, Case, ConstantCase, CoulombCase, amplitude
+from coupling.drive_case import ENDLESS
 from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
 from coupling.summary import Summary, summarise
 from coupling.surface import surface_motion
 from fem_plate import InfluenceShapes, Plate, PlateSection
 from fem_plate.influence import MOST_DENSE
-from particle import Drive, SurfaceMotion, Trajectory
+from particle import AnyDrive, Drive, Segment, SegmentDrive, SurfaceMotion, TableDrive, Trajectory
 from particle.friction import Contact
 
 # Without a cell size the plate is refined until the unit shapes' estimated error is below this, which keeps the end
@@ -87,9 +88,21 @@ def springs(case: Case) -> NDArray[np.float64]:
     return np.array([0.0 if a.force is not None else a.stiffness or np.inf for a in case.actuators])
 
 
-def build_drives(case: Case) -> list[Drive]:
+def build_drives(case: Case) -> list[AnyDrive]:
     """The actuators' drives; those of forces are in N."""
-    return [Drive(amplitude(a), a.frequency, a.cycle, a.cycles, a.delay) for a in case.actuators]
+    return [build_drive(actuator) for actuator in case.actuators]
+
+
+def build_drive(actuator: ActuatorCase) -> AnyDrive:
+    """The drive of one actuator: a table, a schedule of segments, or one cycle over and over."""
+    repeats = None if actuator.repeats == ENDLESS else actuator.repeats
+    if actuator.table is not None:
+        times, heights = np.array(actuator.table).T
+        return TableDrive(times, heights, repeats, actuator.delay)
+    if actuator.segments is not None:
+        return SegmentDrive([Segment(**segment.model_dump()) for segment in actuator.segments], repeats, actuator.delay)
+    a = actuator
+    return Drive(amplitude(a), a.frequency or 0.0, a.cycle, a.cycles, a.delay, a.dwell)
 
 
 def build_friction(case: Case) -> Contact:

@@ -13,7 +13,7 @@ from coupling.case import Case, KogutEtsionCase
 from coupling.places import SAME_PLACE
 from fem_plate import InfluenceShapes, Plate
 from meshes import Outline
-from particle import Drive, EventKind, State, SurfaceMotion, Trajectory
+from particle import AnyDrive, EventKind, State, SurfaceMotion, Trajectory
 from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
@@ -71,7 +71,7 @@ def summarise(
     surface: SurfaceMotion,
     trajectory: Trajectory,
     tighter: Trajectory,
-    drives: Sequence[Drive],
+    drives: Sequence[AnyDrive],
     friction: Contact,
 ) -> Summary:
     """The run's summary; `tighter` is the same run at a hundredth of the tolerance."""
@@ -111,7 +111,7 @@ def summarise(
         first_frequency=first,
         drive_over_first=ratio,
         drives_over_first=None if first is None else tuple(drive.frequency / first for drive in drives),
-        strokes_over_first=None if first is None else tuple(1 / stroke_time(drive) / first for drive in drives),
+        strokes_over_first=None if first is None else tuple(1 / drive.stroke_time / first for drive in drives),
         quasi_static_error=None if ratio is None else QUASI_STATIC_ERROR * ratio,
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(normal)))),
@@ -131,7 +131,7 @@ def _hold_residual(shapes: InfluenceShapes) -> float:
     return float(np.abs(heights - np.eye(len(held)))[held].max(initial=0.0))
 
 
-def _extremes(shapes: InfluenceShapes, drives: Sequence[Drive], end: float) -> tuple[float, float]:
+def _extremes(shapes: InfluenceShapes, drives: Sequence[AnyDrive], end: float) -> tuple[float, float]:
     """The largest slope and deflection [m] over the mesh's points and the time asked for, wherever the run ended."""
     value, gradient, _ = shapes.evaluate(shapes.model.mesh.points)
     heights = stroke_heights(drives, np.linspace(0, end, SAMPLES))
@@ -139,13 +139,8 @@ def _extremes(shapes: InfluenceShapes, drives: Sequence[Drive], end: float) -> t
     return slope, float(np.abs(heights @ value.T).max())
 
 
-def stroke_time(drive: Drive) -> float:
-    """The time [s] of one stroke, from rest to rest: half a cycle of an up-down drive."""
-    return (0.5 if drive.cycle == "up-down" else 1.0) / drive.frequency
-
-
-def stroke_heights(drives: Sequence[Drive], times: FloatArray) -> FloatArray:
-    """The strokes h_i(t) [m] at times (k,) [s]: (k, N)."""
+def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray) -> FloatArray:
+    """The heights h_i(t) [m] of the drives at times (k,) [s]: (k, N)."""
     return np.stack([drive.evaluate(times)[0] for drive in drives], axis=1)
 
 

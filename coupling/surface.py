@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 
 from coupling.rim import rim_curves
 from fem_plate import PatchedShapes, Shapes
-from particle import Drive, SurfaceMotion
+from particle import AnyDrive, SurfaceMotion
 from particle.drive import drive_table
 
 FloatArray = NDArray[np.float64]
@@ -27,7 +27,7 @@ NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
 FLOOR = 1e-6  # of the plate's size: the radius below which a point load's Hessian grows no more
 
 
-def surface_motion(shapes: Shapes, drives: Sequence[Drive], tolerance: float = SURFACE_TOLERANCE) -> SurfaceMotion:
+def surface_motion(shapes: Shapes, drives: Sequence[AnyDrive], tolerance: float = SURFACE_TOLERANCE) -> SurfaceMotion:
     """The surface over time, w(x, t) = sum_i h_i(t) phi_i(x).
 
     shapes: influence shapes of N actuators, from finite elements or in closed form.  drives: one for each.

@@ -3,43 +3,38 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from particle.jit import jit
+from particle.checks import finite, not_negative, positive, refuse, whole
+from particle.drive_table import ORDER as ORDER
+from particle.drive_table import AnyDrive as AnyDrive
+from particle.drive_table import DriveTable as DriveTable
+from particle.drive_table import Evaluated, FloatArray, Segments
+from particle.drive_table import drive_piece as drive_piece
+from particle.drive_table import drive_table as drive_table
+from particle.drive_table import monomial_table as monomial_table
+from particle.drive_table import next_kink as next_kink
+from particle.quintic import QUINTIC, hermite
 
-FloatArray = NDArray[np.float64]
-
-ORDER = 6  # coefficients of a quintic
-QUINTIC = np.array([0.0, 0.0, 0.0, 10.0, -15.0, 6.0])  # from 0 to 1 with no velocity and acceleration at either end
-
-
-class DriveTable(NamedTuple):
-    """The drives of all actuators, as kernels read them.
-
-    Drive i holds its first value until delay[i], then runs through its segments first[i] .. first[i+1]-1, repeats[i]
-    times in all (inf: without end), each pass lasting span[i], then holds its last value.
-    """
-
-    first: NDArray[np.int64]  # (N+1,)
-    start: FloatArray  # (S,) s, of a segment after the start of its pass
-    scale: FloatArray  # (S,) s, what its polynomial's variable is divided by
-    coefficients: FloatArray  # (S, 6) m, in (t - start) / scale
-    delay: FloatArray  # (N,) s
-    span: FloatArray  # (N,) s
-    repeats: FloatArray  # (N,)
+CYCLES = ("up-down", "up", "sine", "cosine")
+PIECES = 128  # of a period of a sine
+# Of quintics through a sine's height, velocity and acceleration that far apart: step^6 / (6! 2^6), over the amplitude.
+SINE_ERROR = (2 * math.pi / PIECES) ** 6 / 46080
 
 
 @dataclass(frozen=True)
-class Drive:
-    """The stroke h(t) of one actuator: quintic 10 s^3 - 15 s^4 + 6 s^5, at rest and unaccelerated at both ends.
+class Drive(Evaluated):
+    """The stroke h(t) of one actuator, the same over and over or once.
 
-    cycle "up-down": up in half of 1/frequency, down in the other half, repeated without end or `cycles` times.
+    cycle "up-down": up in half of 1/frequency, down in the other half, each followed by `dwell` at rest.
     cycle "up": up once in 1/frequency, then held.
+    Both follow the quintic 10 s^3 - 15 s^4 + 6 s^5, at rest and unaccelerated at both ends.
+    cycle "sine": stroke sin(2 pi f t), which begins and ends with a jump of velocity.
+    cycle "cosine": stroke (1 - cos(2 pi f t)) / 2, from 0 up and back, which begins and ends with one of acceleration.
+    These two are quintics through 128 points a period, C2 between them; `error` says how far off.
+    All but "up" go on without end or for `cycles` periods.
     Raises ValueError, naming every field that is wrong.
     """
 
@@ -48,130 +43,66 @@ class Drive:
     cycle: str = "up-down"
     cycles: int | None = None
     delay: float = 0.0  # s
+    dwell: float = 0.0  # s, makes the period of an up-down drive 1/frequency + 2 dwell
 
     def __post_init__(self) -> None:
-        wrong = []
-        if not math.isfinite(self.stroke):
-            wrong.append(f"Input stroke of Drive must be a finite length in m; got {self.stroke!r}")
-        if not (math.isfinite(self.frequency) and self.frequency > 0):
-            wrong.append(f"Input frequency of Drive must be positive, in Hz; got {self.frequency!r}")
-        if self.cycle not in ("up-down", "up"):
-            wrong.append(f"Input cycle of Drive must be 'up-down' or 'up'; got {self.cycle!r}")
-        if self.cycles is not None and (self.cycle == "up" or self.cycles != int(self.cycles) or self.cycles < 1):
-            wrong.append(f"Input cycles of Drive must be a whole number of up-down cycles or None; got {self.cycles!r}")
-        if not (math.isfinite(self.delay) and self.delay >= 0):
-            wrong.append(f"Input delay of Drive must be 0 or a positive time in s; got {self.delay!r}")
-        if wrong:
-            raise ValueError("; ".join(wrong))
-
-    def segments(self) -> tuple[FloatArray, FloatArray, FloatArray, float]:
-        """Start (S,) and scale (S,) [s] and coefficients (S, 6) [m] of one pass, and how often it repeats."""
-        if self.cycle == "up":
-            return np.zeros(1), np.array([1 / self.frequency]), self.stroke * QUINTIC[None], 1.0
-        half = 0.5 / self.frequency
-        rise = self.stroke * QUINTIC
-        fall = -rise
-        fall[0] = self.stroke
-        return np.array([0, half]), np.array([half, half]), np.array([rise, fall]), float(self.cycles or math.inf)
-
-    def evaluate(self, time: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """h [m], its velocity [m/s] and its acceleration [m/s^2] at times of any shape [s]."""
-        time = np.asarray(time, dtype=float)
-        table = drive_table([self])
-        pieces = np.array([drive_piece(table, 0, float(t), 1.0) for t in time.ravel()]).reshape(-1, ORDER)
-        return tuple(  # type: ignore[return-value]
-            (math.factorial(k) * pieces[:, k]).reshape(time.shape) for k in range(3)
+        counts = self.cycles is None or (self.cycle != "up" and whole(self.cycles))
+        waits = not_negative(self.dwell) and (self.dwell == 0 or self.cycle == "up-down")
+        refuse(
+            "Drive",
+            [
+                (finite(self.stroke), "stroke", "a finite length in m", self.stroke),
+                (positive(self.frequency), "frequency", "positive, in Hz", self.frequency),
+                (self.cycle in CYCLES, "cycle", "'up-down', 'up', 'sine' or 'cosine'", self.cycle),
+                (counts, "cycles", "a whole number of cycles, of any but 'up', or None", self.cycles),
+                (not_negative(self.delay), "delay", "0 or a positive time in s", self.delay),
+                (waits, "dwell", "0 or a positive time in s, the latter for 'up-down' only", self.dwell),
+            ],
         )
 
+    @property
+    def stroke_time(self) -> float:
+        """The time [s] of one stroke: half a cycle, or the whole of an up drive."""
+        return (1.0 if self.cycle == "up" else 0.5) / self.frequency
 
-def drive_table(drives: Sequence[Drive]) -> DriveTable:
-    """The drives as kernels read them."""
-    parts = [drive.segments() for drive in drives]
-    return DriveTable(
-        first=np.cumsum([0] + [len(start) for start, *_ in parts]),
-        start=np.concatenate([np.zeros(0)] + [start for start, *_ in parts]),
-        scale=np.concatenate([np.zeros(0)] + [scale for _, scale, *_ in parts]),
-        coefficients=np.concatenate([np.zeros((0, ORDER))] + [rows for _, _, rows, _ in parts]),
-        delay=np.array([drive.delay for drive in drives], dtype=float),
-        span=np.array([start[-1] + scale[-1] for start, scale, *_ in parts], dtype=float),
-        repeats=np.array([repeats for *_, repeats in parts], dtype=float),
-    )
+    @property
+    def error(self) -> float:
+        """Of the quintics that stand for a sine, over the stroke; 0 for the other cycles, which are quintics."""
+        return {"sine": SINE_ERROR, "cosine": SINE_ERROR / 2}.get(self.cycle, 0.0)
 
-
-def monomial_table(count: int) -> DriveTable:
-    """Drives that are the powers 1, t, t^2, ... of time [s], without kinks, for surfaces given as polynomials."""
-    return DriveTable(
-        first=np.arange(count + 1),
-        start=np.zeros(count),
-        scale=np.ones(count),
-        coefficients=np.eye(ORDER)[:count],
-        delay=np.full(count, -math.inf),
-        span=np.full(count, math.inf),
-        repeats=np.ones(count),
-    )
-
-
-@jit
-def drive_piece(table: DriveTable, i: int, time: float, unit: float) -> FloatArray:
-    """The quintic of drive i around `time` [s]: its coefficients (6,) [m] in (t - time) / unit.
-
-    At a kink it is the piece that begins there.
-    """
-    piece = np.zeros(ORDER)
-    since = time - table.delay[i] if math.isfinite(table.delay[i]) else time
-    begin, end = table.first[i], table.first[i + 1]
-    span = table.span[i]
-    if since < 0.0:
-        piece[0] = table.coefficients[begin, 0]
-        return piece
-    if since >= span * table.repeats[i]:
-        for k in range(ORDER):
-            piece[0] += table.coefficients[end - 1, k]
-        return piece
-    if math.isfinite(span):
-        since -= span * math.floor(since / span)
-    segment = begin
-    while segment + 1 < end and since >= table.start[segment + 1]:
-        segment += 1
-    # Taylor's shift of the polynomial to `time`, by repeated Horner.
-    shift = (since - table.start[segment]) / table.scale[segment]
-    for k in range(ORDER):
-        piece[k] = table.coefficients[segment, k]
-    for k in range(ORDER - 1):
-        for j in range(ORDER - 2, k - 1, -1):
-            piece[j] += shift * piece[j + 1]
-    factor = 1.0
-    for k in range(ORDER):
-        piece[k] *= factor
-        factor *= unit / table.scale[segment]
-    return piece
+    def segments(self) -> Segments:
+        """Start (S,) and scale (S,) [s] and coefficients (S, 6) [m] of one pass, and how often it repeats."""
+        repeats = float(self.cycles or math.inf)
+        if self.cycle == "up":
+            return np.zeros(1), np.array([1 / self.frequency]), self.stroke * QUINTIC[None], 1.0
+        if self.cycle == "up-down":
+            return *up_down(self.stroke, self.frequency, self.dwell), repeats
+        phase = np.arange(PIECES + 1) / PIECES  # in periods
+        rate = 2 * math.pi
+        sine, cosine = _sine_of_turns(phase), _sine_of_turns(phase + 0.25)
+        if self.cycle == "sine":
+            scale, rows = hermite(phase, sine, rate * cosine, -(rate**2) * sine)
+        else:
+            scale, rows = hermite(phase, 0.5 - 0.5 * cosine, 0.5 * rate * sine, 0.5 * rate**2 * cosine)
+        return phase[:-1] / self.frequency, scale / self.frequency, self.stroke * rows, repeats
 
 
-@jit
-def next_kink(table: DriveTable, time: float) -> float:
-    """The first time [s] after `time` at which any drive has a kink; inf when there is none.
+def up_down(stroke: float, frequency: float, dwell: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """One stroke up and down, each with a dwell [s] after it: starts (S,), scales (S,), coefficients (S, 6)."""
+    half = 0.5 / frequency
+    rise = stroke * QUINTIC
+    fall = -rise
+    fall[0] = stroke
+    if dwell == 0:
+        return np.array([0, half]), np.array([half, half]), np.array([rise, fall])
+    top, bottom = np.zeros((2, ORDER))
+    top[0] = stroke
+    scale = np.array([half, dwell, half, dwell])
+    return np.concatenate([[0], np.cumsum(scale[:-1])]), scale, np.array([rise, top, fall, bottom])
 
-    Kinks closer than 1e-12 of a stroke are taken as one.
-    """
-    nearest = math.inf
-    for i in range(len(table.delay)):
-        span = table.span[i]
-        if not math.isfinite(span):
-            continue
-        after = time + 1e-12 * table.scale[table.first[i]]
-        since = after - table.delay[i]
-        if since < 0.0:
-            nearest = min(nearest, table.delay[i])
-            continue
-        passes = math.floor(since / span)
-        if table.delay[i] + span * (passes + 1) <= after:  # rounding at late times
-            passes += 1
-        if passes >= table.repeats[i]:
-            continue
-        kink = table.delay[i] + span * (passes + 1)
-        for segment in range(table.first[i], table.first[i + 1]):
-            edge = table.delay[i] + (span * passes + table.start[segment])
-            if edge > after:
-                kink = min(kink, edge)
-        nearest = min(nearest, kink)
-    return nearest
+
+def _sine_of_turns(turns: FloatArray) -> FloatArray:
+    """sin(2 pi turns), exactly 0 and 1 where it should be."""
+    quarter = np.mod(4 * turns, 2)  # the sine of one half turn, from 0 to 1 and back
+    sign = np.where(np.mod(turns, 1) < 0.5, 1.0, -1.0)
+    return sign * np.sin(0.5 * math.pi * np.minimum(quarter, 2 - quarter))

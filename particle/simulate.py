@@ -88,13 +88,12 @@ def simulate(
     if wrong:
         raise ValueError("; ".join(wrong))
     x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
-    scales = surface.drives.scale[np.repeat(np.isfinite(surface.drives.span), np.diff(surface.drives.first))]
     request = Request(
         part=Part(float(part.mass), -float(z), float(x), float(y), float(part.squeeze), friction.law),
         start=np.array([*part.position, *part.velocity], dtype=float),
         duration=float(duration),
         tolerance=tolerance * surface.size,
-        stroke_time=float(min(scales.min(initial=math.inf), duration)),
+        stroke_time=min(float(surface.drives.stroke_time.min(initial=math.inf)), float(duration)),
         flies=after_detachment == "fly",
     )
     pair = tableau(tolerance)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.drive import ORDER, Drive, DriveTable, drive_table, monomial_table
+from particle.drive import ORDER, AnyDrive, DriveTable, drive_table, monomial_table
 from particle.fields import evaluate_points
 
 FloatArray = NDArray[np.float64]
@@ -68,7 +68,7 @@ class SurfaceMotion(NamedTuple):
 
 
 def polynomial_surface(
-    coefficients: ArrayLike, base: Sequence[Drive] | None = None, size: float = 1.0
+    coefficients: ArrayLike, base: Sequence[AnyDrive] | None = None, size: float = 1.0
 ) -> SurfaceMotion:
     """A surface without rim and actuators, w = sum c[i, j, k] x^i y^j t^k in SI units: bowls, inclines, tests.
 

@@ -286,7 +286,7 @@ BROKEN = [
     (("cycles = 5", "cycles = 0"), "actuators[2].cycles must be at least 1; got 0"),
     (("cycles = 5", "cycles = true"), "actuators[2].cycles must be a whole number; got true"),
     (("cycles = 5", 'cycles = 5\ncycle = "up"'), 'line 20  actuators[2].cycles must not be given with cycle = "up"'),
-    (("cycles = 5", 'cycle = "down"'), 'actuators[2].cycle must be "up-down" or "up"; got "down"'),
+    (("cycles = 5", 'cycle = "down"'), 'actuators[2].cycle must be "up-down", "up", "sine" or "cosine"; got "down"'),
     (
         ('shape = "disc"', 'shape = "square"'),
         'line 2  plate.shape must be "disc", "rectangle", "annulus", "ellipse" or "polygon"; got "square"',
@@ -367,7 +367,8 @@ def test_places_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
         'line 2   plate.density must be a density such as "2330 kg/m^3"; got "1 s", a time',
         f"line 10  actuators[1].position {outside} 100 um beyond it",
         "line 11  actuators[1].speed is not known; "
-        "[[actuators]] has position, stroke, force, stiffness, frequency, cycle, cycles, delay",
+        "[[actuators]] has position, stroke, force, stiffness, frequency, cycle, cycles, dwell, table, segments, "
+        "repeats, delay",
         f"line 16  actuators[2].position {outside} 100 um beyond it",
         "line 16  actuators[2].position must differ from actuators[1].position; got the same point",
         'line 25  part.mass is missing; it must be a mass such as "2e-9 kg"',

@@ -1,0 +1,247 @@
+"""The actuators of a case: where each one is, and how it is driven over time."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from itertools import accumulate
+from typing import Annotated, Any, Final, Literal, Self
+
+from pydantic import (
+    Field,
+    GetCoreSchemaHandler,
+    ModelWrapValidatorHandler,
+    StrictInt,
+    TypeAdapter,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
+from pydantic_core import CoreSchema, core_schema
+
+from coupling import units
+from coupling.plate_case import Table
+from coupling.units import Length, Point, shown
+
+ENDLESS: Final = "endless"
+CLOSEST: Final = 1e-12  # of the whole time: points of a table must be further apart
+
+WRONG: Final = object()
+
+Contradictions = Iterator[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class _Passes:
+    """Marks how often a table or schedule is run through."""
+
+    wanted = f'a whole number of at least 1, or "{ENDLESS}"'
+
+    def validate(self, value: object) -> object:
+        if value == ENDLESS or (isinstance(value, int) and not isinstance(value, bool) and value >= 1):
+            return value
+        raise ValueError(f"must be {self.wanted}; got {shown(value)}")
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.validate)
+
+
+@dataclass(frozen=True)
+class _Points:
+    """Marks a tuple as points in time: at each a time and a height, the times increasing from 0."""
+
+    wanted = 'two or more points, each a time and a height, such as [["0 ms", "0 um"], ["1 ms", "50 um"]]'
+
+    def validate(self, value: object, handler: Any) -> object:
+        if not isinstance(value, (list, tuple)) or len(value) < 2 or not all(map(_is_pair, value)):
+            raise ValueError(f"must be {self.wanted}; got {shown(value)}")
+        points = handler(value)
+        times = [time for time, _ in points]
+        if times[0] != 0:
+            raise ValueError(f"must begin at the time 0; got {shown(value[0][0])}; a delay is a key of its own")
+        for k in range(1, len(times)):
+            if times[k] - times[k - 1] <= CLOSEST * max(times):
+                raise ValueError(f"must have increasing times; got {shown(value[k][0])} after {shown(value[k - 1][0])}")
+        return points
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
+
+
+def _is_pair(value: object) -> bool:
+    return isinstance(value, (list, tuple)) and len(value) == 2
+
+
+class _DrivenTable(Table):
+    """A table whose keys depend on each other: `contradictions` are found whatever else is wrong."""
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        """Yield each key that does not go with the others, or is missing because of them, and why.
+
+        given: the values by their keys; WRONG for those that are not valid.
+        """
+        raise NotImplementedError
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _check_keys(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+        errors: list[Any] = []
+        table: Self | None = None
+        try:
+            table = handler(data)
+        except ValidationError as error:
+            if not isinstance(data, dict):
+                raise
+            errors += error.errors()
+        if isinstance(data, dict):
+            wrong = {error["loc"][0] for error in errors}
+            told = {error["loc"] for error in errors}
+            for key, message in cls.contradictions(cls._given(data, wrong, info.context)):
+                if (key,) not in told and (key in data or message.startswith("is missing")):
+                    context = {"error": ValueError(message)}
+                    errors.append({"type": "value_error", "loc": (key,), "input": None, "ctx": context})
+        if table is None or errors:
+            raise ValidationError.from_exception_data(cls.__name__, errors)
+        return table
+
+    @classmethod
+    def _given(cls, data: Mapping[str, Any], wrong: Collection[int | str], context: Any) -> Mapping[str, Any]:
+        given: dict[str, Any] = {}
+        for key, value in data.items():
+            if key not in cls.model_fields:
+                # A misspelt key is a mistake already; what it stands for is not missing as well.
+                given |= dict.fromkeys(difflib.get_close_matches(str(key).lower(), cls.model_fields, 1), WRONG)
+            elif value is not None:
+                valid = WRONG if key in wrong else _adapter(cls, key).validate_python(value, context=context)
+                # In Python a default may be stated: a case that was written down is read again.
+                if context or valid != cls.model_fields[key].default:
+                    given[key] = valid
+        return given
+
+
+@cache
+def _adapter(model: type[Table], key: str) -> TypeAdapter[Any]:
+    return TypeAdapter(model.model_fields[key].rebuild_annotation())
+
+
+class SegmentCase(_DrivenTable):
+    """A part of a schedule: `stroke` in m, `frequency` in Hz, `dwell` in s after each stroke.
+
+    A hold has only a `dwell`, the time that it lasts.
+    """
+
+    stroke: Length | None = None
+    frequency: units.Frequency | None = Field(default=None, gt=0)
+    cycle: Literal["up-down", "up", "hold"] = "up-down"
+    cycles: StrictInt = Field(default=1, ge=1, le=1_000_000)
+    dwell: units.Time = Field(default=0.0, ge=0)
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        if given.get("cycle") == WRONG:
+            return
+        if given.get("cycle") != "hold":
+            if "stroke" not in given:
+                yield "stroke", 'is missing; it must be a length such as "150 um"'
+            if "frequency" not in given:
+                yield "frequency", 'is missing; it must be a frequency such as "300 Hz"'
+            return
+        for key in ("stroke", "frequency", "cycles"):
+            if key in given:
+                yield key, 'must not be given with cycle = "hold", which only waits for the time dwell'
+        if "dwell" not in given:
+            yield "dwell", 'is missing; with cycle = "hold" it must be the time to wait, such as "1 ms"'
+        elif given["dwell"] == 0:
+            yield "dwell", 'must be greater than 0 with cycle = "hold"; got 0 s'
+
+
+class ActuatorCase(_DrivenTable):
+    """A point actuator: `position` in m, `stiffness` in N/m, `delay` in s, and what drives it.
+
+    That is a `stroke` in m or a `force` in N with a `frequency` in Hz, a `cycle`, `cycles` (None: no end) and a `dwell`
+    in s; or a `table` of times in s and heights in m; or `segments`, a schedule. The last two come `repeats` times.
+    `stiffness` is that of a spring between actuator and plate, None for rigid.
+    """
+
+    position: Point
+    stroke: Length | None = None
+    force: units.Force | None = None
+    stiffness: units.Stiffness | None = Field(default=None, gt=0)
+    frequency: units.Frequency | None = Field(default=None, gt=0)
+    cycle: Literal["up-down", "up", "sine", "cosine"] = "up-down"
+    cycles: StrictInt | None = Field(default=None, ge=1)
+    dwell: units.Time = Field(default=0.0, ge=0)
+    table: Annotated[tuple[tuple[units.Time, Length], ...], _Points()] | None = None
+    segments: tuple[SegmentCase, ...] | None = None
+    repeats: Annotated[int | Literal["endless"], _Passes()] = 1
+    delay: units.Time = Field(default=0.0, ge=0)
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        drivers = [key for key in ("stroke", "force", "table", "segments") if key in given]
+        for key in drivers[1:]:
+            only = "an actuator is driven by one of stroke, force, table and segments"
+            yield key, f"must not be given with {_NAMED[drivers[0]]}; {only}"
+        if not drivers:
+            yield "stroke", f"is missing; it must be {_IN_PLACE}"
+        if "force" in given and "stiffness" in given:
+            yield "stiffness", "must not be given with a force, which is the same whatever the stiffness"
+        if drivers and drivers[0] in ("table", "segments"):
+            yield from cls._beside_times(drivers[0], given)
+        else:
+            yield from cls._of_cycles(given)
+
+    @classmethod
+    def _of_cycles(cls, given: Mapping[str, Any]) -> Contradictions:
+        """What does not go with a stroke or force that comes again and again."""
+        if "frequency" not in given:
+            yield "frequency", 'is missing; it must be a frequency such as "300 Hz"'
+        cycle = given.get("cycle", "up-down")
+        if "cycles" in given and cycle == "up":
+            yield "cycles", 'must not be given with cycle = "up"; it counts cycles that go on'
+        if "dwell" in given and cycle in ("up", "sine", "cosine"):
+            yield "dwell", f'must not be given with cycle = "{cycle}"; it is the rest after each stroke of "up-down"'
+        if "repeats" in given:
+            yield "repeats", "must not be given without a table or segments; cycles counts those of a stroke"
+
+    @classmethod
+    def _beside_times(cls, driver: str, given: Mapping[str, Any]) -> Contradictions:
+        """What does not go with a table or segments, which say themselves what happens when."""
+        why = "whose points have their own times" if driver == "table" else "which have their own"
+        for key in ("frequency", "cycle", "cycles", "dwell"):
+            if key in given:
+                yield key, f"must not be given with {_NAMED[driver]}, {why}"
+        if driver == "segments" and given["segments"] == ():
+            yield "segments", "must be at least one table, written [[actuators.segments]]; got none"
+        heights = _heights(given[driver])
+        if given.get("repeats", 1) != 1 and heights and abs(heights[-1] - heights[0]) > 1e-12 * max(map(abs, heights)):
+            ends = "whose last height is not its first" if driver == "table" else "which do not end at height 0"
+            yield "repeats", f"must not be given with {_NAMED[driver]} {ends}"
+
+
+_NAMED: Final = {"stroke": "a stroke", "force": "a force", "table": "a table", "segments": "segments"}
+_IN_PLACE: Final = 'a length such as "150 um", or have a force such as "1 mN", a table or segments in its place'
+
+
+def _heights(motion: Any) -> list[float]:
+    """The heights [m] at the points of a table or after the segments of a schedule; none where it is not valid."""
+    if not isinstance(motion, tuple) or not motion:
+        return []
+    if isinstance(motion[0], SegmentCase):
+        rises = (s.cycles * (s.stroke or 0.0) if s.cycle == "up" else 0.0 for s in motion)
+        return list(accumulate(rises, initial=0.0))
+    return [height for _, height in motion]
+
+
+def amplitude(actuator: ActuatorCase) -> float:
+    """The stroke [m] of an actuator, its force [N], or the height [m] furthest from 0 that it is driven to."""
+    if actuator.table is not None:
+        return max(_heights(actuator.table), key=abs)
+    if actuator.segments is not None:
+        before = _heights(actuator.segments)
+        tops = [height + (s.stroke or 0.0) for height, s in zip(before, actuator.segments, strict=False)]
+        return max(before + tops, key=abs)
+    return actuator.stroke if actuator.stroke is not None else actuator.force or 0.0

@@ -1,0 +1,195 @@
+"""The drives of all actuators as kernels read them: pieces of degree five, and the kinks between them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from particle.jit import jit
+
+FloatArray = NDArray[np.float64]
+Segments = tuple[FloatArray, FloatArray, FloatArray, float]
+"""Start (S,) and scale (S,) [s] and coefficients (S, 6) [m] of one pass, and how often it repeats (inf: no end)."""
+
+ORDER = 6  # coefficients of a quintic
+MERGED = 1e-12  # of a stroke: kinks closer than that are taken as one
+ROUNDING = 4 * np.finfo(float).eps  # of the time: nor are kinks told apart that are closer than that
+
+
+class AnyDrive(Protocol):
+    """What every drive has."""
+
+    @property
+    def delay(self) -> float:
+        """The time [s] until which it holds its first height."""
+
+    @property
+    def stroke_time(self) -> float:
+        """The shortest time [s] of one stroke, from rest to rest or from one turning point to the next."""
+
+    @property
+    def frequency(self) -> float:
+        """The highest number of up-and-down strokes in a second [Hz]; 0 when nothing moves."""
+
+    @property
+    def error(self) -> float:
+        """The largest difference of the pieces from the height they stand for, over the stroke; 0: they are exact."""
+
+    def segments(self) -> Segments:
+        """The pieces of one pass, and how often it repeats."""
+
+    def evaluate(self, time: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """h [m], its velocity [m/s] and its acceleration [m/s^2] at times of any shape [s]."""
+
+
+class DriveTable(NamedTuple):
+    """The drives of all actuators, as kernels read them.
+
+    Drive i holds its first value until delay[i], then runs through its segments first[i] .. first[i+1]-1, repeats[i]
+    times in all (inf: without end), each pass lasting span[i], then holds its last value.
+    """
+
+    first: NDArray[np.int64]  # (N+1,)
+    start: FloatArray  # (S,) s, of a segment after the start of its pass; a pass's first is 0
+    scale: FloatArray  # (S,) s, what its polynomial's variable is divided by
+    coefficients: FloatArray  # (S, 6) m, in (t - start) / scale
+    delay: FloatArray  # (N,) s
+    span: FloatArray  # (N,) s
+    repeats: FloatArray  # (N,)
+    stroke_time: FloatArray  # (N,) s, the shortest stroke of each; inf: it has none
+
+
+class Evaluated:
+    """A drive that is evaluated from its own pieces."""
+
+    def evaluate(self: AnyDrive, time: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """h [m], its velocity [m/s] and its acceleration [m/s^2] at times of any shape [s]."""
+        time = np.asarray(time, dtype=float)
+        values = _values(drive_table([self]), np.ascontiguousarray(time.ravel()))
+        return values[0].reshape(time.shape), values[1].reshape(time.shape), values[2].reshape(time.shape)
+
+
+def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
+    """The drives as kernels read them."""
+    parts = [drive.segments() for drive in drives]
+    return DriveTable(
+        first=np.cumsum([0] + [len(start) for start, *_ in parts]),
+        start=np.concatenate([np.zeros(0)] + [start for start, *_ in parts]),
+        scale=np.concatenate([np.zeros(0)] + [scale for _, scale, *_ in parts]),
+        coefficients=np.concatenate([np.zeros((0, ORDER))] + [rows for _, _, rows, _ in parts]),
+        delay=np.array([drive.delay for drive in drives], dtype=float),
+        span=np.array([start[-1] + scale[-1] for start, scale, *_ in parts], dtype=float),
+        repeats=np.array([repeats for *_, repeats in parts], dtype=float),
+        stroke_time=np.array([drive.stroke_time for drive in drives], dtype=float),
+    )
+
+
+def monomial_table(count: int) -> DriveTable:
+    """Drives that are the powers 1, t, t^2, ... of time [s], without kinks, for surfaces given as polynomials."""
+    return DriveTable(
+        first=np.arange(count + 1),
+        start=np.zeros(count),
+        scale=np.ones(count),
+        coefficients=np.eye(ORDER)[:count],
+        delay=np.full(count, -math.inf),
+        span=np.full(count, math.inf),
+        repeats=np.ones(count),
+        stroke_time=np.full(count, math.inf),
+    )
+
+
+@jit
+def drive_piece(table: DriveTable, i: int, time: float, unit: float) -> FloatArray:
+    """The quintic of drive i around `time` [s]: its coefficients (6,) [m] in (t - time) / unit.
+
+    At a kink it is the piece that begins there.
+    """
+    piece = np.zeros(ORDER)
+    if time < table.delay[i]:
+        piece[0] = table.coefficients[table.first[i], 0]
+        return piece
+    if time >= _edge(table, i, table.repeats[i], table.first[i]):
+        for k in range(ORDER):
+            piece[0] += table.coefficients[table.first[i + 1] - 1, k]
+        return piece
+    passes, segment = _place(table, i, time)
+    since = time
+    if math.isfinite(table.span[i]):
+        since = (time - table.delay[i]) - table.span[i] * passes
+    # Taylor's shift of the polynomial to `time`, by repeated Horner.
+    shift = (since - table.start[segment]) / table.scale[segment]
+    for k in range(ORDER):
+        piece[k] = table.coefficients[segment, k]
+    for k in range(ORDER - 1):
+        for j in range(ORDER - 2, k - 1, -1):
+            piece[j] += shift * piece[j + 1]
+    factor = 1.0
+    for k in range(ORDER):
+        piece[k] *= factor
+        factor *= unit / table.scale[segment]
+    return piece
+
+
+@jit
+def next_kink(table: DriveTable, time: float) -> float:
+    """The first time [s] after `time` at which any drive has a kink; inf when there is none.
+
+    Kinks closer than 1e-12 of a stroke, or than rounding at that time, are taken as one.
+    """
+    nearest = math.inf
+    for i in range(len(table.delay)):
+        if not math.isfinite(table.span[i]):
+            continue
+        after = time + MERGED * table.stroke_time[i] + ROUNDING * abs(time)
+        if after < table.delay[i]:
+            nearest = min(nearest, table.delay[i])
+        elif after < _edge(table, i, table.repeats[i], table.first[i]):
+            passes, segment = _place(table, i, after)
+            if segment + 1 < table.first[i + 1]:
+                nearest = min(nearest, _edge(table, i, passes, segment + 1))
+            else:
+                nearest = min(nearest, _edge(table, i, passes + 1.0, table.first[i]))
+    return nearest
+
+
+@jit
+def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
+    """When [s] a segment of drive i begins after so many passes: the one expression that decides about pieces."""
+    if not math.isfinite(table.span[i]):
+        return math.inf
+    return float(table.delay[i] + (table.span[i] * passes + table.start[segment]))
+
+
+@jit
+def _place(table: DriveTable, i: int, time: float) -> tuple[float, int]:
+    """The passes that drive i has behind it at `time` [s], from its delay to before its end, and its segment then."""
+    low, high = table.first[i], table.first[i + 1]
+    if not math.isfinite(table.span[i]):
+        return 0.0, low
+    passes = float(np.floor((time - table.delay[i]) / table.span[i]))
+    # The quotient is rounded: at late times it may be one off.
+    if _edge(table, i, passes + 1.0, low) <= time:
+        passes += 1.0
+    elif _edge(table, i, passes, low) > time:
+        passes -= 1.0
+    while high - low > 1:
+        middle = (low + high) // 2
+        if _edge(table, i, passes, middle) <= time:
+            low = middle
+        else:
+            high = middle
+    return passes, low
+
+
+@jit
+def _values(table: DriveTable, times: FloatArray) -> FloatArray:
+    """h [m], velocity [m/s] and acceleration [m/s^2] of the first drive at times (n,) [s]: (3, n)."""
+    values = np.empty((3, len(times)))
+    for n in range(len(times)):
+        piece = drive_piece(table, 0, times[n], 1.0)
+        values[0, n], values[1, n], values[2, n] = piece[0], piece[1], 2.0 * piece[2]
+    return values
