@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from particle.drive_table import jumps
 from particle.events import march
 from particle.friction import Contact
 from particle.motion import Part
@@ -95,6 +96,7 @@ def simulate(
         tolerance=tolerance * surface.size,
         stroke_time=min(float(surface.drives.stroke_time.min(initial=math.inf)), float(duration)),
         flies=after_detachment == "fly",
+        jumps=jumps(surface.drives),
     )
     pair = tableau(tolerance)
     rows, events, verdict, evaluations = march(surface, request, pair)

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.breakaway import lag, slope, velocity
-from particle.fields import fields
+from particle.breakaway import Slope, lag, slope, velocity
+from particle.fields import Fields, fields
 from particle.jit import jit
-from particle.motion import Part, margin
+from particle.motion import Part, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
 from particle.runge_kutta import Step, Tableau, attempt, error, first_excursion, rate
@@ -38,6 +38,7 @@ class Request(NamedTuple):
     tolerance: float  # m, error of one step
     stroke_time: float  # s, the shortest stroke
     flies: bool  # whether a part that comes off is followed to where it lands
+    jumps: bool  # whether the surface's velocity jumps at kinks
 
 
 @jit
@@ -64,8 +65,8 @@ def slide(
     step.start_gap[0] = rim_gap(surface, state[0], state[1])
     lasting = request.stroke_time
     if mode == SLIDING:
-        straight, pace = 0.01 * tolerance / request.stroke_time, 0.01 * surface.size / request.stroke_time
-        stop, miss = stop_ahead(surface, local, part, time, state, straight, pace)
+        pace = 0.01 * surface.size / request.stroke_time
+        stop, miss = stop_ahead(surface, local, part, time, state, 0.01 * tolerance, pace)
         count[0] += 2
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
         if near and _stops_on_plate(surface, step, state, stop):
@@ -76,9 +77,15 @@ def slide(
             return (TURNED if back else RESTING), time + stop.time, h, GOES_ON
         # A step ends short of the stop, where the friction turns.
         h = min(h, 0.9 * stop.time)
-        a = slope(fields(surface, local, state[0], state[1], time), part)
+        f = fields(surface, local, state[0], state[1], time)
+        a = slope(f, part)
         if a.limit > 0.0:
             lasting = min(lasting, 2 * math.hypot(state[2], state[3]) / a.limit)
+        if _joins_manifold(surface, local, request, time, state, f, a):
+            state[2], state[3] = length(f, state[2], state[3]), 0.0
+            mode = MANIFOLD
+            step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
+            count[0] += 1
     force = part.mass * (abs(part.gravity) + surface.size / request.stroke_time**2) / LEDGER
     remaining = span_end - time
     shortest = SHORTEST * request.stroke_time
@@ -143,6 +150,21 @@ def _manifold_error(surface: Any, local: Any, part: Part, time: float, state: Fl
     a = slope(f, part)
     kappa = lag(surface, local, part, time, state[0], state[1], state[2], f, a)
     return 3 * abs(kappa) * state[2] ** 3 / a.limit if a.limit > 0.0 else math.inf
+
+
+@jit
+def _joins_manifold(
+    surface: Any, local: Any, request: Request, time: float, state: FloatArray, f: Fields, a: Slope
+) -> bool:
+    """Whether a slow part's velocity (v_x, v_y) has become that of the slow manifold, on which steps may be longer."""
+    u, tolerance = length(f, state[2], state[3]), request.tolerance
+    if a.limit <= 0.0 or a.demand < a.limit or u > 0.01 * a.limit * request.stroke_time:
+        return False
+    kappa = lag(surface, local, request.part, time, state[0], state[1], u, f, a)
+    v_x, v_y = velocity(u, kappa, a)
+    # What is off the manifold turns into it within u / Q.
+    off = length(f, state[2] - v_x, state[3] - v_y) * u / a.limit
+    return bool(off <= 0.01 * tolerance and 3 * abs(kappa) * u**3 / a.limit <= 0.01 * tolerance)
 
 
 @jit
