@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import particle
-from coupling.case import Case, ConstantCase, CoulombCase, amplitude
+from coupling.case import Case, ConstantCase, CoulombCase, TableCase, amplitude
 from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
 from coupling.summary import Summary, summarise
@@ -99,6 +99,8 @@ def build_friction(case: Case) -> Contact:
         return particle.ConstantFriction(law.limit)
     if isinstance(law, CoulombCase):
         return particle.CoulombAdhesion(law.coefficient, law.adhesion, law.static_coefficient)
+    if isinstance(law, TableCase):
+        return particle.FrictionTable(law.loads or (), law.limits or (), law.static_ratio)
     return particle.KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
 
 

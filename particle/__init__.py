@@ -3,6 +3,7 @@
 from particle.drive import Drive
 from particle.forces import contact_forces
 from particle.friction import ConstantFriction, CoulombAdhesion
+from particle.friction_table import FrictionTable
 from particle.kogut_etsion import KogutEtsion
 from particle.simulate import Micropart, simulate
 from particle.surface import SurfaceMotion, SurfaceState, polynomial_surface
@@ -14,6 +15,7 @@ __all__ = [
     "Drive",
     "Event",
     "EventKind",
+    "FrictionTable",
     "KogutEtsion",
     "Micropart",
     "Outcome",
