@@ -73,7 +73,7 @@ def friction_limit(law: FrictionLaw, load: float) -> float:
         return max(0.0, limit)
     above = max(0.0, (load + law.pull_off) / law.pull_off)
     place = math.log1p(math.sqrt(above)) / law.step
-    knot = min(int(place), c.shape[1] - 1)
+    knot = int(min(place, c.shape[1] - 1.0))
     s = (place - knot) * law.step
     return math.exp(((c[0, knot] * s + c[1, knot]) * s + c[2, knot]) * s + c[3, knot])
 
