@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import particle
-from coupling.case import ActuatorCase, Case, ConstantCase, CoulombCase, amplitude
+from coupling.case import ActuatorCase, Case, ConstantCase, CoulombCase, TableCase, amplitude
 from coupling.drive_case import ENDLESS
 from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
@@ -112,6 +112,8 @@ def build_friction(case: Case) -> Contact:
         return particle.ConstantFriction(law.limit)
     if isinstance(law, CoulombCase):
         return particle.CoulombAdhesion(law.coefficient, law.adhesion, law.static_coefficient)
+    if isinstance(law, TableCase):
+        return particle.FrictionTable(law.loads or (), law.limits or (), law.static_ratio)
     return particle.KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
 
 

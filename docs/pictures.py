@@ -5,6 +5,7 @@ from shutil import copy
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from contact_pictures import draw_contact
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
@@ -141,3 +142,4 @@ def _draw_decay(axes: Axes) -> None:
 if __name__ == "__main__":
     draw_runs()
     draw_plates()
+    draw_contact()
