@@ -19,7 +19,7 @@ from particle.rim import rim_gap
 from particle.runge_kutta import tableau
 from particle.slide import DETACHED, GOES_ON, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
 from particle.surface import SurfaceMotion
-from particle.trajectory import Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
+from particle.trajectory import Energy, Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
 
 FloatArray = NDArray[np.float64]
 
@@ -89,22 +89,30 @@ def simulate(
     if wrong:
         raise ValueError("; ".join(wrong))
     x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
+    stroke_time = min(float(surface.drives.stroke_time.min(initial=math.inf)), float(duration))
     request = Request(
         part=Part(float(part.mass), -float(z), float(x), float(y), float(part.squeeze), friction.law),
         start=np.array([*part.position, *part.velocity], dtype=float),
         duration=float(duration),
         tolerance=tolerance * surface.size,
-        stroke_time=min(float(surface.drives.stroke_time.min(initial=math.inf)), float(duration)),
+        stroke_time=stroke_time,
+        force=float(part.mass * (np.linalg.norm(vector) + surface.size / stroke_time**2)),
         flies=after_detachment == "fly",
         jumps=jumps(surface.drives),
     )
     pair = tableau(tolerance)
     rows, events, verdict, evaluations = march(surface, request, pair)
-    return _trajectory(rows, events, verdict, evaluations, partial(resume, surface, request, pair, rows))
+    sampler = partial(resume, surface, request, pair, rows)
+    return _trajectory(rows, events, verdict, evaluations, energy_of(rows, request.force * surface.size), sampler)
 
 
 def _trajectory(
-    rows: FloatArray, events: FloatArray, verdict: int, evaluations: int, sampler: Callable[[FloatArray], FloatArray]
+    rows: FloatArray,
+    events: FloatArray,
+    verdict: int,
+    evaluations: int,
+    energy: Energy,
+    sampler: Callable[[FloatArray], FloatArray],
 ) -> Trajectory:
     samples = samples_of(rows)
     if verdict == GOES_ON:
@@ -116,6 +124,6 @@ def _trajectory(
         events=[Event(EventKind(int(k)), t, (x, y), speed, load) for k, t, x, y, speed, load in events.tolist()],
         outcome=outcome,
         evaluations=evaluations,
-        energy=energy_of(rows),
+        energy=energy,
         sampler=sampler,
     )

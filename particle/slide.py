@@ -26,7 +26,7 @@ GOES_ON, DETACHED, LEFT_PLATE, OVERLOADED, WORK_LIMIT = range(5)
 SHORTEST = 1e-13  # of a stroke: no step is shorter
 TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
 GROWTH, SAFETY = 5.0, 0.9
-LEDGER = 0.1  # what an error of the energy counts, against one of the path
+LEDGER = 0.1  # what an error of energy counts, against one of the path
 
 
 class Request(NamedTuple):
@@ -37,6 +37,7 @@ class Request(NamedTuple):
     duration: float  # s
     tolerance: float  # m, error of one step
     stroke_time: float  # s, the shortest stroke
+    force: float  # N, that of gravity and of crossing the surface in a stroke
     flies: bool  # whether a part that comes off is followed to where it lands
     jumps: bool  # whether the surface's velocity jumps at kinks
 
@@ -86,7 +87,7 @@ def slide(
             mode = MANIFOLD
             step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
             count[0] += 1
-    force = part.mass * (abs(part.gravity) + surface.size / request.stroke_time**2) / LEDGER
+    force = request.force / LEDGER
     remaining = span_end - time
     shortest = SHORTEST * request.stroke_time
     while True:
