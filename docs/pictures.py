@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
+from motion_pictures import draw_motion_error
 
 from coupling import read_case, run_case
 from coupling.drawn_plate import drawn_plate
@@ -141,3 +142,4 @@ def _draw_decay(axes: Axes) -> None:
 if __name__ == "__main__":
     draw_runs()
     draw_plates()
+    draw_motion_error()

@@ -112,6 +112,7 @@ def march_fixed(
             event = STOPS
             if a.demand > part.law.static_ratio * a.limit:
                 mode, event = SLIDING, REVERSES
+        # A path that turns by more than a right angle within one step is not told from one that turns back.
         elif before == SLIDING and after[2] * state[2] + after[3] * state[3] < 0.0:
             event = REVERSES
         state[2:] = after[2:]
