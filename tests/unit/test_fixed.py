@@ -125,10 +125,12 @@ def test_a_sliding_part_stops_within_its_step_and_never_creeps():
     assert (found.state[rest] == State.STICK).all() and (found.state[~rest] == State.SLIP).all()
 
 
-def test_a_part_that_friction_cannot_hold_turns_back():
+@pytest.mark.parametrize("time_step", [1e-3, 1.01e-3])
+def test_a_part_that_friction_cannot_hold_turns_back(time_step):
+    """Through a step that ends at rest, or in one step."""
     g, mu, u = 10.0, 0.5, 3.0
     part = Micropart(1.0, (0.0, 0.0), (u / math.sqrt(2), 0.0))
-    found = fixed(slope(1.0), part, CoulombAdhesion(mu), 1.0, 1e-3, gravity=g)
+    found = fixed(slope(1.0), part, CoulombAdhesion(mu), 1.0, time_step, gravity=g)
     turn = u / (g * (1 + mu) / math.sqrt(2))
     assert [event.kind for event in found.events] == [EventKind.REVERSES]
     assert found.events[0].time == pytest.approx(turn, abs=1.1e-3)
