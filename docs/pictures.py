@@ -12,6 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
+from motion_pictures import draw_motion_error
 
 from coupling import read_case, run_case
 from coupling.drawn_plate import drawn_plate
@@ -143,3 +144,4 @@ if __name__ == "__main__":
     draw_runs()
     draw_plates()
     draw_contact()
+    draw_motion_error()

@@ -137,7 +137,8 @@ class Trajectory:
     def at(self, times: ArrayLike) -> Samples:
         """The part at times (k,) [s]; those before the start or after the end count as these.
 
-        Scheme "events" integrates from the row before to each time, so that samples are as good as rows.
+        Scheme "events" integrates from the row before to each time, so that samples are as good as rows. Those with
+        fixed steps take the cubic through the places and velocities of the rows around it.
         """
         within = np.clip(np.asarray(times, dtype=float), self.time[0], self.time[-1])
         order = np.argsort(within, kind="stable")
