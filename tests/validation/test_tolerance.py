@@ -1,6 +1,6 @@
 """The error of an end point against the tolerance: proportional, with one constant for all cases.
 
-Truths are `motion_oracle`'s, good to 1e-11: the two reference strokes and two actuators for 3 ms, whose paths are not
+Truths are `motion_oracle`'s, good to 2e-11: the two reference strokes and two actuators for 3 ms, whose paths are not
 chaotic. Errors are distances over the radius.
 """
 
@@ -31,6 +31,7 @@ CASES = {
     "two actuators, rough contact": (PAIR, STROKES, HEIGHTS, KINKS, (60e-6, -40e-6), ROUGH, 9.80665, 3e-3),
 }
 TOLERANCES = 10.0 ** -np.arange(4, 12)
+ORACLE = 2e-11  # of the radius; what the truth of a pass over an actuator may be wrong by
 MOST, MOST_BELOW_1E_6 = 25, 2  # error over tolerance; the lower order down to 1e-6 is the coarser one
 pytestmark = pytest.mark.compiled
 
@@ -55,9 +56,9 @@ def truth_and_runs(name):
 def test_the_error_is_at_most_the_tolerance_times_one_constant(name):
     truth, runs = truth_and_runs(name)
     errors = np.array([np.hypot(*(run.position[-1] - truth.position)) for run in runs]) / RADIUS
-    assert (errors < MOST * TOLERANCES).all()
+    assert (errors < MOST * TOLERANCES + ORACLE).all()
     fine = TOLERANCES < 5e-7
-    assert (errors < MOST_BELOW_1E_6 * TOLERANCES)[fine].all()
+    assert (errors < MOST_BELOW_1E_6 * TOLERANCES + ORACLE)[fine].all()
     # Proportional: the slope of log error over log tolerance, where single runs may be lucky by a factor of 50.
     slope = np.polyfit(np.log(TOLERANCES), np.log(errors), 1)[0]
     assert slope == pytest.approx(1.0, abs=0.3)
