@@ -27,7 +27,6 @@ WEAKEST = 0.75  # of the friction limit: the slow manifold draws parts to it dow
 SHORTEST = 1e-13  # of a stroke: no step is shorter
 TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
 GROWTH, SAFETY = 5.0, 0.9
-LEDGER = 0.5  # what an error of energy counts, against one of the path
 
 
 class Request(NamedTuple):
@@ -67,14 +66,13 @@ def slide(
     f = fields(surface, local, state[0], state[1], time)
     a = slope(f, part)
     count[0] += 2
-    force = request.force / LEDGER
     if mode == SLIDING or (a.demand < a.limit and state[2] > 0.0):
         moving = state.copy()
         if mode == MANIFOLD:
             kappa = lag(surface, local, part, time, state[0], state[1], state[2], f, a)
             moving[2], moving[3] = velocity(state[2], kappa, a)
         pace = 0.01 * surface.size / request.stroke_time
-        stop, miss = stop_ahead(surface, local, part, time, moving, 0.01 * tolerance, pace, force)
+        stop, miss = stop_ahead(surface, local, part, time, moving, 0.01 * tolerance, pace, request.force)
         count[0] += 1
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
         if near and _stops_on_plate(surface, step, moving, stop):
@@ -101,7 +99,7 @@ def slide(
         if not attempt(mode, surface, local, part, pair, step, time, state, h):
             h *= 0.5
             continue
-        wrong = error(pair, step, h, request.stroke_time, force) / tolerance
+        wrong = error(pair, step, h, request.stroke_time, request.force) / tolerance
         if not wrong <= 1.0:
             h *= max(0.2, SAFETY * wrong ** (-1 / pair.order)) if wrong > 1.0 else 0.2
             continue
