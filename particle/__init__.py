@@ -6,7 +6,7 @@ from particle.drive_schedule import Segment, SegmentDrive
 from particle.friction import ConstantFriction, CoulombAdhesion
 from particle.kogut_etsion import KogutEtsion
 from particle.simulate import Micropart, simulate
-from particle.surface import SurfaceMotion, SurfaceState, polynomial_surface
+from particle.surface import SurfaceMotion, SurfaceState, platform_surface, polynomial_surface
 from particle.trajectory import Energy, Event, EventKind, Outcome, Samples, State, Trajectory
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "SurfaceState",
     "TableDrive",
     "Trajectory",
+    "platform_surface",
     "polynomial_surface",
     "simulate",
 ]
