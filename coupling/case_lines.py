@@ -192,7 +192,7 @@ def _known(location: Location, tables: Mapping[str, type[BaseModel]]) -> str:
     if len(location) == 1:
         return "a case file has " + ", ".join(_header((key,)) for key in keys)
     model = f' with model = "{location[1]}"' if location[0] == "friction" else ""
-    model = f" with {location[1]}" if location[0] == "plate" else model
+    model = f" with {location[1]}" if location[0] == "plate" and len(location) == 3 else model
     return f"{_header(location)}{model} has {', '.join(keys)}"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,10 +24,11 @@ class File(NamedTuple):
     mistakes: list[str]
 
 
-def read_columns(path: Path, known: Mapping[str, Quantity], example: str) -> File:
+def read_columns(path: Path, known: Mapping[str, Quantity], needed: Sequence[Sequence[str]], example: str) -> File:
     """The columns of a file, and what is wrong with it, by its lines.
 
-    known: the quantity of each column that there may be.  example: a header, for messages.
+    known: the quantity of each column that there may be.  needed: names, of each of which there must be one at least.
+    example: a header, for messages.
     Empty lines and lines that begin with # are left out.
     Raises OSError when the file cannot be read.
     """
@@ -47,6 +48,8 @@ def read_columns(path: Path, known: Mapping[str, Quantity], example: str) -> Fil
         message = f'line {number} must be a header such as "{example}"; got {shown(", ".join(header))}'
         return File({}, (), [message])
     columns, mistakes = _header(header, known)
+    meant = {near for cell in header if (near := _near(cell.partition("[")[0], known))}
+    mistakes += [f'must have a column {_either(names)}, as in "{example}"' for names in needed if not meant & {*names}]
     if mistakes:
         return File({}, (), [f"line {number} {mistake}" for mistake in mistakes])
     values: list[list[float]] = [[] for _ in header]
@@ -78,8 +81,8 @@ def _header(header: Sequence[str], known: Mapping[str, Quantity]) -> tuple[list[
         match = re.fullmatch(r"([^\[\]]*?)\s*(?:\[(.*)\])?", cell)
         name, unit = match.groups() if match else (cell, None)
         if name not in known:
-            near = difflib.get_close_matches(name.lower(), known, 1)
-            hint = f"did you mean {near[0]}?" if near else f"there may be {', '.join(known)}"
+            near = _near(name, known)
+            hint = f"did you mean {near}?" if near else f"there may be {', '.join(known)}"
             mistakes.append(f"has a column {shown(cell)} that is not known; {hint}")
             continue
         if any(name == other for other, _ in columns):
@@ -95,6 +98,14 @@ def _header(header: Sequence[str], known: Mapping[str, Quantity]) -> tuple[list[
             reason = str(error).partition(f'got "1 {unit}"')[2].replace('"1 ', '"')
             mistakes.append(f"must give {name} in a unit of {DIMENSIONS[quantity.unit][2:]}; got [{unit}]{reason}")
     return columns, mistakes
+
+
+def _near(name: str, known: Iterable[str]) -> str | None:
+    return next(iter(difflib.get_close_matches(name.strip().lower(), known, 1)), None)
+
+
+def _either(names: Sequence[str]) -> str:
+    return f"{', '.join(names[:-1])} or {names[-1]}" if len(names) > 1 else names[0]
 
 
 def _number(cell: str) -> float | None:

@@ -160,7 +160,15 @@ class Directed:
             return self.quantity.validate(value, info)
         if len(value) != 3:
             raise ValueError(f"must be {self.wanted}; got {shown(value)}")
-        return tuple(self.quantity.validate(part, info) for part in value)
+        parts, wrong = [], []
+        for name, part in zip("xyz", value, strict=True):
+            try:
+                parts.append(self.quantity.validate(part, info))
+            except ValueError as error:
+                wrong.append(f"its {name} {error}")
+        if wrong:
+            raise ValueError("is wrong: " + "; ".join(wrong))
+        return tuple(parts)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(self.validate)
