@@ -154,8 +154,8 @@ def _draw_over_time(
     axes.set_xlim(0, edges[-1])
     axes.set_ylabel(label)
     axes.grid(alpha=0.3)
-    flew = (trajectory.state == State.FLIGHT).any()
-    axes.set_title(f"blue: stuck{', grey: in flight' if flew else ''}", loc="right", fontsize=9, color=STICK_COLOUR)
+    shades = "blue: stuck, grey: in flight" if (trajectory.state == State.FLIGHT).any() else "shaded: stuck"
+    axes.set_title(shades, loc="right", fontsize=9, color=STICK_COLOUR)
 
 
 def _stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:

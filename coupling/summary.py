@@ -103,7 +103,7 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         slips=sum(event.kind is EventKind.SLIPS for event in trajectory.events),
         flights=detachments if case.run.after_detachment == "fly" else 0,
         landings=landings,
-        evaluations=trajectory.evaluations,
+        evaluations=int(trajectory.evaluations),
         scheme=case.run.scheme,
         gravity=case.run.gravity,
         squeeze=case.part.squeeze,
