@@ -23,6 +23,7 @@ lint: .venv/developer
 
 benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/plate.py
+	$(BIN)/python benchmarks/contact.py
 
 docs: .venv/installed
 	$(BIN)/python docs/pictures.py

@@ -18,13 +18,14 @@ from pydantic import (
     ModelWrapValidatorHandler,
     StrictFloat,
     StrictInt,
+    StrictStr,
     ValidationError,
     ValidationInfo,
     field_validator,
     model_validator,
 )
 
-from coupling import units
+from coupling import friction_points, units
 from coupling.any_plate import PLATES, PLATFORM, AnyPlate, kind
 from coupling.case_lines import CaseError as CaseError
 from coupling.case_lines import Problem as Problem
@@ -115,7 +116,43 @@ class CoulombCase(Table):
         coefficient = info.data.get("coefficient")
         if static_coefficient is not None and coefficient is not None and static_coefficient < coefficient:
             raise ValueError(f"must be at least coefficient, {coefficient:g}; got {static_coefficient:g}")
+        if static_coefficient is not None and coefficient == 0:
+            raise ValueError(f"must not be given with coefficient = 0; got {static_coefficient:g}")
         return static_coefficient
+
+
+class TableCase(Table):
+    """Friction measured at points: `limits` over the net `loads`, in N; `file` holds both in place of the two.
+
+    The file is read with the case, which then has its points and no `file`.
+    """
+
+    model: Literal["table"] = "table"
+    loads: friction_points.Forces | None = None
+    limits: friction_points.Forces | None = None
+    static_ratio: StrictFloat = Field(default=1.0, ge=1)
+    file: StrictStr | None = None
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _check_points(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+        # Around the fields, so that what is wrong with one does not hide what is wrong with another.
+        if not isinstance(data, dict):
+            return handler(data)
+        errors: list[Any] = []
+        try:
+            case = handler(data)
+        except ValidationError as error:
+            errors = list(error.errors())
+        points, mistakes = friction_points.of_table(data, info.context or {})
+        for location, message in mistakes:
+            context = {"error": ValueError(message)}
+            errors.append({"type": "value_error", "loc": location, "input": None, "ctx": context})
+        if errors:
+            raise ValidationError.from_exception_data(cls.__name__, errors)
+        for name, value in points.items():
+            object.__setattr__(case, name, value)  # the model is frozen from here on
+        return case
 
 
 class RunCase(Table):
@@ -153,7 +190,7 @@ class _CaseTables(Table):
     plate: AnyPlate
     actuators: tuple[ActuatorCase, ...]
     part: PartCase
-    friction: Annotated[KogutEtsionCase | ConstantCase | CoulombCase, Field(discriminator="model")]
+    friction: Annotated[KogutEtsionCase | ConstantCase | CoulombCase | TableCase, Field(discriminator="model")]
     run: RunCase
 
     @model_validator(mode="wrap")
@@ -190,6 +227,7 @@ _FRICTION: dict[str, type[BaseModel]] = {
     "kogut-etsion": KogutEtsionCase,
     "constant": ConstantCase,
     "coulomb": CoulombCase,
+    "table": TableCase,
 }
 _TABLES: dict[str, type[BaseModel]] = {
     "": _CaseTables,

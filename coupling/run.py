@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import particle
-from coupling.case import Case, ConstantCase, CoulombCase
+from coupling.case import Case, ConstantCase, CoulombCase, TableCase
 from coupling.csv_file import check_csv
 from coupling.drives import build_drives as build_drives
 from coupling.plate_scene import plate_scene
@@ -90,6 +90,8 @@ def build_friction(case: Case) -> Contact:
         return particle.ConstantFriction(law.limit)
     if isinstance(law, CoulombCase):
         return particle.CoulombAdhesion(law.coefficient, law.adhesion, law.static_coefficient)
+    if isinstance(law, TableCase):
+        return particle.FrictionTable(law.loads or (), law.limits or (), law.static_ratio)
     return particle.KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
 
 

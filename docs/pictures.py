@@ -5,12 +5,14 @@ from shutil import copy
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from contact_pictures import draw_contact
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
+from motion_pictures import draw_motion_error
 
 from coupling import read_case, run_case
 from coupling.drawn_plate import drawn_plate
@@ -141,3 +143,5 @@ def _draw_decay(axes: Axes) -> None:
 if __name__ == "__main__":
     draw_runs()
     draw_plates()
+    draw_contact()
+    draw_motion_error()

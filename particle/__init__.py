@@ -4,6 +4,7 @@ from particle.drive import AnyDrive, Drive
 from particle.drive_points import HermiteDrive, TableDrive
 from particle.drive_schedule import Segment, SegmentDrive
 from particle.friction import ConstantFriction, CoulombAdhesion
+from particle.friction_table import FrictionTable
 from particle.kogut_etsion import KogutEtsion
 from particle.simulate import Micropart, simulate
 from particle.surface import SurfaceMotion, SurfaceState, platform_surface, polynomial_surface
@@ -17,6 +18,7 @@ __all__ = [
     "Energy",
     "Event",
     "EventKind",
+    "FrictionTable",
     "HermiteDrive",
     "KogutEtsion",
     "Micropart",

@@ -79,7 +79,7 @@ def lag(surface: Any, local: Any, part: Part, time: float, x: float, y: float, u
 @jit
 def velocity(u: float, kappa: float, a: Slope) -> tuple[float, float]:
     """The velocity [m/s] on the manifold."""
-    back = kappa * u
+    back = min(max(kappa * u, -1.0), 1.0)
     along = math.sqrt(max(0.0, 1 - back * back))
     return u * (along * a.d_x - back * a.n_x), u * (along * a.d_y - back * a.n_y)
 

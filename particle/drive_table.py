@@ -102,6 +102,26 @@ def monomial_table(count: int) -> DriveTable:
     )
 
 
+def jumps(table: DriveTable) -> bool:
+    """Whether any drive's velocity jumps at a kink: from one segment to the next, at its start or at its end."""
+    powers = np.arange(ORDER)
+    for i in np.flatnonzero(np.isfinite(table.span)):
+        rows = slice(table.first[i], table.first[i + 1])
+        before, after = table.coefficients[rows] @ powers, table.coefficients[rows, 1]
+        # At rest before the start and after the end, if there is one; else the last segment goes on into the first.
+        leaving = np.append([0.0], before / table.scale[rows])
+        arriving = np.append(after / table.scale[rows], [0.0])
+        if not math.isfinite(table.repeats[i]):
+            leaving, arriving = leaving[:-1], arriving[:-1]
+        steps = np.append(arriving - leaving, arriving[0] - before[-1] / table.scale[rows][-1])
+        if table.repeats[i] <= 1:
+            steps = steps[:-1]
+        speed = np.abs(table.coefficients[rows]).max() / table.scale[rows].min()
+        if np.abs(steps).max(initial=0.0) > ROUNDING * 100 * speed:
+            return True
+    return False
+
+
 @jit
 def drive_piece(table: DriveTable, i: int, time: float, unit: float) -> FloatArray:
     """The quintic of drive i around `time` [s]: its coefficients (6,) [m] in (t - time) / unit.

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from particle.drive import next_kink
 from particle.fields import fields, new_local, pin_cell, pin_time
-from particle.flight import fly, take_off
+from particle.flight import fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.motion import Part, energy, margin, pull
-from particle.record import FLYING, MANIFOLD, RESTING, SLIDING, V_X, V_Y, new_record, note, row_of, write
+from particle.record import FLYING, MANIFOLD, RESTING, SLIDING, V_X, V_Y, Record, new_record, note, row_of, write
 from particle.rim import rim_gap
 from particle.runge_kutta import Tableau, new_step
 from particle.slide import (
@@ -41,6 +41,7 @@ FloatArray = NDArray[np.float64]
 # As EventKind; the ends follow as 2 + their number.
 SLIPS, STOPS, REVERSES, LANDS = 0, 1, 2, 6
 START = 0.02  # of a stroke: the first step
+JUMP = 1e-11  # of the surface's size in a stroke: smaller jumps of its velocity are rounding
 
 EVALUATIONS_PER_SPAN, EVALUATIONS_AT_LEAST = 2_000, 20_000
 
@@ -64,9 +65,19 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             if span_end <= time:
                 verdict = WORK_LIMIT
                 break
-            pin_time(surface, local, time, span_end)
+            before = mode
+            if request.jumps and count[1] > 0:
+                mode = _cross_kink(surface, local, request, mode, time, span_end, record, state)
+            else:
+                pin_time(surface, local, time, span_end)
             h = max(h, 1e-4 * request.stroke_time)
             count[1] += 1
+            if mode != before:
+                row = row_of(surface, local, part, mode, time, state)
+                event = 2 + DETACHED if mode == FLYING else (STOPS if mode == RESTING else SLIPS)
+                record = write(note(record, event, row, _speed(row)), row)
+                if mode == FLYING and not request.flies:
+                    return _results(record, DETACHED, count)
         if rim_gap(surface, state[0], state[1]) < 0.0 or not pin_cell(surface, local, state[0], state[1]):
             verdict = LEFT_PLATE
             break
@@ -116,7 +127,41 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
     if verdict in (DETACHED, LEFT_PLATE, OVERLOADED):
         row = record.rows[record.counts[0] - 1]
         record = note(record, 2 + verdict, row, _speed(row))
+    return _results(record, verdict, count)
+
+
+@jit
+def _results(record: Record, verdict: int, count: NDArray[np.int64]) -> tuple[FloatArray, FloatArray, int, int]:
     return record.rows[: record.counts[0]], record.events[: record.counts[1]], verdict, count[0]
+
+
+@jit
+def _cross_kink(
+    surface: Any,
+    local: Any,
+    request: Request,
+    mode: int,
+    time: float,
+    span_end: float,
+    record: Record,
+    state: FloatArray,
+) -> int:
+    """Goes on to the next span over a kink at which the surface's velocity may jump; what the part does then."""
+    before = fields(surface, local, state[0], state[1], time)
+    pin_time(surface, local, time, span_end)
+    if not pin_cell(surface, local, state[0], state[1]):
+        return mode
+    after = fields(surface, local, state[0], state[1], time)
+    moved = state.copy()
+    if mode == MANIFOLD:
+        row = record.rows[record.counts[0] - 1]
+        moved[2], moved[3] = row[V_X], row[V_Y]
+    slack = JUMP * surface.size / request.stroke_time
+    if jump(before, after) <= slack:
+        return mode
+    mode = jolt(before, after, request.part, mode, slack, moved)
+    state[:] = moved
+    return mode
 
 
 @jit

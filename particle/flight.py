@@ -3,7 +3,7 @@
 The flight is exact, seen from the base: gravity, and the squeeze straight down. Its height over the surface is followed
 by quintics that meet it with two derivatives at both ends of a step; where the first of them becomes negative the part
 lands. The impact takes away the normal velocity relative to the surface, and at most `impact_coefficient` times as much
-of the tangential one.
+of the tangential one. A surface whose velocity jumps under the part hits it, or leaves it behind, in the same way.
 """
 
 from __future__ import annotations
@@ -103,11 +103,11 @@ def land(f: Fields, part: Part, state: FloatArray) -> int:
     """The impact of a part at `state` on the surface, in place; what it does then, should the contact last."""
     s = math.sqrt(1 + f.x * f.x + f.y * f.y)
     v_x, v_y, v_z = state[2], state[3], state[7] - f.w_t
-    into = min((v_z - v_x * f.x - v_y * f.y) / s, 0.0)
+    into = (v_z - v_x * f.x - v_y * f.y) / s
     # Velocity along the surface, before friction's impulse takes its share.
     t_x, t_y, t_z = v_x + into * f.x / s, v_y + into * f.y / s, v_z - into / s
     speed = math.sqrt(t_x * t_x + t_y * t_y + t_z * t_z)
-    kept = max(0.0, 1.0 + part.law.impact_coefficient * into / speed) if speed > 0.0 else 0.0
+    kept = max(0.0, 1.0 - part.law.impact_coefficient * abs(into) / speed) if speed > 0.0 else 0.0
     after_x, after_y, after_z = kept * t_x, kept * t_y, kept * t_z
     p_x, p_y, p_z = after_x - v_x, after_y - v_y, after_z - v_z  # impulse per kg
     state[4] += part.mass * (p_x * f.base_vx + p_y * f.base_vy + p_z * f.w_t)
@@ -115,6 +115,29 @@ def land(f: Fields, part: Part, state: FloatArray) -> int:
     state[2], state[3] = after_x, after_y
     state[6], state[7] = f.w, f.w_t + after_z
     return SLIDING if kept > 0.0 else RESTING
+
+
+@jit
+def jump(before: Fields, after: Fields) -> float:
+    """By how much the surface's velocity [m/s] jumps."""
+    x, y, z = after.base_vx - before.base_vx, after.base_vy - before.base_vy, after.w_t - before.w_t
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@jit
+def jolt(before: Fields, after: Fields, part: Part, mode: int, slack: float, state: FloatArray) -> int:
+    """What a part does when the surface's velocity jumps, which moves on `state`.
+
+    A surface that drops from under a part, by more than `slack` [m/s], lets go of it unless nothing can pull it off.
+    """
+    if mode != FLYING:
+        state[6], state[7] = before.w, before.w_t + state[2] * before.x + state[3] * before.y
+    state[2] -= after.base_vx - before.base_vx
+    state[3] -= after.base_vy - before.base_vy
+    away = state[7] - after.w_t - state[2] * after.x - state[3] * after.y
+    if mode == FLYING or (away > slack and math.isfinite(part.law.pull_off)):
+        return FLYING
+    return land(after, part, state)
 
 
 @jit

@@ -7,65 +7,131 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from particle.jit import jit
 
 FloatArray = NDArray[np.float64]
 
-CONSTANT, COULOMB, TABLE = 0, 1, 2
+CONSTANT, COULOMB, TABLE, POINTS = 0, 1, 2, 3
 
 
 class FrictionLaw(NamedTuple):
-    """A friction law as kernels read it."""
+    """A friction law as kernels read it. Q must not fall with the load: the search for slips relies on that."""
 
     kind: int
     limit: float  # CONSTANT: N
     coefficient: float  # COULOMB: kinetic
     static_ratio: float  # limit of a part that is stuck over that of one that slides
+    impact_coefficient: float  # limit of Q/N for large N: what bounds the friction of a blow
     adhesion: float  # COULOMB: N
     pull_off: float  # N
     largest_load: float  # N, above which the law says nothing
-    impact_coefficient: float  # limit of Q(N) / N under large loads, which acts at impacts
     step: float  # TABLE: width of a knot interval in u = ln(1 + sqrt((N + pull_off) / pull_off))
-    cubics: FloatArray  # TABLE: (4, knots - 1), of ln(Q / N) on each interval, highest power first
+    loads: FloatArray  # POINTS: (points,) N, ascending
+    # Polynomials on each interval, highest power first. TABLE: (4, knots - 1), of ln Q over u, from the knot before.
+    # POINTS: (6, points + 1), of Q [N] over the load, from the point before; below them all, from the first point.
+    pieces: FloatArray
 
 
 class Contact(Protocol):
-    """What `simulate` asks of a friction law."""
+    """What `simulate` asks of a friction law, and what people may ask of it."""
 
     @property
     def law(self) -> FrictionLaw: ...
 
     @property
-    def table_error(self) -> float: ...
+    def pull_off(self) -> float:
+        """N, the pull at which contact ends; inf where it never does."""
+
+    @property
+    def largest_load(self) -> float:
+        """N, the net load where the law ends; inf where it never does."""
+
+    @property
+    def table_error(self) -> float:
+        """Relative error of the tabulated limit; 0 where there is no table."""
+
+    def friction_limit(self, net_load: ArrayLike) -> FloatArray:
+        """Q [N] under net loads [N] of any shape; ValueError for one below -pull_off or above largest_load."""
 
 
 @jit
 def friction_limit(law: FrictionLaw, load: float) -> float:
-    """Q [N] while sliding under the net normal force `load` [N]; 0 at and below -pull_off."""
+    """Q [N] while sliding under the net normal force `load` [N]; outside the law it goes on, never negative."""
     if law.kind == CONSTANT:
         return law.limit
     if law.kind == COULOMB:
         return max(0.0, law.coefficient * (load + law.adhesion))
+    c = law.pieces
+    if law.kind == POINTS:
+        piece = int(np.searchsorted(law.loads, load, side="right"))
+        s = load - law.loads[max(piece - 1, 0)]
+        limit = c[0, piece]
+        for power in range(1, c.shape[0]):
+            limit = limit * s + c[power, piece]
+        return max(0.0, limit)
     above = max(0.0, (load + law.pull_off) / law.pull_off)
     place = math.log1p(math.sqrt(above)) / law.step
-    knot = min(int(place), law.cubics.shape[1] - 1)
+    knot = int(min(place, c.shape[1] - 1.0))
     s = (place - knot) * law.step
-    c = law.cubics[:, knot]
-    return math.exp(((c[0] * s + c[1]) * s + c[2]) * s + c[3])
+    return math.exp(((c[0, knot] * s + c[1, knot]) * s + c[2, knot]) * s + c[3, knot])
 
 
-def _law(kind: int, pull_off: float, **fields: float) -> FrictionLaw:
-    values = {"limit": 0.0, "coefficient": 0.0, "static_ratio": 1.0, "adhesion": 0.0} | fields
+@jit
+def _limits(law: FrictionLaw, loads: FloatArray) -> FloatArray:
+    out = np.empty(len(loads))
+    for k in range(len(loads)):
+        out[k] = friction_limit(law, loads[k])
+    return out
+
+
+def friction_limits(law: FrictionLaw, net_load: ArrayLike) -> FloatArray:
+    """Q [N] under net loads [N] of any shape; ValueError for one outside the law, as `check_loads` says."""
+    loads = np.asarray(net_load, dtype=float)
+    check_loads(loads, law.pull_off, law.largest_load)
+    return np.reshape(_limits(law, np.ascontiguousarray(loads.ravel())), loads.shape)
+
+
+def check_loads(loads: FloatArray, pull_off: float, largest_load: float) -> None:
+    """Raises ValueError, with both numbers, for net loads [N] below -pull_off or above the largest, and for nan."""
+    below, above = ~(loads >= -pull_off), loads > largest_load
+    if below.any():
+        least = f"at least minus the pull-off force, {-pull_off:.6g} N" if pull_off < math.inf else "a number"
+        raise ValueError(f"Input net_load must be {least}; got {loads[below].min():.6g} N")
+    if above.any():
+        raise ValueError(
+            f"Input net_load must be at most {largest_load:.6g} N, where the friction law ends; "
+            f"got {loads[above].max():.6g} N"
+        )
+
+
+def new_law(
+    kind: int,
+    pull_off: float,
+    largest_load: float = math.inf,
+    *,
+    limit: float = 0.0,
+    coefficient: float = 0.0,
+    static_ratio: float = 1.0,
+    adhesion: float = 0.0,
+    step: float = 1.0,
+    loads: FloatArray | None = None,
+    pieces: FloatArray | None = None,
+) -> FrictionLaw:
+    """A law, with neutral values for what its kind does not use; only Coulomb's rises without end."""
     return FrictionLaw(
         kind,
-        **values,
-        pull_off=pull_off,
-        largest_load=math.inf,
-        impact_coefficient=values["coefficient"],
-        step=1.0,
-        cubics=np.zeros((4, 1)),
+        float(limit),
+        float(coefficient),
+        float(static_ratio),
+        float(coefficient) if kind == COULOMB else 0.0,
+        float(adhesion),
+        float(pull_off),
+        float(largest_load),
+        float(step),
+        np.zeros(1) if loads is None else loads,
+        np.zeros((4, 1)) if pieces is None else pieces,
     )
 
 
@@ -78,18 +144,20 @@ class ConstantFriction:
 
     limit: float  # N
 
+    table_error = 0.0
+    pull_off = math.inf
+    largest_load = math.inf
+
     def __post_init__(self) -> None:
         _require(0 <= self.limit < math.inf, "limit", "ConstantFriction", "0 or a positive force in N", self.limit)
 
-    table_error = 0.0
-
-    @property
-    def pull_off(self) -> float:
-        return math.inf
-
     @property
     def law(self) -> FrictionLaw:
-        return _law(CONSTANT, math.inf, limit=self.limit)
+        return new_law(CONSTANT, math.inf, limit=self.limit)
+
+    def friction_limit(self, net_load: ArrayLike) -> FloatArray:
+        """Q [N] under net loads [N] of any shape; ValueError for one that is no number."""
+        return friction_limits(self.law, net_load)
 
 
 @dataclass(frozen=True)
@@ -104,6 +172,9 @@ class CoulombAdhesion:
     adhesion: float = 0.0  # N
     static_coefficient: float | None = None
 
+    table_error = 0.0
+    largest_load = math.inf
+
     def __post_init__(self) -> None:
         _require(0 <= self.coefficient < math.inf, "coefficient", "CoulombAdhesion", "0 or positive", self.coefficient)
         _require(
@@ -115,8 +186,6 @@ class CoulombAdhesion:
             good = static >= self.coefficient > 0
             _require(good, "static_coefficient", "CoulombAdhesion", at_least, static)
 
-    table_error = 0.0
-
     @property
     def pull_off(self) -> float:
         return self.adhesion
@@ -125,7 +194,11 @@ class CoulombAdhesion:
     def law(self) -> FrictionLaw:
         static = self.coefficient if self.static_coefficient is None else self.static_coefficient
         ratio = static / self.coefficient if self.coefficient > 0 else 1.0
-        return _law(COULOMB, self.adhesion, coefficient=self.coefficient, static_ratio=ratio, adhesion=self.adhesion)
+        return new_law(COULOMB, self.adhesion, coefficient=self.coefficient, static_ratio=ratio, adhesion=self.adhesion)
+
+    def friction_limit(self, net_load: ArrayLike) -> FloatArray:
+        """Q [N] while sliding under net loads [N] of any shape; ValueError for one below -pull_off."""
+        return friction_limits(self.law, net_load)
 
 
 def _require(good: bool, name: str, owner: str, right: str, got: object) -> None:

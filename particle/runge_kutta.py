@@ -92,7 +92,8 @@ def attempt(
     False when a stage leaves the cell's polynomials, or turns the velocity back under friction, which would then point
     the wrong way.
     """
-    dry = friction_limit(part.law, step.loads[0]) > 0.0
+    # A part that starts from rest where friction vanishes has no direction to keep.
+    dry = mode == SLIDING and friction_limit(part.law, step.loads[0]) > 0.0 and math.hypot(state[2], state[3]) > 0.0
     stages = len(pair.c)
     for k in range(1, stages):
         for i in range(6):
@@ -102,7 +103,7 @@ def attempt(
             step.stage[i] = state[i] + h * total
         if not within_cell(surface, local, step.stage[0], step.stage[1]):
             return False
-        if dry and mode == SLIDING and step.stage[2] * state[2] + step.stage[3] * state[3] <= 0.0:
+        if dry and step.stage[2] * state[2] + step.stage[3] * state[3] <= 0.0:
             return False
         load = rate(mode, surface, local, part, time + pair.c[k] * h, step.stage, step.rates[k])
         # As far from the rim as the start is, less the way from there: where that does not settle it, look.

@@ -10,7 +10,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from particle.between import between
+from particle.drive_table import jumps
 from particle.events import march
+from particle.fixed import FINE, MOREAU, MOST_ROWS, PAPER, march_fixed, step_count
 from particle.friction import Contact
 from particle.motion import Part
 from particle.resume import resume
@@ -18,10 +21,11 @@ from particle.rim import rim_gap
 from particle.runge_kutta import tableau
 from particle.slide import DETACHED, GOES_ON, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
 from particle.surface import SurfaceMotion
-from particle.trajectory import Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
+from particle.trajectory import Energy, Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
 
 FloatArray = NDArray[np.float64]
 
+_FIXED_STEPS = {"fixed": MOREAU, "paper": PAPER}
 _OUTCOMES = {
     DETACHED: Outcome.DETACHED,
     LEFT_PLATE: Outcome.LEFT_PLATE,
@@ -62,21 +66,30 @@ def simulate(
     tolerance: float = 1e-9,
     scheme: str = "events",
     after_detachment: str = "stop",
+    time_step: float | None = None,
 ) -> Trajectory:
     """The part's path over the moving surface, by the equations of `particle.motion`.
 
     duration: s.  gravity: m/s^2 towards the plate, or a vector along x, y, z for a tilted device: (0, 0, -9.80665) is
     the same as 9.80665.  tolerance: error of one step, relative to the surface's size.
-    scheme: "events".
-    after_detachment: "stop" ends the run where the part comes off, "fly" follows it to where it lands.
+    scheme: "events" locates every event.  For comparison, of first order in steps of time_step: "fixed", Moreau's time
+    stepping by the same equations, and "paper", the paper's own scheme, which tends to others (docs/motion.md).
+    after_detachment: "stop" ends the run where the part comes off, "fly" follows it to where it lands ("events" only).
+    time_step: s, of the schemes "fixed" and "paper", which heed no tolerance; by default 1e-4 of the shortest stroke.
     Raises ValueError, naming every input that makes no sense, as a start beyond the rim.
     """
     wrong = []
     vector = np.atleast_1d(np.asarray(gravity, dtype=float))
     if not (vector.shape in ((1,), (3,)) and np.isfinite(vector).all()):
         wrong.append(f"Input gravity of simulate must be an acceleration in m/s^2 or three of them; got {gravity!r}")
-    if scheme != "events":
-        wrong.append(f"Input scheme of simulate must be 'events'; got {scheme!r}")
+    if scheme != "events" and scheme not in _FIXED_STEPS:
+        wrong.append(f"Input scheme of simulate must be 'events', 'fixed' or 'paper'; got {scheme!r}")
+    if time_step is not None and scheme == "events":
+        wrong.append(f"Input time_step of simulate must be None with the scheme 'events'; got {time_step!r}")
+    elif time_step is not None and not (math.isfinite(time_step) and time_step > 0):
+        wrong.append(f"Input time_step of simulate must be a positive time in s; got {time_step!r}")
+    if scheme in _FIXED_STEPS and after_detachment == "fly":
+        wrong.append(f"Input after_detachment of simulate must be 'stop' with the scheme {scheme!r}; got 'fly'")
     if after_detachment not in ("stop", "fly"):
         wrong.append(f"Input after_detachment of simulate must be 'stop' or 'fly'; got {after_detachment!r}")
     if not (math.isfinite(duration) and duration > 0):
@@ -88,21 +101,37 @@ def simulate(
     if wrong:
         raise ValueError("; ".join(wrong))
     x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
+    stroke_time = min(float(surface.drives.stroke_time.min(initial=math.inf)), float(duration))
     request = Request(
         part=Part(float(part.mass), -float(z), float(x), float(y), float(part.squeeze), friction.law),
         start=np.array([*part.position, *part.velocity], dtype=float),
         duration=float(duration),
         tolerance=tolerance * surface.size,
-        stroke_time=min(float(surface.drives.stroke_time.min(initial=math.inf)), float(duration)),
+        stroke_time=stroke_time,
+        force=float(part.mass * (np.linalg.norm(vector) + surface.size / stroke_time**2)),
         flies=after_detachment == "fly",
+        jumps=jumps(surface.drives),
     )
-    pair = tableau(tolerance)
-    rows, events, verdict, evaluations = march(surface, request, pair)
-    return _trajectory(rows, events, verdict, evaluations, partial(resume, surface, request, pair, rows))
+    if scheme in _FIXED_STEPS:
+        kind, step = _FIXED_STEPS[scheme], float(FINE * request.stroke_time if time_step is None else time_step)
+        steps = step_count(request.duration, step)
+        every = math.ceil(steps / MOST_ROWS)
+        rows, events, verdict, evaluations = march_fixed(surface, request, kind, step, steps, every)
+        sampler = partial(between, surface, request.part, kind, rows)
+    else:
+        pair = tableau(tolerance)
+        rows, events, verdict, evaluations = march(surface, request, pair)
+        sampler = partial(resume, surface, request, pair, rows)
+    return _trajectory(rows, events, verdict, evaluations, energy_of(rows, request.force * surface.size), sampler)
 
 
 def _trajectory(
-    rows: FloatArray, events: FloatArray, verdict: int, evaluations: int, sampler: Callable[[FloatArray], FloatArray]
+    rows: FloatArray,
+    events: FloatArray,
+    verdict: int,
+    evaluations: int,
+    energy: Energy,
+    sampler: Callable[[FloatArray], FloatArray],
 ) -> Trajectory:
     samples = samples_of(rows)
     if verdict == GOES_ON:
@@ -114,6 +143,6 @@ def _trajectory(
         events=[Event(EventKind(int(k)), t, (x, y), speed, load) for k, t, x, y, speed, load in events.tolist()],
         outcome=outcome,
         evaluations=evaluations,
-        energy=energy_of(rows),
+        energy=energy,
         sampler=sampler,
     )

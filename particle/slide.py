@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.breakaway import lag, slope, velocity
-from particle.fields import fields
+from particle.breakaway import Slope, lag, slope, velocity
+from particle.fields import Fields, fields
 from particle.jit import jit
-from particle.motion import Part, margin
+from particle.motion import Part, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
 from particle.runge_kutta import Step, Tableau, attempt, error, first_excursion, rate
@@ -23,10 +23,11 @@ TURNED = -1  # what a part does that came to rest on a slope which at once pulls
 # How a path ends.
 GOES_ON, DETACHED, LEFT_PLATE, OVERLOADED, WORK_LIMIT = range(5)
 
+WEAKEST = 0.75  # of the friction limit: the slow manifold draws parts to it down to a pull of half of it
 SHORTEST = 1e-13  # of a stroke: no step is shorter
 TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
 GROWTH, SAFETY = 5.0, 0.9
-LEDGER = 0.1  # what an error of the energy counts, against one of the path
+LEDGER = 0.1  # what an error of energy counts, against one of the path
 
 
 class Request(NamedTuple):
@@ -37,7 +38,9 @@ class Request(NamedTuple):
     duration: float  # s
     tolerance: float  # m, error of one step
     stroke_time: float  # s, the shortest stroke
+    force: float  # N, that of gravity and of crossing the surface in a stroke
     flies: bool  # whether a part that comes off is followed to where it lands
+    jumps: bool  # whether the surface's velocity jumps at kinks
 
 
 @jit
@@ -60,26 +63,38 @@ def slide(
     """
     part, tolerance = request.part, request.tolerance
     step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
-    count[0] += 1
     step.start_gap[0] = rim_gap(surface, state[0], state[1])
+    f = fields(surface, local, state[0], state[1], time)
+    a = slope(f, part)
+    count[0] += 2
     lasting = request.stroke_time
-    if mode == SLIDING:
-        straight, pace = 0.01 * tolerance / request.stroke_time, 0.01 * surface.size / request.stroke_time
-        stop, miss = stop_ahead(surface, local, part, time, state, straight, pace)
-        count[0] += 2
+    if mode == SLIDING or (a.demand < a.limit and state[2] > 0.0):
+        moving = state.copy()
+        if mode == MANIFOLD:
+            kappa = lag(surface, local, part, time, state[0], state[1], state[2], f, a)
+            moving[2], moving[3] = velocity(state[2], kappa, a)
+        pace = 0.01 * surface.size / request.stroke_time
+        stop, miss = stop_ahead(surface, local, part, time, moving, 0.01 * tolerance, pace)
+        count[0] += 1
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
-        if near and _stops_on_plate(surface, step, state, stop):
-            come_to_rest(surface, local, part, time, state, stop)
-            count[0] += 2
+        if near and _stops_on_plate(surface, step, moving, stop):
+            come_to_rest(surface, local, part, time, moving, stop)
+            state[:] = moving
             a = slope(fields(surface, local, state[0], state[1], time + stop.time), part)
+            count[0] += 3
             back = stop.reverses and a.demand > part.law.static_ratio * a.limit
             return (TURNED if back else RESTING), time + stop.time, h, GOES_ON
         # A step ends short of the stop, where the friction turns.
         h = min(h, 0.9 * stop.time)
-        a = slope(fields(surface, local, state[0], state[1], time), part)
+    if mode == SLIDING:
         if a.limit > 0.0:
             lasting = min(lasting, 2 * math.hypot(state[2], state[3]) / a.limit)
-    force = part.mass * (abs(part.gravity) + surface.size / request.stroke_time**2) / LEDGER
+        if _joins_manifold(surface, local, request, time, state, f, a):
+            state[2], state[3] = length(f, state[2], state[3]), 0.0
+            mode = MANIFOLD
+            step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
+            count[0] += 1
+    force = request.force / LEDGER
     remaining = span_end - time
     shortest = SHORTEST * request.stroke_time
     while True:
@@ -94,6 +109,22 @@ def slide(
         if not wrong <= 1.0:
             h *= max(0.2, SAFETY * wrong ** (-1 / pair.order)) if wrong > 1.0 else 0.2
             continue
+        if mode == MANIFOLD and step.end[2] <= 0.0:
+            if h > TOUCH * request.stroke_time:
+                h *= 0.5
+                continue
+            state[2] = state[3] = 0.0
+            return RESTING, time + h, h, GOES_ON
+        if mode == MANIFOLD and _manifold_error(surface, local, part, time + h, step.end) > tolerance:
+            if h > TOUCH * request.stroke_time:
+                h *= 0.5
+                continue
+            # Friction is about to vanish, and the manifold with it.
+            kappa = lag(surface, local, part, time, state[0], state[1], state[2], f, a)
+            state[2], state[3] = velocity(state[2], kappa, a)
+            mode = SLIDING
+            step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
+            continue
         last = len(pair.c) - 1
         on_plate = first_beyond(surface, step.start_gap[0], state, step.end, step.rates[0], step.rates[last], h)
         # A path that leaves and comes back ends where it first leaves; where it ends beyond, the end is located below.
@@ -104,15 +135,6 @@ def slide(
             h = _locate_end(surface, local, part, pair, step, count, mode, time, state, h)
             state[:6] = step.end
             return mode, time + h, h, reason(surface, part, step.loads[last], state)
-        if mode == MANIFOLD and step.end[2] <= 0.0:
-            if h > TOUCH * request.stroke_time:
-                h *= 0.5
-                continue
-            state[2] = state[3] = 0.0
-            return RESTING, time + h, h, GOES_ON
-        if mode == MANIFOLD and _manifold_error(surface, local, part, time + h, step.end) > tolerance:
-            h *= 0.5
-            continue
         if step.margins[1:].min() < 0.0:
             h *= 0.5
             continue
@@ -146,6 +168,21 @@ def _manifold_error(surface: Any, local: Any, part: Part, time: float, state: Fl
 
 
 @jit
+def _joins_manifold(
+    surface: Any, local: Any, request: Request, time: float, state: FloatArray, f: Fields, a: Slope
+) -> bool:
+    """Whether a slow part's velocity (v_x, v_y) has become that of the slow manifold, on which steps may be longer."""
+    u, tolerance = length(f, state[2], state[3]), request.tolerance
+    if a.limit <= 0.0 or a.demand < 1.1 * WEAKEST * a.limit or u > 0.01 * a.limit * request.stroke_time:
+        return False
+    kappa = lag(surface, local, request.part, time, state[0], state[1], u, f, a)
+    v_x, v_y = velocity(u, kappa, a)
+    # What is off the manifold turns into it within u / Q.
+    off = length(f, state[2] - v_x, state[3] - v_y) * u / a.limit
+    return bool(off <= 0.01 * tolerance and 3 * abs(kappa) * u**3 / a.limit <= 0.01 * tolerance)
+
+
+@jit
 def _leave_manifold(surface: Any, local: Any, request: Request, time: float, state: FloatArray) -> int:
     """Turns (x, y, u) into (x, y, v_x, v_y) once the part is fast enough for plain steps, or slows down again."""
     part, u = request.part, state[2]
@@ -153,7 +190,7 @@ def _leave_manifold(surface: Any, local: Any, request: Request, time: float, sta
     a = slope(f, part)
     fast = u > 0.03 * a.limit * request.stroke_time
     near = _manifold_error(surface, local, part, time, state) <= 0.1 * request.tolerance
-    if near and not fast and a.demand >= a.limit:
+    if near and not fast and a.demand >= WEAKEST * a.limit:
         return MANIFOLD
     state[2], state[3] = velocity(u, lag(surface, local, part, time, state[0], state[1], u, f, a), a)
     return SLIDING

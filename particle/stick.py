@@ -28,6 +28,7 @@ FloatArray = NDArray[np.float64]
 DEGREE = 16  # of the squared force along the surface; everything else is raised to it
 # A part sticks up to the limit itself, as on a slope at the angle of friction: rounding must not decide.
 ROUNDING = 1 + 1e-14
+SLACK = 1e-15  # of the largest squared force in the span
 
 
 class Rest(NamedTuple):
@@ -50,16 +51,18 @@ def leaves_rest(surface: Any, local: Any, part: Part, rest: Rest, x: float, y: f
     Times are fractions of the pinned span; the search goes from `begin` to 1.
     """
     _polynomials(surface, local, part, x, y, begin, rest.polynomials[0])
+    # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
+    slack = SLACK * np.abs(rest.polynomials[0, 1]).max()
     rest.low[0], rest.width[0] = begin, 1 - begin
     narrowest = (1 - begin) * 0.5**DEEPEST
     top = 0
     while top >= 0:
-        if _proved_safe(part, rest.polynomials[top]):
+        if _proved_safe(part, rest.polynomials[top], slack):
             top -= 1
         elif rest.width[top] <= narrowest:
             # Neither provable nor divisible: a slip if the far end says so, else the limit was only touched.
             c, force, square = rest.polynomials[top, :, -1]
-            if not holds(part, c, force, square):
+            if not holds(part, c, force - slack, square):
                 return float(rest.low[top] + rest.width[top])
             top -= 1
         else:
@@ -83,7 +86,7 @@ def holds(part: Part, c: float, force: float, square: float) -> bool:
 
 
 @jit
-def _proved_safe(part: Part, rest: FloatArray) -> bool:
+def _proved_safe(part: Part, rest: FloatArray, slack: float) -> bool:
     c_low, c_high = rest[0].min(), rest[0].max()
     s_low, s_high = math.sqrt(max(1.0, rest[2].min())), math.sqrt(max(1.0, rest[2].max()))
     load_low = part.mass * c_low / (s_high if c_low > 0 else s_low) + part.squeeze
@@ -92,7 +95,7 @@ def _proved_safe(part: Part, rest: FloatArray) -> bool:
         return False
     limit = part.law.static_ratio * friction_limit(part.law, load_low) / part.mass
     for k in range(DEGREE + 1):
-        if rest[1, k] > limit * limit * rest[2, k] * ROUNDING:
+        if rest[1, k] - slack > limit * limit * rest[2, k] * ROUNDING:
             return False
     return True
 

@@ -7,7 +7,8 @@ across it), |A| < Q stops the part after
     X = (A p^2 + 2 Q p u + A u^2)/(4 (Q^2 - A^2)) along d
     Y = r (2 Q u + A p)/(4 Q^2 - A^2) across it.
 
-A pull A > Q instead turns a part that moves straight against it: T = u/(A + Q), X = p u/(2 (A + Q)).
+A pull A > Q instead turns a part that moves nearly straight against it, after T = u/(A + Q), X = p u/(2 (A + Q)) and
+Y = r u/(A + 2 Q), which is exact up to lengths of r^2/Q.
 """
 
 from __future__ import annotations
@@ -39,8 +40,8 @@ class Stop(NamedTuple):
 
 
 @jit
-def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, straight: float) -> Stop:
-    """The stop under frozen forces; `straight` [m/s] is the cross velocity below which a part counts as turned back."""
+def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> Stop:
+    """The stop under frozen forces; `small` [m] is a length that does not count, r^2/Q of a part that turns back."""
     climb = v_x * f.x + v_y * f.y
     climb_d, climb_n = a.d_x * f.x + a.d_y * f.y, a.n_x * f.x + a.n_y * f.y
     p = v_x * a.d_x + v_y * a.d_y + climb * climb_d
@@ -54,7 +55,7 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, straight: float) ->
         time = (u * q + force * p) / loss
         x, y = along * a.d_x + across * a.n_x, along * a.d_y + across * a.n_y
         return Stop(time, x, y, False, force * a.d_x, force * a.d_y, 0.5 * u * u + force * along)
-    if q > 0.0 and p < 0.0 and abs(r) <= straight:
+    if q > 0.0 and p < 0.0 and r * r <= small * q:
         time = u / (force + q)
         along = 0.5 * p * time
         return Stop(time, along * a.d_x, along * a.d_y, True, force * a.d_x, force * a.d_y, 0.5 * u * u + force * along)
@@ -63,7 +64,7 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, straight: float) ->
 
 @jit
 def stop_ahead(
-    surface: Any, local: Any, part: Part, time: float, state: FloatArray, straight: float, pace: float
+    surface: Any, local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float
 ) -> tuple[Stop, float]:
     """The stop ahead of a sliding part, with an estimate of its error [m]; an error in time counts `pace` [m/s] times.
 
@@ -72,12 +73,12 @@ def stop_ahead(
     """
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     f = fields(surface, local, x, y, time)
-    now = frozen_stop(f, slope(f, part), v_x, v_y, straight)
+    now = frozen_stop(f, slope(f, part), v_x, v_y, small)
     if not now.time < 0.5 * local.frame[1]:
         return now, math.inf
     # After a third of the time a straight stop has covered five ninths of its way.
     g = fields(surface, local, x + 5 / 9 * now.x, y + 5 / 9 * now.y, time + now.time / 3)
-    later = frozen_stop(g, slope(g, part), v_x, v_y, straight)
+    later = frozen_stop(g, slope(g, part), v_x, v_y, small)
     if later.reverses != now.reverses or not math.isfinite(later.time):
         return now, math.inf
     return later, max(math.hypot(later.x - now.x, later.y - now.y), pace * abs(later.time - now.time))
@@ -87,16 +88,16 @@ def stop_ahead(
 def come_to_rest(surface: Any, local: Any, part: Part, time: float, state: FloatArray, stop: Stop) -> None:
     """Moves `state` (x, y, v_x, v_y, work, dissipation) to a stop.
 
-    The friction's impulse on the way is known exactly, v + A d T per kg; powers are taken as linear in time, as the
-    stop itself is found.
+    The friction's impulse on the way is known, v + A d T per kg. Powers are integrated by Radau's rule with nodes at
+    T/3 and T, as the way of a straight stop is quadratic in time.
     """
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     slow_x, slow_y = v_x + stop.pull_x * stop.time, v_y + stop.pull_y * stop.time
-    f = fields(surface, local, x, y, time)
-    g = fields(surface, local, x + 5 / 9 * stop.x, y + 5 / 9 * stop.y, time + stop.time / 3)
-    first = push(f, part, pull(f, v_x, v_y, part).normal) * stop.time - part.mass * drag(f, slow_x, slow_y)
-    later = push(g, part, pull(g, 2 / 3 * v_x, 2 / 3 * v_y, part).normal) * stop.time
-    later -= part.mass * drag(g, slow_x, slow_y)
     state[0], state[1], state[2], state[3] = x + stop.x, y + stop.y, 0.0, 0.0
-    state[4] += 1.5 * later - 0.5 * first
     state[5] += part.mass * stop.loss
+    f = fields(surface, local, x + 5 / 9 * stop.x, y + 5 / 9 * stop.y, time + stop.time / 3)
+    g = fields(surface, local, state[0], state[1], time + stop.time)
+    first = push(f, part, pull(f, 2 / 3 * v_x, 2 / 3 * v_y, part).normal) * stop.time
+    later = push(g, part, pull(g, 0.0, 0.0, part).normal) * stop.time
+    drags = 0.75 * drag(f, slow_x, slow_y) + 0.25 * drag(g, slow_x, slow_y)
+    state[4] += 0.75 * first + 0.25 * later - part.mass * drags

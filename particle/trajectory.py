@@ -14,6 +14,8 @@ from particle import record
 
 FloatArray = NDArray[np.float64]
 
+LEAST_ENERGY = 1e-6
+
 
 class State(enum.IntEnum):
     """How the part is in contact."""
@@ -91,6 +93,7 @@ class Energy:
     potential: FloatArray  # (n,) J, of gravity
     work: FloatArray  # (n,) J, done on the part by the moving surface (and what squeezes) since the start
     dissipated: FloatArray  # (n,) J, by friction and impacts since the start
+    scale: float  # J, that of a part thrown across the surface in a stroke; a millionth of it counts as nothing
 
     @property
     def balance(self) -> float:
@@ -99,7 +102,7 @@ class Energy:
         gap = total - total[0] - (self.work - self.dissipated)
         entries = (self.kinetic, self.potential - self.potential[0], self.work, self.dissipated)
         largest = max(float(np.abs(entry).max()) for entry in entries)
-        return float(np.abs(gap).max()) / largest if largest > 0 else 0.0
+        return float(np.abs(gap).max()) / max(largest, LEAST_ENERGY * self.scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +137,8 @@ class Trajectory:
     def at(self, times: ArrayLike) -> Samples:
         """The part at times (k,) [s]; those before the start or after the end count as these.
 
-        Scheme "events" integrates from the row before to each time, so that samples are as good as rows.
+        Scheme "events" integrates from the row before to each time, so that samples are as good as rows. Those with
+        fixed steps take the cubic through the places and velocities of the rows around it.
         """
         within = np.clip(np.asarray(times, dtype=float), self.time[0], self.time[-1])
         order = np.argsort(within, kind="stable")
@@ -157,6 +161,7 @@ def samples_of(rows: FloatArray) -> Samples:
     )
 
 
-def energy_of(rows: FloatArray) -> Energy:
-    """The energy ledger of a record's rows (n, COLUMNS)."""
-    return Energy(*(rows[:, k] for k in (record.KINETIC, record.POTENTIAL, record.WORK, record.DISSIPATED)))
+def energy_of(rows: FloatArray, scale: float) -> Energy:
+    """The energy ledger of a record's rows (n, COLUMNS); scale: J, as in `Energy`."""
+    kinetic, potential = rows[:, record.KINETIC], rows[:, record.POTENTIAL]
+    return Energy(kinetic, potential, rows[:, record.WORK], rows[:, record.DISSIPATED], scale)

@@ -314,8 +314,11 @@ BROKEN = [
     (('"0.15 mm"', '"-0.3 mm"'), "line 14  actuators[2].position must be inside the rim; got a point on it"),
     (('"0.15 mm"', '"0 m"'), "line 14  actuators[2].position must differ from actuators[1].position; got the same"),
     # Friction
-    ((FRICTION, ""), 'line 27  friction.model is missing; it must be "kogut-etsion", "constant" or "coulomb"'),
-    ((FRICTION, "model = 3"), 'line 28  friction.model must be "kogut-etsion", "constant" or "coulomb"; got 3'),
+    ((FRICTION, ""), 'line 27  friction.model is missing; it must be "kogut-etsion", "constant", "coulomb" or "table"'),
+    (
+        (FRICTION, "model = 3"),
+        'line 28  friction.model must be "kogut-etsion", "constant", "coulomb" or "table"; got 3',
+    ),
     (("[friction]", "[[friction]]"), "line 27  friction must be a table, written [friction]; got a list of tables"),
     ((FRICTION, 'model = "constant"'), 'line 27  friction.limit is missing; it must be a force such as "2 uN"'),
     ((FRICTION, FRICTION + '\nlimit = "1 N"'), 'line 29  friction.limit is not known; [friction] with model = "kogut-'),

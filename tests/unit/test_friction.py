@@ -1,10 +1,12 @@
 """Friction laws: constant, Coulomb with adhesion, and what they refuse."""
 
 import math
+import re
 
+import numpy as np
 import pytest
 
-from particle import ConstantFriction, CoulombAdhesion
+from particle import ConstantFriction, CoulombAdhesion, FrictionTable, KogutEtsion
 from particle.friction import friction_limit
 
 
@@ -32,6 +34,44 @@ def test_a_static_coefficient_is_kept_as_a_ratio():
     assert CoulombAdhesion(0.2, static_coefficient=0.5).law.static_ratio == pytest.approx(2.5)
     assert CoulombAdhesion(0.2).law.static_ratio == 1.0
     assert CoulombAdhesion(0.0).law.static_ratio == 1.0
+
+
+CONTACTS = [
+    ConstantFriction(2e-8),
+    CoulombAdhesion(0.3, adhesion=1e-6),
+    KogutEtsion.paper(),
+    FrictionTable([-1e-6, 0.0, 1e-5], [0.0, 1e-8, 5e-8]),
+]
+
+
+@pytest.mark.parametrize("contact", CONTACTS, ids=lambda contact: type(contact).__name__)
+def test_all_laws_answer_the_same_questions(contact):
+    loads = np.array([[-9e-7, 0.0, 2e-7], [1e-6, 3e-6, 9e-6]])
+    limits = contact.friction_limit(loads)
+    assert limits.shape == loads.shape
+    assert contact.friction_limit(1e-6).shape == ()
+    assert limits.ravel().tolist() == [friction_limit(contact.law, load) for load in loads.ravel().tolist()]
+    assert (np.diff(limits.ravel()) >= 0).all() and (limits >= 0).all()
+    assert (contact.pull_off, contact.largest_load) == (contact.law.pull_off, contact.law.largest_load)
+    assert 0 <= contact.table_error < 1
+    with pytest.raises(ValueError, match="^Input net_load must be .*; got nan N$"):
+        contact.friction_limit([0.0, math.nan])
+
+
+@pytest.mark.parametrize("contact", CONTACTS[1:], ids=lambda contact: type(contact).__name__)
+def test_a_load_below_pull_off_is_refused_with_both_numbers(contact):
+    load = -1.5 * contact.pull_off
+    message = f"Input net_load must be at least minus the pull-off force, {-contact.pull_off:.6g} N; got {load:.6g} N"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        contact.friction_limit([0.0, load])
+
+
+@pytest.mark.parametrize("contact", CONTACTS, ids=lambda contact: type(contact).__name__)
+def test_the_impact_coefficient_is_the_limit_of_friction_over_load(contact):
+    expected = 0.3 if isinstance(contact, CoulombAdhesion) else 0.0
+    assert contact.law.impact_coefficient == expected
+    if contact.largest_load == math.inf:
+        assert contact.friction_limit(1e9) / 1e9 == pytest.approx(expected, abs=1e-15)
 
 
 @pytest.mark.parametrize(

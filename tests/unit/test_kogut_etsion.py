@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from particle import KogutEtsion
-from particle.kogut_etsion import KNOTS
+from particle.friction import TABLE
+from particle.kogut_etsion import lowest
 
 PAPER_MASS = 2e-9  # kg
 
@@ -96,18 +97,50 @@ def test_the_table_of_friction_limits_is_exact_to_1e_9(contact):
     assert np.abs(contact.friction_limit(net) / exact - 1).max() < 1e-9
 
 
-def test_the_table_is_exact_between_all_of_its_knots(contact):
+def test_the_table_is_as_exact_as_it_says(contact):
     top, off = contact.branch
-    d = np.linspace(top, off, 3 * KNOTS + 2)
+    d = np.linspace(top, off, 3001)
     load, adhesion, limit = contact.forces(d)
     net = np.clip(load - adhesion, -contact.pull_off, contact.largest_load)
-    error = np.abs(contact.friction_limit(net) / limit - 1)
-    room = 1 + net / contact.pull_off
-    assert error[room > 1e-3].max() < 1e-9
-    # At pull-off the load's own rounding, some 1e-12, enters by its root.
-    assert error[room > 1e-6].max() < 1e-7
-    assert error.max() < 1e-5
+    error = np.abs(contact.friction_limit(net) / limit - 1)[1 + net / contact.pull_off > 1e-9]
+    assert contact.table_error / 100 < error.max() < contact.table_error < 2e-9
     assert contact.friction_limit(-contact.pull_off) == pytest.approx(contact.forces(off)[2], rel=1e-12)
+
+
+def test_the_table_is_twice_continuously_differentiable(contact):
+    law = contact.law
+    assert law.kind == TABLE
+    c, step = law.pieces, law.step
+    for order in range(3):
+        ends = [np.polyval(np.polyder(c[:, k], order), step) for k in range(c.shape[1] - 1)]
+        begins = [np.polyval(np.polyder(c[:, k], order), 0.0) for k in range(1, c.shape[1])]
+        scale = np.abs(begins).max()
+        assert np.abs(np.subtract(ends, begins)).max() < 1e-9 * scale
+
+
+def test_the_friction_limit_never_falls(contact):
+    net = contact.pull_off * (np.geomspace(1e-12, 1 + contact.largest_load / contact.pull_off, 100_000) - 1)
+    limit = contact.friction_limit(np.minimum(net, contact.largest_load))
+    assert (np.diff(limit) > -1e-14 * limit[1:]).all()
+
+
+def test_a_law_beyond_its_ends_goes_on_without_a_jump(contact):
+    """An integrator tries steps beyond the ends before it locates them."""
+    from particle.friction import friction_limit
+
+    low, high = contact.friction_limit([-contact.pull_off, contact.largest_load])
+    assert friction_limit(contact.law, -2 * contact.pull_off) == low
+    assert friction_limit(contact.law, contact.largest_load * (1 + 1e-9)) == pytest.approx(high, rel=1e-6)
+
+
+def test_no_blow_rubs_by_a_coefficient(contact):
+    assert contact.law.impact_coefficient == 0.0
+
+
+def test_a_minimum_is_found_to_rounding():
+    assert lowest(lambda x: np.cosh(x - 0.7), 0.5, 1.0) == pytest.approx(0.7, abs=1e-12)
+    assert lowest(lambda x: np.exp(x), 0.5, 1.0) == 0.5
+    assert lowest(lambda x: -np.exp(x), 0.5, 1.0) == 1.0
 
 
 def test_separation_and_friction_limit_keep_the_shape_of_the_loads(paper):

@@ -29,7 +29,7 @@ def march(pair, steps):
     for k in range(steps):
         step.loads[0] = rate(SLIDING, surface, local, part, k * h, state, step.rates[0])
         assert attempt(SLIDING, surface, local, part, pair, step, k * h, state, h)
-        first = error(pair, step, h, 1.0) if k == 0 else first
+        first = error(pair, step, h, 1.0, math.inf) if k == 0 else first
         state[:] = step.end
     return state[:4], first
 

@@ -1,0 +1,73 @@
+"""Draws docs/contact.png: the forces of the rough contact over separation, and its friction limit over the net load."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from particle import KogutEtsion
+
+PAGE = Path(__file__).parent
+MICRO = 1e6
+CONTACTS = {
+    "defaults": (KogutEtsion(), "-"),
+    'preset "paper"': (KogutEtsion.paper(), "--"),
+}
+FORCES = {"load P": "black", "adhesion $F_s$": "#1b4f9c", "friction limit Q": "#c8371b"}
+LAWS = {
+    'defaults, "unrounded"': (KogutEtsion(coefficients="unrounded"), "#e59866", "-"),
+    "defaults": (KogutEtsion(), "#c8371b", "-"),
+    'preset "paper"': (KogutEtsion.paper(), "#c8371b", "--"),
+}
+
+
+def draw_contact() -> None:
+    figure = Figure(figsize=(12.0, 5.2))
+    FigureCanvasAgg(figure)
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
+    left, right = figure.subplots(1, 2)
+    _draw_forces(left)
+    _draw_limits(right)
+    figure.savefig(PAGE / "contact.png", dpi=100)
+
+
+def _draw_forces(axes: Axes) -> None:
+    d = np.linspace(0.0, 6.0, 601)
+    for contact, style in CONTACTS.values():
+        for force, colour in zip(contact.forces(d), FORCES.values(), strict=True):
+            axes.semilogy(d, np.where(force > 0, force, np.nan) * MICRO, style, color=colour, linewidth=1.5)
+        off = contact.branch[1]
+        axes.axvline(off, color="gray", linestyle=style, linewidth=0.9)
+    axes.set_xlim(d[0], d[-1])
+    axes.set_ylim(1e-5, 1e7)
+    axes.set_xlabel("separation over roughness, $d/\\sigma$")
+    axes.set_ylabel("force [µN]")
+    axes.grid(alpha=0.3)
+    keys = [Line2D([], [], color=colour, label=name) for name, colour in FORCES.items()]
+    keys += [Line2D([], [], color="black", linestyle=style, label=name) for name, (_, style) in CONTACTS.items()]
+    keys.append(Line2D([], [], color="gray", linewidth=0.9, label="pull-off"))
+    axes.legend(handles=keys, loc="upper right", ncols=2, fontsize=9)
+    axes.set_title("Load, adhesion and friction limit over separation", fontsize=11)
+
+
+def _draw_limits(axes: Axes) -> None:
+    for name, (contact, colour, style) in LAWS.items():
+        net = contact.pull_off * (np.linspace(0, np.sqrt(1 + 8e-6 / contact.pull_off), 400) ** 2 - 1)
+        limit = contact.friction_limit(net)
+        axes.semilogy(net * MICRO, limit * MICRO, style, color=colour, linewidth=1.5, label=name)
+        axes.plot(net[0] * MICRO, limit[0] * MICRO, "o", color=colour, markersize=6)
+    axes.plot([], [], "o", color="gray", label="pull-off: contact ends")
+    axes.axvline(0, color="gray", linewidth=0.9)
+    axes.set_xlim(-4.5, 8.2)
+    axes.set_xlabel("net load $N = P - F_s$ [µN]")
+    axes.set_ylabel("friction limit Q [µN]")
+    axes.grid(alpha=0.3)
+    axes.legend(loc="center right", fontsize=9)
+    axes.set_title("Friction limit over the net load, as runs use it", fontsize=11)
+
+
+if __name__ == "__main__":
+    draw_contact()

@@ -1,0 +1,59 @@
+"""Samples between the rows of a path by fixed steps: cubics through places and velocities, on the true surface."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.drive import next_kink
+from particle.fields import new_local, pin_cell, pin_time
+from particle.fixed import fixed_row
+from particle.jit import jit
+from particle.motion import Part
+from particle.record import COLUMNS, DISSIPATED, MODE, RESTING, TIME, V_X, V_Y, WORK, X, Y
+
+FloatArray = NDArray[np.float64]
+
+
+@jit
+def between(surface: Any, part: Part, scheme: int, rows: FloatArray, times: FloatArray) -> FloatArray:
+    """The rows (k, COLUMNS) at ascending times (k,) [s].
+
+    Place and velocity are those of the cubic Hermite polynomial between two rows, work and dissipation are linear
+    between them, and height, forces, kinetic and potential energy are those of the surface there.
+    """
+    out, state, local = np.zeros((len(times), COLUMNS)), np.zeros(8), new_local(surface)
+    row, span_end = 0, -math.inf
+    for k in range(len(times)):
+        while row + 1 < len(rows) and rows[row + 1, TIME] <= times[k]:
+            row += 1
+        out[k] = rows[row]
+        if times[k] <= rows[row, TIME] or row + 1 == len(rows):
+            continue
+        _hermite(rows[row], rows[row + 1], times[k], state)
+        if times[k] >= span_end:
+            span_end = min(next_kink(surface.drives, times[k]), rows[-1, TIME])
+            pin_time(surface, local, times[k], span_end)
+        if pin_cell(surface, local, state[0], state[1]):
+            out[k] = fixed_row(surface, local, part, scheme, int(rows[row, MODE]), times[k], state)
+    return out
+
+
+@jit
+def _hermite(one: FloatArray, other: FloatArray, time: float, state: FloatArray) -> None:
+    """x, y, v_x, v_y, work and dissipation at a time [s] between two rows into `state`."""
+    h = other[TIME] - one[TIME]
+    s = (time - one[TIME]) / h
+    state[4] = one[WORK] + s * (other[WORK] - one[WORK])
+    state[5] = one[DISSIPATED] + s * (other[DISSIPATED] - one[DISSIPATED])
+    state[0], state[1], state[2], state[3] = one[X], one[Y], 0.0, 0.0
+    if one[MODE] == RESTING:
+        return
+    for i, x, v in ((0, X, V_X), (1, Y, V_Y)):
+        rise, v_0, v_1 = other[x] - one[x], one[v], other[v]
+        bend, twist = 3 * rise - h * (2 * v_0 + v_1), h * (v_0 + v_1) - 2 * rise
+        state[i] = one[x] + s * (h * v_0 + s * (bend + s * twist))
+        state[2 + i] = v_0 + s * (2 * bend + s * 3 * twist) / h
