@@ -77,11 +77,16 @@ def warnings(summary: Summary) -> list[str]:
     """What a user must know before trusting the numbers."""
     s = summary
     said = _of_solver(s) if isinstance(s, PlateSummary) else []
+    finer = "run.tolerance" if s.scheme == "events" else "run.time_step"
     if s.path_error is None or s.path_error > NUMERICAL_ERROR * max(s.path_length, s.distance):
-        said.append("The path magnifies small errors: trust the statistics of many starts more than the digits of one.")
+        said.append(
+            "The path magnifies small errors: trust the statistics of many starts more than the digits of one."
+            if s.scheme == "events"
+            else "Fixed steps follow the path to few digits; a smaller run.time_step gives more, in proportion."
+        )
     if s.energy_balance > NUMERICAL_ERROR and s.drive_jump is None:
         said.append(
-            f"The energy ledger closes only to {s.energy_balance:.1e} of its largest entry; a smaller run.tolerance "
+            f"The energy ledger closes only to {s.energy_balance:.1e} of its largest entry; a smaller {finer} "
             "follows the path more closely."
         )
     if s.drive_jump is not None:

@@ -23,9 +23,8 @@ from coupling.scene import Scene
 from coupling.summary import Summary, summarise
 from fem_plate import InfluenceShapes
 from particle import SurfaceMotion, Trajectory
+from particle.fixed import FINE
 from particle.friction import Contact
-
-STEPS_A_STROKE = 10_000  # of a scheme of fixed steps without a time_step: what `simulate` takes
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +102,7 @@ def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tighter: 
     steps: dict[str, Any] = {}
     if run.scheme != "events" and (run.time_step or tighter):
         stroke_time = float(surface.drives.stroke_time.min(initial=run.duration))
-        time_step = run.time_step or stroke_time / STEPS_A_STROKE
+        time_step = run.time_step or FINE * stroke_time
         steps = {"time_step": time_step / 2 if tighter else time_step}
     return particle.simulate(
         surface, part, friction, run.duration, run.gravity, tolerance, run.scheme, run.after_detachment, **steps

@@ -90,6 +90,26 @@ def test_strokes_do_not_jump():
     assert run_case(case({"x": keys}, {"duration": 6e-4})).summary.drive_jump is None
 
 
+def test_fixed_steps_are_checked_with_half_the_step():
+    run = {"duration": 2e-3, "scheme": "fixed"}
+    coarse, fine = (run_case(case({"x": X}, run | {"time_step": step})) for step in (2e-5, 1e-5))
+    moved = abs(coarse.trajectory.position[-1, 0] - fine.trajectory.position[-1, 0])
+    assert coarse.summary.path_error == pytest.approx(moved, rel=1e-12) and moved > 1e-8
+    assert "in a run with half the time step" in said(coarse)
+    assert "a smaller run.time_step gives more" in said(coarse)
+    assert "100 times tighter" not in said(coarse)
+
+
+@pytest.mark.compiled
+def test_fixed_steps_that_are_not_given_are_those_of_the_integrator():
+    """A ten-thousandth of the shortest stroke; half of it for the check."""
+    run = {"duration": 2e-3, "scheme": "fixed"}
+    chosen, given = (run_case(case({"x": X}, run | step)) for step in ({}, {"time_step": 1e-4 * 1.25e-3}))
+    assert chosen.summary.path_error == pytest.approx(given.summary.path_error, rel=1e-3, abs=0.0)
+    assert given.summary.path_error > 0.0
+    assert (chosen.trajectory.position[-1] == given.trajectory.position[-1]).all()
+
+
 def test_a_gap_in_the_energy_ledger_is_warned_of():
     summary = run_case(case({"x": X}, {"duration": 1e-4})).summary
     assert not any("ledger" in warning for warning in report.warnings(summary))
