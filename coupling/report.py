@@ -84,15 +84,16 @@ def warnings(summary: Summary) -> list[str]:
             if s.scheme == "events"
             else "Fixed steps follow the path to few digits; a smaller run.time_step gives more, in proportion."
         )
-    if s.energy_balance > NUMERICAL_ERROR and s.drive_jump is None:
+    jump = None if s.scheme == "events" else s.drive_jump
+    if s.energy_balance > NUMERICAL_ERROR and jump is None:
         said.append(
             f"The energy ledger closes only to {s.energy_balance:.1e} of its largest entry; a smaller {finer} "
             "follows the path more closely."
         )
-    if s.drive_jump is not None:
+    if jump is not None:
         said.append(
-            f"A drive's velocity jumps at {s.drive_jump * MILLI:g} ms. The part goes on there as if its own velocity "
-            "jumped as well: the impact is left out, also of the energy ledger."
+            f"A drive's velocity jumps at {jump * MILLI:g} ms. With fixed steps the part goes on there as if its own "
+            'velocity jumped as well: the impact is left out, also of the energy ledger; scheme = "events" has it.'
         )
     return said + (_of_model(s) if isinstance(s, PlateSummary) else [])
 
