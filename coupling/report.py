@@ -17,13 +17,17 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
     """Rows (label, text) to print."""
     s = summary
     rest = "" if s.at_rest_since is None else f" It has rested since {s.at_rest_since * MILLI:.3f} ms."
-    x, y = (c * MICRO for c in s.end_position)
+    unit, per_metre = _unit(s)
+    x, y = (c * per_metre for c in s.end_position)
     cut = "" if s.end_time >= s.duration else f", of {s.duration * MILLI:g} ms asked for"
     where = "" if s.origin == "the plate" else f", counted from {s.origin}"
     rows = [
         ("outcome", f"{s.outcome}. {s.sentence}{rest}"),
-        ("end", f"({x:.4f}, {y:.4f}) um at {s.end_time * MILLI:.4f} ms{cut}{where}"),
-        ("distance", f"{s.distance * MICRO:.4f} um from the start, over a path of {s.path_length * MICRO:.2f} um"),
+        ("end", f"({x:.4f}, {y:.4f}) {unit} at {s.end_time * MILLI:.4f} ms{cut}{where}"),
+        (
+            "distance",
+            f"{s.distance * per_metre:.4f} {unit} from the start, over a path of {s.path_length * per_metre:.2f} {unit}",
+        ),
         (
             "contact",
             f"stuck {s.time_stuck * MILLI:.3f} ms, slipping {s.time_slipping * MILLI:.3f} ms, "
@@ -154,7 +158,13 @@ def _path_error(s: Summary) -> str:
     closer = "100 times tighter" if s.scheme == "events" else "with half the time step"
     if s.path_error is None:
         return f"a run {closer} sees other events"
-    return f"the end point moves by {s.path_error * MICRO:.1e} um in a run {closer}"
+    unit, per_metre = _unit(s)
+    return f"the end point moves by {s.path_error * per_metre:.1e} {unit} in a run {closer}"
+
+
+def _unit(s: Summary) -> tuple[str, float]:
+    """The unit of length, with how many make a metre, in which the path has numbers of a usual size."""
+    return ("um", MICRO) if s.path_length < 0.01 else ("mm", 1e3) if s.path_length < 1 else ("m", 1.0)
 
 
 def _dynamics(s: PlateSummary) -> str:
