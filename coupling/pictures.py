@@ -61,7 +61,7 @@ def draw_run(case: Case, scene: Scene, trajectory: Trajectory, ground: Ground, p
         axes.tick_params(labelbottom=k == len(curves) - 1)
         if k == len(curves) - 1:
             axes.set_xlabel("time [ms]")
-    figure.suptitle(f"{case.name}: {trajectory.outcome.sentence}")
+    figure.suptitle(f"{case.name}: {trajectory.sentence}")
     partial = path.with_suffix(".partial.png")
     figure.savefig(partial, dpi=110)
     partial.replace(path)

@@ -26,7 +26,8 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
         ("end", f"({x:.4f}, {y:.4f}) {unit} at {s.end_time * MILLI:.4f} ms{cut}{where}"),
         (
             "distance",
-            f"{s.distance * per_metre:.4f} {unit} from the start, over a path of {s.path_length * per_metre:.2f} {unit}",
+            f"{s.distance * per_metre:.4f} {unit} from the start, over a path of "
+            f"{s.path_length * per_metre:.2f} {unit}",
         ),
         (
             "contact",

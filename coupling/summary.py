@@ -89,7 +89,7 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
     )
     summary = Summary(
         outcome=trajectory.outcome.value,
-        sentence=trajectory.outcome.sentence,
+        sentence=trajectory.sentence,
         origin=scene.origin,
         end_time=float(trajectory.time[-1]),
         duration=case.run.duration,
