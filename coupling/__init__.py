@@ -13,6 +13,7 @@ _HOMES = {
     "Result": "coupling.run",
     "run_case": "coupling.run",
     "build_surface": "coupling.run",
+    "write_csv": "coupling.csv_file",
     "surface_motion": "coupling.surface",
 }
 

@@ -26,6 +26,7 @@ from pydantic import (
 )
 
 from coupling import friction_points, units
+from coupling.any_plate import PLATES, PLATFORM, AnyPlate, kind
 from coupling.case_lines import CaseError as CaseError
 from coupling.case_lines import Problem as Problem
 from coupling.case_lines import find_problems, load
@@ -33,19 +34,24 @@ from coupling.drive_case import ActuatorCase as ActuatorCase
 from coupling.drive_case import SegmentCase
 from coupling.drive_case import amplitude as amplitude
 from coupling.places import Places
-from coupling.plate_case import PLATES, AnyPlate, Table
+from coupling.platform_case import AXES, BY_DRIVES, AxisCase, MotionCase
+from coupling.table import Table
 from coupling.units import Length, Point
 
 PAPER_PLASTICITY_INDEX: Final = 4.9128
 
 
 class PartCase(Table):
-    """The micropart at the start: `mass` in kg, `position` in m, `velocity` in m/s, `size` (side length) in m."""
+    """The micropart at the start: `mass` in kg, `position` in m, `velocity` in m/s, `size` (side length) in m.
+
+    `squeeze` in N presses it onto the surface, along the normal. On a platform place and velocity count from that.
+    """
 
     mass: units.Mass = Field(gt=0)
     position: Point
     velocity: units.Velocity = (0.0, 0.0)
     size: Length | None = Field(default=None, gt=0)
+    squeeze: units.Force = 0.0
 
 
 def _plasticity_index(data: dict[str, Any]) -> float:
@@ -150,19 +156,36 @@ class TableCase(Table):
 
 
 class RunCase(Table):
-    """The run: `duration` in s, `gravity` in m/s^2 towards the plate, `tolerance` without dimension.
+    """The run: `duration` in s, `gravity` in m/s^2 towards the plate or along x, y, z, `tolerance` without dimension.
 
-    `frames` is the number of time steps in the result files.
+    `frames` is the number of time steps in the result files, `time_step` in s that of a scheme of fixed steps.
     """
 
     duration: units.Time = Field(gt=0)
-    gravity: units.Acceleration = 9.80665
+    gravity: units.Gravity = 9.80665
     tolerance: StrictFloat = Field(default=1e-9, ge=1e-12, le=1e-2)
     frames: StrictInt | None = Field(default=None, ge=2)
+    scheme: Literal["events", "fixed", "paper"] = "events"
+    time_step: units.Time | None = Field(default=None, gt=0)
+    after_detachment: Literal["stop", "fly"] = "stop"
+
+    @field_validator("time_step")
+    @classmethod
+    def _of_fixed_steps(cls, time_step: float | None, info: ValidationInfo) -> float | None:
+        if time_step is not None and info.data.get("scheme") == "events":
+            raise ValueError('must not be given with scheme = "events", which chooses its steps by the tolerance')
+        return time_step
+
+    @field_validator("after_detachment")
+    @classmethod
+    def _flies_by_events(cls, after: str, info: ValidationInfo) -> str:
+        if after == "fly" and info.data.get("scheme", "events") != "events":
+            raise ValueError(f'must be "stop" with scheme = "{info.data["scheme"]}"; only "events" follows flights')
+        return after
 
 
 class _CaseTables(Table):
-    """All that a case file holds."""
+    """All that a case file holds; a platform has no actuators."""
 
     plate: AnyPlate
     actuators: tuple[ActuatorCase, ...]
@@ -173,6 +196,8 @@ class _CaseTables(Table):
     @model_validator(mode="wrap")
     @classmethod
     def _check_places(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+        if isinstance(data, dict) and kind(data.get("plate")) == PLATFORM:
+            data = {"actuators": ()} | data
         # Around the fields rather than after them, so that a wrong field elsewhere does not hide a misplaced actuator.
         try:
             case = handler(data)
@@ -208,6 +233,8 @@ _TABLES: dict[str, type[BaseModel]] = {
     "": _CaseTables,
     "actuators": ActuatorCase,
     "segments": SegmentCase,
+    **dict.fromkeys(AXES, AxisCase),
+    BY_DRIVES: MotionCase,
     "part": PartCase,
     "run": RunCase,
 }

@@ -16,7 +16,8 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from coupling.plate_case import TAGS
+from coupling.any_plate import TAGS
+from coupling.platform_case import AXES
 from coupling.units import shown
 
 Location = tuple[int | str, ...]
@@ -162,6 +163,10 @@ def _value(data: Any, location: Location) -> object:
 
 def _header(location: Location) -> str:
     """Return how the table is written that is at a location, or that holds the value there."""
+    keys = [key for key in location if key not in TAGS]
+    if keys[:2] == ["plate", "motion"]:
+        name = ".".join(str(key) for key in keys if key in ("plate", "motion", *AXES, "segments"))
+        return f"[[{name}]]" if len(keys) > 4 and keys[3] == "segments" else f"[{name}]"
     if location[0] != "actuators":
         return f"[{location[0]}]"
     return "[[actuators.segments]]" if location[2:3] == ("segments",) and len(location) > 3 else "[[actuators]]"
@@ -187,7 +192,7 @@ def _known(location: Location, tables: Mapping[str, type[BaseModel]]) -> str:
     if len(location) == 1:
         return "a case file has " + ", ".join(_header((key,)) for key in keys)
     model = f' with model = "{location[1]}"' if location[0] == "friction" else ""
-    model = f" with {location[1]}" if location[0] == "plate" else model
+    model = f" with {location[1]}" if location[0] == "plate" and len(location) == 3 else model
     return f"{_header(location)}{model} has {', '.join(keys)}"
 
 

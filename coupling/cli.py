@@ -32,7 +32,8 @@ def main() -> None:
 )
 @click.option("--quiet", "-q", is_flag=True, help="Print no summary.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
-def run(case: Path, output: Path | None, quiet: bool, as_json: bool) -> None:
+@click.option("--csv", is_flag=True, help="Also write the trajectory to NAME.csv.")
+def run(case: Path, output: Path | None, quiet: bool, as_json: bool, csv: bool) -> None:
     """Run CASE and write its results."""
     read = _read(case)
     from coupling import report
@@ -43,7 +44,7 @@ def run(case: Path, output: Path | None, quiet: bool, as_json: bool) -> None:
     folder = output or DEFAULT_OUTPUT
     _refusing(check_folder, folder)
     with StageBar(STAGES) as bar:
-        result = _refusing(run_case, read, folder, bar)
+        result = _refusing(run_case, read, folder, bar, csv)
     if as_json:
         said = {"warnings": report.warnings(result.summary), "files": [str(file) for file in result.files]}
         click.echo(json.dumps(result.summary.as_dict() | said, indent=2))
@@ -65,7 +66,8 @@ def check(case: Path) -> None:
 
     _refusing(lambda: build_friction(read).law)
     count = len(read.actuators)
-    click.echo(f"{case}: fine; {count} actuator{'s' * (count != 1)}, {read.run.duration * 1e3:g} ms")
+    what = f"{count} actuator{'s' * (count != 1)}" if count else "a platform"
+    click.echo(f"{case}: fine; {what}, {read.run.duration * 1e3:g} ms")
 
 
 @main.command()

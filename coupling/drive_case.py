@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate
-from typing import Annotated, Any, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import (
     Field,
@@ -22,7 +22,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, core_schema
 
 from coupling import units
-from coupling.plate_case import Table
+from coupling.table import Table
 from coupling.units import Length, Point, shown
 
 ENDLESS: Final = "endless"
@@ -158,18 +158,20 @@ class SegmentCase(_DrivenTable):
             yield "dwell", 'must be greater than 0 with cycle = "hold"; got 0 s'
 
 
-class ActuatorCase(_DrivenTable):
-    """A point actuator: `position` in m, `stiffness` in N/m, `delay` in s, and what drives it.
+class DriveCase(_DrivenTable):
+    """A drive over time: `delay` in s, and what moves it.
 
-    That is a `stroke` in m or a `force` in N with a `frequency` in Hz, a `cycle`, `cycles` (None: no end) and a `dwell`
-    in s; or a `table` of times in s and heights in m; or `segments`, a schedule. The last two come `repeats` times.
-    `stiffness` is that of a spring between actuator and plate, None for rigid.
+    That is a `stroke` in m with a `frequency` in Hz, a `cycle`, `cycles` (None: no end) and a `dwell` in s; or a
+    `table` of times in s and heights in m; or `segments`, a schedule. The last two come `repeats` times.
     """
 
-    position: Point
+    owner: ClassVar[str] = "a drive"
+    drivers: ClassVar[tuple[str, ...]] = ("stroke", "table", "segments")
+    in_place: ClassVar[str] = "a table or segments"
+    """What a stroke may be replaced by, in words."""
+    segments_table: ClassVar[str] = "[[segments]]"
+
     stroke: Length | None = None
-    force: units.Force | None = None
-    stiffness: units.Stiffness | None = Field(default=None, gt=0)
     frequency: units.Frequency | None = Field(default=None, gt=0)
     cycle: Literal["up-down", "up", "sine", "cosine"] = "up-down"
     cycles: StrictInt | None = Field(default=None, ge=1)
@@ -181,14 +183,12 @@ class ActuatorCase(_DrivenTable):
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
-        drivers = [key for key in ("stroke", "force", "table", "segments") if key in given]
+        drivers = [key for key in cls.drivers if key in given]
         for key in drivers[1:]:
-            only = "an actuator is driven by one of stroke, force, table and segments"
+            only = f"{cls.owner} is driven by one of {', '.join(cls.drivers[:-1])} and {cls.drivers[-1]}"
             yield key, f"must not be given with {_NAMED[drivers[0]]}; {only}"
         if not drivers:
-            yield "stroke", f"is missing; it must be {_IN_PLACE}"
-        if "force" in given and "stiffness" in given:
-            yield "stiffness", "must not be given with a force, which is the same whatever the stiffness"
+            yield "stroke", f'is missing; it must be a length such as "150 um", or have {cls.in_place} in its place'
         if drivers and drivers[0] in ("table", "segments"):
             yield from cls._beside_times(drivers[0], given)
         else:
@@ -215,15 +215,38 @@ class ActuatorCase(_DrivenTable):
             if key in given:
                 yield key, f"must not be given with {_NAMED[driver]}, {why}"
         if driver == "segments" and given["segments"] == ():
-            yield "segments", "must be at least one table, written [[actuators.segments]]; got none"
+            yield "segments", f"must be at least one table, written {cls.segments_table}; got none"
         heights = _heights(given[driver])
         if given.get("repeats", 1) != 1 and heights and abs(heights[-1] - heights[0]) > 1e-12 * max(map(abs, heights)):
             ends = "whose last height is not its first" if driver == "table" else "which do not end at height 0"
             yield "repeats", f"must not be given with {_NAMED[driver]} {ends}"
 
 
+class _Place(_DrivenTable):
+    position: Point
+    force: units.Force | None = None
+    stiffness: units.Stiffness | None = Field(default=None, gt=0)
+
+
+class ActuatorCase(DriveCase, _Place):
+    """A point actuator: `position` in m, `stiffness` in N/m, and what drives it: a drive, or a `force` in N.
+
+    A force takes the place of a stroke. `stiffness` is that of a spring between actuator and plate, None for rigid.
+    """
+
+    owner: ClassVar[str] = "an actuator"
+    drivers: ClassVar[tuple[str, ...]] = ("stroke", "force", "table", "segments")
+    in_place: ClassVar[str] = 'a force such as "1 mN", a table or segments'
+    segments_table: ClassVar[str] = "[[actuators.segments]]"
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        yield from super().contradictions(given)
+        if "force" in given and "stiffness" in given:
+            yield "stiffness", "must not be given with a force, which is the same whatever the stiffness"
+
+
 _NAMED: Final = {"stroke": "a stroke", "force": "a force", "table": "a table", "segments": "segments"}
-_IN_PLACE: Final = 'a length such as "150 um", or have a force such as "1 mN", a table or segments in its place'
 
 
 def _heights(motion: Any) -> list[float]:
@@ -236,12 +259,13 @@ def _heights(motion: Any) -> list[float]:
     return [height for _, height in motion]
 
 
-def amplitude(actuator: ActuatorCase) -> float:
-    """The stroke [m] of an actuator, its force [N], or the height [m] furthest from 0 that it is driven to."""
-    if actuator.table is not None:
-        return max(_heights(actuator.table), key=abs)
-    if actuator.segments is not None:
-        before = _heights(actuator.segments)
-        tops = [height + (s.stroke or 0.0) for height, s in zip(before, actuator.segments, strict=False)]
+def amplitude(drive: DriveCase) -> float:
+    """The stroke [m] of a drive, its force [N], or the height [m] furthest from 0 that it goes to."""
+    if drive.table is not None:
+        return max(_heights(drive.table), key=abs)
+    if drive.segments is not None:
+        before = _heights(drive.segments)
+        tops = [height + (s.stroke or 0.0) for height, s in zip(before, drive.segments, strict=False)]
         return max(before + tops, key=abs)
-    return actuator.stroke if actuator.stroke is not None else actuator.force or 0.0
+    force = drive.force if isinstance(drive, ActuatorCase) else None
+    return drive.stroke if drive.stroke is not None else force or 0.0

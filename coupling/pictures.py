@@ -1,8 +1,12 @@
-"""The picture of a run: the plate from above with the path, height and speed over time, stick and slip marked."""
+"""The picture of a run: the path from above, height and speed over time, stick and slip marked.
+
+Of a platform also the velocities of part and platform as seen by one at rest.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,44 +18,113 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from coupling.case import Case
+from coupling.drive_case import amplitude
 from coupling.rim import rim_curves
 from fem_plate import InfluenceShapes
-from particle import State, Trajectory
+from particle import Samples, State, Trajectory
+
+if TYPE_CHECKING:
+    from coupling.scene import Ground, Scene
 
 FloatArray = NDArray[np.float64]
 
 MICRO, MILLI = 1e6, 1e3
-SLIP_COLOUR, STICK_COLOUR = "#c8371b", "#1b4f9c"
+SLIP_COLOUR, STICK_COLOUR, FLIGHT_COLOUR = "#c8371b", "#1b4f9c", "#606060"
 SAMPLES = 4000
 
 
-Plate = tuple[FloatArray, NDArray[np.int64], FloatArray]
-"""Points (n, 2) [m], triangles (m, 3) and the deflection (n,) [m] with all drives up at once."""
+class Unit(NamedTuple):
+    """A unit of length."""
+
+    name: str
+    per_metre: float
 
 
-def draw_run(case: Case, shapes: InfluenceShapes, trajectory: Trajectory, plate: Plate, path: Path) -> None:
+def draw_run(case: Case, scene: Scene, trajectory: Trajectory, ground: Ground, path: Path) -> None:
     """Draws the run into a PNG file."""
-    figure = Figure(figsize=(12.0, 6.0))
-    FigureCanvasAgg(figure)
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.06)
-    grid = figure.add_gridspec(2, 2, width_ratios=(1.05, 1))
-    _draw_path(figure, figure.add_subplot(grid[:, 0]), shapes, plate, trajectory)
-    height, speed = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
     times = np.linspace(0, trajectory.time[-1], SAMPLES)
     samples = trajectory.at(times)
-    _draw_over_time(height, trajectory, times, samples.height * MICRO, "height of the part [µm]")
-    _draw_over_time(speed, trajectory, times, np.hypot(*samples.velocity.T), "speed in the plane [m/s]")
-    height.tick_params(labelbottom=False)
-    speed.set_xlabel("time [ms]")
-    figure.suptitle(f"{case.name}: {trajectory.outcome.sentence}")
+    unit, rise = _unit(ground.points), _unit(samples.height)
+    curves = [
+        (f"height of the part [{rise.name}]", {"": samples.height * rise.per_metre}),
+        (f"speed {'on ' + scene.origin if scene.base else 'in the plane'} [m/s]", {"": np.hypot(*samples.velocity.T)}),
+        *_seen_from_rest(scene, samples),
+    ][0 if samples.height.any() else 1 :]
+    figure = Figure(figsize=(12.0, max(6.0, 2.2 * len(curves) + 1.0)))
+    FigureCanvasAgg(figure)
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.06)
+    grid = figure.add_gridspec(len(curves), 2, width_ratios=(1.05, 1))
+    _draw_path(figure, figure.add_subplot(grid[:, 0]), scene, ground, case, trajectory, unit)
+    for k, (label, lines) in enumerate(curves):
+        axes = figure.add_subplot(grid[k, 1])
+        _draw_over_time(axes, trajectory, times, lines, label)
+        axes.tick_params(labelbottom=k == len(curves) - 1)
+        if k == len(curves) - 1:
+            axes.set_xlabel("time [ms]")
+    figure.suptitle(f"{case.name}: {trajectory.sentence}")
     partial = path.with_suffix(".partial.png")
     figure.savefig(partial, dpi=110)
     partial.replace(path)
 
 
-def _draw_path(figure: Figure, axes: Axes, shapes: InfluenceShapes, plate: Plate, trajectory: Trajectory) -> None:
-    """The plate from above: contours with all drives up at once, its rim, the actuators and the path."""
-    xy, triangles, w = plate[0] * MICRO, plate[1], plate[2] * MICRO
+def _unit(lengths: FloatArray) -> Unit:
+    """The unit in which an array of lengths [m] has numbers of a usual size."""
+    extent = float(np.abs(lengths).max())
+    return Unit("µm", MICRO) if extent < 0.01 else Unit("mm", 1e3) if extent < 1 else Unit("m", 1.0)
+
+
+def _seen_from_rest(scene: Scene, samples: Samples) -> list[tuple[str, dict[str, FloatArray]]]:
+    """The velocities of part and platform along each axis in which the platform moves."""
+    panels = []
+    for name, drive, relative in zip("xy", scene.base, samples.velocity.T, strict=False):
+        velocity = drive.evaluate(samples.time * (1 - 1e-12))[1]  # before a motion's end, not after it
+        if velocity.any():
+            panels.append((f"velocity along {name} [m/s]", {"part": velocity + relative, "platform": velocity}))
+    return panels
+
+
+def _draw_path(
+    figure: Figure, axes: Axes, scene: Scene, ground: Ground, case: Case, trajectory: Trajectory, unit: Unit
+) -> None:
+    """The path over the surface from above."""
+    keys = scene.draw(figure, axes, ground, np.array([amplitude(actuator) for actuator in case.actuators]), unit)
+    points = trajectory.position * unit.per_metre
+    fine = np.linspace(0, trajectory.time[-1], SAMPLES)
+    line = trajectory.at(fine).position * unit.per_metre
+    axes.add_collection(LineCollection([line], colors=SLIP_COLOUR, linewidths=1.5))
+    rests = trajectory.state == State.STICK
+    axes.plot(*points[rests].T, "o", color=STICK_COLOUR, markersize=4, zorder=3)
+    axes.plot(*points[0], "s", color="gold", markeredgecolor="black", markersize=8, zorder=5)
+    axes.plot(*points[-1], "*", color="gold", markeredgecolor="black", markersize=14, zorder=5)
+    axes.use_sticky_edges = False  # the rim is drawn whole
+    axes.set_aspect("equal")
+    where = f" on {scene.origin}" if scene.base else ""
+    axes.set_xlabel(f"x{where} [{unit.name}]")
+    axes.set_ylabel(f"y{where} [{unit.name}]")
+    keys = [
+        Line2D([], [], color=SLIP_COLOUR, label="path"),
+        Line2D([], [], color=STICK_COLOUR, marker="o", linestyle="", markersize=5, label="rests here"),
+        *keys,
+        Line2D([], [], color="gold", marker="s", markeredgecolor="black", linestyle="", markersize=8, label="start"),
+        Line2D([], [], color="gold", marker="*", markeredgecolor="black", linestyle="", markersize=13, label="end"),
+    ]
+    figure.legend(handles=keys, loc="outside lower center", ncols=5, frameon=False)
+
+
+def draw_plate(
+    figure: Figure,
+    axes: Axes,
+    shapes: InfluenceShapes,
+    points: FloatArray,
+    triangles: NDArray[np.int64],
+    deflection: FloatArray,
+    unit: Unit,
+) -> list[Line2D]:
+    """The plate from above: contours with all drives up at once, its rim and the actuators; returns their keys.
+
+    points (n, 2) [m], triangles (m, 3) and the deflection (n,) [m].
+    """
+    xy, w = points * unit.per_metre, deflection * MICRO
     low, high = w.min(), w.max()
     if high > low:
         # Rounding and faint counter-deflection do not deserve a band below zero.
@@ -59,46 +132,33 @@ def _draw_path(figure: Figure, axes: Axes, shapes: InfluenceShapes, plate: Plate
         filled = axes.tricontourf(*xy.T, triangles, w, levels=levels, cmap="Greys", alpha=0.75, extend="min")
         figure.colorbar(filled, ax=axes, label="deflection with all drives up at once [µm]", shrink=0.8, format="%.3g")
     rim = rim_curves(shapes.outline, shapes.size / 100)
-    axes.add_collection(LineCollection([curve * MICRO for curve in rim], colors="black", linewidths=1.5))
-    points = trajectory.position * MICRO
-    fine = np.linspace(0, trajectory.time[-1], SAMPLES)
-    line = trajectory.at(fine).position * MICRO
-    axes.add_collection(LineCollection([line], colors=SLIP_COLOUR, linewidths=1.5))
-    rests = trajectory.state == State.STICK
-    axes.plot(*points[rests].T, "o", color=STICK_COLOUR, markersize=4, zorder=3)
-    axes.plot(*(shapes.points.T * MICRO), "^", color="white", markeredgecolor="black", markersize=6, zorder=6)
-    axes.plot(*points[0], "s", color="gold", markeredgecolor="black", markersize=8, zorder=5)
-    axes.plot(*points[-1], "*", color="gold", markeredgecolor="black", markersize=14, zorder=5)
-    axes.use_sticky_edges = False  # the rim is drawn whole
-    axes.set_aspect("equal")
-    axes.set_xlabel("x [µm]")
-    axes.set_ylabel("y [µm]")
-    keys = [
-        Line2D([], [], color=SLIP_COLOUR, label="path"),
-        Line2D([], [], color=STICK_COLOUR, marker="o", linestyle="", markersize=5, label="rests here"),
-        Line2D(
-            [], [], color="white", marker="^", markeredgecolor="black", linestyle="", markersize=9, label="actuator"
-        ),
-        Line2D([], [], color="gold", marker="s", markeredgecolor="black", linestyle="", markersize=8, label="start"),
-        Line2D([], [], color="gold", marker="*", markeredgecolor="black", linestyle="", markersize=13, label="end"),
+    axes.add_collection(LineCollection([curve * unit.per_metre for curve in rim], colors="black", linewidths=1.5))
+    axes.plot(*(shapes.points.T * unit.per_metre), "^", color="white", markeredgecolor="black", markersize=6, zorder=6)
+    return [
+        Line2D([], [], color="white", marker="^", markeredgecolor="black", linestyle="", markersize=9, label="actuator")
     ]
-    figure.legend(handles=keys, loc="outside lower center", ncols=5, frameon=False)
 
 
-def _draw_over_time(axes: Axes, trajectory: Trajectory, times: FloatArray, values: FloatArray, label: str) -> None:
-    """A curve over time with the stuck stretches shaded."""
-    axes.plot(times * MILLI, values, color="black", linewidth=1.2)
-    stuck = trajectory.state == State.STICK
+def _draw_over_time(
+    axes: Axes, trajectory: Trajectory, times: FloatArray, lines: dict[str, FloatArray], label: str
+) -> None:
+    """Curves over time, by their names, with the stuck stretches shaded, and those in flight."""
+    for (name, values), colour, style in zip(lines.items(), ("black", SLIP_COLOUR), ("-", "--"), strict=False):
+        axes.plot(times * MILLI, values, color=colour, linestyle=style, linewidth=1.2, label=name)
+    if len(lines) > 1:
+        axes.legend(frameon=False, fontsize=9, loc="lower left", bbox_to_anchor=(0, 0.97), ncols=2, borderpad=0.1)
     edges = trajectory.time * MILLI
-    for begin, end in _stretches(stuck):
-        axes.axvspan(edges[begin], edges[end], color=STICK_COLOUR, alpha=0.18, linewidth=0)
+    for state, colour in ((State.STICK, STICK_COLOUR), (State.FLIGHT, FLIGHT_COLOUR)):
+        for begin, end in _stretches(trajectory.state == state):
+            axes.axvspan(edges[begin], edges[end], color=colour, alpha=0.18, linewidth=0)
     axes.set_xlim(0, edges[-1])
     axes.set_ylabel(label)
     axes.grid(alpha=0.3)
-    axes.set_title("shaded: stuck", loc="right", fontsize=9, color=STICK_COLOUR)
+    shades = "blue: stuck, grey: in flight" if (trajectory.state == State.FLIGHT).any() else "shaded: stuck"
+    axes.set_title(shades, loc="right", fontsize=9, color=STICK_COLOUR)
 
 
-def _stretches(stuck: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and last row of each stretch of rows during which the part is stuck."""
-    change = np.diff(np.concatenate([[0], stuck[:-1].astype(int), [0]]))
+def _stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First and last row of each stretch of rows during which something (n,) holds."""
+    change = np.diff(np.concatenate([[0], holds[:-1].astype(int), [0]]))
     return list(zip(np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist(), strict=True))

@@ -1,4 +1,4 @@
-"""Where things are in a case: whether the plate has an outline, and everything its place on it."""
+"""What of a case must fit together: whether the plate has an outline or a motion, and everything its place on it."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
 
+from coupling.any_plate import outline_of
 from coupling.case_lines import Location, shown_location
-from coupling.plate_case import PlateCase, ShapeCase, Supports, outline_of
-from coupling.units import Length, Point, shown_length
+from coupling.plate_case import PlateCase, ShapeCase, Supports
+from coupling.platform_case import platform_of
+from coupling.units import Length, Point, Time, shown_length
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -45,15 +47,26 @@ class _Spot(BaseModel, from_attributes=True):
     force: Any = None
 
 
+class _Run(BaseModel, from_attributes=True):
+    duration: _IfValid[Time] = None
+
+
 class Places(BaseModel, from_attributes=True):
     """The places in a case; each is None where it is missing or wrong, whatever else is."""
 
     plate: Any = None
     actuators: _IfValid[tuple[_IfValid[_Spot], ...]] = None
     part: _IfValid[_Spot] = None
+    run: _IfValid[_Run] = None
 
     def mistakes(self, context: Any = None) -> Mistakes:
         """Yield where a place is wrong, and why; `context` is that of the tables' validation."""
+        platform = platform_of(self.plate, context)
+        if platform:
+            if self.actuators != ():
+                yield ("actuators",), 'must not be given with shape = "platform", which moves as a whole'
+            yield from platform.mistakes(self.run.duration if self.run else None)
+            return
         if self.actuators == ():
             yield ("actuators",), "must be at least one table, written [[actuators]]; got none"
         spots = [(("actuators", index), spot) for index, spot in enumerate(self.actuators or ()) if spot]

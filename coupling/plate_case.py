@@ -6,22 +6,12 @@ import math
 from abc import ABC, abstractmethod
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Discriminator,
-    Field,
-    StrictFloat,
-    StrictStr,
-    Tag,
-    ValidationError,
-    ValidationInfo,
-    field_validator,
-)
+from pydantic import Discriminator, Field, StrictFloat, StrictStr, Tag, ValidationInfo, field_validator
 
 from coupling import units
+from coupling.table import Table
 from coupling.units import Length, Point, shown, shown_length
 
 if TYPE_CHECKING:
@@ -29,10 +19,6 @@ if TYPE_CHECKING:
 
 CELLS_OF_A_DISC = 64 * math.pi
 """Without a cell size a plate has as many cells as a disc with 8 from centre to rim."""
-
-
-class Table(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 SupportName = Literal["clamped", "simply-supported", "free"]
@@ -219,70 +205,3 @@ class MeshCase(PlateCase):
         import meshes
 
         return meshes.read(self.mesh, self.mesh_unit)
-
-
-class _Wanted:
-    wanted = '"disc", "rectangle", "annulus", "ellipse" or "polygon", or have mesh = "file.msh" in its place'
-
-
-class ShapelessCase(PlateCase):
-    """A plate whose shape is missing or unknown: it fails on that, and on what is wrong with the rest."""
-
-    model_config = ConfigDict(extra="ignore")
-
-    shape: Annotated[Literal["disc", "rectangle", "annulus", "ellipse", "polygon"], _Wanted()]
-
-    def build_mesh(self) -> PlateMesh:
-        raise AssertionError("a plate with a known shape is one of the other models")
-
-
-PLATES: dict[str, type[PlateCase]] = {
-    'shape = "disc"': DiscCase,
-    'shape = "rectangle"': RectangleCase,
-    'shape = "annulus"': AnnulusCase,
-    'shape = "ellipse"': EllipseCase,
-    'shape = "polygon"': PolygonCase,
-    "a mesh": MeshCase,
-    "no shape": ShapelessCase,
-}
-"""The models by what messages call them."""
-
-
-def kind(plate: Any) -> str:
-    """Which of PLATES a plate is, given as a table or as a model."""
-    keys = plate if isinstance(plate, dict) else getattr(plate, "__dict__", {})
-    named = f'shape = "{keys.get("shape")}"'
-    if named in PLATES:
-        return named
-    return "a mesh" if "mesh" in keys and "shape" not in keys else "no shape"
-
-
-TAGS: Final = frozenset({*PLATES, ONE_SUPPORT, SUPPORT_OF_EACH})
-"""What validation puts into the location of a mistake, but is no key of the file."""
-
-AnyPlate = Annotated[
-    Annotated[DiscCase, Tag('shape = "disc"')]
-    | Annotated[RectangleCase, Tag('shape = "rectangle"')]
-    | Annotated[AnnulusCase, Tag('shape = "annulus"')]
-    | Annotated[EllipseCase, Tag('shape = "ellipse"')]
-    | Annotated[PolygonCase, Tag('shape = "polygon"')]
-    | Annotated[MeshCase, Tag("a mesh")]
-    | Annotated[ShapelessCase, Tag("no shape")],
-    Discriminator(kind),
-]
-
-_ANY_MATERIAL = {"youngs_modulus": "1 Pa", "poisson_ratio": 0.3, "thickness": "1 m"}
-
-
-def outline_of(plate: Any, context: Any) -> PlateCase | None:
-    """The plate as far as its outline goes, whatever else is wrong with it; None where that is wrong too."""
-    if not isinstance(plate, dict):
-        return plate if isinstance(plate, PlateCase) else None
-    model = PLATES[kind(plate)]
-    own = {
-        key: value for key, value in plate.items() if key in model.model_fields.keys() - ShapeCase.model_fields.keys()
-    }
-    try:
-        return model.model_validate(own | _ANY_MATERIAL, context=context)
-    except ValidationError:
-        return None

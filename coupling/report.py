@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from coupling.summary import Summary
+from coupling.measured import MotionFit
+from coupling.summary import PlateSummary, Summary
 
 MICRO, MILLI = 1e6, 1e3
 
@@ -16,24 +17,52 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
     """Rows (label, text) to print."""
     s = summary
     rest = "" if s.at_rest_since is None else f" It has rested since {s.at_rest_since * MILLI:.3f} ms."
-    x, y = (c * MICRO for c in s.end_position)
+    unit, per_metre = _unit(s)
+    x, y = (c * per_metre for c in s.end_position)
     cut = "" if s.end_time >= s.duration else f", of {s.duration * MILLI:g} ms asked for"
+    where = "" if s.origin == "the plate" else f", counted from {s.origin}"
     rows = [
         ("outcome", f"{s.outcome}. {s.sentence}{rest}"),
-        ("end", f"({x:.4f}, {y:.4f}) um at {s.end_time * MILLI:.4f} ms{cut}"),
-        ("distance", f"{s.distance * MICRO:.4f} um from the start, over a path of {s.path_length * MICRO:.2f} um"),
+        ("end", f"({x:.4f}, {y:.4f}) {unit} at {s.end_time * MILLI:.4f} ms{cut}{where}"),
+        (
+            "distance",
+            f"{s.distance * per_metre:.4f} {unit} from the start, over a path of "
+            f"{s.path_length * per_metre:.2f} {unit}",
+        ),
         (
             "contact",
             f"stuck {s.time_stuck * MILLI:.3f} ms, slipping {s.time_slipping * MILLI:.3f} ms, "
             f"{_count(s.slips, 'slip')}",
         ),
-        (
-            "plate",
-            f"{s.plate_unknowns} unknowns; unit shapes good to {s.plate_error:.1e} (estimated), "
-            f"held at the actuators to {s.hold_residual:.1e}",
-        ),
-        ("surface", f"fitted to {s.surface_error:.1e} of a unit stroke; friction tabulated to {s.contact_error:.1e}"),
+    ]
+    if s.flights:
+        hops = f"{_count(s.flights, 'flight')}, {_count(s.landings, 'landing')}"
+        rows.append(("", f"in flight {s.time_flying * MILLI:.3f} ms: {hops}"))
+    rows += [("loads", ", ".join(loads))] if (loads := _loads(s)) else []
+    tabulated = f"friction tabulated to {s.contact_error:.1e}"
+    if isinstance(s, PlateSummary):
+        rows += [
+            (
+                "plate",
+                f"{s.plate_unknowns} unknowns; unit shapes good to {s.plate_error:.1e} (estimated), "
+                f"held at the actuators to {s.hold_residual:.1e}",
+            ),
+            ("surface", f"fitted to {s.surface_error:.1e} of a unit stroke; {tabulated}"),
+        ]
+    else:
+        rows += [("surface", f"a flat, rigid platform; {tabulated}")]
+    rows += [("", _fit(fit)) for fit in s.motion_fits]
+    if s.drive_error > 0:
+        rows.append(("", f"drives follow their motion to {s.drive_error:.1e} of the stroke"))
+    rows += [
         ("integrator", f"{_path_error(s)}; {_count(s.evaluations, 'evaluation')}"),
+        ("", f"the energy ledger closes to {s.energy_balance:.1e} of its largest entry"),
+    ]
+    return rows + (_model(s) if isinstance(s, PlateSummary) else [])
+
+
+def _model(s: PlateSummary) -> list[tuple[str, str]]:
+    rows = [
         (
             "model",
             f"deflection {s.deflection_over_thickness:.3g} thicknesses (path error of linear theory "
@@ -52,6 +81,29 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
 def warnings(summary: Summary) -> list[str]:
     """What a user must know before trusting the numbers."""
     s = summary
+    said = _of_solver(s) if isinstance(s, PlateSummary) else []
+    finer = "run.tolerance" if s.scheme == "events" else "run.time_step"
+    if s.path_error is None or s.path_error > NUMERICAL_ERROR * max(s.path_length, s.distance):
+        said.append(
+            "The path magnifies small errors: trust the statistics of many starts more than the digits of one."
+            if s.scheme == "events"
+            else "Fixed steps follow the path to few digits; a smaller run.time_step gives more, in proportion."
+        )
+    jump = None if s.scheme == "events" else s.drive_jump
+    if s.energy_balance > NUMERICAL_ERROR and jump is None:
+        said.append(
+            f"The energy ledger closes only to {s.energy_balance:.1e} of its largest entry; a smaller {finer} "
+            "follows the path more closely."
+        )
+    if jump is not None:
+        said.append(
+            f"A drive's velocity jumps at {jump * MILLI:g} ms. With fixed steps the part goes on there as if its own "
+            'velocity jumped as well: the impact is left out, also of the energy ledger; scheme = "events" has it.'
+        )
+    return said + (_of_model(s) if isinstance(s, PlateSummary) else [])
+
+
+def _of_solver(s: PlateSummary) -> list[str]:
     said = []
     if s.plate_error > NUMERICAL_ERROR:
         said.append(
@@ -63,8 +115,11 @@ def warnings(summary: Summary) -> list[str]:
             f"The surface that the part sees follows the plate's shapes only to {s.surface_error:.1e} of a stroke: so "
             "it is next to a re-entrant corner, a narrow slot, or an actuator near the rim."
         )
-    if s.path_error is None or s.path_error > NUMERICAL_ERROR * max(s.path_length, s.distance):
-        said.append("The path magnifies small errors: trust the statistics of many starts more than the digits of one.")
+    return said
+
+
+def _of_model(s: PlateSummary) -> list[str]:
+    said = []
     if s.deflection_over_thickness > MOST_THICKNESSES:
         said.append(
             f"The plate deflects by {s.deflection_over_thickness:.3g} thicknesses; small-deflection theory holds to "
@@ -85,13 +140,35 @@ def warnings(summary: Summary) -> list[str]:
     return said
 
 
+def _loads(s: Summary) -> list[str]:
+    """What else pulls and presses than gravity towards the plate."""
+    said = []
+    if isinstance(s.gravity, tuple):
+        said.append(f"gravity ({', '.join(f'{g:g}' for g in s.gravity)}) m/s^2")
+    if s.squeeze:
+        said.append(f"squeezed by {s.squeeze * MICRO:g} uN")
+    return said
+
+
+def _fit(fit: MotionFit) -> str:
+    rms, largest = fit.rms * MICRO, fit.largest * MICRO
+    return f"measured {fit.axis} followed to {rms:.1e} um (root mean square), {largest:.1e} um at most"
+
+
 def _path_error(s: Summary) -> str:
+    closer = "100 times tighter" if s.scheme == "events" else "with half the time step"
     if s.path_error is None:
-        return "a run 100 times tighter sees other events"
-    return f"the end point moves by {s.path_error * MICRO:.1e} um in a run 100 times tighter"
+        return f"a run {closer} sees other events"
+    unit, per_metre = _unit(s)
+    return f"the end point moves by {s.path_error * per_metre:.1e} {unit} in a run {closer}"
 
 
-def _dynamics(s: Summary) -> str:
+def _unit(s: Summary) -> tuple[str, float]:
+    """The unit of length, with how many make a metre, in which the path has numbers of a usual size."""
+    return ("um", MICRO) if s.path_length < 0.01 else ("mm", 1e3) if s.path_length < 1 else ("m", 1.0)
+
+
+def _dynamics(s: PlateSummary) -> str:
     if s.first_frequency is None or s.drive_over_first is None or s.quasi_static_error is None:
         return "drive over the plate's first frequency not known: plate.density is not given"
     return (
@@ -100,7 +177,7 @@ def _dynamics(s: Summary) -> str:
     )
 
 
-def _each_drive(s: Summary) -> str:
+def _each_drive(s: PlateSummary) -> str:
     drives, strokes = (
         ", ".join(f"{ratio:.2g}" for ratio in sorted(set(ratios or ()), reverse=True))
         for ratios in (s.drives_over_first, s.strokes_over_first)

@@ -1,4 +1,4 @@
-"""Result files of a run: two VTKHDF files on one time axis, and a picture."""
+"""Result files of a run: two VTKHDF files on one time axis, a picture, and on request a CSV file."""
 
 from __future__ import annotations
 
@@ -12,14 +12,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.case import Case, amplitude
-from coupling.drawn_plate import drawn_plate
+from coupling.case import Case
+from coupling.csv_file import write_csv
+from coupling.drives import stroke_heights
 from coupling.pictures import draw_run
-from coupling.rim import onto_plate
-from coupling.summary import Summary, stroke_heights
+from coupling.scene import Scene
+from coupling.summary import Summary
 from coupling.vtkhdf import part_file, plate_file
-from fem_plate import InfluenceShapes
-from meshes import PlateMesh
 from particle import AnyDrive, Trajectory
 
 FloatArray = NDArray[np.float64]
@@ -28,44 +27,39 @@ FRAMES_PER_CYCLE = 20
 FRAMES = (100, 1000)  # least and most without a wish in the case
 UNITS = {
     "time": "s",
-    "points": "m",
     "deflection": "m",
     "velocity": "m/s",
     "normal_force": "N",
     "friction_force": "N",
-    "state": "0: stuck, 1: slipping",
+    "state": "0: stuck, 1: slipping, 2: flying",
 }
 
 
 def write_results(
-    case: Case,
-    mesh: PlateMesh,
-    shapes: InfluenceShapes,
-    drives: Sequence[AnyDrive],
-    trajectory: Trajectory,
-    summary: Summary,
-    folder: Path,
+    case: Case, scene: Scene, trajectory: Trajectory, summary: Summary, folder: Path, csv: bool = False
 ) -> tuple[Path, ...]:
-    """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths."""
+    """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
+
+    csv: whether to write NAME.csv as well.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    times = frame_times(case, drives, float(trajectory.time[-1]))
-    points, triangles = drawn_plate(mesh, shapes.points)
-    value = shapes.evaluate(points)[0]
-    heights = stroke_heights(drives, times)
+    times = frame_times(case, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
+    ground = scene.ground(trajectory)
+    heights = stroke_heights(scene.lifts, times)
     metadata = {
         "case": case.source or case.model_dump_json(),
         "summary": json.dumps(summary.as_dict()),
-        "units": json.dumps(UNITS),
+        "units": json.dumps(UNITS | {"points": f"m, counted from {scene.origin}"}),
         "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")}),
     }
     samples = trajectory.at(times)
-    place = onto_plate(shapes.outline, samples.position)
+    place = scene.onto(samples.position)
     with (
-        plate_file(folder, case.name, points, triangles, metadata) as plate,
+        plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
         part_file(folder, case.name, metadata) as part,
     ):
         for k, time in enumerate(times.tolist()):
-            plate.append(time, deflection=value @ heights[k])
+            plate.append(time, deflection=ground.shapes @ heights[k])
             part.append(
                 time,
                 (*place[k], samples.height[k]),
@@ -75,9 +69,11 @@ def write_results(
                 friction_force=samples.friction_force[k],
             )
     picture = folder / f"{case.name}.png"
-    all_up = value @ [amplitude(actuator) for actuator in case.actuators]
-    draw_run(case, shapes, trajectory, (points, triangles, all_up), picture)
-    return folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf", picture
+    draw_run(case, scene, trajectory, ground, picture)
+    files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf", picture]
+    if csv:
+        files.append(write_csv(trajectory, folder / f"{case.name}.csv", times))
+    return tuple(files)
 
 
 def check_folder(folder: Path) -> None:

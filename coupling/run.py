@@ -1,31 +1,30 @@
 """One run, from case to result: this file reads as the pipeline.
 
-case -> mesh -> plate influence shapes -> surface motion -> trajectory -> summary -> result files and picture
+case -> scene (mesh -> plate influence shapes, or a platform's drives -> surface motion) -> trajectory -> summary
+-> result files and picture
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
 import particle
-from coupling.case import ActuatorCase, Case, ConstantCase, CoulombCase, TableCase, amplitude
-from coupling.drive_case import ENDLESS
+from coupling.case import Case, ConstantCase, CoulombCase, TableCase
+from coupling.csv_file import check_csv
+from coupling.drives import build_drives as build_drives
+from coupling.plate_scene import plate_scene
+from coupling.platform_case import PlatformCase
+from coupling.platform_scene import platform_scene
 from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
+from coupling.scene import Scene
 from coupling.summary import Summary, summarise
-from coupling.surface import surface_motion
-from fem_plate import InfluenceShapes, Plate, PlateSection
-from fem_plate.influence import MOST_DENSE
-from particle import AnyDrive, Drive, Segment, SegmentDrive, SurfaceMotion, TableDrive, Trajectory
+from fem_plate import InfluenceShapes
+from particle import SurfaceMotion, Trajectory
+from particle.fixed import FINE
 from particle.friction import Contact
-
-# Without a cell size the plate is refined until the unit shapes' estimated error is below this, which keeps the end
-# point of a usual path to 1e-6 of it.
-PLATE_TOLERANCE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,76 +32,54 @@ class Result:
     """What a run found; `files` are those it wrote."""
 
     case: Case
-    shapes: InfluenceShapes = field(repr=False)
-    surface: SurfaceMotion = field(repr=False)
+    scene: Scene = field(repr=False)
     trajectory: Trajectory = field(repr=False)
     summary: Summary
     files: tuple[Path, ...] = ()
 
+    @property
+    def surface(self) -> SurfaceMotion:
+        """The moving surface."""
+        return self.scene.surface
 
-def run_case(case: Case, output: str | Path | None = None, progress: Progress = silent) -> Result:
-    """Run a case; with `output`, a folder, also write NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png there."""
-    with progress("Solving the plate"):
-        plate = build_plate(case)
-        shapes = find_shapes(case, plate)
-    with progress("Fitting the surface"):
-        drives = build_drives(case)
-        surface = surface_motion(shapes, drives)
+    @property
+    def shapes(self) -> InfluenceShapes | None:
+        """The influence shapes of a plate; None: there is a platform."""
+        return self.scene.shapes
+
+
+def run_case(case: Case, output: str | Path | None = None, progress: Progress = silent, csv: bool = False) -> Result:
+    """Run a case; with `output`, a folder, also write NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png there.
+
+    csv: whether to write the trajectory to NAME.csv as well.
+    Raises ValueError when the case cannot be run, and before any work when NAME.csv is a file of something else.
+    """
+    if output is not None and csv:
+        check_csv(Path(output) / f"{case.name}.csv")
+    scene = build_scene(case, progress)
     with progress("Following the part (the first run compiles: half a minute)"):
         friction = build_friction(case)
-        trajectory = interruptible(follow_part, case, surface, friction, case.run.tolerance)
-        tighter = interruptible(follow_part, case, surface, friction, max(case.run.tolerance / 100, 1e-13))
+        trajectory = interruptible(follow_part, case, scene.surface, friction)
+        tighter = interruptible(follow_part, case, scene.surface, friction, True)
     with progress("Checking the model's validity"):
-        summary = summarise(case, plate, shapes, surface, trajectory, tighter, drives, friction)
-    result = Result(case, shapes, surface, trajectory, summary)
+        summary = summarise(case, scene, trajectory, tighter, friction)
     if output is None:
-        return result
+        return Result(case, scene, trajectory, summary)
     with progress("Writing the results"):
-        files = write_results(case, plate.mesh, shapes, drives, trajectory, summary, Path(output))
-    return Result(case, shapes, surface, trajectory, summary, files)
+        files = write_results(case, scene, trajectory, summary, Path(output), csv)
+    return Result(case, scene, trajectory, summary, files)
+
+
+def build_scene(case: Case, progress: Progress = silent) -> Scene:
+    """What the part moves over: a plate on actuators, or a platform."""
+    if isinstance(case.plate, PlatformCase):
+        return platform_scene(case.plate, progress)
+    return plate_scene(case, case.plate, progress)
 
 
 def build_surface(case: Case) -> SurfaceMotion:
     """The moving surface of a case."""
-    return surface_motion(find_shapes(case, build_plate(case)), build_drives(case))
-
-
-def build_plate(case: Case) -> Plate:
-    """The plate, not yet loaded."""
-    plate = case.plate
-    section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
-    tolerance = None if plate.cell_size_given else PLATE_TOLERANCE
-    return Plate(plate.build_mesh(), section, plate.supports, tolerance)
-
-
-def find_shapes(case: Case, plate: Plate) -> InfluenceShapes:
-    """The influence shapes of the case's actuators; ValueError when they are too many for a run."""
-    shapes = plate.influence([actuator.position for actuator in case.actuators], springs(case))
-    if not isinstance(shapes, InfluenceShapes):
-        raise ValueError(f"Input actuators of a run must be at most {MOST_DENSE}; got {len(case.actuators)}")
-    return shapes
-
-
-def springs(case: Case) -> NDArray[np.float64]:
-    """The stiffness (N,) [N/m] with which each actuator holds its place, 0 where a force drives it."""
-    return np.array([0.0 if a.force is not None else a.stiffness or np.inf for a in case.actuators])
-
-
-def build_drives(case: Case) -> list[AnyDrive]:
-    """The actuators' drives; those of forces are in N."""
-    return [build_drive(actuator) for actuator in case.actuators]
-
-
-def build_drive(actuator: ActuatorCase) -> AnyDrive:
-    """The drive of one actuator: a table, a schedule of segments, or one cycle over and over."""
-    repeats = None if actuator.repeats == ENDLESS else actuator.repeats
-    if actuator.table is not None:
-        times, heights = np.array(actuator.table).T
-        return TableDrive(times, heights, repeats, actuator.delay)
-    if actuator.segments is not None:
-        return SegmentDrive([Segment(**segment.model_dump()) for segment in actuator.segments], repeats, actuator.delay)
-    a = actuator
-    return Drive(amplitude(a), a.frequency or 0.0, a.cycle, a.cycles, a.delay, a.dwell)
+    return build_scene(case).surface
 
 
 def build_friction(case: Case) -> Contact:
@@ -117,7 +94,16 @@ def build_friction(case: Case) -> Contact:
     return particle.KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
 
 
-def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tolerance: float) -> Trajectory:
-    """The part's path over the surface."""
-    part = particle.Micropart(case.part.mass, case.part.position, case.part.velocity)
-    return particle.simulate(surface, part, friction, case.run.duration, case.run.gravity, tolerance)
+def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tighter: bool = False) -> Trajectory:
+    """The part's path over the surface; tighter: at a hundredth of the tolerance, or with half the time step."""
+    part = particle.Micropart(case.part.mass, case.part.position, case.part.velocity, case.part.squeeze)
+    run = case.run
+    tolerance = max(run.tolerance / 100, 1e-13) if tighter else run.tolerance
+    steps: dict[str, Any] = {}
+    if run.scheme != "events" and (run.time_step or tighter):
+        stroke_time = float(surface.drives.stroke_time.min(initial=run.duration))
+        time_step = run.time_step or FINE * stroke_time
+        steps = {"time_step": time_step / 2 if tighter else time_step}
+    return particle.simulate(
+        surface, part, friction, run.duration, run.gravity, tolerance, run.scheme, run.after_detachment, **steps
+    )

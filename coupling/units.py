@@ -143,6 +143,37 @@ class Pair:
         return core_schema.no_info_before_validator_function(self.validate, handler(source))
 
 
+@dataclass(frozen=True)
+class Directed:
+    """Marks a quantity that is one number, or a vector along x, y and z."""
+
+    quantity: Quantity
+
+    @property
+    def wanted(self) -> str:
+        """What a value must be, in words: an acceleration such as "9.8 m/s^2", or three, along x, y and z."""
+        return f"{self.quantity.wanted}, or three, along x, y and z"
+
+    def validate(self, value: object, info: ValidationInfo) -> object:
+        """Return the value in SI units; ValueError for what is neither one nor three, or wrong by itself."""
+        if not isinstance(value, (list, tuple)):
+            return self.quantity.validate(value, info)
+        if len(value) != 3:
+            raise ValueError(f"must be {self.wanted}; got {shown(value)}")
+        parts, wrong = [], []
+        for name, part in zip("xyz", value, strict=True):
+            try:
+                parts.append(self.quantity.validate(part, info))
+            except ValueError as error:
+                wrong.append(f"its {name} {error}")
+        if wrong:
+            raise ValueError("is wrong: " + "; ".join(wrong))
+        return tuple(parts)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.with_info_plain_validator_function(self.validate)
+
+
 def shown(value: object) -> str:
     """Return `value` as a case file would write it, or in words if that is long."""
     if isinstance(value, dict):
@@ -188,6 +219,7 @@ Time = Annotated[float, Quantity("s", "50 ms")]
 Frequency = Annotated[float, Quantity("Hz", "300 Hz")]
 Speed = Annotated[float, Quantity("m/s", "0.1 m/s")]
 Acceleration = Annotated[float, Quantity("m/s^2", "9.80665 m/s^2")]
+Gravity = Annotated[float | tuple[float, float, float], Directed(Quantity("m/s^2", "9.80665 m/s^2"))]
 Mass = Annotated[float, Quantity("kg", "2e-9 kg")]
 Density = Annotated[float, Quantity("kg/m^3", "2330 kg/m^3")]
 Force = Annotated[float, Quantity("N", "2 uN")]

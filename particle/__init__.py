@@ -7,7 +7,7 @@ from particle.friction import ConstantFriction, CoulombAdhesion
 from particle.friction_table import FrictionTable
 from particle.kogut_etsion import KogutEtsion
 from particle.simulate import Micropart, simulate
-from particle.surface import SurfaceMotion, SurfaceState, polynomial_surface
+from particle.surface import SurfaceMotion, SurfaceState, platform_surface, polynomial_surface
 from particle.trajectory import Energy, Event, EventKind, Outcome, Samples, State, Trajectory
 
 __all__ = [
@@ -31,6 +31,7 @@ __all__ = [
     "SurfaceState",
     "TableDrive",
     "Trajectory",
+    "platform_surface",
     "polynomial_surface",
     "simulate",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -20,6 +20,7 @@ from particle.resume import resume
 from particle.rim import rim_gap
 from particle.runge_kutta import tableau
 from particle.slide import DETACHED, GOES_ON, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
+from particle.stay import stays
 from particle.surface import SurfaceMotion
 from particle.trajectory import Energy, Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
 
@@ -122,7 +123,11 @@ def simulate(
         pair = tableau(tolerance)
         rows, events, verdict, evaluations = march(surface, request, pair)
         sampler = partial(resume, surface, request, pair, rows)
-    return _trajectory(rows, events, verdict, evaluations, energy_of(rows, request.force * surface.size), sampler)
+    found = _trajectory(rows, events, verdict, evaluations, energy_of(rows, request.force * surface.size), sampler)
+    if found.outcome is Outcome.STUCK and scheme == "events":
+        x, y = found.position[-1].tolist()
+        found = replace(found, stays=stays(surface, request.part, x, y, request.duration))
+    return found
 
 
 def _trajectory(

@@ -27,7 +27,6 @@ WEAKEST = 0.75  # of the friction limit: the slow manifold draws parts to it dow
 SHORTEST = 1e-13  # of a stroke: no step is shorter
 TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
 GROWTH, SAFETY = 5.0, 0.9
-LEDGER = 0.1  # what an error of energy counts, against one of the path
 
 
 class Request(NamedTuple):
@@ -67,34 +66,29 @@ def slide(
     f = fields(surface, local, state[0], state[1], time)
     a = slope(f, part)
     count[0] += 2
-    lasting = request.stroke_time
     if mode == SLIDING or (a.demand < a.limit and state[2] > 0.0):
         moving = state.copy()
         if mode == MANIFOLD:
             kappa = lag(surface, local, part, time, state[0], state[1], state[2], f, a)
             moving[2], moving[3] = velocity(state[2], kappa, a)
         pace = 0.01 * surface.size / request.stroke_time
-        stop, miss = stop_ahead(surface, local, part, time, moving, 0.01 * tolerance, pace)
+        stop, miss = stop_ahead(surface, local, part, time, moving, 0.01 * tolerance, pace, request.force)
         count[0] += 1
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
         if near and _stops_on_plate(surface, step, moving, stop):
             come_to_rest(surface, local, part, time, moving, stop)
             state[:] = moving
             a = slope(fields(surface, local, state[0], state[1], time + stop.time), part)
-            count[0] += 3
+            count[0] += 5
             back = stop.reverses and a.demand > part.law.static_ratio * a.limit
             return (TURNED if back else RESTING), time + stop.time, h, GOES_ON
         # A step ends short of the stop, where the friction turns.
         h = min(h, 0.9 * stop.time)
-    if mode == SLIDING:
-        if a.limit > 0.0:
-            lasting = min(lasting, 2 * math.hypot(state[2], state[3]) / a.limit)
-        if _joins_manifold(surface, local, request, time, state, f, a):
-            state[2], state[3] = length(f, state[2], state[3]), 0.0
-            mode = MANIFOLD
-            step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
-            count[0] += 1
-    force = request.force / LEDGER
+    if mode == SLIDING and _joins_manifold(surface, local, request, time, state, f, a):
+        state[2], state[3] = length(f, state[2], state[3]), 0.0
+        mode = MANIFOLD
+        step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
+        count[0] += 1
     remaining = span_end - time
     shortest = SHORTEST * request.stroke_time
     while True:
@@ -105,7 +99,7 @@ def slide(
         if not attempt(mode, surface, local, part, pair, step, time, state, h):
             h *= 0.5
             continue
-        wrong = error(pair, step, h, lasting, force) / tolerance
+        wrong = error(pair, step, h, request.stroke_time, request.force) / tolerance
         if not wrong <= 1.0:
             h *= max(0.2, SAFETY * wrong ** (-1 / pair.order)) if wrong > 1.0 else 0.2
             continue

@@ -27,6 +27,11 @@ from particle.motion import Part, drag, pull, push
 FloatArray = NDArray[np.float64]
 
 
+# Gauss's rule on [0, 1].
+NODES = 0.5 + 0.5 * np.polynomial.legendre.leggauss(4)[0]
+WEIGHTS = 0.5 * np.polynomial.legendre.leggauss(4)[1]
+
+
 class Stop(NamedTuple):
     """Where and when the sliding speed reaches 0: after `time` [s], (x, y) [m] away; time is inf when it does not."""
 
@@ -64,9 +69,11 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> St
 
 @jit
 def stop_ahead(
-    surface: Any, local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float
+    surface: Any, local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float, force: float
 ) -> tuple[Stop, float]:
-    """The stop ahead of a sliding part, with an estimate of its error [m]; an error in time counts `pace` [m/s] times.
+    """The stop ahead of a sliding part, with an estimate of its error [m].
+
+    An error in time counts as the way at `pace` [m/s], one of the energy as that on which `force` [N] does such work.
 
     The forces are frozen a third of the way, where a change that is linear in time has its mean effect; the error is
     taken as the difference from freezing them now.
@@ -81,23 +88,24 @@ def stop_ahead(
     later = frozen_stop(g, slope(g, part), v_x, v_y, small)
     if later.reverses != now.reverses or not math.isfinite(later.time):
         return now, math.inf
-    return later, max(math.hypot(later.x - now.x, later.y - now.y), pace * abs(later.time - now.time))
+    miss = max(math.hypot(later.x - now.x, later.y - now.y), pace * abs(later.time - now.time))
+    return later, max(miss, part.mass / force * abs(later.loss - now.loss))
 
 
 @jit
 def come_to_rest(surface: Any, local: Any, part: Part, time: float, state: FloatArray, stop: Stop) -> None:
     """Moves `state` (x, y, v_x, v_y, work, dissipation) to a stop.
 
-    The friction's impulse on the way is known, v + A d T per kg. Powers are integrated by Radau's rule with nodes at
-    T/3 and T, as the way of a straight stop is quadratic in time.
+    The friction's impulse on the way is known, v + A d T per kg. Powers are integrated by Gauss's rule along the way of
+    a straight stop, which is quadratic in time.
     """
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     slow_x, slow_y = v_x + stop.pull_x * stop.time, v_y + stop.pull_y * stop.time
+    for k in range(len(NODES)):
+        to_go = 1.0 - NODES[k]
+        way = 1.0 - to_go * to_go
+        f = fields(surface, local, x + way * stop.x, y + way * stop.y, time + NODES[k] * stop.time)
+        pushed = push(f, part, pull(f, to_go * v_x, to_go * v_y, part).normal) * stop.time
+        state[4] += WEIGHTS[k] * (pushed - part.mass * drag(f, slow_x, slow_y))
     state[0], state[1], state[2], state[3] = x + stop.x, y + stop.y, 0.0, 0.0
     state[5] += part.mass * stop.loss
-    f = fields(surface, local, x + 5 / 9 * stop.x, y + 5 / 9 * stop.y, time + stop.time / 3)
-    g = fields(surface, local, state[0], state[1], time + stop.time)
-    first = push(f, part, pull(f, 2 / 3 * v_x, 2 / 3 * v_y, part).normal) * stop.time
-    later = push(g, part, pull(g, 0.0, 0.0, part).normal) * stop.time
-    drags = 0.75 * drag(f, slow_x, slow_y) + 0.25 * drag(g, slow_x, slow_y)
-    state[4] += 0.75 * first + 0.25 * later - part.mass * drags

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -34,7 +35,7 @@ class SurfaceState(NamedTuple):
 
 
 class SurfaceMotion(NamedTuple):
-    """A moving surface; made by `coupling.surface_motion` or `polynomial_surface`."""
+    """A moving surface; made by `coupling.surface_motion`, `platform_surface` or `polynomial_surface`."""
 
     drives: DriveTable  # N drives, then the base's x and y where it moves
     sources: FloatArray  # (J, 2) m, the centres of the logarithms
@@ -106,6 +107,28 @@ def polynomial_surface(
         moving_base=base is not None,
         error=0.0,
     )
+
+
+def platform_surface(
+    x: AnyDrive | None = None, y: AnyDrive | None = None, z: AnyDrive | None = None, size: float = 1.0
+) -> SurfaceMotion:
+    """A flat rigid surface without rim that drives move along x, y and z; None: not at all.
+
+    Positions on it are counted from the platform.
+    size: m, the length that the integrator's tolerance refers to; the platform's largest travel suits.
+    Raises ValueError when the size is not positive.
+    """
+    if not (math.isfinite(size) and size > 0):
+        raise ValueError(f"Input size of platform_surface must be a positive length in m; got {size!r}")
+    flat = polynomial_surface([[1.0]], size=size)
+    tables = [_still_table() if drive is None else drive_table([drive]) for drive in (z, x, y)]
+    return flat._replace(drives=reduce(_joined, tables), moving_base=True)
+
+
+def _still_table() -> DriveTable:
+    """A drive that stays at 0, without kinks."""
+    table = monomial_table(1)
+    return table._replace(coefficients=np.zeros_like(table.coefficients))
 
 
 def _joined(a: DriveTable, b: DriveTable) -> DriveTable:

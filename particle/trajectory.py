@@ -62,6 +62,10 @@ _SENTENCES = {
 }
 
 
+_FOR_GOOD = "The part rests on the surface for good: nothing that the drives still do moves it."
+_FOR_NOW = "The part rests on the surface at the end of the run; what the drives do later moves it again."
+
+
 @dataclass(frozen=True)
 class Event:
     """One moment of a trajectory."""
@@ -124,6 +128,14 @@ class Trajectory:
     evaluations: int  # of the surface
     energy: Energy = field(repr=False)
     sampler: Callable[[FloatArray], FloatArray] = field(repr=False)  # rows at ascending times
+    stays: bool | None = None  # of a part that rests at the end: whether it does so for good; None: not known
+
+    @property
+    def sentence(self) -> str:
+        """How the run ended."""
+        if self.outcome is Outcome.STUCK and self.stays is not None:
+            return _FOR_GOOD if self.stays else _FOR_NOW
+        return self.outcome.sentence
 
     @property
     def distance(self) -> float:

@@ -1,4 +1,4 @@
-"""Every example runs; its files are read back by VTK's own reader, and the part stands on the surface."""
+"""Every example with a plate runs; its files are read back by VTK's own reader, and the part stands on the surface."""
 
 from pathlib import Path
 
@@ -9,7 +9,8 @@ import pyvista
 from coupling import read_case, report, run_case
 from coupling.rim import onto_plate
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+FILES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+EXAMPLES = [file for file in FILES if 'shape = "platform"' not in file.read_text()]
 pytestmark = pytest.mark.compiled
 
 

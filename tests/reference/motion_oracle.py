@@ -11,8 +11,7 @@ Sliding is DOP853 in (x, y, v). Where u is small compared with friction times a 
 - just off: the direction relaxes at the rate Q/(m u), and Radau takes (x, y, v) from a speed of 1e-13 m/s along p.
 
 Everything that ends a piece is located by repeating the last step, not by its interpolant. Slow: seconds a case.
-Its ends moved by less than 2e-12 of the plate's radius with other tolerances and first speeds, and by up to 1e-11 where
-the part passes straight over an actuator.
+With RTOL or FIRST_SPEED smaller still, the ends of the reference cases move by less than 2e-11 of the plate's radius.
 """
 
 from __future__ import annotations

@@ -268,7 +268,7 @@ BROKEN = [
     ((STROKE, ""), 'line 8  actuators[1].stroke is missing; it must be a length such as "150 um"'),
     (
         ('shape = "disc"', ""),
-        'line 1  plate.shape is missing; it must be "disc", "rectangle", "annulus", "ellipse" or "polygon", or',
+        'line 1  plate.shape is missing; it must be "disc", "rectangle", "annulus", "ellipse", "polygon" or "platf',
     ),
     ((POISSON, ""), "line 1  plate.poisson_ratio is missing; it must be a number"),
     ((PART, ""), 'two lengths, x and y, such as ["100 um", "100 um"]'),
@@ -289,7 +289,7 @@ BROKEN = [
     (("cycles = 5", 'cycle = "down"'), 'actuators[2].cycle must be "up-down", "up", "sine" or "cosine"; got "down"'),
     (
         ('shape = "disc"', 'shape = "square"'),
-        'line 2  plate.shape must be "disc", "rectangle", "annulus", "ellipse" or "polygon"; got "square"',
+        'line 2  plate.shape must be "disc", "rectangle", "annulus", "ellipse", "polygon" or "platform"; got "square"',
     ),
     (('"300 Hz"', '"0 Hz"'), 'actuators[1].frequency must be greater than 0; got "0 Hz"'),
     (('"1 ms"', '"-1 ms"'), 'actuators[2].delay must be at least 0; got "-1 ms"'),
@@ -370,7 +370,7 @@ def test_places_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
         'line 2   plate.density must be a density such as "2330 kg/m^3"; got "1 s", a time',
         f"line 10  actuators[1].position {outside} 100 um beyond it",
         "line 11  actuators[1].speed is not known; "
-        "[[actuators]] has position, stroke, force, stiffness, frequency, cycle, cycles, dwell, table, segments, "
+        "[[actuators]] has position, force, stiffness, stroke, frequency, cycle, cycles, dwell, table, segments, "
         "repeats, delay",
         f"line 16  actuators[2].position {outside} 100 um beyond it",
         "line 16  actuators[2].position must differ from actuators[1].position; got the same point",

@@ -1,0 +1,58 @@
+"""From the drives of a case to those of the integrator, and what a run must know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.case import Case
+from coupling.drive_case import ENDLESS, DriveCase, amplitude
+from particle import AnyDrive, Drive, Segment, SegmentDrive, TableDrive
+
+FloatArray = NDArray[np.float64]
+
+JUMP = 1e-3  # of a stroke over its time: a smaller change of velocity is none
+
+
+def build_drives(case: Case) -> list[AnyDrive]:
+    """The actuators' drives; those of forces are in N."""
+    return [build_drive(actuator) for actuator in case.actuators]
+
+
+def build_drive(drive: DriveCase) -> AnyDrive:
+    """One drive: a table, a schedule of segments, or one cycle over and over."""
+    repeats = None if drive.repeats == ENDLESS else drive.repeats
+    if drive.table is not None:
+        times, heights = np.array(drive.table).T
+        return TableDrive(times, heights, repeats, drive.delay)
+    if drive.segments is not None:
+        return SegmentDrive([Segment(**segment.model_dump()) for segment in drive.segments], repeats, drive.delay)
+    return Drive(amplitude(drive), drive.frequency or 0.0, drive.cycle, drive.cycles, drive.delay, drive.dwell)
+
+
+def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray) -> FloatArray:
+    """The heights h_i(t) [m] of the drives at times (k,) [s]: (k, N)."""
+    return np.stack([drive.evaluate(times)[0] for drive in drives], axis=1)
+
+
+def travel(drive: AnyDrive) -> float:
+    """The distance [m] between the lowest and the highest of its pieces' ends and middles."""
+    _, _, rows, _ = drive.segments()
+    heights = rows @ np.power.outer([0.0, 0.5, 1.0], np.arange(rows.shape[1])).T
+    return float(np.ptp(heights))
+
+
+def first_jump(drives: Sequence[AnyDrive], end: float) -> float | None:
+    """The first time [s] between 0 and `end` at which a drive's velocity jumps; None: at none."""
+    times = []
+    for drive in drives:
+        start, scale, _, repeats = drive.segments()
+        near = 1e-6 * drive.stroke_time
+        for time in (drive.delay, drive.delay + (start[-1] + scale[-1]) * repeats):
+            if 0 < time < end:
+                before, after = drive.evaluate([time - near, time + near])[1]
+                if abs(after - before) > JUMP * travel(drive) / drive.stroke_time:
+                    times.append(time)
+    return min(times, default=None)

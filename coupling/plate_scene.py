@@ -1,0 +1,90 @@
+"""The scene of a plate on actuators: its shapes, and the surface that they make with the drives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from coupling.case import Case
+from coupling.drawn_plate import drawn_plate
+from coupling.drives import build_drives
+from coupling.measured import MotionFit
+from coupling.pictures import Unit, draw_plate
+from coupling.plate_case import PlateCase
+from coupling.plate_figures import plate_figures
+from coupling.progress import Progress
+from coupling.rim import onto_plate
+from coupling.scene import Ground
+from coupling.summary import PlateFigures
+from coupling.surface import surface_motion
+from fem_plate import InfluenceShapes, Plate, PlateSection
+from fem_plate.influence import MOST_DENSE
+from particle import AnyDrive, SurfaceMotion, Trajectory
+
+FloatArray = NDArray[np.float64]
+
+# Without a cell size the plate is refined until the unit shapes' estimated error is below this, which keeps the end
+# point of a usual path to 1e-6 of it.
+PLATE_TOLERANCE = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class PlateScene:
+    """A plate on actuators."""
+
+    plate: Plate
+    shapes: InfluenceShapes
+    lifts: Sequence[AnyDrive]
+    surface: SurfaceMotion
+    base: Sequence[AnyDrive] = field(default=(), init=False)
+    origin: str = field(default="the plate", init=False)
+    fits: tuple[MotionFit, ...] = field(default=(), init=False)
+
+    def ground(self, trajectory: Trajectory) -> Ground:
+        points, triangles = drawn_plate(self.plate.mesh, self.shapes.points)
+        return Ground(points, triangles, self.shapes.evaluate(points)[0])
+
+    def onto(self, xy: FloatArray) -> FloatArray:
+        return onto_plate(self.shapes.outline, xy)
+
+    def figures(self, case: Case, trajectory: Trajectory) -> PlateFigures:
+        return plate_figures(case, self.plate, self.shapes, self.surface, self.lifts, trajectory)
+
+    def draw(self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit) -> list[Line2D]:
+        return draw_plate(figure, axes, self.shapes, ground.points, ground.triangles, ground.shapes @ heights, unit)
+
+
+def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:
+    """The scene of a case with a plate; ValueError when it has too many actuators for a run."""
+    with progress("Solving the plate"):
+        plate = build_plate(plate_case)
+        shapes = find_shapes(case, plate)
+    with progress("Fitting the surface"):
+        drives = build_drives(case)
+        return PlateScene(plate, shapes, drives, surface_motion(shapes, drives))
+
+
+def build_plate(plate: PlateCase) -> Plate:
+    """The plate, not yet loaded."""
+    section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
+    tolerance = None if plate.cell_size_given else PLATE_TOLERANCE
+    return Plate(plate.build_mesh(), section, plate.supports, tolerance)
+
+
+def find_shapes(case: Case, plate: Plate) -> InfluenceShapes:
+    """The influence shapes of the case's actuators; ValueError when they are too many for a run."""
+    shapes = plate.influence([actuator.position for actuator in case.actuators], springs(case))
+    if not isinstance(shapes, InfluenceShapes):
+        raise ValueError(f"Input actuators of a run must be at most {MOST_DENSE}; got {len(case.actuators)}")
+    return shapes
+
+
+def springs(case: Case) -> NDArray[np.float64]:
+    """The stiffness (N,) [N/m] with which each actuator holds its place, 0 where a force drives it."""
+    return np.array([0.0 if a.force is not None else a.stiffness or np.inf for a in case.actuators])

@@ -1,0 +1,69 @@
+"""Scene: what a part moves over, and what the summary, the result files and the picture need of that."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from coupling.case import Case
+from coupling.measured import MotionFit
+from coupling.pictures import Unit
+from coupling.summary import PlateFigures
+from fem_plate import InfluenceShapes
+from particle import AnyDrive, SurfaceMotion, Trajectory
+
+FloatArray = NDArray[np.float64]
+
+
+class Ground(NamedTuple):
+    """The surface as drawn."""
+
+    points: FloatArray  # (n, 2) m
+    triangles: NDArray[np.int64]  # (m, 3)
+    shapes: FloatArray  # (n, N), the deflection there for each lifting drive at 1
+
+
+class Scene(Protocol):
+    """A plate on actuators, or a platform."""
+
+    @property
+    def surface(self) -> SurfaceMotion:
+        """The moving surface."""
+
+    @property
+    def lifts(self) -> Sequence[AnyDrive]:
+        """The N drives that deflect the surface."""
+
+    @property
+    def base(self) -> Sequence[AnyDrive]:
+        """The drives that move it in its plane, along x and y; none: it stays."""
+
+    @property
+    def shapes(self) -> InfluenceShapes | None:
+        """The shapes of a plate; None: it is none."""
+
+    @property
+    def origin(self) -> str:
+        """What positions are counted from, in words."""
+
+    @property
+    def fits(self) -> tuple[MotionFit, ...]:
+        """How closely it follows a measured motion; empty: it has none."""
+
+    def ground(self, trajectory: Trajectory) -> Ground:
+        """The surface as drawn with a path over it."""
+
+    def onto(self, xy: FloatArray) -> FloatArray:
+        """Points (n, 2) [m] themselves, or the nearest of the rim where they are just past it."""
+
+    def figures(self, case: Case, trajectory: Trajectory) -> PlateFigures | None:
+        """What the summary says of a plate; None: it is none."""
+
+    def draw(self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit) -> list[Line2D]:
+        """Draw what lies under the path, lifted to heights (N,), in a unit of length; return its keys."""

@@ -1,0 +1,223 @@
+"""Platforms in a case file: their motion by drives or from a CSV file, options of the run, and what can be wrong."""
+
+import numpy as np
+import pytest
+
+from coupling.case import Case, CaseError, CoulombCase, PartCase, RunCase, read_case
+from coupling.run import build_surface
+
+FRAME = """\
+[part]
+mass = "2e-9 kg"
+position = ["100 um", "100 um"]
+[friction]
+model = "constant"
+limit = "1 uN"
+[run]
+duration = "4 ms"
+"""
+PLATFORM = '[plate]\nshape = "platform"\n'
+FILE = PLATFORM + 'motion = "shaker.csv"\n'
+HEADER = "time [ms], x [um], z [mm]\n"
+ROWS = "".join(f"{time / 2}, {time**2}, {-time}\n" for time in range(10))
+
+
+def read(folder, plate, run="") -> Case:
+    file = folder / "test.toml"
+    file.write_text(plate + FRAME + run)
+    return read_case(file)
+
+
+def problems(folder, plate, run=""):
+    with pytest.raises(CaseError) as caught:
+        read(folder, plate, run)
+    return [f"{p.line} {p.field} {p.message}" for p in caught.value.problems]
+
+
+def test_drives_of_its_axes(tmp_path):
+    plate = """\
+[plate]
+shape = "platform"
+[plate.motion.x]
+stroke = "20 um"
+frequency = "400 Hz"
+cycle = "sine"
+delay = "1 ms"
+[plate.motion.z]
+table = [["0 ms", "0 um"], ["2 ms", "5 um"]]
+[[plate.motion.y.segments]]
+stroke = "3 um"
+frequency = "1 kHz"
+"""
+    surface = build_surface(read(tmp_path, plate))
+    assert surface.evaluate([[1.0, 1.0]], 1e-3).w[0] == pytest.approx(2.5e-6)
+    assert surface.moving_base and surface.size == pytest.approx(40e-6)
+    assert (surface.drives.repeats == [1, np.inf, 1]).all()  # z, x, y
+    assert (surface.drives.delay == [0, 1e-3, 0]).all()
+
+
+def test_a_measured_motion_counts_time_from_its_first_row(tmp_path):
+    rows = "".join(f"{3 + time}, {time**2 / 1e3}\n" for time in range(10))
+    (tmp_path / "shaker.csv").write_text("# measured\n\ntime [ms] , z [mm]\n" + rows)
+    surface = build_surface(read(tmp_path, FILE))
+    state = surface.evaluate([[0.0, 0.0]], 3.5e-3)
+    assert state.w[0] == pytest.approx(3.5**2 * 1e-6)
+    assert state.w_tt[0] == pytest.approx(2.0)
+    assert surface.size == pytest.approx(81e-6)
+
+
+def test_a_platform_may_stand_still(tmp_path):
+    for plate in (PLATFORM, PLATFORM + "[plate.motion]\n"):
+        surface = build_surface(read(tmp_path, plate))
+        assert surface.evaluate([[0.0, 0.0]], 1e-3).w[0] == 0.0
+
+
+def test_in_python(tmp_path):
+    others = {
+        "part": PartCase(mass=1e-9, position=(0, 0)),
+        "friction": CoulombCase(coefficient=0.3),
+        "run": RunCase(duration=1e-3, gravity=(0.0, 1.0, -9.8)),
+    }
+    motion = {"x": {"stroke": 1e-6, "frequency": 3.0}}
+    case = Case(plate={"shape": "platform", "motion": motion}, **others)
+    assert case.actuators == ()
+    assert Case.model_validate(case.model_dump()) == case
+    assert Case.model_validate_json(case.model_dump_json()) == case
+
+
+def test_options_of_the_run(tmp_path):
+    text = 'gravity = ["0 m/s^2", "100 cm/s^2", "-9.8 m/s^2"]\nafter_detachment = "fly"\n'
+    run = read(tmp_path, PLATFORM, text).run
+    assert (run.gravity, run.after_detachment, run.scheme, run.time_step) == ((0.0, 1.0, -9.8), "fly", "events", None)
+    run = read(tmp_path, PLATFORM, 'scheme = "fixed"\ntime_step = "2 us"').run
+    assert (run.gravity, run.scheme, run.time_step) == (9.80665, "fixed", 2e-6)
+    assert read(tmp_path, PLATFORM, "").part.squeeze == 0.0
+
+
+ONLY_X = "[plate.motion.x]\n"
+WRONG = [
+    ('radius = "3 um"', '3 plate.radius is not known; [plate] with shape = "platform" has shape, motion, smoothing'),
+    ("motion = 3", "3 plate.motion must be a table, written [plate.motion]; got 3"),
+    ('motion = "nowhere.csv"', "3 plate.motion cannot be read: no such file or directory"),
+    ('smoothing = "1 um"', '3 plate.smoothing must not be given without motion = "file.csv"'),
+    ("[plate.motion]\nx = 3", "4 plate.motion.x must be a table, written [plate.motion.x]; got 3"),
+    ("[plate.motion]\nw = 3", "4 plate.motion.w is not known; [plate.motion] has x, y, z"),
+    (
+        ONLY_X + 'frequency = "1 Hz"',
+        '3 plate.motion.x.stroke is missing; it must be a length such as "150 um", or have a',
+    ),
+    (ONLY_X + 'stroke = "1 um"', "3 plate.motion.x.frequency is missing"),
+    (ONLY_X + 'force = "1 N"', "4 plate.motion.x.force is not known; [plate.motion.x] has stroke, frequency, cycle"),
+    (ONLY_X + "colour = 3", "4 plate.motion.x.colour is not known; [plate.motion.x] has stroke"),
+    (
+        ONLY_X + 'stroke = "1 um"\ntable = [["0 s", "1 m"], ["1 s", "2 m"]]',
+        "5 plate.motion.x.table must not be given with a stroke; an axis is driven by one of stroke, table and",
+    ),
+    (
+        "[plate.motion]\ny = { segments = 3 }",
+        "4 plate.motion.y.segments must be written [[plate.motion.y.segments]], in double brackets",
+    ),
+    (
+        '[[plate.motion.x.segments]]\nstroke = "1 um"\ncolour = 1',
+        "5 plate.motion.x.segments[1].colour is not known; [[plate.motion.x.segments]] has stroke, frequency",
+    ),
+    (
+        '[[actuators]]\nposition = ["0 um", "0 um"]\nstroke = "1 um"\nfrequency = "1 Hz"',
+        '3 actuators must not be given with shape = "platform", which moves as a whole',
+    ),
+]
+
+
+@pytest.mark.parametrize("text, expected", WRONG)
+def test_each_mistake_is_told_with_its_line(tmp_path, text, expected):
+    found = problems(tmp_path, PLATFORM + text + "\n")
+    assert any(line.startswith(expected) for line in found), found
+
+
+WRONG_RUN = [
+    (
+        'gravity = ["1 m/s^2", "2 m/s^2"]',
+        'must be an acceleration such as "9.80665 m/s^2", or three, along x, y and z;',
+    ),
+    (
+        'gravity = ["1 m/s^2", "2 m", 3]',
+        'is wrong: its y must be an acceleration such as "9.80665 m/s^2"; got "2 m", a',
+    ),
+    ('time_step = "1 us"', 'must not be given with scheme = "events", which chooses its steps by the tolerance'),
+    ('scheme = "event"', 'must be "events", "fixed" or "paper"; got "event"'),
+    ('scheme = "paper"\nafter_detachment = "fly"', 'must be "stop" with scheme = "paper"; only "events" follows'),
+    ('after_detachment = "hop"', 'must be "stop" or "fly"; got "hop"'),
+]
+
+
+@pytest.mark.parametrize("text, expected", WRONG_RUN)
+def test_wrong_options_of_the_run(tmp_path, text, expected):
+    (found,) = problems(tmp_path, PLATFORM, text)
+    assert f"run.{text.splitlines()[-1].partition(' ')[0]} {expected}" in found
+
+
+WRONG_FILES = [
+    ("", ['is empty; it must begin with a header such as "time [ms], x [um], z [um]"']),
+    (ROWS, ['line 1 must be a header such as "time [ms], x [um], z [um]"; got "0.0, 0, 0"']),
+    (
+        "time, X [um], q [um], z [s]\n",
+        [
+            "line 1 must give the unit of time, as in",
+            'line 1 has a column "X [um]" that is not known; did you mean x?',
+            'line 1 has a column "q [um]" that is not known; there may be time, x, y, z',
+            "line 1 must give z in a unit of length; got [s], a time",
+        ],
+    ),
+    (
+        "x [um], x [umm]\n",
+        [
+            "line 1 has two columns x",
+            'line 1 must give x in a unit of length; got [umm], but there is no unit "umm"; did you mean "um"?',
+            "line 1 must have a column time, as in",
+        ],
+    ),
+    ("time [ms]\n1\n", ["line 1 must have a column x, y or z, as in"]),
+    (HEADER + "0, 0, 0\n1, 1, 1\n", ["must have at least 6 rows below its header; got 2"]),
+    (
+        HEADER + "0, 0, 0\n1, abc, nan\n2, 3\n\n3, , 1\n",
+        [
+            'line 3 must have a finite number as x; got "abc"',
+            'line 3 must have a finite number as z; got "nan"',
+            "line 4 must have 3 columns; got 2",
+            'line 6 must have a finite number as x; got ""',
+        ],
+    ),
+    (
+        HEADER + ROWS + "\n1, 0, 0\n1, 0, 0\n",
+        [
+            "line 13 must have a later time than the row before; got 0.001 s after 0.0045 s",
+            "line 14 must have a later time than the row before; got 0.001 s after 0.001 s",
+        ],
+    ),
+    (HEADER + "a, b, c\n" * 30, [*["line"] * 10, "has 80 more mistakes"]),
+]
+
+
+@pytest.mark.parametrize("text, expected", WRONG_FILES)
+def test_every_mistake_in_a_measured_motion_is_told_with_its_line(tmp_path, text, expected):
+    """Whatever else is wrong: here the mass."""
+    (tmp_path / "shaker.csv").write_text(text)
+    found = problems(tmp_path, FILE + "smoothing = 3\n")
+    assert found.pop(-1).startswith("4 plate.smoothing must be a length")
+    assert len(found) == len(expected)
+    for line, start in zip(found, expected, strict=True):
+        assert line.startswith(f"3 plate.motion in shaker.csv: {start}"), found
+
+
+def test_a_motion_must_last_as_long_as_the_run(tmp_path):
+    (tmp_path / "shaker.csv").write_text(HEADER + ROWS)
+    assert read(tmp_path, FILE).run.duration == 4e-3
+    (tmp_path / "shaker.csv").write_text(HEADER + "".join(ROWS.splitlines(keepends=True)[:8]))
+    assert problems(tmp_path, FILE) == [
+        "11 run.duration must not exceed the measured motion's, 0.0035 s; got 0.004 s",
+    ]
+
+
+def test_bytes_are_no_motion(tmp_path):
+    (tmp_path / "shaker.csv").write_bytes(b"\xff\xfe\x00")
+    assert problems(tmp_path, FILE) == ["3 plate.motion in shaker.csv: is not UTF-8 text"]
