@@ -253,3 +253,26 @@ def test_a_jolt_across_a_part_that_has_just_broken_away(since, jolt):
     assert path.position[-1] == pytest.approx(theirs[:2], abs=1e-8)
     assert path.velocity[-1] == pytest.approx(theirs[2:], abs=1e-7)
     assert path.energy.balance < 1e-8
+
+
+@pytest.mark.parametrize("law", ["holding", "gripping"])
+def test_a_curved_plate_that_stops_at_once_throws_or_drags_the_part_by_its_own_height(law):
+    """w = t V p(x): where it stops the slope is END V p', and the part has the velocity V p(x)."""
+    v, x, y = 0.8, 0.3, -0.2
+    p = np.array([[1.0, 0.3, 0.2], [0.5, 0.1, 0.0], [-0.4, 0.0, 0.0]])
+    height = v * np.polynomial.polynomial.polyval2d(x, y, p)
+    slope = v * END * np.array([0.5 + 0.1 * y - 0.8 * x, 0.3 + 0.1 * x + 0.4 * y])
+    friction = ConstantFriction(40.0 * MASS) if law == "holding" else CoulombAdhesion(0.9)
+    surface = driven([steady(v, END)], [p])
+    path = simulate(surface, Micropart(MASS, (x, y)), friction, END + 1.0, after_detachment="fly")
+    first = path.events[0]
+    assert first.time == END and first.position == (x, y)
+    row = np.flatnonzero(path.time == END)[-1]
+    if law == "gripping":
+        assert [e.kind for e in path.events] == [EventKind.DETACHES, EventKind.LANDS]
+        assert path.events[1].time == pytest.approx(END + 2 * height / G, rel=1e-9)
+        assert path.position[-1] == pytest.approx([x, y], abs=1e-12)
+    else:
+        assert [e.kind for e in path.events] == [EventKind.SLIPS, EventKind.STOPS]
+        assert path.velocity[row] == pytest.approx(height * slope / (1 + slope @ slope), rel=1e-9)
+    assert path.energy.balance < 1e-8
