@@ -26,7 +26,7 @@ from particle import (
 
 SIZE, MASS, G, TOLERANCE, DURATION = 300e-6, 2e-9, 9.80665, 1e-11, 4e-3
 SLIPS, STOPS, REVERSES = EventKind.SLIPS, EventKind.STOPS, EventKind.REVERSES
-OTHER_STEPS = 300.0  # tolerances by which paths in other steps may differ
+OTHER_STEPS = 300.0  # tolerances; rounding can begin a slide in other steps
 NUDGE = 1e-8  # of the size
 pytestmark = pytest.mark.compiled
 FEW = settings(max_examples=40, deadline=None, derandomize=True)
@@ -161,9 +161,9 @@ def growth(case, path):
     return most
 
 
-def same(case, path, other, back=None, length=1.0, time=1.0, later=0.0, factor=1.0):
-    """The same path to so many tolerances, as far as errors grow; back: (2, 2), to the path's own axes."""
-    bound = factor * TOLERANCE * growth(case, path)
+def same(case, path, other, back=None, length=1.0, time=1.0, later=0.0):
+    """The same path to a few hundred tolerances, as far as errors grow; back: (2, 2), to the path's own axes."""
+    bound = OTHER_STEPS * TOLERANCE * growth(case, path)
     back = np.eye(2) if back is None else back
     assert kinds(other) == kinds(path)
     assert other.outcome is path.outcome
@@ -224,7 +224,7 @@ def test_begun_later(case, delay):
     path = case.path()
     assume(all(event.time > 0.99 * min(case.delays) for event in path.events))  # it waits at rest
     late = replace(case, delays=tuple(d + delay for d in case.delays), duration=case.duration + delay)
-    same(case, path, late.path(), later=delay, factor=30.0)  # later times are rounded more
+    same(case, path, late.path(), later=delay)
 
 
 @FEW
@@ -239,7 +239,7 @@ def test_an_accelerated_device_is_one_under_another_gravity(case, lift):
 
     x, y, z = (push(a) for a in lift)
     heavier = replace(case, gravity=case.gravity + lift[2], tilt=case.tilt - lift[:2])
-    same(heavier, heavier.path(), case.path(extra=(x, y, z)), factor=OTHER_STEPS)
+    same(heavier, heavier.path(), case.path(extra=(x, y, z)))
 
 
 @FEW
@@ -248,7 +248,7 @@ def test_a_device_at_constant_velocity_is_one_at_rest(case, velocity):
     case = replace(case, base=np.zeros(2))
     end = case.duration
     x, y, z = (HermiteDrive([0, end], [0, v * end], [v, v], [0, 0]) for v in velocity)
-    same(case, case.path(), case.path(extra=(x, y, z)), factor=OTHER_STEPS)
+    same(case, case.path(), case.path(extra=(x, y, z)))
 
 
 @FEW
