@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from particle.drive import next_kink
 from particle.fields import fields, new_local, pin_cell, pin_time
-from particle.flight import fly, jolt, jump, take_off
+from particle.flight import JUMP, fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.motion import Part, energy, margin, pull
@@ -41,7 +41,6 @@ FloatArray = NDArray[np.float64]
 # As EventKind; the ends follow as 2 + their number.
 SLIPS, STOPS, REVERSES, LANDS = 0, 1, 2, 6
 START = 0.02  # of a stroke: the first step
-JUMP = 1e-11  # of the surface's size in a stroke: smaller jumps of its velocity are rounding
 
 EVALUATIONS_PER_SPAN, EVALUATIONS_AT_LEAST = 2_000, 20_000
 
@@ -65,17 +64,22 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             if span_end <= time:
                 verdict = WORK_LIMIT
                 break
-            before = mode
+            before, jolted = mode, False
             if request.jumps and count[1] > 0:
-                mode = _cross_kink(surface, local, request, mode, time, span_end, record, state)
+                mode, jolted = _cross_kink(surface, local, request, mode, time, span_end, record, state)
             else:
                 pin_time(surface, local, time, span_end)
             h = max(h, 1e-4 * request.stroke_time)
             count[1] += 1
-            if mode != before:
+            if jolted:
                 row = row_of(surface, local, part, mode, time, state)
-                event = 2 + DETACHED if mode == FLYING else (STOPS if mode == RESTING else SLIPS)
-                record = write(note(record, event, row, _speed(row)), row)
+                if mode == FLYING and before != FLYING:
+                    record = note(record, 2 + DETACHED, row, _speed(row))
+                elif mode == RESTING and before != RESTING:
+                    record = note(record, STOPS, row, _speed(row))
+                elif before == RESTING and mode != RESTING:
+                    record = note(record, SLIPS, row, _speed(row))
+                record = write(record, row)
                 if mode == FLYING and not request.flies:
                     return _results(record, DETACHED, count)
         if rim_gap(surface, state[0], state[1]) < 0.0 or not pin_cell(surface, local, state[0], state[1]):
@@ -145,12 +149,12 @@ def _cross_kink(
     span_end: float,
     record: Record,
     state: FloatArray,
-) -> int:
-    """Goes on to the next span over a kink at which the surface's velocity may jump; what the part does then."""
+) -> tuple[int, bool]:
+    """Goes on to the next span over a kink; what the part does then, and whether the surface's velocity jumped."""
     before = fields(surface, local, state[0], state[1], time)
     pin_time(surface, local, time, span_end)
     if not pin_cell(surface, local, state[0], state[1]):
-        return mode
+        return mode, False
     after = fields(surface, local, state[0], state[1], time)
     moved = state.copy()
     if mode == MANIFOLD:
@@ -158,10 +162,10 @@ def _cross_kink(
         moved[2], moved[3] = row[V_X], row[V_Y]
     slack = JUMP * surface.size / request.stroke_time
     if jump(before, after) <= slack:
-        return mode
+        return mode, False
     mode = jolt(before, after, request.part, mode, slack, moved)
     state[:] = moved
-    return mode
+    return mode, True
 
 
 @jit

@@ -25,6 +25,7 @@ from particle.slide import GOES_ON, LEFT_PLATE, SHORTEST, WORK_LIMIT, Request
 FloatArray = NDArray[np.float64]
 
 GRAZE = 1e-13  # of the surface's size: rounding of a height
+JUMP = 1e-11  # of the surface's size in a stroke: smaller velocities after an impact, and jumps of them, are rounding
 
 
 @jit
@@ -93,21 +94,25 @@ def fly(
         _ahead(surface, local, part, here, time, state, lands * h, end)
         state[:] = end
         at = span_end if lands == 1.0 and h == remaining else time + lands * h
-        return land(fields(surface, local, state[0], state[1], at), part, state), at, h, GOES_ON
+        slack = JUMP * surface.size / request.stroke_time
+        return land(fields(surface, local, state[0], state[1], at), part, slack, state), at, h, GOES_ON
     state[:] = end
     return FLYING, (span_end if h == remaining else time + h), 2 * h, GOES_ON
 
 
 @jit
-def land(f: Fields, part: Part, state: FloatArray) -> int:
-    """The impact of a part at `state` on the surface, in place; what it does then, should the contact last."""
+def land(f: Fields, part: Part, slack: float, state: FloatArray) -> int:
+    """The impact of a part at `state` on the surface, in place; what it does then, should the contact last.
+
+    A velocity along the surface of up to `slack` [m/s] is none.
+    """
     s = math.sqrt(1 + f.x * f.x + f.y * f.y)
     v_x, v_y, v_z = state[2], state[3], state[7] - f.w_t
     into = (v_z - v_x * f.x - v_y * f.y) / s
     # Velocity along the surface, before friction's impulse takes its share.
     t_x, t_y, t_z = v_x + into * f.x / s, v_y + into * f.y / s, v_z - into / s
     speed = math.sqrt(t_x * t_x + t_y * t_y + t_z * t_z)
-    kept = max(0.0, 1.0 - part.law.impact_coefficient * abs(into) / speed) if speed > 0.0 else 0.0
+    kept = max(0.0, 1.0 - part.law.impact_coefficient * abs(into) / speed) if speed > slack else 0.0
     after_x, after_y, after_z = kept * t_x, kept * t_y, kept * t_z
     p_x, p_y, p_z = after_x - v_x, after_y - v_y, after_z - v_z  # impulse per kg
     state[4] += part.mass * (p_x * f.base_vx + p_y * f.base_vy + p_z * f.w_t)
@@ -137,7 +142,7 @@ def jolt(before: Fields, after: Fields, part: Part, mode: int, slack: float, sta
     away = state[7] - after.w_t - state[2] * after.x - state[3] * after.y
     if mode == FLYING or (away > slack and math.isfinite(part.law.pull_off)):
         return FLYING
-    return land(after, part, state)
+    return land(after, part, slack, state)
 
 
 @jit
