@@ -20,7 +20,7 @@ from particle.flight import JUMP, fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.motion import Part, energy, margin, pull
-from particle.record import FLYING, MANIFOLD, RESTING, SLIDING, V_X, V_Y, Record, new_record, note, row_of, write
+from particle.record import FLYING, MANIFOLD, RESTING, SLIDING, TIME, V_X, V_Y, Record, new_record, note, row_of, write
 from particle.rim import rim_gap
 from particle.runge_kutta import Tableau, new_step
 from particle.slide import (
@@ -43,6 +43,7 @@ SLIPS, STOPS, REVERSES, LANDS = 0, 1, 2, 6
 START = 0.02  # of a stroke: the first step
 
 EVALUATIONS_PER_SPAN, EVALUATIONS_AT_LEAST = 2_000, 20_000
+LONG, EVALUATIONS_PER_STEP = 1e-5, 40  # of the run: steps that are no sign of trouble, however many there are
 
 
 @jit
@@ -50,7 +51,7 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
     """The path from one request: rows (n, COLUMNS), events (m, EVENT_COLUMNS), how it ended, evaluations."""
     part, end = request.part, request.duration
     local, rest, step, record = new_local(surface), new_rest(), new_step(pair), new_record()
-    count = np.zeros(2, dtype=np.int64)  # evaluations and spans
+    count = np.zeros(3, dtype=np.int64)  # evaluations, spans, long steps
     # x, y, v_x, v_y, work, dissipation, z, v_z; on the slow manifold u in place of v_x.
     state, time = np.zeros(8), 0.0
     state[:4] = request.start
@@ -125,8 +126,10 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             record = note(record, event, row, _speed(row))
         if mode != before:
             row = row_of(surface, local, part, mode, time, state)
+        count[2] += row[TIME] - record.rows[record.counts[0] - 1, TIME] > LONG * end
         record = write(record, row)
-        if count[0] > EVALUATIONS_AT_LEAST + EVALUATIONS_PER_SPAN * count[1]:
+        allowed = EVALUATIONS_AT_LEAST + EVALUATIONS_PER_SPAN * count[1] + EVALUATIONS_PER_STEP * count[2]
+        if count[0] > allowed:
             verdict = WORK_LIMIT
     if verdict in (DETACHED, LEFT_PLATE, OVERLOADED):
         row = record.rows[record.counts[0] - 1]

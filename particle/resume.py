@@ -39,7 +39,7 @@ FloatArray = NDArray[np.float64]
 def resume(surface: Any, request: Request, pair: Tableau, rows: FloatArray, times: FloatArray) -> FloatArray:
     """The rows (k, COLUMNS) at ascending times (k,) [s], each marched to from the row of the path before it."""
     part, out = request.part, np.zeros((len(times), COLUMNS))
-    local, step, count = new_local(surface), new_step(pair), np.zeros(2, dtype=np.int64)
+    local, step, count = new_local(surface), new_step(pair), np.zeros(3, dtype=np.int64)
     state, row, pinned = np.zeros(8), 0, -1
     for k in range(len(times)):
         while row + 1 < len(rows) and rows[row + 1, TIME] <= times[k]:

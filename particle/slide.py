@@ -27,6 +27,7 @@ WEAKEST = 0.75  # of the friction limit: the slow manifold draws parts to it dow
 SHORTEST = 1e-13  # of a stroke: no step is shorter
 TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
 GROWTH, SAFETY = 5.0, 0.9
+CLOSE, BEGUN = 0.1, 0.01  # of a step: how near and how late it must pass an actuator to end there
 
 
 class Request(NamedTuple):
@@ -93,6 +94,8 @@ def slide(
     shortest = SHORTEST * request.stroke_time
     while True:
         h = remaining if h >= 0.9 * remaining else h
+        if mode == SLIDING:
+            h = _to_passage(surface, state, h)
         if h < shortest and h < remaining:
             return mode, time, h, WORK_LIMIT
         count[0] += len(pair.c)
@@ -142,6 +145,19 @@ def slide(
     if mode == MANIFOLD:
         mode = _leave_manifold(surface, local, request, time, state)
     return mode, time, h * min(GROWTH, SAFETY * max(wrong, 1e-12) ** (-1 / pair.order)), GOES_ON
+
+
+@jit
+def _to_passage(surface: Any, state: FloatArray, h: float) -> float:
+    """The step [s], cut where the part passes closely over an actuator: at a step's end its logarithm does no harm."""
+    x, y, v_x, v_y = state[0], state[1], state[2], state[3]
+    square = v_x * v_x + v_y * v_y
+    for j in range(len(surface.sources)):
+        d_x, d_y = surface.sources[j, 0] - x, surface.sources[j, 1] - y
+        passage = (d_x * v_x + d_y * v_y) / square if square > 0.0 else 0.0
+        if BEGUN * h < passage < h and abs(d_x * v_y - d_y * v_x) < CLOSE * square * h:
+            h = passage
+    return h
 
 
 @jit
