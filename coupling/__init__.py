@@ -20,6 +20,10 @@ _HOMES = {
 __all__ = list(_HOMES)  # noqa: PLE0605
 
 
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOMES])
+
+
 def __getattr__(name: str) -> Any:
     if name in _HOMES:
         return getattr(import_module(_HOMES[name]), name)

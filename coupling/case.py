@@ -39,6 +39,7 @@ from coupling.table import Table
 from coupling.units import Length, Point
 
 PAPER_PLASTICITY_INDEX: Final = 4.9128
+MOST_STEPS: Final = 100_000_000  # of a fixed scheme
 
 
 class PartCase(Table):
@@ -51,7 +52,7 @@ class PartCase(Table):
     position: Point
     velocity: units.Velocity = (0.0, 0.0)
     size: Length | None = Field(default=None, gt=0)
-    squeeze: units.Force = 0.0
+    squeeze: units.Force = Field(default=0.0, ge=0)
 
 
 def _plasticity_index(data: dict[str, Any]) -> float:
@@ -174,6 +175,12 @@ class RunCase(Table):
     def _of_fixed_steps(cls, time_step: float | None, info: ValidationInfo) -> float | None:
         if time_step is not None and info.data.get("scheme") == "events":
             raise ValueError('must not be given with scheme = "events", which chooses its steps by the tolerance')
+        duration = info.data.get("duration")
+        if time_step is not None and duration is not None:
+            # Half of it is run as well, as a check of the path.
+            least, most = 2 * duration / MOST_STEPS, duration / 10
+            if not least <= time_step <= most:
+                raise ValueError(f"must be from {least:g} s to {most:g} s in this run; got {time_step:g} s")
         return time_step
 
     @field_validator("after_detachment")

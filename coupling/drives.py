@@ -10,9 +10,12 @@ from numpy.typing import NDArray
 from coupling.case import Case
 from coupling.drive_case import ENDLESS, DriveCase, amplitude
 from particle import AnyDrive, Drive, Segment, SegmentDrive, TableDrive
+from particle.drive import drive_table, next_kink
 
 FloatArray = NDArray[np.float64]
 
+SAMPLES, KINKS = 201, 101  # moments at which extremes are sought
+GOLDEN = (5**0.5 - 1) / 2
 JUMP = 1e-3  # of a stroke over its time: a smaller change of velocity is none
 
 
@@ -35,6 +38,15 @@ def build_drive(drive: DriveCase) -> AnyDrive:
 def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray) -> FloatArray:
     """The heights h_i(t) [m] of the drives at times (k,) [s]: (k, N)."""
     return np.stack([drive.evaluate(times)[0] for drive in drives], axis=1)
+
+
+def moments(drives: Sequence[AnyDrive], end: float) -> FloatArray:
+    """Moments (k,) from 0 to `end` [s] at which to look for extremes: first kinks, and some in step with no drive."""
+    kinks, table = [0.0], drive_table(drives)
+    while len(kinks) < KINKS and kinks[-1] < end:
+        kinks.append(min(next_kink(table, kinks[-1]), end))
+    scattered = end * (np.arange(SAMPLES) * GOLDEN % 1.0)
+    return np.unique(np.concatenate([kinks, scattered, [end]]))
 
 
 def travel(drive: AnyDrive) -> float:

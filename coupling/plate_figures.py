@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case, KogutEtsionCase
-from coupling.drives import stroke_heights
+from coupling.drives import moments, stroke_heights
 from coupling.places import SAME_PLACE
 from coupling.summary import PlateFigures
 from fem_plate import InfluenceShapes, Plate
@@ -17,7 +17,6 @@ from particle import AnyDrive, SurfaceMotion, Trajectory
 
 FloatArray = NDArray[np.float64]
 
-SAMPLES = 201  # moments of the run at which the plate's extremes are sought
 
 # The path error of small-deflection theory, measured on separate solvers: 8 % of the path at one thickness.
 LINEAR_ERROR = 0.08
@@ -37,8 +36,7 @@ def plate_figures(
     slope, deflection = _extremes(shapes, drives, case.run.duration)
     thickness = plate.section.thickness
     over_thickness = deflection / thickness
-    times = np.linspace(0, trajectory.time[-1], SAMPLES)
-    normal = trajectory.at(times).normal_force
+    normal = trajectory.at(moments(drives, float(trajectory.time[-1]))).normal_force
     held = shapes.points[shapes.springs > 0]
     first = None if plate.section.density is None else float(plate.frequencies(1, held if len(held) else None)[0])
     ratio = None if first is None else max(drive.frequency for drive in drives) / first
@@ -70,7 +68,7 @@ def _hold_residual(shapes: InfluenceShapes) -> float:
 def _extremes(shapes: InfluenceShapes, drives: Sequence[AnyDrive], end: float) -> tuple[float, float]:
     """The largest slope and deflection [m] over the mesh's points and the time asked for, wherever the run ended."""
     value, gradient, _ = shapes.evaluate(shapes.model.mesh.points)
-    heights = stroke_heights(drives, np.linspace(0, end, SAMPLES))
+    heights = stroke_heights(drives, moments(drives, end))
     slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
     return slope, float(np.abs(heights @ value.T).max())
 

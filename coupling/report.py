@@ -11,6 +11,7 @@ MICRO, MILLI = 1e6, 1e3
 MOST_THICKNESSES, STEEPEST, MOST_CURVED = 0.2, 0.2, 0.1
 FASTEST = 0.003  # of the plate's first frequency
 NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
+GROWTH = 100  # of the error of one step, that is no sign of chaos
 
 
 def lines(summary: Summary) -> list[tuple[str, str]]:
@@ -39,7 +40,7 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
         hops = f"{_count(s.flights, 'flight')}, {_count(s.landings, 'landing')}"
         rows.append(("", f"in flight {s.time_flying * MILLI:.3f} ms: {hops}"))
     rows += [("loads", ", ".join(loads))] if (loads := _loads(s)) else []
-    tabulated = f"friction tabulated to {s.contact_error:.1e}"
+    tabulated = f"; friction tabulated to {s.contact_error:.1e}" if s.contact_error > 0 else ""
     if isinstance(s, PlateSummary):
         rows += [
             (
@@ -47,10 +48,10 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
                 f"{s.plate_unknowns} unknowns; unit shapes good to {s.plate_error:.1e} (estimated), "
                 f"held at the actuators to {s.hold_residual:.1e}",
             ),
-            ("surface", f"fitted to {s.surface_error:.1e} of a unit stroke; {tabulated}"),
+            ("surface", f"fitted to {s.surface_error:.1e} of a unit stroke{tabulated}"),
         ]
     else:
-        rows += [("surface", f"a flat, rigid platform; {tabulated}")]
+        rows += [("surface", f"a flat, rigid platform{tabulated}")]
     rows += [("", _fit(fit)) for fit in s.motion_fits]
     if s.drive_error > 0:
         rows.append(("", f"drives follow their motion to {s.drive_error:.1e} of the stroke"))
@@ -83,7 +84,8 @@ def warnings(summary: Summary) -> list[str]:
     s = summary
     said = _of_solver(s) if isinstance(s, PlateSummary) else []
     finer = "run.tolerance" if s.scheme == "events" else "run.time_step"
-    if s.path_error is None or s.path_error > NUMERICAL_ERROR * max(s.path_length, s.distance):
+    least = max(NUMERICAL_ERROR * s.path_length, GROWTH * s.path_resolution)
+    if s.path_error is None or s.path_error > least:
         said.append(
             "The path magnifies small errors: trust the statistics of many starts more than the digits of one."
             if s.scheme == "events"
@@ -92,8 +94,17 @@ def warnings(summary: Summary) -> list[str]:
     jump = None if s.scheme == "events" else s.drive_jump
     if s.energy_balance > NUMERICAL_ERROR and jump is None:
         said.append(
-            f"The energy ledger closes only to {s.energy_balance:.1e} of its largest entry; a smaller {finer} "
-            "follows the path more closely."
+            f"The energy ledger closes only to {s.energy_balance:.1e} of its largest entry; "
+            + (
+                f"a smaller {finer} follows the path more closely."
+                if s.scheme != "paper"
+                else "so it does at any step."
+            )
+        )
+    if s.scheme == "paper":
+        said.append(
+            'The paper\'s scheme drops terms of the equations of motion: its path is not that of scheme = "events", '
+            "however small the step."
         )
     if jump is not None:
         said.append(
@@ -113,7 +124,7 @@ def _of_solver(s: PlateSummary) -> list[str]:
     if s.surface_error > max(NUMERICAL_ERROR, s.plate_error):
         said.append(
             f"The surface that the part sees follows the plate's shapes only to {s.surface_error:.1e} of a stroke: so "
-            "it is next to a re-entrant corner, a narrow slot, or an actuator near the rim."
+            "it is at re-entrant corners and those where supports change, in narrow slots, at actuators near the rim."
         )
     return said
 

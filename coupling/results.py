@@ -63,7 +63,7 @@ def write_results(
             part.append(
                 time,
                 (*place[k], samples.height[k]),
-                velocity=(*samples.velocity[k], 0.0),
+                velocity=(*samples.velocity[k], samples.vertical_velocity[k]),
                 state=samples.state[k],
                 normal_force=samples.normal_force[k],
                 friction_force=samples.friction_force[k],

@@ -10,7 +10,7 @@ import numpy as np
 from coupling.case import Case
 from coupling.drives import first_jump
 from coupling.measured import MotionFit
-from particle import EventKind, State, Trajectory
+from particle import EventKind, Outcome, State, Trajectory
 from particle.friction import Contact
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ class Summary:
     contact_error: float  # relative, of the tabulated friction limit, measured
     energy_balance: float  # the largest gap in the energy ledger over the largest of its entries
     path_error: float | None  # m, end point against a run at a hundredth of the tolerance; None: other events
+    path_resolution: float  # m, the tolerance of one step
 
     def as_dict(self) -> dict[str, Any]:
         """The figures by name; those of a plate are None where there is none."""
@@ -84,16 +85,14 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
     drives = [*scene.lifts, *scene.base]
-    landings, detachments = (
-        sum(event.kind is kind for event in trajectory.events) for kind in (EventKind.LANDS, EventKind.DETACHES)
-    )
+    landings = sum(event.kind is EventKind.LANDS for event in trajectory.events)
     summary = Summary(
         outcome=trajectory.outcome.value,
         sentence=trajectory.sentence,
         origin=scene.origin,
         end_time=float(trajectory.time[-1]),
         duration=case.run.duration,
-        at_rest_since=_at_rest_since(trajectory),
+        at_rest_since=_at_rest_since(trajectory) if trajectory.outcome is Outcome.STUCK else None,
         end_position=(float(trajectory.position[-1, 0]), float(trajectory.position[-1, 1])),
         distance=trajectory.distance,
         path_length=float(np.hypot(*step.T).sum()),
@@ -101,7 +100,7 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         time_slipping=trajectory.time_in(State.SLIP),
         time_flying=trajectory.time_in(State.FLIGHT),
         slips=sum(event.kind is EventKind.SLIPS for event in trajectory.events),
-        flights=detachments if case.run.after_detachment == "fly" else 0,
+        flights=landings + int(trajectory.state[-1] == State.FLIGHT),
         landings=landings,
         evaluations=int(trajectory.evaluations),
         scheme=case.run.scheme,
@@ -113,6 +112,7 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         contact_error=friction.table_error,
         energy_balance=trajectory.energy.balance,
         path_error=moved if same else None,
+        path_resolution=case.run.tolerance * scene.surface.size,
     )
     figures = scene.figures(case, trajectory)
     return summary if figures is None else PlateSummary(**vars(summary), **vars(figures))

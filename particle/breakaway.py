@@ -61,10 +61,13 @@ def lag(surface: Any, local: Any, part: Part, time: float, x: float, y: float, u
         # a small step along the path.
         step = 1e-6 * local.frame[1]
         g = fields(surface, local, x + step * u * a.d_x, y + step * u * a.d_y, time + step)
-        gain = step * (a.demand - a.limit)
-        ahead = pull(g, (u + gain) * a.d_x, (u + gain) * a.d_y, part)
-        here = pull(f, u * a.d_x, u * a.d_y, part)
+        ahead, here = pull(g, 0.0, 0.0, part), pull(f, 0.0, 0.0, part)
         turn_x, turn_y = (ahead.x - here.x) / step, (ahead.y - here.y) / step
+        if u > 0.0:
+            # The pull on a moving part is not along that on one at rest: what that adds grows with u as the lag does.
+            fast = pull(f, u * a.d_x, u * a.d_y, part)
+            turn_x -= a.demand * (fast.x - here.x) / u
+            turn_y -= a.demand * (fast.y - here.y) / u
     else:
         # The pull is along grad w, which turns by grad w_t + H v; what changes its size has no part in it.
         factor = -part.gravity - f.w_tt

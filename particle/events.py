@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from particle.breakaway import slope
 from particle.drive import next_kink
 from particle.fields import fields, new_local, pin_cell, pin_time
 from particle.flight import JUMP, fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.motion import Part, energy, margin, pull
+from particle.motion import Part, energy_at_rest, margin, pull
 from particle.record import FLYING, MANIFOLD, RESTING, SLIDING, TIME, V_X, V_Y, Record, new_record, note, row_of, write
 from particle.rim import rim_gap
 from particle.runge_kutta import Tableau, new_step
@@ -31,7 +32,6 @@ from particle.slide import (
     TURNED,
     WORK_LIMIT,
     Request,
-    reason,
     slide,
 )
 from particle.stick import leaves_rest, new_rest
@@ -41,6 +41,7 @@ FloatArray = NDArray[np.float64]
 # As EventKind; the ends follow as 2 + their number.
 SLIPS, STOPS, REVERSES, LANDS = 0, 1, 2, 6
 START = 0.02  # of a stroke: the first step
+ROUNDING = 1e-9  # of a path's typical force
 
 EVALUATIONS_PER_SPAN, EVALUATIONS_AT_LEAST = 2_000, 20_000
 LONG, EVALUATIONS_PER_STEP = 1e-5, 40  # of the run: steps that are no sign of trouble, however many there are
@@ -98,9 +99,12 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             state[4] += energy_at_rest(surface, local, part, time, state) - stood
             count[0] += 3
             if leaves < 1.0:
-                load = pull(fields(surface, local, state[0], state[1], time), 0.0, 0.0, part).normal
-                if margin(surface, part, load, 0.0) < 0.0:
-                    verdict = reason(surface, part, load, state)
+                a = slope(fields(surface, local, state[0], state[1], time), part)
+                load, law = a.load, part.law
+                # Rounding must not make a slip of what is the end of contact.
+                ends = min(load + law.pull_off, law.largest_load - load) < ROUNDING * request.force
+                if margin(surface, part, load, 0.0) < 0.0 or (ends and a.demand <= law.static_ratio * a.limit):
+                    verdict = DETACHED if load + law.pull_off < law.largest_load - load else OVERLOADED
                 else:
                     mode, h, event = _start(part, load), START * request.stroke_time, SLIPS
         elif mode == FLYING:
@@ -124,6 +128,8 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             mode, h = FLYING, START * request.stroke_time
         if event >= 0:
             record = note(record, event, row, _speed(row))
+        if event == LANDS and mode == FLYING:
+            record = note(record, 2 + DETACHED, row, _speed(row))
         if mode != before:
             row = row_of(surface, local, part, mode, time, state)
         count[2] += row[TIME] - record.rows[record.counts[0] - 1, TIME] > LONG * end
@@ -175,12 +181,6 @@ def _cross_kink(
 def _start(part: Part, load: float) -> int:
     """How a part begins to slide: without friction there is no slow manifold, and no stiffness either."""
     return MANIFOLD if friction_limit(part.law, load) > 0.0 else SLIDING
-
-
-@jit
-def energy_at_rest(surface: Any, local: Any, part: Part, time: float, state: FloatArray) -> float:
-    kinetic, potential = energy(fields(surface, local, state[0], state[1], time), state[0], state[1], 0.0, 0.0, part)
-    return kinetic + potential
 
 
 @jit

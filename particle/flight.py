@@ -59,17 +59,23 @@ def fly(
         h = remaining if h >= 0.9 * remaining else h
         if h < SHORTEST * request.stroke_time and h < remaining:
             return FLYING, time, h, WORK_LIMIT
-        count[0] += 2
+        count[0] += 3
         _ahead(surface, local, part, here, time, state, h, end)
-        _ahead(surface, local, part, here, time, state, 0.5 * h, middle)
-        if not within_cell(surface, local, end[0], end[1]) or not within_cell(surface, local, middle[0], middle[1]):
+        if not within_cell(surface, local, end[0], end[1]):
             h *= 0.5
             continue
         stop = _height(fields(surface, local, end[0], end[1], time + h), part, end)
-        halfway = _height(fields(surface, local, middle[0], middle[1], time + 0.5 * h), part, middle)
         b = _quintic(start, stop, h)
-        guess = (b[0] + 5 * b[1] + 10 * b[2] + 10 * b[3] + 5 * b[4] + b[5]) / 32
-        if abs(guess - halfway[0]) > max(0.01 * request.tolerance, graze):
+        good = True
+        for share in (0.3, 0.6):
+            _ahead(surface, local, part, here, time, state, share * h, middle)
+            if good and within_cell(surface, local, middle[0], middle[1]):
+                truth = fields(surface, local, middle[0], middle[1], time + share * h)
+                miss = middle[6] - truth.w - _at(b, share)
+                good = abs(miss) <= max(0.01 * request.tolerance, graze)
+            else:
+                good = False
+        if not good:
             h *= 0.5
             continue
         break
@@ -94,8 +100,12 @@ def fly(
         _ahead(surface, local, part, here, time, state, lands * h, end)
         state[:] = end
         at = span_end if lands == 1.0 and h == remaining else time + lands * h
+        f = fields(surface, local, state[0], state[1], at)
+        if state[7] - f.w_t - state[2] * f.x - state[3] * f.y >= 0.0:
+            state[6] = f.w  # on its way up: cells that differ by their error are no landing
+            return FLYING, at, h, GOES_ON
         slack = JUMP * surface.size / request.stroke_time
-        return land(fields(surface, local, state[0], state[1], at), part, slack, state), at, h, GOES_ON
+        return land(f, part, slack, state), at, h, GOES_ON
     state[:] = end
     return FLYING, (span_end if h == remaining else time + h), 2 * h, GOES_ON
 
@@ -173,6 +183,14 @@ def _height(f: Fields, part: Part, state: FloatArray) -> tuple[float, float, flo
     turn = (part.tilt_x - f.base_ax) * f.x + (part.tilt_y - f.base_ay) * f.y
     falls = part.gravity + part.squeeze / part.mass + f.w_tt + 2 * (v_x * f.xt + v_y * f.yt) + bend + turn
     return state[6] - f.w, state[7] - f.w_t - v_x * f.x - v_y * f.y, -falls
+
+
+@jit
+def _at(b: FloatArray, s: float) -> float:
+    """A quintic of Bernstein coefficients b at s."""
+    r = 1.0 - s
+    outer = b[0] * r**5 + 5 * b[1] * r**4 * s + 5 * b[4] * r * s**4 + b[5] * s**5
+    return float(outer + 10 * r * r * s * s * (b[2] * r + b[3] * s))
 
 
 @jit

@@ -183,7 +183,7 @@ class CoulombAdhesion:
         static = self.static_coefficient
         if static is not None:
             at_least = f"at least the coefficient {self.coefficient!r}, which must then be positive"
-            good = static >= self.coefficient > 0
+            good = math.inf > static >= self.coefficient > 0
             _require(good, "static_coefficient", "CoulombAdhesion", at_least, static)
 
     @property

@@ -109,6 +109,13 @@ def energy(f: Fields, x: float, y: float, v_x: float, v_y: float, part: Part) ->
 
 
 @jit
+def energy_at_rest(surface: Any, local: Any, part: Part, time: float, state: FloatArray) -> float:
+    """The energy [J] of a part at rest on the surface at the place (x, y, ...)."""
+    kinetic, potential = energy(fields(surface, local, state[0], state[1], time), state[0], state[1], 0.0, 0.0, part)
+    return kinetic + potential
+
+
+@jit
 def margin(surface: Any, part: Part, load: float, gap: float) -> float:
     """How far the part is from the end of its contact: negative beyond the rim, below pull-off, above the largest load.
 

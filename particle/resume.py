@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events import energy_at_rest
 from particle.fields import fields, new_local, pin_cell, pin_time
 from particle.flight import fly
 from particle.jit import jit
-from particle.motion import Part, pull
+from particle.motion import Part, energy_at_rest, pull
 from particle.record import (
     COLUMNS,
     DISSIPATED,

@@ -143,7 +143,7 @@ def error(pair: Tableau, step: Step, h: float, lasting: float, force: float) -> 
 def first_excursion(part: Part, pair: Tableau, step: Step) -> float:
     """The share of a step at which the load leaves the contact's range between two stages; 1: nowhere.
 
-    The loads between them are those of the polynomial through the stages'.
+    The loads between them are those of a polynomial fitted to the stages'.
     """
     for k in range(len(pair.between)):
         load = 0.0

@@ -50,8 +50,8 @@ class Micropart:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.mass) and self.mass > 0):
             raise ValueError(f"Input mass of Micropart must be positive, in kg; got {self.mass!r}")
-        if not math.isfinite(self.squeeze):
-            raise ValueError(f"Input squeeze of Micropart must be a finite force in N; got {self.squeeze!r}")
+        if not 0 <= self.squeeze < math.inf:
+            raise ValueError(f"Input squeeze of Micropart must be 0 or a positive force in N; got {self.squeeze!r}")
         for name in ("position", "velocity"):
             value = getattr(self, name)
             if len(value) != 2 or not all(math.isfinite(v) for v in value):
@@ -126,7 +126,7 @@ def simulate(
     found = _trajectory(rows, events, verdict, evaluations, energy_of(rows, request.force * surface.size), sampler)
     if found.outcome is Outcome.STUCK and scheme == "events":
         x, y = found.position[-1].tolist()
-        found = replace(found, stays=stays(surface, request.part, x, y, request.duration))
+        found = replace(found, future=partial(stays, surface, request.part, x, y, request.duration))
     return found
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from particle.breakaway import Slope, lag, slope, velocity
 from particle.fields import Fields, fields
 from particle.jit import jit
-from particle.motion import Part, length, margin
+from particle.motion import Part, energy_at_rest, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
 from particle.runge_kutta import Step, Tableau, attempt, error, first_excursion, rate
@@ -76,11 +76,11 @@ def slide(
         stop, miss = stop_ahead(surface, local, part, time, moving, 0.01 * tolerance, pace, request.force)
         count[0] += 1
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
-        if near and _stops_on_plate(surface, step, moving, stop):
-            come_to_rest(surface, local, part, time, moving, stop)
+        near = near and _stops_on_plate(surface, step, moving, stop)
+        count[0] += 5 * near
+        if near and come_to_rest(surface, local, part, time, moving, stop):
             state[:] = moving
             a = slope(fields(surface, local, state[0], state[1], time + stop.time), part)
-            count[0] += 5
             back = stop.reverses and a.demand > part.law.static_ratio * a.limit
             return (TURNED if back else RESTING), time + stop.time, h, GOES_ON
         # A step ends short of the stop, where the friction turns.
@@ -111,6 +111,8 @@ def slide(
                 h *= 0.5
                 continue
             state[2] = state[3] = 0.0
+            state[4] += energy_at_rest(surface, local, part, time + h, state)
+            state[4] -= energy_at_rest(surface, local, part, time, state)
             return RESTING, time + h, h, GOES_ON
         if mode == MANIFOLD and _manifold_error(surface, local, part, time + h, step.end) > tolerance:
             if h > TOUCH * request.stroke_time:

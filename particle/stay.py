@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from particle.drive_table import DriveTable, next_kink
+from particle.drive_table import DriveTable, jumps, next_kink
 from particle.fields import new_local, pin_cell, pin_time
 from particle.jit import jit
 from particle.motion import Part
@@ -22,9 +22,11 @@ ROUNDING = 1e-12
 def stays(surface: SurfaceMotion, part: Part, x: float, y: float, time: float) -> bool | None:
     """Whether a part that rests at (x, y) [m] at a time [s] does so for ever.
 
-    None: not known, as the endless drives have no common period of up to a thousand passes of each, or a drive is
-    a polynomial without end.
+    None: not known, as the endless drives have no common period of up to a thousand passes of each, a drive is
+    a polynomial without end, or a drive's velocity jumps.
     """
+    if jumps(surface.drives):
+        return None
     after = horizon(surface.drives, time)
     if after is None:
         return None

@@ -27,9 +27,9 @@ from particle.motion import Part, drag, pull, push
 FloatArray = NDArray[np.float64]
 
 
-# Gauss's rule on [0, 1].
-NODES = 0.5 + 0.5 * np.polynomial.legendre.leggauss(4)[0]
-WEIGHTS = 0.5 * np.polynomial.legendre.leggauss(4)[1]
+# Gauss's rule on [0, 1], and its end, at which only the load is of interest.
+NODES = np.append(0.5 + 0.5 * np.polynomial.legendre.leggauss(4)[0], 1.0)
+WEIGHTS = np.append(0.5 * np.polynomial.legendre.leggauss(4)[1], 0.0)
 
 
 class Stop(NamedTuple):
@@ -62,8 +62,9 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> St
         return Stop(time, x, y, False, force * a.d_x, force * a.d_y, 0.5 * u * u + force * along)
     if q > 0.0 and p < 0.0 and r * r <= small * q:
         time = u / (force + q)
-        along = 0.5 * p * time
-        return Stop(time, along * a.d_x, along * a.d_y, True, force * a.d_x, force * a.d_y, 0.5 * u * u + force * along)
+        along, across = 0.5 * p * time, r * u / (force + 2 * q)
+        x, y = along * a.d_x + across * a.n_x, along * a.d_y + across * a.n_y
+        return Stop(time, x, y, True, force * a.d_x, force * a.d_y, 0.5 * u * u + force * along)
     return Stop(math.inf, 0.0, 0.0, False, 0.0, 0.0, 0.0)
 
 
@@ -93,19 +94,24 @@ def stop_ahead(
 
 
 @jit
-def come_to_rest(surface: Any, local: Any, part: Part, time: float, state: FloatArray, stop: Stop) -> None:
-    """Moves `state` (x, y, v_x, v_y, work, dissipation) to a stop.
+def come_to_rest(surface: Any, local: Any, part: Part, time: float, state: FloatArray, stop: Stop) -> bool:
+    """Moves `state` (x, y, v_x, v_y, work, dissipation) to a stop; False, and no move, if contact ends on the way.
 
     The friction's impulse on the way is known, v + A d T per kg. Powers are integrated by Gauss's rule along the way of
     a straight stop, which is quadratic in time.
     """
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     slow_x, slow_y = v_x + stop.pull_x * stop.time, v_y + stop.pull_y * stop.time
+    work = 0.0
     for k in range(len(NODES)):
         to_go = 1.0 - NODES[k]
         way = 1.0 - to_go * to_go
         f = fields(surface, local, x + way * stop.x, y + way * stop.y, time + NODES[k] * stop.time)
-        pushed = push(f, part, pull(f, to_go * v_x, to_go * v_y, part).normal) * stop.time
-        state[4] += WEIGHTS[k] * (pushed - part.mass * drag(f, slow_x, slow_y))
+        load = pull(f, to_go * v_x, to_go * v_y, part).normal
+        if not -part.law.pull_off <= load <= part.law.largest_load:
+            return False
+        work += WEIGHTS[k] * (push(f, part, load) * stop.time - part.mass * drag(f, slow_x, slow_y))
     state[0], state[1], state[2], state[3] = x + stop.x, y + stop.y, 0.0, 0.0
+    state[4] += work
     state[5] += part.mass * stop.loss
+    return True

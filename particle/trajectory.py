@@ -5,6 +5,7 @@ from __future__ import annotations
 import enum
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -57,12 +58,13 @@ _SENTENCES = {
     Outcome.MOVING: "The part is still on the move at the end of the run.",
     Outcome.DETACHED: "The surface pulled away faster than adhesion could follow: the part came off.",
     Outcome.LEFT_PLATE: "The part went over the rim of the plate.",
-    Outcome.OVERLOADED: "The surface pressed the part harder than the contact model covers.",
+    Outcome.OVERLOADED: "The load on the part is more than the contact model covers.",
     Outcome.WORK_LIMIT: "The integrator stopped at its limit of work before the end of the run.",
 }
 
 
 _FOR_GOOD = "The part rests on the surface for good: nothing that the drives still do moves it."
+_IN_FLIGHT = "The part is in flight at the end of the run."
 _FOR_NOW = "The part rests on the surface at the end of the run; what the drives do later moves it again."
 
 
@@ -83,6 +85,7 @@ class Samples(NamedTuple):
     time: FloatArray  # (k,) s
     position: FloatArray  # (k, 2) m
     velocity: FloatArray  # (k, 2) m/s
+    vertical_velocity: FloatArray  # (k,) m/s
     height: FloatArray  # (k,) m, that of the surface under it unless it flies
     normal_force: FloatArray  # (k,) N, net, of the contact
     friction_force: FloatArray  # (k,) N, its magnitude
@@ -93,10 +96,12 @@ class Samples(NamedTuple):
 class Energy:
     """The energy ledger at the rows of a trajectory: kinetic + potential grow by work - dissipated."""
 
-    kinetic: FloatArray  # (n,) J, seen by one at rest
-    potential: FloatArray  # (n,) J, of gravity
-    work: FloatArray  # (n,) J, done on the part by the moving surface (and what squeezes) since the start
-    dissipated: FloatArray  # (n,) J, by friction and impacts since the start
+    kinetic: FloatArray = field(repr=False)  # (n,) J, seen by one at rest
+    potential: FloatArray = field(repr=False)  # (n,) J, of gravity
+    work: FloatArray = field(
+        repr=False
+    )  # (n,) J, done on the part by the moving surface (and what squeezes) since the start
+    dissipated: FloatArray = field(repr=False)  # (n,) J, by friction and impacts since the start
     scale: float  # J, that of a part thrown across the surface in a stroke; a millionth of it counts as nothing
 
     @property
@@ -119,6 +124,7 @@ class Trajectory:
     time: FloatArray  # (n,) s
     position: FloatArray  # (n, 2) m
     velocity: FloatArray  # (n, 2) m/s
+    vertical_velocity: FloatArray = field(repr=False)  # (n,) m/s
     height: FloatArray = field(repr=False)  # (n,) m, that of the surface under it unless it flies
     normal_force: FloatArray  # (n,) N, net, of the contact
     friction_force: FloatArray  # (n,) N, its magnitude
@@ -128,13 +134,20 @@ class Trajectory:
     evaluations: int  # of the surface
     energy: Energy = field(repr=False)
     sampler: Callable[[FloatArray], FloatArray] = field(repr=False)  # rows at ascending times
-    stays: bool | None = None  # of a part that rests at the end: whether it does so for good; None: not known
+    future: Callable[[], bool | None] | None = field(default=None, repr=False)  # of a part that rests at the end
+
+    @cached_property
+    def stays(self) -> bool | None:
+        """Whether a part that rests at the end does so for good; None: not known, or it does not rest."""
+        return None if self.future is None else self.future()
 
     @property
     def sentence(self) -> str:
         """How the run ended."""
         if self.outcome is Outcome.STUCK and self.stays is not None:
             return _FOR_GOOD if self.stays else _FOR_NOW
+        if self.outcome is Outcome.MOVING and self.state[-1] == State.FLIGHT:
+            return _IN_FLIGHT
         return self.outcome.sentence
 
     @property
@@ -147,11 +160,13 @@ class Trajectory:
         return float(np.diff(self.time)[self.state[:-1] == state].sum())
 
     def at(self, times: ArrayLike) -> Samples:
-        """The part at times (k,) [s]; those before the start or after the end count as these.
+        """The part at times (k,) [s]; those before the start or after the end count as these, nan raises ValueError.
 
         Scheme "events" integrates from the row before to each time, so that samples are as good as rows. Those with
         fixed steps take the cubic through the places and velocities of the rows around it.
         """
+        if np.isnan(np.asarray(times, dtype=float)).any():
+            raise ValueError("Input times of at must be numbers; got nan")
         within = np.clip(np.asarray(times, dtype=float), self.time[0], self.time[-1])
         order = np.argsort(within, kind="stable")
         rows = np.empty((len(within), record.COLUMNS))
@@ -166,6 +181,7 @@ def samples_of(rows: FloatArray) -> Samples:
         time=rows[:, record.TIME],
         position=rows[:, [record.X, record.Y]],
         velocity=rows[:, [record.V_X, record.V_Y]],
+        vertical_velocity=rows[:, record.V_Z],
         height=rows[:, record.Z],
         normal_force=rows[:, record.LOAD],
         friction_force=rows[:, record.FRICTION],
