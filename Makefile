@@ -24,6 +24,7 @@ lint: .venv/developer
 benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/plate.py
 	$(BIN)/python benchmarks/contact.py
+	$(BIN)/python benchmarks/schemes.py
 
 docs: .venv/installed
 	$(BIN)/python docs/pictures.py
