@@ -23,7 +23,7 @@ from coupling.scene import Scene
 from coupling.summary import Summary, summarise
 from fem_plate import InfluenceShapes
 from particle import SurfaceMotion, Trajectory
-from particle.fixed import FINE
+from particle.fixed import default_step
 from particle.friction import Contact
 
 
@@ -101,8 +101,7 @@ def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tighter: 
     tolerance = max(run.tolerance / 100, 1e-13) if tighter else run.tolerance
     steps: dict[str, Any] = {}
     if run.scheme != "events" and (run.time_step or tighter):
-        stroke_time = float(surface.drives.stroke_time.min(initial=run.duration))
-        time_step = run.time_step or FINE * stroke_time
+        time_step = run.time_step or default_step(surface, run.duration)
         steps = {"time_step": time_step / 2 if tighter else time_step}
     return particle.simulate(
         surface, part, friction, run.duration, run.gravity, tolerance, run.scheme, run.after_detachment, **steps

@@ -21,7 +21,25 @@ from particle.flight import JUMP, fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.motion import Part, energy_at_rest, margin, pull
-from particle.record import FLYING, MANIFOLD, RESTING, SLIDING, TIME, V_X, V_Y, Record, new_record, note, row_of, write
+from particle.record import (
+    ENDS,
+    FLYING,
+    LANDS,
+    MANIFOLD,
+    RESTING,
+    REVERSES,
+    SLIDING,
+    SLIPS,
+    STOPS,
+    TIME,
+    V_X,
+    V_Y,
+    Record,
+    new_record,
+    note,
+    row_of,
+    write,
+)
 from particle.rim import rim_gap
 from particle.runge_kutta import Tableau, new_step
 from particle.slide import (
@@ -38,8 +56,6 @@ from particle.stick import leaves_rest, new_rest
 
 FloatArray = NDArray[np.float64]
 
-# As EventKind; the ends follow as 2 + their number.
-SLIPS, STOPS, REVERSES, LANDS = 0, 1, 2, 6
 START = 0.02  # of a stroke: the first step
 ROUNDING = 1e-9  # of a path's typical force
 
@@ -76,7 +92,7 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             if jolted:
                 row = row_of(surface, local, part, mode, time, state)
                 if mode == FLYING and before != FLYING:
-                    record = note(record, 2 + DETACHED, row, _speed(row))
+                    record = note(record, ENDS + DETACHED, row, _speed(row))
                 elif mode == RESTING and before != RESTING:
                     record = note(record, STOPS, row, _speed(row))
                 elif before == RESTING and mode != RESTING:
@@ -120,16 +136,16 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             elif mode == TURNED:
                 mode, event = MANIFOLD, REVERSES
         if verdict == DETACHED and request.flies:
-            verdict, event = GOES_ON, 2 + DETACHED
+            verdict, event = GOES_ON, ENDS + DETACHED
         row = row_of(surface, local, part, mode, time, state)
-        if event == 2 + DETACHED:
+        if event == ENDS + DETACHED:
             state[2], state[3] = row[V_X], row[V_Y]
             take_off(surface, local, time, state)
             mode, h = FLYING, START * request.stroke_time
         if event >= 0:
             record = note(record, event, row, _speed(row))
         if event == LANDS and mode == FLYING:
-            record = note(record, 2 + DETACHED, row, _speed(row))
+            record = note(record, ENDS + DETACHED, row, _speed(row))
         if mode != before:
             row = row_of(surface, local, part, mode, time, state)
         count[2] += row[TIME] - record.rows[record.counts[0] - 1, TIME] > LONG * end
@@ -139,7 +155,7 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
             verdict = WORK_LIMIT
     if verdict in (DETACHED, LEFT_PLATE, OVERLOADED):
         row = record.rows[record.counts[0] - 1]
-        record = note(record, 2 + verdict, row, _speed(row))
+        record = note(record, ENDS + verdict, row, _speed(row))
     return _results(record, verdict, count)
 
 

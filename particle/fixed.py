@@ -20,11 +20,15 @@ from particle.moreau import moreau_step
 from particle.motion import Part, margin
 from particle.paper_scheme import paper_step
 from particle.record import (
+    ENDS,
     FRICTION,
     LOAD,
     MODE,
     RESTING,
+    REVERSES,
     SLIDING,
+    SLIPS,
+    STOPS,
     V_X,
     V_Y,
     Record,
@@ -35,15 +39,25 @@ from particle.record import (
 )
 from particle.rim import rim_gap
 from particle.slide import GOES_ON, LEFT_PLATE, Request, reason
+from particle.surface import SurfaceMotion
 
 FloatArray = NDArray[np.float64]
 
 MOREAU, PAPER = 0, 1
-SLIPS, STOPS, REVERSES, ENDS = 0, 1, 2, 2  # as EventKind; the ends follow as ENDS + their number
 MOST_STEPS = 100_000_000
 MOST_ROWS = 20_000  # besides those at events
 FINE = 1e-4  # of the shortest stroke: the step unless one is given
 HALVINGS = 50
+
+
+def shortest_stroke(surface: SurfaceMotion, duration: float) -> float:
+    """The time [s] of the shortest stroke of any drive, at most the run's duration."""
+    return min(float(surface.drives.stroke_time.min(initial=math.inf)), float(duration))
+
+
+def default_step(surface: SurfaceMotion, duration: float) -> float:
+    """The time step [s] of a scheme of fixed steps unless one is given."""
+    return FINE * shortest_stroke(surface, duration)
 
 
 def step_count(duration: float, time_step: float) -> int:

@@ -22,6 +22,8 @@ COLUMNS = 14
 # Columns of an event.
 KIND, EVENT_TIME, EVENT_X, EVENT_Y, EVENT_SPEED, EVENT_LOAD = range(6)
 EVENT_COLUMNS = 6
+# Kinds of events, as EventKind; the ends of a path follow as ENDS + their number.
+SLIPS, STOPS, REVERSES, ENDS, LANDS = 0, 1, 2, 2, 6
 # What a part does, in the column MODE; MANIFOLD: it slides, in its first moments (`breakaway`).
 RESTING, SLIDING, FLYING, MANIFOLD = range(4)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from particle.between import between
 from particle.drive_table import jumps
 from particle.events import march
-from particle.fixed import FINE, MOREAU, MOST_ROWS, PAPER, march_fixed, step_count
+from particle.fixed import MOREAU, MOST_ROWS, PAPER, default_step, march_fixed, shortest_stroke, step_count
 from particle.friction import Contact
 from particle.motion import Part
 from particle.resume import resume
@@ -102,7 +102,7 @@ def simulate(
     if wrong:
         raise ValueError("; ".join(wrong))
     x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
-    stroke_time = min(float(surface.drives.stroke_time.min(initial=math.inf)), float(duration))
+    stroke_time = shortest_stroke(surface, duration)
     request = Request(
         part=Part(float(part.mass), -float(z), float(x), float(y), float(part.squeeze), friction.law),
         start=np.array([*part.position, *part.velocity], dtype=float),
@@ -114,7 +114,7 @@ def simulate(
         jumps=jumps(surface.drives),
     )
     if scheme in _FIXED_STEPS:
-        kind, step = _FIXED_STEPS[scheme], float(FINE * request.stroke_time if time_step is None else time_step)
+        kind, step = _FIXED_STEPS[scheme], float(default_step(surface, duration) if time_step is None else time_step)
         steps = step_count(request.duration, step)
         every = math.ceil(steps / MOST_ROWS)
         rows, events, verdict, evaluations = march_fixed(surface, request, kind, step, steps, every)
