@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,6 +17,8 @@ FloatArray = NDArray[np.float64]
 
 SAMPLES, KINKS = 201, 101  # moments at which extremes are sought
 GOLDEN = (5**0.5 - 1) / 2
+FRAMES_PER_CYCLE = 20
+FRAMES = (100, 1000)  # least and most without a wish in the case
 JUMP = 1e-3  # of a stroke over its time: a smaller change of velocity is none
 
 
@@ -38,6 +41,13 @@ def build_drive(drive: DriveCase) -> AnyDrive:
 def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray) -> FloatArray:
     """The heights h_i(t) [m] of the drives at times (k,) [s]: (k, N)."""
     return np.stack([drive.evaluate(times)[0] for drive in drives], axis=1)
+
+
+def frame_times(wanted: int | None, drives: Sequence[AnyDrive], end: float) -> FloatArray:
+    """The times [s] of the result files' steps, from 0 to the end: as many as wanted, or enough for the drives."""
+    fastest = max(drive.frequency for drive in drives)
+    count = wanted or min(max(math.ceil(end * fastest * FRAMES_PER_CYCLE) + 1, FRAMES[0]), FRAMES[1])
+    return np.linspace(0, end, count)
 
 
 def moments(drives: Sequence[AnyDrive], end: float) -> FloatArray:

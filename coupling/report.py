@@ -11,6 +11,7 @@ MICRO, MILLI = 1e6, 1e3
 MOST_THICKNESSES, STEEPEST, MOST_CURVED = 0.2, 0.2, 0.1
 FASTEST = 0.003  # of the plate's first frequency
 NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
+FEWEST_FRAMES = 8  # to a cycle
 GROWTH = 100  # of the error of one step, that is no sign of chaos
 
 
@@ -90,6 +91,11 @@ def warnings(summary: Summary) -> list[str]:
             "The path magnifies small errors: trust the statistics of many starts more than the digits of one."
             if s.scheme == "events"
             else "Fixed steps follow the path to few digits; a smaller run.time_step gives more, in proportion."
+        )
+    if s.frames_per_cycle is not None and s.frames_per_cycle < FEWEST_FRAMES:
+        said.append(
+            f"The result files hold {s.frames_per_cycle:.2g} steps to a cycle of the fastest drive: what "
+            "moves fast looks slow or still in them; a larger run.frames shows it."
         )
     jump = None if s.scheme == "events" else s.drive_jump
     if s.energy_balance > NUMERICAL_ERROR and jump is None:

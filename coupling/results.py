@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import math
 import os
-from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
@@ -14,17 +12,15 @@ from numpy.typing import NDArray
 
 from coupling.case import Case
 from coupling.csv_file import write_csv
-from coupling.drives import stroke_heights
+from coupling.drives import frame_times, stroke_heights
 from coupling.pictures import draw_run
 from coupling.scene import Scene
 from coupling.summary import Summary
 from coupling.vtkhdf import part_file, plate_file
-from particle import AnyDrive, Trajectory
+from particle import Trajectory
 
 FloatArray = NDArray[np.float64]
 
-FRAMES_PER_CYCLE = 20
-FRAMES = (100, 1000)  # least and most without a wish in the case
 UNITS = {
     "time": "s",
     "deflection": "m",
@@ -43,7 +39,7 @@ def write_results(
     csv: whether to write NAME.csv as well.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    times = frame_times(case, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
+    times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
     ground = scene.ground(trajectory)
     heights = stroke_heights(scene.lifts, times)
     metadata = {
@@ -83,12 +79,3 @@ def check_folder(folder: Path) -> None:
         raise ValueError(f"Input output must be a folder; got {folder}, but {made} is a file")
     if not os.access(made, os.W_OK):
         raise ValueError(f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it")
-
-
-def frame_times(case: Case, drives: Sequence[AnyDrive], end: float) -> FloatArray:
-    """The times of the result files' steps, from 0 to the run's end."""
-    if case.run.frames:
-        return np.linspace(0, end, case.run.frames)
-    fastest = max(drive.frequency for drive in drives)
-    count = math.ceil(end * fastest * FRAMES_PER_CYCLE) + 1
-    return np.linspace(0, end, min(max(count, FRAMES[0]), FRAMES[1]))

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coupling.case import Case
-from coupling.drives import first_jump
+from coupling.drives import first_jump, frame_times
 from coupling.measured import MotionFit
-from particle import EventKind, Outcome, State, Trajectory
+from particle import AnyDrive, EventKind, Outcome, State, Trajectory
 from particle.friction import Contact
 
 if TYPE_CHECKING:
@@ -47,6 +48,9 @@ class Summary:
     energy_balance: float  # the largest gap in the energy ledger over the largest of its entries
     path_error: float | None  # m, end point against a run at a hundredth of the tolerance; None: other events
     path_resolution: float  # m, the tolerance of one step
+    frames_per_cycle: (
+        float | None
+    )  # steps of the result files to a cycle of the fastest drive; None: measured, or nothing moves
 
     def as_dict(self) -> dict[str, Any]:
         """The figures by name; those of a plate are None where there is none."""
@@ -113,9 +117,15 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         energy_balance=trajectory.energy.balance,
         path_error=moved if same else None,
         path_resolution=case.run.tolerance * scene.surface.size,
+        frames_per_cycle=None if scene.fits else _frames_per_cycle(case, drives, float(trajectory.time[-1])),
     )
     figures = scene.figures(case, trajectory)
     return summary if figures is None else PlateSummary(**vars(summary), **vars(figures))
+
+
+def _frames_per_cycle(case: Case, drives: Sequence[AnyDrive], end: float) -> float | None:
+    cycles = end * max(drive.frequency for drive in drives)
+    return (len(frame_times(case.run.frames, drives, end)) - 1) / cycles if cycles > 0 else None
 
 
 def _at_rest_since(trajectory: Trajectory) -> float | None:

@@ -65,3 +65,19 @@ def test_the_surface_rises_by_stroke_spring_and_force(result):
 
 def quintic(s):
     return 10 * s**3 - 15 * s**4 + 6 * s**5
+
+
+def test_long_runs_say_that_their_files_strobe():
+    """2 s of 300 Hz in at most 1000 steps; the extremes are found although 201 even moments fall on whole periods."""
+    disc = {"shape": "disc", "radius": 300e-6, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6}
+    case = Case(
+        plate=disc,
+        actuators=[{"position": (0.0, 0.0), "stroke": 10e-6, "frequency": 300.0}],
+        part={"mass": 2e-9, "position": (100e-6, 0.0)},
+        friction={"model": "constant", "limit": 1e-6},
+        run={"duration": 2.0},
+    )
+    summary = run_case(case).summary
+    assert summary.deflection_over_thickness == pytest.approx(2.0, rel=1e-6)
+    assert summary.frames_per_cycle == pytest.approx(999 / 600)
+    assert any("1.7 steps to a cycle" in warning for warning in report.warnings(summary))
