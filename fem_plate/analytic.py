@@ -93,6 +93,12 @@ class DiscShapes(Shapes):
             np.einsum("njde,jk->nkde", hessian, strengths),
         )
 
-    def smooth(self, xy: ArrayLike) -> FloatArray:
-        value, _, _ = smooth_part(np.asarray(xy, dtype=float) / self.size, self.points / self.size)
-        return np.asarray(value @ self.strengths)
+    def nearby(self, xy: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+        return np.arange(len(self.points)), self._values(xy / self.size)
+
+    def own_heights(self) -> FloatArray:
+        return np.abs(np.diag(self._values(self.points / self.size)))
+
+    def _values(self, x: FloatArray) -> FloatArray:
+        sources = self.points / self.size
+        return np.asarray((smooth_part(x, sources)[0] + point_value(x, sources)) @ self.strengths)

@@ -14,6 +14,7 @@ from fem_plate.singular import point_value
 from meshes import Outline
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 ROWS = 4096  # unknowns combined at once
 MOST_DENSE = 2000  # actuators whose compliance and stiffness are worth a dense matrix
@@ -41,8 +42,15 @@ class Shapes(ABC):
         """
 
     @abstractmethod
-    def smooth(self, xy: ArrayLike) -> FloatArray:
-        """The smooth parts v_i at points (n, 2) [m]: (n, N), dimensionless."""
+    def nearby(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
+        """The rows (k,) of all shapes that are not zero at every one of some points (n, 2) [m], and their values (n, k).
+
+        Those of held actuators are per metre of stroke, those of floating ones in m/N.
+        """
+
+    @abstractmethod
+    def own_heights(self) -> FloatArray:
+        """How high each shape is at its own actuator: (N,), 1 where that is rigid."""
 
     def evaluate(self, xy: ArrayLike, weights: ArrayLike | None = None) -> Fields:
         """The shapes, or their weighted sum.
@@ -103,8 +111,11 @@ class InfluenceShapes(Shapes, Estimated):
     def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:
         return (self.field if weights is None else self.field.weighted(weights)).evaluate(x)
 
-    def smooth(self, xy: ArrayLike) -> FloatArray:
-        return self.field.smooth(np.asarray(xy, dtype=float) / self.size)[0]
+    def nearby(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
+        return np.arange(len(self.points)), self.field.values(xy / self.size)
+
+    def own_heights(self) -> FloatArray:
+        return np.abs(np.diag(self.field.values(self.points / self.size)))
 
 
 def held_shapes(

@@ -5,16 +5,16 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
 from fem_plate.field import Fields
 from fem_plate.influence import MOST_DENSE, Shapes
-from fem_plate.patches import Array
-from fem_plate.singular import point_value
+from fem_plate.patches import Array, Tile
 from meshes import Outline
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 SLACK = 1e-8  # of a patch's size: points on the rim may seem to lie beyond it
 MOST_VALUES = 20_000_000  # points times actuators of which all shapes may be asked for at once
@@ -84,10 +84,7 @@ class PatchedShapes(Shapes):
         for tile in self.tiles:
             patch = tile.patch
             ratio, core = self.size / patch.size, tile.rows[patch.core]
-            local = (x * self.size - tile.cut.origin) / patch.size
-            box = patch.box / patch.size
-            near = np.flatnonzero(((local >= box[0] - SLACK) & (local <= box[1] + SLACK)).all(axis=1))
-            near = near[patch.field.space.holds(local[near])]
+            local, near = self._within(tile, x * self.size)
             if not near.size:
                 continue
             if weights is not None and not weights[core].any():
@@ -101,7 +98,27 @@ class PatchedShapes(Shapes):
                 hessian[at] += bend * ratio**2
         return value, gradient, hessian
 
-    def smooth(self, xy: ArrayLike) -> FloatArray:
-        x = np.asarray(xy, dtype=float) / self.size
-        singular = point_value(x, self.points / self.size)
-        return self.fields(x, None)[0] - np.asarray((self.strengths.T @ singular.T).T)
+    def nearby(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
+        rows, values = [np.zeros(0, dtype=np.int64)], [np.zeros((len(xy), 0))]
+        for tile in self.tiles:
+            local, near = self._within(tile, xy)
+            if near.size:
+                rows.append(tile.rows[tile.patch.core])
+                values.append(np.zeros((len(xy), len(rows[-1]))))
+                values[-1][near] = tile.patch.field.values(local[near])
+        return np.concatenate(rows), np.concatenate(values, axis=1)
+
+    def own_heights(self) -> FloatArray:
+        heights = np.empty(len(self.points))
+        for tile in self.tiles:
+            patch = tile.patch
+            own = patch.field.values(patch.actuators[patch.core] / patch.size)
+            heights[tile.rows[patch.core]] = np.abs(np.diag(own))
+        return heights
+
+    def _within(self, tile: Tile, xy: FloatArray) -> tuple[FloatArray, IntArray]:
+        """Points (n, 2) [m] in the dimensionless coordinates of a tile's patch, and which of them lie on it."""
+        patch = tile.patch
+        local, box = (xy - tile.cut.origin) / patch.size, patch.box / patch.size
+        near = np.flatnonzero(((local >= box[0] - SLACK) & (local <= box[1] + SLACK)).all(axis=1))
+        return local, near[patch.field.space.holds(local[near])] if near.size else near

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.drive import next_kink
-from particle.fields import new_local, pin_cell, pin_time
 from particle.fixed import fixed_row
 from particle.jit import jit
+from particle.local import enter, new_local
 from particle.motion import Part
 from particle.record import COLUMNS, DISSIPATED, MODE, RESTING, TIME, V_X, V_Y, WORK, X, Y
 
@@ -26,7 +25,7 @@ def between(surface: Any, part: Part, scheme: int, rows: FloatArray, times: Floa
     between them, and height, forces, kinetic and potential energy are those of the surface there.
     """
     out, state, local = np.zeros((len(times), COLUMNS)), np.zeros(8), new_local(surface)
-    row, span_end = 0, -math.inf
+    row = 0
     for k in range(len(times)):
         while row + 1 < len(rows) and rows[row + 1, TIME] <= times[k]:
             row += 1
@@ -34,10 +33,7 @@ def between(surface: Any, part: Part, scheme: int, rows: FloatArray, times: Floa
         if times[k] <= rows[row, TIME] or row + 1 == len(rows):
             continue
         _hermite(rows[row], rows[row + 1], times[k], state)
-        if times[k] >= span_end:
-            span_end = min(next_kink(surface.drives, times[k]), rows[-1, TIME])
-            pin_time(surface, local, times[k], span_end)
-        if pin_cell(surface, local, state[0], state[1]):
+        if enter(surface, local, state[0], state[1], times[k], math.inf) >= 0:
             out[k] = fixed_row(surface, local, part, scheme, int(rows[row, MODE]), times[k], state)
     return out
 

@@ -12,8 +12,10 @@ from particle.drive_table import ORDER as ORDER
 from particle.drive_table import AnyDrive as AnyDrive
 from particle.drive_table import DriveTable as DriveTable
 from particle.drive_table import Evaluated, FloatArray, Segments
+from particle.drive_table import drive_kink as drive_kink
 from particle.drive_table import drive_piece as drive_piece
 from particle.drive_table import drive_table as drive_table
+from particle.drive_table import kink_slack as kink_slack
 from particle.drive_table import monomial_table as monomial_table
 from particle.drive_table import next_kink as next_kink
 from particle.quintic import QUINTIC, hermite

@@ -155,6 +155,28 @@ def drive_piece(table: DriveTable, i: int, time: float, unit: float) -> FloatArr
 
 
 @jit
+def kink_slack(table: DriveTable, i: int, time: float) -> float:
+    """How close [s] to `time` a kink of drive i must be to count as one there: rounding, or 1e-12 of a stroke."""
+    return MERGED * table.stroke_time[i] + ROUNDING * abs(time) if math.isfinite(table.span[i]) else 0.0
+
+
+@jit
+def drive_kink(table: DriveTable, i: int, time: float) -> float:
+    """The first time [s] after `time` at which drive i has a kink; inf when there is none."""
+    if not math.isfinite(table.span[i]):
+        return math.inf
+    after = time + kink_slack(table, i, time)
+    if after < table.delay[i]:
+        return float(table.delay[i])
+    if after >= _edge(table, i, table.repeats[i], table.first[i]):
+        return math.inf
+    passes, segment = _place(table, i, after)
+    if segment + 1 < table.first[i + 1]:
+        return _edge(table, i, passes, segment + 1)
+    return _edge(table, i, passes + 1.0, table.first[i])
+
+
+@jit
 def next_kink(table: DriveTable, time: float) -> float:
     """The first time [s] after `time` at which any drive has a kink; inf when there is none.
 
@@ -162,17 +184,7 @@ def next_kink(table: DriveTable, time: float) -> float:
     """
     nearest = math.inf
     for i in range(len(table.delay)):
-        if not math.isfinite(table.span[i]):
-            continue
-        after = time + MERGED * table.stroke_time[i] + ROUNDING * abs(time)
-        if after < table.delay[i]:
-            nearest = min(nearest, table.delay[i])
-        elif after < _edge(table, i, table.repeats[i], table.first[i]):
-            passes, segment = _place(table, i, after)
-            if segment + 1 < table.first[i + 1]:
-                nearest = min(nearest, _edge(table, i, passes, segment + 1))
-            else:
-                nearest = min(nearest, _edge(table, i, passes + 1.0, table.first[i]))
+        nearest = min(nearest, drive_kink(table, i, time))
     return nearest
 
 

@@ -9,17 +9,18 @@ part that comes off may be followed (`flight`) to where it lands.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from particle.breakaway import slope
-from particle.drive import next_kink
-from particle.fields import fields, new_local, pin_cell, pin_time
+from particle.cells import UNBUILT
+from particle.fields import fields
 from particle.flight import JUMP, fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
+from particle.local import END, enter, forget, gap_at, new_local
 from particle.motion import Part, energy_at_rest, margin, pull
 from particle.record import (
     ENDS,
@@ -40,11 +41,11 @@ from particle.record import (
     row_of,
     write,
 )
-from particle.rim import rim_gap
 from particle.runge_kutta import Tableau, new_step
 from particle.slide import (
     DETACHED,
     GOES_ON,
+    LACKS_CELL,
     LEFT_PLATE,
     OVERLOADED,
     TURNED,
@@ -63,11 +64,29 @@ EVALUATIONS_PER_SPAN, EVALUATIONS_AT_LEAST = 2_000, 20_000
 LONG, EVALUATIONS_PER_STEP = 1e-5, 40  # of the run: steps that are no sign of trouble, however many there are
 
 
+class Memory(NamedTuple):
+    """Scratch memory of a path; another may use it next."""
+
+    local: Any
+    rest: Any
+    step: Any
+
+
 @jit
-def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, FloatArray, int, int]:
-    """The path from one request: rows (n, COLUMNS), events (m, EVENT_COLUMNS), how it ended, evaluations."""
+def new_memory(surface: Any, pair: Tableau) -> Memory:
+    """Scratch memory that fits the surface as far as its cells are built."""
+    return Memory(new_local(surface), new_rest(), new_step(pair))
+
+
+@jit
+def march(surface: Any, request: Request, pair: Tableau, memory: Memory) -> tuple[FloatArray, FloatArray, int, int]:
+    """The path from one request: rows (n, COLUMNS), events (m, EVENT_COLUMNS), how it ended, evaluations.
+
+    Where a cell is lacking, at memory.local.missing, it ends, and must begin anew when there is one.
+    """
     part, end = request.part, request.duration
-    local, rest, step, record = new_local(surface), new_rest(), new_step(pair), new_record()
+    local, rest, step, record = memory.local, memory.rest, memory.step, new_record()
+    forget(local)
     count = np.zeros(3, dtype=np.int64)  # evaluations, spans, long steps
     # x, y, v_x, v_y, work, dissipation, z, v_z; on the slow manifold u in place of v_x.
     state, time = np.zeros(8), 0.0
@@ -78,43 +97,44 @@ def march(surface: Any, request: Request, pair: Tableau) -> tuple[FloatArray, Fl
         if time >= span_end:
             if time >= end:
                 break
-            span_end = min(next_kink(surface.drives, time), end)
-            if span_end <= time:
-                verdict = WORK_LIMIT
-                break
-            before, jolted = mode, False
-            if request.jumps and count[1] > 0:
-                mode, jolted = _cross_kink(surface, local, request, mode, time, span_end, record, state)
-            else:
-                pin_time(surface, local, time, span_end)
             h = max(h, 1e-4 * request.stroke_time)
+            if request.jumps and count[1] > 0:
+                before, row = mode, row_of(surface, local, part, mode, time, state)
+                mode, jolted = _cross_kink(surface, local, request, mode, time, row, state)
+                if jolted:
+                    row = row_of(surface, local, part, mode, time, state)
+                    if mode == FLYING and before != FLYING:
+                        record = note(record, ENDS + DETACHED, row, _speed(row))
+                    elif mode == RESTING and before != RESTING:
+                        record = note(record, STOPS, row, _speed(row))
+                    elif before == RESTING and mode != RESTING:
+                        record = note(record, SLIPS, row, _speed(row))
+                    record = write(record, row)
+                    if mode == FLYING and not request.flies:
+                        return _results(record, DETACHED, count)
             count[1] += 1
-            if jolted:
-                row = row_of(surface, local, part, mode, time, state)
-                if mode == FLYING and before != FLYING:
-                    record = note(record, ENDS + DETACHED, row, _speed(row))
-                elif mode == RESTING and before != RESTING:
-                    record = note(record, STOPS, row, _speed(row))
-                elif before == RESTING and mode != RESTING:
-                    record = note(record, SLIPS, row, _speed(row))
-                record = write(record, row)
-                if mode == FLYING and not request.flies:
-                    return _results(record, DETACHED, count)
-        if rim_gap(surface, state[0], state[1]) < 0.0 or not pin_cell(surface, local, state[0], state[1]):
+        cell = enter(surface, local, state[0], state[1], time, end)
+        if cell == UNBUILT:
+            verdict = LACKS_CELL
+            break
+        if cell < 0 or gap_at(surface, local, state[0], state[1]) < 0.0:
             verdict = LEFT_PLATE
+            break
+        span_end = local.frame[END]
+        if span_end <= time:
+            verdict = WORK_LIMIT
             break
         if record.counts[0] == 0:
             record = write(record, row_of(surface, local, part, mode, time, state))
         before, event = mode, -1
         if mode == RESTING:
             stood = energy_at_rest(surface, local, part, time, state)
-            begin = (time - local.frame[0]) / local.frame[1]
-            leaves = leaves_rest(surface, local, part, rest, state[0], state[1], begin)
-            time = local.frame[0] + leaves * local.frame[1] if leaves < 1.0 else span_end
+            leaves = leaves_rest(surface, local, part, rest, state[0], state[1], time, span_end)
+            time = min(leaves, span_end)
             # A part at rest dissipates nothing: all that its energy gains is the surface's work.
             state[4] += energy_at_rest(surface, local, part, time, state) - stood
             count[0] += 3
-            if leaves < 1.0:
+            if leaves < math.inf:
                 a = slope(fields(surface, local, state[0], state[1], time), part)
                 load, law = a.load, part.law
                 # Rounding must not make a slip of what is the end of contact.
@@ -166,24 +186,15 @@ def _results(record: Record, verdict: int, count: NDArray[np.int64]) -> tuple[Fl
 
 @jit
 def _cross_kink(
-    surface: Any,
-    local: Any,
-    request: Request,
-    mode: int,
-    time: float,
-    span_end: float,
-    record: Record,
-    state: FloatArray,
+    surface: Any, local: Any, request: Request, mode: int, time: float, row: FloatArray, state: FloatArray
 ) -> tuple[int, bool]:
     """Goes on to the next span over a kink; what the part does then, and whether the surface's velocity jumped."""
     before = fields(surface, local, state[0], state[1], time)
-    pin_time(surface, local, time, span_end)
-    if not pin_cell(surface, local, state[0], state[1]):
+    if enter(surface, local, state[0], state[1], time, request.duration) < 0:
         return mode, False
     after = fields(surface, local, state[0], state[1], time)
     moved = state.copy()
     if mode == MANIFOLD:
-        row = record.rows[record.counts[0] - 1]
         moved[2], moved[3] = row[V_X], row[V_Y]
     slack = JUMP * surface.size / request.stroke_time
     if jump(before, after) <= slack:

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.breakaway import slope
-from particle.drive import next_kink
-from particle.fields import Local, fields, new_local, pin_cell, pin_time
+from particle.cells import UNBUILT
+from particle.fields import fields
 from particle.jit import jit
+from particle.local import Local, enter
 from particle.moreau import moreau_step
 from particle.motion import Part, margin
 from particle.paper_scheme import paper_step
@@ -38,7 +39,7 @@ from particle.record import (
     write,
 )
 from particle.rim import rim_gap
-from particle.slide import GOES_ON, LEFT_PLATE, Request, reason
+from particle.slide import GOES_ON, LACKS_CELL, LEFT_PLATE, Request, reason
 from particle.surface import SurfaceMotion
 
 FloatArray = NDArray[np.float64]
@@ -75,23 +76,22 @@ def step_count(duration: float, time_step: float) -> int:
 
 @jit
 def march_fixed(
-    surface: Any, request: Request, scheme: int, time_step: float, steps: int, every: int
+    surface: Any, request: Request, local: Any, scheme: int, time_step: float, steps: int, every: int
 ) -> tuple[FloatArray, FloatArray, int, int]:
     """The path by `steps` steps of `time_step` [s], the last one cut at the duration; scheme: MOREAU or PAPER.
 
     Returns rows (n, COLUMNS), at one step in `every`, at events and at the end, events (m, EVENT_COLUMNS), how the path
-    ended, and evaluations of the surface.
+    ended, and evaluations of the surface. Where a cell is lacking it ends, and must begin anew when there is one.
     """
     part, end = request.part, request.duration
-    local, record = new_local(surface), new_record()
+    record = new_record()
     # x, y, v_x, v_y, work, dissipation, -, the velocity's z component relative to the surface (PAPER)
     state, after = np.zeros(8), np.zeros(8)
     state[:4] = request.start
     mode = RESTING if state[2] == 0.0 and state[3] == 0.0 else SLIDING
     time, gap, verdict, count = 0.0, rim_gap(surface, state[0], state[1]), GOES_ON, 0
-    span_end = min(next_kink(surface.drives, time), end)
-    pin_time(surface, local, time, span_end)
-    if pin_cell(surface, local, state[0], state[1]):
+    cell = enter(surface, local, state[0], state[1], time, math.inf)
+    if cell >= 0:
         f = fields(surface, local, state[0], state[1], time)
         state[7] = state[2] * f.x + state[3] * f.y
     record = write(record, fixed_row(surface, local, part, scheme, mode, time, state))
@@ -100,12 +100,12 @@ def march_fixed(
         h = until - begin
         ahead = 0.5 * h if scheme == MOREAU else 0.0
         time = begin + ahead
-        while time >= span_end and span_end < end:
-            start = span_end
-            span_end = min(next_kink(surface.drives, start), end)
-            pin_time(surface, local, start, span_end)
         gap, share = move(surface, gap, state, ahead * state[2], ahead * state[3])
-        if share < 1.0 or not pin_cell(surface, local, state[0], state[1]):
+        cell = enter(surface, local, state[0], state[1], time, math.inf)
+        if cell == UNBUILT:
+            verdict = LACKS_CELL
+            break
+        if share < 1.0 or cell < 0:
             time, verdict = begin + share * ahead, LEFT_PLATE
             break
         f = fields(surface, local, state[0], state[1], time)
@@ -131,15 +131,19 @@ def march_fixed(
             event = REVERSES
         state[2:] = after[2:]
         gap, share = move(surface, gap, state, way_x, way_y)
-        if share < 1.0 or not pin_cell(surface, local, state[0], state[1]):
+        cell = enter(surface, local, state[0], state[1], until, math.inf)
+        if cell == UNBUILT:
+            verdict = LACKS_CELL
+            break
+        if share < 1.0 or cell < 0:
             time, verdict = time + share * (until - time), LEFT_PLATE
             break
         time = until
         if event >= 0 or (n + 1) % every == 0 or n + 1 == steps:
             row = fixed_row(surface, local, part, scheme, mode, time, state)
             record = _note(record, event, row) if event >= 0 else write(record, row)
-    if verdict != GOES_ON:
-        pin_cell(surface, local, state[0], state[1])
+    if verdict not in (GOES_ON, LACKS_CELL):
+        enter(surface, local, state[0], state[1], time, math.inf)
         record = _note(record, ENDS + verdict, fixed_row(surface, local, part, scheme, mode, time, state))
     return record.rows[: record.counts[0]], record.events[: record.counts[1]], verdict, count
 

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.bernstein import first_negative
-from particle.fields import Fields, fields, within_cell
+from particle.fields import Fields, fields
 from particle.jit import jit
+from particle.local import within_cell
 from particle.motion import Part
 from particle.record import FLYING, RESTING, SLIDING
 from particle.rim import first_beyond, rim_gap

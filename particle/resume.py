@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.fields import fields, new_local, pin_cell, pin_time
+from particle.fields import fields
 from particle.flight import fly
 from particle.jit import jit
+from particle.local import enter, new_local
 from particle.motion import Part, energy_at_rest, pull
 from particle.record import (
     COLUMNS,
@@ -39,7 +41,7 @@ def resume(surface: Any, request: Request, pair: Tableau, rows: FloatArray, time
     """The rows (k, COLUMNS) at ascending times (k,) [s], each marched to from the row of the path before it."""
     part, out = request.part, np.zeros((len(times), COLUMNS))
     local, step, count = new_local(surface), new_step(pair), np.zeros(3, dtype=np.int64)
-    state, row, pinned = np.zeros(8), 0, -1
+    state, row = np.zeros(8), 0
     for k in range(len(times)):
         while row + 1 < len(rows) and rows[row + 1, TIME] <= times[k]:
             row += 1
@@ -47,10 +49,7 @@ def resume(surface: Any, request: Request, pair: Tableau, rows: FloatArray, time
         if times[k] <= time or row + 1 == len(rows):
             out[k] = rows[row]
             continue
-        if pinned != row:
-            pin_time(surface, local, time, rows[row + 1, TIME])
-            pinned = row
-        if not pin_cell(surface, local, rows[row, X], rows[row, Y]):
+        if enter(surface, local, rows[row, X], rows[row, Y], time, math.inf) < 0:
             out[k] = rows[row]
             continue
         _restore(surface, local, part, rows[row], state)

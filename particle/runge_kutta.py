@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853, RK45
 
 from particle.breakaway import manifold_rate
-from particle.fields import within_cell
 from particle.friction import friction_limit
 from particle.jit import jit
+from particle.local import gap_at, within_cell
 from particle.motion import Part, margin, slide_rate
 from particle.record import SLIDING
-from particle.rim import rim_gap
 
 FloatArray = NDArray[np.float64]
 
@@ -108,7 +107,7 @@ def attempt(
         load = rate(mode, surface, local, part, time + pair.c[k] * h, step.stage, step.rates[k])
         # As far from the rim as the start is, less the way from there: where that does not settle it, look.
         gap = step.start_gap[0] - math.hypot(step.stage[0] - state[0], step.stage[1] - state[1])
-        gap = gap if gap > 0.0 else rim_gap(surface, step.stage[0], step.stage[1])
+        gap = gap if gap > 0.0 else gap_at(surface, local, step.stage[0], step.stage[1])
         step.loads[k], step.margins[k] = load, margin(surface, part, load, gap)
     step.end[:] = step.stage
     return True

@@ -12,19 +12,21 @@ from numpy.typing import NDArray
 
 from particle.between import between
 from particle.drive_table import jumps
-from particle.events import march
+from particle.events import march, new_memory
 from particle.fixed import MOREAU, MOST_ROWS, PAPER, default_step, march_fixed, shortest_stroke, step_count
 from particle.friction import Contact
+from particle.local import new_local
 from particle.motion import Part
 from particle.resume import resume
 from particle.rim import rim_gap
 from particle.runge_kutta import tableau
-from particle.slide import DETACHED, GOES_ON, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
+from particle.slide import DETACHED, GOES_ON, LACKS_CELL, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
 from particle.stay import stays
-from particle.surface import SurfaceMotion
+from particle.surface import Surface, SurfaceMotion
 from particle.trajectory import Energy, Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
 
 FloatArray = NDArray[np.float64]
+Path = tuple[FloatArray, FloatArray, int, int]  # rows, events, how it ended, evaluations
 
 _FIXED_STEPS = {"fixed": MOREAU, "paper": PAPER}
 _OUTCOMES = {
@@ -97,7 +99,7 @@ def simulate(
         wrong.append(f"Input duration of simulate must be a positive time in s; got {duration!r}")
     if not 1e-13 <= tolerance <= 1e-2:
         wrong.append(f"Input tolerance of simulate must be in [1e-13, 1e-2]; got {tolerance!r}")
-    if not rim_gap(surface, *map(float, part.position)) >= 0:
+    if not rim_gap(surface.record, *map(float, part.position)) >= 0:
         wrong.append(f"Input position of Micropart must lie on the plate; got {tuple(part.position)!r} m")
     if wrong:
         raise ValueError("; ".join(wrong))
@@ -117,17 +119,36 @@ def simulate(
         kind, step = _FIXED_STEPS[scheme], float(default_step(surface, duration) if time_step is None else time_step)
         steps = step_count(request.duration, step)
         every = math.ceil(steps / MOST_ROWS)
-        rows, events, verdict, evaluations = march_fixed(surface, request, kind, step, steps, every)
-        sampler = partial(between, surface, request.part, kind, rows)
+
+        def path(record: Surface) -> tuple[Path, FloatArray]:
+            local = new_local(record)
+            return march_fixed(record, request, local, kind, step, steps, every), local.missing
+
+        rows, events, verdict, evaluations = _with_cells(surface, path)
+        sampler = partial(between, surface.record, request.part, kind, rows)
     else:
         pair = tableau(tolerance)
-        rows, events, verdict, evaluations = march(surface, request, pair)
-        sampler = partial(resume, surface, request, pair, rows)
+
+        def path(record: Surface) -> tuple[Path, FloatArray]:
+            memory = new_memory(record, pair)
+            return march(record, request, pair, memory), memory.local.missing
+
+        rows, events, verdict, evaluations = _with_cells(surface, path)
+        sampler = partial(resume, surface.record, request, pair, rows)
     found = _trajectory(rows, events, verdict, evaluations, energy_of(rows, request.force * surface.size), sampler)
     if found.outcome is Outcome.STUCK and scheme == "events":
         x, y = found.position[-1].tolist()
         found = replace(found, future=partial(stays, surface, request.part, x, y, request.duration))
     return found
+
+
+def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], tuple[Path, FloatArray]]) -> Path:
+    """A path over the surface, found anew whenever it has come to a place where a cell was lacking."""
+    while True:
+        found, missing = path(surface.record)
+        if found[2] != LACKS_CELL:
+            return found
+        surface.store.build(missing[None])
 
 
 def _trajectory(

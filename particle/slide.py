@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from particle.breakaway import Slope, lag, slope, velocity
 from particle.fields import Fields, fields
 from particle.jit import jit
+from particle.local import FIRST_NEAR, NEAR, gap_at
 from particle.motion import Part, energy_at_rest, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
@@ -20,8 +21,8 @@ from particle.stop import Stop, come_to_rest, stop_ahead
 FloatArray = NDArray[np.float64]
 
 TURNED = -1  # what a part does that came to rest on a slope which at once pulls it back
-# How a path ends.
-GOES_ON, DETACHED, LEFT_PLATE, OVERLOADED, WORK_LIMIT = range(5)
+# How a path ends; the last one only for now, until there is a cell.
+GOES_ON, DETACHED, LEFT_PLATE, OVERLOADED, WORK_LIMIT, LACKS_CELL = range(6)
 
 WEAKEST = 0.75  # of the friction limit: the slow manifold draws parts to it down to a pull of half of it
 SHORTEST = 1e-13  # of a stroke: no step is shorter
@@ -63,7 +64,7 @@ def slide(
     """
     part, tolerance = request.part, request.tolerance
     step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
-    step.start_gap[0] = rim_gap(surface, state[0], state[1])
+    step.start_gap[0] = gap_at(surface, local, state[0], state[1])
     f = fields(surface, local, state[0], state[1], time)
     a = slope(f, part)
     count[0] += 2
@@ -76,7 +77,7 @@ def slide(
         stop, miss = stop_ahead(surface, local, part, time, moving, 0.01 * tolerance, pace, request.force)
         count[0] += 1
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
-        near = near and _stops_on_plate(surface, step, moving, stop)
+        near = near and _stops_on_plate(surface, local, step, moving, stop)
         count[0] += 5 * near
         if near and come_to_rest(surface, local, part, time, moving, stop):
             state[:] = moving
@@ -95,7 +96,7 @@ def slide(
     while True:
         h = remaining if h >= 0.9 * remaining else h
         if mode == SLIDING:
-            h = _to_passage(surface, state, h)
+            h = _to_passage(surface, local, state, h)
         if h < shortest and h < remaining:
             return mode, time, h, WORK_LIMIT
         count[0] += len(pair.c)
@@ -150,12 +151,13 @@ def slide(
 
 
 @jit
-def _to_passage(surface: Any, state: FloatArray, h: float) -> float:
+def _to_passage(surface: Any, local: Any, state: FloatArray, h: float) -> float:
     """The step [s], cut where the part passes closely over an actuator: at a step's end its logarithm does no harm."""
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     square = v_x * v_x + v_y * v_y
-    for j in range(len(surface.sources)):
-        d_x, d_y = surface.sources[j, 0] - x, surface.sources[j, 1] - y
+    for j in range(local.counts[NEAR]):
+        source = surface.cells.near[local.counts[FIRST_NEAR] + j]
+        d_x, d_y = surface.sources[source, 0] - x, surface.sources[source, 1] - y
         passage = (d_x * v_x + d_y * v_y) / square if square > 0.0 else 0.0
         if BEGUN * h < passage < h and abs(d_x * v_y - d_y * v_x) < CLOSE * square * h:
             h = passage
@@ -163,7 +165,7 @@ def _to_passage(surface: Any, state: FloatArray, h: float) -> float:
 
 
 @jit
-def _stops_on_plate(surface: Any, step: Step, state: FloatArray, stop: Stop) -> bool:
+def _stops_on_plate(surface: Any, local: Any, step: Step, state: FloatArray, stop: Stop) -> bool:
     """Whether the way to a stop lies on the plate."""
     step.end[0], step.end[1] = state[0] + stop.x, state[1] + stop.y
     way = first_beyond(surface, step.start_gap[0], state, step.end, state[2:], np.zeros(2), stop.time)

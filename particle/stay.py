@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from particle.drive_table import DriveTable, jumps, next_kink
-from particle.fields import new_local, pin_cell, pin_time
+from particle.drive_table import DriveTable, jumps
 from particle.jit import jit
+from particle.local import END, enter, new_local
 from particle.motion import Part
 from particle.stick import leaves_rest, new_rest
 from particle.surface import SurfaceMotion
@@ -30,7 +30,7 @@ def stays(surface: SurfaceMotion, part: Part, x: float, y: float, time: float) -
     after = horizon(surface.drives, time)
     if after is None:
         return None
-    return bool(_rests(surface, part, x, y, time, after))
+    return bool(_rests(surface.record, part, x, y, time, after))
 
 
 def horizon(table: DriveTable, time: float) -> float | None:
@@ -59,11 +59,12 @@ def _rests(surface: Any, part: Part, x: float, y: float, time: float, end: float
     """Whether a part at rest stays from `time` to `end` [s], and at the end of it all."""
     local, rest = new_local(surface), new_rest()
     while True:
-        span_end = next_kink(surface.drives, time)
+        if enter(surface, local, x, y, time, math.inf) < 0:
+            return False
+        span_end = local.frame[END]
         over = not math.isfinite(span_end)
         span_end = time + 1.0 if over else span_end
-        pin_time(surface, local, time, span_end)
-        if not pin_cell(surface, local, x, y) or leaves_rest(surface, local, part, rest, x, y, 0.0) < 1.0:
+        if math.isfinite(leaves_rest(surface, local, part, rest, x, y, time, span_end)):
             return False
         if over or span_end >= end:
             return True

@@ -21,6 +21,7 @@ from particle.drive import ORDER
 from particle.fields import standing
 from particle.friction import friction_limit
 from particle.jit import jit
+from particle.local import TIME, UNIT
 from particle.motion import Part
 
 FloatArray = NDArray[np.float64]
@@ -45,16 +46,18 @@ def new_rest() -> Rest:
 
 
 @jit
-def leaves_rest(surface: Any, local: Any, part: Part, rest: Rest, x: float, y: float, begin: float) -> float:
-    """When a part at rest at (x, y) [m] first slips, comes off or is overloaded; inf when it does not.
+def leaves_rest(
+    surface: Any, local: Any, part: Part, rest: Rest, x: float, y: float, begin: float, end: float
+) -> float:
+    """When [s] a part at rest at (x, y) [m] first slips, comes off or is overloaded; inf when it does not.
 
-    Times are fractions of the pinned span; the search goes from `begin` to 1.
+    The search goes from `begin` to `end` [s], within the prepared span.
     """
-    _polynomials(surface, local, part, x, y, begin, rest.polynomials[0])
+    _polynomials(surface, local, part, x, y, begin, end, rest.polynomials[0])
     # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
     slack = SLACK * np.abs(rest.polynomials[0, 1]).max()
-    rest.low[0], rest.width[0] = begin, 1 - begin
-    narrowest = (1 - begin) * 0.5**DEEPEST
+    rest.low[0], rest.width[0] = 0.0, 1.0
+    narrowest = 0.5**DEEPEST
     top = 0
     while top >= 0:
         if _proved_safe(part, rest.polynomials[top], slack):
@@ -63,7 +66,7 @@ def leaves_rest(surface: Any, local: Any, part: Part, rest: Rest, x: float, y: f
             # Neither provable nor divisible: a slip if the far end says so, else the limit was only touched.
             c, force, square = rest.polynomials[top, :, -1]
             if not holds(part, c, force - slack, square):
-                return float(rest.low[top] + rest.width[top])
+                return float(begin + (rest.low[top] + rest.width[top]) * (end - begin))
             top -= 1
         else:
             half = 0.5 * rest.width[top]
@@ -101,18 +104,19 @@ def _proved_safe(part: Part, rest: FloatArray, slack: float) -> bool:
 
 
 @jit
-def _polynomials(surface: Any, local: Any, part: Part, x: float, y: float, begin: float, out: FloatArray) -> None:
-    """C, the squared force along the surface times s^2 and s^2 as Bernstein coefficients on [begin, 1], (3, 17)."""
+def _polynomials(
+    surface: Any, local: Any, part: Part, x: float, y: float, begin: float, end: float, out: FloatArray
+) -> None:
+    """C, the squared force along the surface times s^2, and s^2, from `begin` to `end` [s]: Bernstein form (3, 17)."""
     motion = np.zeros((3, ORDER))
     standing(surface, local, x, y, motion)
-    unit = local.frame[1]
-    w_tt = _second(_from(motion[0], begin), unit * (1 - begin))
-    g_x, g_y = _from(motion[1], begin), _from(motion[2], begin)
+    low, width = (begin - local.frame[TIME]) / local.frame[UNIT], (end - begin) / local.frame[UNIT]
+    w_tt = _second(_from(motion[0], low, width), end - begin)
+    g_x, g_y = _from(motion[1], low, width), _from(motion[2], low, width)
     b_x, b_y = np.zeros(ORDER - 2), np.zeros(ORDER - 2)
     if surface.moving_base:
-        n = surface.strengths.shape[1]
-        b_x = _second(_from(local.heights[n], begin), unit * (1 - begin))
-        b_y = _second(_from(local.heights[n + 1], begin), unit * (1 - begin))
+        b_x = _second(_from(local.base[:, 0], low, width), end - begin)
+        b_y = _second(_from(local.base[:, 1], low, width), end - begin)
     b_x[0] -= part.tilt_x
     b_y[0] -= part.tilt_y
     upright = w_tt.copy()
@@ -133,17 +137,17 @@ def _polynomials(surface: Any, local: Any, part: Part, x: float, y: float, begin
 
 
 @jit
-def _from(c: FloatArray, begin: float) -> FloatArray:
-    """The polynomial of s on [begin, 1] as one of r on [0, 1]."""
+def _from(c: FloatArray, low: float, width: float) -> FloatArray:
+    """The polynomial of s on [low, low + width] as one of r on [0, 1]."""
     out = c.copy()
     n = len(c) - 1
     for k in range(n):
         for j in range(n - 1, k - 1, -1):
-            out[j] += begin * out[j + 1]
+            out[j] += low * out[j + 1]
     factor = 1.0
     for k in range(n + 1):
         out[k] *= factor
-        factor *= 1 - begin
+        factor *= width
     return out
 
 

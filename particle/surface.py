@@ -1,22 +1,22 @@
-"""SurfaceMotion: the moving surface w(x, y, t) as arrays that every kernel reads.
+"""SurfaceMotion: the moving surface w(x, y, t) = sum_i h_i(t) phi_i(x, y), and its record of arrays for kernels.
 
-    w(x, t) = sum_i h_i(t) v_i(x) + sum_j f_j(t) r_j^2 ln(r_j) / (8 pi),   f_j = sum_i strengths[j, i] h_i(t)
-
-The logarithms around the sources are kept explicitly; the smooth shapes v_i are polynomials on the cells of a
-background grid. Between two kinks of the drives h_i is one quintic, so that a cell's whole smooth part is one
-polynomial in x, y, t.
+Each h_i is a drive, between two kinks one quintic in time; each phi_i is the shape of one actuator, on a cell of a
+background grid one polynomial and the logarithms r^2 ln(r) around the actuators close by. So a cell's whole smooth part
+is one polynomial in x, y, t.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from particle.cells import Cells, CellStore, OneCell
 from particle.drive import ORDER, AnyDrive, DriveTable, drive_table, monomial_table
 from particle.fields import evaluate_points
 
@@ -34,24 +34,74 @@ class SurfaceState(NamedTuple):
     hessian: FloatArray  # (n, 2, 2) 1/m
 
 
-class SurfaceMotion(NamedTuple):
-    """A moving surface; made by `coupling.surface_motion`, `platform_surface` or `polynomial_surface`."""
+class Surface(NamedTuple):
+    """A moving surface as kernels read it: arrays and numbers only."""
 
-    drives: DriveTable  # N drives, then the base's x and y where it moves
+    drives: DriveTable  # `shape_count` drives, then the base's x and y where it moves
+    cells: Cells
+    shape_count: int
     sources: FloatArray  # (J, 2) m, the centres of the logarithms
-    strengths: FloatArray  # (J, N), their strength per metre of drive
     size: float  # m, the length in the logarithms and that tolerances refer to
     floor: float  # m, radius below which the Hessian of a logarithm grows no more
-    origin: FloatArray  # (2,) m, the grid's lower left corner
-    cell_width: float  # m; inf: one polynomial everywhere, in x / size and y / size
-    cell_rows: NDArray[np.int64]  # (nx, ny), a grid cell's row in `cells`, -1 where there is no plate
-    cells: FloatArray  # (C, N, M), coefficients in (x - centre) / half a width, sorted by powers of x, then of y
-    degree: int  # of those polynomials
+    degree: int  # of the cells' polynomials
     overhang: float  # a cell's polynomials hold out to this many half widths
     conics: FloatArray  # (k, 4) m, the rim's whole ellipses: centre x, y and semi-axes
     edges: FloatArray  # (m, 3, 2) m, its other edges: start, middle and end of parabolas; no rim where both are empty
     moving_base: bool  # whether two more drives carry the base in its plane
-    error: float  # largest measured error of the shapes, relative to each one's height at its own actuator
+    unit: float  # s, of time in the polynomials that are made of cells and drives
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceMotion:
+    """A moving surface; made by `coupling.surface_motion`, `platform_surface` or `polynomial_surface`.
+
+    What is not described here is as in `Surface`.
+    """
+
+    drives: DriveTable
+    store: CellStore  # its cells; those of a large plate are built where a part comes to
+    sources: FloatArray
+    size: float
+    degree: int
+    floor: float = 0.0
+    overhang: float = math.inf
+    conics: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
+    edges: FloatArray = field(default_factory=lambda: np.zeros((0, 3, 2)))
+    moving_base: bool = False
+
+    @property
+    def record(self) -> Surface:
+        """The surface for kernels, with the cells that are built so far."""
+        strokes = self.drives.stroke_time[np.isfinite(self.drives.stroke_time)]
+        return Surface(
+            drives=self.drives,
+            cells=self.store.cells,
+            shape_count=len(self.drives.delay) - 2 * self.moving_base,
+            sources=self.sources,
+            size=self.size,
+            floor=self.floor,
+            degree=self.degree,
+            overhang=self.overhang,
+            conics=self.conics,
+            edges=self.edges,
+            moving_base=self.moving_base,
+            unit=float(strokes.min(initial=1.0)),
+        )
+
+    @property
+    def error(self) -> float:
+        """The largest error measured in its cells, relative to each shape's height at its own actuator."""
+        return self.store.error
+
+    def driven_by(self, drives: Sequence[AnyDrive]) -> SurfaceMotion:
+        """The same surface, its cells shared, with other drives, one for each actuator.
+
+        Raises ValueError when there is not one drive for each.
+        """
+        count = len(self.drives.delay) - 2 * self.moving_base
+        if self.moving_base or len(drives) != count:
+            raise ValueError(f"Input drives must be one an actuator, {count}; got {len(drives)}")
+        return replace(self, drives=drive_table(drives))
 
     def evaluate(self, xy: ArrayLike, time: float) -> SurfaceState:
         """The surface at points (n, 2) [m] and a time [s].
@@ -59,7 +109,10 @@ class SurfaceMotion(NamedTuple):
         Raises ValueError when a point lies beyond the rim.
         """
         xy = np.atleast_2d(np.asarray(xy, dtype=float))
-        rows = evaluate_points(self, xy, float(time))
+        rows, missing = evaluate_points(self.record, xy, float(time))
+        if missing.any():
+            self.store.build(xy[missing])
+            rows, _ = evaluate_points(self.record, xy, float(time))
         if np.isnan(rows).any():
             beyond = xy[np.isnan(rows).any(axis=1)][0].tolist()
             raise ValueError(f"Input xy of evaluate must lie on the surface; got {beyond} m")
@@ -89,23 +142,14 @@ def polynomial_surface(
     square = np.zeros((degree + 1, degree + 1, c.shape[2]))
     square[: c.shape[0], : c.shape[1]] = c
     powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
-    cells = np.array([[square[i, j, k] * size ** (i + j) for i, j in powers] for k in range(c.shape[2])])
+    shapes = np.array([[square[i, j, k] * size ** (i + j) for i, j in powers] for k in range(c.shape[2])])
     return SurfaceMotion(
         drives=_joined(monomial_table(c.shape[2]), drive_table(base or [])),
+        store=OneCell(shapes, size),
         sources=np.zeros((0, 2)),
-        strengths=np.zeros((0, c.shape[2])),
         size=size,
-        floor=0.0,
-        origin=np.zeros(2),
-        cell_width=math.inf,
-        cell_rows=np.zeros((1, 1), dtype=np.int64),
-        cells=cells[None],
         degree=degree,
-        overhang=math.inf,
-        conics=np.zeros((0, 4)),
-        edges=np.zeros((0, 3, 2)),
         moving_base=base is not None,
-        error=0.0,
     )
 
 
@@ -122,7 +166,7 @@ def platform_surface(
         raise ValueError(f"Input size of platform_surface must be a positive length in m; got {size!r}")
     flat = polynomial_surface([[1.0]], size=size)
     tables = [_still_table() if drive is None else drive_table([drive]) for drive in (z, x, y)]
-    return flat._replace(drives=reduce(_joined, tables), moving_base=True)
+    return replace(flat, drives=reduce(_joined, tables), moving_base=True)
 
 
 def _still_table() -> DriveTable:

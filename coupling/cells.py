@@ -1,0 +1,207 @@
+"""The cells of a plate's surface: polynomials fitted to its shapes, built where a part comes to.
+
+A cell keeps the logarithms of the actuators close by. What is left of a shape is smooth there, and fitted by least
+squares at points that reach a little beyond the cell. A cell whose fit, checked at points that it has not seen, is not
+good enough is divided into four, and so is one with too many logarithms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+from threadpoolctl import threadpool_limits
+
+from coupling.rim import rim_curves
+from fem_plate import Shapes
+from fem_plate.singular import UNIT_STRENGTH, point_value
+from particle.cells import NOWHERE, UNBUILT, WHOLE, CellFit, CellPool, Cells
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+DEGREE = 8
+OVERHANG = 1.25  # cells are fitted over this many half widths, so that a step may end a little outside
+NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
+CHECKS = 16  # points between those, at which its error is measured
+FEW = 8  # actuators whose logarithms are kept everywhere: their exact sum is cheaper than smaller cells
+DEEPEST = 6  # times that a cell is divided
+ACROSS = 8  # cells along the plate's longer side, at least
+PER_SPACING = 2.0  # cells from one actuator to the next
+# The polynomial's error falls with the distance of the nearest logarithm that it takes up, in half widths.
+REACH, REACHED = 8.0, 1e-9
+MOST_VALUES = 4_000_000  # points times shapes that are evaluated at once
+
+
+@dataclass
+class _Cell:
+    """A cell in the making."""
+
+    centre: FloatArray
+    half: FloatArray
+    fit: CellFit | None = None  # None: off the plate
+    error: float = 0.0
+    quarters: list[_Cell] = field(default_factory=list)
+
+    def leaves(self) -> list[_Cell]:
+        return [leaf for quarter in self.quarters for leaf in quarter.leaves()] if self.quarters else [self]
+
+
+class PlateCells:
+    """The cells of a plate's shapes, a `particle.CellStore`.
+
+    tolerance: largest error of a unit shape's fit.  error: the largest one measured so far, relative to the shapes'
+    heights at their own actuators.
+    """
+
+    def __init__(self, shapes: Shapes, tolerance: float) -> None:
+        self.shapes, self.tolerance, self.error = shapes, tolerance, 0.0
+        self._heights = shapes.own_heights()
+        self._few = len(shapes.points) <= FEW
+        self._reach = REACH * (REACHED / tolerance) ** (1 / (DEGREE + 1))
+        self._tree = cKDTree(shapes.points)
+        nodes = OVERHANG * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+        self._nodes = np.stack(np.meshgrid(nodes, nodes, indexing="ij"), axis=-1).reshape(-1, 2)
+        self._inverse = np.linalg.pinv(monomials(self._nodes))
+        self._checks = np.random.default_rng(0).uniform(-1, 1, (CHECKS, 2))
+        self._pool = CellPool(*self._grid())
+        self.cells: Cells = self._pool.cells()
+        if self._few:
+            self._build(np.argwhere(self._pool.roots == UNBUILT))
+
+    def _grid(self) -> tuple[FloatArray, FloatArray, IntArray]:
+        """The grid's origin and cell width (2,) [m], and which of its cells (nx, ny) there is to build."""
+        low, high = self.shapes.outline.box
+        longest = float((high - low).max())
+        across = float(ACROSS)
+        if not self._few:
+            across = max(
+                across, PER_SPACING * longest / float(np.median(self._tree.query(self._tree.data, 2)[0][:, 1]))
+            )
+        width = longest / np.ceil(across * (1 - 1e-9))
+        counts = np.ceil((high - low) / width * (1 - 1e-9)).astype(int)
+        origin = (low + high - counts * width) / 2
+        centres = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in counts), indexing="ij"), axis=-1) * width + origin
+        on_plate = self.shapes.outline.gap(centres) > -width / np.sqrt(2)  # the circle around the cell reaches it
+        return origin, np.full(2, width), np.where(on_plate, UNBUILT, NOWHERE)
+
+    def build(self, places: FloatArray) -> None:
+        """Makes sure that there are cells at places (n, 2) [m] on the plate, and around them."""
+        roots = np.array(self._pool.roots.shape)
+        at = np.clip(np.floor((places - self._pool.origin) / self._pool.width).astype(int), 0, roots - 1)
+        around = (at[:, None] + np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)).reshape(-1, 2)
+        around = np.unique(around[((around >= 0) & (around < roots)).all(axis=1)], axis=0)
+        self._build(around[self._pool.roots[tuple(around.T)] == UNBUILT])
+
+    def _build(self, roots: IntArray) -> None:
+        pool, half = self._pool, self._pool.width / 2
+        cells = [_Cell(pool.origin + (2 * place + 1) * half, half) for place in roots]
+        # Many small systems: BLAS threads would only wait for each other (a hundred times slower on two busy cores).
+        with threadpool_limits(limits=1, user_api="blas"):
+            self._fit(cells)
+            self._divide(cells, DEEPEST)
+        for place, cell in zip(roots, cells, strict=True):
+            pool.roots[tuple(place)] = pool.add(cell.centre, cell.half, cell.fit, self._add_quarters(cell))
+            self.error = max([self.error, *(leaf.error for leaf in cell.leaves())])
+        self.cells = pool.cells()
+
+    def _add_quarters(self, cell: _Cell) -> int:
+        below = [self._add_quarters(quarter) for quarter in cell.quarters]
+        rows = [
+            self._pool.add(quarter.centre, quarter.half, quarter.fit, first)
+            for quarter, first in zip(cell.quarters, below, strict=True)
+        ]
+        return rows[0] if rows else WHOLE
+
+    def _divide(self, cells: Sequence[_Cell], deepest: int) -> None:
+        """Divide those that are not good enough, if it helps: what finite elements are off by stays."""
+        crowded = [cell for cell in cells if not self._few and cell.fit and len(cell.fit.near) > FEW]
+        poor = [cell for cell in cells if cell.error > self.tolerance and cell not in crowded]
+        tried = crowded + poor
+        if not tried or deepest == 0:
+            return
+        quarters = []
+        for cell in tried:
+            centres = [cell.centre + cell.half / 2 * side for side in ([-1, -1], [-1, 1], [1, -1], [1, 1])]
+            quarters.append([_Cell(centre, cell.half / 2) for centre in centres])
+        self._fit([quarter for four in quarters for quarter in four])
+        for cell, four in zip(tried, quarters, strict=True):
+            if cell in crowded or max(quarter.error for quarter in four) < 0.5 * cell.error:
+                cell.quarters, cell.fit = four, None
+        self._divide([quarter for cell in tried for quarter in cell.quarters], deepest - 1)
+
+    def _fit(self, cells: Sequence[_Cell]) -> None:
+        """Fit cells of one size."""
+        some = max(1, MOST_VALUES // (len(self.shapes.points) * (len(self._nodes) + CHECKS)))
+        for start in range(0, len(cells), some):
+            self._fit_some(cells[start : start + some])
+
+    def _fit_some(self, cells: Sequence[_Cell]) -> None:
+        half = cells[0].half
+        centres = np.array([cell.centre for cell in cells])
+        gap, radius = self.shapes.outline.gap(centres), float(np.hypot(*half))
+        inside = gap > OVERHANG * radius
+        samples = [self._nodes if inner else self._at_rim(cell) for cell, inner in zip(cells, inside, strict=True)]
+        checks = [
+            self._checks if inner else self._checks[self.shapes.outline.inside(cell.centre + self._checks * half)]
+            for cell, inner in zip(cells, inside, strict=True)
+        ]
+        local = [np.concatenate(both) for both in zip(samples, checks, strict=True)]
+        first = np.cumsum([0] + [len(points) for points in local])
+        at = np.concatenate([cell.centre + points * half for cell, points in zip(cells, local, strict=True)])
+        if not len(at):
+            return
+        rows, values = self.shapes.nearby(at)
+        for k, cell in enumerate(cells):
+            if len(samples[k]):
+                here = slice(first[k], first[k + 1])
+                clear = float(gap[k]) - OVERHANG * radius if inside[k] else 0.0
+                self._fit_one(cell, local[k], len(samples[k]), rows, values[here], clear)
+
+    def _fit_one(
+        self, cell: _Cell, local: FloatArray, samples: int, rows: IntArray, values: FloatArray, clear: float
+    ) -> None:
+        """Fit the shapes `rows` with values (n, k) at points, of which the first few are for the fit."""
+        relative = np.abs(values).max(axis=0) / self._heights[rows]
+        order = np.argsort(relative, kind="stable")
+        dropped = np.cumsum(relative[order])
+        least = 0 if self._few else int(np.searchsorted(dropped, self.tolerance / 4))
+        kept = np.sort(order[least:])
+        left_out = float(dropped[least - 1]) if least else 0.0
+        rows, target = rows[kept], values[:, kept]
+        everything = np.arange(len(self.shapes.points))
+        reach = self._reach * float(cell.half.max())
+        near = everything if self._few else np.sort(self._tree.query_ball_point(cell.centre, reach)).astype(np.int64)
+        strengths = self.shapes.strengths[near][:, rows]
+        strengths = strengths if isinstance(strengths, np.ndarray) else strengths.toarray()
+        x = (cell.centre + local * cell.half) / self.shapes.size
+        target = target - point_value(x, self.shapes.points[near] / self.shapes.size) @ strengths
+        table = monomials(local)
+        if samples == len(self._nodes) and clear > 0:
+            fitted = self._inverse @ target[:samples]
+        else:
+            fitted = np.linalg.lstsq(table[:samples], target[:samples], rcond=1e-12)[0]
+        wrong = np.abs(table[samples:] @ fitted - target[samples:]) / self._heights[rows]
+        cell.error = float(wrong.max(initial=0.0)) + left_out
+        cell.fit = CellFit(rows, near, np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy(), clear)
+
+    def _at_rim(self, cell: _Cell) -> FloatArray:
+        """Points of a cell that the rim cuts, on the plate and on the rim, in half widths from its centre."""
+        side = np.linspace(-OVERHANG, OVERHANG, 4 * NODES)
+        grid = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+        grid = grid[self.shapes.outline.inside(cell.centre + grid * cell.half)][::3]
+        # Points near the edges of what there is matter most to a polynomial: hence those on the rim as well.
+        step = 2 * float(cell.half.max()) / NODES
+        rim = (np.concatenate(rim_curves(self.shapes.outline, step)) - cell.centre) / cell.half
+        return np.concatenate([grid, rim[np.abs(rim).max(axis=1) <= OVERHANG]])
+
+
+def monomials(local: FloatArray) -> FloatArray:
+    """x^i y^j at points (n, 2), sorted by powers of x, then of y: (n, M)."""
+    powers = local[:, :, None] ** np.arange(DEGREE + 1)
+    return np.stack(
+        [powers[:, 0, i] * powers[:, 1, j] for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i)], axis=1
+    )
