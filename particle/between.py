@@ -34,7 +34,7 @@ def between(surface: Any, part: Part, scheme: int, rows: FloatArray, times: Floa
             continue
         _hermite(rows[row], rows[row + 1], times[k], state)
         if enter(surface, local, state[0], state[1], times[k], math.inf) >= 0:
-            out[k] = fixed_row(surface, local, part, scheme, int(rows[row, MODE]), times[k], state)
+            out[k] = fixed_row(local, part, scheme, int(rows[row, MODE]), times[k], state)
     return out
 
 

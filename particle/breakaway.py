@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from particle.fields import Fields, fields
 from particle.friction import friction_limit
 from particle.jit import jit
+from particle.local import BASE
 from particle.motion import Part, drag, length, pull, push
 
 FloatArray = NDArray[np.float64]
@@ -52,15 +53,15 @@ def slope(f: Fields, part: Part) -> Slope:
 
 
 @jit
-def lag(surface: Any, local: Any, part: Part, time: float, x: float, y: float, u: float, f: Fields, a: Slope) -> float:
+def lag(local: Any, part: Part, time: float, x: float, y: float, u: float, f: Fields, a: Slope) -> float:
     """kappa [s/m] at the sliding speed u [m/s]."""
     if a.demand == 0.0 or 2 * a.demand <= a.limit:
         return 0.0
-    if surface.moving_base or part.tilt_x != 0.0 or part.tilt_y != 0.0:
+    if local.counts[BASE] > 0 or part.tilt_x != 0.0 or part.tilt_y != 0.0:
         # The pull is not along grad w, and there is no closed form without the base's jerk: its turning is taken from
         # a small step along the path.
         step = 1e-6 * local.frame[1]
-        g = fields(surface, local, x + step * u * a.d_x, y + step * u * a.d_y, time + step)
+        g = fields(local, x + step * u * a.d_x, y + step * u * a.d_y, time + step)
         ahead, here = pull(g, 0.0, 0.0, part), pull(f, 0.0, 0.0, part)
         turn_x, turn_y = (ahead.x - here.x) / step, (ahead.y - here.y) / step
         if u > 0.0:
@@ -88,12 +89,12 @@ def velocity(u: float, kappa: float, a: Slope) -> tuple[float, float]:
 
 
 @jit
-def manifold_rate(surface: Any, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
+def manifold_rate(local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
     """d/dt of (x, y, u, -, work, dissipation) into `out`; returns the normal force [N]."""
     x, y, u = state[0], state[1], state[2]
-    f = fields(surface, local, x, y, time)
+    f = fields(local, x, y, time)
     a = slope(f, part)
-    kappa = lag(surface, local, part, time, x, y, u, f, a)
+    kappa = lag(local, part, time, x, y, u, f, a)
     d_x, d_y = velocity(1.0, kappa * u, a)
     v_x, v_y = u * d_x, u * d_y
     load = pull(f, v_x, v_y, part).normal

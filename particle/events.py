@@ -99,10 +99,10 @@ def march(surface: Any, request: Request, pair: Tableau, memory: Memory) -> tupl
                 break
             h = max(h, 1e-4 * request.stroke_time)
             if request.jumps and count[1] > 0:
-                before, row = mode, row_of(surface, local, part, mode, time, state)
+                before, row = mode, row_of(local, part, mode, time, state)
                 mode, jolted = _cross_kink(surface, local, request, mode, time, row, state)
                 if jolted:
-                    row = row_of(surface, local, part, mode, time, state)
+                    row = row_of(local, part, mode, time, state)
                     if mode == FLYING and before != FLYING:
                         record = note(record, ENDS + DETACHED, row, _speed(row))
                     elif mode == RESTING and before != RESTING:
@@ -125,28 +125,28 @@ def march(surface: Any, request: Request, pair: Tableau, memory: Memory) -> tupl
             verdict = WORK_LIMIT
             break
         if record.counts[0] == 0:
-            record = write(record, row_of(surface, local, part, mode, time, state))
+            record = write(record, row_of(local, part, mode, time, state))
         before, event = mode, -1
         if mode == RESTING:
-            stood = energy_at_rest(surface, local, part, time, state)
-            leaves = leaves_rest(surface, local, part, rest, state[0], state[1], time, span_end)
+            stood = energy_at_rest(local, part, time, state)
+            leaves = leaves_rest(local, part, rest, state[0], state[1], time, span_end)
             time = min(leaves, span_end)
             # A part at rest dissipates nothing: all that its energy gains is the surface's work.
-            state[4] += energy_at_rest(surface, local, part, time, state) - stood
+            state[4] += energy_at_rest(local, part, time, state) - stood
             count[0] += 3
             if leaves < math.inf:
-                a = slope(fields(surface, local, state[0], state[1], time), part)
+                a = slope(fields(local, state[0], state[1], time), part)
                 load, law = a.load, part.law
                 # Rounding must not make a slip of what is the end of contact.
                 ends = min(load + law.pull_off, law.largest_load - load) < ROUNDING * request.force
-                if margin(surface, part, load, 0.0) < 0.0 or (ends and a.demand <= law.static_ratio * a.limit):
+                if margin(local, part, load, 0.0) < 0.0 or (ends and a.demand <= law.static_ratio * a.limit):
                     verdict = DETACHED if load + law.pull_off < law.largest_load - load else OVERLOADED
                 else:
                     mode, h, event = _start(part, load), START * request.stroke_time, SLIPS
         elif mode == FLYING:
             mode, time, h, verdict = fly(surface, local, request, count, time, h, span_end, state)
             if mode != FLYING:
-                load = pull(fields(surface, local, state[0], state[1], time), state[2], state[3], part).normal
+                load = pull(fields(local, state[0], state[1], time), state[2], state[3], part).normal
                 # A surface that falls away as it is met is not held on to.
                 mode, event = (FLYING if load < -part.law.pull_off else mode), LANDS
         else:
@@ -157,17 +157,17 @@ def march(surface: Any, request: Request, pair: Tableau, memory: Memory) -> tupl
                 mode, event = MANIFOLD, REVERSES
         if verdict == DETACHED and request.flies:
             verdict, event = GOES_ON, ENDS + DETACHED
-        row = row_of(surface, local, part, mode, time, state)
+        row = row_of(local, part, mode, time, state)
         if event == ENDS + DETACHED:
             state[2], state[3] = row[V_X], row[V_Y]
-            take_off(surface, local, time, state)
+            take_off(local, time, state)
             mode, h = FLYING, START * request.stroke_time
         if event >= 0:
             record = note(record, event, row, _speed(row))
         if event == LANDS and mode == FLYING:
             record = note(record, ENDS + DETACHED, row, _speed(row))
         if mode != before:
-            row = row_of(surface, local, part, mode, time, state)
+            row = row_of(local, part, mode, time, state)
         count[2] += row[TIME] - record.rows[record.counts[0] - 1, TIME] > LONG * end
         record = write(record, row)
         allowed = EVALUATIONS_AT_LEAST + EVALUATIONS_PER_SPAN * count[1] + EVALUATIONS_PER_STEP * count[2]
@@ -189,10 +189,10 @@ def _cross_kink(
     surface: Any, local: Any, request: Request, mode: int, time: float, row: FloatArray, state: FloatArray
 ) -> tuple[int, bool]:
     """Goes on to the next span over a kink; what the part does then, and whether the surface's velocity jumped."""
-    before = fields(surface, local, state[0], state[1], time)
+    before = fields(local, state[0], state[1], time)
     if enter(surface, local, state[0], state[1], time, request.duration) < 0:
         return mode, False
-    after = fields(surface, local, state[0], state[1], time)
+    after = fields(local, state[0], state[1], time)
     moved = state.copy()
     if mode == MANIFOLD:
         moved[2], moved[3] = row[V_X], row[V_Y]

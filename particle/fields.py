@@ -11,7 +11,23 @@ from numpy.typing import NDArray
 from particle.cells import UNBUILT
 from particle.drive import ORDER
 from particle.jit import jit
-from particle.local import FIRST_NEAR, HALF_X, HALF_Y, NEAR, TIME, UNIT, Local, X, Y, enter, new_local
+from particle.local import (
+    BASE,
+    DEGREE,
+    FLOOR,
+    HALF_X,
+    HALF_Y,
+    MONOMIALS,
+    NEAR,
+    SIZE,
+    TIME,
+    UNIT,
+    Local,
+    X,
+    Y,
+    enter,
+    new_local,
+)
 from particle.rim import rim_gap
 
 FloatArray = NDArray[np.float64]
@@ -39,12 +55,12 @@ class Fields(NamedTuple):
 
 
 @jit
-def at_time(surface: Any, local: Local, time: float) -> None:
+def at_time(local: Local, time: float) -> None:
     """The cell's polynomial and logarithms at `time` [s], with two derivatives, into `at`."""
     unit = local.frame[UNIT]
     s = (time - local.frame[TIME]) / unit
     c, at = local.smooth, local.at
-    for m in range((surface.degree + 1) * (surface.degree + 2) // 2 + local.counts[NEAR]):
+    for m in range(local.counts[MONOMIALS] + local.counts[NEAR]):
         at[0, m] = ((((c[5, m] * s + c[4, m]) * s + c[3, m]) * s + c[2, m]) * s + c[1, m]) * s + c[0, m]
         at[1, m] = ((((5 * c[5, m] * s + 4 * c[4, m]) * s + 3 * c[3, m]) * s + 2 * c[2, m]) * s + c[1, m]) / unit
         at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
@@ -60,20 +76,20 @@ def quintic(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
 
 
 @jit
-def fields(surface: Any, local: Local, x: float, y: float, time: float) -> Fields:
+def fields(local: Local, x: float, y: float, time: float) -> Fields:
     """The surface at a point [m] of the prepared cell and a time [s] of the prepared span."""
-    at_time(surface, local, time)
-    at, frame, size = local.at, local.frame, surface.size
+    at_time(local, time)
+    at, frame, size = local.at, local.frame, local.frame[SIZE]
     half_x, half_y = frame[HALF_X], frame[HALF_Y]
     u, v = (x - frame[X]) / half_x, (y - frame[Y]) / half_y
     w = w_u = w_uu = w_v = w_uv = w_vv = 0.0
     w_t = w_ut = w_vt = w_tt = 0.0
-    monomials = (surface.degree + 1) * (surface.degree + 2) // 2
+    monomials, degree = local.counts[MONOMIALS], local.counts[DEGREE]
     m = monomials
     # Horner in v inside Horner in u; w_uu and w_vv carry half of the second derivative.
-    for i in range(surface.degree, -1, -1):
+    for i in range(degree, -1, -1):
         a = a_v = a_vv = b = b_v = c = 0.0
-        for _ in range(surface.degree + 1 - i):
+        for _ in range(degree + 1 - i):
             m -= 1
             a_vv = a_vv * v + a_v
             a_v = a_v * v + a
@@ -94,10 +110,9 @@ def fields(surface: Any, local: Local, x: float, y: float, time: float) -> Field
     g_x, g_y, g_xt, g_yt = w_u / half_x, w_v / half_y, w_ut / half_x, w_vt / half_y
     h_xx, h_xy, h_yy = 2 * w_uu / half_x**2, w_uv / (half_x * half_y), 2 * w_vv / half_y**2
     for j in range(local.counts[NEAR]):
-        source = surface.cells.near[local.counts[FIRST_NEAR] + j]
-        d_x, d_y = (x - surface.sources[source, 0]) / size, (y - surface.sources[source, 1]) / size
+        d_x, d_y = (x - local.near[j, 0]) / size, (y - local.near[j, 1]) / size
         square = d_x * d_x + d_y * d_y
-        bounded, inner, logarithm = _logarithm(surface, square)
+        bounded, inner, logarithm = _logarithm(frame[FLOOR], square)
         m = monomials + j
         f, f_t, f_tt = at[0, m], at[1, m], at[2, m]
         value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
@@ -114,7 +129,7 @@ def fields(surface: Any, local: Local, x: float, y: float, time: float) -> Field
         h_xy += bend * 2 * d_x * d_y / bounded
         h_yy += bend * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
     base_px = base_py = base_vx = base_vy = base_ax = base_ay = 0.0
-    if surface.moving_base:
+    if local.counts[BASE] > 0:
         s, unit = (time - frame[TIME]) / frame[UNIT], frame[UNIT]
         base_px, base_vx, base_ax = quintic(local.base[:, 0], s, unit)
         base_py, base_vy, base_ay = quintic(local.base[:, 1], s, unit)
@@ -124,27 +139,27 @@ def fields(surface: Any, local: Local, x: float, y: float, time: float) -> Field
 
 
 @jit
-def _logarithm(surface: Any, square: float) -> tuple[float, float, float]:
+def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     """What r^2 ln r is made of: r^2 outside the floor, how far r is inside it, and 2 ln r there; lengths over the size.
 
     Within the floor it is the parabola in r^2 that meets r^2 ln r with two derivatives: there `inner` is not 0.
     """
-    bounded = max(square, (surface.floor / surface.size) ** 2)
+    bounded = max(square, floor * floor)
     return bounded, (square - bounded) / bounded, math.log(bounded)
 
 
 @jit
-def standing(surface: Any, local: Local, x: float, y: float, out: FloatArray) -> None:
+def standing(local: Local, x: float, y: float, out: FloatArray) -> None:
     """The surface at a fixed point [m] as polynomials in time: w, w_x, w_y into `out` (3, 6)."""
-    frame, size, c = local.frame, surface.size, local.smooth
+    frame, size, c = local.frame, local.frame[SIZE], local.smooth
     u, v = (x - frame[X]) / frame[HALF_X], (y - frame[Y]) / frame[HALF_Y]
-    monomials = (surface.degree + 1) * (surface.degree + 2) // 2
+    monomials, degree = local.counts[MONOMIALS], local.counts[DEGREE]
     for k in range(ORDER):
         w = w_u = w_v = 0.0
         m = monomials
-        for i in range(surface.degree, -1, -1):
+        for i in range(degree, -1, -1):
             a = a_v = 0.0
-            for _ in range(surface.degree + 1 - i):
+            for _ in range(degree + 1 - i):
                 m -= 1
                 a_v = a_v * v + a
                 a = a * v + c[k, m]
@@ -153,9 +168,8 @@ def standing(surface: Any, local: Local, x: float, y: float, out: FloatArray) ->
             w_v = w_v * u + a_v
         out[0, k], out[1, k], out[2, k] = w, w_u / frame[HALF_X], w_v / frame[HALF_Y]
     for j in range(local.counts[NEAR]):
-        source = surface.cells.near[local.counts[FIRST_NEAR] + j]
-        d_x, d_y = (x - surface.sources[source, 0]) / size, (y - surface.sources[source, 1]) / size
-        bounded, inner, logarithm = _logarithm(surface, d_x * d_x + d_y * d_y)
+        d_x, d_y = (x - local.near[j, 0]) / size, (y - local.near[j, 1]) / size
+        bounded, inner, logarithm = _logarithm(frame[FLOOR], d_x * d_x + d_y * d_y)
         value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
         slope = (logarithm + 1 + inner) / size
         for k in range(ORDER):
@@ -180,6 +194,6 @@ def evaluate_points(surface: Any, xy: FloatArray, time: float) -> tuple[FloatArr
         cell = enter(surface, local, x, y, time, math.inf)
         missing[n] = cell == UNBUILT
         if cell >= 0:
-            f = fields(surface, local, x, y, time)
+            f = fields(local, x, y, time)
             out[n] = np.array([f.w, f.w_t, f.w_tt, f.x, f.y, f.xt, f.yt, f.xx, f.xy, f.yy])
     return out, missing

@@ -92,9 +92,9 @@ def march_fixed(
     time, gap, verdict, count = 0.0, rim_gap(surface, state[0], state[1]), GOES_ON, 0
     cell = enter(surface, local, state[0], state[1], time, math.inf)
     if cell >= 0:
-        f = fields(surface, local, state[0], state[1], time)
+        f = fields(local, state[0], state[1], time)
         state[7] = state[2] * f.x + state[3] * f.y
-    record = write(record, fixed_row(surface, local, part, scheme, mode, time, state))
+    record = write(record, fixed_row(local, part, scheme, mode, time, state))
     for n in range(steps):
         begin, until = n * time_step, (n + 1) * time_step if n + 1 < steps else end
         h = until - begin
@@ -108,18 +108,18 @@ def march_fixed(
         if share < 1.0 or cell < 0:
             time, verdict = begin + share * ahead, LEFT_PLATE
             break
-        f = fields(surface, local, state[0], state[1], time)
+        f = fields(local, state[0], state[1], time)
         count += 1
         before = mode
         if scheme == MOREAU:
             mode, load, way_x, way_y = moreau_step(f, part, h, before, state, after)
         else:
             mode, load, way_x, way_y = paper_step(f, part, h, before, state, after)
-        if margin(surface, part, load, surface.size) < 0.0:
+        if margin(local, part, load, surface.size) < 0.0:
             mode, verdict = before, reason(surface, part, load, state)
             break
         if before == RESTING and mode == SLIDING:
-            record = _note(record, SLIPS, fixed_row(surface, local, part, scheme, mode, begin, state))
+            record = _note(record, SLIPS, fixed_row(local, part, scheme, mode, begin, state))
         event = -1
         if before == SLIDING and mode == RESTING:
             a = slope(f, part)
@@ -140,22 +140,20 @@ def march_fixed(
             break
         time = until
         if event >= 0 or (n + 1) % every == 0 or n + 1 == steps:
-            row = fixed_row(surface, local, part, scheme, mode, time, state)
+            row = fixed_row(local, part, scheme, mode, time, state)
             record = _note(record, event, row) if event >= 0 else write(record, row)
     if verdict not in (GOES_ON, LACKS_CELL):
         enter(surface, local, state[0], state[1], time, math.inf)
-        record = _note(record, ENDS + verdict, fixed_row(surface, local, part, scheme, mode, time, state))
+        record = _note(record, ENDS + verdict, fixed_row(local, part, scheme, mode, time, state))
     return record.rows[: record.counts[0]], record.events[: record.counts[1]], verdict, count
 
 
 @jit
-def fixed_row(
-    surface: Any, local: Local, part: Part, scheme: int, mode: int, time: float, state: FloatArray
-) -> FloatArray:
+def fixed_row(local: Local, part: Part, scheme: int, mode: int, time: float, state: FloatArray) -> FloatArray:
     """The row (COLUMNS,) of a state; loads of the paper's scheme are its own, those of a part at rest."""
-    row = row_of(surface, local, part, mode, time, state)
+    row = row_of(local, part, mode, time, state)
     if scheme == PAPER:
-        a = slope(fields(surface, local, state[0], state[1], time), part)
+        a = slope(fields(local, state[0], state[1], time), part)
         row[LOAD], row[FRICTION] = a.load, part.mass * (a.demand if row[MODE] == RESTING else a.limit)
     return row
 

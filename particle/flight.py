@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from particle.bernstein import first_negative
 from particle.fields import Fields, fields
 from particle.jit import jit
-from particle.local import within_cell
+from particle.local import BASE, within_cell
 from particle.motion import Part
 from particle.record import FLYING, RESTING, SLIDING
 from particle.rim import first_beyond, rim_gap
@@ -30,9 +30,9 @@ JUMP = 1e-11  # of the surface's size in a stroke: smaller velocities after an i
 
 
 @jit
-def take_off(surface: Any, local: Any, time: float, state: FloatArray) -> None:
+def take_off(local: Any, time: float, state: FloatArray) -> None:
     """Completes `state` (x, y, v_x, v_y, ...) by the height and the vertical velocity with which a part comes off."""
-    f = fields(surface, local, state[0], state[1], time)
+    f = fields(local, state[0], state[1], time)
     state[6], state[7] = f.w, f.w_t + state[2] * f.x + state[3] * f.y
 
 
@@ -53,7 +53,7 @@ def fly(
     """
     part, graze = request.part, GRAZE * surface.size
     end, middle = state.copy(), state.copy()
-    here = fields(surface, local, state[0], state[1], time)
+    here = fields(local, state[0], state[1], time)
     start = _height(here, part, state)
     remaining = span_end - time
     while True:
@@ -61,17 +61,17 @@ def fly(
         if h < SHORTEST * request.stroke_time and h < remaining:
             return FLYING, time, h, WORK_LIMIT
         count[0] += 3
-        _ahead(surface, local, part, here, time, state, h, end)
-        if not within_cell(surface, local, end[0], end[1]):
+        _ahead(local, part, here, time, state, h, end)
+        if not within_cell(local, end[0], end[1]):
             h *= 0.5
             continue
-        stop = _height(fields(surface, local, end[0], end[1], time + h), part, end)
+        stop = _height(fields(local, end[0], end[1], time + h), part, end)
         b = _quintic(start, stop, h)
         good = True
         for share in (0.3, 0.6):
-            _ahead(surface, local, part, here, time, state, share * h, middle)
-            if good and within_cell(surface, local, middle[0], middle[1]):
-                truth = fields(surface, local, middle[0], middle[1], time + share * h)
+            _ahead(local, part, here, time, state, share * h, middle)
+            if good and within_cell(local, middle[0], middle[1]):
+                truth = fields(local, middle[0], middle[1], time + share * h)
                 miss = middle[6] - truth.w - _at(b, share)
                 good = abs(miss) <= max(0.01 * request.tolerance, graze)
             else:
@@ -89,19 +89,19 @@ def fly(
         low, high = 0.0, beyond
         while high - low > 1e-15:
             share = 0.5 * (low + high)
-            _ahead(surface, local, part, here, time, state, share * h, end)
+            _ahead(local, part, here, time, state, share * h, end)
             if rim_gap(surface, end[0], end[1]) < 0.0:
                 high = share
             else:
                 low = share
-        _ahead(surface, local, part, here, time, state, high * h, end)
+        _ahead(local, part, here, time, state, high * h, end)
         state[:] = end
         return FLYING, time + high * h, h, LEFT_PLATE
     if lands <= 1.0:
-        _ahead(surface, local, part, here, time, state, lands * h, end)
+        _ahead(local, part, here, time, state, lands * h, end)
         state[:] = end
         at = span_end if lands == 1.0 and h == remaining else time + lands * h
-        f = fields(surface, local, state[0], state[1], at)
+        f = fields(local, state[0], state[1], at)
         if state[7] - f.w_t - state[2] * f.x - state[3] * f.y >= 0.0:
             state[6] = f.w  # on its way up: cells that differ by their error are no landing
             return FLYING, at, h, GOES_ON
@@ -157,17 +157,15 @@ def jolt(before: Fields, after: Fields, part: Part, mode: int, slack: float, sta
 
 
 @jit
-def _ahead(
-    surface: Any, local: Any, part: Part, here: Fields, time: float, state: FloatArray, h: float, out: FloatArray
-) -> None:
+def _ahead(local: Any, part: Part, here: Fields, time: float, state: FloatArray, h: float, out: FloatArray) -> None:
     """The state of a flying part h [s] later."""
     down = part.gravity + part.squeeze / part.mass
     out[0] = state[0] + h * (state[2] + 0.5 * h * part.tilt_x)
     out[1] = state[1] + h * (state[3] + 0.5 * h * part.tilt_y)
     out[2], out[3] = state[2] + h * part.tilt_x, state[3] + h * part.tilt_y
-    if surface.moving_base:
+    if local.counts[BASE] > 0:
         # x and y are counted from the base, which moves on under the part.
-        later = fields(surface, local, state[0], state[1], time + h)
+        later = fields(local, state[0], state[1], time + h)
         out[0] -= later.base_px - here.base_px - h * here.base_vx
         out[1] -= later.base_py - here.base_py - h * here.base_vy
         out[2] -= later.base_vx - here.base_vx

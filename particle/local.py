@@ -21,52 +21,65 @@ from particle.rim import rim_gap
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Places in Local.frame and in Local.counts.
-TIME, END, UNIT, X, Y, HALF_X, HALF_Y, CLEAR = range(8)
-CELL, DRIVES, FIRST_NEAR, NEAR, CHANGES = range(5)
+# Places in Local.frame, Local.counts and a row of Local.clock.
+TIME, END, UNIT, X, Y, HALF_X, HALF_Y, CLEAR, SIZE, FLOOR, REACH, MISSING_X, MISSING_Y = range(13)
+CELL, DRIVES, NEAR, MONOMIALS, DEGREE, BASE, CHANGES = range(7)
+SINCE, UNTIL = ORDER, ORDER + 1
 FRESH = 8  # times as many changes as there are drives: then rounding has piled up enough to begin anew
 
 
 class Local(NamedTuple):
-    """Scratch memory of one path; polynomials in time are in (t - frame[TIME]) / frame[UNIT]."""
+    """Scratch memory of one path: all that an evaluation needs, so that little is handed from kernel to kernel.
 
-    frame: FloatArray  # (8,) the times [s] it holds from and up to, their unit [s], the cell's centre, half width
-    #                    and distance from the rim [m]
-    counts: IntArray  # (5,) the cell, its drives (the base's included), its logarithms: first and how many, changes
-    missing: FloatArray  # (2,) m, a place on the plate that has no cell yet
-    pieces: FloatArray  # (D, 6) m, the quintic of each drive
-    since: FloatArray  # (D,) s, the time from which that counts
-    until: FloatArray  # (D,) s, the next kink of each
+    Polynomials in time are in (t - frame[TIME]) / frame[UNIT].
+    """
+
+    # The times [s] between which it holds and their unit [s], the cell's centre, half width and distance from the rim
+    # [m], the surface's size [m] and its floor over that, how many half widths the polynomial holds, and a place [m]
+    # that has no cell yet.
+    frame: FloatArray  # (13,)
+    counts: IntArray  # (7,) the cell, its drives, logarithms, monomials and degree, the base's drives, changes so far
     smooth: FloatArray  # (6, M + J) m, the cell's polynomial; then the strengths of its logarithms
     at: FloatArray  # (3, M + J) m, these and their first two derivatives in time, at one time
+    near: FloatArray  # (J, 2) m, where the logarithms are
     base: FloatArray  # (6, 2) m, where the base is
+    clock: FloatArray  # (D, 8) m and s, of each drive its quintic, the time from which that counts, and its next kink
 
 
 @jit
 def new_local(surface: Any) -> Local:
     """Scratch memory that fits the surface, with no cell and no time yet."""
-    cells = surface.cells
-    drives = cells.most_drives + 2
-    width = (surface.degree + 1) * (surface.degree + 2) // 2 + cells.most_near
-    counts = np.zeros(5, dtype=np.int64)
-    counts[CELL] = NOWHERE
-    return Local(
-        np.zeros(8),
-        counts,
-        np.zeros(2),
-        np.zeros((drives, ORDER)),
-        np.zeros(drives),
-        np.zeros(drives),
+    monomials = (surface.degree + 1) * (surface.degree + 2) // 2
+    width = monomials + surface.cells.most_near
+    local = Local(
+        np.zeros(13),
+        np.zeros(7, dtype=np.int64),
         np.zeros((ORDER, width)),
         np.zeros((3, width)),
+        np.zeros((surface.cells.most_near, 2)),
         np.zeros((ORDER, 2)),
+        np.zeros((surface.cells.most_drives + 2, ORDER + 2)),
     )
+    local.frame[SIZE], local.frame[FLOOR], local.frame[REACH] = (
+        surface.size,
+        surface.floor / surface.size,
+        surface.overhang,
+    )
+    local.counts[MONOMIALS], local.counts[DEGREE] = monomials, surface.degree
+    local.counts[BASE] = 2 * surface.moving_base
+    forget(local)
+    return local
 
 
 @jit
 def forget(local: Local) -> None:
     """Make the memory good for another path."""
     local.counts[CELL] = NOWHERE
+
+
+def missing_place(local: Local) -> FloatArray:
+    """The place (1, 2) [m] where `enter` found no cell."""
+    return local.frame[None, [MISSING_X, MISSING_Y]]
 
 
 @jit
@@ -99,11 +112,11 @@ def _interval(along: float, width: float, count: int) -> int:
 def enter(surface: Any, local: Local, x: float, y: float, time: float, end: float) -> int:
     """Prepare for points around (x, y) [m] and times from `time` [s] to the next kink, at most `end`: frame[END].
 
-    Returns the cell, or NOWHERE or UNBUILT, which goes into `missing`; then what was prepared before stays.
+    Returns the cell, or NOWHERE or UNBUILT, whose place is then kept in the frame; then what was prepared before stays.
     """
     cell = cell_at(surface.cells, x, y)
     if cell == UNBUILT:
-        local.missing[0], local.missing[1] = x, y
+        local.frame[MISSING_X], local.frame[MISSING_Y] = x, y
     if cell < 0:
         return cell
     same = cell == local.counts[CELL] and time >= local.frame[TIME]
@@ -115,10 +128,10 @@ def enter(surface: Any, local: Local, x: float, y: float, time: float, end: floa
 
 
 @jit
-def within_cell(surface: Any, local: Local, x: float, y: float) -> bool:
+def within_cell(local: Local, x: float, y: float) -> bool:
     """Whether the cell's polynomial holds at a point [m]."""
     f = local.frame
-    return abs(x - f[X]) <= surface.overhang * f[HALF_X] and abs(y - f[Y]) <= surface.overhang * f[HALF_Y]
+    return abs(x - f[X]) <= f[REACH] * f[HALF_X] and abs(y - f[Y]) <= f[REACH] * f[HALF_Y]
 
 
 @jit
@@ -130,7 +143,7 @@ def gap_at(surface: Any, local: Local, x: float, y: float) -> float:
 @jit
 def _drive(surface: Any, local: Local, i: int) -> int:
     """The drive that is i-th in the cell; the base's two follow the cell's."""
-    beyond = i - (local.counts[DRIVES] - 2 * surface.moving_base)
+    beyond = i - (local.counts[DRIVES] - local.counts[BASE])
     if beyond >= 0:
         return int(surface.shape_count + beyond)
     return int(surface.cells.drive[surface.cells.first_drive[local.counts[CELL]] + i])
@@ -144,17 +157,17 @@ def _begin(surface: Any, local: Local, cell: int, time: float, end: float) -> No
     f[HALF_X], f[HALF_Y] = cells.half[cell]
     f[CLEAR], f[TIME], f[END], f[UNIT] = cells.clear[cell], time, end, surface.unit
     counts[CELL], counts[CHANGES] = cell, 0
-    counts[DRIVES] = cells.first_drive[cell + 1] - cells.first_drive[cell] + 2 * surface.moving_base
-    counts[FIRST_NEAR] = cells.first_near[cell]
-    counts[NEAR] = cells.first_near[cell + 1] - cells.first_near[cell]
+    counts[DRIVES] = cells.first_drive[cell + 1] - cells.first_drive[cell] + counts[BASE]
+    first = cells.first_near[cell]
+    counts[NEAR] = cells.first_near[cell + 1] - first
+    for j in range(counts[NEAR]):
+        local.near[j] = surface.sources[cells.near[first + j]]
     local.smooth[:] = 0.0
     local.base[:] = 0.0
     for i in range(counts[DRIVES]):
-        local.until[i] = drive_kink(surface.drives, _drive(surface, local, i), time)
-        f[END] = min(f[END], local.until[i])
-    for i in range(counts[DRIVES]):
         _find_piece(surface, local, i)
-        _add(surface, local, i, local.pieces[i])
+        _add(surface, local, i, local.clock[i, :ORDER])
+        f[END] = min(f[END], local.clock[i, UNTIL])
 
 
 @jit
@@ -163,7 +176,7 @@ def _go_on(surface: Any, local: Local, time: float, end: float) -> bool:
     f, counts = local.frame, local.counts
     passed = 0
     for i in range(counts[DRIVES]):
-        passed += local.until[i] <= time + kink_slack(surface.drives, _drive(surface, local, i), time)
+        passed += _has_passed(surface, local, i, time)
     counts[CHANGES] += passed
     if 2 * passed > counts[DRIVES] or counts[CHANGES] > FRESH * counts[DRIVES]:
         return False
@@ -173,40 +186,47 @@ def _go_on(surface: Any, local: Local, time: float, end: float) -> bool:
     f[TIME], f[END] = time, end
     change = np.zeros(ORDER)
     for i in range(counts[DRIVES]):
-        drive = _drive(surface, local, i)
-        if local.until[i] <= time + kink_slack(surface.drives, drive, time):
-            local.until[i] = drive_kink(surface.drives, drive, time)
-            change[:] = local.pieces[i]
-            _shift_one(change, (time - local.since[i]) / f[UNIT])
+        if _has_passed(surface, local, i, time):
+            change[:] = local.clock[i, :ORDER]
+            _shift_one(change, (time - local.clock[i, SINCE]) / f[UNIT])
             _find_piece(surface, local, i)
             for k in range(ORDER):
-                change[k] = local.pieces[i, k] - change[k]
+                change[k] = local.clock[i, k] - change[k]
             _add(surface, local, i, change)
-        f[END] = min(f[END], local.until[i])
+        f[END] = min(f[END], local.clock[i, UNTIL])
     return True
+
+
+@jit
+def _has_passed(surface: Any, local: Local, i: int, time: float) -> bool:
+    """Whether the next kink of the i-th drive has come by a time [s]."""
+    until = local.clock[i, UNTIL]
+    return until <= time or until <= time + kink_slack(surface.drives, _drive(surface, local, i), time)
 
 
 @jit
 def _find_piece(surface: Any, local: Local, i: int) -> None:
     """The quintic of the i-th drive, from frame[TIME] to its next kink."""
-    time, unit, piece = local.frame[TIME], local.frame[UNIT], local.pieces[i]
+    time, unit, drive = local.frame[TIME], local.frame[UNIT], _drive(surface, local, i)
+    until = drive_kink(surface.drives, drive, time)
     # It is chosen in the middle of the span, where rounding at its ends cannot mistake it.
-    ahead = 0.5 * min(local.until[i] - time, unit)
-    piece[:] = drive_piece(surface.drives, _drive(surface, local, i), time + ahead, unit)
+    ahead = 0.5 * min(until - time, unit)
+    piece = drive_piece(surface.drives, drive, time + ahead, unit)
     _shift_one(piece, -ahead / unit)
-    local.since[i] = time
+    local.clock[i, :ORDER] = piece
+    local.clock[i, SINCE], local.clock[i, UNTIL] = time, until
 
 
 @jit
 def _add(surface: Any, local: Local, i: int, piece: FloatArray) -> None:
     """Add a quintic (6,) times the shape of the i-th drive."""
     cells, counts = surface.cells, local.counts
-    shapes = counts[DRIVES] - 2 * surface.moving_base
+    shapes = counts[DRIVES] - counts[BASE]
     if i >= shapes:
         for k in range(ORDER):
             local.base[k, i - shapes] += piece[k]
         return
-    width = (surface.degree + 1) * (surface.degree + 2) // 2 + counts[NEAR]
+    width = counts[MONOMIALS] + counts[NEAR]
     first = cells.first_row[counts[CELL]] + i * width
     row = cells.rows[first : first + width]
     for k in range(ORDER):

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from particle.fields import Fields, fields
 from particle.friction import friction_limit
 from particle.jit import jit
+from particle.local import SIZE
 
 FloatArray = NDArray[np.float64]
 
@@ -73,10 +74,10 @@ def length(f: Fields, x: float, y: float) -> float:
 
 
 @jit
-def slide_rate(surface: Any, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
+def slide_rate(local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
     """d/dt of (x, y, v_x, v_y, work, dissipation) into `out`; returns the normal force [N]."""
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
-    f = fields(surface, local, x, y, time)
+    f = fields(local, x, y, time)
     p = pull(f, v_x, v_y, part)
     limit = friction_limit(part.law, p.normal)
     slow = limit / part.mass / p.speed if p.speed > 0.0 else 0.0
@@ -109,20 +110,20 @@ def energy(f: Fields, x: float, y: float, v_x: float, v_y: float, part: Part) ->
 
 
 @jit
-def energy_at_rest(surface: Any, local: Any, part: Part, time: float, state: FloatArray) -> float:
+def energy_at_rest(local: Any, part: Part, time: float, state: FloatArray) -> float:
     """The energy [J] of a part at rest on the surface at the place (x, y, ...)."""
-    kinetic, potential = energy(fields(surface, local, state[0], state[1], time), state[0], state[1], 0.0, 0.0, part)
+    kinetic, potential = energy(fields(local, state[0], state[1], time), state[0], state[1], 0.0, 0.0, part)
     return kinetic + potential
 
 
 @jit
-def margin(surface: Any, part: Part, load: float, gap: float) -> float:
+def margin(local: Any, part: Part, load: float, gap: float) -> float:
     """How far the part is from the end of its contact: negative beyond the rim, below pull-off, above the largest load.
 
     gap: m, the distance from the rim, or a positive lower bound of it.  A dimensionless measure, whose sign the
     integrator follows to locate such an end.
     """
-    least = gap / surface.size
+    least = gap / local.frame[SIZE]
     weight = part.mass * max(1.0, abs(part.gravity))
     if math.isfinite(part.law.pull_off):
         least = min(least, (load + part.law.pull_off) / weight)

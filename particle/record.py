@@ -42,12 +42,12 @@ def new_record() -> Record:
 
 
 @jit
-def row_of(surface: Any, local: Any, part: Part, mode: int, time: float, state: FloatArray) -> FloatArray:
+def row_of(local: Any, part: Part, mode: int, time: float, state: FloatArray) -> FloatArray:
     """The row (COLUMNS,) of a part's state (x, y, v_x, v_y or u, work, dissipation, z, v_z)."""
     row = np.zeros(COLUMNS)
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     row[TIME], row[X], row[Y], row[MODE], row[WORK], row[DISSIPATED] = time, x, y, mode, state[4], state[5]
-    f = fields(surface, local, x, y, time)
+    f = fields(local, x, y, time)
     if mode == FLYING:
         row[V_X], row[V_Y], row[Z], row[V_Z] = v_x, v_y, state[6], state[7]
         s_x, s_y = v_x + f.base_vx, v_y + f.base_vy
@@ -57,7 +57,7 @@ def row_of(surface: Any, local: Any, part: Part, mode: int, time: float, state: 
         return row
     a = slope(f, part)
     if mode == MANIFOLD:
-        v_x, v_y = velocity(state[2], lag(surface, local, part, time, x, y, state[2], f, a), a)
+        v_x, v_y = velocity(state[2], lag(local, part, time, x, y, state[2], f, a), a)
     elif mode == RESTING:
         v_x = v_y = 0.0
     row[V_X], row[V_Y], row[Z], row[V_Z] = v_x, v_y, f.w, f.w_t + v_x * f.x + v_y * f.y

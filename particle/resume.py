@@ -52,23 +52,23 @@ def resume(surface: Any, request: Request, pair: Tableau, rows: FloatArray, time
         if enter(surface, local, rows[row, X], rows[row, Y], time, math.inf) < 0:
             out[k] = rows[row]
             continue
-        _restore(surface, local, part, rows[row], state)
+        _restore(local, part, rows[row], state)
         if mode == RESTING:
-            state[4] -= energy_at_rest(surface, local, part, time, state)
+            state[4] -= energy_at_rest(local, part, time, state)
             time = times[k]
-            state[4] += energy_at_rest(surface, local, part, time, state)
+            state[4] += energy_at_rest(local, part, time, state)
         mode = _to(surface, local, request, pair, step, count, mode, time, times[k], state)
-        out[k] = row_of(surface, local, part, mode, times[k], state)
+        out[k] = row_of(local, part, mode, times[k], state)
     return out
 
 
 @jit
-def _restore(surface: Any, local: Any, part: Part, row: FloatArray, state: FloatArray) -> None:
+def _restore(local: Any, part: Part, row: FloatArray, state: FloatArray) -> None:
     """The state that a row was written from."""
     state[0], state[1], state[2], state[3] = row[X], row[Y], row[V_X], row[V_Y]
     state[4], state[5], state[6], state[7] = row[WORK], row[DISSIPATED], row[Z], row[V_Z]
     if row[MODE] == MANIFOLD:
-        f = fields(surface, local, row[X], row[Y], row[TIME])
+        f = fields(local, row[X], row[Y], row[TIME])
         state[2], state[3] = pull(f, row[V_X], row[V_Y], part).speed, 0.0
 
 

@@ -72,14 +72,14 @@ def new_step(pair: Tableau) -> Step:
 
 
 @jit
-def rate(mode: int, surface: Any, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
+def rate(mode: int, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
     """The right side: of (x, y, v_x, v_y, work, dissipation) while sliding, of (x, y, u, -, ...) on the slow manifold.
 
     Returns the load [N].
     """
     if mode == SLIDING:
-        return slide_rate(surface, local, part, time, state, out)
-    return manifold_rate(surface, local, part, time, state, out)
+        return slide_rate(local, part, time, state, out)
+    return manifold_rate(local, part, time, state, out)
 
 
 @jit
@@ -100,15 +100,15 @@ def attempt(
             for j in range(k):
                 total += pair.a[k, j] * step.rates[j, i]
             step.stage[i] = state[i] + h * total
-        if not within_cell(surface, local, step.stage[0], step.stage[1]):
+        if not within_cell(local, step.stage[0], step.stage[1]):
             return False
         if dry and step.stage[2] * state[2] + step.stage[3] * state[3] <= 0.0:
             return False
-        load = rate(mode, surface, local, part, time + pair.c[k] * h, step.stage, step.rates[k])
+        load = rate(mode, local, part, time + pair.c[k] * h, step.stage, step.rates[k])
         # As far from the rim as the start is, less the way from there: where that does not settle it, look.
         gap = step.start_gap[0] - math.hypot(step.stage[0] - state[0], step.stage[1] - state[1])
         gap = gap if gap > 0.0 else gap_at(surface, local, step.stage[0], step.stage[1])
-        step.loads[k], step.margins[k] = load, margin(surface, part, load, gap)
+        step.loads[k], step.margins[k] = load, margin(local, part, load, gap)
     step.end[:] = step.stage
     return True
 

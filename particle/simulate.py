@@ -15,7 +15,7 @@ from particle.drive_table import jumps
 from particle.events import march, new_memory
 from particle.fixed import MOREAU, MOST_ROWS, PAPER, default_step, march_fixed, shortest_stroke, step_count
 from particle.friction import Contact
-from particle.local import new_local
+from particle.local import missing_place, new_local
 from particle.motion import Part
 from particle.resume import resume
 from particle.rim import rim_gap
@@ -122,7 +122,7 @@ def simulate(
 
         def path(record: Surface) -> tuple[Path, FloatArray]:
             local = new_local(record)
-            return march_fixed(record, request, local, kind, step, steps, every), local.missing
+            return march_fixed(record, request, local, kind, step, steps, every), missing_place(local)
 
         rows, events, verdict, evaluations = _with_cells(surface, path)
         sampler = partial(between, surface.record, request.part, kind, rows)
@@ -131,7 +131,7 @@ def simulate(
 
         def path(record: Surface) -> tuple[Path, FloatArray]:
             memory = new_memory(record, pair)
-            return march(record, request, pair, memory), memory.local.missing
+            return march(record, request, pair, memory), missing_place(memory.local)
 
         rows, events, verdict, evaluations = _with_cells(surface, path)
         sampler = partial(resume, surface.record, request, pair, rows)
@@ -148,7 +148,7 @@ def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], tuple[Path, Fl
         found, missing = path(surface.record)
         if found[2] != LACKS_CELL:
             return found
-        surface.store.build(missing[None])
+        surface.store.build(missing)
 
 
 def _trajectory(

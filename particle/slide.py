@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from particle.breakaway import Slope, lag, slope, velocity
 from particle.fields import Fields, fields
 from particle.jit import jit
-from particle.local import FIRST_NEAR, NEAR, gap_at
+from particle.local import NEAR, gap_at
 from particle.motion import Part, energy_at_rest, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
@@ -63,40 +63,40 @@ def slide(
     Returns what the part does then, the time, the next h and how the path ended (GOES_ON: it did not).
     """
     part, tolerance = request.part, request.tolerance
-    step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
+    step.loads[0] = rate(mode, local, part, time, state, step.rates[0])
     step.start_gap[0] = gap_at(surface, local, state[0], state[1])
-    f = fields(surface, local, state[0], state[1], time)
+    f = fields(local, state[0], state[1], time)
     a = slope(f, part)
     count[0] += 2
     if mode == SLIDING or (a.demand < a.limit and state[2] > 0.0):
         moving = state.copy()
         if mode == MANIFOLD:
-            kappa = lag(surface, local, part, time, state[0], state[1], state[2], f, a)
+            kappa = lag(local, part, time, state[0], state[1], state[2], f, a)
             moving[2], moving[3] = velocity(state[2], kappa, a)
         pace = 0.01 * surface.size / request.stroke_time
-        stop, miss = stop_ahead(surface, local, part, time, moving, 0.01 * tolerance, pace, request.force)
+        stop, miss = stop_ahead(local, part, time, moving, 0.01 * tolerance, pace, request.force)
         count[0] += 1
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
         near = near and _stops_on_plate(surface, local, step, moving, stop)
         count[0] += 5 * near
-        if near and come_to_rest(surface, local, part, time, moving, stop):
+        if near and come_to_rest(local, part, time, moving, stop):
             state[:] = moving
-            a = slope(fields(surface, local, state[0], state[1], time + stop.time), part)
+            a = slope(fields(local, state[0], state[1], time + stop.time), part)
             back = stop.reverses and a.demand > part.law.static_ratio * a.limit
             return (TURNED if back else RESTING), time + stop.time, h, GOES_ON
         # A step ends short of the stop, where the friction turns.
         h = min(h, 0.9 * stop.time)
-    if mode == SLIDING and _joins_manifold(surface, local, request, time, state, f, a):
+    if mode == SLIDING and _joins_manifold(local, request, time, state, f, a):
         state[2], state[3] = length(f, state[2], state[3]), 0.0
         mode = MANIFOLD
-        step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
+        step.loads[0] = rate(mode, local, part, time, state, step.rates[0])
         count[0] += 1
     remaining = span_end - time
     shortest = SHORTEST * request.stroke_time
     while True:
         h = remaining if h >= 0.9 * remaining else h
         if mode == SLIDING:
-            h = _to_passage(surface, local, state, h)
+            h = _to_passage(local, state, h)
         if h < shortest and h < remaining:
             return mode, time, h, WORK_LIMIT
         count[0] += len(pair.c)
@@ -112,18 +112,18 @@ def slide(
                 h *= 0.5
                 continue
             state[2] = state[3] = 0.0
-            state[4] += energy_at_rest(surface, local, part, time + h, state)
-            state[4] -= energy_at_rest(surface, local, part, time, state)
+            state[4] += energy_at_rest(local, part, time + h, state)
+            state[4] -= energy_at_rest(local, part, time, state)
             return RESTING, time + h, h, GOES_ON
-        if mode == MANIFOLD and _manifold_error(surface, local, part, time + h, step.end) > tolerance:
+        if mode == MANIFOLD and _manifold_error(local, part, time + h, step.end) > tolerance:
             if h > TOUCH * request.stroke_time:
                 h *= 0.5
                 continue
             # Friction is about to vanish, and the manifold with it.
-            kappa = lag(surface, local, part, time, state[0], state[1], state[2], f, a)
+            kappa = lag(local, part, time, state[0], state[1], state[2], f, a)
             state[2], state[3] = velocity(state[2], kappa, a)
             mode = SLIDING
-            step.loads[0] = rate(mode, surface, local, part, time, state, step.rates[0])
+            step.loads[0] = rate(mode, local, part, time, state, step.rates[0])
             continue
         last = len(pair.c) - 1
         on_plate = first_beyond(surface, step.start_gap[0], state, step.end, step.rates[0], step.rates[last], h)
@@ -146,18 +146,17 @@ def slide(
     state[:6] = step.end
     time = span_end if h == remaining else time + h
     if mode == MANIFOLD:
-        mode = _leave_manifold(surface, local, request, time, state)
+        mode = _leave_manifold(local, request, time, state)
     return mode, time, h * min(GROWTH, SAFETY * max(wrong, 1e-12) ** (-1 / pair.order)), GOES_ON
 
 
 @jit
-def _to_passage(surface: Any, local: Any, state: FloatArray, h: float) -> float:
+def _to_passage(local: Any, state: FloatArray, h: float) -> float:
     """The step [s], cut where the part passes closely over an actuator: at a step's end its logarithm does no harm."""
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     square = v_x * v_x + v_y * v_y
     for j in range(local.counts[NEAR]):
-        source = surface.cells.near[local.counts[FIRST_NEAR] + j]
-        d_x, d_y = surface.sources[source, 0] - x, surface.sources[source, 1] - y
+        d_x, d_y = local.near[j, 0] - x, local.near[j, 1] - y
         passage = (d_x * v_x + d_y * v_y) / square if square > 0.0 else 0.0
         if BEGUN * h < passage < h and abs(d_x * v_y - d_y * v_x) < CLOSE * square * h:
             h = passage
@@ -173,23 +172,21 @@ def _stops_on_plate(surface: Any, local: Any, step: Step, state: FloatArray, sto
 
 
 @jit
-def _manifold_error(surface: Any, local: Any, part: Part, time: float, state: FloatArray) -> float:
+def _manifold_error(local: Any, part: Part, time: float, state: FloatArray) -> float:
     """What the slow manifold's next term would move the part by [m]."""
-    f = fields(surface, local, state[0], state[1], time)
+    f = fields(local, state[0], state[1], time)
     a = slope(f, part)
-    kappa = lag(surface, local, part, time, state[0], state[1], state[2], f, a)
+    kappa = lag(local, part, time, state[0], state[1], state[2], f, a)
     return 3 * abs(kappa) * state[2] ** 3 / a.limit if a.limit > 0.0 else math.inf
 
 
 @jit
-def _joins_manifold(
-    surface: Any, local: Any, request: Request, time: float, state: FloatArray, f: Fields, a: Slope
-) -> bool:
+def _joins_manifold(local: Any, request: Request, time: float, state: FloatArray, f: Fields, a: Slope) -> bool:
     """Whether a slow part's velocity (v_x, v_y) has become that of the slow manifold, on which steps may be longer."""
     u, tolerance = length(f, state[2], state[3]), request.tolerance
     if a.limit <= 0.0 or a.demand < 1.1 * WEAKEST * a.limit or u > 0.01 * a.limit * request.stroke_time:
         return False
-    kappa = lag(surface, local, request.part, time, state[0], state[1], u, f, a)
+    kappa = lag(local, request.part, time, state[0], state[1], u, f, a)
     v_x, v_y = velocity(u, kappa, a)
     # What is off the manifold turns into it within u / Q.
     off = length(f, state[2] - v_x, state[3] - v_y) * u / a.limit
@@ -197,16 +194,16 @@ def _joins_manifold(
 
 
 @jit
-def _leave_manifold(surface: Any, local: Any, request: Request, time: float, state: FloatArray) -> int:
+def _leave_manifold(local: Any, request: Request, time: float, state: FloatArray) -> int:
     """Turns (x, y, u) into (x, y, v_x, v_y) once the part is fast enough for plain steps, or slows down again."""
     part, u = request.part, state[2]
-    f = fields(surface, local, state[0], state[1], time)
+    f = fields(local, state[0], state[1], time)
     a = slope(f, part)
     fast = u > 0.03 * a.limit * request.stroke_time
-    near = _manifold_error(surface, local, part, time, state) <= 0.1 * request.tolerance
+    near = _manifold_error(local, part, time, state) <= 0.1 * request.tolerance
     if near and not fast and a.demand >= WEAKEST * a.limit:
         return MANIFOLD
-    state[2], state[3] = velocity(u, lag(surface, local, part, time, state[0], state[1], u, f, a), a)
+    state[2], state[3] = velocity(u, lag(local, part, time, state[0], state[1], u, f, a), a)
     return SLIDING
 
 
@@ -226,7 +223,7 @@ def _locate_end(
     """The step that ends where contact does, just beyond it: a bracket that secants (Illinois) and halving close."""
     last = len(pair.c) - 1
     low, high = 0.0, h
-    below, above = step.margins[last], margin(surface, part, step.loads[0], step.start_gap[0])
+    below, above = step.margins[last], margin(local, part, step.loads[0], step.start_gap[0])
     secant = True
     while high - low > 1e-15 * (time + high) and high - low > 1e-14 * h:
         middle = 0.5 * (low + high)

@@ -64,7 +64,7 @@ def _rests(surface: Any, part: Part, x: float, y: float, time: float, end: float
         span_end = local.frame[END]
         over = not math.isfinite(span_end)
         span_end = time + 1.0 if over else span_end
-        if math.isfinite(leaves_rest(surface, local, part, rest, x, y, time, span_end)):
+        if math.isfinite(leaves_rest(local, part, rest, x, y, time, span_end)):
             return False
         if over or span_end >= end:
             return True

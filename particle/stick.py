@@ -21,7 +21,7 @@ from particle.drive import ORDER
 from particle.fields import standing
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.local import TIME, UNIT
+from particle.local import BASE, TIME, UNIT
 from particle.motion import Part
 
 FloatArray = NDArray[np.float64]
@@ -46,14 +46,12 @@ def new_rest() -> Rest:
 
 
 @jit
-def leaves_rest(
-    surface: Any, local: Any, part: Part, rest: Rest, x: float, y: float, begin: float, end: float
-) -> float:
+def leaves_rest(local: Any, part: Part, rest: Rest, x: float, y: float, begin: float, end: float) -> float:
     """When [s] a part at rest at (x, y) [m] first slips, comes off or is overloaded; inf when it does not.
 
     The search goes from `begin` to `end` [s], within the prepared span.
     """
-    _polynomials(surface, local, part, x, y, begin, end, rest.polynomials[0])
+    _polynomials(local, part, x, y, begin, end, rest.polynomials[0])
     # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
     slack = SLACK * np.abs(rest.polynomials[0, 1]).max()
     rest.low[0], rest.width[0] = 0.0, 1.0
@@ -104,17 +102,15 @@ def _proved_safe(part: Part, rest: FloatArray, slack: float) -> bool:
 
 
 @jit
-def _polynomials(
-    surface: Any, local: Any, part: Part, x: float, y: float, begin: float, end: float, out: FloatArray
-) -> None:
+def _polynomials(local: Any, part: Part, x: float, y: float, begin: float, end: float, out: FloatArray) -> None:
     """C, the squared force along the surface times s^2, and s^2, from `begin` to `end` [s]: Bernstein form (3, 17)."""
     motion = np.zeros((3, ORDER))
-    standing(surface, local, x, y, motion)
+    standing(local, x, y, motion)
     low, width = (begin - local.frame[TIME]) / local.frame[UNIT], (end - begin) / local.frame[UNIT]
     w_tt = _second(_from(motion[0], low, width), end - begin)
     g_x, g_y = _from(motion[1], low, width), _from(motion[2], low, width)
     b_x, b_y = np.zeros(ORDER - 2), np.zeros(ORDER - 2)
-    if surface.moving_base:
+    if local.counts[BASE] > 0:
         b_x = _second(_from(local.base[:, 0], low, width), end - begin)
         b_y = _second(_from(local.base[:, 1], low, width), end - begin)
     b_x[0] -= part.tilt_x

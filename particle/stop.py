@@ -70,7 +70,7 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> St
 
 @jit
 def stop_ahead(
-    surface: Any, local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float, force: float
+    local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float, force: float
 ) -> tuple[Stop, float]:
     """The stop ahead of a sliding part, with an estimate of its error [m].
 
@@ -80,12 +80,12 @@ def stop_ahead(
     taken as the difference from freezing them now.
     """
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
-    f = fields(surface, local, x, y, time)
+    f = fields(local, x, y, time)
     now = frozen_stop(f, slope(f, part), v_x, v_y, small)
     if not now.time < 0.5 * local.frame[1]:
         return now, math.inf
     # After a third of the time a straight stop has covered five ninths of its way.
-    g = fields(surface, local, x + 5 / 9 * now.x, y + 5 / 9 * now.y, time + now.time / 3)
+    g = fields(local, x + 5 / 9 * now.x, y + 5 / 9 * now.y, time + now.time / 3)
     later = frozen_stop(g, slope(g, part), v_x, v_y, small)
     if later.reverses != now.reverses or not math.isfinite(later.time):
         return now, math.inf
@@ -94,7 +94,7 @@ def stop_ahead(
 
 
 @jit
-def come_to_rest(surface: Any, local: Any, part: Part, time: float, state: FloatArray, stop: Stop) -> bool:
+def come_to_rest(local: Any, part: Part, time: float, state: FloatArray, stop: Stop) -> bool:
     """Moves `state` (x, y, v_x, v_y, work, dissipation) to a stop; False, and no move, if contact ends on the way.
 
     The friction's impulse on the way is known, v + A d T per kg. Powers are integrated by Gauss's rule along the way of
@@ -106,7 +106,7 @@ def come_to_rest(surface: Any, local: Any, part: Part, time: float, state: Float
     for k in range(len(NODES)):
         to_go = 1.0 - NODES[k]
         way = 1.0 - to_go * to_go
-        f = fields(surface, local, x + way * stop.x, y + way * stop.y, time + NODES[k] * stop.time)
+        f = fields(local, x + way * stop.x, y + way * stop.y, time + NODES[k] * stop.time)
         load = pull(f, to_go * v_x, to_go * v_y, part).normal
         if not -part.law.pull_off <= load <= part.law.largest_load:
             return False

@@ -39,7 +39,7 @@ KOGUT_ETSION = KogutEtsion.paper().law
 
 def stays(surface, local, part, time):
     """Whether a part at rest at the origin is held at one time: the definition, from the equations of motion."""
-    f = fields(surface, local, 0.0, 0.0, time)
+    f = fields(local, 0.0, 0.0, time)
     p = pull(f, 0.0, 0.0, part)
     limit = part.law.static_ratio * friction_limit(part.law, p.normal) / part.mass
     return -part.law.pull_off <= p.normal <= part.law.largest_load and length(f, p.x, p.y) <= limit
@@ -49,7 +49,7 @@ def search(surface, part, begin=0.0):
     local = new_local(surface)
     pin_time(surface, local, 0.0, 1.0)
     pin_cell(surface, local, 0.0, 0.0)
-    return leaves_rest(surface, local, part, new_rest(), 0.0, 0.0, begin), local
+    return leaves_rest(local, part, new_rest(), 0.0, 0.0, begin), local
 
 
 @pytest.mark.parametrize(
