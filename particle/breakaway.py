@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from particle.fields import Fields, fields
 from particle.friction import friction_limit
-from particle.jit import jit
-from particle.local import BASE
+from particle.jit import bare
+from particle.local import BASE, UNIT
 from particle.motion import Part, drag, length, pull, push
 
 FloatArray = NDArray[np.float64]
@@ -39,7 +39,7 @@ class Slope(NamedTuple):
     load: float  # N
 
 
-@jit
+@bare
 def slope(f: Fields, part: Part) -> Slope:
     """The pull at rest in the frame that it and the surface define."""
     p = pull(f, 0.0, 0.0, part)
@@ -52,7 +52,7 @@ def slope(f: Fields, part: Part) -> Slope:
     return Slope(demand, limit, d_x, d_y, -m_y / s, m_x / s, p.normal)
 
 
-@jit
+@bare
 def lag(local: Any, part: Part, time: float, x: float, y: float, u: float, f: Fields, a: Slope) -> float:
     """kappa [s/m] at the sliding speed u [m/s]."""
     if a.demand == 0.0 or 2 * a.demand <= a.limit:
@@ -60,7 +60,7 @@ def lag(local: Any, part: Part, time: float, x: float, y: float, u: float, f: Fi
     if local.counts[BASE] > 0 or part.tilt_x != 0.0 or part.tilt_y != 0.0:
         # The pull is not along grad w, and there is no closed form without the base's jerk: its turning is taken from
         # a small step along the path.
-        step = 1e-6 * local.frame[1]
+        step = 1e-6 * local.frame[UNIT]
         g = fields(local, x + step * u * a.d_x, y + step * u * a.d_y, time + step)
         ahead, here = pull(g, 0.0, 0.0, part), pull(f, 0.0, 0.0, part)
         turn_x, turn_y = (ahead.x - here.x) / step, (ahead.y - here.y) / step
@@ -80,7 +80,7 @@ def lag(local: Any, part: Part, time: float, x: float, y: float, u: float, f: Fi
     return across / a.demand / (2 * a.demand - a.limit)
 
 
-@jit
+@bare
 def velocity(u: float, kappa: float, a: Slope) -> tuple[float, float]:
     """The velocity [m/s] on the manifold."""
     back = min(max(kappa * u, -1.0), 1.0)
@@ -88,7 +88,7 @@ def velocity(u: float, kappa: float, a: Slope) -> tuple[float, float]:
     return u * (along * a.d_x - back * a.n_x), u * (along * a.d_y - back * a.n_y)
 
 
-@jit
+@bare
 def manifold_rate(local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
     """d/dt of (x, y, u, -, work, dissipation) into `out`; returns the normal force [N]."""
     x, y, u = state[0], state[1], state[2]

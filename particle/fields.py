@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from particle.cells import UNBUILT
 from particle.drive import ORDER
-from particle.jit import jit
+from particle.jit import bare, jit
 from particle.local import (
     BASE,
     DEGREE,
@@ -54,7 +54,7 @@ class Fields(NamedTuple):
     base_ay: float
 
 
-@jit
+@bare
 def at_time(local: Local, time: float) -> None:
     """The cell's polynomial and logarithms at `time` [s], with two derivatives, into `at`."""
     unit = local.frame[UNIT]
@@ -66,7 +66,7 @@ def at_time(local: Local, time: float) -> None:
         at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
 
 
-@jit
+@bare
 def quintic(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
     """A quintic in s = t / unit, with its first and second derivative in t."""
     value = ((((c[5] * s + c[4]) * s + c[3]) * s + c[2]) * s + c[1]) * s + c[0]
@@ -75,7 +75,7 @@ def quintic(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
     return value, first / unit, second / (unit * unit)
 
 
-@jit
+@bare
 def fields(local: Local, x: float, y: float, time: float) -> Fields:
     """The surface at a point [m] of the prepared cell and a time [s] of the prepared span."""
     at_time(local, time)
@@ -138,7 +138,7 @@ def fields(local: Local, x: float, y: float, time: float) -> Fields:
     )
 
 
-@jit
+@bare
 def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     """What r^2 ln r is made of: r^2 outside the floor, how far r is inside it, and 2 ln r there; lengths over the size.
 
@@ -148,7 +148,7 @@ def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     return bounded, (square - bounded) / bounded, math.log(bounded)
 
 
-@jit
+@bare
 def standing(local: Local, x: float, y: float, out: FloatArray) -> None:
     """The surface at a fixed point [m] as polynomials in time: w, w_x, w_y into `out` (3, 6)."""
     frame, size, c = local.frame, local.frame[SIZE], local.smooth

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.jit import jit
+from particle.jit import bare, jit
 
 FloatArray = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class Contact(Protocol):
         """Q [N] under net loads [N] of any shape; ValueError for one below -pull_off or above largest_load."""
 
 
-@jit
+@bare
 def friction_limit(law: FrictionLaw, load: float) -> float:
     """Q [N] while sliding under the net normal force `load` [N]; outside the law it goes on, never negative."""
     if law.kind == CONSTANT:

@@ -13,6 +13,11 @@ import numba
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 
+def bare(kernel: Kernel) -> Kernel:
+    """As `jit`, for kernels that make no arrays: without counting references to those that they are given."""
+    return numba.njit(cache=True, error_model="numpy", nogil=True, _nrt=False)(kernel)  # type: ignore[no-any-return]
+
+
 def jit(kernel: Kernel) -> Kernel:
     """Compile a kernel at its first call (nothing when NUMBA_DISABLE_JIT=1)."""
     return numba.njit(cache=True, error_model="numpy", nogil=True)(kernel)  # type: ignore[no-any-return]

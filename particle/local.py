@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from particle.cells import NOWHERE, UNBUILT, WHOLE
 from particle.drive import ORDER, drive_kink, drive_piece, kink_slack
-from particle.jit import jit
+from particle.jit import bare, jit
 from particle.rim import rim_gap
 
 FloatArray = NDArray[np.float64]
@@ -127,14 +127,14 @@ def enter(surface: Any, local: Local, x: float, y: float, time: float, end: floa
     return cell
 
 
-@jit
+@bare
 def within_cell(local: Local, x: float, y: float) -> bool:
     """Whether the cell's polynomial holds at a point [m]."""
     f = local.frame
     return abs(x - f[X]) <= f[REACH] * f[HALF_X] and abs(y - f[Y]) <= f[REACH] * f[HALF_Y]
 
 
-@jit
+@bare
 def gap_at(surface: Any, local: Local, x: float, y: float) -> float:
     """A distance [m] that a point of the cell is from the rim at least, negative off the plate; exact near the rim."""
     return local.frame[CLEAR] if local.frame[CLEAR] > 0.0 else rim_gap(surface, x, y)

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from particle.fields import Fields, fields
 from particle.friction import friction_limit
-from particle.jit import jit
+from particle.jit import bare
 from particle.local import SIZE
 
 FloatArray = NDArray[np.float64]
@@ -50,7 +50,7 @@ class Pull(NamedTuple):
     speed: float  # m/s, sliding speed u
 
 
-@jit
+@bare
 def pull(f: Fields, v_x: float, v_y: float, part: Part) -> Pull:
     """Acceleration without friction, normal force and sliding speed."""
     a_x, a_y = f.base_ax - part.tilt_x, f.base_ay - part.tilt_y
@@ -66,14 +66,14 @@ def pull(f: Fields, v_x: float, v_y: float, part: Part) -> Pull:
     )
 
 
-@jit
+@bare
 def length(f: Fields, x: float, y: float) -> float:
     """Length along the surface of a vector given in the plane's coordinates."""
     climb = x * f.x + y * f.y
     return math.sqrt(x * x + y * y + climb * climb)
 
 
-@jit
+@bare
 def slide_rate(local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
     """d/dt of (x, y, v_x, v_y, work, dissipation) into `out`; returns the normal force [N]."""
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
@@ -88,20 +88,20 @@ def slide_rate(local: Any, part: Part, time: float, state: FloatArray, out: Floa
     return p.normal
 
 
-@jit
+@bare
 def push(f: Fields, part: Part, load: float) -> float:
     """The power [W] of the surface's normal force, net of the squeeze, at the surface's velocity."""
     s = math.sqrt(1 + f.x * f.x + f.y * f.y)
     return (load - part.squeeze) / s * (f.w_t - f.x * f.base_vx - f.y * f.base_vy)
 
 
-@jit
+@bare
 def drag(f: Fields, x: float, y: float) -> float:
     """The surface's velocity [m/s] times a vector along it, given in the plane's coordinates."""
     return x * f.base_vx + y * f.base_vy + (x * f.x + y * f.y) * f.w_t
 
 
-@jit
+@bare
 def energy(f: Fields, x: float, y: float, v_x: float, v_y: float, part: Part) -> tuple[float, float]:
     """Kinetic and potential energy [J] of a part on the surface."""
     s_x, s_y, s_z = v_x + f.base_vx, v_y + f.base_vy, f.w_t + v_x * f.x + v_y * f.y
@@ -109,14 +109,14 @@ def energy(f: Fields, x: float, y: float, v_x: float, v_y: float, part: Part) ->
     return 0.5 * part.mass * (s_x * s_x + s_y * s_y + s_z * s_z), part.mass * height
 
 
-@jit
+@bare
 def energy_at_rest(local: Any, part: Part, time: float, state: FloatArray) -> float:
     """The energy [J] of a part at rest on the surface at the place (x, y, ...)."""
     kinetic, potential = energy(fields(local, state[0], state[1], time), state[0], state[1], 0.0, 0.0, part)
     return kinetic + potential
 
 
-@jit
+@bare
 def margin(local: Any, part: Part, load: float, gap: float) -> float:
     """How far the part is from the end of its contact: negative beyond the rim, below pull-off, above the largest load.
 

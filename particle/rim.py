@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.jit import jit
+from particle.jit import bare
 
 FloatArray = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ FINEST = 1e-3  # of a step: shorter dips beyond the rim are not looked for,
 ROUNDING = 1e-12  # nor shallower ones, of the plate's size
 
 
-@jit
+@bare
 def rim_gap(surface: Any, x: float, y: float) -> float:
     """Distance [m] of (x, y) from the rim, negative off the plate; the surface's size where there is no rim."""
     if len(surface.conics) == 0 and len(surface.edges) == 0:
@@ -52,7 +52,7 @@ def rim_gap(surface: Any, x: float, y: float) -> float:
     return nearest if inside else -nearest
 
 
-@jit
+@bare
 def ellipse_gap(x: float, y: float, a: float, b: float) -> float:
     """Distance [m] from an ellipse with semi-axes a and b [m] around the origin, positive inside.
 
@@ -82,7 +82,7 @@ def ellipse_gap(x: float, y: float, a: float, b: float) -> float:
     return distance if (x / a) ** 2 + (y / b) ** 2 < 1.0 else -distance
 
 
-@jit
+@bare
 def crosses(edge: FloatArray, x: float, y: float) -> bool:
     """Whether a ray from (x, y) towards positive x crosses an edge (3, 2) an odd number of times.
 
@@ -107,7 +107,7 @@ def crosses(edge: FloatArray, x: float, y: float) -> bool:
     return crossed
 
 
-@jit
+@bare
 def edge_distance(edge: FloatArray, x: float, y: float) -> float:
     """Distance [m] of (x, y) from an edge (3, 2), by its nearest parameter.
 
@@ -143,7 +143,7 @@ def edge_distance(edge: FloatArray, x: float, y: float) -> float:
     return nearest
 
 
-@jit
+@bare
 def first_beyond(
     surface: Any, gap: float, start: FloatArray, end: FloatArray, v_0: FloatArray, v_1: FloatArray, h: float
 ) -> float:

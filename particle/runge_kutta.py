@@ -12,7 +12,7 @@ from scipy.integrate import DOP853, RK45
 
 from particle.breakaway import manifold_rate
 from particle.friction import friction_limit
-from particle.jit import jit
+from particle.jit import bare, jit
 from particle.local import gap_at, within_cell
 from particle.motion import Part, margin, slide_rate
 from particle.record import SLIDING
@@ -71,7 +71,7 @@ def new_step(pair: Tableau) -> Step:
     return Step(np.zeros((stages, 6)), np.zeros(stages), np.zeros(stages), np.zeros(6), np.zeros(6), np.zeros(1))
 
 
-@jit
+@bare
 def rate(mode: int, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
     """The right side: of (x, y, v_x, v_y, work, dissipation) while sliding, of (x, y, u, -, ...) on the slow manifold.
 
@@ -82,7 +82,7 @@ def rate(mode: int, local: Any, part: Part, time: float, state: FloatArray, out:
     return manifold_rate(local, part, time, state, out)
 
 
-@jit
+@bare
 def attempt(
     mode: int, surface: Any, local: Any, part: Part, pair: Tableau, step: Step, time: float, state: FloatArray, h: float
 ) -> bool:
@@ -109,36 +109,34 @@ def attempt(
         gap = step.start_gap[0] - math.hypot(step.stage[0] - state[0], step.stage[1] - state[1])
         gap = gap if gap > 0.0 else gap_at(surface, local, step.stage[0], step.stage[1])
         step.loads[k], step.margins[k] = load, margin(local, part, load, gap)
-    step.end[:] = step.stage
+    for i in range(6):
+        step.end[i] = step.stage[i]
     return True
 
 
-@jit
+@bare
 def error(pair: Tableau, step: Step, h: float, lasting: float, force: float) -> float:
     """The step's error as a distance [m].
 
     An error of velocity counts as what it moves the part by in `lasting` [s], one of the ledger as the way on which
     `force` [N] does that work.
     """
-    total = np.zeros(2)
-    for row in range(2):
-        for i in range(6):
-            e = 0.0
-            for k in range(len(pair.c)):
-                e += pair.error[row, k] * step.rates[k, i]
-            e *= h
-            if i >= 4:
-                e /= force
-            elif i >= 2:
-                e *= lasting
-            total[row] += e * e
-    if total[0] == 0.0:
+    fifth = third = 0.0
+    for i in range(6):
+        e = d = 0.0
+        for k in range(len(pair.c)):
+            e += pair.error[0, k] * step.rates[k, i]
+            d += pair.error[1, k] * step.rates[k, i]
+        weight = h / force if i >= 4 else (h * lasting if i >= 2 else h)
+        fifth += (weight * e) ** 2
+        third += (weight * d) ** 2
+    if fifth == 0.0:
         return 0.0
     # Hairer's combination: the fifth-order estimate, damped by the third-order one.
-    return total[0] / math.sqrt(total[0] + 0.01 * total[1])
+    return fifth / math.sqrt(fifth + 0.01 * third)
 
 
-@jit
+@bare
 def first_excursion(part: Part, pair: Tableau, step: Step) -> float:
     """The share of a step at which the load leaves the contact's range between two stages; 1: nowhere.
 

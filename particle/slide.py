@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from particle.breakaway import Slope, lag, slope, velocity
 from particle.fields import Fields, fields
-from particle.jit import jit
+from particle.jit import bare, jit
 from particle.local import NEAR, gap_at
 from particle.motion import Part, energy_at_rest, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
@@ -150,7 +150,7 @@ def slide(
     return mode, time, h * min(GROWTH, SAFETY * max(wrong, 1e-12) ** (-1 / pair.order)), GOES_ON
 
 
-@jit
+@bare
 def _to_passage(local: Any, state: FloatArray, h: float) -> float:
     """The step [s], cut where the part passes closely over an actuator: at a step's end its logarithm does no harm."""
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
@@ -171,7 +171,7 @@ def _stops_on_plate(surface: Any, local: Any, step: Step, state: FloatArray, sto
     return way == 1.0 and rim_gap(surface, step.end[0], step.end[1]) >= -ROUNDING * surface.size
 
 
-@jit
+@bare
 def _manifold_error(local: Any, part: Part, time: float, state: FloatArray) -> float:
     """What the slow manifold's next term would move the part by [m]."""
     f = fields(local, state[0], state[1], time)
@@ -180,7 +180,7 @@ def _manifold_error(local: Any, part: Part, time: float, state: FloatArray) -> f
     return 3 * abs(kappa) * state[2] ** 3 / a.limit if a.limit > 0.0 else math.inf
 
 
-@jit
+@bare
 def _joins_manifold(local: Any, request: Request, time: float, state: FloatArray, f: Fields, a: Slope) -> bool:
     """Whether a slow part's velocity (v_x, v_y) has become that of the slow manifold, on which steps may be longer."""
     u, tolerance = length(f, state[2], state[3]), request.tolerance
@@ -193,7 +193,7 @@ def _joins_manifold(local: Any, request: Request, time: float, state: FloatArray
     return bool(off <= 0.01 * tolerance and 3 * abs(kappa) * u**3 / a.limit <= 0.01 * tolerance)
 
 
-@jit
+@bare
 def _leave_manifold(local: Any, request: Request, time: float, state: FloatArray) -> int:
     """Turns (x, y, u) into (x, y, v_x, v_y) once the part is fast enough for plain steps, or slows down again."""
     part, u = request.part, state[2]
@@ -207,7 +207,7 @@ def _leave_manifold(local: Any, request: Request, time: float, state: FloatArray
     return SLIDING
 
 
-@jit
+@bare
 def _locate_end(
     surface: Any,
     local: Any,
@@ -244,7 +244,7 @@ def _locate_end(
     return high
 
 
-@jit
+@bare
 def reason(surface: Any, part: Part, load: float, state: FloatArray) -> int:
     """Why contact ends where the margin is negative."""
     if rim_gap(surface, state[0], state[1]) < 0.0:

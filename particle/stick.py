@@ -20,7 +20,7 @@ from particle.bernstein import DEEPEST, halve, to_bernstein
 from particle.drive import ORDER
 from particle.fields import standing
 from particle.friction import friction_limit
-from particle.jit import jit
+from particle.jit import bare, jit
 from particle.local import BASE, TIME, UNIT
 from particle.motion import Part
 
@@ -77,7 +77,7 @@ def leaves_rest(local: Any, part: Part, rest: Rest, x: float, y: float, begin: f
     return math.inf
 
 
-@jit
+@bare
 def holds(part: Part, c: float, force: float, square: float) -> bool:
     """Whether the part stays, given C, the squared force along the surface times s^2 (per kg) and s^2."""
     s = math.sqrt(square)

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from particle.breakaway import Slope, slope
 from particle.fields import Fields, fields
 from particle.jit import jit
+from particle.local import UNIT
 from particle.motion import Part, drag, pull, push
 
 FloatArray = NDArray[np.float64]
@@ -82,7 +83,7 @@ def stop_ahead(
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     f = fields(local, x, y, time)
     now = frozen_stop(f, slope(f, part), v_x, v_y, small)
-    if not now.time < 0.5 * local.frame[1]:
+    if not now.time < 0.5 * local.frame[UNIT]:
         return now, math.inf
     # After a third of the time a straight stop has covered five ninths of its way.
     g = fields(local, x + 5 / 9 * now.x, y + 5 / 9 * now.y, time + now.time / 3)
