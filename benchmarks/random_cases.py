@@ -31,7 +31,6 @@ from particle import (
     Trajectory,
     simulate,
 )
-from particle.drive import drive_table
 from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
@@ -119,7 +118,7 @@ def random_case(seed: int) -> RandomCase:
     part = Micropart(MASS, _start(rng, plain.sources), _velocity(rng))
     contact = str(rng.choice(CONTACTS))
     spans = sum(1 + 2 * math.ceil(duration * drive.frequency) for drive in drives)
-    surface = plain._replace(drives=drive_table(drives))
+    surface = plain.driven_by(drives)
     return RandomCase(seed, surface, spans, part, contact, _friction(rng, contact), duration, bool(rng.random() < 0.5))
 
 

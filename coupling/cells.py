@@ -181,9 +181,9 @@ class PlateCells:
         target = target - point_value(x, self.shapes.points[near] / self.shapes.size) @ strengths
         table = monomials(local)
         if samples == len(self._nodes) and clear > 0:
-            fitted = self._inverse @ target[:samples]
+            fitted: FloatArray = self._inverse @ target[:samples]
         else:
-            fitted = np.linalg.lstsq(table[:samples], target[:samples], rcond=1e-12)[0]
+            fitted = np.asarray(np.linalg.lstsq(table[:samples], target[:samples], rcond=1e-12)[0])
         wrong = np.abs(table[samples:] @ fitted - target[samples:]) / self._heights[rows]
         cell.error = float(wrong.max(initial=0.0)) + left_out
         cell.fit = CellFit(rows, near, np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy(), clear)

@@ -43,7 +43,7 @@ class Shapes(ABC):
 
     @abstractmethod
     def nearby(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
-        """The rows (k,) of all shapes that are not zero at every one of some points (n, 2) [m], and their values (n, k).
+        """The rows (k,) of all shapes that are not zero at every one of points (n, 2) [m], and their values (n, k).
 
         Those of held actuators are per metre of stroke, those of floating ones in m/N.
         """

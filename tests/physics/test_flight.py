@@ -1,6 +1,7 @@
 """Flight, impact and hops against closed forms and an independent simulation of events."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -200,7 +201,7 @@ def test_the_part_flies_straight_while_the_base_moves_under_it():
 
 
 def test_a_part_that_flies_over_the_rim_leaves_the_plate_there():
-    surface = falling((0.0, 0.0), 0.0, 30.0, 60.0)._replace(conics=np.array([[0.0, 0.0, 0.2, 0.2]]))
+    surface = replace(falling((0.0, 0.0), 0.0, 30.0, 60.0), conics=np.array([[0.0, 0.0, 0.2, 0.2]]))
     path = flies(surface, Micropart(MASS, (0.0, -0.1), (0.48, 0.36)), CoulombAdhesion(0.3), 2.0)
     assert path.outcome is Outcome.LEFT_PLATE
     assert [e.kind for e in path.events] == [DETACHES, EventKind.LEAVES_PLATE]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +26,7 @@ def driven(
         c[: p.shape[0], : p.shape[1], k] = p
     surface = polynomial_surface(c, size=size)
     conics = np.array([[0.0, 0.0, rim, rim]]) if rim is not None else surface.conics
-    return surface._replace(drives=drive_table([*drives, *base]), moving_base=bool(base), conics=conics)
+    return replace(surface, drives=drive_table([*drives, *base]), moving_base=bool(base), conics=conics)
 
 
 def level(height: float = 1.0) -> TableDrive:

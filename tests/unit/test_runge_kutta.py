@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, polynomial_surface
-from particle.fields import new_local, pin_cell, pin_time
+from particle.local import enter, new_local
 from particle.motion import Part
 from particle.record import SLIDING
 from particle.runge_kutta import attempt, error, new_step, rate, tableau
@@ -21,13 +21,12 @@ def bowl():
 
 def march(pair, steps):
     """Position and velocity after 1 s by `steps` steps, and the pair's estimate for the first of them."""
-    surface, part = bowl(), Part(1.0, 1e9, 0.0, 0.0, 0.0, ConstantFriction(0.0).law)
+    surface, part = bowl().record, Part(1.0, 1e9, 0.0, 0.0, 0.0, ConstantFriction(0.0).law)
     local, step = new_local(surface), new_step(pair)
-    pin_time(surface, local, 0.0, 1.0)
-    pin_cell(surface, local, 0.0, 0.0)
+    enter(surface, local, 0.0, 0.0, 0.0, 1.0)
     state, h, first = np.array([0.1, 0.0, 0.0, 0.2, 0.0, 0.0]), 1 / steps, 0.0
     for k in range(steps):
-        step.loads[0] = rate(SLIDING, surface, local, part, k * h, state, step.rates[0])
+        step.loads[0] = rate(SLIDING, local, part, k * h, state, step.rates[0])
         assert attempt(SLIDING, surface, local, part, pair, step, k * h, state, h)
         first = error(pair, step, h, 1.0, math.inf) if k == 0 else first
         state[:] = step.end
@@ -67,14 +66,13 @@ def test_the_tableau_is_consistent(tolerance):
 
 def test_the_part_does_not_slide_back_within_a_step_under_friction():
     surface, part, pair = (
-        polynomial_surface([[0.0]]),
+        polynomial_surface([[0.0]]).record,
         Part(1.0, 9.81, 0.0, 0.0, 0.0, ConstantFriction(1.0).law),
         tableau(1e-9),
     )
     local, step, state = new_local(surface), new_step(pair), np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-    pin_time(surface, local, 0.0, 10.0)
-    pin_cell(surface, local, 0.0, 0.0)
-    step.loads[0] = rate(SLIDING, surface, local, part, 0.0, state, step.rates[0])
+    enter(surface, local, 0.0, 0.0, 0.0, 10.0)
+    step.loads[0] = rate(SLIDING, local, part, 0.0, state, step.rates[0])
     assert attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 0.9)
     assert step.end == pytest.approx([0.9 - 0.5 * 0.81, 0, 0.1, 0, -0.5 * (1 - 0.01) + 0.495, 0.495], abs=1e-14)
     assert not attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 1.5)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, CoulombAdhesion, Drive, KogutEtsion, polynomial_surface
-from particle.fields import fields, new_local, pin_cell, pin_time
+from particle.fields import fields
 from particle.friction import friction_limit
+from particle.local import enter, new_local
 from particle.motion import Part, length, pull
 from particle.stick import leaves_rest, new_rest
 
@@ -46,10 +47,10 @@ def stays(surface, local, part, time):
 
 
 def search(surface, part, begin=0.0):
-    local = new_local(surface)
-    pin_time(surface, local, 0.0, 1.0)
-    pin_cell(surface, local, 0.0, 0.0)
-    return leaves_rest(local, part, new_rest(), 0.0, 0.0, begin), local
+    record = surface.record
+    local = new_local(record)
+    enter(record, local, 0.0, 0.0, 0.0, 1.0)
+    return leaves_rest(local, part, new_rest(), 0.0, 0.0, begin, 1.0), local
 
 
 @pytest.mark.parametrize(

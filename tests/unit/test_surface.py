@@ -11,6 +11,8 @@ from fem_plate import Plate
 from fem_plate.analytic import DiscShapes
 from meshes import disc
 from particle import Drive, polynomial_surface
+from particle.fields import fields
+from particle.local import enter, new_local, within_cell
 
 DRIVES = [Drive(150e-6, 300), Drive(-60e-6, 450, cycle="up", delay=0.2e-3)]
 NAMES = ("w", "w_t", "w_tt", "gradient", "gradient_t", "hessian")
@@ -111,21 +113,22 @@ def test_the_stated_error_is_that_of_the_unit_shapes(surface, exact, spots, layo
 
 
 def test_a_smaller_tolerance_takes_finer_cells_and_meets_it(exact):
-    coarse, fine = (surface_motion(exact, DRIVES, tolerance=t) for t in (1e-6, 1e-12))
-    assert fine.cell_width < coarse.cell_width
+    coarse, fine = (surface_motion(exact, DRIVES, surface_tolerance=t) for t in (1e-6, 1e-12))
+    assert len(fine.store.cells.half) > len(coarse.store.cells.half)
+    assert fine.store.cells.half.min() < coarse.store.cells.half.min()
     assert fine.error <= 1e-12 < coarse.error <= 1e-6
 
 
 def test_cells_hold_a_little_beyond_their_sides(surface, exact):
     """A step of the integrator may end up to `overhang` half widths from a cell's centre."""
-    i, j = 4, 3
-    centre = surface.origin + surface.cell_width * (np.array([i, j]) + 0.5)
-    local = surface.overhang * np.array([[1, 1], [-1, 1], [1, -1], [-1, -1], [1, 0], [0, -1]])
-    degree = surface.degree
-    powers = [(p, q) for p in range(degree + 1) for q in range(degree + 1 - p)]
-    monomials = np.stack([local[:, 0] ** p * local[:, 1] ** q for p, q in powers], axis=1)
-    values = exact.smooth(centre + local * surface.cell_width / 2)
-    assert np.abs(monomials @ surface.cells[surface.cell_rows[i, j]].T - values).max() < 1e-8
+    record = surface.record
+    local, corners = new_local(record), np.array([[1, 1], [-1, 1], [1, -1], [-1, -1], [1, 0], [0, -1]])
+    cell = enter(record, local, 0.1 * surface.size, -0.2 * surface.size, 1e-3, math.inf)
+    outside = record.cells.centre[cell] + surface.overhang * corners * record.cells.half[cell]
+    strokes = [drive.evaluate(1e-3)[0] for drive in DRIVES]
+    for (x, y), truth in zip(outside, exact.evaluate(outside, strokes)[0], strict=True):
+        assert within_cell(local, 0.999 * x, 0.999 * y) and not within_cell(local, x + surface.size, y)
+        assert fields(local, x, y, 1e-3).w == pytest.approx(truth, abs=1e-8 * 150e-6)
 
 
 def test_there_must_be_one_drive_an_actuator(exact):
@@ -158,7 +161,7 @@ def test_finite_elements_give_the_closed_forms_surface(section, radius, layout, 
 
 def test_a_surface_from_finite_elements_needs_no_finer_cells_than_the_exact_one(section, radius, layout, surface):
     shapes = Plate(disc(radius, radius / 12), section).influence(layout)
-    assert surface_motion(shapes, DRIVES).cells.shape == surface.cells.shape
+    assert surface_motion(shapes, DRIVES).store.cells.half.shape == surface.store.cells.half.shape
 
 
 def test_a_close_pair_of_actuators_is_fitted_relative_to_its_steep_shapes(radius):
