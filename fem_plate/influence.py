@@ -40,6 +40,10 @@ class Shapes(ABC):
         Returns value (n, k), gradient (n, k, 2) and Hessian (n, k, 2, 2).
         """
 
+    def values(self, xy: ArrayLike, weights: FloatArray | None = None) -> FloatArray:
+        """The shapes alone at points (n, 2) [m] of the plate, or their sums with weights (N, k): (n, N) or (n, k)."""
+        return self.fields(np.asarray(xy, dtype=float) / self.size, weights)[0]
+
     @abstractmethod
     def smooth(self, xy: ArrayLike) -> FloatArray:
         """The smooth parts v_i at points (n, 2) [m]: (n, N), dimensionless."""
@@ -102,6 +106,10 @@ class InfluenceShapes(Shapes, Estimated):
 
     def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:
         return (self.field if weights is None else self.field.weighted(weights)).evaluate(x)
+
+    def values(self, xy: ArrayLike, weights: FloatArray | None = None) -> FloatArray:
+        field = self.field if weights is None else self.field.weighted(weights)
+        return field.values(np.asarray(xy, dtype=float) / self.size)
 
     def smooth(self, xy: ArrayLike) -> FloatArray:
         return self.field.smooth(np.asarray(xy, dtype=float) / self.size)[0]
