@@ -33,6 +33,7 @@ from coupling.case_lines import find_problems, load
 from coupling.drive_case import ActuatorCase as ActuatorCase
 from coupling.drive_case import SegmentCase
 from coupling.drive_case import amplitude as amplitude
+from coupling.lattice_case import LatticeCase as LatticeCase
 from coupling.places import Places
 from coupling.platform_case import AXES, BY_DRIVES, AxisCase, MotionCase
 from coupling.table import Table
@@ -192,10 +193,14 @@ class RunCase(Table):
 
 
 class _CaseTables(Table):
-    """All that a case file holds; a platform has no actuators."""
+    """All that a case file holds; a platform has no actuators.
+
+    A lattice becomes actuators, after those that are given one by one; then there is no `lattice` any more.
+    """
 
     plate: AnyPlate
     actuators: tuple[ActuatorCase, ...]
+    lattice: LatticeCase | None = None
     part: PartCase
     friction: Annotated[KogutEtsionCase | ConstantCase | CoulombCase | TableCase, Field(discriminator="model")]
     run: RunCase
@@ -203,7 +208,7 @@ class _CaseTables(Table):
     @model_validator(mode="wrap")
     @classmethod
     def _check_places(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
-        if isinstance(data, dict) and kind(data.get("plate")) == PLATFORM:
+        if isinstance(data, dict) and (kind(data.get("plate")) == PLATFORM or data.get("lattice") is not None):
             data = {"actuators": ()} | data
         # Around the fields rather than after them, so that a wrong field elsewhere does not hide a misplaced actuator.
         try:
@@ -211,15 +216,20 @@ class _CaseTables(Table):
         except ValidationError as error:
             if not isinstance(data, dict):
                 raise
-            mistakes = Places.model_validate(data, context=info.context).mistakes(info.context)
             errors: list[Any] = list(error.errors())
+            lattice, mistakes = Places.model_validate(data, context=info.context).check(info.context)
         else:
-            mistakes, errors = Places.model_validate(case).mistakes(), []
+            errors = []
+            lattice, mistakes = Places.model_validate(case).check()
         for location, message in mistakes:
             context = {"error": ValueError(message)}
             errors.append({"type": "value_error", "loc": location, "input": None, "ctx": context})
         if errors:
             raise ValidationError.from_exception_data(cls.__name__, errors)
+        if lattice:
+            # The model is frozen from here on.
+            object.__setattr__(case, "actuators", case.actuators + lattice)
+            object.__setattr__(case, "lattice", None)
         return case
 
 
@@ -239,6 +249,7 @@ _FRICTION: dict[str, type[BaseModel]] = {
 _TABLES: dict[str, type[BaseModel]] = {
     "": _CaseTables,
     "actuators": ActuatorCase,
+    "lattice": LatticeCase,
     "segments": SegmentCase,
     **dict.fromkeys(AXES, AxisCase),
     BY_DRIVES: MotionCase,
@@ -254,4 +265,4 @@ def read_case(path: str | os.PathLike[str]) -> Case:
         tables = _CaseTables.model_validate(data, context=units.UNITS_REQUIRED | {"folder": Path(path).parent})
     except ValidationError as error:
         raise CaseError(os.fspath(path), find_problems(error, text, data, _TABLES | _FRICTION | PLATES)) from None
-    return Case(**dict(tables), name=Path(path).stem, source=text)
+    return Case.model_construct(**dict(tables), name=Path(path).stem, source=text)

@@ -23,7 +23,7 @@ from coupling.units import shown
 Location = tuple[int | str, ...]
 """The keys, and indices from 0, that lead to a value in the file."""
 
-_RULES = {
+RULES = {
     "float_type": "a number",
     "int_type": "a whole number",
     "finite_number": "a finite number",
@@ -33,6 +33,7 @@ _RULES = {
     "less_than": "less than {lt:.4g}",
     "less_than_equal": "at most {le:.4g}",
 }
+"""What a value must be, by the kind of a failed validation."""
 
 _SYNTAX = {
     "Cannot overwrite a value": "this is given twice",
@@ -141,7 +142,7 @@ def _message(detail: ErrorDetails, value: object, tables: Mapping[str, type[Base
             return f"must be a table, written {_header(location)}{got}"
         case _:
             quoted = isinstance(value, str) and kind in ("float_type", "int_type")
-            return f"must be {_RULES.get(kind, 'different').format(**context)}{got}" + (", in quotes" if quoted else "")
+            return f"must be {RULES.get(kind, 'different').format(**context)}{got}" + (", in quotes" if quoted else "")
 
 
 def _in_file(detail: ErrorDetails) -> Location:
@@ -167,9 +168,10 @@ def _header(location: Location) -> str:
     if keys[:2] == ["plate", "motion"]:
         name = ".".join(str(key) for key in keys if key in ("plate", "motion", *AXES, "segments"))
         return f"[[{name}]]" if len(keys) > 4 and keys[3] == "segments" else f"[{name}]"
-    if location[0] != "actuators":
-        return f"[{location[0]}]"
-    return "[[actuators.segments]]" if location[2:3] == ("segments",) and len(location) > 3 else "[[actuators]]"
+    name = str(location[0])
+    if "segments" in location[1:-1]:
+        return f"[[{name}.segments]]"
+    return f"[[{name}]]" if name == "actuators" else f"[{name}]"
 
 
 def _doubled(header: str) -> str:
@@ -215,7 +217,7 @@ def _syntax_problem(error: str, text: str) -> Problem:
     found = re.match(r"line (\d+)", place)
     number = int(found[1]) if found else text.rstrip().count("\n") + 1
     line = text.split("\n")[number - 1]
-    for name in ("actuators", "actuators.segments"):
+    for name in ("actuators", "actuators.segments", "lattice.segments"):
         single = re.search(rf"^[ \t]*\[[ \t]*{re.escape(name)}[ \t]*\]", text, re.MULTILINE)
         if single and re.match(rf"\s*\[\[?\s*{re.escape(name)}\s*\]", line):
             number = text.count("\n", 0, single.start()) + 1

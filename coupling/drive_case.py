@@ -2,35 +2,20 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from itertools import accumulate
-from typing import Annotated, Any, ClassVar, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import (
-    Field,
-    GetCoreSchemaHandler,
-    ModelWrapValidatorHandler,
-    StrictInt,
-    TypeAdapter,
-    ValidationError,
-    ValidationInfo,
-    model_validator,
-)
+from pydantic import Field, GetCoreSchemaHandler, StrictInt
 from pydantic_core import CoreSchema, core_schema
 
 from coupling import units
-from coupling.table import Table
+from coupling.keyed_table import WRONG, Contradictions, KeyedTable
 from coupling.units import Length, Point, shown
 
 ENDLESS: Final = "endless"
 CLOSEST: Final = 1e-12  # of the whole time: points of a table must be further apart
-
-WRONG: Final = object()
-
-Contradictions = Iterator[tuple[str, str]]
 
 
 @dataclass(frozen=True)
@@ -74,60 +59,12 @@ def _is_pair(value: object) -> bool:
     return isinstance(value, (list, tuple)) and len(value) == 2
 
 
-class _DrivenTable(Table):
-    """A table whose keys depend on each other: `contradictions` are found whatever else is wrong."""
-
-    @classmethod
-    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
-        """Yield each key that does not go with the others, or is missing because of them, and why.
-
-        given: the values by their keys; WRONG for those that are not valid.
-        """
-        raise NotImplementedError
-
-    @model_validator(mode="wrap")
-    @classmethod
-    def _check_keys(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
-        errors: list[Any] = []
-        table: Self | None = None
-        try:
-            table = handler(data)
-        except ValidationError as error:
-            if not isinstance(data, dict):
-                raise
-            errors += error.errors()
-        if isinstance(data, dict):
-            wrong = {error["loc"][0] for error in errors}
-            told = {error["loc"] for error in errors}
-            for key, message in cls.contradictions(cls._given(data, wrong, info.context)):
-                if (key,) not in told and (key in data or message.startswith("is missing")):
-                    context = {"error": ValueError(message)}
-                    errors.append({"type": "value_error", "loc": (key,), "input": None, "ctx": context})
-        if table is None or errors:
-            raise ValidationError.from_exception_data(cls.__name__, errors)
-        return table
-
-    @classmethod
-    def _given(cls, data: Mapping[str, Any], wrong: Collection[int | str], context: Any) -> Mapping[str, Any]:
-        given: dict[str, Any] = {}
-        for key, value in data.items():
-            if key not in cls.model_fields:
-                # A misspelt key is a mistake already; what it stands for is not missing as well.
-                given |= dict.fromkeys(difflib.get_close_matches(str(key).lower(), cls.model_fields, 1), WRONG)
-            elif value is not None:
-                valid = WRONG if key in wrong else _adapter(cls, key).validate_python(value, context=context)
-                # In Python a default may be stated: a case that was written down is read again.
-                if context or valid != cls.model_fields[key].default:
-                    given[key] = valid
-        return given
+Cycle = Literal["up-down", "up", "sine", "cosine"]
+Points = Annotated[tuple[tuple[units.Time, Length], ...], _Points()]
+Repeats = Annotated[int | Literal["endless"], _Passes()]
 
 
-@cache
-def _adapter(model: type[Table], key: str) -> TypeAdapter[Any]:
-    return TypeAdapter(model.model_fields[key].rebuild_annotation())
-
-
-class SegmentCase(_DrivenTable):
+class SegmentCase(KeyedTable):
     """A part of a schedule: `stroke` in m, `frequency` in Hz, `dwell` in s after each stroke.
 
     A hold has only a `dwell`, the time that it lasts.
@@ -158,28 +95,14 @@ class SegmentCase(_DrivenTable):
             yield "dwell", 'must be greater than 0 with cycle = "hold"; got 0 s'
 
 
-class DriveCase(_DrivenTable):
-    """A drive over time: `delay` in s, and what moves it.
-
-    That is a `stroke` in m with a `frequency` in Hz, a `cycle`, `cycles` (None: no end) and a `dwell` in s; or a
-    `table` of times in s and heights in m; or `segments`, a schedule. The last two come `repeats` times.
-    """
+class Driven(KeyedTable):
+    """A table with the keys of a drive: which of them go together."""
 
     owner: ClassVar[str] = "a drive"
     drivers: ClassVar[tuple[str, ...]] = ("stroke", "table", "segments")
     in_place: ClassVar[str] = "a table or segments"
     """What a stroke may be replaced by, in words."""
     segments_table: ClassVar[str] = "[[segments]]"
-
-    stroke: Length | None = None
-    frequency: units.Frequency | None = Field(default=None, gt=0)
-    cycle: Literal["up-down", "up", "sine", "cosine"] = "up-down"
-    cycles: StrictInt | None = Field(default=None, ge=1)
-    dwell: units.Time = Field(default=0.0, ge=0)
-    table: Annotated[tuple[tuple[units.Time, Length], ...], _Points()] | None = None
-    segments: tuple[SegmentCase, ...] | None = None
-    repeats: Annotated[int | Literal["endless"], _Passes()] = 1
-    delay: units.Time = Field(default=0.0, ge=0)
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -193,6 +116,8 @@ class DriveCase(_DrivenTable):
             yield from cls._beside_times(drivers[0], given)
         else:
             yield from cls._of_cycles(given)
+        if "force" in given and "stiffness" in given:
+            yield "stiffness", "must not be given with a force, which is the same whatever the stiffness"
 
     @classmethod
     def _of_cycles(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -222,7 +147,25 @@ class DriveCase(_DrivenTable):
             yield "repeats", f"must not be given with {_NAMED[driver]} {ends}"
 
 
-class _Place(_DrivenTable):
+class DriveCase(Driven):
+    """A drive over time: `delay` in s, and what moves it.
+
+    That is a `stroke` in m with a `frequency` in Hz, a `cycle`, `cycles` (None: no end) and a `dwell` in s; or a
+    `table` of times in s and heights in m; or `segments`, a schedule. The last two come `repeats` times.
+    """
+
+    stroke: Length | None = None
+    frequency: units.Frequency | None = Field(default=None, gt=0)
+    cycle: Cycle = "up-down"
+    cycles: StrictInt | None = Field(default=None, ge=1)
+    dwell: units.Time = Field(default=0.0, ge=0)
+    table: Points | None = None
+    segments: tuple[SegmentCase, ...] | None = None
+    repeats: Repeats = 1
+    delay: units.Time = Field(default=0.0, ge=0)
+
+
+class _Place(KeyedTable):
     position: Point
     force: units.Force | None = None
     stiffness: units.Stiffness | None = Field(default=None, gt=0)
@@ -238,12 +181,6 @@ class ActuatorCase(DriveCase, _Place):
     drivers: ClassVar[tuple[str, ...]] = ("stroke", "force", "table", "segments")
     in_place: ClassVar[str] = 'a force such as "1 mN", a table or segments'
     segments_table: ClassVar[str] = "[[actuators.segments]]"
-
-    @classmethod
-    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
-        yield from super().contradictions(given)
-        if "force" in given and "stiffness" in given:
-            yield "stiffness", "must not be given with a force, which is the same whatever the stiffness"
 
 
 _NAMED: Final = {"stroke": "a stroke", "force": "a force", "table": "a table", "segments": "segments"}

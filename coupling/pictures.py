@@ -6,7 +6,7 @@ Of a platform also the velocities of part and platform as seen by one at rest.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from coupling.case import Case
 from coupling.drive_case import amplitude
@@ -31,6 +32,8 @@ FloatArray = NDArray[np.float64]
 MICRO, MILLI = 1e6, 1e3
 SLIP_COLOUR, STICK_COLOUR, FLIGHT_COLOUR = "#c8371b", "#1b4f9c", "#606060"
 SAMPLES = 4000
+AXES_WIDTH = 330.0  # points, about
+SMALLEST_MARKER, SMALL_MARKER, LARGEST_MARKER = 0.8, 4.0, 6.0  # points
 
 
 class Unit(NamedTuple):
@@ -133,10 +136,19 @@ def draw_plate(
         figure.colorbar(filled, ax=axes, label="deflection with all drives up at once [µm]", shrink=0.8, format="%.3g")
     rim = rim_curves(shapes.outline, shapes.size / 100)
     axes.add_collection(LineCollection([curve * unit.per_metre for curve in rim], colors="black", linewidths=1.5))
-    axes.plot(*(shapes.points.T * unit.per_metre), "^", color="white", markeredgecolor="black", markersize=6, zorder=6)
-    return [
-        Line2D([], [], color="white", marker="^", markeredgecolor="black", linestyle="", markersize=9, label="actuator")
-    ]
+    size = _marker_size(shapes.points, shapes.outline.box)
+    marker: dict[str, Any] = {"marker": "^", "color": "white", "markeredgecolor": "black", "linestyle": ""}
+    edge = min(1.0, size / SMALL_MARKER)
+    axes.plot(*(shapes.points.T * unit.per_metre), **marker, markersize=size, markeredgewidth=edge, zorder=2.5)
+    return [Line2D([], [], **marker, markersize=9, label="actuator")]
+
+
+def _marker_size(places: FloatArray, box: FloatArray) -> float:
+    """The size [points] of markers at places (N, 2) [m] on a plate in a box (2, 2) [m], apart from each other."""
+    if len(places) < 2:
+        return LARGEST_MARKER
+    apart = float(np.quantile(cKDTree(places).query(places, k=2)[0][:, 1], 0.1)) / float(np.ptp(box, axis=0).max())
+    return float(np.clip(0.4 * AXES_WIDTH * apart, SMALLEST_MARKER, LARGEST_MARKER))
 
 
 def _draw_over_time(

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import difflib
-import math
 import re
-from collections.abc import Iterator, Sequence
-from itertools import combinations
-from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
 
 from coupling.any_plate import outline_of
 from coupling.case_lines import Location, shown_location
+from coupling.drive_case import ActuatorCase
+from coupling.lattice_case import LatticeCase
+from coupling.lattice_places import SAME_PLACE, Place, Stand, beyond, gaps, half_size, shared_places
 from coupling.plate_case import PlateCase, ShapeCase, Supports
 from coupling.platform_case import platform_of
 from coupling.units import Length, Point, Time, shown_length
@@ -20,10 +21,8 @@ from coupling.units import Length, Point, Time, shown_length
 if TYPE_CHECKING:
     from meshes import PlateMesh
 
-SAME_PLACE: Final = 1e-9
-"""Places closer than this fraction of half the plate's longer side count as one."""
-
-Mistakes = Iterator[tuple[Location, str]]
+Mistake = tuple[Location, str]
+Mistakes = Iterator[Mistake]
 _T = TypeVar("_T")
 
 
@@ -56,37 +55,39 @@ class Places(BaseModel, from_attributes=True):
 
     plate: Any = None
     actuators: _IfValid[tuple[_IfValid[_Spot], ...]] = None
+    lattice: Any = None
     part: _IfValid[_Spot] = None
     run: _IfValid[_Run] = None
 
-    def mistakes(self, context: Any = None) -> Mistakes:
-        """Yield where a place is wrong, and why; `context` is that of the tables' validation."""
+    def check(self, context: Any = None) -> tuple[tuple[ActuatorCase, ...], list[Mistake]]:
+        """The actuators of the lattice, none where that is wrong, and where any place is wrong, and why.
+
+        context: that of the tables' validation.
+        """
         platform = platform_of(self.plate, context)
         if platform:
-            if self.actuators != ():
-                yield ("actuators",), 'must not be given with shape = "platform", which moves as a whole'
-            yield from platform.mistakes(self.run.duration if self.run else None)
-            return
-        if self.actuators == ():
-            yield ("actuators",), "must be at least one table, written [[actuators]]; got none"
-        spots = [(("actuators", index), spot) for index, spot in enumerate(self.actuators or ()) if spot]
+            return (), [*self._beside_platform(), *platform.mistakes(self.run.duration if self.run else None)]
+        mistakes: list[Mistake] = []
+        if self.actuators == () and self.lattice is None:
+            mistakes.append((("actuators",), "must be at least one table, written [[actuators]]; got none"))
         plate = outline_of(self.plate, context)
-        if plate is None:
-            return
-        try:
-            mesh = plate.coarse_mesh
-        except OSError as error:
-            yield ("plate", plate.outlined_by), f"cannot be read: {(error.strerror or str(error)).lower()}"
-            return
-        except ValueError as error:
-            for line in str(error).splitlines():
-                yield ("plate", plate.outlined_by), re.sub(r"^Input \w+ of \w+ ", "", line)
-            return
-        yield from self._in_plate(plate, mesh, _Plate.model_validate(self.plate, context=context), spots)
+        mesh, wrong = _mesh(plate) if plate else (None, [])
+        mistakes += [(("plate", plate.outlined_by), message) for message in wrong] if plate else []
+        lattice = _lattice(self.lattice, context)
+        stand = Stand.on(lattice, mesh) if lattice else None
+        if stand:
+            mistakes += stand.mistakes
+        if plate and mesh:
+            given = _Plate.model_validate(self.plate, context=context)
+            mistakes += self._in_plate(plate, mesh, given, stand)
+        return (stand.actuators if stand else ()), mistakes
 
-    def _in_plate(
-        self, plate: PlateCase, mesh: PlateMesh, given: _Plate, spots: Sequence[tuple[Location, _Spot]]
-    ) -> Mistakes:
+    def _beside_platform(self) -> Mistakes:
+        for key, given in (("actuators", self.actuators != ()), ("lattice", self.lattice is not None)):
+            if given:
+                yield (key,), 'must not be given with shape = "platform", which moves as a whole'
+
+    def _in_plate(self, plate: PlateCase, mesh: PlateMesh, given: _Plate, stand: Stand | None) -> Mistakes:
         """Yield what does not fit the plate of a mesh."""
         if isinstance(plate, ShapeCase) and given.cell_size is not None:
             most = plate.measures[0] / 2
@@ -100,22 +101,45 @@ class Places(BaseModel, from_attributes=True):
             hint = f"did you mean {near[0]}? " if near else ""
             has = f"It has {', '.join(names)}" if hint else f"it has {', '.join(names)}"
             yield ("plate", "supports", name), f"is no boundary of the plate; {hint}{has}"
-        places = {(*table, "position"): spot.position for table, spot in spots if spot.position}
-        part = {("part", "position"): self.part.position} if self.part and self.part.position else {}
-        size = float((mesh.outline.box[1] - mesh.outline.box[0]).max()) / 2
-        for location, place in [*places.items(), *part.items()]:
-            gap = float(mesh.outline.gap(place))
-            if gap <= SAME_PLACE * size:
-                where = f"{shown_length(-gap)} beyond it" if gap < -SAME_PLACE * size else "on it"
-                yield location, f"must be inside the rim; got a point {where}"
-        shared = set()
-        for (one, here), (other, there) in combinations(places.items(), 2):
-            if other not in shared and math.dist(here, there) < SAME_PLACE * size:
-                shared.add(other)
-                yield other, f"must differ from {shown_location(one)}; got the same point"
+        spots = [(("actuators", index), spot) for index, spot in enumerate(self.actuators or ()) if spot]
+        places: dict[Location, Place] = {(*table, "position"): spot.position for table, spot in spots if spot.position}
+        part: dict[Location, Place] = (
+            {("part", "position"): self.part.position} if self.part and self.part.position else {}
+        )
+        least = SAME_PLACE * half_size(mesh)
+        inside: dict[Location, Place] = places | part
+        for location, gap in zip(inside, gaps(mesh, list(inside.values())), strict=True):
+            if gap <= least:
+                yield location, f"must be inside the rim; got a point {beyond(gap, least)}"
+        for one, other in shared_places(list(places.values()), least):
+            here, there = (list(places)[k] for k in (one, other))
+            yield there, f"must differ from {shown_location(here)}; got the same point"
+        if stand:
+            yield from stand.crowded(places, least)
         held = [spot.position for _, spot in spots if spot.position and spot.force is None]
-        if given.supports is not None and len(held) == len(places) - sum(spot.force is not None for _, spot in spots):
+        known = len(held) == len(places) - sum(spot.force is not None for _, spot in spots)
+        if stand and stand.holds:
+            held += [(spot.x, spot.y) for spot in stand.spots]
+        if given.supports is not None and known and (stand or self.lattice is None):
             yield from _rigid_motion(plate.model_copy(update={"supports": given.supports}), mesh, held)
+
+
+def _mesh(plate: PlateCase) -> tuple[PlateMesh | None, list[str]]:
+    """The mesh for a plate's outline, or why there is none."""
+    try:
+        return plate.coarse_mesh, []
+    except OSError as error:
+        return None, [f"cannot be read: {(error.strerror or str(error)).lower()}"]
+    except ValueError as error:
+        return None, [re.sub(r"^Input \w+ of \w+ ", "", line) for line in str(error).splitlines()]
+
+
+def _lattice(given: Any, context: Any) -> LatticeCase | None:
+    """The lattice; None where there is none, or its keys are wrong."""
+    try:
+        return None if given is None else LatticeCase.model_validate(given, context=context)
+    except ValidationError:
+        return None
 
 
 def _rigid_motion(plate: PlateCase, mesh: PlateMesh, held: list[tuple[float, float]]) -> Mistakes:

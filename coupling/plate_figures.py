@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from coupling.case import Case, KogutEtsionCase
 from coupling.drives import moments, stroke_heights
-from coupling.places import SAME_PLACE
+from coupling.lattice_places import SAME_PLACE
 from coupling.summary import PlateFigures
 from fem_plate import InfluenceShapes, Plate
 from meshes import Outline

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,7 +23,7 @@ from coupling.rim import onto_plate
 from coupling.scene import Ground
 from coupling.summary import PlateFigures
 from coupling.surface import surface_motion
-from fem_plate import InfluenceShapes, Plate, PlateSection
+from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateSection, Shapes
 from fem_plate.influence import MOST_DENSE
 from particle import AnyDrive, SurfaceMotion, Trajectory
 
@@ -48,7 +48,7 @@ class PlateScene:
 
     def ground(self, trajectory: Trajectory) -> Ground:
         points, triangles = drawn_plate(self.plate.mesh, self.shapes.points)
-        return Ground(points, triangles, self.shapes.evaluate(points)[0])
+        return Ground(points, triangles, lifting(self.shapes, points))
 
     def onto(self, xy: FloatArray) -> FloatArray:
         return onto_plate(self.shapes.outline, xy)
@@ -57,7 +57,17 @@ class PlateScene:
         return plate_figures(case, self.plate, self.shapes, self.surface, self.lifts, trajectory)
 
     def draw(self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit) -> list[Line2D]:
-        return draw_plate(figure, axes, self.shapes, ground.points, ground.triangles, ground.shapes @ heights, unit)
+        return draw_plate(
+            figure, axes, self.shapes, ground.points, ground.triangles, ground.lifted(heights[None])[0], unit
+        )
+
+
+def lifting(shapes: Shapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """The deflections (k, n) [m] at points (n, 2) [m] as a function of the actuators' heights (k, N) [m]."""
+    if isinstance(shapes, PatchedShapes):
+        return lambda heights: shapes.values(points, heights.T).T
+    values = shapes.values(points)  # of few actuators: once for all heights
+    return lambda heights: heights @ values.T
 
 
 def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:

@@ -44,7 +44,11 @@ class PlatformScene:
         low, high = trajectory.position.min(axis=0), trajectory.position.max(axis=0)
         half = (0.5 + MARGIN) * float((high - low).max()) or self.surface.size / 2
         corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-        return Ground((low + high) / 2 + half * corners, np.array([[0, 1, 2], [0, 2, 3]]), np.ones((4, 1)))
+        return Ground(
+            (low + high) / 2 + half * corners,
+            np.array([[0, 1, 2], [0, 2, 3]]),
+            lambda heights: heights @ np.ones((1, 4)),
+        )
 
     def onto(self, xy: FloatArray) -> FloatArray:
         return xy

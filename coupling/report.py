@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from coupling.measured import MotionFit
 from coupling.summary import PlateSummary, Summary
 
@@ -12,6 +14,7 @@ MOST_THICKNESSES, STEEPEST, MOST_CURVED = 0.2, 0.2, 0.1
 FASTEST = 0.003  # of the plate's first frequency
 NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
 FEWEST_FRAMES = 8  # to a cycle
+MOST_SAID = 6  # ratios that are told one by one
 GROWTH = 100  # of the error of one step, that is no sign of chaos
 
 
@@ -195,11 +198,14 @@ def _dynamics(s: PlateSummary) -> str:
 
 
 def _each_drive(s: PlateSummary) -> str:
-    drives, strokes = (
-        ", ".join(f"{ratio:.2g}" for ratio in sorted(set(ratios or ()), reverse=True))
-        for ratios in (s.drives_over_first, s.strokes_over_first)
-    )
+    drives, strokes = (_ratios(ratios or ()) for ratios in (s.drives_over_first, s.strokes_over_first))
     return f"each drive over it {drives}; its stroke, at one over its time from rest to rest, {strokes}"
+
+
+def _ratios(ratios: Sequence[float]) -> str:
+    """Different ratios, the largest first; of many the first and the last."""
+    said = list(dict.fromkeys(f"{ratio:.2g}" for ratio in sorted(ratios, reverse=True)))
+    return ", ".join(said) if len(said) <= MOST_SAID else f"{said[0]} to {said[-1]}"
 
 
 def _percent(share: float) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -26,7 +26,7 @@ class Ground(NamedTuple):
 
     points: FloatArray  # (n, 2) m
     triangles: NDArray[np.int64]  # (m, 3)
-    shapes: FloatArray  # (n, N), the deflection there for each lifting drive at 1
+    lifted: Callable[[FloatArray], FloatArray]  # from heights (k, N) [m] of the drives to deflections (k, n) [m]
 
 
 class Scene(Protocol):

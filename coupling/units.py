@@ -49,6 +49,7 @@ _NUMBER_AND_UNIT: Final = re.compile(
     r"[ \t]*(?P<unit>[\w \t.*/^()+⁻·⋅°%-]*)"
 )
 
+_COUNTS: Final = {2: "two", 3: "three"}
 _NONSENSE: Final = ", which is not a number and a unit"
 _NO_UNIT: Final = ", which has no unit"
 _NOT_FINITE: Final = ", which is not finite"
@@ -68,25 +69,28 @@ class Quantity:
 
     def parse(self, text: str) -> float:
         """Return the quantity that `text` states, in `unit`; ValueError unless it is a finite one of this dimension."""
-        import pint  # Here, because loading pint takes longer than the rest of the package.
-
         match = _NUMBER_AND_UNIT.fullmatch(text.strip())
         if match is None:
-            raise self._error(text, "; write decimals with a point" if "," in text else _NONSENSE)
-        number, unit = match["number"], match["unit"]
+            raise self.refusal(text, "; write decimals with a point" if "," in text else _NONSENSE)
+        return self.convert(text, match["number"], match["unit"])
+
+    def convert(self, text: str, number: str, unit: str) -> float:
+        """Return so many of a unit, in `unit`; ValueError, which shows the text, as from `parse`."""
+        import pint  # Here, because loading pint takes longer than the rest of the package.
+
         if not unit:
-            raise self._error(text, _NO_UNIT)
+            raise self.refusal(text, _NO_UNIT)
         try:
             fits = self._fits(unit)
             value = float(_registry().Quantity(Decimal(number), unit).m_as(self.unit)) if fits else math.nan
         except pint.UndefinedUnitError as error:
-            raise self._error(text, self._unknown_unit(number, unit, error)) from None
+            raise self.refusal(text, self._unknown_unit(number, unit, error)) from None
         except Exception:  # On nonsense pint raises anything from AssertionError to TokenError.
-            raise self._error(text, _NONSENSE) from None
+            raise self.refusal(text, _NONSENSE) from None
         if not fits:
-            raise self._error(text, f", {_dimension(unit)}")
+            raise self.refusal(text, f", {_dimension(unit)}")
         if not math.isfinite(value):
-            raise self._error(text, _NOT_FINITE)
+            raise self.refusal(text, _NOT_FINITE)
         return value
 
     def validate(self, value: object, info: ValidationInfo) -> float:
@@ -94,11 +98,11 @@ class Quantity:
         if isinstance(value, str):
             return self.parse(value)
         if isinstance(value, bool) or not isinstance(value, Real):
-            raise self._error(value)
+            raise self.refusal(value)
         if info.context and info.context.get("units_required"):
-            raise self._error(value, _NO_UNIT)
+            raise self.refusal(value, _NO_UNIT)
         if not math.isfinite(value):
-            raise self._error(value, _NOT_FINITE)
+            raise self.refusal(value, _NOT_FINITE)
         return float(value)
 
     def _fits(self, unit: str) -> bool:
@@ -114,7 +118,8 @@ class Quantity:
                     return f', but there is no unit "{name}"; did you mean "{number} {near}"?'
         return f', but there is no unit "{name}"'
 
-    def _error(self, value: object, reason: str = "") -> ValueError:
+    def refusal(self, value: object, reason: str = "") -> ValueError:
+        """The error that says what a value must be, and that this one is not."""
         return ValueError(f"must be {self.wanted}; got {shown(value)}{reason}")
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -145,23 +150,25 @@ class Pair:
 
 @dataclass(frozen=True)
 class Directed:
-    """Marks a quantity that is one number, or a vector along x, y and z."""
+    """Marks a quantity that is one number, or one along each of some axes."""
 
     quantity: Quantity
+    axes: str = "xyz"
 
     @property
     def wanted(self) -> str:
         """What a value must be, in words: an acceleration such as "9.8 m/s^2", or three, along x, y and z."""
-        return f"{self.quantity.wanted}, or three, along x, y and z"
+        along = f"{', '.join(self.axes[:-1])} and {self.axes[-1]}"
+        return f"{self.quantity.wanted}, or {_COUNTS[len(self.axes)]}, along {along}"
 
     def validate(self, value: object, info: ValidationInfo) -> object:
-        """Return the value in SI units; ValueError for what is neither one nor three, or wrong by itself."""
+        """Return the value in SI units; ValueError for what is neither one nor one an axis, or wrong by itself."""
         if not isinstance(value, (list, tuple)):
             return self.quantity.validate(value, info)
-        if len(value) != 3:
+        if len(value) != len(self.axes):
             raise ValueError(f"must be {self.wanted}; got {shown(value)}")
         parts, wrong = [], []
-        for name, part in zip("xyz", value, strict=True):
+        for name, part in zip(self.axes, value, strict=True):
             try:
                 parts.append(self.quantity.validate(part, info))
             except ValueError as error:

@@ -41,6 +41,10 @@ class Shapes(ABC):
         Returns value (n, k), gradient (n, k, 2) and Hessian (n, k, 2, 2).
         """
 
+    def values(self, xy: ArrayLike, weights: FloatArray | None = None) -> FloatArray:
+        """The shapes alone at points (n, 2) [m] of the plate, or their sums with weights (N, k): (n, N) or (n, k)."""
+        return self.fields(np.asarray(xy, dtype=float) / self.size, weights)[0]
+
     @abstractmethod
     def nearby(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
         """The rows (k,) of all shapes that are not zero at every one of points (n, 2) [m], and their values (n, k).
@@ -110,6 +114,10 @@ class InfluenceShapes(Shapes, Estimated):
 
     def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:
         return (self.field if weights is None else self.field.weighted(weights)).evaluate(x)
+
+    def values(self, xy: ArrayLike, weights: FloatArray | None = None) -> FloatArray:
+        field = self.field if weights is None else self.field.weighted(weights)
+        return field.values(np.asarray(xy, dtype=float) / self.size)
 
     def nearby(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
         return np.arange(len(self.points)), self.field.values(xy / self.size)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
-from fem_plate.field import Fields
+from fem_plate.field import Field, Fields
 from fem_plate.influence import MOST_DENSE, Shapes
 from fem_plate.patches import Array, Tile
 from meshes import Outline
@@ -73,30 +75,49 @@ class PatchedShapes(Shapes):
         )
 
     def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:
+        width = self._width(x, weights)
+        value, gradient, hessian = (
+            np.zeros((len(x), width)),
+            np.zeros((len(x), width, 2)),
+            np.zeros((len(x), width, 2, 2)),
+        )
+        for field, at, local, ratio in self._pieces(x, weights):
+            w, slope, bend = field.evaluate(local)  # at actuators the Hessians are infinite
+            value[at] += w
+            gradient[at] += slope * ratio
+            with np.errstate(invalid="ignore"):  # infinities of either sign meet at an actuator
+                hessian[at] += bend * ratio**2
+        return value, gradient, hessian
+
+    def values(self, xy: ArrayLike, weights: FloatArray | None = None) -> FloatArray:
+        x = np.asarray(xy, dtype=float) / self.size
+        value = np.zeros((len(x), self._width(x, weights)))
+        for field, at, local, _ in self._pieces(x, weights):
+            value[at] += field.values(local)
+        return value
+
+    def _width(self, x: FloatArray, weights: FloatArray | None) -> int:
+        """How many functions are asked for; ValueError when they are too many for the points."""
         n, count = len(x), len(self.points)
         if weights is None and n * count > MOST_VALUES:
             raise ValueError(
                 f"Input xy of evaluate must be at most {MOST_VALUES // count} points for all {count} shapes at once; "
                 f"got {n}; give weights for their sum"
             )
-        width = count if weights is None else weights.shape[1]
-        value, gradient, hessian = np.zeros((n, width)), np.zeros((n, width, 2)), np.zeros((n, width, 2, 2))
+        return count if weights is None else int(weights.shape[1])
+
+    def _pieces(self, x: FloatArray, weights: FloatArray | None) -> Iterator[tuple[Field, Any, FloatArray, float]]:
+        """Yield what each tile adds at x (n, 2): a field, to which entries, at its points, and the ratio of lengths."""
         for tile in self.tiles:
             patch = tile.patch
             ratio, core = self.size / patch.size, tile.rows[patch.core]
-            local, near = self._within(tile, x * self.size)
-            if not near.size:
-                continue
             if weights is not None and not weights[core].any():
                 continue
-            field = patch.field if weights is None else patch.field.weighted(weights[core])
-            at = np.ix_(near, core) if weights is None else near
-            w, slope, bend = field.evaluate(local[near])  # at actuators the Hessians are infinite
-            value[at] += w
-            gradient[at] += slope * ratio
-            with np.errstate(invalid="ignore"):  # infinities of either sign meet at an actuator
-                hessian[at] += bend * ratio**2
-        return value, gradient, hessian
+            local, near = self._within(tile, x * self.size)
+            if near.size and weights is None:
+                yield patch.field, np.ix_(near, core), local[near], ratio
+            elif near.size and weights is not None:
+                yield patch.field.weighted(weights[core]), near, local[near], ratio
 
     def nearby(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
         rows, values = [np.zeros(0, dtype=np.int64)], [np.zeros((len(xy), 0))]

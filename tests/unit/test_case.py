@@ -273,7 +273,10 @@ BROKEN = [
     ((POISSON, ""), "line 1  plate.poisson_ratio is missing; it must be a number"),
     ((PART, ""), 'two lengths, x and y, such as ["100 um", "100 um"]'),
     (("[part]", "[prat]"), "line 23  prat is not known; did you mean part?"),
-    (("[plate]", 'name = "x"\n[plate]'), "line 1  name is not known; a case file has [plate], [[actuators]], [part]"),
+    (
+        ("[plate]", 'name = "x"\n[plate]'),
+        "line 1  name is not known; a case file has [plate], [[actuators]], [lattice], [part]",
+    ),
     ((STROKE, STROKE + "\ncolour = 1"), "line 11  actuators[1].colour is not known; [[actuators]] has position, "),
     (("[plate]", "[[plate]]"), "line 1  plate must be a table, written [plate]; got a list of tables"),
     ((RADIUS, "[plate.radius]"), 'plate.radius must be a length such as "150 um"; got a table'),

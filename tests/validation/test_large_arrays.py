@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from coupling.plate_scene import lifting
 from fem_plate import PatchedShapes, Plate, patches
 from meshes import annulus, disc, polygon, rectangle
 
@@ -98,3 +99,19 @@ def test_a_lattice_of_2025_is_1_at_each_actuator_and_0_at_the_others(section):
     assert np.abs(shapes.evaluate(points, heights)[0] - heights).max() < 1e-5
     row = int(np.argmin(np.hypot(*points.T)))
     assert shapes.evaluate(points, np.eye(2025)[row])[0] == pytest.approx(np.eye(2025)[row], abs=1e-6)
+
+
+def test_values_alone_are_those_of_the_fields_and_the_drawn_plate_follows_the_whole_plate(section, monkeypatch):
+    monkeypatch.setattr(patches, "TILE", 3)
+    points = lattice(14, 13)
+    plate = Plate(SQUARE, section)
+    dense, shapes = plate.influence(points), plate.influence(points, truncation=TRUNCATION)
+    xy = 0.9 * PITCH * np.random.default_rng(0).uniform(-7, 7, (300, 2))
+    heights = np.random.default_rng(1).uniform(0, 1, (5, len(points)))
+    for one in (dense, shapes):
+        assert np.allclose(one.values(xy), one.evaluate(xy)[0], atol=1e-12)
+        sums = one.fields(xy / one.size, heights.T)[0]
+        assert np.allclose(one.values(xy, heights.T), sums, atol=1e-12)
+        assert np.allclose(lifting(one, xy)(heights), sums.T, atol=1e-12)
+    left_out = np.abs(lifting(dense, xy)(heights) - lifting(shapes, xy)(heights)).max()
+    assert left_out <= 2 * TRUNCATION * heights.max()

@@ -1,0 +1,216 @@
+"""Lattices of a case file: where their actuators stand, how they are driven, and what can be wrong, told once."""
+
+import time
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from coupling.case import ActuatorCase, Case, CaseError, ConstantCase, LatticeCase, PartCase, RunCase, read_case
+from coupling.plate_case import DiscCase
+from coupling.run import build_drives
+from particle.drive import drive_table
+
+FRAME = """\
+[plate]
+shape = "rectangle"
+width = "1 mm"
+height = "0.8 mm"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "50 um"
+[part]
+mass = "2e-9 kg"
+position = ["10 um", "20 um"]
+[friction]
+model = "constant"
+limit = "1 uN"
+[run]
+duration = "50 ms"
+"""
+PLACES = '[lattice]\nrows = 3\ncolumns = 4\npitch = ["150 um", "120 um"]\n'
+DRIVE = 'stroke = "5 um"\nfrequency = "300 Hz"\n'
+FIRST = 1 + (FRAME + PLACES).count("\n")  # the line after the lattice's places
+
+
+def read(folder, lattice) -> Case:
+    file = folder / "test.toml"
+    file.write_text(FRAME + lattice)
+    return read_case(file)
+
+
+def problems(folder, lattice):
+    with pytest.raises(CaseError) as caught:
+        read(folder, lattice)
+    return [f"{p.line} {p.field} {p.message}" for p in caught.value.problems]
+
+
+def python_case(**tables) -> Case:
+    plate = DiscCase(shape="disc", radius=300e-6, youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6)
+    rest = {"part": PartCase(mass=2e-9, position=(0, 0)), "friction": ConstantCase(limit=1), "run": RunCase(duration=1)}
+    return Case(plate=plate, **rest, **tables)
+
+
+def test_rows_run_along_y_and_columns_along_x_around_the_centre(tmp_path):
+    case = read(tmp_path, PLACES + 'centre = ["20 um", "-10 um"]\n' + DRIVE + 'delay = "row + 0.1 * column ms"\n')
+    assert case.lattice is None
+    found = np.array([actuator.position for actuator in case.actuators]).reshape(3, 4, 2)
+    assert found[0, 0] == pytest.approx((20e-6 - 225e-6, -10e-6 - 120e-6))
+    assert np.diff(found[..., 0], axis=1) == pytest.approx(150e-6)
+    assert np.diff(found[..., 1], axis=0) == pytest.approx(120e-6)
+    delays = np.array([actuator.delay for actuator in case.actuators]).reshape(3, 4)
+    assert delays == pytest.approx(1e-3 * (np.arange(3)[:, None] + 0.1 * np.arange(4)))
+
+
+def test_its_actuators_are_what_they_would_be_one_by_one(tmp_path):
+    keys = 'stiffness = "1e4 N/m"\ncycle = "sine"\ncycles = 3\n'
+    of_lattice = read(tmp_path, '[lattice]\nrows = 1\ncolumns = 1\npitch = "1 um"\n' + DRIVE + keys)
+    alone = read(tmp_path, '[[actuators]]\nposition = ["0 um", "0 um"]\n' + DRIVE + keys)
+    assert of_lattice.actuators == alone.actuators
+    assert of_lattice.actuators[0].model_dump() == alone.actuators[0].model_dump()
+
+
+def test_it_comes_after_the_actuators_given_one_by_one(tmp_path):
+    one = '[[actuators]]\nposition = ["0 um", "0 um"]\nforce = "1 mN"\nfrequency = "1 Hz"\n'
+    case = read(tmp_path, one + '[lattice]\nrows = 2\ncolumns = 2\npitch = "90 um"\n' + DRIVE)
+    assert [actuator.force for actuator in case.actuators] == [1e-3, None, None, None, None]
+
+
+def test_a_table_or_schedule_is_the_same_for_all_with_delays_of_their_own(tmp_path):
+    table = 'table = [["0 ms", "0 um"], ["1 ms", "5 um"], ["2 ms", "0 um"]]\nrepeats = "endless"\ndelay = "row ms"\n'
+    assert [a.delay for a in read(tmp_path, PLACES + table).actuators][::4] == [0, 1e-3, 2e-3]
+    segments = "[[lattice.segments]]\n" + DRIVE
+    assert {len(a.segments) for a in read(tmp_path, PLACES + segments).actuators} == {1}
+
+
+def test_a_margin_leaves_out_what_is_near_the_rim_and_formulas_need_a_value_only_on_the_plate():
+    lattice = {"rows": 7, "columns": 7, "pitch": 100e-6, "frequency": 300}
+    dome = "5 * sqrt(1 - (hypot(x, y) / 300e-6) ** 2) um"
+    case = python_case(lattice=LatticeCase(**lattice, margin=1e-6, stroke=dome))
+    far = [np.hypot(*actuator.position) for actuator in case.actuators]
+    assert len(far) == 25 and max(far) < 299e-6
+    assert [a.stroke for a in case.actuators] == pytest.approx([5e-6 * np.sqrt(1 - (r / 3e-4) ** 2) for r in far])
+    assert len(python_case(lattice=lattice | {"margin": 0.0, "stroke": 0.0}).actuators) == 25
+    assert len(python_case(lattice=lattice | {"margin": "100 um", "stroke": 0.0}).actuators) == 13
+
+
+def test_a_case_with_a_lattice_is_read_again_as_it_was_written_down(tmp_path):
+    case = read(tmp_path, PLACES + DRIVE + 'delay = "row * 0.1 ms"\n')
+    assert Case(**case.model_dump()) == case
+    assert Case.model_validate_json(case.model_dump_json()) == case
+
+
+WRONG = [
+    ("", 'lattice.stroke is missing; it must be a length such as "150 um", or have a force'),
+    ('stroke = "5 um"\n', "lattice.frequency is missing"),
+    (DRIVE + "stifness = 3\n", f"{FIRST + 2} lattice.stifness is not known; did you mean stiffness?"),
+    (DRIVE + "hue = 3\n", f"{FIRST + 2} lattice.hue is not known; [lattice] has rows, columns, pitch, centre"),
+    (DRIVE + 'delay = "1 / row ms"\n', 'lattice.delay must be a time for each actuator; "1 / row ms" divides by zero'),
+    (DRIVE + 'delay = "log(row) ms"\n', '"log(row) ms" has no real value at row 0, column 0'),
+    (DRIVE + 'delay = "10 ** (100 * column ** 2) ms"\n', "is too large at row 0, column 2"),
+    (DRIVE + 'delay = "9 ** 9 ** 9 ** 9 ms"\n', "is too large at row 0, column 0"),
+    (DRIVE + 'delay = "1e300 * 1e300 * (column + 1) ms"\n', "is not finite at row 0, column 0"),
+    (DRIVE + 'delay = "row > 1 ms"\n', "is a comparison and not a number at row 0, column 0"),
+    (
+        DRIVE + 'delay = "row - column ms"\n',
+        'must be at least 0 for each actuator; "row - column ms" is -0.001 s at row 0, column 1',
+    ),
+    ('frequency = "row * 300 Hz"\nstroke = "5 um"\n', "must be greater than 0 for each actuator"),
+    ('frequency = "0 Hz"\nstroke = "5 um"\n', "lattice.frequency must be greater than 0; got 0 Hz"),
+    (DRIVE + 'delay = "row * column"\n', '"row * column", which has no unit'),
+    (DRIVE + 'delay = "row * column um"\n', '"row * column um", a length'),
+    (DRIVE + "delay = 3\n", "got 3, which has no unit"),
+    (DRIVE + 'delay = "colum ms"\n', "but there is no colum; did you mean column?"),
+    (DRIVE + 'delay = "2 row ms"\n', 'an operator such as * is missing before "row ms"'),
+    (DRIVE + 'delay = "row.real ms"\n', "got "),
+    (DRIVE + 'delay = "open(1) ms"\n', "but there is no function open"),
+    (DRIVE + 'cycle = "up"\ncycles = 3\n', 'lattice.cycles must not be given with cycle = "up"'),
+    (DRIVE + 'force = "row uN"\n', "lattice.force must not be given with a stroke; an actuator is driven by one of"),
+    ('force = "1 uN"\nfrequency = "1 Hz"\nstiffness = "row N/m"\n', "lattice.stiffness must not be given with a force"),
+    (
+        "[[lattice.segments]]\n" + DRIVE + "hue = 3\n",
+        "lattice.segments[1].hue is not known; [[lattice.segments]] has stroke",
+    ),
+    (DRIVE + 'margin = "1 mm"\n', "lattice.margin leaves no actuator on the plate"),
+    (
+        DRIVE + 'centre = ["300 um", "0 um"]\n',
+        "lattice must have all its actuators inside the rim; row 0, column 3 is 25 um beyond it, and 2 more are not",
+    ),
+    (
+        DRIVE + '[[actuators]]\nposition = ["75 um", "0 um"]\n' + DRIVE,
+        "actuators[1].position must differ from that of row 1, column 2 of the lattice; got the same point",
+    ),
+]
+
+
+@pytest.mark.parametrize(("keys", "expected"), WRONG)
+def test_each_mistake_is_told_once(tmp_path, keys, expected):
+    found = problems(tmp_path, PLACES + keys)
+    assert sum(expected in line for line in found) == 1, found
+    assert len(found) == 1 or keys == "", found
+
+
+@pytest.mark.parametrize(
+    ("places", "expected"),
+    [
+        ('rows = 3\ncolumns = 4\npitch = "-1 um"', "lattice.pitch must be greater than 0; got -1 um"),
+        ('rows = 3\ncolumns = 4\npitch = ["1 um"]', "lattice.pitch must be a length such as"),
+        ('rows = 3\ncolumns = 4\npitch = "1e-9 um"', "lattice.pitch must keep the actuators apart; row 0, column 1"),
+        ('rows = 0\ncolumns = 4\npitch = "1 um"', "lattice.rows must be at least 1; got 0"),
+        ('rows = 1.5\ncolumns = 4\npitch = "1 um"', "lattice.rows must be a whole number; got 1.5"),
+        ('rows = 40000\ncolumns = 40000\npitch = "1 nm"', "lattice.columns must make at most 100000 actuators"),
+        ('rows = 3\npitch = "1 um"', "lattice.columns is missing"),
+    ],
+)
+def test_mistakes_in_its_places(tmp_path, places, expected):
+    found = problems(tmp_path, f"[lattice]\n{places}\n{DRIVE}")
+    assert len(found) == 1 and expected in found[0], found
+
+
+def test_all_mistakes_at_once_whatever_else_is_wrong(tmp_path):
+    lattice = PLACES + 'stroke = "rwo um"\nfrequency = "1 / row Hz"\ndelay = "-1 s"\n'
+    text = FRAME.replace('limit = "1 uN"', 'limit = "1 um"') + lattice
+    (tmp_path / "test.toml").write_text(text)
+    with pytest.raises(CaseError) as caught:
+        read_case(tmp_path / "test.toml")
+    assert [p.field for p in caught.value.problems] == ["friction.limit", "lattice.stroke"]
+    lattice = lattice.replace("rwo", "row")
+    assert [line.split()[1] for line in problems(tmp_path, lattice)] == ["lattice.frequency", "lattice.delay"]
+
+
+def test_double_brackets_and_platforms(tmp_path):
+    doubled = PLACES.replace("[lattice]", "[[lattice]]")
+    assert "lattice must be a table, written [lattice]" in problems(tmp_path, doubled)[0]
+    file = tmp_path / "platform.toml"
+    file.write_text('[plate]\nshape = "platform"\n' + FRAME[FRAME.index("[part]") :] + PLACES + DRIVE)
+    with pytest.raises(CaseError, match='lattice must not be given with shape = "platform"'):
+        read_case(file)
+
+
+def test_a_free_plate_may_rest_on_a_lattice(tmp_path):
+    free = FRAME.replace("[part]", 'supports = "free"\n[part]')
+    file = tmp_path / "free.toml"
+    file.write_text(free + PLACES + DRIVE)
+    assert len(read_case(file).actuators) == 12
+    file.write_text(free + PLACES.replace("rows = 3", "rows = 1") + DRIVE)
+    with pytest.raises(CaseError, match="leave the plate free to move as a whole"):
+        read_case(file)
+
+
+def test_in_python_text_and_numbers_do():
+    lattice = LatticeCase(rows=2, columns=2, pitch=1e-4, stroke="row um", frequency=300, delay=1e-3)
+    case = python_case(lattice=lattice, actuators=[ActuatorCase(position=(0, 0), stroke=0, frequency=1)])
+    assert [a.stroke for a in case.actuators] == pytest.approx([0, 0, 0, 1e-6, 1e-6])
+    with pytest.raises(ValidationError, match="divides by zero at row 0, column 0"):
+        python_case(lattice=lattice.model_dump() | {"stroke": "1 / row um"})
+
+
+def test_ten_thousand_actuators_are_quick(tmp_path):
+    text = FRAME.replace('"1 mm"', '"15.3 mm"').replace('"0.8 mm"', '"15.3 mm"')
+    file = tmp_path / "large.toml"
+    lattice = '[lattice]\nrows = 100\ncolumns = 100\npitch = "150 um"\n' + DRIVE
+    file.write_text(text + lattice + 'delay = "0.05 * (row + column) % 8 ms"\n')
+    begin = time.perf_counter()
+    table = drive_table(build_drives(read_case(file)))
+    assert time.perf_counter() - begin < 5  # measured: 0.6 s
+    assert len(table.delay) == 10_000
