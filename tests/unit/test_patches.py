@@ -167,11 +167,16 @@ def test_all_shapes_at_too_many_points_are_refused_and_sums_are_not(row, monkeyp
         assert np.abs(total[:10] - np.tensordot(one, weights, (1, 0))).max() < 1e-11 * np.abs(one).max()
 
 
-def test_the_smooth_part_is_the_shape_without_its_point_forces(row):
-    dense, shapes = row.influence(lattice(60, 1)), row.influence(lattice(60, 1), truncation=1e-4)
+def test_the_shapes_nearby_are_all_that_are_not_zero_there(row):
+    points, springs = lattice(60, 1), np.where(np.arange(60) % 3, np.inf, 0.0)
+    shapes = row.influence(points, springs, truncation=1e-4)
     spots = np.array([[0.3, 0.2], [7.6, -1.2]]) * PITCH
-    smooth = dense.smooth(spots)
-    assert np.abs(shapes.smooth(spots)[:, 10:50] - smooth[:, 10:50]).max() < 1e-2 * np.abs(smooth).max()
+    rows, values = shapes.nearby(spots)
+    every = shapes.evaluate(spots)[0]
+    assert len(rows) < 60 and len(set(rows.tolist())) == len(rows)
+    assert np.array_equal(values, every[:, rows])
+    assert not np.delete(every, rows, axis=1).any()
+    assert shapes.own_heights() == pytest.approx(np.diag(shapes.evaluate(points)[0]))
 
 
 def test_the_error_estimate_counts_what_is_left_out_and_the_cells(section):
