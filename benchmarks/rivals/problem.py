@@ -18,7 +18,7 @@ FloatArray = NDArray[np.float64]
 
 RADIUS, MASS, GRAVITY = 300e-6, 2e-9, 9.80665
 OUT_TO = 0.8  # of the radius, the outermost actuator
-COUNTS, MOST = (1, 2, 9, 25, 100), 2000  # actuators by default, and at most
+COUNTS, MOST = (1, 2, 9, 25, 100), 1000  # actuators by default, and at most
 QUINTIC = np.array([0.0, 0.0, 0.0, 10.0, -15.0, 6.0])  # a stroke from 0 to 1
 CONSTANT = ConstantFriction(20.9 * MASS)
 

@@ -25,7 +25,7 @@ LENGTH, SPEED = 1e-5, 1e-2  # m, m/s: what tolerances are relative to
 FAST = 0.01  # of friction times a stroke: the speed from which on DOP853 takes over
 SAMPLES = 32  # of a span at rest
 REST = 0.2
-MOST_PHASES = 1000  # a guard against running in circles
+MOST_PHASES = 20  # a span, a guard against running in circles
 
 
 @dataclass
@@ -73,7 +73,7 @@ def trace(problem: PathProblem, rate: Rate, tolerance: float) -> Traced:
     if problem.friction.pull_off < math.inf:
         events["detaches"] = _falling(lambda t, y: _load(problem, t, y) + problem.friction.pull_off)
     mode = "rests"
-    for _ in range(MOST_PHASES):
+    for _ in range(MOST_PHASES * len(problem.forces)):
         if mode == "rests":
             time, direction = slip(problem, time, state[:2])
             state[2:] = FIRST_SPEED * direction
@@ -99,7 +99,7 @@ def trace(problem: PathProblem, rate: Rate, tolerance: float) -> Traced:
             if name == "detaches":
                 return Traced(state[:2], asked)
             mode = "slides" if name == "is fast" else "rests"
-    raise RuntimeError(f"{MOST_PHASES} phases did not reach the end of problem {problem.name}")
+    raise RuntimeError(f"{MOST_PHASES} phases a span did not reach the end of problem {problem.name}")
 
 
 def _falling(event: Callable[[float, FloatArray], float]) -> Callable[[float, FloatArray], float]:
