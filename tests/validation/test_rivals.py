@@ -2,9 +2,10 @@
 
 import contact as contacts
 import numpy as np
+import paths
 import pytest
-from rivals import neighbours, ours, with_numba, with_numpy, with_scipy
-from rivals.compare import cheapest
+from rivals import neighbours, ours, tables, with_numba, with_numpy, with_scipy
+from rivals.compare import COMPILED, JAX, LOOP, OURS, SCIPY, TARGETS, Comparison, Row, cheapest
 from rivals.problem import RADIUS, STARTS, problem, sunflower
 
 from particle import Drive, Micropart, simulate
@@ -141,3 +142,38 @@ def test_seeds_lie_apart_and_within(count):
     assert np.hypot(*points.T).max() < 0.8 * RADIUS
     apart = np.hypot(*(points[:, None] - points).transpose(2, 0, 1)) + RADIUS * np.eye(count)
     assert apart.min() > 1.0 * RADIUS / np.sqrt(count) or count < 3
+
+
+def test_tables_tell_what_was_not_tried():
+    def row(problem, method, ratio, extrapolated=False):
+        return Row(problem, 1, TARGETS[0], method, (ratio, ratio / 2, 2 * ratio), 2_500_000, extrapolated)
+
+    rows = [row("1", LOOP, 123.4, True), row("1", JAX, 0.5), row("1, rough", LOOP, 7.0)]
+    header, _, *lines = tables.ratios_table(rows)
+    assert header == "| error | method | 1 | 1, rough |"
+    assert lines[0] == "| 1e-03 | Python loop | 120 (62 - 250) * | 7 (3.5 - 14) |"
+    assert lines[1] == f"| 1e-03 | {JAX} | 0.5 (0.25 - 1) | - |"
+    assert len(lines) == 2
+
+
+@pytest.mark.parametrize("counts", [["0"], ["1", "1001"], ["-3"]])
+def test_counts_that_make_no_sense_are_refused(counts, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["paths.py", "--counts", *counts])
+    with pytest.raises(SystemExit) as end:
+        paths.main()
+    assert end.value.code == 2
+    assert f"from 1 to 1000, up to which all forces fit in memory; got [{counts[-1]}]" in capsys.readouterr().err
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_one_actuator_by_all():
+    rows = list(Comparison(problem(1, STARTS[1])).rows())
+    work = {(row.method, row.target): row.work for row in rows}
+    assert all(row.ratio[0] == 1 for row in rows if row.method == OURS)
+    assert all(row.ratio[1] > 0 for row in rows)
+    for target in TARGETS:
+        assert work[OURS, target] < work[SCIPY, target]
+    # First order: a thousandth of the error takes a thousand times the steps.
+    assert work[COMPILED, 1e-9] == pytest.approx(1e3 * work[COMPILED, 1e-6], rel=0.1)
+    assert [row.extrapolated for row in rows if row.method == COMPILED] == [False, False, True]
