@@ -1,0 +1,63 @@
+"""This project's side: the one place where the benchmarks of paths touch more than its public functions."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling import surface_motion
+from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate
+from particle.drive import next_kink
+from particle.fields import fields, new_local, pin_cell, pin_time
+from particle.friction import friction_limit
+from rivals.problem import GRAVITY, MASS, PathProblem
+
+__all__ = ["ends", "evaluations", "friction_limit", "path_of", "surface_of"]
+
+FloatArray = NDArray[np.float64]
+
+SURFACE_TOLERANCE = 1e-13  # of a unit stroke: as good as the cells become
+
+
+def surface_of(problem: PathProblem) -> SurfaceMotion:
+    drives = [
+        Drive(problem.stroke, frequency, delay=delay)
+        for frequency, delay in zip(problem.frequencies.tolist(), problem.delays.tolist(), strict=True)
+    ]
+    return surface_motion(problem.shapes, drives, SURFACE_TOLERANCE)
+
+
+def path_of(problem: PathProblem, surface: SurfaceMotion) -> partial[Trajectory]:
+    """What runs the problem: call it with `tolerance=...` or `scheme="fixed", time_step=...`."""
+    part = Micropart(MASS, problem.start)
+    return partial(simulate, surface, part, problem.friction, problem.duration, GRAVITY)
+
+
+def ends(problem: PathProblem, surface: SurfaceMotion, starts: FloatArray, tolerance: float) -> FloatArray:
+    """The ends (n, 2) [m] of parts that begin at `starts` (n, 2) [m], one after the other."""
+    parts = [Micropart(MASS, (x, y)) for x, y in starts.tolist()]
+    paths = (
+        simulate(surface, part, problem.friction, problem.duration, GRAVITY, tolerance=tolerance) for part in parts
+    )
+    return np.array([path.position[-1] for path in paths])
+
+
+def evaluations(surface: SurfaceMotion, xy: FloatArray, time: float, rounds: int) -> FloatArray:
+    """w, w_t, w_tt, gradient, its rate, xx, xy, yy (n, 10) at points (n, 2) [m], `rounds` times over."""
+    return _evaluations(surface, new_local(surface), xy, time, next_kink(surface.drives, time), rounds)
+
+
+@numba.njit(error_model="numpy", nogil=True)
+def _evaluations(surface: Any, local: Any, xy: FloatArray, time: float, end: float, rounds: int) -> FloatArray:
+    out = np.empty((len(xy), 10))
+    pin_time(surface, local, time, end)
+    for _ in range(rounds):
+        for n in range(len(xy)):
+            pin_cell(surface, local, xy[n, 0], xy[n, 1])
+            f = fields(surface, local, xy[n, 0], xy[n, 1], time)
+            out[n] = np.array([f.w, f.w_t, f.w_tt, f.x, f.y, f.xt, f.yt, f.xx, f.xy, f.yy])
+    return out
