@@ -23,7 +23,8 @@ from particle.cells import NOWHERE, UNBUILT, WHOLE, CellFit, CellPool, Cells
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-DEGREE = 8
+DEGREES = range(2, 11)  # of the polynomials: the lowest that does, as it costs least
+SPARE = 0.01  # of the tolerance: how good it must then be
 OVERHANG = 1.25  # cells are fitted over this many half widths, so that a step may end a little outside
 NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
 CHECKS = 16  # points between those, at which its error is measured
@@ -32,7 +33,8 @@ DEEPEST = 6  # times that a cell is divided
 ACROSS = 8  # cells along the plate's longer side, at least
 PER_SPACING = 2.0  # cells from one actuator to the next
 # The polynomial's error falls with the distance of the nearest logarithm that it takes up, in half widths.
-REACH, REACHED = 8.0, 1e-9
+REACH, REACHED, REACH_ORDER = 8.0, 1e-9, 9
+BLOCK = 3  # cells a side that are built together
 MOST_VALUES = 4_000_000  # points times shapes that are evaluated at once
 
 
@@ -61,11 +63,11 @@ class PlateCells:
         self.shapes, self.tolerance, self.error = shapes, tolerance, 0.0
         self._heights = shapes.own_heights()
         self._few = len(shapes.points) <= FEW
-        self._reach = REACH * (REACHED / tolerance) ** (1 / (DEGREE + 1))
+        self._reach = REACH * (REACHED / tolerance) ** (1 / REACH_ORDER)
         self._tree = cKDTree(shapes.points)
         nodes = OVERHANG * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
         self._nodes = np.stack(np.meshgrid(nodes, nodes, indexing="ij"), axis=-1).reshape(-1, 2)
-        self._inverse = np.linalg.pinv(monomials(self._nodes))
+        self._inverses = {degree: np.linalg.pinv(monomials(self._nodes, degree)) for degree in DEGREES}
         self._checks = np.random.default_rng(0).uniform(-1, 1, (CHECKS, 2))
         self._pool = CellPool(*self._grid())
         self.cells: Cells = self._pool.cells()
@@ -89,12 +91,14 @@ class PlateCells:
         return origin, np.full(2, width), np.where(on_plate, UNBUILT, NOWHERE)
 
     def build(self, places: FloatArray) -> None:
-        """Makes sure that there are cells at places (n, 2) [m] on the plate, and around them."""
-        roots = np.array(self._pool.roots.shape)
-        at = np.clip(np.floor((places - self._pool.origin) / self._pool.width).astype(int), 0, roots - 1)
-        around = (at[:, None] + np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)).reshape(-1, 2)
-        around = np.unique(around[((around >= 0) & (around < roots)).all(axis=1)], axis=0)
-        self._build(around[self._pool.roots[tuple(around.T)] == UNBUILT])
+        """Makes sure that there are cells at places (n, 2) [m] on the plate."""
+        # Always the same cells together, in whatever order they are asked for: so each has the same bits.
+        at = np.floor((places - self._pool.origin) / self._pool.width / BLOCK).astype(int)
+        blocks = np.unique(np.clip(at, 0, (np.array(self._pool.roots.shape) - 1) // BLOCK), axis=0)
+        for i, j in (blocks * BLOCK).tolist():
+            block = self._pool.roots[i : i + BLOCK, j : j + BLOCK]
+            if (block == UNBUILT).any():
+                self._build(np.argwhere(block == UNBUILT) + (i, j))
 
     def _build(self, roots: IntArray) -> None:
         pool, half = self._pool, self._pool.width / 2
@@ -179,14 +183,22 @@ class PlateCells:
         strengths = strengths if isinstance(strengths, np.ndarray) else strengths.toarray()
         x = (cell.centre + local * cell.half) / self.shapes.size
         target = target - point_value(x, self.shapes.points[near] / self.shapes.size) @ strengths
-        table = monomials(local)
-        if samples == len(self._nodes) and clear > 0:
-            fitted: FloatArray = self._inverse @ target[:samples]
-        else:
-            fitted = np.asarray(np.linalg.lstsq(table[:samples], target[:samples], rcond=1e-12)[0])
-        wrong = np.abs(table[samples:] @ fitted - target[samples:]) / self._heights[rows]
-        cell.error = float(wrong.max(initial=0.0)) + left_out
-        cell.fit = CellFit(rows, near, np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy(), clear)
+        chosen = None
+        for degree in reversed(DEGREES):
+            table = monomials(local, degree)
+            if clear > 0:
+                fitted: FloatArray = self._inverses[degree] @ target[:samples]
+            else:
+                fitted = np.asarray(np.linalg.lstsq(table[:samples], target[:samples], rcond=1e-12)[0])
+            wrong = np.abs(table[samples:] @ fitted - target[samples:]) / self._heights[rows]
+            error = float(wrong.max(initial=0.0))
+            if chosen and error > SPARE * self.tolerance:
+                break
+            chosen = degree, fitted, error
+        assert chosen
+        degree, fitted, error = chosen
+        cell.error = error + left_out
+        cell.fit = CellFit(degree, rows, near, np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy(), clear)
 
     def _at_rim(self, cell: _Cell) -> FloatArray:
         """Points of a cell that the rim cuts, on the plate and on the rim, in half widths from its centre."""
@@ -199,9 +211,9 @@ class PlateCells:
         return np.concatenate([grid, rim[np.abs(rim).max(axis=1) <= OVERHANG]])
 
 
-def monomials(local: FloatArray) -> FloatArray:
+def monomials(local: FloatArray, degree: int) -> FloatArray:
     """x^i y^j at points (n, 2), sorted by powers of x, then of y: (n, M)."""
-    powers = local[:, :, None] ** np.arange(DEGREE + 1)
+    powers = local[:, :, None] ** np.arange(degree + 1)
     return np.stack(
-        [powers[:, 0, i] * powers[:, 1, j] for i in range(DEGREE + 1) for j in range(DEGREE + 1 - i)], axis=1
+        [powers[:, 0, i] * powers[:, 1, j] for i in range(degree + 1) for j in range(degree + 1 - i)], axis=1
     )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coupling.cells import DEGREE, OVERHANG, PlateCells
+from coupling.cells import OVERHANG, PlateCells
 from fem_plate import Shapes
 from particle import AnyDrive, SurfaceMotion
 from particle.drive import drive_table
@@ -36,7 +36,6 @@ def surface_motion(
         store=PlateCells(shapes, surface_tolerance),
         sources=shapes.points,
         size=shapes.size,
-        degree=DEGREE,
         floor=FLOOR * shapes.size,
         overhang=OVERHANG,
         conics=np.ascontiguousarray(shapes.outline.conics),

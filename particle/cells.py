@@ -38,9 +38,11 @@ class Cells(NamedTuple):
     first_near: IntArray  # (c + 1,)
     near: IntArray  # the actuators close by
     first_row: IntArray  # (c,) where its first shape begins in `rows`; NOWHERE off the plate
+    degree: IntArray  # (c,) of its polynomials
     rows: FloatArray  # a shape after the other: monomials in (x - centre) / half, then the strengths of the logarithms
     most_drives: int  # of any cell
     most_near: int
+    highest: int  # degree of any cell
 
 
 class CellFit(NamedTuple):
@@ -48,6 +50,8 @@ class CellFit(NamedTuple):
 
     drive: (k,) drives.  near: (j,) actuators.  rows: (k, monomials + j).  clear: m, as in `Cells`.
     """
+
+    degree: int
 
     drive: IntArray
     near: IntArray
@@ -75,9 +79,9 @@ class OneCell:
 
     error = 0.0
 
-    def __init__(self, shapes: FloatArray, size: float) -> None:
+    def __init__(self, shapes: FloatArray, degree: int, size: float) -> None:
         pool = CellPool(np.zeros(2), np.full(2, math.inf), np.array([[UNBUILT]]))
-        fit = CellFit(np.arange(len(shapes)), np.zeros(0, dtype=np.int64), shapes, size)
+        fit = CellFit(degree, np.arange(len(shapes)), np.zeros(0, dtype=np.int64), shapes, size)
         pool.roots[0, 0] = pool.add(np.zeros(2), np.full(2, size), fit)
         self.cells = pool.cells()
 
@@ -98,7 +102,8 @@ class CellPool:
         self._first_drive.append([0])
         self._first_near.append([0])
         self._known: dict[int, tuple[FloatArray, int]] = {}
-        self._most_drives, self._most_near = 1, 0
+        self._degree = _Growing(np.int64)
+        self._most_drives, self._most_near, self._highest = 1, 0, 0
 
     def add(self, centre: FloatArray, half: FloatArray, fit: CellFit | None, quarters: int = WHOLE) -> int:
         """A cell around a centre (2,) [m], half as wide as (2,) [m]; its row.
@@ -109,12 +114,14 @@ class CellPool:
         self._centre.append([centre])
         self._half.append([half])
         self._clear.append([fit.clear if fit else 0.0])
+        self._degree.append([fit.degree if fit else 0])
         self._first_row.append([self._place(fit.rows) if fit else NOWHERE])
         if fit:
             self._drive.append(fit.drive)
             self._near.append(fit.near)
             self._most_drives = max(self._most_drives, len(fit.drive))
             self._most_near = max(self._most_near, len(fit.near))
+            self._highest = max(self._highest, fit.degree)
         self._first_drive.append([len(self._drive)])
         self._first_near.append([len(self._near)])
         return len(self._quarters) - 1
@@ -140,9 +147,11 @@ class CellPool:
             self._first_near.view(),
             self._near.view(),
             self._first_row.view(),
+            self._degree.view(),
             self._rows.view(),
             self._most_drives,
             self._most_near,
+            self._highest,
         )
 
 

@@ -49,8 +49,7 @@ class Local(NamedTuple):
 @jit
 def new_local(surface: Any) -> Local:
     """Scratch memory that fits the surface, with no cell and no time yet."""
-    monomials = (surface.degree + 1) * (surface.degree + 2) // 2
-    width = monomials + surface.cells.most_near
+    width = _monomials(surface.cells.highest) + surface.cells.most_near
     local = Local(
         np.zeros(13),
         np.zeros(7, dtype=np.int64),
@@ -65,10 +64,14 @@ def new_local(surface: Any) -> Local:
         surface.floor / surface.size,
         surface.overhang,
     )
-    local.counts[MONOMIALS], local.counts[DEGREE] = monomials, surface.degree
     local.counts[BASE] = 2 * surface.moving_base
     forget(local)
     return local
+
+
+@bare
+def _monomials(degree: int) -> int:
+    return (degree + 1) * (degree + 2) // 2
 
 
 @jit
@@ -157,6 +160,7 @@ def _begin(surface: Any, local: Local, cell: int, time: float, end: float) -> No
     f[HALF_X], f[HALF_Y] = cells.half[cell]
     f[CLEAR], f[TIME], f[END], f[UNIT] = cells.clear[cell], time, end, surface.unit
     counts[CELL], counts[CHANGES] = cell, 0
+    counts[DEGREE], counts[MONOMIALS] = cells.degree[cell], _monomials(cells.degree[cell])
     counts[DRIVES] = cells.first_drive[cell + 1] - cells.first_drive[cell] + counts[BASE]
     first = cells.first_near[cell]
     counts[NEAR] = cells.first_near[cell + 1] - first

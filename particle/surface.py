@@ -43,7 +43,6 @@ class Surface(NamedTuple):
     sources: FloatArray  # (J, 2) m, the centres of the logarithms
     size: float  # m, the length in the logarithms and that tolerances refer to
     floor: float  # m, radius below which the Hessian of a logarithm grows no more
-    degree: int  # of the cells' polynomials
     overhang: float  # a cell's polynomials hold out to this many half widths
     conics: FloatArray  # (k, 4) m, the rim's whole ellipses: centre x, y and semi-axes
     edges: FloatArray  # (m, 3, 2) m, its other edges: start, middle and end of parabolas; no rim where both are empty
@@ -62,7 +61,6 @@ class SurfaceMotion:
     store: CellStore  # its cells; those of a large plate are built where a part comes to
     sources: FloatArray
     size: float
-    degree: int
     floor: float = 0.0
     overhang: float = math.inf
     conics: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
@@ -80,7 +78,6 @@ class SurfaceMotion:
             sources=self.sources,
             size=self.size,
             floor=self.floor,
-            degree=self.degree,
             overhang=self.overhang,
             conics=self.conics,
             edges=self.edges,
@@ -145,10 +142,9 @@ def polynomial_surface(
     shapes = np.array([[square[i, j, k] * size ** (i + j) for i, j in powers] for k in range(c.shape[2])])
     return SurfaceMotion(
         drives=_joined(monomial_table(c.shape[2]), drive_table(base or [])),
-        store=OneCell(shapes, size),
+        store=OneCell(shapes, degree, size),
         sources=np.zeros((0, 2)),
         size=size,
-        degree=degree,
         moving_base=base is not None,
     )
 

@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 
 from coupling import surface_motion
 from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate
-from particle.drive import next_kink
-from particle.fields import fields, new_local, pin_cell, pin_time
+from particle.fields import fields
 from particle.friction import friction_limit
+from particle.local import enter, new_local
 from rivals.problem import GRAVITY, MASS, PathProblem
 
 __all__ = ["ends", "evaluations", "friction_limit", "path_of", "surface_of"]
 
 FloatArray = NDArray[np.float64]
 
-SURFACE_TOLERANCE = 1e-13  # of a unit stroke: as good as the cells become
+SURFACE_TOLERANCE = 1e-11  # of a unit stroke
 
 
 def surface_of(problem: PathProblem) -> SurfaceMotion:
@@ -48,16 +48,16 @@ def ends(problem: PathProblem, surface: SurfaceMotion, starts: FloatArray, toler
 
 def evaluations(surface: SurfaceMotion, xy: FloatArray, time: float, rounds: int) -> FloatArray:
     """w, w_t, w_tt, gradient, its rate, xx, xy, yy (n, 10) at points (n, 2) [m], `rounds` times over."""
-    return _evaluations(surface, new_local(surface), xy, time, next_kink(surface.drives, time), rounds)
+    surface.evaluate(xy, time)  # so that all the cells are built
+    return _evaluations(surface.record, new_local(surface.record), xy, time, rounds)
 
 
 @numba.njit(error_model="numpy", nogil=True)
-def _evaluations(surface: Any, local: Any, xy: FloatArray, time: float, end: float, rounds: int) -> FloatArray:
+def _evaluations(surface: Any, local: Any, xy: FloatArray, time: float, rounds: int) -> FloatArray:
     out = np.empty((len(xy), 10))
-    pin_time(surface, local, time, end)
     for _ in range(rounds):
         for n in range(len(xy)):
-            pin_cell(surface, local, xy[n, 0], xy[n, 1])
-            f = fields(surface, local, xy[n, 0], xy[n, 1], time)
+            enter(surface, local, xy[n, 0], xy[n, 1], time, np.inf)
+            f = fields(local, xy[n, 0], xy[n, 1], time)
             out[n] = np.array([f.w, f.w_t, f.w_tt, f.x, f.y, f.xt, f.yt, f.xx, f.xy, f.yy])
     return out
