@@ -1,12 +1,14 @@
 """The micropart: contact and friction laws, drives, the moving surface as arrays, and the integrator."""
 
+from particle.batch import Interrupted, simulate_many
 from particle.drive import AnyDrive, Drive
 from particle.drive_points import HermiteDrive, TableDrive
 from particle.drive_schedule import Segment, SegmentDrive
 from particle.friction import ConstantFriction, CoulombAdhesion
 from particle.friction_table import FrictionTable
 from particle.kogut_etsion import KogutEtsion
-from particle.simulate import Micropart, simulate
+from particle.micropart import Micropart
+from particle.simulate import simulate
 from particle.surface import SurfaceMotion, SurfaceState, platform_surface, polynomial_surface
 from particle.trajectory import Energy, Event, EventKind, Outcome, Samples, State, Trajectory
 
@@ -20,6 +22,7 @@ __all__ = [
     "EventKind",
     "FrictionTable",
     "HermiteDrive",
+    "Interrupted",
     "KogutEtsion",
     "Micropart",
     "Outcome",
@@ -34,4 +37,5 @@ __all__ = [
     "platform_surface",
     "polynomial_surface",
     "simulate",
+    "simulate_many",
 ]

@@ -7,18 +7,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.jit import jit
+from particle.jit import bare, jit
 
 FloatArray = NDArray[np.float64]
 
 DEEPEST = 44  # halvings: a root is located to 2^-44 of the interval
 
 
-@jit
+@bare
 def to_bernstein(c: FloatArray, out: FloatArray) -> None:
     """Bernstein coefficients (n+1,) of a polynomial c_0 + c_1 s + ...: b_i = sum_k C(i, k) / C(n, k) c_k."""
     n = len(out) - 1
-    out[:] = 0.0
+    for i in range(n + 1):
+        out[i] = 0.0
     total = 1.0  # C(n, k)
     for k in range(len(c)):
         choose = 1.0  # C(i, k)
@@ -28,7 +29,7 @@ def to_bernstein(c: FloatArray, out: FloatArray) -> None:
         total *= (n - k) / (k + 1)
 
 
-@jit
+@bare
 def halve(right: FloatArray, left: FloatArray) -> None:
     """de Casteljau at 1/2: `right` holds the whole polynomial before and its right half after."""
     n = len(right) - 1

@@ -81,7 +81,7 @@ class OneCell:
 
     def __init__(self, shapes: FloatArray, degree: int, size: float) -> None:
         pool = CellPool(np.zeros(2), np.full(2, math.inf), np.array([[UNBUILT]]))
-        fit = CellFit(degree, np.arange(len(shapes)), np.zeros(0, dtype=np.int64), shapes, size)
+        fit = CellFit(degree, np.arange(len(shapes)), np.zeros(0, dtype=np.int64), shapes, clear=0.0)
         pool.roots[0, 0] = pool.add(np.zeros(2), np.full(2, size), fit)
         self.cells = pool.cells()
 

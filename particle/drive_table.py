@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.jit import jit
+from particle.jit import bare, jit
 
 FloatArray = NDArray[np.float64]
 Segments = tuple[FloatArray, FloatArray, FloatArray, float]
@@ -102,40 +102,55 @@ def monomial_table(count: int) -> DriveTable:
     )
 
 
+@jit
 def jumps(table: DriveTable) -> bool:
     """Whether any drive's velocity jumps at a kink: from one segment to the next, at its start or at its end."""
-    powers = np.arange(ORDER)
-    for i in np.flatnonzero(np.isfinite(table.span)):
-        rows = slice(table.first[i], table.first[i + 1])
-        before, after = table.coefficients[rows] @ powers, table.coefficients[rows, 1]
+    for i in range(len(table.span)):
+        if not math.isfinite(table.span[i]):
+            continue
+        low, high = table.first[i], table.first[i + 1]
+        endless, speed = not math.isfinite(table.repeats[i]), 0.0
+        for row in range(low, high):
+            speed = max(speed, np.abs(table.coefficients[row]).max() / table.scale[low:high].min())
+        first, left = table.coefficients[low, 1] / table.scale[low], 0.0
+        last = _leaving(table, high - 1)
         # At rest before the start and after the end, if there is one; else the last segment goes on into the first.
-        leaving = np.append([0.0], before / table.scale[rows])
-        arriving = np.append(after / table.scale[rows], [0.0])
-        if not math.isfinite(table.repeats[i]):
-            leaving, arriving = leaving[:-1], arriving[:-1]
-        steps = np.append(arriving - leaving, arriving[0] - before[-1] / table.scale[rows][-1])
-        if table.repeats[i] <= 1:
-            steps = steps[:-1]
-        speed = np.abs(table.coefficients[rows]).max() / table.scale[rows].min()
-        if np.abs(steps).max(initial=0.0) > ROUNDING * 100 * speed:
+        step = abs(last - first) if endless else max(abs(first), abs(last))
+        if table.repeats[i] > 1:
+            step = max(step, abs(last - first), abs(first))
+        for row in range(low, high):
+            if row > low:
+                step = max(step, abs(table.coefficients[row, 1] / table.scale[row] - left))
+            left = _leaving(table, row)
+        if step > ROUNDING * 100 * speed:
             return True
     return False
 
 
-@jit
-def drive_piece(table: DriveTable, i: int, time: float, unit: float) -> FloatArray:
-    """The quintic of drive i around `time` [s]: its coefficients (6,) [m] in (t - time) / unit.
+@bare
+def _leaving(table: DriveTable, row: int) -> float:
+    """The velocity [m/s] at the end of a segment."""
+    total = 0.0
+    for k in range(1, ORDER):
+        total += k * table.coefficients[row, k]
+    return total / table.scale[row]
+
+
+@bare
+def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatArray) -> None:
+    """The quintic of drive i around `time` [s]: its coefficients (6,) [m] in (t - time) / unit, into `out`.
 
     At a kink it is the piece that begins there.
     """
-    piece = np.zeros(ORDER)
+    for k in range(ORDER):
+        out[k] = 0.0
     if time < table.delay[i]:
-        piece[0] = table.coefficients[table.first[i], 0]
-        return piece
+        out[0] = table.coefficients[table.first[i], 0]
+        return
     if time >= _edge(table, i, table.repeats[i], table.first[i]):
         for k in range(ORDER):
-            piece[0] += table.coefficients[table.first[i + 1] - 1, k]
-        return piece
+            out[0] += table.coefficients[table.first[i + 1] - 1, k]
+        return
     passes, segment = _place(table, i, time)
     since = time
     if math.isfinite(table.span[i]):
@@ -143,24 +158,23 @@ def drive_piece(table: DriveTable, i: int, time: float, unit: float) -> FloatArr
     # Taylor's shift of the polynomial to `time`, by repeated Horner.
     shift = (since - table.start[segment]) / table.scale[segment]
     for k in range(ORDER):
-        piece[k] = table.coefficients[segment, k]
+        out[k] = table.coefficients[segment, k]
     for k in range(ORDER - 1):
         for j in range(ORDER - 2, k - 1, -1):
-            piece[j] += shift * piece[j + 1]
+            out[j] += shift * out[j + 1]
     factor = 1.0
     for k in range(ORDER):
-        piece[k] *= factor
+        out[k] *= factor
         factor *= unit / table.scale[segment]
-    return piece
 
 
-@jit
+@bare
 def kink_slack(table: DriveTable, i: int, time: float) -> float:
     """How close [s] to `time` a kink of drive i must be to count as one there: rounding, or 1e-12 of a stroke."""
     return MERGED * table.stroke_time[i] + ROUNDING * abs(time) if math.isfinite(table.span[i]) else 0.0
 
 
-@jit
+@bare
 def drive_kink(table: DriveTable, i: int, time: float) -> float:
     """The first time [s] after `time` at which drive i has a kink; inf when there is none."""
     if not math.isfinite(table.span[i]):
@@ -176,7 +190,7 @@ def drive_kink(table: DriveTable, i: int, time: float) -> float:
     return _edge(table, i, passes + 1.0, table.first[i])
 
 
-@jit
+@bare
 def next_kink(table: DriveTable, time: float) -> float:
     """The first time [s] after `time` at which any drive has a kink; inf when there is none.
 
@@ -188,7 +202,7 @@ def next_kink(table: DriveTable, time: float) -> float:
     return nearest
 
 
-@jit
+@bare
 def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
     """When [s] a segment of drive i begins after so many passes: the one expression that decides about pieces."""
     if not math.isfinite(table.span[i]):
@@ -196,7 +210,7 @@ def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
     return float(table.delay[i] + (table.span[i] * passes + table.start[segment]))
 
 
-@jit
+@bare
 def _place(table: DriveTable, i: int, time: float) -> tuple[float, int]:
     """The passes that drive i has behind it at `time` [s], from its delay to before its end, and its segment then."""
     low, high = table.first[i], table.first[i + 1]
@@ -220,8 +234,8 @@ def _place(table: DriveTable, i: int, time: float) -> tuple[float, int]:
 @jit
 def _values(table: DriveTable, times: FloatArray) -> FloatArray:
     """h [m], velocity [m/s] and acceleration [m/s^2] of the first drive at times (n,) [s]: (3, n)."""
-    values = np.empty((3, len(times)))
+    values, piece = np.empty((3, len(times))), np.empty(ORDER)
     for n in range(len(times)):
-        piece = drive_piece(table, 0, times[n], 1.0)
+        drive_piece(table, 0, times[n], 1.0, piece)
         values[0, n], values[1, n], values[2, n] = piece[0], piece[1], 2.0 * piece[2]
     return values

@@ -45,6 +45,7 @@ from particle.runge_kutta import Tableau, new_step
 from particle.slide import (
     DETACHED,
     GOES_ON,
+    INTERRUPTED,
     LACKS_CELL,
     LEFT_PLATE,
     OVERLOADED,
@@ -70,12 +71,13 @@ class Memory(NamedTuple):
     local: Any
     rest: Any
     step: Any
+    stop: NDArray[np.int64]  # (1,) another thread sets it to 1 when nobody waits for the path any more
 
 
 @jit
-def new_memory(surface: Any, pair: Tableau) -> Memory:
+def new_memory(surface: Any, pair: Tableau, stop: NDArray[np.int64]) -> Memory:
     """Scratch memory that fits the surface as far as its cells are built."""
-    return Memory(new_local(surface), new_rest(), new_step(pair))
+    return Memory(new_local(surface), new_rest(), new_step(pair), stop)
 
 
 @jit
@@ -94,6 +96,9 @@ def march(surface: Any, request: Request, pair: Tableau, memory: Memory) -> tupl
     mode = RESTING if state[2] == 0.0 and state[3] == 0.0 else SLIDING
     span_end, h, verdict = 0.0, START * request.stroke_time, GOES_ON
     while verdict == GOES_ON:
+        if memory.stop[0] != 0:
+            verdict = INTERRUPTED
+            break
         if time >= span_end:
             if time >= end:
                 break

@@ -24,7 +24,7 @@ IntArray = NDArray[np.int64]
 # Places in Local.frame, Local.counts and a row of Local.clock.
 TIME, END, UNIT, X, Y, HALF_X, HALF_Y, CLEAR, SIZE, FLOOR, REACH, MISSING_X, MISSING_Y = range(13)
 CELL, DRIVES, NEAR, MONOMIALS, DEGREE, BASE, CHANGES = range(7)
-SINCE, UNTIL = ORDER, ORDER + 1
+SINCE, UNTIL, SLACK = ORDER, ORDER + 1, ORDER + 2
 FRESH = 8  # times as many changes as there are drives: then rounding has piled up enough to begin anew
 
 
@@ -43,7 +43,8 @@ class Local(NamedTuple):
     at: FloatArray  # (3, M + J) m, these and their first two derivatives in time, at one time
     near: FloatArray  # (J, 2) m, where the logarithms are
     base: FloatArray  # (6, 2) m, where the base is
-    clock: FloatArray  # (D, 8) m and s, of each drive its quintic, the time from which that counts, and its next kink
+    clock: FloatArray  # (D, 9) m and s, of each drive its quintic, the time from which that counts, its next kink and
+    #                     how close to that is as good as there
 
 
 @jit
@@ -57,7 +58,7 @@ def new_local(surface: Any) -> Local:
         np.zeros((3, width)),
         np.zeros((surface.cells.most_near, 2)),
         np.zeros((ORDER, 2)),
-        np.zeros((surface.cells.most_drives + 2, ORDER + 2)),
+        np.zeros((surface.cells.most_drives + 2, ORDER + 3)),
     )
     local.frame[SIZE], local.frame[FLOOR], local.frame[REACH] = (
         surface.size,
@@ -85,7 +86,7 @@ def missing_place(local: Local) -> FloatArray:
     return local.frame[None, [MISSING_X, MISSING_Y]]
 
 
-@jit
+@bare
 def cell_at(cells: Any, x: float, y: float) -> int:
     """The cell that holds a point [m]; NOWHERE when there is no plate, UNBUILT when there may be."""
     if not math.isfinite(cells.width[0]):
@@ -100,7 +101,7 @@ def cell_at(cells: Any, x: float, y: float) -> int:
     return NOWHERE if cell >= 0 and cells.first_row[cell] == NOWHERE else cell
 
 
-@jit
+@bare
 def _interval(along: float, width: float, count: int) -> int:
     """Which of `count` intervals of a width holds a coordinate; the outer edges belong to the outer ones."""
     place = int(math.floor(along / width))
@@ -111,7 +112,7 @@ def _interval(along: float, width: float, count: int) -> int:
     return place if 0 <= place < count else NOWHERE
 
 
-@jit
+@bare
 def enter(surface: Any, local: Local, x: float, y: float, time: float, end: float) -> int:
     """Prepare for points around (x, y) [m] and times from `time` [s] to the next kink, at most `end`: frame[END].
 
@@ -143,7 +144,7 @@ def gap_at(surface: Any, local: Local, x: float, y: float) -> float:
     return local.frame[CLEAR] if local.frame[CLEAR] > 0.0 else rim_gap(surface, x, y)
 
 
-@jit
+@bare
 def _drive(surface: Any, local: Local, i: int) -> int:
     """The drive that is i-th in the cell; the base's two follow the cell's."""
     beyond = i - (local.counts[DRIVES] - local.counts[BASE])
@@ -152,12 +153,12 @@ def _drive(surface: Any, local: Local, i: int) -> int:
     return int(surface.cells.drive[surface.cells.first_drive[local.counts[CELL]] + i])
 
 
-@jit
+@bare
 def _begin(surface: Any, local: Local, cell: int, time: float, end: float) -> None:
     """Prepare for a cell from nothing."""
     cells, f, counts = surface.cells, local.frame, local.counts
-    f[X], f[Y] = cells.centre[cell]
-    f[HALF_X], f[HALF_Y] = cells.half[cell]
+    f[X], f[Y] = cells.centre[cell, 0], cells.centre[cell, 1]
+    f[HALF_X], f[HALF_Y] = cells.half[cell, 0], cells.half[cell, 1]
     f[CLEAR], f[TIME], f[END], f[UNIT] = cells.clear[cell], time, end, surface.unit
     counts[CELL], counts[CHANGES] = cell, 0
     counts[DEGREE], counts[MONOMIALS] = cells.degree[cell], _monomials(cells.degree[cell])
@@ -165,92 +166,91 @@ def _begin(surface: Any, local: Local, cell: int, time: float, end: float) -> No
     first = cells.first_near[cell]
     counts[NEAR] = cells.first_near[cell + 1] - first
     for j in range(counts[NEAR]):
-        local.near[j] = surface.sources[cells.near[first + j]]
-    local.smooth[:] = 0.0
-    local.base[:] = 0.0
+        source = cells.near[first + j]
+        local.near[j, 0], local.near[j, 1] = surface.sources[source, 0], surface.sources[source, 1]
+    for k in range(ORDER):
+        for m in range(counts[MONOMIALS] + counts[NEAR]):
+            local.smooth[k, m] = 0.0
+        local.base[k, 0] = local.base[k, 1] = 0.0
     for i in range(counts[DRIVES]):
         _find_piece(surface, local, i)
-        _add(surface, local, i, local.clock[i, :ORDER])
+        _add(surface, local, i, 1.0)
         f[END] = min(f[END], local.clock[i, UNTIL])
 
 
-@jit
+@bare
 def _go_on(surface: Any, local: Local, time: float, end: float) -> bool:
     """Move what is prepared on to a later time; False where that is not worth it."""
-    f, counts = local.frame, local.counts
+    f, counts, clock = local.frame, local.counts, local.clock
     passed = 0
     for i in range(counts[DRIVES]):
-        passed += _has_passed(surface, local, i, time)
+        passed += _has_passed(clock, i, time)
     counts[CHANGES] += passed
     if 2 * passed > counts[DRIVES] or counts[CHANGES] > FRESH * counts[DRIVES]:
         return False
     shift = (time - f[TIME]) / f[UNIT]
-    _shift(local.smooth, shift)
-    _shift(local.base, shift)
+    _shift(local.smooth, shift, counts[MONOMIALS] + counts[NEAR])
+    _shift(local.base, shift, 2)
     f[TIME], f[END] = time, end
-    change = np.zeros(ORDER)
     for i in range(counts[DRIVES]):
-        if _has_passed(surface, local, i, time):
-            change[:] = local.clock[i, :ORDER]
-            _shift_one(change, (time - local.clock[i, SINCE]) / f[UNIT])
+        if _has_passed(clock, i, time):
+            _shift_one(clock[i], (time - clock[i, SINCE]) / f[UNIT])
+            _add(surface, local, i, -1.0)
             _find_piece(surface, local, i)
-            for k in range(ORDER):
-                change[k] = local.clock[i, k] - change[k]
-            _add(surface, local, i, change)
-        f[END] = min(f[END], local.clock[i, UNTIL])
+            _add(surface, local, i, 1.0)
+        f[END] = min(f[END], clock[i, UNTIL])
     return True
 
 
-@jit
-def _has_passed(surface: Any, local: Local, i: int, time: float) -> bool:
+@bare
+def _has_passed(clock: FloatArray, i: int, time: float) -> bool:
     """Whether the next kink of the i-th drive has come by a time [s]."""
-    until = local.clock[i, UNTIL]
-    return until <= time or until <= time + kink_slack(surface.drives, _drive(surface, local, i), time)
+    return bool(clock[i, UNTIL] <= time + clock[i, SLACK])
 
 
-@jit
+@bare
 def _find_piece(surface: Any, local: Local, i: int) -> None:
     """The quintic of the i-th drive, from frame[TIME] to its next kink."""
-    time, unit, drive = local.frame[TIME], local.frame[UNIT], _drive(surface, local, i)
+    time, unit, drive, row = local.frame[TIME], local.frame[UNIT], _drive(surface, local, i), local.clock[i]
     until = drive_kink(surface.drives, drive, time)
     # It is chosen in the middle of the span, where rounding at its ends cannot mistake it.
     ahead = 0.5 * min(until - time, unit)
-    piece = drive_piece(surface.drives, drive, time + ahead, unit)
-    _shift_one(piece, -ahead / unit)
-    local.clock[i, :ORDER] = piece
-    local.clock[i, SINCE], local.clock[i, UNTIL] = time, until
+    drive_piece(surface.drives, drive, time + ahead, unit, row)
+    _shift_one(row, -ahead / unit)
+    row[SINCE], row[UNTIL] = time, until
+    row[SLACK] = kink_slack(surface.drives, drive, until) if math.isfinite(until) else 0.0
 
 
-@jit
-def _add(surface: Any, local: Local, i: int, piece: FloatArray) -> None:
-    """Add a quintic (6,) times the shape of the i-th drive."""
-    cells, counts = surface.cells, local.counts
+@bare
+def _add(surface: Any, local: Local, i: int, sign: float) -> None:
+    """Add the quintic of the i-th drive times its shape."""
+    cells, counts, piece = surface.cells, local.counts, local.clock[i]
     shapes = counts[DRIVES] - counts[BASE]
     if i >= shapes:
         for k in range(ORDER):
-            local.base[k, i - shapes] += piece[k]
+            local.base[k, i - shapes] += sign * piece[k]
         return
     width = counts[MONOMIALS] + counts[NEAR]
     first = cells.first_row[counts[CELL]] + i * width
-    row = cells.rows[first : first + width]
     for k in range(ORDER):
-        if piece[k] != 0.0:
+        c = sign * piece[k]
+        if c != 0.0:
             for m in range(width):
-                local.smooth[k, m] += row[m] * piece[k]
+                local.smooth[k, m] += cells.rows[first + m] * c
 
 
-@jit
-def _shift(c: FloatArray, shift: float) -> None:
-    """Polynomials (6, n) of s as ones of s - shift."""
+@bare
+def _shift(c: FloatArray, shift: float, width: int) -> None:
+    """Polynomials (6, width) of s as ones of s - shift."""
     for k in range(ORDER - 1):
         for j in range(ORDER - 2, k - 1, -1):
-            for m in range(c.shape[1]):
+            for m in range(width):
                 c[j, m] += shift * c[j + 1, m]
 
 
-@jit
+@bare
 def _shift_one(c: FloatArray, shift: float) -> None:
-    """A polynomial (6,) of s as one of s - shift."""
+    """A polynomial (6, ...) of s as one of s - shift."""
     for k in range(ORDER - 1):
         for j in range(ORDER - 2, k - 1, -1):
             c[j] += shift * c[j + 1]

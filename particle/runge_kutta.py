@@ -63,12 +63,15 @@ class Step(NamedTuple):
     stage: FloatArray  # (6,)
     end: FloatArray  # (6,)
     start_gap: FloatArray  # (1,) m, the step's start from the rim
+    moving: FloatArray  # (8,) the state in the plane's coordinates
+    still: FloatArray  # (2,) zeros
 
 
 @jit
 def new_step(pair: Tableau) -> Step:
     stages = len(pair.c)
-    return Step(np.zeros((stages, 6)), np.zeros(stages), np.zeros(stages), np.zeros(6), np.zeros(6), np.zeros(1))
+    rates, loads = np.zeros((stages, 6)), np.zeros(stages)
+    return Step(rates, loads, loads.copy(), np.zeros(6), np.zeros(6), np.zeros(1), np.zeros(8), np.zeros(2))
 
 
 @bare

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from particle.breakaway import Slope, lag, slope, velocity
 from particle.fields import Fields, fields
-from particle.jit import bare, jit
+from particle.jit import bare
 from particle.local import NEAR, gap_at
 from particle.motion import Part, energy_at_rest, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
@@ -21,8 +21,8 @@ from particle.stop import Stop, come_to_rest, stop_ahead
 FloatArray = NDArray[np.float64]
 
 TURNED = -1  # what a part does that came to rest on a slope which at once pulls it back
-# How a path ends; the last one only for now, until there is a cell.
-GOES_ON, DETACHED, LEFT_PLATE, OVERLOADED, WORK_LIMIT, LACKS_CELL = range(6)
+# How a path ends; the last two only for now: until there is a cell, and when nobody waits for it any more.
+GOES_ON, DETACHED, LEFT_PLATE, OVERLOADED, WORK_LIMIT, LACKS_CELL, INTERRUPTED = range(7)
 
 WEAKEST = 0.75  # of the friction limit: the slow manifold draws parts to it down to a pull of half of it
 SHORTEST = 1e-13  # of a stroke: no step is shorter
@@ -44,7 +44,7 @@ class Request(NamedTuple):
     jumps: bool  # whether the surface's velocity jumps at kinks
 
 
-@jit
+@bare
 def slide(
     surface: Any,
     local: Any,
@@ -69,7 +69,8 @@ def slide(
     a = slope(f, part)
     count[0] += 2
     if mode == SLIDING or (a.demand < a.limit and state[2] > 0.0):
-        moving = state.copy()
+        moving = step.moving
+        put(state, 8, moving)
         if mode == MANIFOLD:
             kappa = lag(local, part, time, state[0], state[1], state[2], f, a)
             moving[2], moving[3] = velocity(state[2], kappa, a)
@@ -80,7 +81,7 @@ def slide(
         near = near and _stops_on_plate(surface, local, step, moving, stop)
         count[0] += 5 * near
         if near and come_to_rest(local, part, time, moving, stop):
-            state[:] = moving
+            put(moving, 8, state)
             a = slope(fields(local, state[0], state[1], time + stop.time), part)
             back = stop.reverses and a.demand > part.law.static_ratio * a.limit
             return (TURNED if back else RESTING), time + stop.time, h, GOES_ON
@@ -133,7 +134,7 @@ def slide(
             continue
         if step.margins[last] < 0.0:
             h = _locate_end(surface, local, part, pair, step, count, mode, time, state, h)
-            state[:6] = step.end
+            put(step.end, 6, state)
             return mode, time + h, h, reason(surface, part, step.loads[last], state)
         if step.margins[1:].min() < 0.0:
             h *= 0.5
@@ -143,11 +144,18 @@ def slide(
             h *= within
             continue
         break
-    state[:6] = step.end
+    put(step.end, 6, state)
     time = span_end if h == remaining else time + h
     if mode == MANIFOLD:
         mode = _leave_manifold(local, request, time, state)
     return mode, time, h * min(GROWTH, SAFETY * max(wrong, 1e-12) ** (-1 / pair.order)), GOES_ON
+
+
+@bare
+def put(source: FloatArray, count: int, into: FloatArray) -> None:
+    """Copy the first few numbers of an array; a slice would make an array on the way."""
+    for i in range(count):
+        into[i] = source[i]
 
 
 @bare
@@ -163,11 +171,11 @@ def _to_passage(local: Any, state: FloatArray, h: float) -> float:
     return h
 
 
-@jit
+@bare
 def _stops_on_plate(surface: Any, local: Any, step: Step, state: FloatArray, stop: Stop) -> bool:
     """Whether the way to a stop lies on the plate."""
     step.end[0], step.end[1] = state[0] + stop.x, state[1] + stop.y
-    way = first_beyond(surface, step.start_gap[0], state, step.end, state[2:], np.zeros(2), stop.time)
+    way = first_beyond(surface, step.start_gap[0], state, step.end, state[2:], step.still, stop.time)
     return way == 1.0 and rim_gap(surface, step.end[0], step.end[1]) >= -ROUNDING * surface.size
 
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from particle.breakaway import Slope, slope
 from particle.fields import Fields, fields
-from particle.jit import jit
+from particle.jit import bare
 from particle.local import UNIT
 from particle.motion import Part, drag, pull, push
 
@@ -45,7 +45,7 @@ class Stop(NamedTuple):
     loss: float  # m^2/s^2, what friction dissipates on the way, per kg
 
 
-@jit
+@bare
 def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> Stop:
     """The stop under frozen forces; `small` [m] is a length that does not count, r^2/Q of a part that turns back."""
     climb = v_x * f.x + v_y * f.y
@@ -69,7 +69,7 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> St
     return Stop(math.inf, 0.0, 0.0, False, 0.0, 0.0, 0.0)
 
 
-@jit
+@bare
 def stop_ahead(
     local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float, force: float
 ) -> tuple[Stop, float]:
@@ -94,7 +94,7 @@ def stop_ahead(
     return later, max(miss, part.mass / force * abs(later.loss - now.loss))
 
 
-@jit
+@bare
 def come_to_rest(local: Any, part: Part, time: float, state: FloatArray, stop: Stop) -> bool:
     """Moves `state` (x, y, v_x, v_y, work, dissipation) to a stop; False, and no move, if contact ends on the way.
 

@@ -1,0 +1,93 @@
+"""simulate_many: many paths over one surface, side by side."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+
+import numpy as np
+
+from particle.drive import AnyDrive
+from particle.friction import Contact
+from particle.micropart import Micropart
+from particle.path import find_path
+from particle.rim import rim_gap
+from particle.simulate import faults, new_request
+from particle.surface import SurfaceMotion
+from particle.trajectory import Trajectory
+
+AWAKE = 0.1  # s between looks at whether somebody wants to stop
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C while paths were found. `found` has those that were done, None in place of the others."""
+
+    def __init__(self, found: list[Trajectory | None]) -> None:
+        super().__init__(f"stopped after {sum(path is not None for path in found)} of {len(found)} paths")
+        self.found = found
+
+
+def simulate_many(
+    surface: SurfaceMotion,
+    parts: Sequence[Micropart],
+    friction: Contact | Sequence[Contact],
+    duration: float,
+    gravity: float | Sequence[float] = 9.80665,
+    tolerance: float = 1e-9,
+    after_detachment: str = "stop",
+    drives: Sequence[Sequence[AnyDrive]] | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> list[Trajectory]:
+    """One path for each part, by located events: the same bits as from `simulate`, for any number of threads.
+
+    friction: one law, or one for each part.  drives: for each part one for each actuator; None: the surface's own.
+    The rest is as for `simulate`.
+    threads: how many paths are found at a time, by default one on each processor.
+    progress: called with the paths done and how many there are, whenever more are done.
+    Raises ValueError, naming every input that makes no sense and the part's number, and Interrupted, a
+    KeyboardInterrupt that has the paths found so far, within a second of Ctrl-C.
+    """
+    frictions = list(friction) if isinstance(friction, Sequence) else [friction] * len(parts)
+    wrong = []
+    if len(frictions) != len(parts):
+        wrong.append(
+            f"Input friction of simulate_many must be one law or one a part, {len(parts)}; got {len(frictions)}"
+        )
+    if drives is not None and len(drives) != len(parts):
+        wrong.append(f"Input drives of simulate_many must be one row a part, {len(parts)}; got {len(drives)}")
+    if threads is not None and threads < 1:
+        wrong.append(f"Input threads of simulate_many must be at least 1; got {threads!r}")
+    wrong += faults(duration, gravity, tolerance, after_detachment)
+    record = surface.record
+    for k, part in enumerate(parts):
+        if not rim_gap(record, *map(float, part.position)) >= 0:
+            wrong.append(f"Input position of part {k + 1} must lie on the plate; got {tuple(part.position)!r} m")
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    stop = np.zeros(1, dtype=np.int64)
+
+    def path(k: int) -> Trajectory | None:
+        driven = surface if drives is None else surface.driven_by(drives[k])
+        request = new_request(driven, parts[k], frictions[k], duration, gravity, tolerance, after_detachment == "fly")
+        return find_path(driven, request, tolerance, stop)
+
+    found: list[Trajectory | None] = [None] * len(parts)
+    with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as pool:
+        places: dict[Future[Trajectory | None], int] = {pool.submit(path, k): k for k in range(len(parts))}
+        waiting = set(places)
+        try:
+            while waiting:
+                done, waiting = wait(waiting, AWAKE, FIRST_COMPLETED)
+                for future in done:
+                    found[places[future]] = future.result()
+                if done and progress:
+                    progress(len(parts) - len(waiting), len(parts))
+        except BaseException as error:
+            stop[0] = 1
+            pool.shutdown(wait=True, cancel_futures=True)
+            if isinstance(error, KeyboardInterrupt):
+                raise Interrupted(found) from None
+            raise
+    return [trajectory for trajectory in found if trajectory is not None]

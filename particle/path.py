@@ -1,0 +1,97 @@
+"""From a request to the path that answers it, and from that to a trajectory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.between import between
+from particle.events import march, new_memory
+from particle.fixed import march_fixed
+from particle.local import missing_place, new_local
+from particle.resume import resume
+from particle.runge_kutta import tableau
+from particle.slide import DETACHED, GOES_ON, INTERRUPTED, LACKS_CELL, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
+from particle.stay import stays
+from particle.surface import Surface, SurfaceMotion
+from particle.trajectory import Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
+
+FloatArray = NDArray[np.float64]
+Found = tuple[FloatArray, FloatArray, int, int]  # rows, events, how it ended, evaluations
+
+_OUTCOMES = {
+    DETACHED: Outcome.DETACHED,
+    LEFT_PLATE: Outcome.LEFT_PLATE,
+    OVERLOADED: Outcome.OVERLOADED,
+    WORK_LIMIT: Outcome.WORK_LIMIT,
+}
+
+
+def find_path(
+    surface: SurfaceMotion, request: Request, tolerance: float, stop: NDArray[np.int64] | None = None
+) -> Trajectory | None:
+    """The path by located events; None when it was interrupted by `stop` (1,), which another thread may set to 1.
+
+    tolerance: relative to the surface's size.
+    """
+    pair, stop = tableau(tolerance), np.zeros(1, dtype=np.int64) if stop is None else stop
+
+    def path(record: Surface) -> tuple[Found, FloatArray]:
+        memory = new_memory(record, pair, stop)
+        return march(record, request, pair, memory), missing_place(memory.local)
+
+    found = _with_cells(surface, path)
+    rows, _, verdict, _ = found
+    if verdict == INTERRUPTED:
+        return None
+    trajectory = _trajectory(surface, request, found, partial(resume, surface.record, request, pair, rows))
+    if trajectory.outcome is Outcome.STUCK:
+        x, y = trajectory.position[-1].tolist()
+        future = partial(stays, surface, request.part, x, y, request.duration)
+        trajectory = replace(trajectory, future=future)
+    return trajectory
+
+
+def find_path_by_steps(
+    surface: SurfaceMotion, request: Request, kind: int, step: float, steps: int, every: int
+) -> Trajectory:
+    """The path by a scheme of fixed steps [s], of which one in `every` is kept."""
+
+    def path(record: Surface) -> tuple[Found, FloatArray]:
+        local = new_local(record)
+        return march_fixed(record, request, local, kind, step, steps, every), missing_place(local)
+
+    found = _with_cells(surface, path)
+    return _trajectory(surface, request, found, partial(between, surface.record, request.part, kind, found[0]))
+
+
+def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], tuple[Found, FloatArray]]) -> Found:
+    """A path over the surface, found anew whenever it has come to a place where a cell was lacking."""
+    while True:
+        found, missing = path(surface.record)
+        if found[2] != LACKS_CELL:
+            return found
+        surface.store.build(missing)
+
+
+def _trajectory(
+    surface: SurfaceMotion, request: Request, found: Found, sampler: Callable[[FloatArray], FloatArray]
+) -> Trajectory:
+    rows, events, verdict, evaluations = found
+    samples = samples_of(rows)
+    if verdict == GOES_ON:
+        outcome = Outcome.STUCK if samples.state[-1] == State.STICK else Outcome.MOVING
+    else:
+        outcome = _OUTCOMES[verdict]
+    return Trajectory(
+        *samples,
+        events=[Event(EventKind(int(k)), t, (x, y), speed, load) for k, t, x, y, speed, load in events.tolist()],
+        outcome=outcome,
+        evaluations=evaluations,
+        energy=energy_of(rows, request.force * surface.size),
+        sampler=sampler,
+    )
