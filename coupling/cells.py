@@ -27,7 +27,7 @@ DEGREES = range(2, 11)  # of the polynomials: the lowest that does, as it costs 
 SPARE = 0.1  # of the tolerance: how good it must then be
 OVERHANG = 1.25  # cells are fitted over this many half widths, so that a step may end a little outside
 NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
-CHECKS = 16  # points between those, at which its error is measured
+CHECKS = 48  # points between those, at which its error is measured
 FEW = 8  # actuators whose logarithms are kept everywhere: their exact sum is cheaper than smaller cells
 DEEPEST = 6  # times that a cell is divided
 ACROSS = 8  # cells along the plate's longer side, at least
@@ -148,10 +148,12 @@ class PlateCells:
         centres = np.array([cell.centre for cell in cells])
         gap, radius = self.shapes.outline.gap(centres), float(np.hypot(*half))
         inside = gap > OVERHANG * radius
-        samples = [self._nodes if inner else self._at_rim(cell) for cell, inner in zip(cells, inside, strict=True)]
-        checks = [
-            self._checks if inner else self._checks[self.shapes.outline.inside(cell.centre + self._checks * half)]
+        samples = [
+            self._nodes if inner else self._at_rim(cell, OVERHANG, 1.0)
             for cell, inner in zip(cells, inside, strict=True)
+        ]
+        checks = [
+            self._checks if inner else self._at_rim(cell, 1.0, 0.63) for cell, inner in zip(cells, inside, strict=True)
         ]
         local = [np.concatenate(both) for both in zip(samples, checks, strict=True)]
         first = np.cumsum([0] + [len(points) for points in local])
@@ -200,15 +202,15 @@ class PlateCells:
         cell.error = error + left_out
         cell.fit = CellFit(degree, rows, near, np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy(), clear)
 
-    def _at_rim(self, cell: _Cell) -> FloatArray:
+    def _at_rim(self, cell: _Cell, reach: float, spacing: float) -> FloatArray:
         """Points of a cell that the rim cuts, on the plate and on the rim, in half widths from its centre."""
-        side = np.linspace(-OVERHANG, OVERHANG, 4 * NODES)
+        side = np.linspace(-reach, reach, round(4 * NODES * spacing))
         grid = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
         grid = grid[self.shapes.outline.inside(cell.centre + grid * cell.half)][::3]
         # Points near the edges of what there is matter most to a polynomial: hence those on the rim as well.
-        step = 2 * float(cell.half.max()) / NODES
+        step = 2 * float(cell.half.max()) / NODES * spacing
         rim = (np.concatenate(rim_curves(self.shapes.outline, step)) - cell.centre) / cell.half
-        return np.concatenate([grid, rim[np.abs(rim).max(axis=1) <= OVERHANG]])
+        return np.concatenate([grid, rim[np.abs(rim).max(axis=1) <= reach]])
 
 
 def monomials(local: FloatArray, degree: int) -> FloatArray:

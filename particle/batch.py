@@ -57,6 +57,10 @@ def simulate_many(
         )
     if drives is not None and len(drives) != len(parts):
         wrong.append(f"Input drives of simulate_many must be one row a part, {len(parts)}; got {len(drives)}")
+    count = surface.record.shape_count
+    for k, own in enumerate(drives or []):
+        if len(own) != count:
+            wrong.append(f"Input drives of part {k + 1} must be one an actuator, {count}; got {len(own)}")
     if threads is not None and threads < 1:
         wrong.append(f"Input threads of simulate_many must be at least 1; got {threads!r}")
     wrong += faults(duration, gravity, tolerance, after_detachment)

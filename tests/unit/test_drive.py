@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from pieces import piece_at
 
 from particle import Drive
-from particle.drive import drive_piece, drive_table, next_kink
+from particle.drive import drive_table, next_kink
 
 
 def quintic(s):
@@ -89,7 +90,7 @@ def test_a_surface_without_drives_has_no_kink():
 def test_a_piece_is_the_stroke_up_to_the_next_kink(name, time):
     drive = DRIVES[name]
     table, unit = drive_table([drive]), 0.37e-3
-    piece = drive_piece(table, 0, time, unit)
+    piece = piece_at(table, 0, time, unit)
     end = min(next_kink(table, time), time + unit)
     times = np.linspace(time, end, 9)[:-1]
     values = np.polynomial.polynomial.polyval((times - time) / unit, piece)

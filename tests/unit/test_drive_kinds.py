@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pieces import piece_at
 
 from particle import Drive, HermiteDrive, Segment, SegmentDrive, TableDrive
-from particle.drive import drive_piece, drive_table, monomial_table, next_kink
+from particle.drive import drive_table, monomial_table, next_kink
 
 POLYNOMIAL = np.polynomial.Polynomial([1e-6, -2e-3, 3.0, 4e2, -5e4, 6e6])
 
@@ -79,7 +80,7 @@ def test_from_one_kink_to_the_next_the_height_is_one_quintic(name, passes, part,
     table, start = drive_table([drive]), span * (passes + part)
     end = next_kink(table, start)
     assert end > start
-    piece = drive_piece(table, 0, start + 0.5 * (end - start), unit)
+    piece = piece_at(table, 0, start + 0.5 * (end - start), unit)
     times = start + (end - start) * np.linspace(0.01, 0.99, 8)
     values = np.polynomial.polynomial.polyval((times - (start + 0.5 * (end - start))) / unit, piece)
     lost = 8 * np.finfo(float).eps * (1 + end) * np.abs(drive.evaluate(np.linspace(0, span, 65))[1]).max()
@@ -98,7 +99,7 @@ def test_the_list_of_kinks_is_complete_at_any_time(name, passes):
     # At a kink, the piece that begins there: otherwise its own fifth derivative would be another's.
     table = drive_table([drive])
     for kink, after in zip(kinks[:-1], kinks[1:], strict=True):
-        here, later = drive_piece(table, 0, kink, 1.0), drive_piece(table, 0, 0.5 * (kink + after), 1.0)
+        here, later = piece_at(table, 0, kink, 1.0), piece_at(table, 0, 0.5 * (kink + after), 1.0)
         assert here[5] == pytest.approx(later[5], rel=1e-12, abs=1e-300)
 
 
@@ -110,11 +111,11 @@ def test_kinks_that_rounding_blurs_still_begin_their_pieces(frequency, delay, pa
     for strokes in (2 * passes, 2 * passes + 1):
         kink = next_kink(table, delay + (strokes - 0.5) * half)
         assert kink == pytest.approx(delay + strokes * half, rel=1e-15)
-        piece, up = drive_piece(table, 0, kink, half), 1 - 2 * (strokes % 2)
+        piece, up = piece_at(table, 0, kink, half), 1 - 2 * (strokes % 2)
         assert piece[:3] == pytest.approx([strokes % 2, 0, 0], abs=1e-6)
         assert piece[3] == pytest.approx(10 * up, rel=1e-6)
         # One rounding earlier it is still the piece before, which goes the other way.
-        earlier = drive_piece(table, 0, np.nextafter(kink, -1), half)
+        earlier = piece_at(table, 0, np.nextafter(kink, -1), half)
         assert earlier[5] == pytest.approx(-6 * up if strokes else 0, rel=1e-6)
         assert next_kink(table, kink) == pytest.approx(delay + (strokes + 1) * half, rel=1e-15)
 
