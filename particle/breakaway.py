@@ -89,10 +89,9 @@ def velocity(u: float, kappa: float, a: Slope) -> tuple[float, float]:
 
 
 @bare
-def manifold_rate(local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
-    """d/dt of (x, y, u, -, work, dissipation) into `out`; returns the normal force [N]."""
+def manifold_rate(f: Fields, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
+    """d/dt of (x, y, u, -, work, dissipation) into `out`, with f at (x, y); returns the normal force [N]."""
     x, y, u = state[0], state[1], state[2]
-    f = fields(local, x, y, time)
     a = slope(f, part)
     kappa = lag(local, part, time, x, y, u, f, a)
     d_x, d_y = velocity(1.0, kappa * u, a)

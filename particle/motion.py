@@ -74,10 +74,9 @@ def length(f: Fields, x: float, y: float) -> float:
 
 
 @bare
-def slide_rate(local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
-    """d/dt of (x, y, v_x, v_y, work, dissipation) into `out`; returns the normal force [N]."""
-    x, y, v_x, v_y = state[0], state[1], state[2], state[3]
-    f = fields(local, x, y, time)
+def slide_rate(f: Fields, part: Part, state: FloatArray, out: FloatArray) -> float:
+    """d/dt of (x, y, v_x, v_y, work, dissipation) into `out`, with f at (x, y); returns the normal force [N]."""
+    v_x, v_y = state[2], state[3]
     p = pull(f, v_x, v_y, part)
     limit = friction_limit(part.law, p.normal)
     slow = limit / part.mass / p.speed if p.speed > 0.0 else 0.0

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853, RK45
 
 from particle.breakaway import manifold_rate
+from particle.fields import Fields, fields
 from particle.friction import friction_limit
 from particle.jit import bare, jit
 from particle.local import gap_at, within_cell
@@ -75,14 +76,14 @@ def new_step(pair: Tableau) -> Step:
 
 
 @bare
-def rate(mode: int, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
+def rate(f: Fields, mode: int, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
     """The right side: of (x, y, v_x, v_y, work, dissipation) while sliding, of (x, y, u, -, ...) on the slow manifold.
 
-    Returns the load [N].
+    f: the surface at `state` and `time`.  Returns the load [N].
     """
     if mode == SLIDING:
-        return slide_rate(local, part, time, state, out)
-    return manifold_rate(local, part, time, state, out)
+        return slide_rate(f, part, state, out)
+    return manifold_rate(f, local, part, time, state, out)
 
 
 @bare
@@ -107,7 +108,8 @@ def attempt(
             return False
         if dry and step.stage[2] * state[2] + step.stage[3] * state[3] <= 0.0:
             return False
-        load = rate(mode, local, part, time + pair.c[k] * h, step.stage, step.rates[k])
+        f = fields(local, step.stage[0], step.stage[1], time + pair.c[k] * h)
+        load = rate(f, mode, local, part, time + pair.c[k] * h, step.stage, step.rates[k])
         # As far from the rim as the start is, less the way from there: where that does not settle it, look.
         gap = step.start_gap[0] - math.hypot(step.stage[0] - state[0], step.stage[1] - state[1])
         gap = gap if gap > 0.0 else gap_at(surface, local, step.stage[0], step.stage[1])

@@ -28,6 +28,8 @@ WEAKEST = 0.75  # of the friction limit: the slow manifold draws parts to it dow
 SHORTEST = 1e-13  # of a stroke: no step is shorter
 TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
 GROWTH, SAFETY = 5.0, 0.9
+SHORT_OF_STOP = 0.6  # of the time to a stop, beyond which the velocity is a power of that time, not a polynomial of it
+OFF_MANIFOLD = 0.4  # of the last step on the slow manifold: the first one off it
 CLOSE, BEGUN = 0.1, 0.01  # of a step: how near and how late it must pass an actuator to end there
 
 
@@ -63,11 +65,11 @@ def slide(
     Returns what the part does then, the time, the next h and how the path ended (GOES_ON: it did not).
     """
     part, tolerance = request.part, request.tolerance
-    step.loads[0] = rate(mode, local, part, time, state, step.rates[0])
-    step.start_gap[0] = gap_at(surface, local, state[0], state[1])
     f = fields(local, state[0], state[1], time)
     a = slope(f, part)
-    count[0] += 2
+    step.loads[0] = rate(f, mode, local, part, time, state, step.rates[0])
+    step.start_gap[0] = gap_at(surface, local, state[0], state[1])
+    count[0] += 1
     if mode == SLIDING or (a.demand < a.limit and state[2] > 0.0):
         moving = step.moving
         put(state, 8, moving)
@@ -75,7 +77,7 @@ def slide(
             kappa = lag(local, part, time, state[0], state[1], state[2], f, a)
             moving[2], moving[3] = velocity(state[2], kappa, a)
         pace = 0.01 * surface.size / request.stroke_time
-        stop, miss = stop_ahead(local, part, time, moving, 0.01 * tolerance, pace, request.force)
+        stop, miss = stop_ahead(f, a, local, part, time, moving, 0.01 * tolerance, pace, request.force)
         count[0] += 1
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
         near = near and _stops_on_plate(surface, local, step, moving, stop)
@@ -86,12 +88,11 @@ def slide(
             back = stop.reverses and a.demand > part.law.static_ratio * a.limit
             return (TURNED if back else RESTING), time + stop.time, h, GOES_ON
         # A step ends short of the stop, where the friction turns.
-        h = min(h, 0.9 * stop.time)
+        h = min(h, SHORT_OF_STOP * stop.time)
     if mode == SLIDING and _joins_manifold(local, request, time, state, f, a):
         state[2], state[3] = length(f, state[2], state[3]), 0.0
         mode = MANIFOLD
-        step.loads[0] = rate(mode, local, part, time, state, step.rates[0])
-        count[0] += 1
+        step.loads[0] = rate(f, mode, local, part, time, state, step.rates[0])
     remaining = span_end - time
     shortest = SHORTEST * request.stroke_time
     while True:
@@ -100,7 +101,7 @@ def slide(
             h = _to_passage(local, state, h)
         if h < shortest and h < remaining:
             return mode, time, h, WORK_LIMIT
-        count[0] += len(pair.c)
+        count[0] += len(pair.c) - 1
         if not attempt(mode, surface, local, part, pair, step, time, state, h):
             h *= 0.5
             continue
@@ -116,15 +117,17 @@ def slide(
             state[4] += energy_at_rest(local, part, time + h, state)
             state[4] -= energy_at_rest(local, part, time, state)
             return RESTING, time + h, h, GOES_ON
-        if mode == MANIFOLD and _manifold_error(local, part, time + h, step.end) > tolerance:
+        beyond = _manifold_error(local, part, time + h, step.end) / tolerance if mode == MANIFOLD else 0.0
+        if beyond > 1.0:
             if h > TOUCH * request.stroke_time:
-                h *= 0.5
+                # It grows with the speed's third power, and that with the time.
+                h *= max(0.05, SAFETY * beyond ** (-1 / 3))
                 continue
             # Friction is about to vanish, and the manifold with it.
             kappa = lag(local, part, time, state[0], state[1], state[2], f, a)
             state[2], state[3] = velocity(state[2], kappa, a)
             mode = SLIDING
-            step.loads[0] = rate(mode, local, part, time, state, step.rates[0])
+            step.loads[0] = rate(f, mode, local, part, time, state, step.rates[0])
             continue
         last = len(pair.c) - 1
         on_plate = first_beyond(surface, step.start_gap[0], state, step.end, step.rates[0], step.rates[last], h)
@@ -148,6 +151,8 @@ def slide(
     time = span_end if h == remaining else time + h
     if mode == MANIFOLD:
         mode = _leave_manifold(local, request, time, state)
+        if mode == SLIDING:
+            return mode, time, OFF_MANIFOLD * h, GOES_ON
     return mode, time, h * min(GROWTH, SAFETY * max(wrong, 1e-12) ** (-1 / pair.order)), GOES_ON
 
 

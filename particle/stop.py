@@ -30,6 +30,7 @@ FloatArray = NDArray[np.float64]
 
 # Gauss's rule on [0, 1], and its end, at which only the load is of interest.
 NODES = np.append(0.5 + 0.5 * np.polynomial.legendre.leggauss(4)[0], 1.0)
+NEXT = 10.0  # times the relative change of the forces: the next order's share of a correction, amply
 WEIGHTS = np.append(0.5 * np.polynomial.legendre.leggauss(4)[1], 0.0)
 
 
@@ -71,18 +72,17 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> St
 
 @bare
 def stop_ahead(
-    local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float, force: float
+    f: Fields, a: Slope, local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float, force: float
 ) -> tuple[Stop, float]:
     """The stop ahead of a sliding part, with an estimate of its error [m].
 
     An error in time counts as the way at `pace` [m/s], one of the energy as that on which `force` [N] does such work.
 
-    The forces are frozen a third of the way, where a change that is linear in time has its mean effect; the error is
-    taken as the difference from freezing them now.
+    The forces are frozen a third of the way, where a change that is linear in time has its mean effect. That differs
+    from freezing them now by a share as large as the forces' change, and so again does the next order: the error.
     """
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
-    f = fields(local, x, y, time)
-    now = frozen_stop(f, slope(f, part), v_x, v_y, small)
+    now = frozen_stop(f, a, v_x, v_y, small)
     if not now.time < 0.5 * local.frame[UNIT]:
         return now, math.inf
     # After a third of the time a straight stop has covered five ninths of its way.
@@ -90,8 +90,11 @@ def stop_ahead(
     later = frozen_stop(g, slope(g, part), v_x, v_y, small)
     if later.reverses != now.reverses or not math.isfinite(later.time):
         return now, math.inf
-    miss = max(math.hypot(later.x - now.x, later.y - now.y), pace * abs(later.time - now.time))
-    return later, max(miss, part.mass / force * abs(later.loss - now.loss))
+    way, late = math.hypot(later.x - now.x, later.y - now.y), abs(later.time - now.time)
+    first = max(way, pace * late, part.mass / force * abs(later.loss - now.loss))
+    # The relative change of the forces on the way, at least what is usual in that share of a stroke.
+    change = max(way / math.hypot(later.x, later.y), late / later.time, later.time / local.frame[UNIT])
+    return later, NEXT * min(change, 1.0) * first
 
 
 @bare
