@@ -30,7 +30,7 @@ FloatArray = NDArray[np.float64]
 
 # Gauss's rule on [0, 1], and its end, at which only the load is of interest.
 NODES = np.append(0.5 + 0.5 * np.polynomial.legendre.leggauss(4)[0], 1.0)
-NEXT = 10.0  # times the relative change of the forces: the next order's share of a correction, amply
+NEXT = 100.0  # times the relative change of the forces: the next order's share of a correction, amply
 WEIGHTS = np.append(0.5 * np.polynomial.legendre.leggauss(4)[1], 0.0)
 
 
