@@ -160,12 +160,14 @@ class TableCase(Table):
 class RunCase(Table):
     """The run: `duration` in s, `gravity` in m/s^2 towards the plate or along x, y, z, `tolerance` without dimension.
 
+    `surface_tolerance` is how well the moving surface is fitted to the plate's shapes, of a unit stroke.
     `frames` is the number of time steps in the result files, `time_step` in s that of a scheme of fixed steps.
     """
 
     duration: units.Time = Field(gt=0)
     gravity: units.Gravity = 9.80665
     tolerance: StrictFloat = Field(default=1e-9, ge=1e-12, le=1e-2)
+    surface_tolerance: StrictFloat = Field(default=1e-8, ge=1e-13, le=1e-3)
     frames: StrictInt | None = Field(default=None, ge=2)
     scheme: Literal["events", "fixed", "paper"] = "events"
     time_step: units.Time | None = Field(default=None, gt=0)

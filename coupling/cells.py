@@ -24,7 +24,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 DEGREES = range(2, 11)  # of the polynomials: the lowest that does, as it costs least
-SPARE = 0.1  # of the tolerance: how good it must then be
+SPARE = 0.01  # of the tolerance: how good it must then be
 OVERHANG = 1.25  # cells are fitted over this many half widths, so that a step may end a little outside
 NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
 CHECKS = 48  # points between those, at which its error is measured

@@ -77,7 +77,7 @@ def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateS
         shapes = find_shapes(case, plate)
     with progress("Fitting the surface"):
         drives = build_drives(case)
-        return PlateScene(plate, shapes, drives, surface_motion(shapes, drives))
+        return PlateScene(plate, shapes, drives, surface_motion(shapes, drives, case.run.surface_tolerance))
 
 
 def build_plate(plate: PlateCase) -> Plate:
