@@ -94,7 +94,7 @@ def layouts() -> tuple[SurfaceMotion, ...]:
             at = RADIUS * rng.uniform(-0.75, 0.75, 2)
             if np.hypot(*at) < 0.75 * RADIUS and all(np.hypot(*(at - p)) > 0.2 * RADIUS for p in points):
                 points.append(at)
-        found.append(surface_motion(DiscShapes(points, RADIUS), [Drive(0.0, 300.0)] * count))
+        found.append(surface_motion(DiscShapes(points, RADIUS), [Drive(0.0, 300.0)] * count, 1e-10))
     return tuple(found)
 
 

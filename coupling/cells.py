@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from threadpoolctl import threadpool_limits
 
 from coupling.rim import rim_curves
+from coupling.translates import PER_PITCH, lattice_of
 from fem_plate import Shapes
 from fem_plate.singular import UNIT_STRENGTH, point_value
 from particle.cells import NOWHERE, UNBUILT, WHOLE, CellFit, CellPool, Cells
@@ -29,7 +30,9 @@ OVERHANG = 1.25  # cells are fitted over this many half widths, so that a step m
 NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
 CHECKS = 48  # points between those, at which its error is measured
 FEW = 8  # actuators whose logarithms are kept everywhere: their exact sum is cheaper than smaller cells
+RCOND = 1e-12
 DEEPEST = 6  # times that a cell is divided
+LESS = 0.75  # of its error: dividing helps if that is left at most
 ACROSS = 8  # cells along the plate's longer side, at least
 PER_SPACING = 2.0  # cells from one actuator to the next
 # The polynomial's error falls with the distance of the nearest logarithm that it takes up, in half widths.
@@ -47,6 +50,7 @@ class _Cell:
     fit: CellFit | None = None  # None: off the plate
     error: float = 0.0
     quarters: list[_Cell] = field(default_factory=list)
+    shared: bool = False  # whether translates of it are cells, too
 
     def leaves(self) -> list[_Cell]:
         return [leaf for quarter in self.quarters for leaf in quarter.leaves()] if self.quarters else [self]
@@ -69,6 +73,8 @@ class PlateCells:
         self._nodes = np.stack(np.meshgrid(nodes, nodes, indexing="ij"), axis=-1).reshape(-1, 2)
         self._inverses = {degree: np.linalg.pinv(monomials(self._nodes, degree)) for degree in DEGREES}
         self._checks = np.random.default_rng(0).uniform(-1, 1, (CHECKS, 2))
+        self._lattice = None if self._few else lattice_of(shapes, tolerance)
+        self._originals: dict[tuple[int, int], _Cell] = {}
         self._pool = CellPool(*self._grid())
         self.cells: Cells = self._pool.cells()
         if self._few:
@@ -79,6 +85,13 @@ class PlateCells:
         low, high = self.shapes.outline.box
         longest = float((high - low).max())
         across = float(ACROSS)
+        if self._lattice:
+            # In step with the lattice, so that cells a pitch apart are alike.
+            width = self._lattice.pitch / PER_PITCH
+            first = np.floor((low - self._lattice.origin) / width + 1e-9)
+            origin = self._lattice.origin + first * width
+            counts = np.ceil((high - origin) / width - 1e-9).astype(int)
+            return origin, width, self._wanted(origin, width, counts)
         if not self._few:
             across = max(
                 across, PER_SPACING * longest / float(np.median(self._tree.query(self._tree.data, 2)[0][:, 1]))
@@ -86,9 +99,13 @@ class PlateCells:
         width = longest / np.ceil(across * (1 - 1e-9))
         counts = np.ceil((high - low) / width * (1 - 1e-9)).astype(int)
         origin = (low + high - counts * width) / 2
+        return origin, np.full(2, width), self._wanted(origin, np.full(2, width), counts)
+
+    def _wanted(self, origin: FloatArray, width: FloatArray, counts: IntArray) -> IntArray:
+        """Which of the grid's cells (nx, ny) there is to build: those whose circle reaches the plate."""
         centres = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in counts), indexing="ij"), axis=-1) * width + origin
-        on_plate = self.shapes.outline.gap(centres) > -width / np.sqrt(2)  # the circle around the cell reaches it
-        return origin, np.full(2, width), np.where(on_plate, UNBUILT, NOWHERE)
+        on_plate = self.shapes.outline.gap(centres) > -np.hypot(*width) / 2
+        return np.where(on_plate, UNBUILT, NOWHERE)
 
     def build(self, places: FloatArray) -> None:
         """Makes sure that there are cells at places (n, 2) [m] on the plate."""
@@ -101,16 +118,52 @@ class PlateCells:
                 self._build(np.argwhere(block == UNBUILT) + (i, j))
 
     def _build(self, roots: IntArray) -> None:
-        pool, half = self._pool, self._pool.width / 2
-        cells = [_Cell(pool.origin + (2 * place + 1) * half, half) for place in roots]
-        # Many small systems: BLAS threads would only wait for each other (a hundred times slower on two busy cores).
-        with threadpool_limits(limits=1, user_api="blas"):
-            self._fit(cells)
-            self._divide(cells, DEEPEST)
-        for place, cell in zip(roots, cells, strict=True):
+        pool = self._pool
+        moved = [self._translate(place) for place in roots]
+        fresh = [self._cell(place) for place, cell in zip(roots, moved, strict=True) if cell is None]
+        self._make(fresh)
+        cells = iter(fresh)
+        for place, translate in zip(roots, moved, strict=True):
+            cell = translate or next(cells)
             pool.roots[tuple(place)] = pool.add(cell.centre, cell.half, cell.fit, self._add_quarters(cell))
             self.error = max([self.error, *(leaf.error for leaf in cell.leaves())])
         self.cells = pool.cells()
+
+    def _cell(self, place: IntArray) -> _Cell:
+        half = self._pool.width / 2
+        return _Cell(self._pool.origin + (2 * place + 1) * half, half)
+
+    def _make(self, cells: Sequence[_Cell]) -> None:
+        # Many small systems: BLAS threads would only wait for each other (a hundred times slower on two busy cores).
+        if cells:
+            with threadpool_limits(limits=1, user_api="blas"):
+                self._fit(cells)
+                self._divide(cells, DEEPEST)
+
+    def _translate(self, place: IntArray) -> _Cell | None:
+        """A cell of a lattice from its original in the middle; None where it is like no other."""
+        lattice = self._lattice
+        if not lattice:
+            return None
+        first = np.round((self._pool.origin - lattice.origin) / self._pool.width).astype(np.int64)
+        pitches = lattice.pitches(place + first)
+        if pitches is None:
+            return None
+        if not self._originals:
+            places = [lattice.middle * PER_PITCH - first + (i, j) for i, j in np.ndindex(PER_PITCH, PER_PITCH)]
+            originals = [self._cell(one) for one in places]
+            for cell in originals:
+                cell.shared = True
+            self._make(originals)
+            self._originals = {tuple(one.tolist()): cell for one, cell in zip(places, originals, strict=True)}
+        return self._moved(self._originals[tuple((place - pitches * PER_PITCH).tolist())], pitches)
+
+    def _moved(self, cell: _Cell, pitches: IntArray) -> _Cell:
+        assert self._lattice
+        centre = cell.centre + pitches * self._lattice.pitch
+        clear = float(self.shapes.outline.gap(centre[None])[0]) - OVERHANG * float(np.hypot(*cell.half))
+        fit = cell.fit and self._lattice.moved(cell.fit, pitches, max(clear, 0.0))
+        return _Cell(centre, cell.half, fit, cell.error, [self._moved(quarter, pitches) for quarter in cell.quarters])
 
     def _add_quarters(self, cell: _Cell) -> int:
         below = [self._add_quarters(quarter) for quarter in cell.quarters]
@@ -130,10 +183,12 @@ class PlateCells:
         quarters = []
         for cell in tried:
             centres = [cell.centre + cell.half / 2 * side for side in ([-1, -1], [-1, 1], [1, -1], [1, 1])]
-            quarters.append([_Cell(centre, cell.half / 2) for centre in centres])
+            quarters.append([_Cell(centre, cell.half / 2, shared=cell.shared) for centre in centres])
         self._fit([quarter for four in quarters for quarter in four])
         for cell, four in zip(tried, quarters, strict=True):
-            if cell in crowded or max(quarter.error for quarter in four) < 0.5 * cell.error:
+            errors = np.array([quarter.error for quarter in four])
+            helps = errors.max() < LESS * cell.error or (errors <= self.tolerance).sum() >= 2
+            if cell in crowded or helps:
                 cell.quarters, cell.fit = four, None
         self._divide([quarter for cell in tried for quarter in cell.quarters], deepest - 1)
 
@@ -175,8 +230,12 @@ class PlateCells:
         order = np.argsort(relative, kind="stable")
         dropped = np.cumsum(relative[order])
         least = 0 if self._few else int(np.searchsorted(dropped, self.tolerance / 4))
-        kept = np.sort(order[least:])
-        left_out = float(dropped[least - 1]) if least else 0.0
+        keep = np.full(len(rows), True)
+        keep[order[:least]] = False
+        if cell.shared and self._lattice:
+            keep &= self._lattice.nearby(cell.centre, rows)
+        kept = np.flatnonzero(keep)
+        left_out = float(relative[~keep].sum())
         rows, target = rows[kept], values[:, kept]
         everything = np.arange(len(self.shapes.points))
         reach = self._reach * float(cell.half.max())
@@ -191,12 +250,14 @@ class PlateCells:
             if clear > 0:
                 fitted: FloatArray = self._inverses[degree] @ target[:samples]
             else:
-                fitted = np.asarray(np.linalg.lstsq(table[:samples], target[:samples], rcond=1e-12)[0])
+                fitted = np.asarray(np.linalg.lstsq(table[:samples], target[:samples], rcond=RCOND)[0])
             wrong = np.abs(table[samples:] @ fitted - target[samples:]) / self._heights[rows]
             error = float(wrong.max(initial=0.0))
-            if chosen and error > SPARE * self.tolerance:
+            fine = error <= SPARE * self.tolerance
+            if chosen and not fine and chosen[2] <= SPARE * self.tolerance:
                 break
-            chosen = degree, fitted, error
+            if chosen is None or fine or error < chosen[2]:
+                chosen = degree, fitted, error
         assert chosen
         degree, fitted, error = chosen
         cell.error = error + left_out

@@ -81,14 +81,13 @@ class Array:
         pitch = self.cutter.pitch
         lowest = self.points.min(axis=0) - pitch / 2
         place = np.floor((self.points - lowest) / (TILE * pitch) + 1e-9).astype(np.int64)
-        margin = max(LEAST_MARGIN, FIRST_MARGIN + math.log(FIRST_VALUE / truncation) / math.log(DECAY))
         tiles = []
         for corner in np.unique(place, axis=0):
             inside = np.flatnonzero((place == corner).all(axis=1))
             middle = lowest + (corner + 0.5) * TILE * pitch
             # Cuts half-way between the rows of a lattice.
             longest = pitch.max() / pitch  # shapes fall off over the longer pitch either way
-            reach, wider = (TILE / 2 + np.ceil(margin * longest)) * pitch, WIDER
+            reach, wider = (TILE / 2 + np.ceil(margin(truncation) * longest)) * pitch, WIDER
             while True:
                 tile = self._tile(middle, reach, inside)
                 if tile.patch.truncation <= truncation or not len(tile.cut.edge):
@@ -156,6 +155,11 @@ class Array:
         give = (self.rigidity * pitch**2 / springs[held]) ** 0.25
         distance, row = cKDTree(actuators[held]).query(xy, k=range(1, min(NEIGHBOURS, len(give)) + 1))
         return np.asarray(to_cut < np.maximum(1.5 * pitch, (distance + give[row]).min(axis=1)))
+
+
+def margin(truncation: float) -> float:
+    """How many pitches off a cut must be for its effect on a shape to be that of a truncation."""
+    return max(LEAST_MARGIN, FIRST_MARGIN + math.log(FIRST_VALUE / truncation) / math.log(DECAY))
 
 
 def spacing(points: FloatArray) -> FloatArray:

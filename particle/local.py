@@ -22,10 +22,10 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 # Places in Local.frame, Local.counts and a row of Local.clock.
-TIME, END, UNIT, X, Y, HALF_X, HALF_Y, CLEAR, SIZE, FLOOR, REACH, MISSING_X, MISSING_Y = range(13)
-CELL, DRIVES, NEAR, MONOMIALS, DEGREE, BASE, CHANGES = range(7)
+TIME, END, UNIT, X, Y, HALF_X, HALF_Y, CLEAR, SIZE, FLOOR, REACH, MISSING_X, MISSING_Y, BEGUN = range(14)
+CELL, DRIVES, NEAR, MONOMIALS, DEGREE, BASE = range(6)
 SINCE, UNTIL, SLACK = ORDER, ORDER + 1, ORDER + 2
-FRESH = 8  # times as many changes as there are drives: then rounding has piled up enough to begin anew
+FRESH = 2.0  # units of time over which a polynomial is moved on; rounding grows with the fifth power of that
 
 
 class Local(NamedTuple):
@@ -36,9 +36,9 @@ class Local(NamedTuple):
 
     # The times [s] between which it holds and their unit [s], the cell's centre, half width and distance from the rim
     # [m], the surface's size [m] and its floor over that, how many half widths the polynomial holds, and a place [m]
-    # that has no cell yet.
-    frame: FloatArray  # (13,)
-    counts: IntArray  # (7,) the cell, its drives, logarithms, monomials and degree, the base's drives, changes so far
+    # that has no cell yet, and when it was prepared from nothing.
+    frame: FloatArray  # (14,)
+    counts: IntArray  # (6,) the cell, its drives, logarithms, monomials and degree, the base's drives
     smooth: FloatArray  # (6, M + J) m, the cell's polynomial; then the strengths of its logarithms
     at: FloatArray  # (3, M + J) m, these and their first two derivatives in time, at one time
     near: FloatArray  # (J, 2) m, where the logarithms are
@@ -52,8 +52,8 @@ def new_local(surface: Any) -> Local:
     """Scratch memory that fits the surface, with no cell and no time yet."""
     width = _monomials(surface.cells.highest) + surface.cells.most_near
     local = Local(
-        np.zeros(13),
-        np.zeros(7, dtype=np.int64),
+        np.zeros(14),
+        np.zeros(6, dtype=np.int64),
         np.zeros((ORDER, width)),
         np.zeros((3, width)),
         np.zeros((surface.cells.most_near, 2)),
@@ -160,7 +160,7 @@ def _begin(surface: Any, local: Local, cell: int, time: float, end: float) -> No
     f[X], f[Y] = cells.centre[cell, 0], cells.centre[cell, 1]
     f[HALF_X], f[HALF_Y] = cells.half[cell, 0], cells.half[cell, 1]
     f[CLEAR], f[TIME], f[END], f[UNIT] = cells.clear[cell], time, end, surface.unit
-    counts[CELL], counts[CHANGES] = cell, 0
+    counts[CELL], f[BEGUN] = cell, time
     counts[DEGREE], counts[MONOMIALS] = cells.degree[cell], _monomials(cells.degree[cell])
     counts[DRIVES] = cells.first_drive[cell + 1] - cells.first_drive[cell] + counts[BASE]
     first = cells.first_near[cell]
@@ -185,8 +185,7 @@ def _go_on(surface: Any, local: Local, time: float, end: float) -> bool:
     passed = 0
     for i in range(counts[DRIVES]):
         passed += _has_passed(clock, i, time)
-    counts[CHANGES] += passed
-    if 2 * passed > counts[DRIVES] or counts[CHANGES] > FRESH * counts[DRIVES]:
+    if 2 * passed > counts[DRIVES] or time - f[BEGUN] > FRESH * f[UNIT]:
         return False
     shift = (time - f[TIME]) / f[UNIT]
     _shift(local.smooth, shift, counts[MONOMIALS] + counts[NEAR])
