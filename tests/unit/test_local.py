@@ -1,0 +1,84 @@
+"""The cell where the part is: moving it on in time must be as good as preparing it anew."""
+
+import math
+
+import numpy as np
+import pytest
+
+from coupling.surface import surface_motion
+from fem_plate.analytic import DiscShapes
+from particle import Drive, platform_surface
+from particle.cells import NOWHERE, UNBUILT
+from particle.fields import fields
+from particle.local import END, cell_at, enter, missing_place, new_local
+
+RADIUS, STROKE = 300e-6, 10e-6
+
+
+def spread(count, seed=3):
+    """Sunflower places, and strokes of very different frequencies, some of which end."""
+    k, rng = np.arange(count) + 0.5, np.random.default_rng(seed)
+    points = 0.7 * RADIUS * np.sqrt(k / count)[:, None] * np.stack([np.cos(2.4 * k), np.sin(2.4 * k)], axis=1)
+    drives = [
+        Drive(STROKE, float(f), cycles=3 if i % 4 == 0 else None, delay=float(d))
+        for i, (f, d) in enumerate(zip(rng.uniform(30, 900, count), rng.uniform(0, 1e-3, count), strict=True))
+    ]
+    return surface_motion(DiscShapes(points, RADIUS), drives)
+
+
+def values(local, x, y, time):
+    f = fields(local, x, y, time)
+    return np.array([f.w, f.w_t / 1e3, f.w_tt / 1e6, f.x * RADIUS, f.y * RADIUS, f.xy * RADIUS**2])
+
+
+@pytest.mark.parametrize("count", [1, 3, 12])
+def test_after_many_kinks_it_is_as_if_prepared_anew(count):
+    surface = spread(count)
+    x, y = 0.31 * RADIUS, 0.9 * RADIUS  # beside the rim, where w is small against what it is made of
+    surface.evaluate([[x, y]], 0.0)
+    record, time, kinks = surface.record, 0.0, 0
+    local = new_local(record)
+    while time < 0.1:
+        assert enter(record, local, x, y, time, 0.1) >= 0
+        anew = new_local(record)
+        enter(record, anew, x, y, time, 0.1)
+        assert local.frame[END] == anew.frame[END] > time
+        for share in (0.0, 0.5, 1.0):
+            at = time + share * (local.frame[END] - time)
+            assert np.abs(values(local, x, y, at) - values(anew, x, y, at)).max() < 1e-11 * STROKE
+        time, kinks = local.frame[END], kinks + 1
+    assert kinks > 4 * count
+
+
+def test_a_place_without_a_cell_is_told_and_what_was_prepared_stays():
+    surface = spread(12)
+    record, local = surface.record, new_local(surface.record)
+    x, y = 0.2 * RADIUS, 0.1 * RADIUS
+    assert cell_at(record.cells, x, y) == UNBUILT
+    assert enter(record, local, x, y, 0.0, 1.0) == UNBUILT
+    assert missing_place(local).tolist() == [[x, y]]
+    surface.store.build(missing_place(local))
+    assert cell_at(record.cells, x, y) == UNBUILT  # what was handed out does not change
+    record = surface.record
+    local = new_local(record)
+    cell = enter(record, local, x, y, 0.0, 1.0)
+    assert cell >= 0
+    before = local.smooth.copy()
+    assert enter(record, local, 2 * RADIUS, 0.0, 0.5e-3, 1.0) == NOWHERE
+    assert np.array_equal(local.smooth, before)
+
+
+def test_a_base_moves_on_as_well():
+    drive = Drive(STROKE, 300.0)
+    record = platform_surface(drive, Drive(STROKE, 170.0), Drive(STROKE, 90.0), size=STROKE).record
+    local, time = new_local(record), 0.0
+    while time < 0.05:
+        enter(record, local, 0.0, 0.0, time, 0.05)
+        middle = 0.5 * (time + local.frame[END])
+        f = fields(local, 0.0, 0.0, middle)
+        h, v, a = drive.evaluate(middle)
+        assert f.base_px == pytest.approx(h, abs=1e-12 * STROKE)
+        assert f.base_vx == pytest.approx(v, abs=1e-9 * STROKE)
+        assert f.base_ax == pytest.approx(a, abs=1e-6 * STROKE)
+        time = local.frame[END]
+    assert math.isclose(time, 0.05)
