@@ -64,7 +64,7 @@ def drawn_plate(mesh: PlateMesh, actuators: FloatArray) -> tuple[FloatArray, Int
 
 
 def _cell(mesh: PlateMesh, actuators: FloatArray) -> FloatArray:
-    """The width and height (2,) [m] of the grid's cells: a whole part of the pitch, unless the array is a small spot."""
+    """The width and height (2,) [m] of the grid's cells: parts of the pitch, unless the array is a small spot."""
     a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
     area = float(np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum() / 2)
     coarse = math.sqrt(2 * area / CELLS)

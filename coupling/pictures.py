@@ -21,7 +21,7 @@ from scipy.spatial import cKDTree
 from coupling.case import Case
 from coupling.drive_case import amplitude
 from coupling.rim import rim_curves
-from fem_plate import InfluenceShapes
+from fem_plate import Shapes
 from particle import Samples, State, Trajectory
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def _draw_path(
 def draw_plate(
     figure: Figure,
     axes: Axes,
-    shapes: InfluenceShapes,
+    shapes: Shapes,
     points: FloatArray,
     triangles: NDArray[np.int64],
     deflection: FloatArray,

@@ -23,8 +23,7 @@ from coupling.rim import onto_plate
 from coupling.scene import Ground
 from coupling.summary import PlateFigures
 from coupling.surface import surface_motion
-from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateSection, Shapes
-from fem_plate.influence import MOST_DENSE
+from fem_plate import PatchedShapes, Plate, PlateSection, PlateShapes
 from particle import AnyDrive, SurfaceMotion, Trajectory
 
 FloatArray = NDArray[np.float64]
@@ -32,6 +31,7 @@ FloatArray = NDArray[np.float64]
 # Without a cell size the plate is refined until the unit shapes' estimated error is below this, which keeps the end
 # point of a usual path to 1e-6 of it.
 PLATE_TOLERANCE = 1e-8
+DRAWN = 1e-7  # of a stroke: less is not drawn
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class PlateScene:
     """A plate on actuators."""
 
     plate: Plate
-    shapes: InfluenceShapes
+    shapes: PlateShapes
     lifts: Sequence[AnyDrive]
     surface: SurfaceMotion
     base: Sequence[AnyDrive] = field(default=(), init=False)
@@ -62,19 +62,17 @@ class PlateScene:
         )
 
 
-def lifting(shapes: Shapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+def lifting(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
     """The deflections (k, n) [m] at points (n, 2) [m] as a function of the actuators' heights (k, N) [m]."""
-    if isinstance(shapes, PatchedShapes):
-        return lambda heights: shapes.values(points, heights.T).T
-    values = shapes.values(points)  # of few actuators: once for all heights
-    return lambda heights: heights @ values.T
+    values = shapes.matrix(points, DRAWN) if isinstance(shapes, PatchedShapes) else shapes.values(points)
+    return lambda heights: np.asarray((values @ heights.T).T)
 
 
 def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:
-    """The scene of a case with a plate; ValueError when it has too many actuators for a run."""
-    with progress("Solving the plate"):
+    """The scene of a case with a plate."""
+    with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
-        shapes = find_shapes(case, plate)
+        shapes = plate.influence([actuator.position for actuator in case.actuators], springs(case), tell=tell)
     with progress("Fitting the surface"):
         drives = build_drives(case)
         return PlateScene(plate, shapes, drives, surface_motion(shapes, drives))
@@ -85,14 +83,6 @@ def build_plate(plate: PlateCase) -> Plate:
     section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
     tolerance = None if plate.cell_size_given else PLATE_TOLERANCE
     return Plate(plate.build_mesh(), section, plate.supports, tolerance)
-
-
-def find_shapes(case: Case, plate: Plate) -> InfluenceShapes:
-    """The influence shapes of the case's actuators; ValueError when they are too many for a run."""
-    shapes = plate.influence([actuator.position for actuator in case.actuators], springs(case))
-    if not isinstance(shapes, InfluenceShapes):
-        raise ValueError(f"Input actuators of a run must be at most {MOST_DENSE}; got {len(case.actuators)}")
-    return shapes
 
 
 def springs(case: Case) -> NDArray[np.float64]:

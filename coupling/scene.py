@@ -15,7 +15,7 @@ from coupling.case import Case
 from coupling.measured import MotionFit
 from coupling.pictures import Unit
 from coupling.summary import PlateFigures
-from fem_plate import InfluenceShapes
+from fem_plate import PlateShapes
 from particle import AnyDrive, SurfaceMotion, Trajectory
 
 FloatArray = NDArray[np.float64]
@@ -45,7 +45,7 @@ class Scene(Protocol):
         """The drives that move it in its plane, along x and y; none: it stays."""
 
     @property
-    def shapes(self) -> InfluenceShapes | None:
+    def shapes(self) -> PlateShapes | None:
         """The shapes of a plate; None: it is none."""
 
     @property
