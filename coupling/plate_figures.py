@@ -66,7 +66,7 @@ def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:
     density, held = plate.section.density, shapes.points[shapes.springs > 0]
     if density is None:
         return None
-    if isinstance(shapes, PatchedShapes) and len(held) > MOST_DENSE:
+    if isinstance(shapes, PatchedShapes) and len(held):
         return shapes.first_frequency(density * plate.section.thickness)
     return float(plate.frequencies(1, held if len(held) else None)[0])
 

@@ -24,6 +24,7 @@ from coupling.scene import Ground
 from coupling.summary import PlateFigures
 from coupling.surface import surface_motion
 from fem_plate import PatchedShapes, Plate, PlateSection, PlateShapes
+from fem_plate.plate import TRUNCATION
 from particle import AnyDrive, SurfaceMotion, Trajectory
 
 FloatArray = NDArray[np.float64]
@@ -31,6 +32,8 @@ FloatArray = NDArray[np.float64]
 # Without a cell size the plate is refined until the unit shapes' estimated error is below this, which keeps the end
 # point of a usual path to 1e-6 of it.
 PLATE_TOLERANCE = 1e-8
+# Actuators whose shapes are found on the whole plate: with 625 a run took longer than with 10 000 on patches.
+MOST_WHOLE = 250
 DRAWN = 1e-7  # of a stroke: less is not drawn
 
 
@@ -56,9 +59,11 @@ class PlateScene:
     def figures(self, case: Case, trajectory: Trajectory) -> PlateFigures:
         return plate_figures(case, self.plate, self.shapes, self.surface, self.lifts, trajectory)
 
-    def draw(self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit) -> list[Line2D]:
+    def draw(
+        self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit, window: FloatArray | None
+    ) -> list[Line2D]:
         return draw_plate(
-            figure, axes, self.shapes, ground.points, ground.triangles, ground.lifted(heights[None])[0], unit
+            figure, axes, self.shapes, ground.points, ground.triangles, ground.lifted(heights[None])[0], unit, window
         )
 
 
@@ -72,7 +77,8 @@ def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateS
     """The scene of a case with a plate."""
     with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
-        shapes = plate.influence([actuator.position for actuator in case.actuators], springs(case), tell=tell)
+        points = [actuator.position for actuator in case.actuators]
+        shapes = plate.influence(points, springs(case), TRUNCATION if len(points) > MOST_WHOLE else None, tell)
     with progress("Fitting the surface"):
         drives = build_drives(case)
         return PlateScene(plate, shapes, drives, surface_motion(shapes, drives))

@@ -65,5 +65,10 @@ class Scene(Protocol):
     def figures(self, case: Case, trajectory: Trajectory) -> PlateFigures | None:
         """What the summary says of a plate; None: it is none."""
 
-    def draw(self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit) -> list[Line2D]:
-        """Draw what lies under the path, lifted to heights (N,), in a unit of length; return its keys."""
+    def draw(
+        self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit, window: FloatArray | None
+    ) -> list[Line2D]:
+        """Draw what lies under the path, lifted to heights (N,), in a unit of length; return its keys.
+
+        window: (2, 2) m, the part of it to show; None: all.
+        """

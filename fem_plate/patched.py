@@ -116,8 +116,10 @@ class PatchedShapes(Shapes):
             if key not in known:
                 known[key] = _entries(patch.field, local[near], least * heights[core])
             row, column, value = known[key]
-            found.append((value, near[row], core[column]))
+            found.append((value, near[row].astype(np.int32), core[column].astype(np.int32)))
         flat = [np.concatenate(parts) for parts in zip(*found, strict=True)]
+        known.clear()
+        found.clear()
         return coo_matrix((flat[0], (flat[1], flat[2])), shape=(len(xy), len(self.points))).tocsr()
 
     def give(self, place: ArrayLike) -> float:
