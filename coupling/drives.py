@@ -19,6 +19,7 @@ SAMPLES, KINKS = 201, 101  # moments at which extremes are sought
 GOLDEN = (5**0.5 - 1) / 2
 FRAMES_PER_CYCLE = 20
 FRAMES = (100, 1000)  # least and most without a wish in the case
+MOST_HEIGHTS = 3_000_000  # frames times drives, above the least: what the files of a large array can take
 JUMP = 1e-3  # of a stroke over its time: a smaller change of velocity is none
 
 
@@ -40,13 +41,18 @@ def build_drive(drive: DriveCase) -> AnyDrive:
 
 def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray) -> FloatArray:
     """The heights h_i(t) [m] of the drives at times (k,) [s]: (k, N)."""
-    return np.stack([drive.evaluate(times)[0] for drive in drives], axis=1)
+    known: dict[AnyDrive, FloatArray] = {}
+    for drive in drives:
+        if drive not in known:  # many of a lattice are equal
+            known[drive] = drive.evaluate(times)[0]
+    return np.stack([known[drive] for drive in drives], axis=1)
 
 
 def frame_times(wanted: int | None, drives: Sequence[AnyDrive], end: float) -> FloatArray:
     """The times [s] of the result files' steps, from 0 to the end: as many as wanted, or enough for the drives."""
     fastest = max(drive.frequency for drive in drives)
-    count = wanted or min(max(math.ceil(end * fastest * FRAMES_PER_CYCLE) + 1, FRAMES[0]), FRAMES[1])
+    most = min(max(MOST_HEIGHTS // len(drives), FRAMES[0]), FRAMES[1])
+    count = wanted or min(max(math.ceil(end * fastest * FRAMES_PER_CYCLE) + 1, FRAMES[0]), most)
     return np.linspace(0, end, count)
 
 

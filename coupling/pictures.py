@@ -14,14 +14,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from coupling.case import Case
 from coupling.drive_case import amplitude
+from coupling.drives import stroke_heights
 from coupling.rim import rim_curves
-from fem_plate import InfluenceShapes
+from fem_plate import PlateShapes
 from particle import Samples, State, Trajectory
 
 if TYPE_CHECKING:
@@ -33,6 +35,9 @@ MICRO, MILLI = 1e6, 1e3
 SLIP_COLOUR, STICK_COLOUR, FLIGHT_COLOUR = "#c8371b", "#1b4f9c", "#606060"
 SAMPLES = 4000
 AXES_WIDTH = 330.0  # points, about
+DOT = 2.0  # points, below which a marker is a dot
+PATH_SHARE, PITCHES_SHOWN = 2.5, 4.5  # of the path's extent, and of the pitch, that the window around a path shows
+LARGEST_WINDOW = 0.25  # of the plate's size: where it would be larger, all of the plate is shown
 SMALLEST_MARKER, SMALL_MARKER, LARGEST_MARKER = 0.8, 4.0, 6.0  # points
 
 
@@ -90,7 +95,11 @@ def _draw_path(
     figure: Figure, axes: Axes, scene: Scene, ground: Ground, case: Case, trajectory: Trajectory, unit: Unit
 ) -> None:
     """The path over the surface from above."""
-    keys = scene.draw(figure, axes, ground, np.array([amplitude(actuator) for actuator in case.actuators]), unit)
+    window = None if scene.shapes is None else path_window(scene.shapes, trajectory.position)
+    heights = np.array([amplitude(actuator) for actuator in case.actuators])
+    if window is not None:
+        heights = stroke_heights(scene.lifts, trajectory.time[-1:])[0]
+    keys = scene.draw(figure, axes, ground, heights, unit, window)
     points = trajectory.position * unit.per_metre
     fine = np.linspace(0, trajectory.time[-1], SAMPLES)
     line = trajectory.at(fine).position * unit.per_metre
@@ -117,30 +126,70 @@ def _draw_path(
 def draw_plate(
     figure: Figure,
     axes: Axes,
-    shapes: InfluenceShapes,
+    shapes: PlateShapes,
     points: FloatArray,
     triangles: NDArray[np.int64],
     deflection: FloatArray,
     unit: Unit,
+    window: FloatArray | None = None,
 ) -> list[Line2D]:
-    """The plate from above: contours with all drives up at once, its rim and the actuators; returns their keys.
+    """The plate from above: contours, its rim and the actuators; returns their keys.
 
     points (n, 2) [m], triangles (m, 3) and the deflection (n,) [m].
+    window: (2, 2) m, the part of the plate to show, as it is at the end, with a small map of the whole; None: all of
+    it, with all drives up at once.
     """
+    if window is not None:
+        seen = ((points > window[0] - np.ptp(window) / 10) & (points < window[1] + np.ptp(window) / 10)).all(axis=1)
+        triangles = triangles[seen[triangles].any(axis=1)]
+        used, rows = np.unique(triangles, return_inverse=True)
+        points, deflection, triangles = points[used], deflection[used], rows.reshape(-1, 3)
     xy, w = points * unit.per_metre, deflection * MICRO
     low, high = w.min(), w.max()
+    when = "with all drives up at once" if window is None else "at the end"
     if high > low:
         # Rounding and faint counter-deflection do not deserve a band below zero.
         levels = MaxNLocator(12).tick_values(0.0 if -low < 0.01 * high else low, high)
         filled = axes.tricontourf(*xy.T, triangles, w, levels=levels, cmap="Greys", alpha=0.75, extend="min")
-        figure.colorbar(filled, ax=axes, label="deflection with all drives up at once [µm]", shrink=0.8, format="%.3g")
+        figure.colorbar(filled, ax=axes, label=f"deflection {when} [µm]", shrink=0.8, format="%.3g")
     rim = rim_curves(shapes.outline, shapes.size / 100)
-    axes.add_collection(LineCollection([curve * unit.per_metre for curve in rim], colors="black", linewidths=1.5))
-    size = _marker_size(shapes.points, shapes.outline.box)
+    curves = [curve * unit.per_metre for curve in rim]
+    axes.add_collection(LineCollection(curves, colors="black", linewidths=1.5))
+    size = _marker_size(shapes.points, shapes.outline.box if window is None else window)
     marker: dict[str, Any] = {"marker": "^", "color": "white", "markeredgecolor": "black", "linestyle": ""}
+    if size < DOT:
+        marker = {"marker": ".", "color": "black", "markeredgecolor": "none", "linestyle": ""}
     edge = min(1.0, size / SMALL_MARKER)
     axes.plot(*(shapes.points.T * unit.per_metre), **marker, markersize=size, markeredgewidth=edge, zorder=2.5)
+    if window is not None:
+        _draw_map(axes, curves, window * unit.per_metre)
     return [Line2D([], [], **marker, markersize=9, label="actuator")]
+
+
+def path_window(shapes: PlateShapes, path: FloatArray) -> FloatArray | None:
+    """The part of the plate (2, 2) [m] around a path (n, 2) [m] and the nearest actuators, if that is a small part."""
+    if len(shapes.points) < 2:
+        return None
+    low, high = path.min(axis=0), path.max(axis=0)
+    pitch = float(np.median(cKDTree(shapes.points).query(shapes.points, k=2)[0][:, 1]))
+    half = max(PATH_SHARE * float((high - low).max()), PITCHES_SHOWN * pitch) / 2
+    if half > LARGEST_WINDOW * shapes.size:
+        return None
+    return np.stack([(low + high) / 2 - half, (low + high) / 2 + half])
+
+
+def _draw_map(axes: Axes, rim: list[FloatArray], window: FloatArray) -> None:
+    """Show only the window (2, 2), and in a corner where it is on the plate."""
+    axes.set_xlim(*window[:, 0])
+    axes.set_ylim(*window[:, 1])
+    chart = axes.inset_axes((0.015, 0.015, 0.22, 0.22), zorder=6)
+    chart.add_collection(LineCollection(rim, colors="black", linewidths=1.0))
+    (left, bottom), (width, height) = window[0], np.ptp(window, axis=0)
+    chart.add_patch(Rectangle((left, bottom), width, height, color=SLIP_COLOUR))
+    chart.autoscale_view()
+    chart.set_aspect("equal")
+    chart.set_xticks([])
+    chart.set_yticks([])
 
 
 def _marker_size(places: FloatArray, box: FloatArray) -> float:

@@ -6,12 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix, diags
 
 from coupling.case import Case, KogutEtsionCase
 from coupling.drives import moments, stroke_heights
 from coupling.lattice_places import SAME_PLACE
+from coupling.steepest import steepest
 from coupling.summary import PlateFigures
-from fem_plate import InfluenceShapes, Plate
+from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes
+from fem_plate.influence import MOST_DENSE
 from meshes import Outline
 from particle import AnyDrive, SurfaceMotion, Trajectory
 
@@ -27,7 +30,7 @@ QUASI_STATIC_ERROR = 3.3
 def plate_figures(
     case: Case,
     plate: Plate,
-    shapes: InfluenceShapes,
+    shapes: PlateShapes,
     surface: SurfaceMotion,
     drives: Sequence[AnyDrive],
     trajectory: Trajectory,
@@ -37,8 +40,7 @@ def plate_figures(
     thickness = plate.section.thickness
     over_thickness = deflection / thickness
     normal = trajectory.at(moments(drives, float(trajectory.time[-1]))).normal_force
-    held = shapes.points[shapes.springs > 0]
-    first = None if plate.section.density is None else float(plate.frequencies(1, held if len(held) else None)[0])
+    first = _first_frequency(plate, shapes)
     ratio = None if first is None else max(drive.frequency for drive in drives) / first
     return PlateFigures(
         plate_unknowns=shapes.unknowns,
@@ -51,24 +53,51 @@ def plate_figures(
         in_plane_motion=thickness / 2 * slope,
         first_frequency=first,
         drive_over_first=ratio,
-        drives_over_first=None if first is None else tuple(drive.frequency / first for drive in drives),
-        strokes_over_first=None if first is None else tuple(1 / drive.stroke_time / first for drive in drives),
+        drives_over_first=None if first is None else _each([drive.frequency / first for drive in drives]),
+        strokes_over_first=None if first is None else _each([1 / drive.stroke_time / first for drive in drives]),
         quasi_static_error=None if ratio is None else QUASI_STATIC_ERROR * ratio,
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(normal)))),
     )
 
 
-def _hold_residual(shapes: InfluenceShapes) -> float:
-    held = shapes.springs > 0
-    heights = shapes.evaluate(shapes.points)[0] + shapes.stiffness / np.where(held, shapes.springs, 1.0)[:, None]
-    return float(np.abs(heights - np.eye(len(held)))[held].max(initial=0.0))
+def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:
+    """The plate's first frequency [Hz] with its actuators held; of very many, that where they are sparsest."""
+    density, held = plate.section.density, shapes.points[shapes.springs > 0]
+    if density is None:
+        return None
+    if isinstance(shapes, PatchedShapes) and len(held):
+        return shapes.first_frequency(density * plate.section.thickness)
+    return float(plate.frequencies(1, held if len(held) else None)[0])
 
 
-def _extremes(shapes: InfluenceShapes, drives: Sequence[AnyDrive], end: float) -> tuple[float, float]:
-    """The largest slope and deflection [m] over the mesh's points and the time asked for, wherever the run ended."""
-    value, gradient, _ = shapes.evaluate(shapes.model.mesh.points)
+def _each(ratios: list[float]) -> tuple[float, ...]:
+    """The ratios, one for each drive; of very many only unlike ones, the largest first."""
+    return tuple(ratios if len(ratios) <= MOST_DENSE else sorted(set(ratios), reverse=True))
+
+
+def _hold_residual(shapes: PlateShapes) -> float:
+    held = np.flatnonzero(shapes.springs > 0)
+    if not len(held):
+        return 0.0
+    places, give = shapes.points[held], 1 / shapes.springs[held]
+    if isinstance(shapes, PatchedShapes):
+        heights = shapes.matrix(places) + diags(give) @ shapes.stiffness[held]
+        heights -= csr_matrix((np.ones(len(held)), (np.arange(len(held)), held)), shape=heights.shape)
+        return float(abs(heights).max())
+    heights = shapes.values(places) + give[:, None] * shapes.stiffness[held]
+    return float(np.abs(heights - np.eye(len(shapes.points))[held]).max())
+
+
+def _extremes(shapes: PlateShapes, drives: Sequence[AnyDrive], end: float) -> tuple[float, float]:
+    """The largest slope and deflection [m] over the mesh's points and the time asked for, wherever the run ended.
+
+    Of very many actuators, over the neighbourhood of those where they must be.
+    """
     heights = stroke_heights(drives, moments(drives, end))
+    if not isinstance(shapes, InfluenceShapes):
+        return steepest(shapes, heights)
+    value, gradient, _ = shapes.evaluate(shapes.model.mesh.points)
     slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
     return slope, float(np.abs(heights @ value.T).max())
 
@@ -85,11 +114,13 @@ def _part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, trajec
     return size * max(float(np.abs(np.linalg.eigvalsh(surface.evaluate(xy, t).hessian)).max()) for xy, t in places)
 
 
-def _part_sag(plate: Plate, shapes: InfluenceShapes, trajectory: Trajectory, force: float) -> float:
+def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: float) -> float:
     """How far [m] the plate, its actuators held, gives under the part's largest force [N] where it began."""
     start = trajectory.position[:1]
     if np.hypot(*(shapes.points - start).T).min() < SAME_PLACE * shapes.size:
         return 0.0  # the part stands on an actuator, which does not give
+    if isinstance(shapes, PatchedShapes):
+        return shapes.give(start[0]) * force
     springs = np.append(shapes.springs, 0.0)
     coarse = Plate(plate.mesh, plate.section, plate.supports)  # three digits are enough
     with_part = coarse.influence(np.concatenate([shapes.points, start]), springs)

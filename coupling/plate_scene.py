@@ -23,8 +23,8 @@ from coupling.rim import onto_plate
 from coupling.scene import Ground
 from coupling.summary import PlateFigures
 from coupling.surface import surface_motion
-from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateSection, Shapes
-from fem_plate.influence import MOST_DENSE
+from fem_plate import PatchedShapes, Plate, PlateSection, PlateShapes
+from fem_plate.plate import TRUNCATION
 from particle import AnyDrive, SurfaceMotion, Trajectory
 
 FloatArray = NDArray[np.float64]
@@ -32,6 +32,9 @@ FloatArray = NDArray[np.float64]
 # Without a cell size the plate is refined until the unit shapes' estimated error is below this, which keeps the end
 # point of a usual path to 1e-6 of it.
 PLATE_TOLERANCE = 1e-8
+# Actuators whose shapes are found on the whole plate: with 625 a run took longer than with 10 000 on patches.
+MOST_WHOLE = 250
+DRAWN = 1e-7  # of a stroke: less is not drawn
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +42,7 @@ class PlateScene:
     """A plate on actuators."""
 
     plate: Plate
-    shapes: InfluenceShapes
+    shapes: PlateShapes
     lifts: Sequence[AnyDrive]
     surface: SurfaceMotion
     base: Sequence[AnyDrive] = field(default=(), init=False)
@@ -56,25 +59,26 @@ class PlateScene:
     def figures(self, case: Case, trajectory: Trajectory) -> PlateFigures:
         return plate_figures(case, self.plate, self.shapes, self.surface, self.lifts, trajectory)
 
-    def draw(self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit) -> list[Line2D]:
+    def draw(
+        self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit, window: FloatArray | None
+    ) -> list[Line2D]:
         return draw_plate(
-            figure, axes, self.shapes, ground.points, ground.triangles, ground.lifted(heights[None])[0], unit
+            figure, axes, self.shapes, ground.points, ground.triangles, ground.lifted(heights[None])[0], unit, window
         )
 
 
-def lifting(shapes: Shapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+def lifting(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
     """The deflections (k, n) [m] at points (n, 2) [m] as a function of the actuators' heights (k, N) [m]."""
-    if isinstance(shapes, PatchedShapes):
-        return lambda heights: shapes.values(points, heights.T).T
-    values = shapes.values(points)  # of few actuators: once for all heights
-    return lambda heights: heights @ values.T
+    values = shapes.matrix(points, DRAWN) if isinstance(shapes, PatchedShapes) else shapes.values(points)
+    return lambda heights: np.asarray((values @ heights.T).T)
 
 
 def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:
-    """The scene of a case with a plate; ValueError when it has too many actuators for a run."""
-    with progress("Solving the plate"):
+    """The scene of a case with a plate."""
+    with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
-        shapes = find_shapes(case, plate)
+        points = [actuator.position for actuator in case.actuators]
+        shapes = plate.influence(points, springs(case), TRUNCATION if len(points) > MOST_WHOLE else None, tell)
     with progress("Fitting the surface"):
         drives = build_drives(case)
         return PlateScene(plate, shapes, drives, surface_motion(shapes, drives, case.run.surface_tolerance))
@@ -85,14 +89,6 @@ def build_plate(plate: PlateCase) -> Plate:
     section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
     tolerance = None if plate.cell_size_given else PLATE_TOLERANCE
     return Plate(plate.build_mesh(), section, plate.supports, tolerance)
-
-
-def find_shapes(case: Case, plate: Plate) -> InfluenceShapes:
-    """The influence shapes of the case's actuators; ValueError when they are too many for a run."""
-    shapes = plate.influence([actuator.position for actuator in case.actuators], springs(case))
-    if not isinstance(shapes, InfluenceShapes):
-        raise ValueError(f"Input actuators of a run must be at most {MOST_DENSE}; got {len(case.actuators)}")
-    return shapes
 
 
 def springs(case: Case) -> NDArray[np.float64]:

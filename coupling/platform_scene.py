@@ -56,7 +56,9 @@ class PlatformScene:
     def figures(self, case: Case, trajectory: Trajectory) -> None:
         return None
 
-    def draw(self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit) -> list[Line2D]:
+    def draw(
+        self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit, window: FloatArray | None
+    ) -> list[Line2D]:
         """Nothing but its extent: it looks the same everywhere."""
         (left, bottom), (right, top) = ground.points.min(axis=0), ground.points.max(axis=0)
         axes.set_xlim(left * unit.per_metre, right * unit.per_metre)

@@ -7,16 +7,21 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import TypeVar
 
-Progress = Callable[[str], AbstractContextManager[object]]
+Tell = Callable[[int, int], object]  # gets how many of the stage's pieces are done, and of how many
+Progress = Callable[[str], AbstractContextManager[Tell]]
 
 Answer = TypeVar("Answer")
 
 PATIENCE = 2.0  # s of silence
 
 
-def silent(stage: str) -> AbstractContextManager[None]:
+def untold(done: int, of: int) -> None:
+    """No count."""
+
+
+def silent(stage: str) -> AbstractContextManager[Tell]:
     """No progress."""
-    return nullcontext()
+    return nullcontext(untold)
 
 
 def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
@@ -75,7 +80,7 @@ class StageBar:
         self._bar.stop()
 
     @contextmanager
-    def __call__(self, stage: str) -> Iterator[None]:
+    def __call__(self, stage: str) -> Iterator[Tell]:
         self._bar.update(self._task, description=stage)
-        yield
+        yield lambda done, of: self._bar.update(self._task, description=f"{stage}: {done} of {of}")
         self._bar.advance(self._task)

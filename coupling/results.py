@@ -14,6 +14,7 @@ from coupling.case import Case
 from coupling.csv_file import write_csv
 from coupling.drives import frame_times, stroke_heights
 from coupling.pictures import draw_run
+from coupling.progress import Tell, untold
 from coupling.scene import Scene
 from coupling.summary import Summary
 from coupling.vtkhdf import part_file, plate_file
@@ -33,11 +34,17 @@ UNITS = {
 
 
 def write_results(
-    case: Case, scene: Scene, trajectory: Trajectory, summary: Summary, folder: Path, csv: bool = False
+    case: Case,
+    scene: Scene,
+    trajectory: Trajectory,
+    summary: Summary,
+    folder: Path,
+    csv: bool = False,
+    tell: Tell = untold,
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
 
-    csv: whether to write NAME.csv as well.
+    csv: whether to write NAME.csv as well.  tell: gets how many time steps are written, and of how many.
     """
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
@@ -57,7 +64,8 @@ def write_results(
     ):
         for k, time in enumerate(times.tolist()):
             if k % AT_ONCE == 0:
-                deflections = ground.lifted(heights[k : k + AT_ONCE])
+                tell(k, len(times))
+                deflections = ground.lifted(heights[k : k + AT_ONCE]).astype(np.float32)
             plate.append(time, deflection=deflections[k % AT_ONCE])
             part.append(
                 time,

@@ -21,7 +21,7 @@ from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
 from coupling.scene import Scene
 from coupling.summary import Summary, summarise
-from fem_plate import InfluenceShapes
+from fem_plate import PlateShapes
 from particle import SurfaceMotion, Trajectory
 from particle.fixed import default_step
 from particle.friction import Contact
@@ -43,7 +43,7 @@ class Result:
         return self.scene.surface
 
     @property
-    def shapes(self) -> InfluenceShapes | None:
+    def shapes(self) -> PlateShapes | None:
         """The influence shapes of a plate; None: there is a platform."""
         return self.scene.shapes
 
@@ -65,8 +65,8 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
         summary = summarise(case, scene, trajectory, tighter, friction)
     if output is None:
         return Result(case, scene, trajectory, summary)
-    with progress("Writing the results"):
-        files = write_results(case, scene, trajectory, summary, Path(output), csv)
+    with progress("Writing the results") as tell:
+        files = write_results(case, scene, trajectory, summary, Path(output), csv, tell)
     return Result(case, scene, trajectory, summary, files)
 
 

@@ -15,7 +15,7 @@ from coupling.case import Case
 from coupling.measured import MotionFit
 from coupling.pictures import Unit
 from coupling.summary import PlateFigures
-from fem_plate import InfluenceShapes
+from fem_plate import PlateShapes
 from particle import AnyDrive, SurfaceMotion, Trajectory
 
 FloatArray = NDArray[np.float64]
@@ -45,7 +45,7 @@ class Scene(Protocol):
         """The drives that move it in its plane, along x and y; none: it stays."""
 
     @property
-    def shapes(self) -> InfluenceShapes | None:
+    def shapes(self) -> PlateShapes | None:
         """The shapes of a plate; None: it is none."""
 
     @property
@@ -65,5 +65,10 @@ class Scene(Protocol):
     def figures(self, case: Case, trajectory: Trajectory) -> PlateFigures | None:
         """What the summary says of a plate; None: it is none."""
 
-    def draw(self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit) -> list[Line2D]:
-        """Draw what lies under the path, lifted to heights (N,), in a unit of length; return its keys."""
+    def draw(
+        self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit, window: FloatArray | None
+    ) -> list[Line2D]:
+        """Draw what lies under the path, lifted to heights (N,), in a unit of length; return its keys.
+
+        window: (2, 2) m, the part of it to show; None: all.
+        """

@@ -4,7 +4,7 @@ from fem_plate import analytic
 from fem_plate.deflection import Deflection
 from fem_plate.export import neighbour_coupling, save_influence
 from fem_plate.influence import InfluenceShapes, Shapes
-from fem_plate.patched import PatchedShapes
+from fem_plate.patched import PatchedShapes, PlateShapes
 from fem_plate.plate import Plate
 from fem_plate.section import PlateSection
 from fem_plate.vibration import Modes
@@ -16,6 +16,7 @@ __all__ = [
     "PatchedShapes",
     "Plate",
     "PlateSection",
+    "PlateShapes",
     "Shapes",
     "analytic",
     "neighbour_coupling",

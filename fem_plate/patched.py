@@ -11,13 +11,16 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
 from fem_plate.field import Field, Fields
-from fem_plate.influence import MOST_DENSE, Shapes
-from fem_plate.patches import Array, Tile
+from fem_plate.influence import MOST_DENSE, InfluenceShapes, Shapes
+from fem_plate.patches import Array, Tell, Tile
+from fem_plate.vibration import modes
 from meshes import Outline
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+SAME = 9  # digits of a patch's size to which points must lie alike
+AT_ONCE = 4096  # points
 SLACK = 1e-8  # of a patch's size: points on the rim may seem to lie beyond it
 MOST_VALUES = 20_000_000  # points times actuators of which all shapes may be asked for at once
 
@@ -28,8 +31,8 @@ class PatchedShapes(Shapes):
     strengths: (N, N) sparse.  truncation_error: the largest deflection left out of a shape, over its largest, measured.
     """
 
-    def __init__(self, array: Array, truncation: float, size: float, outline: Outline) -> None:
-        self.tiles = array.tiles(truncation)
+    def __init__(self, array: Array, truncation: float, size: float, outline: Outline, tell: Tell) -> None:
+        self.tiles = array.tiles(truncation, tell)
         self.points, self.springs = np.ascontiguousarray(array.points), array.springs
         self.size, self.outline = size, outline
         self._array = array
@@ -96,6 +99,44 @@ class PatchedShapes(Shapes):
             value[at] += field.values(local)
         return value
 
+    def matrix(self, xy: ArrayLike, least: float = 0.0) -> csr_matrix:
+        """The shapes at points (n, 2) [m] as a sparse matrix (n, N).
+
+        least: entries below this, relative to a shape's height at its own actuator, are left out.
+        Where patches are alike and points lie alike on them, as those of a grid in step with the array, one answer
+        serves all.
+        """
+        xy, heights = np.asarray(xy, dtype=float), self.own_heights()
+        known: dict[tuple[int, bytes], tuple[IntArray, IntArray, FloatArray]] = {}
+        found = []
+        for tile in self.tiles:
+            patch, core = tile.patch, tile.rows[tile.patch.core]
+            local, near = self._within(tile, xy)
+            key = id(patch), np.round(local[near], SAME).tobytes()
+            if key not in known:
+                known[key] = _entries(patch.field, local[near], least * heights[core])
+            row, column, value = known[key]
+            found.append((value, near[row].astype(np.int32), core[column].astype(np.int32)))
+        flat = [np.concatenate(parts) for parts in zip(*found, strict=True)]
+        known.clear()
+        found.clear()
+        return coo_matrix((flat[0], (flat[1], flat[2])), shape=(len(xy), len(self.points))).tocsr()
+
+    def give(self, place: ArrayLike) -> float:
+        """How far [m/N] the plate, its actuators held, gives at a place (2,) [m] under a unit force; three digits."""
+        return self._array.give(np.asarray(place, dtype=float))
+
+    def first_frequency(self, inertia: float) -> float:
+        """The first frequency [Hz] of the piece of plate around the widest gap between actuators, with them held.
+
+        It is clamped where it is cut out, and so no lower than that of the plate. inertia: kg/m^2, mass per area.
+        """
+        cut, rows = self._array.sparsest()
+        held = self.points[rows] - cut.origin
+        model = self._array.model(self._array.cutter, cut, held)
+        unit = self._array.rigidity / (inertia * model.mesh.size**4)
+        return float(modes(model, held, 1, unit).frequencies[0])
+
     def _width(self, x: FloatArray, weights: FloatArray | None) -> int:
         """How many functions are asked for; ValueError when they are too many for the points."""
         n, count = len(x), len(self.points)
@@ -143,3 +184,17 @@ class PatchedShapes(Shapes):
         local, box = (xy - tile.cut.origin) / patch.size, patch.box / patch.size
         near = np.flatnonzero(((local >= box[0] - SLACK) & (local <= box[1] + SLACK)).all(axis=1))
         return local, near[patch.field.space.holds(local[near])] if near.size else near
+
+
+PlateShapes = InfluenceShapes | PatchedShapes
+
+
+def _entries(field: Field, x: FloatArray, least: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+    """Rows, columns and values of a field's functions (k,) at points (n, 2) that are larger than the least (k,)."""
+    found = [(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))]
+    for start in range(0, len(x), AT_ONCE):
+        values = field.values(x[start : start + AT_ONCE])
+        row, column = np.nonzero(np.abs(values) > least)
+        found.append((row + start, column, values[row, column]))
+    row, column, value = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return row, column, value

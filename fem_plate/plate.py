@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fem_plate import vibration
-from fem_plate.cutting import Cutter
+from fem_plate.cutting import CELL, FINER_CELL, Cutter
 from fem_plate.deflection import Deflection
 from fem_plate.field import Estimated
 from fem_plate.grading import Fineness, corner_rows, graded, singular_corners
 from fem_plate.influence import MOST_DENSE, InfluenceShapes, check_points
 from fem_plate.model import PlateModel
 from fem_plate.patched import PatchedShapes
-from fem_plate.patches import Array, spacing
+from fem_plate.patches import Array, Tell, spacing
 from fem_plate.section import PlateSection
 from fem_plate.supports import by_boundary
 from fem_plate.vibration import Modes
@@ -38,8 +38,8 @@ class Plate:
     mesh: its outline.  section: its material and thickness.
     supports: of the whole rim or by boundary, "clamped", "simply-supported" or "free"; boundaries left out are free.
     tolerance: with one, shapes and deflections are refined until their own error estimate (relative to the largest
-    deflection) meets it, or until 100 000 unknowns; their `error_estimate` says what was reached. Shapes on patches and
-    modes have none.
+    deflection) meets it, or until 100 000 unknowns; their `error_estimate` says what was reached. Shapes on patches
+    have somewhat finer cells then, and modes heed none.
     Raises ValueError, naming every support and boundary that is not known, or a tolerance that is not positive.
     """
 
@@ -73,7 +73,11 @@ class Plate:
         return self._last[1]
 
     def influence(
-        self, points: ArrayLike, stiffness: ArrayLike | None = None, truncation: float | None = None
+        self,
+        points: ArrayLike,
+        stiffness: ArrayLike | None = None,
+        truncation: float | None = None,
+        tell: Tell = lambda done, of: None,
     ) -> InfluenceShapes | PatchedShapes:
         """The influence shapes of actuators at points (N, 2) [m].
 
@@ -81,6 +85,7 @@ class Plate:
         are always taken so, with a truncation of 1e-6 unless given.
         stiffness: (N,) N/m or one for all, of springs in series with the actuators; inf is a rigid one (the default),
         0 one that floats and is driven by a force.
+        tell: called with how many tiles of patches are done, and of how many.
         Raises ValueError, naming every point that is not inside the rim or stands on another and every stiffness below
         0, or when supports and actuators leave the plate a rigid motion.
         """
@@ -96,7 +101,7 @@ class Plate:
         check_points("influence", points, self.mesh.outline.gap(points), self.mesh.size)
         rigidity = self.section.rigidity
         if truncation is not None or len(points) > MOST_DENSE:
-            return self._patched(points, springs, TRUNCATION if truncation is None else truncation)
+            return self._patched(points, springs, TRUNCATION if truncation is None else truncation, tell)
         return self._estimated(points, lambda model: InfluenceShapes(model, points, rigidity, springs))
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
@@ -145,13 +150,14 @@ class Plate:
         inertia = density * self.section.thickness * self.mesh.size**4
         return vibration.modes(model, points, count, self.section.rigidity / inertia)
 
-    def _patched(self, points: FloatArray, springs: FloatArray, truncation: float) -> PatchedShapes:
+    def _patched(self, points: FloatArray, springs: FloatArray, truncation: float, tell: Tell) -> PatchedShapes:
         pitch, rigidity = spacing(points), self.section.rigidity
         most = PATCH_FINENESS * self._fineness.half_width
         fine = replace(self._fineness, cell=min(self._fineness.cell, most))
-        cutter = Cutter(self.mesh, self.supports, fine, self._corners, points, pitch)
+        cell = CELL if self.tolerance is None else FINER_CELL
+        cutter = Cutter(self.mesh, self.supports, fine, self._corners, points, pitch, cell)
         array = Array(cutter, points, springs, rigidity, self.section.poisson_ratio)
-        return PatchedShapes(array, truncation, self.mesh.size, self.mesh.outline)
+        return PatchedShapes(array, truncation, self.mesh.size, self.mesh.outline, tell)
 
     def _estimated(self, points: FloatArray, answer: Callable[[PlateModel], Answer]) -> Answer:
         """An answer that can estimate its error, refined to the tolerance where there is one."""

@@ -49,9 +49,9 @@ def fill(points: FloatArray, rim: Rim, outline: Outline, cell_size: float) -> tu
     """
     points = np.concatenate([points, _lattice(outline, cell_size)])
     for _ in range(ROUNDS):
-        triangles = _triangles(points, outline)
+        triangles = delaunay(points, outline)
         ends = points[rim.edges]
-        missing = ~np.isin(edge_numbers(rim.edges, len(points)), edge_numbers(_sides(triangles), len(points)))
+        missing = ~np.isin(edge_numbers(rim.edges, len(points)), edge_numbers(sides(triangles), len(points)))
         long = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > rim.least(ends[:, 0], ends[:, 1], rim.sides)
         cut = missing | (long & ~missing & _obtuse(points, triangles, rim.edges))
         if not cut.any():
@@ -84,7 +84,7 @@ def _lattice(outline: Outline, cell_size: float) -> FloatArray:
     return np.asarray(xy[outline.gap(xy) > 0.65 * cell_size])
 
 
-def _triangles(points: FloatArray, outline: Outline) -> IntArray:
+def delaunay(points: FloatArray, outline: Outline) -> IntArray:
     """The counter-clockwise Delaunay triangles (m, 3) inside the outline."""
     triangles = Delaunay(points).simplices.astype(np.int64)
     a, b, c = np.moveaxis(points[triangles], 1, 0)
@@ -130,8 +130,8 @@ def _apart(centres: FloatArray, radii: FloatArray) -> FloatArray:
 
 def _obtuse(points: FloatArray, triangles: IntArray, edges: IntArray) -> BoolArray:
     """Whether the triangle on edges (k, 2) sees them at an obtuse angle."""
-    sides = _sides(triangles)
-    code = sides[:, 0] * len(points) + sides[:, 1]
+    pairs = sides(triangles)
+    code = pairs[:, 0] * len(points) + pairs[:, 1]
     order = np.argsort(code)
     place = np.searchsorted(code[order], edges[:, 0] * len(points) + edges[:, 1]).clip(max=len(code) - 1)
     apex = points[np.roll(triangles, -2, axis=1).reshape(-1)[order[place]]]
@@ -141,7 +141,7 @@ def _obtuse(points: FloatArray, triangles: IntArray, edges: IntArray) -> BoolArr
 
 def _smoothed(points: FloatArray, triangles: IntArray, rim: Rim) -> FloatArray:
     """The points with inner ones moved to the middle of their neighbours, where no angle around them gets worse."""
-    points, pairs = points.copy(), _sides(triangles)
+    points, pairs = points.copy(), sides(triangles)
     count = np.bincount(pairs[:, 0], minlength=len(points))
     inner = np.setdiff1d(np.arange(len(points)), rim.edges)
     for _ in range(SMOOTHINGS):
@@ -170,7 +170,8 @@ def angles(points: FloatArray, triangles: IntArray) -> FloatArray:
     return np.asarray(np.arctan2(_cross(to_next, to_last), (to_next * to_last).sum(axis=-1)))
 
 
-def _sides(triangles: IntArray) -> IntArray:
+def sides(triangles: IntArray) -> IntArray:
+    """The sides (3 m, 2) of triangles (m, 3), those of each in its own sense."""
     return np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
 
 

@@ -1,0 +1,60 @@
+"""The steepest and the highest places of a plate with many actuators, found without looking everywhere."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import Delaunay
+
+from fem_plate import PlateShapes
+
+FloatArray = NDArray[np.float64]
+
+MOMENTS, ACTUATORS = 16, 16  # that are looked at closely: so many of each
+AROUND = 8  # points on each circle around one
+RADII = 0.1, 0.3, 0.5  # of circles, in distances to the nearest other actuator
+
+
+def steepest(shapes: PlateShapes, heights: FloatArray) -> tuple[float, float]:
+    """The largest slope and deflection [m] at moments with heights (k, N) [m] of the drives.
+
+    Between neighbours, or an actuator and the rim, the mean slope follows from their heights. Where it is largest, in
+    time and place, and where the plate is highest, circles around the actuators are looked at.
+    """
+    lifted = heights * shapes.own_heights()
+    pairs = _neighbours(shapes.points)
+    distance = np.hypot(*(shapes.points[pairs[:, 0]] - shapes.points[pairs[:, 1]]).T)
+    nearest = np.minimum(np.full(len(shapes.points), np.inf), shapes.outline.gap(shapes.points))
+    rim = nearest.copy()
+    for side in (0, 1):
+        np.minimum.at(nearest, pairs[:, side], distance)
+    slope = np.empty_like(lifted)
+    for row, height in zip(slope, lifted, strict=True):
+        row[:] = np.abs(height) / rim
+        mean = np.abs(height[pairs[:, 0]] - height[pairs[:, 1]]) / distance
+        for side in (0, 1):
+            np.maximum.at(row, pairs[:, side], mean)
+    angle = 2 * np.pi * np.arange(AROUND) / AROUND
+    star = np.multiply.outer(RADII, np.stack([np.cos(angle), np.sin(angle)], axis=1)).reshape(-1, 2)
+    largest, highest = 0.0, float(np.abs(lifted).max())
+    for measure in (slope, np.abs(lifted)):
+        for moment in np.argsort(-measure.max(axis=1), kind="stable")[:MOMENTS]:
+            centres = np.argsort(-measure[moment], kind="stable")[:ACTUATORS]
+            xy = (shapes.points[centres, None] + nearest[centres, None, None] * star).reshape(-1, 2)
+            value, gradient, _ = shapes.evaluate(xy[shapes.outline.gap(xy) >= 0], heights[moment])
+            largest = max(largest, float(np.hypot(*gradient.T).max(initial=0.0)))
+            highest = max(highest, float(np.abs(value).max(initial=0.0)))
+    return largest, highest
+
+
+def _neighbours(points: FloatArray) -> NDArray[np.int64]:
+    """Pairs (k, 2) of rows of points (N, 2) that are neighbours; of points on one line, those next to each other."""
+    spread = points - points.mean(axis=0)
+    across = np.linalg.svd(spread, full_matrices=False)
+    if across[1][-1] < 1e-9 * across[1][0]:
+        order = np.argsort(spread @ across[2][0])
+        return np.stack([order[:-1], order[1:]], axis=1)
+    triangles = Delaunay(points).simplices
+    return np.unique(
+        np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])), axis=0
+    )
