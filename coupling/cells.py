@@ -17,7 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from coupling.rim import rim_curves
 from coupling.translates import PER_PITCH, lattice_of
-from fem_plate import Shapes
+from fem_plate import PatchedShapes, Shapes
 from fem_plate.singular import UNIT_STRENGTH, point_value
 from particle.cells import NOWHERE, UNBUILT, WHOLE, CellFit, CellPool, Cells
 
@@ -48,7 +48,8 @@ class _Cell:
     centre: FloatArray
     half: FloatArray
     fit: CellFit | None = None  # None: off the plate
-    error: float = 0.0
+    error: float = 0.0  # of the fit, over the shapes' heights
+    left_out: float = 0.0  # the sum of what the shapes left out reach there
     quarters: list[_Cell] = field(default_factory=list)
     shared: bool = False  # whether translates of it are cells, too
 
@@ -64,10 +65,13 @@ class PlateCells:
     """
 
     def __init__(self, shapes: Shapes, tolerance: float) -> None:
-        self.shapes, self.tolerance, self.error = shapes, tolerance, 0.0
+        self.shapes, self.error = shapes, 0.0
+        # Shapes that are cut off are not worth a fit that is much better than that.
+        truncation = shapes.truncation_error if isinstance(shapes, PatchedShapes) else 0.0
+        self._aim, self._negligible = max(tolerance, 0.1 * truncation), max(tolerance, truncation) / 4
         self._heights = shapes.own_heights()
         self._few = len(shapes.points) <= FEW
-        self._reach = REACH * (REACHED / tolerance) ** (1 / REACH_ORDER)
+        self._reach = REACH * (REACHED / self._aim) ** (1 / REACH_ORDER)
         self._tree = cKDTree(shapes.points)
         nodes = OVERHANG * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
         self._nodes = np.stack(np.meshgrid(nodes, nodes, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -126,7 +130,7 @@ class PlateCells:
         for place, translate in zip(roots, moved, strict=True):
             cell = translate or next(cells)
             pool.roots[tuple(place)] = pool.add(cell.centre, cell.half, cell.fit, self._add_quarters(cell))
-            self.error = max([self.error, *(leaf.error for leaf in cell.leaves())])
+            self.error = max([self.error, *(leaf.error + leaf.left_out for leaf in cell.leaves())])
         self.cells = pool.cells()
 
     def _cell(self, place: IntArray) -> _Cell:
@@ -163,7 +167,14 @@ class PlateCells:
         centre = cell.centre + pitches * self._lattice.pitch
         clear = float(self.shapes.outline.gap(centre[None])[0]) - OVERHANG * float(np.hypot(*cell.half))
         fit = cell.fit and self._lattice.moved(cell.fit, pitches, max(clear, 0.0))
-        return _Cell(centre, cell.half, fit, cell.error, [self._moved(quarter, pitches) for quarter in cell.quarters])
+        return _Cell(
+            centre,
+            cell.half,
+            fit,
+            cell.error,
+            cell.left_out,
+            [self._moved(quarter, pitches) for quarter in cell.quarters],
+        )
 
     def _add_quarters(self, cell: _Cell) -> int:
         below = [self._add_quarters(quarter) for quarter in cell.quarters]
@@ -176,7 +187,7 @@ class PlateCells:
     def _divide(self, cells: Sequence[_Cell], deepest: int) -> None:
         """Divide those that are not good enough, if it helps: what finite elements are off by stays."""
         crowded = [cell for cell in cells if not self._few and cell.fit and len(cell.fit.near) > FEW]
-        poor = [cell for cell in cells if cell.error > self.tolerance and cell not in crowded]
+        poor = [cell for cell in cells if cell.error > self._aim and cell not in crowded]
         tried = crowded + poor
         if not tried or deepest == 0:
             return
@@ -187,7 +198,7 @@ class PlateCells:
         self._fit([quarter for four in quarters for quarter in four])
         for cell, four in zip(tried, quarters, strict=True):
             errors = np.array([quarter.error for quarter in four])
-            helps = errors.max() < LESS * cell.error or (errors <= self.tolerance).sum() >= 2
+            helps = errors.max() < LESS * cell.error or (errors <= self._aim).sum() >= 2
             if cell in crowded or helps:
                 cell.quarters, cell.fit = four, None
         self._divide([quarter for cell in tried for quarter in cell.quarters], deepest - 1)
@@ -229,7 +240,7 @@ class PlateCells:
         relative = np.abs(values).max(axis=0) / self._heights[rows]
         order = np.argsort(relative, kind="stable")
         dropped = np.cumsum(relative[order])
-        least = 0 if self._few else int(np.searchsorted(dropped, self.tolerance / 4))
+        least = 0 if self._few else int(np.searchsorted(dropped, self._negligible))
         keep = np.full(len(rows), True)
         keep[order[:least]] = False
         if cell.shared and self._lattice:
@@ -253,14 +264,14 @@ class PlateCells:
                 fitted = np.asarray(np.linalg.lstsq(table[:samples], target[:samples], rcond=RCOND)[0])
             wrong = np.abs(table[samples:] @ fitted - target[samples:]) / self._heights[rows]
             error = float(wrong.max(initial=0.0))
-            fine = error <= SPARE * self.tolerance
-            if chosen and not fine and chosen[2] <= SPARE * self.tolerance:
+            fine = error <= SPARE * self._aim
+            if chosen and not fine and chosen[2] <= SPARE * self._aim:
                 break
             if chosen is None or fine or error < chosen[2]:
                 chosen = degree, fitted, error
         assert chosen
         degree, fitted, error = chosen
-        cell.error = error + left_out
+        cell.error, cell.left_out = error, left_out
         cell.fit = CellFit(degree, rows, near, np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy(), clear)
 
     def _at_rim(self, cell: _Cell, reach: float, spacing: float) -> FloatArray:
