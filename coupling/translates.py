@@ -52,7 +52,7 @@ class Lattice:
         if (low < 0).any() or (high > self._rows.shape).any():
             return False
         middle = self.origin + (site + 0.5) * self.pitch
-        reach = (self._depth + 1) * float(np.hypot(*self.pitch))
+        reach = self._depth * float(self.pitch.max())
         square = self._rows[low[0] : high[0], low[1] : high[1]]
         return bool((square >= 0).all() and float(self._outline.gap(middle[None])[0]) > reach)
 

@@ -98,7 +98,8 @@ class Array:
             tile = self._wide_tile(middle, inside, TILE / 2, truncation)
             if not len(tile.cut.edge):
                 # All of the plate, as others would take too: one answer for the whole array.
-                tiles = [self._tile(middle, np.ptp(self.cutter.plate.outline.box, axis=0), np.arange(len(self.points)))]
+                box = self.cutter.plate.outline.box
+                tiles = [self._tile(box.mean(axis=0), np.ptp(box, axis=0), np.arange(len(self.points)))]
                 break
             tiles.append(tile)
         self._known.clear()
