@@ -41,7 +41,7 @@ BLOCK = 3  # cells a side that are built together
 MOST_VALUES = 4_000_000  # points times shapes that are evaluated at once
 
 
-@dataclass
+@dataclass(eq=False)
 class _Cell:
     """A cell in the making."""
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 from statistics import median
+from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ FloatArray = NDArray[np.float64]
 
 PATHS, DURATION, TOLERANCE = 1000, 20e-3, 1e-6
 SAMPLE = 5  # of the paths, by the others
+ROUNDS = 3  # of all paths on one and on two threads
 TRUTH, SCIPY_TOLERANCE, STEPS = 1e-10, 1e-7, 1_000_000
 AGREEMENT = 1e-3  # of the radius, median over the sample
 
@@ -51,6 +52,16 @@ def table() -> list[str]:
         ratios = [time / own for time, own in zip(times[name], times[OURS], strict=True)]
         middle, least, most = map(short, (median(ratios), min(ratios), max(ratios)))
         lines.append(f"| {name} | {error:.0e} | {middle} ({least} - {most}) |")
-    elapsed = processor_seconds(partial(ours.ends, base, surface, starts, TOLERANCE))
-    print(f"{PATHS} paths of {DURATION * 1e3:g} ms: {PATHS / elapsed:.1f} paths a second of the processor's time\n")
+    seconds: dict[int, list[float]] = {1: [], 2: []}
+    ends = {}
+    for _ in range(ROUNDS):
+        for threads, spent in seconds.items():
+            start = perf_counter()
+            ends[threads] = ours.ends(base, surface, starts, TOLERANCE, threads)
+            spent.append(perf_counter() - start)
+    assert np.array_equal(ends[1], ends[2]), "threads change the paths"
+    for threads, spent in seconds.items():
+        print(f"{PATHS} paths of {DURATION * 1e3:g} ms, {threads} threads: {PATHS / median(spent):.0f} paths a second")
+    gains = [one / two for one, two in zip(seconds[1], seconds[2], strict=True)]
+    lines.append(f"| {OURS}, all {PATHS}, on two threads | - | 1/{median(gains):.2f} of that on one |")
     return lines

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling import surface_motion
-from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate
+from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate, simulate_many
 from particle.fields import fields
 from particle.friction import friction_limit
 from particle.local import enter, new_local
@@ -37,12 +37,13 @@ def path_of(problem: PathProblem, surface: SurfaceMotion) -> partial[Trajectory]
     return partial(simulate, surface, part, problem.friction, problem.duration, GRAVITY)
 
 
-def ends(problem: PathProblem, surface: SurfaceMotion, starts: FloatArray, tolerance: float) -> FloatArray:
-    """The ends (n, 2) [m] of parts that begin at `starts` (n, 2) [m], one after the other."""
+def ends(
+    problem: PathProblem, surface: SurfaceMotion, starts: FloatArray, tolerance: float, threads: int = 1
+) -> FloatArray:
+    """The ends (n, 2) [m] of parts that begin at `starts` (n, 2) [m]."""
     parts = [Micropart(MASS, (x, y)) for x, y in starts.tolist()]
-    paths = (
-        simulate(surface, part, problem.friction, problem.duration, GRAVITY, tolerance=tolerance) for part in parts
-    )
+    run = {"gravity": GRAVITY, "tolerance": tolerance, "threads": threads}
+    paths = simulate_many(surface, parts, problem.friction, problem.duration, **run)
     return np.array([path.position[-1] for path in paths])
 
 
