@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,7 +70,7 @@ class PlateCells:
         # Shapes that are cut off are not worth a fit that is much better than that.
         truncation = shapes.truncation_error if isinstance(shapes, PatchedShapes) else 0.0
         self._aim, self._negligible = max(tolerance, 0.1 * truncation), max(tolerance, truncation) / 4
-        self._heights = shapes.own_heights()
+        self._heights, self._lock = shapes.own_heights(), Lock()
         self._few = len(shapes.points) <= FEW
         self._reach = REACH * (REACHED / self._aim) ** (1 / REACH_ORDER)
         self._tree = cKDTree(shapes.points)
@@ -114,12 +115,14 @@ class PlateCells:
     def build(self, places: FloatArray) -> None:
         """Makes sure that there are cells at places (n, 2) [m] on the plate."""
         # Always the same cells together, in whatever order they are asked for: so each has the same bits.
-        at = np.floor((places - self._pool.origin) / self._pool.width / BLOCK).astype(int)
-        blocks = np.unique(np.clip(at, 0, (np.array(self._pool.roots.shape) - 1) // BLOCK), axis=0)
+        last = np.array(self._pool.roots.shape) - 1
+        at = np.clip(np.floor((places - self._pool.origin) / self._pool.width).astype(int), 0, last)
+        blocks = np.unique(at // BLOCK, axis=0)
         for i, j in (blocks * BLOCK).tolist():
-            block = self._pool.roots[i : i + BLOCK, j : j + BLOCK]
-            if (block == UNBUILT).any():
-                self._build(np.argwhere(block == UNBUILT) + (i, j))
+            with self._lock:  # paths on several threads may ask for the same
+                block = self._pool.roots[i : i + BLOCK, j : j + BLOCK]
+                if (block == UNBUILT).any():
+                    self._build(np.argwhere(block == UNBUILT) + (i, j))
 
     def _build(self, roots: IntArray) -> None:
         pool = self._pool
