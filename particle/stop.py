@@ -30,7 +30,6 @@ FloatArray = NDArray[np.float64]
 
 # Gauss's rule on [0, 1], and its end, at which only the load is of interest.
 NODES = np.append(0.5 + 0.5 * np.polynomial.legendre.leggauss(4)[0], 1.0)
-NEXT = 100.0  # times the relative change of the forces: the next order's share of a correction, amply
 WEIGHTS = np.append(0.5 * np.polynomial.legendre.leggauss(4)[1], 0.0)
 
 
@@ -78,8 +77,8 @@ def stop_ahead(
 
     An error in time counts as the way at `pace` [m/s], one of the energy as that on which `force` [N] does such work.
 
-    The forces are frozen a third of the way, where a change that is linear in time has its mean effect. That differs
-    from freezing them now by a share as large as the forces' change, and so again does the next order: the error.
+    The forces are frozen a third of the way, where a change that is linear in time has its mean effect; the error is
+    taken as the difference from freezing them now.
     """
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
     now = frozen_stop(f, a, v_x, v_y, small)
@@ -90,11 +89,8 @@ def stop_ahead(
     later = frozen_stop(g, slope(g, part), v_x, v_y, small)
     if later.reverses != now.reverses or not math.isfinite(later.time):
         return now, math.inf
-    way, late = math.hypot(later.x - now.x, later.y - now.y), abs(later.time - now.time)
-    first = max(way, pace * late, part.mass / force * abs(later.loss - now.loss))
-    # The relative change of the forces on the way, at least what is usual in that share of a stroke.
-    change = max(way / math.hypot(later.x, later.y), late / later.time, later.time / local.frame[UNIT])
-    return later, NEXT * min(change, 1.0) * first
+    miss = max(math.hypot(later.x - now.x, later.y - now.y), pace * abs(later.time - now.time))
+    return later, max(miss, part.mass / force * abs(later.loss - now.loss))
 
 
 @bare

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, polynomial_surface
+from particle.fields import fields
 from particle.local import enter, new_local
 from particle.motion import Part
 from particle.record import SLIDING
@@ -26,7 +27,9 @@ def march(pair, steps):
     enter(surface, local, 0.0, 0.0, 0.0, 1.0)
     state, h, first = np.array([0.1, 0.0, 0.0, 0.2, 0.0, 0.0]), 1 / steps, 0.0
     for k in range(steps):
-        step.loads[0] = rate(SLIDING, local, part, k * h, state, step.rates[0])
+        step.loads[0] = rate(
+            fields(local, state[0], state[1], k * h), SLIDING, local, part, k * h, state, step.rates[0]
+        )
         assert attempt(SLIDING, surface, local, part, pair, step, k * h, state, h)
         first = error(pair, step, h, 1.0, math.inf) if k == 0 else first
         state[:] = step.end
@@ -72,7 +75,7 @@ def test_the_part_does_not_slide_back_within_a_step_under_friction():
     )
     local, step, state = new_local(surface), new_step(pair), np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
     enter(surface, local, 0.0, 0.0, 0.0, 10.0)
-    step.loads[0] = rate(SLIDING, local, part, 0.0, state, step.rates[0])
+    step.loads[0] = rate(fields(local, 0.0, 0.0, 0.0), SLIDING, local, part, 0.0, state, step.rates[0])
     assert attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 0.9)
     assert step.end == pytest.approx([0.9 - 0.5 * 0.81, 0, 0.1, 0, -0.5 * (1 - 0.01) + 0.495, 0.495], abs=1e-14)
     assert not attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 1.5)
