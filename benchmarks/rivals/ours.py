@@ -13,7 +13,7 @@ from coupling import surface_motion
 from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate, simulate_many
 from particle.fields import fields
 from particle.friction import friction_limit
-from particle.local import enter, new_local
+from particle.local import cell_at, enter, new_local, within_cell
 from rivals.problem import GRAVITY, MASS, PathProblem
 
 __all__ = ["ends", "evaluations", "friction_limit", "path_of", "surface_of"]
@@ -50,7 +50,12 @@ def ends(
 def evaluations(surface: SurfaceMotion, xy: FloatArray, time: float, rounds: int) -> FloatArray:
     """w, w_t, w_tt, gradient, its rate, xx, xy, yy (n, 10) at points (n, 2) [m], `rounds` times over."""
     surface.evaluate(xy, time)  # so that all the cells are built
-    return _evaluations(surface.record, new_local(surface.record), xy, time, rounds)
+    record = surface.record
+    # A part stays in a cell for many evaluations: those of each cell together.
+    order = np.argsort([cell_at(record.cells, x, y) for x, y in xy.tolist()], kind="stable")
+    out = np.empty((len(xy), 10))
+    out[order] = _evaluations(record, new_local(record), np.ascontiguousarray(xy[order]), time, rounds)
+    return out
 
 
 @numba.njit(error_model="numpy", nogil=True)
@@ -58,7 +63,10 @@ def _evaluations(surface: Any, local: Any, xy: FloatArray, time: float, rounds: 
     out = np.empty((len(xy), 10))
     for _ in range(rounds):
         for n in range(len(xy)):
-            enter(surface, local, xy[n, 0], xy[n, 1], time, np.inf)
+            if n == 0 or not within_cell(local, xy[n, 0], xy[n, 1]):
+                enter(surface, local, xy[n, 0], xy[n, 1], time, np.inf)
             f = fields(local, xy[n, 0], xy[n, 1], time)
-            out[n] = np.array([f.w, f.w_t, f.w_tt, f.x, f.y, f.xt, f.yt, f.xx, f.xy, f.yy])
+            row = out[n]
+            row[0], row[1], row[2], row[3], row[4] = f.w, f.w_t, f.w_tt, f.x, f.y
+            row[5], row[6], row[7], row[8], row[9] = f.xt, f.yt, f.xx, f.xy, f.yy
     return out
