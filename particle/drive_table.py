@@ -103,37 +103,43 @@ def monomial_table(count: int) -> DriveTable:
 
 
 @jit
-def jumps(table: DriveTable) -> bool:
-    """Whether any drive's velocity jumps at a kink: from one segment to the next, at its start or at its end."""
+def jumps(table: DriveTable, order: int) -> bool:
+    """Whether a derivative of any drive jumps at a kink: from one segment to the next, at its start or at its end.
+
+    order: 1 for its velocity, 2 for its acceleration.
+    """
     for i in range(len(table.span)):
         if not math.isfinite(table.span[i]):
             continue
         low, high = table.first[i], table.first[i + 1]
-        endless, speed = not math.isfinite(table.repeats[i]), 0.0
+        endless, most = not math.isfinite(table.repeats[i]), 0.0
         for row in range(low, high):
-            speed = max(speed, np.abs(table.coefficients[row]).max() / table.scale[low:high].min())
-        first, left = table.coefficients[low, 1] / table.scale[low], 0.0
-        last = _leaving(table, high - 1)
+            most = max(most, np.abs(table.coefficients[row]).max() / table.scale[low:high].min() ** order)
+        first, left = _derivative(table, low, order, 0.0), 0.0
+        last = _derivative(table, high - 1, order, 1.0)
         # At rest before the start and after the end, if there is one; else the last segment goes on into the first.
         step = abs(last - first) if endless else max(abs(first), abs(last))
         if table.repeats[i] > 1:
             step = max(step, abs(last - first), abs(first))
         for row in range(low, high):
             if row > low:
-                step = max(step, abs(table.coefficients[row, 1] / table.scale[row] - left))
-            left = _leaving(table, row)
-        if step > ROUNDING * 100 * speed:
+                step = max(step, abs(_derivative(table, row, order, 0.0) - left))
+            left = _derivative(table, row, order, 1.0)
+        if step > ROUNDING * 100 * most:
             return True
     return False
 
 
 @bare
-def _leaving(table: DriveTable, row: int) -> float:
-    """The velocity [m/s] at the end of a segment."""
+def _derivative(table: DriveTable, row: int, order: int, place: float) -> float:
+    """A derivative [m/s^order] of a segment at a place from 0, its beginning, to 1."""
     total = 0.0
-    for k in range(1, ORDER):
-        total += k * table.coefficients[row, k]
-    return total / table.scale[row]
+    for k in range(ORDER - 1, order - 1, -1):
+        factor = table.coefficients[row, k]
+        for j in range(order):
+            factor *= k - j
+        total = total * place + factor
+    return total / table.scale[row] ** order
 
 
 @bare

@@ -41,7 +41,7 @@ from particle.record import (
     row_of,
     write,
 )
-from particle.runge_kutta import Tableau, new_step
+from particle.runge_kutta import Pairs, new_step
 from particle.slide import (
     DETACHED,
     GOES_ON,
@@ -75,13 +75,13 @@ class Memory(NamedTuple):
 
 
 @jit
-def new_memory(surface: Any, pair: Tableau, stop: NDArray[np.int64]) -> Memory:
+def new_memory(surface: Any, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
     """Scratch memory that fits the surface as far as its cells are built."""
-    return Memory(new_local(surface), new_rest(), new_step(pair), stop)
+    return Memory(new_local(surface), new_rest(), new_step(pairs), stop)
 
 
 @jit
-def march(surface: Any, request: Request, pair: Tableau, memory: Memory) -> tuple[FloatArray, FloatArray, int, int]:
+def march(surface: Any, request: Request, pairs: Pairs, memory: Memory) -> tuple[FloatArray, FloatArray, int, int]:
     """The path from one request: rows (n, COLUMNS), events (m, EVENT_COLUMNS), how it ended, evaluations.
 
     Where a cell is lacking, at memory.local.missing, it ends, and must begin anew when there is one.
@@ -89,6 +89,7 @@ def march(surface: Any, request: Request, pair: Tableau, memory: Memory) -> tupl
     part, end = request.part, request.duration
     local, rest, step, record = memory.local, memory.rest, memory.step, new_record()
     forget(local)
+    step.seen[0] = math.nan
     count = np.zeros(3, dtype=np.int64)  # evaluations, spans, long steps
     # x, y, v_x, v_y, work, dissipation, z, v_z; on the slow manifold u in place of v_x.
     state, time = np.zeros(8), 0.0
@@ -103,6 +104,8 @@ def march(surface: Any, request: Request, pair: Tableau, memory: Memory) -> tupl
             if time >= end:
                 break
             h = max(h, 1e-4 * request.stroke_time)
+            if request.bends or request.jumps:
+                step.seen[0] = math.nan
             if request.jumps and count[1] > 0:
                 before, row = mode, row_of(local, part, mode, time, state)
                 mode, jolted = _cross_kink(surface, local, request, mode, time, row, state)
@@ -155,7 +158,7 @@ def march(surface: Any, request: Request, pair: Tableau, memory: Memory) -> tupl
                 # A surface that falls away as it is met is not held on to.
                 mode, event = (FLYING if load < -part.law.pull_off else mode), LANDS
         else:
-            mode, time, h, verdict = slide(surface, local, request, pair, step, count, mode, time, h, span_end, state)
+            mode, time, h, verdict = slide(surface, local, request, pairs, step, count, mode, time, h, span_end, state)
             if mode == RESTING:
                 event = STOPS
             elif mode == TURNED:

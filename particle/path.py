@@ -14,7 +14,7 @@ from particle.events import march, new_memory
 from particle.fixed import march_fixed
 from particle.local import missing_place, new_local
 from particle.resume import resume
-from particle.runge_kutta import tableau
+from particle.runge_kutta import pairs_for
 from particle.slide import DETACHED, GOES_ON, INTERRUPTED, LACKS_CELL, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
 from particle.stay import stays
 from particle.surface import Surface, SurfaceMotion
@@ -38,17 +38,17 @@ def find_path(
 
     tolerance: relative to the surface's size.
     """
-    pair, stop = tableau(tolerance), np.zeros(1, dtype=np.int64) if stop is None else stop
+    pairs, stop = pairs_for(tolerance), np.zeros(1, dtype=np.int64) if stop is None else stop
 
     def path(record: Surface) -> tuple[Found, FloatArray]:
-        memory = new_memory(record, pair, stop)
-        return march(record, request, pair, memory), missing_place(memory.local)
+        memory = new_memory(record, pairs, stop)
+        return march(record, request, pairs, memory), missing_place(memory.local)
 
     found = _with_cells(surface, path)
     rows, _, verdict, _ = found
     if verdict == INTERRUPTED:
         return None
-    trajectory = _trajectory(surface, request, found, partial(resume, surface.record, request, pair, rows))
+    trajectory = _trajectory(surface, request, found, partial(resume, surface.record, request, pairs, rows))
     if trajectory.outcome is Outcome.STUCK:
         x, y = trajectory.position[-1].tolist()
         future = partial(stays, surface, request.part, x, y, request.duration)

@@ -30,17 +30,17 @@ from particle.record import (
     Z,
     row_of,
 )
-from particle.runge_kutta import Step, Tableau, new_step
+from particle.runge_kutta import Step, Pairs, new_step
 from particle.slide import GOES_ON, TURNED, Request, slide
 
 FloatArray = NDArray[np.float64]
 
 
 @jit
-def resume(surface: Any, request: Request, pair: Tableau, rows: FloatArray, times: FloatArray) -> FloatArray:
+def resume(surface: Any, request: Request, pairs: Pairs, rows: FloatArray, times: FloatArray) -> FloatArray:
     """The rows (k, COLUMNS) at ascending times (k,) [s], each marched to from the row of the path before it."""
     part, out = request.part, np.zeros((len(times), COLUMNS))
-    local, step, count = new_local(surface), new_step(pair), np.zeros(3, dtype=np.int64)
+    local, step, count = new_local(surface), new_step(pairs), np.zeros(3, dtype=np.int64)
     state, row = np.zeros(8), 0
     for k in range(len(times)):
         while row + 1 < len(rows) and rows[row + 1, TIME] <= times[k]:
@@ -57,7 +57,7 @@ def resume(surface: Any, request: Request, pair: Tableau, rows: FloatArray, time
             state[4] -= energy_at_rest(local, part, time, state)
             time = times[k]
             state[4] += energy_at_rest(local, part, time, state)
-        mode = _to(surface, local, request, pair, step, count, mode, time, times[k], state)
+        mode = _to(surface, local, request, pairs, step, count, mode, time, times[k], state)
         out[k] = row_of(local, part, mode, times[k], state)
     return out
 
@@ -77,7 +77,7 @@ def _to(
     surface: Any,
     local: Any,
     request: Request,
-    pair: Tableau,
+    pairs: Pairs,
     step: Step,
     count: NDArray[np.int64],
     mode: int,
@@ -92,7 +92,7 @@ def _to(
             mode, time, _, verdict = fly(surface, local, request, count, time, end - time, end, state)
         else:
             mode, time, _, verdict = slide(
-                surface, local, request, pair, step, count, mode, time, end - time, end, state
+                surface, local, request, pairs, step, count, mode, time, end - time, end, state
             )
             mode = MANIFOLD if mode == TURNED else mode
     return mode

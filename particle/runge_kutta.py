@@ -14,7 +14,7 @@ from particle.breakaway import manifold_rate
 from particle.fields import Fields, fields
 from particle.friction import friction_limit
 from particle.jit import bare, jit
-from particle.local import gap_at, within_cell
+from particle.local import CELL, gap_at, within_cell
 from particle.motion import Part, margin, slide_rate
 from particle.record import SLIDING
 
@@ -34,12 +34,24 @@ class Tableau(NamedTuple):
     blend: FloatArray  # (m, stages + 1): a smooth quantity there, from its values at the stages
 
 
+class Pairs(NamedTuple):
+    """The pairs that a path uses: one for steps as long as the tolerance admits, one where a kink ends them before."""
+
+    long: Tableau
+    short: Tableau
+
+
 @cache
-def tableau(tolerance: float) -> Tableau:
-    """Order 5 for loose tolerances, order 8 for tight ones."""
-    if tolerance >= LOOSE:
+def tableau(order: int) -> Tableau:
+    """The pair of order 5 or 8."""
+    if order == 5:
         return _tableau(RK45, np.stack([RK45.E, 0 * RK45.E]), 5)
     return _tableau(DOP853, np.stack([DOP853.E5, DOP853.E3]), 8)
+
+
+def pairs_for(tolerance: float) -> Pairs:
+    """Order 8 for long steps at tight tolerances, order 5 elsewhere."""
+    return Pairs(long=tableau(5 if tolerance >= LOOSE else 8), short=tableau(5))
 
 
 def _tableau(pair: Any, error: FloatArray, order: int) -> Tableau:
@@ -66,13 +78,38 @@ class Step(NamedTuple):
     start_gap: FloatArray  # (1,) m, the step's start from the rim
     moving: FloatArray  # (8,) the state in the plane's coordinates
     still: FloatArray  # (2,) zeros
+    seen: FloatArray  # (4 + Fields,) the last stage's time, x, y and cell, and the surface there
 
 
 @jit
-def new_step(pair: Tableau) -> Step:
-    stages = len(pair.c)
+def new_step(pairs: Pairs) -> Step:
+    stages = len(pairs.long.c)
     rates, loads = np.zeros((stages, 6)), np.zeros(stages)
-    return Step(rates, loads, loads.copy(), np.zeros(6), np.zeros(6), np.zeros(1), np.zeros(8), np.zeros(2))
+    return Step(
+        rates, loads, loads.copy(), np.zeros(6), np.zeros(6), np.zeros(1), np.zeros(8), np.zeros(2), np.full(20, math.nan)
+    )
+
+
+@bare
+def fields_at_start(local: Any, step: Step, count: NDArray[np.int64], time: float, state: FloatArray) -> Fields:
+    """The surface where a step starts; the step before may have seen it at its end. count[0] counts evaluations."""
+    s = step.seen
+    if s[0] == time and s[1] == state[0] and s[2] == state[1] and s[3] == local.counts[CELL]:
+        return Fields(
+            s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11], s[12], s[13], s[14], s[15], s[16], s[17], s[18], s[19]
+        )
+    count[0] += 1
+    return fields(local, state[0], state[1], time)
+
+
+@bare
+def keep_fields(local: Any, step: Step, time: float, f: Fields) -> None:
+    """Keep the surface at the end of a step that ends at a time [s]."""
+    s = step.seen
+    s[0], s[1], s[2], s[3] = time, step.stage[0], step.stage[1], local.counts[CELL]
+    s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11] = f.w, f.w_t, f.w_tt, f.x, f.y, f.xt, f.yt, f.xx
+    s[12], s[13], s[14], s[15] = f.xy, f.yy, f.base_px, f.base_py
+    s[16], s[17], s[18], s[19] = f.base_vx, f.base_vy, f.base_ax, f.base_ay
 
 
 @bare
@@ -108,8 +145,11 @@ def attempt(
             return False
         if dry and step.stage[2] * state[2] + step.stage[3] * state[3] <= 0.0:
             return False
-        f = fields(local, step.stage[0], step.stage[1], time + pair.c[k] * h)
-        load = rate(f, mode, local, part, time + pair.c[k] * h, step.stage, step.rates[k])
+        moment = time + pair.c[k] * h
+        f = fields(local, step.stage[0], step.stage[1], moment)
+        if k == stages - 1:
+            keep_fields(local, step, moment, f)
+        load = rate(f, mode, local, part, moment, step.stage, step.rates[k])
         # As far from the rim as the start is, less the way from there: where that does not settle it, look.
         gap = step.start_gap[0] - math.hypot(step.stage[0] - state[0], step.stage[1] - state[1])
         gap = gap if gap > 0.0 else gap_at(surface, local, step.stage[0], step.stage[1])

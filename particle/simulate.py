@@ -102,5 +102,6 @@ def new_request(
         stroke_time=stroke_time,
         force=float(part.mass * (np.linalg.norm(vector) + surface.size / stroke_time**2)),
         flies=flies,
-        jumps=bool(jumps(surface.drives)),
+        jumps=bool(jumps(surface.drives, 1)),
+        bends=bool(jumps(surface.drives, 2)),
     )

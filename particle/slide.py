@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from particle.breakaway import Slope, lag, slope, velocity
 from particle.fields import Fields, fields
 from particle.jit import bare
-from particle.local import NEAR, gap_at
+from particle.local import NEAR, UNIT, gap_at
 from particle.motion import Part, energy_at_rest, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
-from particle.runge_kutta import Step, Tableau, attempt, error, first_excursion, rate
-from particle.stop import Stop, come_to_rest, stop_ahead
+from particle.runge_kutta import Pairs, Step, Tableau, attempt, error, fields_at_start, first_excursion, rate
+from particle.stop import Stop, come_to_rest, frozen_stop, stop_ahead
 
 FloatArray = NDArray[np.float64]
 
@@ -29,6 +29,8 @@ SHORTEST = 1e-13  # of a stroke: no step is shorter
 TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
 GROWTH, SAFETY = 5.0, 0.9
 SHORT_OF_STOP = 0.6  # of the time to a stop, beyond which the velocity is a power of that time, not a polynomial of it
+SHORT = 0.35  # of a step that the long pair would take: one that the short pair can take
+IN_SIGHT = 5.0  # steps: how near a stop must be to be looked at
 OFF_MANIFOLD = 0.4  # of the last step on the slow manifold: the first one off it
 CLOSE, BEGUN = 0.1, 0.01  # of a step: how near and how late it must pass an actuator to end there
 
@@ -44,6 +46,7 @@ class Request(NamedTuple):
     force: float  # N, that of gravity and of crossing the surface in a stroke
     flies: bool  # whether a part that comes off is followed to where it lands
     jumps: bool  # whether the surface's velocity jumps at kinks
+    bends: bool  # whether its acceleration does
 
 
 @bare
@@ -51,7 +54,7 @@ def slide(
     surface: Any,
     local: Any,
     request: Request,
-    pair: Tableau,
+    pairs: Pairs,
     step: Step,
     count: NDArray[np.int64],
     mode: int,
@@ -65,11 +68,10 @@ def slide(
     Returns what the part does then, the time, the next h and how the path ended (GOES_ON: it did not).
     """
     part, tolerance = request.part, request.tolerance
-    f = fields(local, state[0], state[1], time)
+    f = fields_at_start(local, step, count, time, state)
     a = slope(f, part)
     step.loads[0] = rate(f, mode, local, part, time, state, step.rates[0])
     step.start_gap[0] = gap_at(surface, local, state[0], state[1])
-    count[0] += 1
     if mode == SLIDING or (a.demand < a.limit and state[2] > 0.0):
         moving = step.moving
         put(state, 8, moving)
@@ -77,8 +79,11 @@ def slide(
             kappa = lag(local, part, time, state[0], state[1], state[2], f, a)
             moving[2], moving[3] = velocity(state[2], kappa, a)
         pace = 0.01 * surface.size / request.stroke_time
-        stop, miss = stop_ahead(f, a, local, part, time, moving, 0.01 * tolerance, pace, request.force)
-        count[0] += 1
+        small = 0.01 * tolerance
+        stop, miss = frozen_stop(f, a, moving[2], moving[3], small), math.inf
+        if stop.time < min(IN_SIGHT * h, 0.5 * local.frame[UNIT]):
+            stop, miss = stop_ahead(stop, local, part, time, moving, small, pace, request.force)
+            count[0] += 1
         near = time + stop.time <= span_end and miss < 0.1 * tolerance
         near = near and _stops_on_plate(surface, local, step, moving, stop)
         count[0] += 5 * near
@@ -95,6 +100,9 @@ def slide(
         step.loads[0] = rate(f, mode, local, part, time, state, step.rates[0])
     remaining = span_end - time
     shortest = SHORTEST * request.stroke_time
+    pair, reach = pairs.long, 1.0
+    if pairs.short.order < pairs.long.order and remaining < SHORT * h:
+        pair, reach = pairs.short, SHORT
     while True:
         h = remaining if h >= 0.9 * remaining else h
         if mode == SLIDING:
@@ -106,6 +114,9 @@ def slide(
             h *= 0.5
             continue
         wrong = error(pair, step, h, request.stroke_time, request.force) / tolerance
+        if not wrong <= 1.0 and reach < 1.0:
+            pair, reach = pairs.long, 1.0
+            continue
         if not wrong <= 1.0:
             h *= max(0.2, SAFETY * wrong ** (-1 / pair.order)) if wrong > 1.0 else 0.2
             continue
@@ -139,7 +150,7 @@ def slide(
             h = _locate_end(surface, local, part, pair, step, count, mode, time, state, h)
             put(step.end, 6, state)
             return mode, time + h, h, reason(surface, part, step.loads[last], state)
-        if step.margins[1:].min() < 0.0:
+        if step.margins[1 : last + 1].min() < 0.0:
             h *= 0.5
             continue
         within = first_excursion(part, pair, step)
@@ -149,11 +160,12 @@ def slide(
         break
     put(step.end, 6, state)
     time = span_end if h == remaining else time + h
+    step.seen[0] = time
     if mode == MANIFOLD:
         mode = _leave_manifold(local, request, time, state)
         if mode == SLIDING:
             return mode, time, OFF_MANIFOLD * h, GOES_ON
-    return mode, time, h * min(GROWTH, SAFETY * max(wrong, 1e-12) ** (-1 / pair.order)), GOES_ON
+    return mode, time, h / reach * min(GROWTH, SAFETY * max(wrong, 1e-12) ** (-1 / pair.order)), GOES_ON
 
 
 @bare

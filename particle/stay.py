@@ -25,7 +25,7 @@ def stays(surface: SurfaceMotion, part: Part, x: float, y: float, time: float) -
     None: not known, as the endless drives have no common period of up to a thousand passes of each, a drive is
     a polynomial without end, or a drive's velocity jumps.
     """
-    if jumps(surface.drives):
+    if jumps(surface.drives, 1):
         return None
     after = horizon(surface.drives, time)
     if after is None:

@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from particle.breakaway import Slope, slope
 from particle.fields import Fields, fields
 from particle.jit import bare
-from particle.local import UNIT
 from particle.motion import Part, drag, pull, push
 
 FloatArray = NDArray[np.float64]
@@ -71,9 +70,9 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> St
 
 @bare
 def stop_ahead(
-    f: Fields, a: Slope, local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float, force: float
+    now: Stop, local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float, force: float
 ) -> tuple[Stop, float]:
-    """The stop ahead of a sliding part, with an estimate of its error [m].
+    """The stop ahead of a sliding part, which would be `now` under forces that do not change; and its error [m].
 
     An error in time counts as the way at `pace` [m/s], one of the energy as that on which `force` [N] does such work.
 
@@ -81,9 +80,6 @@ def stop_ahead(
     taken as the difference from freezing them now.
     """
     x, y, v_x, v_y = state[0], state[1], state[2], state[3]
-    now = frozen_stop(f, a, v_x, v_y, small)
-    if not now.time < 0.5 * local.frame[UNIT]:
-        return now, math.inf
     # After a third of the time a straight stop has covered five ninths of its way.
     g = fields(local, x + 5 / 9 * now.x, y + 5 / 9 * now.y, time + now.time / 3)
     later = frozen_stop(g, slope(g, part), v_x, v_y, small)
