@@ -33,12 +33,15 @@ CHECKS = 48  # points between those, at which its error is measured
 FEW = 8  # actuators whose logarithms are kept everywhere: their exact sum is cheaper than smaller cells
 RCOND = 1e-12
 DEEPEST = 6  # times that a cell is divided
-LESS = 0.75  # of its error: dividing helps if that is left at most
+# Dividing pays where it leaves of the error at most this; first where the error is so large that no order shows yet.
+LESS_AT_FIRST, COARSE, LESS = 0.75, 1e-3, 0.1
 ACROSS = 8  # cells along the plate's longer side, at least
 PER_SPACING = 2.0  # cells from one actuator to the next
 # The polynomial's error falls with the distance of the nearest logarithm that it takes up, in half widths.
 REACH, REACHED, REACH_ORDER = 8.0, 1e-9, 9
 BLOCK = 3  # cells a side that are built together
+MOST_DIVIDED = 128  # at once: where more are not good enough, the shapes are not
+BUILDING = Lock()  # one for all surfaces, as the limit of BLAS threads is the process's
 MOST_VALUES = 4_000_000  # points times shapes that are evaluated at once
 
 
@@ -70,7 +73,7 @@ class PlateCells:
         # Shapes that are cut off are not worth a fit that is much better than that.
         truncation = shapes.truncation_error if isinstance(shapes, PatchedShapes) else 0.0
         self._aim, self._negligible = max(tolerance, 0.1 * truncation), max(tolerance, truncation) / 4
-        self._heights, self._lock = shapes.own_heights(), Lock()
+        self._heights = shapes.own_heights()
         self._few = len(shapes.points) <= FEW
         self._reach = REACH * (REACHED / self._aim) ** (1 / REACH_ORDER)
         self._tree = cKDTree(shapes.points)
@@ -83,7 +86,8 @@ class PlateCells:
         self._pool = CellPool(*self._grid())
         self.cells: Cells = self._pool.cells()
         if self._few:
-            self._build(np.argwhere(self._pool.roots == UNBUILT))
+            with BUILDING:
+                self._build(np.argwhere(self._pool.roots == UNBUILT))
 
     def _grid(self) -> tuple[FloatArray, FloatArray, IntArray]:
         """The grid's origin and cell width (2,) [m], and which of its cells (nx, ny) there is to build."""
@@ -119,7 +123,7 @@ class PlateCells:
         at = np.clip(np.floor((places - self._pool.origin) / self._pool.width).astype(int), 0, last)
         blocks = np.unique(at // BLOCK, axis=0)
         for i, j in (blocks * BLOCK).tolist():
-            with self._lock:  # paths on several threads may ask for the same
+            with BUILDING:  # paths on several threads may ask for the same
                 block = self._pool.roots[i : i + BLOCK, j : j + BLOCK]
                 if (block == UNBUILT).any():
                     self._build(np.argwhere(block == UNBUILT) + (i, j))
@@ -192,7 +196,7 @@ class PlateCells:
         crowded = [cell for cell in cells if not self._few and cell.fit and len(cell.fit.near) > FEW]
         poor = [cell for cell in cells if cell.error > self._aim and cell not in crowded]
         tried = crowded + poor
-        if not tried or deepest == 0:
+        if not tried or deepest == 0 or len(tried) > MOST_DIVIDED:
             return
         quarters = []
         for cell in tried:
@@ -201,7 +205,8 @@ class PlateCells:
         self._fit([quarter for four in quarters for quarter in four])
         for cell, four in zip(tried, quarters, strict=True):
             errors = np.array([quarter.error for quarter in four])
-            helps = errors.max() < LESS * cell.error or (errors <= self._aim).sum() >= 2
+            less = LESS_AT_FIRST if cell.error > COARSE else LESS
+            helps = errors.max() < less * cell.error or (errors <= self._aim).sum() >= 2
             if cell in crowded or helps:
                 cell.quarters, cell.fit = four, None
         self._divide([quarter for cell in tried for quarter in cell.quarters], deepest - 1)
@@ -259,8 +264,9 @@ class PlateCells:
         x = (cell.centre + local * cell.half) / self.shapes.size
         target = target - point_value(x, self.shapes.points[near] / self.shapes.size) @ strengths
         chosen = None
+        highest, total = monomials(local, DEGREES[-1]), powers(DEGREES[-1]).sum(axis=1)
         for degree in reversed(DEGREES):
-            table = monomials(local, degree)
+            table = highest[:, total <= degree]
             if clear > 0:
                 fitted: FloatArray = self._inverses[degree] @ target[:samples]
             else:
@@ -290,7 +296,11 @@ class PlateCells:
 
 def monomials(local: FloatArray, degree: int) -> FloatArray:
     """x^i y^j at points (n, 2), sorted by powers of x, then of y: (n, M)."""
-    powers = local[:, :, None] ** np.arange(degree + 1)
-    return np.stack(
-        [powers[:, 0, i] * powers[:, 1, j] for i in range(degree + 1) for j in range(degree + 1 - i)], axis=1
-    )
+    i, j = powers(degree).T
+    each = local[:, :, None] ** np.arange(degree + 1)
+    return np.asarray(each[:, 0, i] * each[:, 1, j])
+
+
+def powers(degree: int) -> IntArray:
+    """The powers (M, 2) of x and y in a polynomial of a degree."""
+    return np.array([(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)])

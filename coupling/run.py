@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 import particle
 from coupling.case import Case, ConstantCase, CoulombCase, TableCase
 from coupling.csv_file import check_csv
@@ -56,6 +58,12 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
     """
     if output is not None and csv:
         check_csv(Path(output) / f"{case.name}.csv")
+    # Many small systems: BLAS threads would only wait for each other, and take two to four times as long.
+    with threadpool_limits(limits=1, user_api="blas"):
+        return _run(case, None if output is None else Path(output), progress, csv)
+
+
+def _run(case: Case, output: Path | None, progress: Progress, csv: bool) -> Result:
     scene = build_scene(case, progress)
     with progress("Following the part (the first run compiles: half a minute)"):
         friction = build_friction(case)
@@ -66,7 +74,7 @@ def run_case(case: Case, output: str | Path | None = None, progress: Progress = 
     if output is None:
         return Result(case, scene, trajectory, summary)
     with progress("Writing the results") as tell:
-        files = write_results(case, scene, trajectory, summary, Path(output), csv, tell)
+        files = write_results(case, scene, trajectory, summary, output, csv, tell)
     return Result(case, scene, trajectory, summary, files)
 
 

@@ -20,7 +20,7 @@ from particle.fields import fields
 from particle.flight import JUMP, fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.local import END, enter, forget, gap_at, new_local
+from particle.local import END, enter, gap_at, go_on, new_local
 from particle.motion import Part, energy_at_rest, margin, pull
 from particle.record import (
     ENDS,
@@ -66,7 +66,7 @@ LONG, EVALUATIONS_PER_STEP = 1e-5, 40  # of the run: steps that are no sign of t
 
 
 class Memory(NamedTuple):
-    """Scratch memory of a path; another may use it next."""
+    """Scratch memory of a path."""
 
     local: Any
     rest: Any
@@ -88,8 +88,6 @@ def march(surface: Any, request: Request, pairs: Pairs, memory: Memory) -> tuple
     """
     part, end = request.part, request.duration
     local, rest, step, record = memory.local, memory.rest, memory.step, new_record()
-    forget(local)
-    step.seen[0] = math.nan
     count = np.zeros(3, dtype=np.int64)  # evaluations, spans, long steps
     # x, y, v_x, v_y, work, dissipation, z, v_z; on the slow manifold u in place of v_x.
     state, time = np.zeros(8), 0.0
@@ -196,10 +194,12 @@ def _results(record: Record, verdict: int, count: NDArray[np.int64]) -> tuple[Fl
 def _cross_kink(
     surface: Any, local: Any, request: Request, mode: int, time: float, row: FloatArray, state: FloatArray
 ) -> tuple[int, bool]:
-    """Goes on to the next span over a kink; what the part does then, and whether the surface's velocity jumped."""
+    """Goes on to the next span over a kink; what the part does then, and whether the surface's velocity jumped.
+
+    It stays in its cell for that: from one cell to the next the velocity differs by what the fits are off by.
+    """
     before = fields(local, state[0], state[1], time)
-    if enter(surface, local, state[0], state[1], time, request.duration) < 0:
-        return mode, False
+    go_on(surface, local, time, request.duration)
     after = fields(local, state[0], state[1], time)
     moved = state.copy()
     if mode == MANIFOLD:

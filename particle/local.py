@@ -66,19 +66,13 @@ def new_local(surface: Any) -> Local:
         surface.overhang,
     )
     local.counts[BASE] = 2 * surface.moving_base
-    forget(local)
+    local.counts[CELL] = NOWHERE
     return local
 
 
 @bare
 def _monomials(degree: int) -> int:
     return (degree + 1) * (degree + 2) // 2
-
-
-@jit
-def forget(local: Local) -> None:
-    """Make the memory good for another path."""
-    local.counts[CELL] = NOWHERE
 
 
 def missing_place(local: Local) -> FloatArray:
@@ -126,9 +120,18 @@ def enter(surface: Any, local: Local, x: float, y: float, time: float, end: floa
     same = cell == local.counts[CELL] and time >= local.frame[TIME]
     if same and time < local.frame[END]:
         return cell
-    if not (same and _go_on(surface, local, time, end)):
+    if same:
+        go_on(surface, local, time, end)
+    else:
         _begin(surface, local, cell, time, end)
     return cell
+
+
+@bare
+def go_on(surface: Any, local: Local, time: float, end: float) -> None:
+    """Prepare for later times in the same cell."""
+    if not _move_on(surface, local, time, end):
+        _begin(surface, local, local.counts[CELL], time, end)
 
 
 @bare
@@ -179,7 +182,7 @@ def _begin(surface: Any, local: Local, cell: int, time: float, end: float) -> No
 
 
 @bare
-def _go_on(surface: Any, local: Local, time: float, end: float) -> bool:
+def _move_on(surface: Any, local: Local, time: float, end: float) -> bool:
     """Move what is prepared on to a later time; False where that is not worth it."""
     f, counts, clock = local.frame, local.counts, local.clock
     passed = 0

@@ -30,7 +30,7 @@ from particle.record import (
     Z,
     row_of,
 )
-from particle.runge_kutta import Step, Pairs, new_step
+from particle.runge_kutta import Pairs, Step, new_step
 from particle.slide import GOES_ON, TURNED, Request, slide
 
 FloatArray = NDArray[np.float64]

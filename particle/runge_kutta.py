@@ -86,7 +86,15 @@ def new_step(pairs: Pairs) -> Step:
     stages = len(pairs.long.c)
     rates, loads = np.zeros((stages, 6)), np.zeros(stages)
     return Step(
-        rates, loads, loads.copy(), np.zeros(6), np.zeros(6), np.zeros(1), np.zeros(8), np.zeros(2), np.full(20, math.nan)
+        rates,
+        loads,
+        loads.copy(),
+        np.zeros(6),
+        np.zeros(6),
+        np.zeros(1),
+        np.zeros(8),
+        np.zeros(2),
+        np.full(20, math.nan),
     )
 
 

@@ -32,7 +32,7 @@ SHORT_OF_STOP = 0.6  # of the time to a stop, beyond which the velocity is a pow
 SHORT = 0.35  # of a step that the long pair would take: one that the short pair can take
 IN_SIGHT = 5.0  # steps: how near a stop must be to be looked at
 OFF_MANIFOLD = 0.4  # of the last step on the slow manifold: the first one off it
-CLOSE, BEGUN = 0.1, 0.01  # of a step: how near and how late it must pass an actuator to end there
+CLOSE, LATE = 0.1, 0.01  # of a step: how near and how late it must pass an actuator to end there
 
 
 class Request(NamedTuple):
@@ -183,7 +183,7 @@ def _to_passage(local: Any, state: FloatArray, h: float) -> float:
     for j in range(local.counts[NEAR]):
         d_x, d_y = local.near[j, 0] - x, local.near[j, 1] - y
         passage = (d_x * v_x + d_y * v_y) / square if square > 0.0 else 0.0
-        if BEGUN * h < passage < h and abs(d_x * v_y - d_y * v_x) < CLOSE * square * h:
+        if LATE * h < passage < h and abs(d_x * v_y - d_y * v_x) < CLOSE * square * h:
             h = passage
     return h
 
