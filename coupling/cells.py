@@ -281,7 +281,8 @@ class PlateCells:
         assert chosen
         degree, fitted, error = chosen
         cell.error, cell.left_out = error, left_out
-        cell.fit = CellFit(degree, rows, near, np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy(), clear)
+        table = np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy()
+        cell.fit = CellFit(degree, rows, near, table, clear, cell.shared)
 
     def _at_rim(self, cell: _Cell, reach: float, spacing: float) -> FloatArray:
         """Points of a cell that the rim cuts, on the plate and on the rim, in half widths from its centre."""

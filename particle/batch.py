@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from typing import TypeGuard
 
 import numpy as np
 
 from particle.drive import AnyDrive
-from particle.friction import Contact
+from particle.friction import Contact, FrictionLaw
 from particle.micropart import Micropart
 from particle.path import find_path
 from particle.rim import rim_gap
@@ -31,7 +32,7 @@ class Interrupted(KeyboardInterrupt):
 def simulate_many(
     surface: SurfaceMotion,
     parts: Sequence[Micropart],
-    friction: Contact | Sequence[Contact],
+    friction: Contact | Iterable[Contact],
     duration: float,
     gravity: float | Sequence[float] = 9.80665,
     tolerance: float = 1e-9,
@@ -47,20 +48,14 @@ def simulate_many(
     threads: how many paths are found at a time, by default one on each processor.
     progress: called with the paths done and how many there are, whenever more are done.
     Raises ValueError, naming every input that makes no sense and the part's number, and Interrupted, a
-    KeyboardInterrupt that has the paths found so far, within a second of Ctrl-C.
+    KeyboardInterrupt that has the paths found so far, upon Ctrl-C: within a second, but each thread finishes the
+    cells that it is building.
     """
-    frictions = list(friction) if isinstance(friction, Sequence) else [friction] * len(parts)
-    wrong = []
-    if len(frictions) != len(parts):
-        wrong.append(
-            f"Input friction of simulate_many must be one law or one a part, {len(parts)}; got {len(frictions)}"
-        )
-    if drives is not None and len(drives) != len(parts):
-        wrong.append(f"Input drives of simulate_many must be one row a part, {len(parts)}; got {len(drives)}")
-    count = surface.record.shape_count
-    for k, own in enumerate(drives or []):
-        if len(own) != count:
-            wrong.append(f"Input drives of part {k + 1} must be one an actuator, {count}; got {len(own)}")
+    frictions, wrong = _laws(friction, len(parts))
+    if drives is not None:
+        if len(drives) != len(parts):
+            wrong.append(f"Input drives of simulate_many must be one row a part, {len(parts)}; got {len(drives)}")
+        wrong += surface.drive_faults({f"drives of part {k + 1}": own for k, own in enumerate(drives)})
     if threads is not None and threads < 1:
         wrong.append(f"Input threads of simulate_many must be at least 1; got {threads!r}")
     wrong += faults(duration, gravity, tolerance, after_detachment)
@@ -70,28 +65,47 @@ def simulate_many(
             wrong.append(f"Input position of part {k + 1} must lie on the plate; got {tuple(part.position)!r} m")
     if wrong:
         raise ValueError("; ".join(wrong))
+    found: list[Trajectory | None] = [None] * len(parts)
     stop = np.zeros(1, dtype=np.int64)
 
-    def path(k: int) -> Trajectory | None:
+    def path(k: int) -> None:
         driven = surface if drives is None else surface.driven_by(drives[k])
         request = new_request(driven, parts[k], frictions[k], duration, gravity, tolerance, after_detachment == "fly")
-        return find_path(driven, request, tolerance, stop)
+        found[k] = find_path(driven, request, tolerance, stop)
 
-    found: list[Trajectory | None] = [None] * len(parts)
-    with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as pool:
-        places: dict[Future[Trajectory | None], int] = {pool.submit(path, k): k for k in range(len(parts))}
-        waiting = set(places)
-        try:
-            while waiting:
-                done, waiting = wait(waiting, AWAKE, FIRST_COMPLETED)
-                for future in done:
-                    found[places[future]] = future.result()
-                if done and progress:
-                    progress(len(parts) - len(waiting), len(parts))
-        except BaseException as error:
-            stop[0] = 1
-            pool.shutdown(wait=True, cancel_futures=True)
-            if isinstance(error, KeyboardInterrupt):
-                raise Interrupted(found) from None
-            raise
+    try:
+        with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as pool:
+            try:
+                waiting = {pool.submit(path, k) for k in range(len(parts))}
+                while waiting:
+                    done, waiting = wait(waiting, AWAKE, FIRST_COMPLETED)
+                    for future in done:
+                        future.result()
+                    if done and progress:
+                        progress(len(parts) - len(waiting), len(parts))
+            except BaseException:
+                stop[0] = 1
+                pool.shutdown(wait=True, cancel_futures=True)
+                raise
+    except KeyboardInterrupt:
+        raise Interrupted(found) from None
     return [trajectory for trajectory in found if trajectory is not None]
+
+
+def _laws(friction: Contact | Iterable[Contact], count: int) -> tuple[list[Contact], list[str]]:
+    """One law for each of so many parts, and what is wrong with what was given."""
+    if _is_law(friction):
+        return [friction] * count, []
+    laws = list(friction) if isinstance(friction, Iterable) else None
+    wrong = []
+    if laws is None or len(laws) != count:
+        got = repr(friction) if laws is None else len(laws)
+        wrong.append(f"Input friction of simulate_many must be one law or one a part, {count}; got {got}")
+    for k, law in enumerate(laws or []):
+        if not _is_law(law):
+            wrong.append(f"Input friction of part {k + 1} must be a friction law; got {law!r}")
+    return laws or [], wrong
+
+
+def _is_law(friction: object) -> TypeGuard[Contact]:
+    return isinstance(getattr(friction, "law", None), FrictionLaw)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from particle.cells import UNBUILT
 from particle.fixed import fixed_row
 from particle.jit import jit
 from particle.local import enter, new_local
@@ -18,14 +19,17 @@ FloatArray = NDArray[np.float64]
 
 
 @jit
-def between(surface: Any, part: Part, scheme: int, rows: FloatArray, times: FloatArray) -> FloatArray:
-    """The rows (k, COLUMNS) at ascending times (k,) [s].
+def between(
+    surface: Any, part: Part, scheme: int, rows: FloatArray, times: FloatArray
+) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """The rows (k, COLUMNS) at ascending times (k,) [s], and (k,) which of them are where a cell is lacking.
 
     Place and velocity are those of the cubic Hermite polynomial between two rows, work and dissipation are linear
-    between them, and height, forces, kinetic and potential energy are those of the surface there.
+    between them, and height, forces, kinetic and potential energy are those of the surface there. Where there is no
+    surface, as over a hole that one step has jumped, these are as in the row before.
     """
-    out, state, local = np.zeros((len(times), COLUMNS)), np.zeros(8), new_local(surface)
-    row = 0
+    out, missing = np.zeros((len(times), COLUMNS)), np.zeros(len(times), dtype=np.bool_)
+    state, local, row = np.zeros(8), new_local(surface), 0
     for k in range(len(times)):
         while row + 1 < len(rows) and rows[row + 1, TIME] <= times[k]:
             row += 1
@@ -33,9 +37,16 @@ def between(surface: Any, part: Part, scheme: int, rows: FloatArray, times: Floa
         if times[k] <= rows[row, TIME] or row + 1 == len(rows):
             continue
         _hermite(rows[row], rows[row + 1], times[k], state)
-        if enter(surface, local, state[0], state[1], times[k], math.inf) >= 0:
+        # Steps, and the cubic between rows that are far apart, may pass over cells where no step began or ended.
+        cell = enter(surface, local, state[0], state[1], times[k], math.inf)
+        missing[k] = cell == UNBUILT
+        if cell >= 0:
             out[k] = fixed_row(local, part, scheme, int(rows[row, MODE]), times[k], state)
-    return out
+        else:
+            out[k, TIME], out[k, X], out[k, Y] = times[k], state[0], state[1]
+            out[k, V_X], out[k, V_Y] = state[2], state[3]
+            out[k, WORK], out[k, DISSIPATED] = state[4], state[5]
+    return out, missing
 
 
 @jit

@@ -49,6 +49,7 @@ class CellFit(NamedTuple):
     """What one cell is made of.
 
     drive: (k,) drives.  near: (j,) actuators.  rows: (k, monomials + j).  clear: m, as in `Cells`.
+    shared: whether other cells are made of the same `rows`.
     """
 
     degree: int
@@ -57,6 +58,7 @@ class CellFit(NamedTuple):
     near: IntArray
     rows: FloatArray
     clear: float
+    shared: bool = False
 
 
 class CellStore(Protocol):
@@ -90,7 +92,7 @@ class OneCell:
 
 
 class CellPool:
-    """Cells as they are added, in arrays that grow. A `rows` that is added again is kept once."""
+    """Cells as they are added, in arrays that grow. `rows` that are shared are kept once."""
 
     def __init__(self, origin: FloatArray, width: FloatArray, roots: IntArray) -> None:
         self.origin, self.width, self.roots = origin, width, roots
@@ -101,7 +103,7 @@ class CellPool:
         self._first_drive, self._first_near = _Growing(np.int64), _Growing(np.int64)
         self._first_drive.append([0])
         self._first_near.append([0])
-        self._known: dict[int, tuple[FloatArray, int]] = {}
+        self._shared: dict[int, tuple[FloatArray, int]] = {}
         self._degree = _Growing(np.int64)
         self._most_drives, self._most_near, self._highest = 1, 0, 0
 
@@ -115,7 +117,7 @@ class CellPool:
         self._half.append([half])
         self._clear.append([fit.clear if fit else 0.0])
         self._degree.append([fit.degree if fit else 0])
-        self._first_row.append([self._place(fit.rows) if fit else NOWHERE])
+        self._first_row.append([self._place(fit) if fit else NOWHERE])
         if fit:
             self._drive.append(fit.drive)
             self._near.append(fit.near)
@@ -126,11 +128,15 @@ class CellPool:
         self._first_near.append([len(self._near)])
         return len(self._quarters) - 1
 
-    def _place(self, rows: FloatArray) -> int:
-        if id(rows) not in self._known:
-            self._known[id(rows)] = (rows, len(self._rows))
-            self._rows.append(rows.ravel())
-        return self._known[id(rows)][1]
+    def _place(self, fit: CellFit) -> int:
+        rows, place = self._shared.get(id(fit.rows), (None, 0))
+        if rows is fit.rows:  # in a copy of the pool it may be another one
+            return place
+        place = len(self._rows)
+        self._rows.append(fit.rows.ravel())
+        if fit.shared:
+            self._shared[id(fit.rows)] = (fit.rows, place)
+        return place
 
     def cells(self) -> Cells:
         """What there is now; it stays as it is when more is added."""

@@ -91,6 +91,8 @@ def march_fixed(
     mode = RESTING if state[2] == 0.0 and state[3] == 0.0 else SLIDING
     time, gap, verdict, count = 0.0, rim_gap(surface, state[0], state[1]), GOES_ON, 0
     cell = enter(surface, local, state[0], state[1], time, math.inf)
+    if cell == UNBUILT:
+        return record.rows[:0], record.events[:0], LACKS_CELL, count
     if cell >= 0:
         f = fields(local, state[0], state[1], time)
         state[7] = state[2] * f.x + state[3] * f.y

@@ -13,8 +13,10 @@ from particle.between import between
 from particle.events import march, new_memory
 from particle.fixed import march_fixed
 from particle.local import missing_place, new_local
+from particle.motion import Part
+from particle.record import X, Y
 from particle.resume import resume
-from particle.runge_kutta import pairs_for
+from particle.runge_kutta import Pairs, pairs_for
 from particle.slide import DETACHED, GOES_ON, INTERRUPTED, LACKS_CELL, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
 from particle.stay import stays
 from particle.surface import Surface, SurfaceMotion
@@ -48,7 +50,7 @@ def find_path(
     rows, _, verdict, _ = found
     if verdict == INTERRUPTED:
         return None
-    trajectory = _trajectory(surface, request, found, partial(resume, surface.record, request, pairs, rows))
+    trajectory = _trajectory(surface, request, found, partial(_by_events, surface, request, pairs, rows))
     if trajectory.outcome is Outcome.STUCK:
         x, y = trajectory.position[-1].tolist()
         future = partial(stays, surface, request.part, x, y, request.duration)
@@ -66,7 +68,23 @@ def find_path_by_steps(
         return march_fixed(record, request, local, kind, step, steps, every), missing_place(local)
 
     found = _with_cells(surface, path)
-    return _trajectory(surface, request, found, partial(between, surface.record, request.part, kind, found[0]))
+    return _trajectory(surface, request, found, partial(_by_steps, surface, request.part, kind, found[0]))
+
+
+def _by_events(
+    surface: SurfaceMotion, request: Request, pairs: Pairs, rows: FloatArray, times: FloatArray
+) -> FloatArray:
+    """The rows at ascending times [s]."""
+    return resume(surface.record, request, pairs, rows, times)
+
+
+def _by_steps(surface: SurfaceMotion, part: Part, kind: int, rows: FloatArray, times: FloatArray) -> FloatArray:
+    """The rows at ascending times [s]."""
+    samples, missing = between(surface.record, part, kind, rows, times)
+    if missing.any():
+        surface.store.build(samples[missing][:, [X, Y]])
+        samples, _ = between(surface.record, part, kind, rows, times)
+    return samples
 
 
 def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], tuple[Found, FloatArray]]) -> Found:

@@ -8,7 +8,7 @@ is one polynomial in x, y, t.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, field, replace
 from functools import reduce
 from typing import NamedTuple
@@ -74,7 +74,7 @@ class SurfaceMotion:
         return Surface(
             drives=self.drives,
             cells=self.store.cells,
-            shape_count=len(self.drives.delay) - 2 * self.moving_base,
+            shape_count=self.shape_count,
             sources=self.sources,
             size=self.size,
             floor=self.floor,
@@ -86,6 +86,11 @@ class SurfaceMotion:
         )
 
     @property
+    def shape_count(self) -> int:
+        """How many drives move shapes, not its base."""
+        return len(self.drives.delay) - 2 * self.moving_base
+
+    @property
     def error(self) -> float:
         """The largest error measured in its cells, relative to each shape's height at its own actuator."""
         return self.store.error
@@ -93,12 +98,23 @@ class SurfaceMotion:
     def driven_by(self, drives: Sequence[AnyDrive]) -> SurfaceMotion:
         """The same surface, its cells shared, with other drives, one for each actuator.
 
-        Raises ValueError when there is not one drive for each.
+        Raises ValueError when there is not one drive for each, and for a surface on a moving base, as a platform.
         """
-        count = len(self.drives.delay) - 2 * self.moving_base
-        if self.moving_base or len(drives) != count:
-            raise ValueError(f"Input drives must be one an actuator, {count}; got {len(drives)}")
+        wrong = self.drive_faults({"drives": drives})
+        if wrong:
+            raise ValueError("; ".join(wrong))
         return replace(self, drives=drive_table(drives))
+
+    def drive_faults(self, given: Mapping[str, Sequence[AnyDrive]]) -> list[str]:
+        """What is wrong with drives that are to replace its own; given: by the name of the input."""
+        if self.moving_base and given:
+            return [
+                f"Input {next(iter(given))} must stay the surface's own: the drives of a platform, or of another "
+                "surface on a moving base, cannot be exchanged; make a surface with the drives wanted"
+            ]
+        count = self.shape_count
+        sizes = {name: len(row) if isinstance(row, Sized) else repr(row) for name, row in given.items()}
+        return [f"Input {name} must be one an actuator, {count}; got {n}" for name, n in sizes.items() if n != count]
 
     def evaluate(self, xy: ArrayLike, time: float) -> SurfaceState:
         """The surface at points (n, 2) [m] and a time [s].

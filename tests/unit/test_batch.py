@@ -2,13 +2,24 @@
 
 import _thread
 import threading
+import weakref
+from concurrent.futures import ThreadPoolExecutor, wait
 
 import numpy as np
 import pytest
 
 from coupling.surface import surface_motion
 from fem_plate.analytic import DiscShapes
-from particle import ConstantFriction, Drive, Interrupted, KogutEtsion, Micropart, simulate, simulate_many
+from particle import (
+    ConstantFriction,
+    Drive,
+    Interrupted,
+    KogutEtsion,
+    Micropart,
+    platform_surface,
+    simulate,
+    simulate_many,
+)
 
 RADIUS, MASS = 300e-6, 2e-9
 LAW = ConstantFriction(4e-9)
@@ -32,10 +43,33 @@ def parts():
     return [Micropart(MASS, (x, y)) for x, y in places.tolist()]
 
 
+@pytest.fixture
+def submitted(monkeypatch):
+    """The paths handed out so far."""
+    futures, submit = [], ThreadPoolExecutor.submit
+
+    def listed(pool, *call):
+        futures.append(submit(pool, *call))
+        return futures[-1]
+
+    monkeypatch.setattr(ThreadPoolExecutor, "submit", listed)
+    return futures
+
+
+def same_samples(one, other):
+    times = np.linspace(0, one.time[-1], 41)
+    return all(np.array_equal(a, b) for a, b in zip(one.at(times), other.at(times), strict=True))
+
+
 def same(one, other):
-    return all(
-        np.array_equal(getattr(one, name), getattr(other, name)) for name in ("time", "position", "velocity", "state")
-    ) and (one.events, one.outcome, one.evaluations) == (other.events, other.outcome, other.evaluations)
+    return (
+        all(
+            np.array_equal(getattr(one, name), getattr(other, name))
+            for name in ("time", "position", "velocity", "state")
+        )
+        and same_samples(one, other)
+        and (one.events, one.outcome, one.evaluations) == (other.events, other.outcome, other.evaluations)
+    )
 
 
 def test_paths_have_the_same_bits_one_by_one_and_in_any_order_and_number_of_threads(surface, parts):
@@ -47,6 +81,24 @@ def test_paths_have_the_same_bits_one_by_one_and_in_any_order_and_number_of_thre
     assert any(len(path.events) > 3 for path in alone)
     for one, other, third in zip(alone, backwards, together, strict=True):
         assert same(one, other) and same(one, third)
+
+
+def test_samples_have_the_same_bits_whatever_cells_are_built_after_the_path(surface, parts):
+    path = simulate(surface, parts[0], LAW, 3e-3, tolerance=1e-6)
+    times = np.linspace(0, 3e-3, 100)
+    before, cells = path.at(times), len(surface.store.cells.centre)
+    surface.store.build(np.random.default_rng(3).uniform(-0.6, 0.6, (100, 2)) * RADIUS)
+    assert len(surface.store.cells.centre) > cells
+    for one, other in zip(before, path.at(times), strict=True):
+        assert np.array_equal(one, other)
+
+
+@pytest.mark.parametrize("scheme", ["events", "fixed"])
+def test_a_path_keeps_no_copy_of_the_cells(surface, parts, scheme):
+    path = simulate(surface, parts[0], LAW, 1e-4, tolerance=1e-6, scheme=scheme)
+    then = weakref.ref(surface.store.cells.roots)
+    surface.store.build(np.array([[-0.6, -0.6], [0.6, 0.6]]) * RADIUS)
+    assert then() is None and path.at([5e-5]).time[0] == 5e-5
 
 
 def test_each_path_may_have_its_own_drives_and_friction(surface, parts):
@@ -83,9 +135,90 @@ def test_every_wrong_input_is_named(surface, parts):
         assert words in str(caught.value)
 
 
+@pytest.mark.parametrize("many", [tuple, iter, lambda laws: np.array(laws, dtype=object)])
+def test_laws_may_come_as_anything_that_has_one_a_part(surface, parts, many):
+    laws = [LAW, KogutEtsion.paper()]
+    found = simulate_many(surface, parts[:2], many(laws), 1e-4)
+    for path, part, law in zip(found, parts, laws, strict=False):
+        assert same(path, simulate(surface, part, law, 1e-4))
+
+
+@pytest.mark.parametrize(
+    "wrong, words",
+    [
+        (4e-9, "^Input friction of simulate_many must be one law or one a part, 2; got 4e-09$"),
+        (None, "^Input friction of simulate_many must be one law or one a part, 2; got None$"),
+        ([LAW, 4e-9], "^Input friction of part 2 must be a friction law; got 4e-09$"),
+        (np.array([None, LAW]), "^Input friction of part 1 must be a friction law; got None$"),
+        ([LAW, ConstantFriction], "^Input friction of part 2 must be a friction law; got <class"),
+        ([0.1], "a part, 2; got 1; Input friction of part 1 must be a friction law; got 0.1$"),
+    ],
+)
+def test_what_is_no_friction_law_is_refused(surface, parts, wrong, words):
+    with pytest.raises(ValueError, match=words):
+        simulate_many(surface, parts[:2], wrong, 1e-3)
+
+
+def test_a_platforms_drives_cannot_be_exchanged():
+    platform, own = platform_surface(Drive(1e-3, 3.0), size=1e-3), [Drive(1e-3, 2.0)]
+    with pytest.raises(ValueError, match="^Input drives must stay the surface's own: the drives of a platform"):
+        platform.driven_by(own)
+    many = "^Input drives of part 1 must stay the surface's own: .* exchanged; make a surface with the drives wanted$"
+    with pytest.raises(ValueError, match=many):
+        simulate_many(platform, [Micropart(MASS, (0.0, 0.0))] * 2, LAW, 1e-3, drives=[own, own])
+
+
+def test_drives_that_are_no_rows_are_refused(surface, parts):
+    with pytest.raises(ValueError, match="drives of part 1 must be one an actuator, 13; got Drive.*part 2 must be one"):
+        simulate_many(surface, parts[:2], LAW, 1e-3, drives=[Drive(1e-6, 300)] * 2)
+
+
 def test_drives_of_the_wrong_number_are_refused_before_anything_is_found(surface, parts):
     with pytest.raises(ValueError, match="drives of part 2 must be one an actuator, 13; got 1"):
         simulate_many(surface, parts[:2], LAW, 1e-3, drives=[drives(np.random.default_rng(0), 13), [Drive(1e-6, 300)]])
+
+
+def test_ctrl_c_before_all_paths_are_handed_out_keeps_what_is_done(surface, parts, submitted, monkeypatch):
+    submit = ThreadPoolExecutor.submit
+
+    def interrupted(pool, *call):
+        if len(submitted) == 4:
+            wait(submitted)
+            raise KeyboardInterrupt
+        return submit(pool, *call)
+
+    monkeypatch.setattr(ThreadPoolExecutor, "submit", interrupted)
+    with pytest.raises(Interrupted, match="stopped after 4 of 6 paths") as caught:
+        simulate_many(surface, parts, LAW, 1e-4, threads=1)
+    assert [path is not None for path in caught.value.found] == [True] * 4 + [False] * 2
+
+
+def test_ctrl_c_keeps_paths_that_nobody_has_heard_of_yet(surface, parts, submitted):
+    def progress(done, count):
+        wait(submitted)
+        raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted, match="stopped after 6 of 6 paths") as caught:
+        simulate_many(surface, parts, LAW, 1e-4, threads=1, progress=progress)
+    for path, part in zip(caught.value.found, parts, strict=True):
+        assert same(path, simulate(surface, part, LAW, 1e-4))
+
+
+def test_another_ctrl_c_loses_nothing(surface, parts, submitted, monkeypatch):
+    shutdown = ThreadPoolExecutor.shutdown
+
+    def interrupted(pool, **how):
+        shutdown(pool, **how)
+        if "cancel_futures" in how:
+            raise KeyboardInterrupt
+
+    def progress(done, count):
+        wait(submitted)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ThreadPoolExecutor, "shutdown", interrupted)
+    with pytest.raises(Interrupted, match="stopped after 6 of 6 paths"):
+        simulate_many(surface, parts, LAW, 1e-4, threads=1, progress=progress)
 
 
 @pytest.mark.compiled
