@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.cells import Cells, CellStore, OneCell
+from particle.cells import NOWHERE, Cells, CellStore, OneCell
 from particle.drive import ORDER, AnyDrive, DriveTable, drive_table, monomial_table
 from particle.fields import evaluate_points
 
@@ -50,7 +50,7 @@ class Surface(NamedTuple):
     unit: float  # s, of time in the polynomials that are made of cells and drives
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SurfaceMotion:
     """A moving surface; made by `coupling.surface_motion`, `platform_surface` or `polynomial_surface`.
 
@@ -85,6 +85,11 @@ class SurfaceMotion:
             unit=float(strokes.min(initial=1.0)),
         )
 
+    def __repr__(self) -> str:
+        cells = int((self.store.cells.first_row != NOWHERE).sum())
+        built = f"{cells} cells built, error {self.error:.1e}" if cells else "no cells built"
+        return f"SurfaceMotion({len(self.drives.delay)} drives, {built})"
+
     @property
     def error(self) -> float:
         """The largest error measured in its cells, relative to each shape's height at its own actuator."""
@@ -103,8 +108,10 @@ class SurfaceMotion:
     def evaluate(self, xy: ArrayLike, time: float) -> SurfaceState:
         """The surface at points (n, 2) [m] and a time [s].
 
-        Raises ValueError when a point lies beyond the rim.
+        Raises ValueError when a point lies beyond the rim, or the time is not finite.
         """
+        if not math.isfinite(time):
+            raise ValueError(f"Input time of evaluate must be a finite number of seconds; got {time}")
         xy = np.atleast_2d(np.asarray(xy, dtype=float))
         rows, missing = evaluate_points(self.record, xy, float(time))
         if missing.any():

@@ -1,6 +1,7 @@
 """The surface as the part sees it: polynomials, and the plate's shapes under drives."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -27,6 +28,19 @@ def surface(exact):
 def close(found, expected, bound):
     scale = np.abs(expected).max()
     assert np.abs(np.asarray(found) - expected).max() <= bound * scale + 1e-300
+
+
+@pytest.mark.parametrize("time", [math.nan, math.inf])
+def test_a_time_that_is_none_is_named(surface, time):
+    with pytest.raises(ValueError, match=f"^Input time of evaluate must be a finite number of seconds; got {time}$"):
+        surface.evaluate([[0.0, 0.0]], time)
+
+
+def test_it_is_shown_in_a_line(exact):
+    surface = surface_motion(exact, DRIVES)
+    surface.evaluate([[0.0, 0.0]], 0.0)
+    assert re.fullmatch(r"SurfaceMotion\(2 drives, [1-9]\d* cells built, error \d\.\de-\d\d\)", repr(surface))
+    assert repr(polynomial_surface([[1.0]])) == "SurfaceMotion(1 drives, 1 cells built, error 0.0e+00)"
 
 
 @pytest.mark.parametrize("size", [1.0, 0.02])
