@@ -87,8 +87,8 @@ class SurfaceMotion:
 
     def __repr__(self) -> str:
         cells = int((self.store.cells.first_row != NOWHERE).sum())
-        built = f"{cells} cells built, error {self.error:.1e}" if cells else "no cells built"
-        return f"SurfaceMotion({len(self.drives.delay)} drives, {built})"
+        error = f"{self.error:.1e}" if cells else "not measured"
+        return f"<SurfaceMotion: drives {len(self.drives.delay)}, cells built {cells}, error {error}>"
 
     @property
     def error(self) -> float:

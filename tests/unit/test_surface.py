@@ -2,6 +2,8 @@
 
 import math
 import re
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from fem_plate import Plate
 from fem_plate.analytic import DiscShapes
 from meshes import disc
 from particle import Drive, polynomial_surface
+from particle.cells import UNBUILT, CellPool
 from particle.fields import fields
 from particle.local import enter, new_local, within_cell
 
@@ -38,9 +41,11 @@ def test_a_time_that_is_none_is_named(surface, time):
 
 def test_it_is_shown_in_a_line(exact):
     surface = surface_motion(exact, DRIVES)
-    surface.evaluate([[0.0, 0.0]], 0.0)
-    assert re.fullmatch(r"SurfaceMotion\(2 drives, [1-9]\d* cells built, error \d\.\de-\d\d\)", repr(surface))
-    assert repr(polynomial_surface([[1.0]])) == "SurfaceMotion(1 drives, 1 cells built, error 0.0e+00)"
+    shown = r"<SurfaceMotion: drives 2, cells built [1-9]\d*, error \d\.\de-\d\d>"
+    assert re.fullmatch(shown, repr(surface))
+    none = CellPool(np.zeros(2), np.ones(2), np.array([[UNBUILT]])).cells()
+    unbuilt = replace(surface, store=SimpleNamespace(cells=none, error=0.0))
+    assert repr(unbuilt) == "<SurfaceMotion: drives 2, cells built 0, error not measured>"
 
 
 @pytest.mark.parametrize("size", [1.0, 0.02])
