@@ -147,7 +147,8 @@ class TableCase(Table):
         except ValidationError as error:
             errors = list(error.errors())
         points, mistakes = friction_points.of_table(data, info.context or {})
-        for location, message in mistakes:
+        told = {error["loc"] for error in errors}
+        for location, message in (mistake for mistake in mistakes if mistake[0] not in told):
             context = {"error": ValueError(message)}
             errors.append({"type": "value_error", "loc": location, "input": None, "ctx": context})
         if errors:
@@ -213,17 +214,20 @@ class _CaseTables(Table):
         if isinstance(data, dict) and (kind(data.get("plate")) == PLATFORM or data.get("lattice") is not None):
             data = {"actuators": ()} | data
         # Around the fields rather than after them, so that a wrong field elsewhere does not hide a misplaced actuator.
+        errors: list[Any] = []
         try:
             case = handler(data)
         except ValidationError as error:
             if not isinstance(data, dict):
                 raise
-            errors: list[Any] = list(error.errors())
-            lattice, mistakes = Places.model_validate(data, context=info.context).check(info.context)
+            errors += error.errors()
         else:
-            errors = []
             lattice, mistakes = Places.model_validate(case).check()
-        for location, message in mistakes:
+        if isinstance(data, dict) and (errors or mistakes):
+            # From what was written, which has the units for the messages.
+            lattice, mistakes = Places.model_validate(data, context=info.context).check(info.context)
+        told = {error["loc"] for error in errors}
+        for location, message in (mistake for mistake in mistakes if mistake[0] not in told):
             context = {"error": ValueError(message)}
             errors.append({"type": "value_error", "loc": location, "input": None, "ctx": context})
         if errors:

@@ -99,6 +99,8 @@ def find_problems(
     misspelt = {
         (*detail["loc"][:-1], _near(detail["loc"], tables)) for detail in details if detail["type"] == "extra_forbidden"
     }
+    if ("lattice",) in misspelt:
+        misspelt.add(("actuators",))
     problems = []
     for detail in details:
         location = _in_file(detail)
@@ -203,7 +205,9 @@ def _wanted(field: FieldInfo) -> str:
     for mark in field.metadata:
         if hasattr(mark, "wanted"):
             return str(mark.wanted)
-    return _one_of(get_args(field.annotation)) if get_origin(field.annotation) is Literal else "a number"
+    if get_origin(field.annotation) is Literal:
+        return _one_of(get_args(field.annotation))
+    return "a whole number" if field.annotation is int else "a number"
 
 
 def _one_of(choices: Sequence[str]) -> str:

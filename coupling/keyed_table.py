@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any, Final, Self
 
@@ -39,9 +39,8 @@ class KeyedTable(Table):
                 raise
             errors += error.errors()
         if isinstance(data, dict):
-            wrong = {error["loc"][0] for error in errors}
             told = {error["loc"] for error in errors}
-            for key, message in cls.contradictions(cls._given(data, wrong, info.context)):
+            for key, message in cls.contradictions(cls._given(data, info.context)):
                 if (key,) not in told and (key in data or message.startswith("is missing")):
                     context = {"error": ValueError(message)}
                     errors.append({"type": "value_error", "loc": (key,), "input": None, "ctx": context})
@@ -50,14 +49,29 @@ class KeyedTable(Table):
         return table
 
     @classmethod
-    def _given(cls, data: Mapping[str, Any], wrong: Collection[int | str], context: Any) -> Mapping[str, Any]:
+    def values(cls, table: Any, context: Any) -> Mapping[str, Any]:
+        """The values by key of a table, or of a dict in which anything may be wrong.
+
+        WRONG for each key that is not valid, is lacking, or may be meant by a misspelt one.
+        """
+        if isinstance(table, cls):
+            return dict(table)
+        fields = cls.model_fields.items()
+        defaults = {key: WRONG if field.is_required() else field.default for key, field in fields}
+        return defaults | cls._given(table, context)
+
+    @classmethod
+    def _given(cls, data: Mapping[str, Any], context: Any) -> dict[str, Any]:
         given: dict[str, Any] = {}
         for key, value in data.items():
             if key not in cls.model_fields:
                 # A misspelt key is a mistake already; what it stands for is not missing as well.
                 given |= dict.fromkeys(difflib.get_close_matches(str(key).lower(), cls.model_fields, 1), WRONG)
             elif value is not None:
-                valid = WRONG if key in wrong else adapter(cls, key).validate_python(value, context=context)
+                try:
+                    valid = adapter(cls, key).validate_python(value, context=context)
+                except ValidationError:
+                    valid = WRONG
                 # In Python a default may be stated: a case that was written down is read again.
                 if context or valid != cls.model_fields[key].default:
                     given[key] = valid

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from functools import cached_property
-from typing import Annotated, Any, ClassVar, Final, NamedTuple
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Final
 
-from pydantic import Field, StrictInt, ValidationError, ValidationInfo, field_validator
+from pydantic import Field, GetCoreSchemaHandler, StrictInt, ValidationError, ValidatorFunctionWrapHandler
+from pydantic_core import CoreSchema, core_schema
 
 from coupling.case_lines import RULES
 from coupling.drive_case import ActuatorCase, Cycle, Driven, Points, Repeats, SegmentCase
-from coupling.formula import Amount, Formula
-from coupling.keyed_table import adapter
-from coupling.units import DIMENSIONS, Directed, Length, Point, Quantity, shown, shown_length
+from coupling.formula import Amount, Choice, Condition, Formula
+from coupling.keyed_table import WRONG, Contradictions, adapter
+from coupling.units import Directed, Length, Point, Quantity, shown
 
 MOST: Final = 100_000  # actuators
 AMOUNTS: Final = {
@@ -29,23 +29,51 @@ SHARED: Final = ("cycle", "cycles", "table", "segments", "repeats")
 """Its keys that are the same for all."""
 
 
-class Spot(NamedTuple):
-    """A place in a lattice: row and column from 0, and x and y in m."""
+def broken_rule(key: str, value: float) -> str:
+    """What a value of a key of AMOUNTS must be in an actuator, in words; "" where it is that."""
+    try:
+        adapter(ActuatorCase, key).validate_python(value)
+    except ValidationError as error:
+        detail: Any = error.errors()[0]
+        return RULES[detail["type"]].format(**detail.get("ctx", {}))
+    return ""
 
-    row: int
-    column: int
-    x: float
-    y: float
 
-    def __str__(self) -> str:
-        return f"row {self.row}, column {self.column}"
+@dataclass(frozen=True)
+class _Ruled:
+    """Marks an amount to which the rule for a key of an actuator applies; that of a formula is looked at elsewhere."""
+
+    key: str
+
+    def validate(self, value: object, handler: ValidatorFunctionWrapHandler) -> object:
+        amount = handler(value)
+        if isinstance(amount, float) and (rule := broken_rule(self.key, amount)):
+            raise ValueError(f"must be {rule}; got {shown(value)}")
+        return amount
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
+
+
+@dataclass(frozen=True)
+class _Apart:
+    """Marks a distance, or one along each axis, that is greater than 0."""
+
+    def validate(self, value: object, handler: ValidatorFunctionWrapHandler) -> object:
+        pitch = handler(value)
+        if any(length <= 0 for length in (pitch if isinstance(pitch, tuple) else (pitch,))):
+            raise ValueError(f"must be greater than 0; got {shown(value)}")
+        return pitch
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
 
 
 class LatticeCase(Driven):
     """Actuators in `rows` along y and `columns` along x, `pitch` apart, around a `centre`, in m.
 
-    Those nearer than `margin` in m to the rim, or beyond it, are left out; None: none is. The other keys are those of
-    an actuator; `Formula`s among them give each its own value.
+    Those nearer than `margin` in m to the rim, or beyond it, are left out, None: none is; and those for which the
+    `Condition` `where` is false. The other keys are those of an actuator; `Formula`s give each its own value.
     """
 
     owner: ClassVar[str] = ActuatorCase.owner
@@ -55,93 +83,33 @@ class LatticeCase(Driven):
 
     rows: StrictInt = Field(ge=1)
     columns: StrictInt = Field(ge=1)
-    pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um"), "xy")]
+    pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um"), "xy"), _Apart()]
     centre: Point = (0.0, 0.0)
     margin: Length | None = Field(default=None, ge=0)
-    force: Annotated[float | Formula, AMOUNTS["force"]] | None = None
-    stiffness: Annotated[float | Formula, AMOUNTS["stiffness"]] | None = None
-    stroke: Annotated[float | Formula, AMOUNTS["stroke"]] | None = None
-    frequency: Annotated[float | Formula, AMOUNTS["frequency"]] | None = None
+    where: Annotated[Condition, Choice()] | None = None
+    force: Annotated[float | Formula, AMOUNTS["force"], _Ruled("force")] | None = None
+    stiffness: Annotated[float | Formula, AMOUNTS["stiffness"], _Ruled("stiffness")] | None = None
+    stroke: Annotated[float | Formula, AMOUNTS["stroke"], _Ruled("stroke")] | None = None
+    frequency: Annotated[float | Formula, AMOUNTS["frequency"], _Ruled("frequency")] | None = None
     cycle: Cycle = "up-down"
     cycles: StrictInt | None = Field(default=None, ge=1)
-    dwell: Annotated[float | Formula, AMOUNTS["dwell"]] = 0.0
+    dwell: Annotated[float | Formula, AMOUNTS["dwell"], _Ruled("dwell")] = 0.0
     table: Points | None = None
     segments: tuple[SegmentCase, ...] | None = None
     repeats: Repeats = 1
-    delay: Annotated[float | Formula, AMOUNTS["delay"]] = 0.0
+    delay: Annotated[float | Formula, AMOUNTS["delay"], _Ruled("delay")] = 0.0
 
-    @field_validator("columns")
     @classmethod
-    def _not_too_many(cls, columns: int, info: ValidationInfo) -> int:
-        rows = info.data.get("rows", 1)
-        if rows * columns > MOST:
-            raise ValueError(f"must make at most {MOST} actuators with the rows; got {rows} x {columns}")
-        return columns
-
-    @field_validator("pitch")
-    @classmethod
-    def _apart(cls, pitch: float | tuple[float, float]) -> float | tuple[float, float]:
-        wrong = [length for length in (pitch if isinstance(pitch, tuple) else (pitch,)) if length <= 0]
-        if wrong:
-            raise ValueError(f"must be greater than 0; got {shown_length(wrong[0])}")
-        return pitch
-
-    @cached_property
-    def spots(self) -> list[Spot]:
-        """All places, row by row from the lowest, each from the left."""
-        across, along = self.pitch if isinstance(self.pitch, tuple) else (self.pitch, self.pitch)
-        x = [self.centre[0] + (column - (self.columns - 1) / 2) * across for column in range(self.columns)]
-        y = [self.centre[1] + (row - (self.rows - 1) / 2) * along for row in range(self.rows)]
-        return [Spot(row, column, x[column], y[row]) for row in range(self.rows) for column in range(self.columns)]
-
-    def actuators(self, spots: Sequence[Spot]) -> tuple[tuple[ActuatorCase, ...], list[tuple[str, str]]]:
-        """The actuators at some of the places; none, but each key that is wrong, and why, if one is."""
-        columns, mistakes = {}, []
-        for key in AMOUNTS:
-            try:
-                columns[key] = self._values(key, spots)
-            except ValueError as error:
-                mistakes.append((key, str(error)))
-        if mistakes:
-            return (), mistakes
-        shared = {key: getattr(self, key) for key in SHARED}
-        # All values are valid: to check them once more would take longer than the rest.
-        made = [
-            ActuatorCase.model_construct(position=(spot.x, spot.y), **shared, **dict(zip(columns, values, strict=True)))
-            for spot, values in zip(spots, zip(*columns.values(), strict=True), strict=True)
-        ]
-        return tuple(made), []
-
-    def _values(self, key: str, spots: Sequence[Spot]) -> list[float | None]:
-        """The values of a key at places; ValueError, which names the first place where there is none."""
-        amount, valid = getattr(self, key), adapter(ActuatorCase, key).validate_python
-        if not isinstance(amount, Formula):
-            try:
-                return [valid(amount)] * len(spots)
-            except ValidationError as error:
-                raise ValueError(f"must be {_rule(error)}; got {_shown(key, amount)}") from None
-        values = []
-        names = {"pi": math.pi, "rows": float(self.rows), "columns": float(self.columns)}
-        for spot in spots:
-            names |= {"row": float(spot.row), "column": float(spot.column), "x": spot.x, "y": spot.y}
-            try:
-                value = amount.value(names)
-            except ValueError as error:
-                rule = f"must be {DIMENSIONS[AMOUNTS[key].unit]} for each actuator"
-                raise ValueError(f"{rule}; {shown(amount.text)} {error} at {spot}") from None
-            try:
-                values.append(valid(value))
-            except ValidationError as error:
-                got = f"{shown(amount.text)} is {_shown(key, value)} at {spot}"
-                raise ValueError(f"must be {_rule(error)} for each actuator; {got}") from None
-        return values
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        yield from super().contradictions(given)
+        counts = {key: count for key in ("rows", "columns") if (count := given.get(key, WRONG)) != WRONG}
+        if counts and size(counts) > MOST:
+            key, *other = sorted(counts, key=counts.__getitem__, reverse=True)
+            beside = f" with {other[0]} = {counts[other[0]]}" if other else ""
+            yield key, f"must make at most {MOST} actuators{beside}; got {counts[key]}"
 
 
-def _rule(error: ValidationError) -> str:
-    """What a value must be for which a validation failed."""
-    detail: Any = error.errors()[0]
-    return RULES[detail["type"]].format(**detail.get("ctx", {}))
-
-
-def _shown(key: str, value: float) -> str:
-    return f"{value:g} {AMOUNTS[key].unit}"
+def size(values: Mapping[str, Any]) -> int:
+    """How many places a lattice has; rows or columns that are not known count as one."""
+    rows, columns = (values.get(key, WRONG) for key in ("rows", "columns"))
+    return (1 if rows is WRONG else rows) * (1 if columns is WRONG else columns)

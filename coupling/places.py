@@ -16,7 +16,7 @@ from coupling.lattice_case import LatticeCase
 from coupling.lattice_places import SAME_PLACE, Place, Stand, beyond, gaps, half_size, shared_places
 from coupling.plate_case import PlateCase, ShapeCase, Supports
 from coupling.platform_case import platform_of
-from coupling.units import Length, Point, Time, shown_length
+from coupling.units import Length, Point, Time, shown, shown_length, written_unit
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -39,10 +39,12 @@ _IfValid = Annotated[_T | None, WrapValidator(_none_if_wrong)]
 class _Plate(BaseModel, from_attributes=True):
     supports: _IfValid[Supports] = "clamped"
     cell_size: _IfValid[Annotated[Length, Field(gt=0)]] = None
+    written: Any = Field(default=None, validation_alias="cell_size")
 
 
 class _Spot(BaseModel, from_attributes=True):
     position: _IfValid[Point] = None
+    written: Any = Field(default=None, validation_alias="position")
     force: Any = None
 
 
@@ -73,9 +75,10 @@ class Places(BaseModel, from_attributes=True):
         plate = outline_of(self.plate, context)
         mesh, wrong = _mesh(plate) if plate else (None, [])
         mistakes += [(("plate", plate.outlined_by), message) for message in wrong] if plate else []
-        lattice = _lattice(self.lattice, context)
-        stand = Stand.on(lattice, mesh) if lattice else None
-        if stand:
+        stand = None
+        if isinstance(self.lattice, (dict, LatticeCase)):
+            unit = written_unit(self.lattice.get("pitch") if isinstance(self.lattice, dict) else None)
+            stand = Stand.on(LatticeCase.values(self.lattice, context), mesh, unit)
             mistakes += stand.mistakes
         if plate and mesh:
             given = _Plate.model_validate(self.plate, context=context)
@@ -92,8 +95,8 @@ class Places(BaseModel, from_attributes=True):
         if isinstance(plate, ShapeCase) and given.cell_size is not None:
             most = plate.measures[0] / 2
             if given.cell_size > most * (1 + SAME_PLACE):
-                limit = f"half of the plate's smallest width, {shown_length(most)}"
-                yield ("plate", "cell_size"), f"must not exceed {limit}; got {shown_length(given.cell_size)}"
+                limit = f"half of the plate's smallest width, {shown_length(most, written_unit(given.written))}"
+                yield ("plate", "cell_size"), f"must not exceed {limit}; got {shown(given.written)}"
         names = list(mesh.boundaries)
         supports = given.supports if isinstance(given.supports, dict) else {}
         for name in (name for name in supports if name not in names):
@@ -107,10 +110,14 @@ class Places(BaseModel, from_attributes=True):
             {("part", "position"): self.part.position} if self.part and self.part.position else {}
         )
         least = SAME_PLACE * half_size(mesh)
+        written: dict[Location, Any] = {(*table, "position"): spot.written for table, spot in spots}
+        if self.part:
+            written["part", "position"] = self.part.written
         inside: dict[Location, Place] = places | part
         for location, gap in zip(inside, gaps(mesh, list(inside.values())), strict=True):
             if gap <= least:
-                yield location, f"must be inside the rim; got a point {beyond(gap, least)}"
+                unit = written_unit(written[location])
+                yield location, f"must be inside the rim; got a point {beyond(gap, least, unit)}"
         for one, other in shared_places(list(places.values()), least):
             here, there = (list(places)[k] for k in (one, other))
             yield there, f"must differ from {shown_location(here)}; got the same point"
@@ -118,9 +125,10 @@ class Places(BaseModel, from_attributes=True):
             yield from stand.crowded(places, least)
         held = [spot.position for _, spot in spots if spot.position and spot.force is None]
         known = len(held) == len(places) - sum(spot.force is not None for _, spot in spots)
-        if stand and stand.holds:
-            held += [(spot.x, spot.y) for spot in stand.spots]
-        if given.supports is not None and known and (stand or self.lattice is None):
+        if stand and stand.held:
+            held += [(spot.x, spot.y) for spot in stand.held]
+        known &= self.actuators is not None and (self.lattice is None or (stand is not None and stand.held is not None))
+        if given.supports is not None and known:
             yield from _rigid_motion(plate.model_copy(update={"supports": given.supports}), mesh, held)
 
 
@@ -132,14 +140,6 @@ def _mesh(plate: PlateCase) -> tuple[PlateMesh | None, list[str]]:
         return None, [f"cannot be read: {(error.strerror or str(error)).lower()}"]
     except ValueError as error:
         return None, [re.sub(r"^Input \w+ of \w+ ", "", line) for line in str(error).splitlines()]
-
-
-def _lattice(given: Any, context: Any) -> LatticeCase | None:
-    """The lattice; None where there is none, or its keys are wrong."""
-    try:
-        return None if given is None else LatticeCase.model_validate(given, context=context)
-    except ValidationError:
-        return None
 
 
 def _rigid_motion(plate: PlateCase, mesh: PlateMesh, held: list[tuple[float, float]]) -> Mistakes:

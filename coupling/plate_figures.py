@@ -14,7 +14,6 @@ from coupling.lattice_places import SAME_PLACE
 from coupling.steepest import steepest
 from coupling.summary import PlateFigures
 from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes
-from fem_plate.influence import MOST_DENSE
 from meshes import Outline
 from particle import AnyDrive, SurfaceMotion, Trajectory
 
@@ -53,8 +52,8 @@ def plate_figures(
         in_plane_motion=thickness / 2 * slope,
         first_frequency=first,
         drive_over_first=ratio,
-        drives_over_first=None if first is None else _each([drive.frequency / first for drive in drives]),
-        strokes_over_first=None if first is None else _each([1 / drive.stroke_time / first for drive in drives]),
+        drives_over_first=None if first is None else _range([drive.frequency / first for drive in drives]),
+        strokes_over_first=None if first is None else _range([1 / drive.stroke_time / first for drive in drives]),
         quasi_static_error=None if ratio is None else QUASI_STATIC_ERROR * ratio,
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(normal)))),
@@ -71,9 +70,8 @@ def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:
     return float(plate.frequencies(1, held if len(held) else None)[0])
 
 
-def _each(ratios: list[float]) -> tuple[float, ...]:
-    """The ratios, one for each drive; of very many only unlike ones, the largest first."""
-    return tuple(ratios if len(ratios) <= MOST_DENSE else sorted(set(ratios), reverse=True))
+def _range(values: list[float]) -> tuple[float, float]:
+    return min(values), max(values)
 
 
 def _hold_residual(shapes: PlateShapes) -> float:

@@ -14,7 +14,6 @@ MOST_THICKNESSES, STEEPEST, MOST_CURVED = 0.2, 0.2, 0.1
 FASTEST = 0.003  # of the plate's first frequency
 NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
 FEWEST_FRAMES = 8  # to a cycle
-MOST_SAID = 6  # ratios that are told one by one
 GROWTH = 100  # of the error of one step, that is no sign of chaos
 
 
@@ -70,12 +69,12 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
     rows = [
         (
             "model",
-            f"deflection {s.deflection_over_thickness:.3g} thicknesses (path error of linear theory "
+            f"deflection {s.deflection_over_thickness:.3g} times the thickness (path error of linear theory "
             f"{_percent(s.linear_path_error)}), slope {s.largest_slope:.3g}, "
             f"in-plane motion left out {s.in_plane_motion * MICRO:.3g} um",
         ),
         ("", _dynamics(s)),
-        *([("", _each_drive(s))] if s.drives_over_first else []),
+        *([("", _drives(s))] if s.drives_over_first else []),
         ("", f"the plate gives {s.part_sag * MICRO:.1e} um under the part's own force"),
     ]
     if s.part_curvature is not None:
@@ -142,8 +141,8 @@ def _of_model(s: PlateSummary) -> list[str]:
     said = []
     if s.deflection_over_thickness > MOST_THICKNESSES:
         said.append(
-            f"The plate deflects by {s.deflection_over_thickness:.3g} thicknesses; small-deflection theory holds to "
-            f"about {MOST_THICKNESSES}. Expect a path error of {_percent(s.linear_path_error)}."
+            f"The plate deflects by {s.deflection_over_thickness:.3g} times its thickness; small-deflection theory "
+            f"holds to about {MOST_THICKNESSES}. Expect a path error of {_percent(s.linear_path_error)}."
         )
     if s.largest_slope > STEEPEST:
         said.append(f"The surface is as steep as {s.largest_slope:.2g}; small-slope theory holds to about {STEEPEST}.")
@@ -197,15 +196,14 @@ def _dynamics(s: PlateSummary) -> str:
     )
 
 
-def _each_drive(s: PlateSummary) -> str:
-    drives, strokes = (_ratios(ratios or ()) for ratios in (s.drives_over_first, s.strokes_over_first))
-    return f"each drive over it {drives}; its stroke, at one over its time from rest to rest, {strokes}"
+def _drives(s: PlateSummary) -> str:
+    drives, strokes = (_range(ratios or ()) for ratios in (s.drives_over_first, s.strokes_over_first))
+    return f"drives over it {drives}; their strokes, at one over the time from rest to rest, {strokes}"
 
 
-def _ratios(ratios: Sequence[float]) -> str:
-    """Different ratios, the largest first; of many the first and the last."""
-    said = list(dict.fromkeys(f"{ratio:.2g}" for ratio in sorted(ratios, reverse=True)))
-    return ", ".join(said) if len(said) <= MOST_SAID else f"{said[0]} to {said[-1]}"
+def _range(ratios: Sequence[float]) -> str:
+    """The smallest and the largest ratio, or both at once."""
+    return " to ".join(dict.fromkeys(f"{ratio:.2g}" for ratio in ratios))
 
 
 def _percent(share: float) -> str:

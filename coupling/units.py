@@ -196,9 +196,19 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def shown_length(length: float) -> str:
-    """Return a length in m as text in um."""
-    return f"{length * 1e6:g} um"
+def shown_length(length: float, unit: str = "um") -> str:
+    """Return a length in m as text in a unit of length."""
+    return f"{length / Quantity('m', '150 um').convert('', '1', unit):g} {unit}"
+
+
+def written_unit(value: object) -> str:
+    """Return the unit of the first length in what a case file has; um where there is none."""
+    texts = [part for part in value if isinstance(part, str)] if isinstance(value, (list, tuple)) else [value]
+    for text in texts:
+        match = _NUMBER_AND_UNIT.fullmatch(text.strip()) if isinstance(text, str) else None
+        if match and match["unit"]:
+            return match["unit"].strip()
+    return "um"
 
 
 @cache

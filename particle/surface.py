@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.cells import Cells, CellStore, OneCell
+from particle.cells import NOWHERE, Cells, CellStore, OneCell
 from particle.drive import ORDER, AnyDrive, DriveTable, drive_table, monomial_table
 from particle.fields import evaluate_points
 
@@ -50,7 +50,7 @@ class Surface(NamedTuple):
     unit: float  # s, of time in the polynomials that are made of cells and drives
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SurfaceMotion:
     """A moving surface; made by `coupling.surface_motion`, `platform_surface` or `polynomial_surface`.
 
@@ -84,6 +84,11 @@ class SurfaceMotion:
             moving_base=self.moving_base,
             unit=float(strokes.min(initial=1.0)),
         )
+
+    def __repr__(self) -> str:
+        cells = int((self.store.cells.first_row != NOWHERE).sum())
+        error = f"{self.error:.1e}" if cells else "not measured"
+        return f"<SurfaceMotion: drives {len(self.drives.delay)}, cells built {cells}, error {error}>"
 
     @property
     def shape_count(self) -> int:
@@ -119,8 +124,10 @@ class SurfaceMotion:
     def evaluate(self, xy: ArrayLike, time: float) -> SurfaceState:
         """The surface at points (n, 2) [m] and a time [s].
 
-        Raises ValueError when a point lies beyond the rim.
+        Raises ValueError when a point lies beyond the rim, or the time is not finite.
         """
+        if not math.isfinite(time):
+            raise ValueError(f"Input time of evaluate must be a finite number of seconds; got {time}")
         xy = np.atleast_2d(np.asarray(xy, dtype=float))
         rows, missing = evaluate_points(self.record, xy, float(time))
         if missing.any():

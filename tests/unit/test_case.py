@@ -299,7 +299,7 @@ BROKEN = [
     ((RADIUS, 'radius = "-3 um"'), 'plate.radius must be greater than 0; got "-3 um"'),
     (
         (RADIUS, RADIUS + '\ncell_size = "301 um"'),
-        "plate.cell_size must not exceed half of the plate's smallest width, 300 um; got 301 um",
+        'plate.cell_size must not exceed half of the plate\'s smallest width, 300 um; got "301 um"',
     ),
     ((DURATION, DURATION + "\ntolerance = 0.1"), "line 32  run.tolerance must be at most 0.01; got 0.1"),
     ((DURATION, DURATION + "\nframes = 1"), "run.frames must be at least 2; got 1"),
@@ -371,11 +371,11 @@ def test_places_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
     outside = "must be inside the rim; got a point"
     assert problems(tmp_path, text) == [
         'line 2   plate.density must be a density such as "2330 kg/m^3"; got "1 s", a time',
-        f"line 10  actuators[1].position {outside} 100 um beyond it",
+        f"line 10  actuators[1].position {outside} 0.1 mm beyond it",
         "line 11  actuators[1].speed is not known; "
         "[[actuators]] has position, force, stiffness, stroke, frequency, cycle, cycles, dwell, table, segments, "
         "repeats, delay",
-        f"line 16  actuators[2].position {outside} 100 um beyond it",
+        f"line 16  actuators[2].position {outside} 0.1 mm beyond it",
         "line 16  actuators[2].position must differ from actuators[1].position; got the same point",
         'line 25  part.mass is missing; it must be a mass such as "2e-9 kg"',
         f"line 26  part.position {outside} 700 um beyond it",

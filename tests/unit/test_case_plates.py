@@ -132,7 +132,7 @@ WRONG = [
     ({"shape": SHAPES["polygon"] + '\nsides = ["a"]'}, 'plate.sides must be 3 names, one a side; got ["a"]'),
     (
         {"shape": SHAPES["annulus"], "plate": 'cell_size = "76 um"'},
-        "plate.cell_size must not exceed half of the plate's smallest width, 75 um; got 76 um",
+        'plate.cell_size must not exceed half of the plate\'s smallest width, 75 um; got "76 um"',
     ),
     # Supports
     (

@@ -1,8 +1,11 @@
 """The command line: exit codes, messages, and what is left behind when a case is refused."""
 
 import json
+import re
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -50,6 +53,32 @@ def test_bad_case_exits_2_with_every_mistake_and_leaves_nothing(command, broken,
         assert word in done.output
     assert "Traceback" not in done.output
     assert list(tmp_path.iterdir()) == [broken]
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_an_interrupt_exits_130_with_one_line(command, tmp_path, monkeypatch):
+    def interrupted(path):
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("coupling.case.read_case", interrupted)
+    done = CliRunner().invoke(main, [command, "any.toml"])
+    assert (done.exit_code, done.stdout, done.stderr) == (130, "", "interrupted\n")
+
+
+@pytest.mark.compiled
+@pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
+def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
+    text = (EXAMPLES / "one_actuator.toml").read_text()
+    case = tmp_path / "long.toml"
+    case.write_text(re.sub('duration = "[^"]*"', 'duration = "1000 s"', text))
+    command = [sys.executable, "-m", "coupling", "run", str(case), "--output", str(tmp_path / "out")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(5)
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate(timeout=60)
+    assert (process.returncode, output, errors) == (130, "", "interrupted\n")
+    assert not (tmp_path / "out").exists()
 
 
 def test_missing_file_exits_2():

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling.formula import FUNCTIONS, LONGEST, NAMES, Amount, Formula
+from coupling.expression import FUNCTIONS, LONGEST, NAMES
+from coupling.formula import Amount, Choice, Condition, Formula
 
 TIME = Amount("s", "50 ms")
 PLACE = {"row": 2.0, "column": 3.0, "rows": 5.0, "columns": 7.0, "x": 1e-4, "y": -2e-4, "pi": math.pi}
@@ -28,6 +29,7 @@ PLACE = {"row": 2.0, "column": 3.0, "rows": 5.0, "columns": 7.0, "x": 1e-4, "y":
         ("min(row, column, rows) + max(1, columns) + abs(y) ms", 9.0002e-3),
         ("sqrt(4) + sin(pi / 2) + cos(0) + tan(0) + exp(0) + log(1) + log(8, 2) + floor(1.7) ms", 9e-3),
         ("(row != 2) * 5 + 1 ms", 1e-3),
+        ("asin(1) + acos(1) + atan(1) + atan2(1, -1) ms", 1.5 * math.pi * 1e-3),
         ("0.1*row µs", 0.2e-6),
         ("row * 2 1/Hz", 4.0),
         ("row\n * 2 ms", 4e-3),
@@ -45,31 +47,97 @@ def test_a_number_and_a_unit_stay_a_number(text, value):
 
 
 @pytest.mark.parametrize(
-    ("text", "expected"),
+    ("text", "cause"),
     [
-        ("5 ms if row > 2 else 3 ms", "whose unit must come once, at its end"),
+        ("5 ms if row > 2 else 3 ms", 'the unit must come once, at the end, as in "(5 if row'),
         ("row^2 ms", "a power is written **"),
-        ("(row ms", "whose expression is not complete"),
-        ("sqrt(row, 2) ms", "but sqrt takes 1 number; it has 2"),
-        ("log() ms", "but log takes 1 or 2 numbers; it has 0"),
-        ("min(row) ms", "but min takes 2 or more numbers; it has 1"),
-        ("max(*row) ms", "but max takes 2 or more"),
-        ("max(*row, 2) ms", "which has more than numbers"),
-        ("sqrt + 1 ms", "but sqrt is a function, written sqrt(...)"),
-        ("sine(row) ms", "did you mean sin?"),
-        ("(1, 2) ms", "which has more than numbers"),
-        ("True * row ms", "which has more than numbers"),
+        ("(row ms", "the expression is not complete; a number, name, operator or bracket is missing"),
+        ("sqrt(row, 2) ms", "sqrt takes 1 number; it has 2"),
+        ("log() ms", "log takes 1 or 2 numbers; it has 0"),
+        ("min(row) ms", "min takes 2 or more numbers; it has 1"),
+        ("max(*row) ms", "max takes 2 or more"),
+        ("max(*row, 2) ms", "it must have numbers, names, operators and functions only"),
+        ("sqrt + 1 ms", "sqrt is a function, written sqrt(...)"),
+        ("sine(row) ms", "there is no function sine; did you mean sin?"),
+        (
+            "round(row) ms",
+            "there is no function round; there are sqrt, sin, cos, tan, asin, acos, atan, exp, floor, atan2,",
+        ),
+        ("arctan2(y, x) ms", "did you mean atan2?"),
+        ("pi(2) ms", "pi is no function"),
+        ("atan2(y) ms", "atan2 takes 2 numbers; it has 1"),
+        ("t * 5 ms", "there is no t: an expression is constant in time"),
+        ("r * 5 ms", "there is no r; there are row, column, rows, columns, x, y, pi"),
+        ("5 if row ms", "an else is missing"),
+        ("5 ms * row", "the unit must come once, at the end"),
+        ("5 ms + row ms", "the unit must come once, at the end"),
+        ("(1, 2) ms", "it must have numbers, names, operators and functions only"),
+        ("True * row ms", "it must have numbers, names, operators and functions only"),
         ("row + 'a' ms", "means nothing"),
         ("row.__class__ ms", "an operator such as * is missing"),
-        ("row[0] ms", 'in which "[" means nothing'),
+        ("row[0] ms", '"[" means nothing'),
         ("row " + "+ row " * LONGEST + "ms", f"longer than {LONGEST} characters"),
         ("(" * 300 + "row" + ")" * 300 + " ms", ""),
     ],
 )
-def test_what_they_must_not_say(text, expected):
-    with pytest.raises(ValueError, match=r"^must be a time such as .*; got ") as caught:
+def test_the_cause_comes_first_where_they_say_what_they_must_not(text, cause):
+    with pytest.raises(ValueError, match=r'^cannot be ".*: ') as caught:
         TIME.parse(text)
-    assert expected in str(caught.value)
+    assert cause in str(caught.value)
+    assert len(str(caught.value)) < 190
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"), [("row", "has no unit"), ("2 * row um", "a length"), ("row - row mss", "ms")]
+)
+def test_a_wrong_unit_is_answered_with_both_kinds_of_right_ones(text, reason):
+    with pytest.raises(
+        ValueError, match=r'^must be a time such as "50 ms" or "2 \* \(row \+ column\) ms"; got'
+    ) as caught:
+        TIME.parse(text)
+    assert reason in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "truth"),
+    [
+        ("not (row == 2 and column == 3)", False),
+        ("row % 2 == 0", True),
+        ("hypot(x, y) > 100e-6", True),
+        (" row > 2 or\ncolumn > 2 ", True),
+        ("x > 0 if row > 5 else y > 0", False),
+    ],
+)
+def test_conditions_hold_or_do_not(text, truth):
+    condition = Choice().validate(text)
+    assert isinstance(condition, Condition) and condition.holds(PLACE) is truth
+
+
+@pytest.mark.parametrize(
+    ("text", "cause"),
+    [
+        ("hypot(x, y) > 100 um", '"um" is too much; it has no unit, x and y are in metres'),
+        ("rwo > 2", "there is no rwo; did you mean row?"),
+        ("row = 2", '"=" means nothing'),
+        ("row >", "not complete"),
+        ("True", "it must have numbers, names, operators and functions only"),
+        ("row > 2 and open('x')", "means nothing"),
+        ("row " + "+ row " * LONGEST, f"longer than {LONGEST} characters"),
+        ("", "must be an expression that is true or false"),
+        (True, "must be an expression that is true or false"),
+        (["row > 2"], "must be an expression that is true or false"),
+    ],
+)
+def test_what_is_no_condition(text, cause):
+    with pytest.raises(ValueError, match=r"^(cannot be|must be an expression) ") as caught:
+        Choice().validate(text)
+    assert cause in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["row", "row % 2", "5", "row and column"])
+def test_a_number_is_no_condition(text):
+    with pytest.raises(ValueError, match="is a number and not a comparison"):
+        Choice().validate(text).holds(PLACE)
 
 
 WORDS = st.sampled_from(
@@ -85,7 +153,7 @@ def outcome(text):
         amount = TIME.parse(text)
         value = amount.value(PLACE) if isinstance(amount, Formula) else amount
     except ValueError as error:
-        assert str(error).startswith(("must be a time", "is ", "has ", "divides "))
+        assert str(error).startswith(("must be a time", "cannot be ", "is ", "has ", "divides "))
         return None
     assert type(value) is float and math.isfinite(value)
     return value
@@ -96,6 +164,10 @@ def outcome(text):
 def test_hostile_text_gives_a_finite_number_or_the_clear_error(text):
     outcome(text)
     outcome(text + " ms")
+    try:
+        assert Choice().validate(text).holds(PLACE) in (True, False)
+    except ValueError as error:
+        assert str(error).startswith(("must be an expression", "cannot be ", "is ", "has ", "divides "))
 
 
 NUMBERS = st.recursive(

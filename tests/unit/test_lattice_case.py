@@ -113,17 +113,20 @@ WRONG = [
     (DRIVE + 'delay = "row > 1 ms"\n', "is a comparison and not a number at row 0, column 0"),
     (
         DRIVE + 'delay = "row - column ms"\n',
-        'must be at least 0 for each actuator; "row - column ms" is -0.001 s at row 0, column 1',
+        'must be at least 0 for each actuator; "row - column ms" is -1 ms at row 0, column 1',
     ),
     ('frequency = "row * 300 Hz"\nstroke = "5 um"\n', "must be greater than 0 for each actuator"),
-    ('frequency = "0 Hz"\nstroke = "5 um"\n', "lattice.frequency must be greater than 0; got 0 Hz"),
+    ('frequency = "0 Hz"\nstroke = "5 um"\n', 'lattice.frequency must be greater than 0; got "0 Hz"'),
     (DRIVE + 'delay = "row * column"\n', '"row * column", which has no unit'),
     (DRIVE + 'delay = "row * column um"\n', '"row * column um", a length'),
     (DRIVE + "delay = 3\n", "got 3, which has no unit"),
-    (DRIVE + 'delay = "colum ms"\n', "but there is no colum; did you mean column?"),
+    (DRIVE + 'delay = "colum ms"\n', 'lattice.delay cannot be "colum ms": there is no colum; did you mean column?'),
     (DRIVE + 'delay = "2 row ms"\n', 'an operator such as * is missing before "row ms"'),
-    (DRIVE + 'delay = "row.real ms"\n', "got "),
-    (DRIVE + 'delay = "open(1) ms"\n', "but there is no function open"),
+    (DRIVE + 'delay = "row.real ms"\n', 'an operator such as * is missing before ".real ms"'),
+    (
+        DRIVE + 'delay = "open(1) ms"\n',
+        "there is no function open; there are sqrt, sin, cos, tan, asin, acos, atan, exp, floor, atan2, log,",
+    ),
     (DRIVE + 'cycle = "up"\ncycles = 3\n', 'lattice.cycles must not be given with cycle = "up"'),
     (DRIVE + 'force = "row uN"\n', "lattice.force must not be given with a stroke; an actuator is driven by one of"),
     ('force = "1 uN"\nfrequency = "1 Hz"\nstiffness = "row N/m"\n', "lattice.stiffness must not be given with a force"),
@@ -153,13 +156,20 @@ def test_each_mistake_is_told_once(tmp_path, keys, expected):
 @pytest.mark.parametrize(
     ("places", "expected"),
     [
-        ('rows = 3\ncolumns = 4\npitch = "-1 um"', "lattice.pitch must be greater than 0; got -1 um"),
+        ('rows = 3\ncolumns = 4\npitch = "-1 um"', 'lattice.pitch must be greater than 0; got "-1 um"'),
         ('rows = 3\ncolumns = 4\npitch = ["1 um"]', "lattice.pitch must be a length such as"),
         ('rows = 3\ncolumns = 4\npitch = "1e-9 um"', "lattice.pitch must keep the actuators apart; row 0, column 1"),
         ('rows = 0\ncolumns = 4\npitch = "1 um"', "lattice.rows must be at least 1; got 0"),
         ('rows = 1.5\ncolumns = 4\npitch = "1 um"', "lattice.rows must be a whole number; got 1.5"),
-        ('rows = 40000\ncolumns = 40000\npitch = "1 nm"', "lattice.columns must make at most 100000 actuators"),
-        ('rows = 3\npitch = "1 um"', "lattice.columns is missing"),
+        (
+            'rows = 40000\ncolumns = 40000\npitch = "1 nm"',
+            "lattice.rows must make at most 100000 actuators with columns = 40000; got 40000",
+        ),
+        (
+            'rows = 1\ncolumns = 1000000\npitch = "1 nm"',
+            "lattice.columns must make at most 100000 actuators with rows = 1;",
+        ),
+        ('rows = 3\npitch = "1 um"', "lattice.columns is missing; it must be a whole number"),
     ],
 )
 def test_mistakes_in_its_places(tmp_path, places, expected):
@@ -173,9 +183,107 @@ def test_all_mistakes_at_once_whatever_else_is_wrong(tmp_path):
     (tmp_path / "test.toml").write_text(text)
     with pytest.raises(CaseError) as caught:
         read_case(tmp_path / "test.toml")
-    assert [p.field for p in caught.value.problems] == ["friction.limit", "lattice.stroke"]
-    lattice = lattice.replace("rwo", "row")
-    assert [line.split()[1] for line in problems(tmp_path, lattice)] == ["lattice.frequency", "lattice.delay"]
+    wrong = ["friction.limit", "lattice.stroke", "lattice.frequency", "lattice.delay"]
+    assert [p.field for p in caught.value.problems] == wrong
+    assert [line.split()[1] for line in problems(tmp_path, lattice)] == wrong[1:]
+
+
+FIVE = 'rows = 5\ncolumns = 5\npitch = "5 mm"\n'
+PARTLY_RIGHT = [
+    (
+        FIVE + 'stroke = "sqrt(row - 2) um"\nfrequency = "sinn(row) Hz"\ndelay = "1/row ms"\n',
+        "row 0, column 0 is 13.5059 mm beyond it, and 23 more",
+        '"sqrt(row - 2) um" has no real value',
+        "there is no function sinn",
+        '"1/row ms" divides by zero',
+    ),
+    # What needs a wrong or missing key is not judged; all else is.
+    (
+        'rows = 5\npitch = "1 m"\nstroke = "1 / row um"\nfrequency = "1 / column Hz"\n',
+        "lattice.columns is missing",
+        "1 / row",
+    ),
+    (
+        FIVE.replace("5 mm", "1") + 'stroke = "1 / x um"\nfrequency = "1 / row Hz"\n',
+        "lattice.pitch",
+        "1 / row",
+    ),
+    (FIVE + 'magrin = "1 m"\nstroke = "1 / row um"\nfrequency = "0 Hz"\n', "magrin", "0 Hz"),
+    (FIVE + 'where = "rwo > 1"\nstroke = "1 / row um"\nfrequency = "-1 Hz"\n', "rwo", "-1 Hz"),
+    (FIVE + 'margin = 0\nstroke = "1 / row um"\nfrequency = "1 Hz"\n', "lattice.margin"),
+    (
+        'rows = 200000\npitch = "1 m"\nstroke = "log(row) um"\nfrequency = "1 Hz"\n',
+        "columns is missing",
+        "got 200000",
+    ),
+    (
+        FIVE + 'stroke = "5 um"\nforce = "x N"\nfrequency = "1 Hz"\nstiffness = "row N/m"\n',
+        "13.5059 mm",
+        "with a stroke",
+        "with a force",
+    ),
+]
+
+
+@pytest.mark.parametrize(("keys", "expected"), [(keys, expected) for keys, *expected in PARTLY_RIGHT])
+def test_every_key_is_judged_as_far_as_it_can_be(tmp_path, keys, expected):
+    found = problems(tmp_path, "[lattice]\n" + keys)
+    assert len(found) == len(expected), found
+    assert all(sum(part in line for line in found) == 1 for part in expected), found
+
+
+def test_where_leaves_out(tmp_path):
+    near = 'where = "not (row == 1 and column == 2) and hypot(x, y) < 200e-6"\n'
+    case = read(tmp_path, PLACES + near + DRIVE)
+    assert len(case.actuators) == 5
+    assert all(np.hypot(*a.position) < 200e-6 and a.position != pytest.approx((75e-6, 0)) for a in case.actuators)
+    # Formulas need a value only where there is an actuator, and only an actuator must be on the plate.
+    delay = 'delay = "0.1 / abs(column - 1) ms"\n'
+    assert len(read(tmp_path, PLACES + 'where = "column != 1"\n' + DRIVE + delay).actuators) == 9
+    wide = '[lattice]\nrows = 9\ncolumns = 9\npitch = "0.3 mm"\nwhere = "x*x + y*y < 1e-7"\n'
+    assert len(read(tmp_path, wide + DRIVE).actuators) == 5
+    lattice = LatticeCase(rows=3, columns=3, pitch=9e-5, where="row > 0", stroke=0, frequency=1)
+    assert len(python_case(lattice=lattice).actuators) == 6
+
+
+def test_where_and_margin_leave_out_together(tmp_path):
+    places = '[lattice]\nrows = 21\ncolumns = 21\npitch = "100 um"\nmargin = "50 um"\n'
+    case = read(tmp_path, places + 'where = "sqrt(4.6e-4 - abs(x)) > 0 and row != 10"\n' + DRIVE)
+    assert len(case.actuators) == 9 * 6
+    assert all(abs(a.position[0]) < 450e-6 and 0 < abs(a.position[1]) < 350e-6 for a in case.actuators)
+
+
+@pytest.mark.parametrize(
+    ("where", "expected"),
+    [
+        ('"row > 5"', 'lattice.where must be true for one actuator or more; "row > 5" is true for none'),
+        ('"column"', 'true or false for each actuator; "column" is a number and not a comparison at row 0, column 0'),
+        ('"1 / column > 2"', '"1 / column > 2" divides by zero at row 0, column 0'),
+        ('"rwo > 2"', 'lattice.where cannot be "rwo > 2": there is no rwo; did you mean row?'),
+        ('"x > 10 um"', '"um" is too much; it has no unit'),
+        ('""', "lattice.where must be an expression that is true or false, such as"),
+        ("true", "lattice.where must be an expression that is true or false, such as"),
+    ],
+)
+def test_mistakes_in_where(tmp_path, where, expected):
+    found = problems(tmp_path, PLACES + f"where = {where}\n" + DRIVE)
+    assert len(found) == 1 and expected in found[0], found
+
+
+def test_lengths_in_messages_have_the_units_that_were_written(tmp_path):
+    for pitch, beyond in (('"5 mm"', "7 mm"), ('"5000 um"', "7000 um"), ('["0.5 cm", "0.1 um"]', "0.7 cm")):
+        keys = f"rows = 1\ncolumns = 4\npitch = {pitch}\n"
+        (found,) = problems(tmp_path, "[lattice]\n" + keys + DRIVE)
+        assert f"is {beyond} beyond it, and 3 more" in found
+
+
+def test_a_misspelt_lattice_is_one_mistake(tmp_path):
+    (found,) = problems(tmp_path, PLACES.replace("[lattice]", "[latice]") + DRIVE)
+    assert found.endswith("latice is not known; did you mean lattice?")
+    file = tmp_path / "free.toml"
+    file.write_text(FRAME.replace("[part]", 'supports = "free"\n[part]') + PLACES.replace("lattice", "latice") + DRIVE)
+    with pytest.raises(CaseError, match="1 mistake\n"):
+        read_case(file)
 
 
 def test_double_brackets_and_platforms(tmp_path):

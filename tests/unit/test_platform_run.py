@@ -47,7 +47,7 @@ def test_flights_loads_and_errors_are_said(tmp_path):
     assert "drives follow their motion to 3.0e-13 of the stroke" in text
     assert f"the energy ledger closes to {s.energy_balance:.1e}" in text
     assert "counted from the platform" in text
-    assert "thicknesses" not in text and "unknowns" not in text
+    assert "thickness" not in text and "unknowns" not in text
     with h5py.File(tmp_path / "platform.part.vtkhdf") as file:
         assert set(file["VTKHDF/PointData/state"][:].tolist()) == {0, 1, 2}
         assert "from the platform" in json.loads(file["active_surface"].attrs["units"])["points"]

@@ -1,6 +1,9 @@
 """The surface as the part sees it: polynomials, and the plate's shapes under drives."""
 
 import math
+import re
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ from fem_plate import Plate
 from fem_plate.analytic import DiscShapes
 from meshes import disc
 from particle import Drive, polynomial_surface
+from particle.cells import UNBUILT, CellPool
 from particle.fields import fields
 from particle.local import enter, new_local, within_cell
 
@@ -27,6 +31,21 @@ def surface(exact):
 def close(found, expected, bound):
     scale = np.abs(expected).max()
     assert np.abs(np.asarray(found) - expected).max() <= bound * scale + 1e-300
+
+
+@pytest.mark.parametrize("time", [math.nan, math.inf])
+def test_a_time_that_is_none_is_named(surface, time):
+    with pytest.raises(ValueError, match=f"^Input time of evaluate must be a finite number of seconds; got {time}$"):
+        surface.evaluate([[0.0, 0.0]], time)
+
+
+def test_it_is_shown_in_a_line(exact):
+    surface = surface_motion(exact, DRIVES)
+    shown = r"<SurfaceMotion: drives 2, cells built [1-9]\d*, error \d\.\de-\d\d>"
+    assert re.fullmatch(shown, repr(surface))
+    none = CellPool(np.zeros(2), np.ones(2), np.array([[UNBUILT]])).cells()
+    unbuilt = replace(surface, store=SimpleNamespace(cells=none, error=0.0))
+    assert repr(unbuilt) == "<SurfaceMotion: drives 2, cells built 0, error not measured>"
 
 
 @pytest.mark.parametrize("size", [1.0, 0.02])
