@@ -45,7 +45,7 @@ def rocking():
 
 
 CASES = {
-    "plate": (plate, Micropart(MASS, (20e-6, 100e-6)), ConstantFriction(20.9 * MASS), 3e-3),
+    "plate": (plate, Micropart(MASS, (25e-6, 95e-6)), ConstantFriction(20.9 * MASS), 3e-3),
     "rough": (plate, Micropart(MASS, (20e-6, 100e-6)), KogutEtsion.paper(), 3e-3),
     "shaken": (shaken, Micropart(MASS, (0.0, 0.0)), CoulombAdhesion(0.15), 0.2),
     "platform": (platform, Micropart(MASS, (0.0, 0.0)), CoulombAdhesion(0.3), 1.0),
