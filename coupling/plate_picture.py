@@ -28,12 +28,11 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 MOST_TRIANGLES = 60_000  # of a mesh that is made finer to be drawn
-MOST_BANDED = 100_000  # of a mesh whose details are far enough apart for lines of equal height
 FINEST = 4  # times that its edges are halved
 AXES_WIDTH = 330.0  # points, about
 MARGIN = 0.04  # of the plate's longer side, around it
 FEW = 25  # actuators, which are always marked
-LEAST_APART = 4.0  # points: markers of many that are nearer merge
+LEAST_APART, LINES_APART = 4.0, 8.0  # points, where many are nearer markers or lines of equal height merge
 MARKERS = (1.5, 6.0)  # points, the smallest and largest
 FLAT = 1e-9  # of the largest height: smaller differences are none
 BELOW = 0.01  # of the largest height: shallower hollows are not told from 0
@@ -82,7 +81,8 @@ def draw_plate(
     for one, unit, frame in zip(axes, units, frames, strict=True):
         points, triangles, w = fine_field(shapes, ground, heights, frame)
         side: Literal["left", "right"] = "right" if one is axes[-1] else "left"  # nothing between map and window
-        _draw_heights(figure, one, points * unit.per_si, triangles, w * scale.unit.per_si, scale, side)
+        lined = apart(shapes.points, frame) >= LINES_APART
+        _draw_heights(figure, one, points * unit.per_si, triangles, w * scale.unit.per_si, scale, side, lined)
         curves = [curve * unit.per_si for curve in rim_curves(shapes.outline, extent(frame) / 200)]
         one.add_collection(LineCollection(curves, colors="black", linewidths=1.5))
         one.set_xlim(*(frame[:, 0] * unit.per_si))
@@ -120,31 +120,36 @@ def _draw_heights(
     w: FloatArray,
     scale: Scale,
     side: Literal["left", "right"],
+    lined: bool,
 ) -> None:
-    """Bands of equal height and the lines between them, where these would not merge, with their bar at a side."""
+    """Bands of equal height and the lines between them, or shades without lines, with their bar at a side."""
     if scale.colours is UPWARDS:
         w = np.maximum(w, 0.0)
     if np.ptp(w) <= FLAT * (scale.norm.vmax or 0.0):
         return
     bar: dict[str, Any] = {"ax": axes, "label": f"deflection [{scale.unit.name}]", "shrink": 0.75, "location": side}
-    bar |= {"ticks": MaxNLocator(LABELS, steps=STEPS), "format": StrMethodFormatter("{x:.6g}")}
+    bar["format"] = StrMethodFormatter("{x:.6g}")
     colours: dict[str, Any] = {"cmap": scale.colours, "norm": scale.norm}
-    if len(triangles) > MOST_BANDED:
+    if not lined:
         shades = axes.tripcolor(*points.T, triangles, w, shading="gouraud", **colours)
         figure.colorbar(shades, **bar).ax.set_ylim(w.min(), w.max())
         return
-    levels = MaxNLocator(BANDS).tick_values(w.min(), w.max())
+    levels = np.asarray(MaxNLocator(BANDS, steps=STEPS).tick_values(w.min(), w.max()))
+    labelled = np.rint(levels / (levels[1] - levels[0])) % (1 + len(levels) // LABELS) == 0  # 0 among them
     filled = axes.tricontourf(*points.T, triangles, w, levels=levels, **colours)
     lines = axes.tricontour(*points.T, triangles, w, levels=levels[1:-1], colors="#404040", linewidths=0.4)
-    figure.colorbar(filled, **bar).add_lines(lines)
+    figure.colorbar(filled, ticks=levels[labelled], **bar).add_lines(lines)
+
+
+def apart(places: FloatArray, frame: FloatArray) -> float:
+    """How far apart [points] places (N, 2) [m] are in a frame (2, 2) [m]; inf where they are few."""
+    return AXES_WIDTH * pitch(places) / extent(frame) if len(places) > FEW else math.inf
 
 
 def marker_size(places: FloatArray, frame: FloatArray) -> float:
     """The size [points] of markers at places (N, 2) [m] in a frame (2, 2) [m], apart from each other; 0: they merge."""
-    if len(places) <= FEW:
-        return MARKERS[1]
-    apart = AXES_WIDTH * pitch(places) / extent(frame)
-    return float(np.clip(0.3 * apart, *MARKERS)) if apart >= LEAST_APART else 0.0
+    distance = apart(places, frame)
+    return float(np.clip(0.3 * distance, *MARKERS)) if distance >= LEAST_APART else 0.0
 
 
 def _mark_actuators(axes: Axes, actuators: FloatArray, frame: FloatArray, unit: Unit) -> int:

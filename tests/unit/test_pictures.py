@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
 from coupling.drawn_plate import drawn_plate
 from coupling.pictures import compose, moment_of_most
-from coupling.plate_picture import BOTH_WAYS, FEW, UPWARDS, Scale, fine_field, marker_size
+from coupling.plate_picture import BOTH_WAYS, FEW, UPWARDS, Scale, draw_plate, fine_field, marker_size
 from coupling.plate_scene import lifting
 from coupling.readable import readable
 from coupling.run import run_case
@@ -177,3 +177,11 @@ def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():
     xy, cells, _ = fine_field(shapes, ground, heights, window)
     longest = np.hypot(*(xy[cells] - xy[np.roll(cells, 1, axis=1)]).reshape(-1, 2).T).max()
     assert longest < 5e-5 / 25 and xy.min() > -5e-5 and xy.max() < 1e-4
+    figure = Figure()
+    axes, units = list(figure.subplots(1, 2)), [readable(shapes.outline.box, "m"), readable(window, "m")]
+    keys = draw_plate(figure, axes, shapes, ground, heights, units, window)
+    FigureCanvasAgg(figure).draw()
+    assert [key.get_label() for key in keys] == ["actuator"]
+    assert np.transpose([axes[1].get_xlim(), axes[1].get_ylim()]) == pytest.approx(window * 1e6)
+    assert 0 in figure.axes[2].get_yticks()
+    assert len(axes[1].lines) == 0 or axes[1].lines[0].get_xdata().size == 0  # both stand outside of the window
