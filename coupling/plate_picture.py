@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import CenteredNorm, Colormap, LinearSegmentedColormap, Normalize
+from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import ConnectionPatch, Rectangle
@@ -45,8 +45,14 @@ class Scale(NamedTuple):
     """How heights become colours, the same in all of the picture."""
 
     unit: Unit
-    norm: Normalize
+    lowest: float
+    highest: float
     colours: Colormap
+
+    @property
+    def norm(self) -> Normalize:
+        """A new one each time: a bar whose norm others use as well loses its limits."""
+        return Normalize(self.lowest, self.highest)
 
     @staticmethod
     def of(deflection: FloatArray) -> Scale:
@@ -54,8 +60,8 @@ class Scale(NamedTuple):
         unit = readable(deflection, "m")
         high, low = (float(w) * unit.per_si for w in (deflection.max(), deflection.min()))
         if -low > BELOW * high:
-            return Scale(unit, CenteredNorm(0, max(high, -low)), BOTH_WAYS)
-        return Scale(unit, Normalize(0, high), UPWARDS)
+            return Scale(unit, -max(high, -low), max(high, -low), BOTH_WAYS)
+        return Scale(unit, 0.0, high, UPWARDS)
 
 
 def draw_plate(
@@ -125,7 +131,7 @@ def _draw_heights(
     """Bands of equal height and the lines between them, or shades without lines, with their bar at a side."""
     if scale.colours is UPWARDS:
         w = np.maximum(w, 0.0)
-    if np.ptp(w) <= FLAT * (scale.norm.vmax or 0.0):
+    if np.ptp(w) <= FLAT * scale.highest:
         return
     bar: dict[str, Any] = {"ax": axes, "label": f"deflection [{scale.unit.name}]", "shrink": 0.75, "location": side}
     bar["format"] = StrMethodFormatter("{x:.6g}")

@@ -7,6 +7,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from coupling import plate_picture
 from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
 from coupling.drawn_plate import drawn_plate
 from coupling.pictures import compose, moment_of_most
@@ -161,13 +162,18 @@ def test_a_part_at_rest_is_a_point_on_the_map_with_axes_that_can_be_read(case, t
     assert not any(axis.get_offset_text().get_text() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis))
 
 
-def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():
+def small_plate():
     plate = Plate(disc(3e-4, 1e-4), PlateSection(169e9, 0.3, 2e-5, 2330.0))
     shapes = plate.influence([(-1e-4, 0.0), (1e-4, 0.0)])
     points, triangles = drawn_plate(plate.mesh, shapes.points)
-    ground, heights = Ground(points, triangles, lifting(shapes, points)), np.array([2e-6, -1e-6])
+    return shapes, Ground(points, triangles, lifting(shapes, points))
+
+
+def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():
+    shapes, ground = small_plate()
+    heights = np.array([2e-6, -1e-6])
     xy, cells, w = fine_field(shapes, ground, heights, shapes.outline.box)
-    assert len(cells) >= 4 * len(triangles)
+    assert len(cells) >= 4 * len(ground.triangles)
     inside = np.hypot(*xy.T) < 2.9e-4
     assert w[inside] == pytest.approx(shapes.evaluate(xy[inside], heights)[0], abs=1e-15)
     a, b, c = np.moveaxis(xy[cells], 1, 0)
@@ -184,4 +190,16 @@ def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():
     assert [key.get_label() for key in keys] == ["actuator"]
     assert np.transpose([axes[1].get_xlim(), axes[1].get_ylim()]) == pytest.approx(window * 1e6)
     assert 0 in figure.axes[2].get_yticks()
-    assert len(axes[1].lines) == 0 or axes[1].lines[0].get_xdata().size == 0  # both stand outside of the window
+    assert sum(line.get_xdata().size for line in axes[1].lines) == 0  # both stand outside of the window
+
+
+def test_a_map_whose_lines_would_merge_is_shaded_and_its_bar_ends_where_the_heights_do(monkeypatch):
+    shapes, ground = small_plate()
+    monkeypatch.setattr(plate_picture, "FEW", 1)
+    monkeypatch.setattr(plate_picture, "LINES_APART", 500.0)  # the window's actuators would be further apart
+    window, figure = np.array([[0.0, 0.0], [5e-5, 5e-5]]), Figure()
+    axes, units = list(figure.subplots(1, 2)), [readable(shapes.outline.box, "m"), readable(window, "m")]
+    draw_plate(figure, axes, shapes, ground, np.array([2e-6, -1e-6]), units, window)
+    FigureCanvasAgg(figure).draw()
+    low, high = figure.axes[2].get_ylim()
+    assert -1.3 < low <= -1 and 2 <= high < 2.5
