@@ -6,19 +6,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from coupling.case import Case
 from coupling.drawn_plate import drawn_plate
-from coupling.drives import build_drives
+from coupling.drives import build_drives, stroke_heights
 from coupling.measured import MotionFit
-from coupling.pictures import Unit, draw_plate
 from coupling.plate_case import PlateCase
 from coupling.plate_figures import plate_figures
+from coupling.plate_picture import draw_plate
 from coupling.progress import Progress
+from coupling.readable import Unit
 from coupling.rim import onto_plate
 from coupling.scene import Ground
 from coupling.summary import PlateFigures
@@ -60,11 +61,16 @@ class PlateScene:
         return plate_figures(case, self.plate, self.shapes, self.surface, self.lifts, trajectory)
 
     def draw(
-        self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit, window: FloatArray | None
-    ) -> list[Line2D]:
-        return draw_plate(
-            figure, axes, self.shapes, ground.points, ground.triangles, ground.lifted(heights[None])[0], unit, window
-        )
+        self,
+        figure: Figure,
+        axes: list[Axes],
+        ground: Ground,
+        moment: float,
+        units: list[Unit],
+        window: FloatArray | None,
+    ) -> list[Artist]:
+        heights = stroke_heights(self.lifts, np.array([moment]))[0]
+        return draw_plate(figure, axes, self.shapes, ground, heights, units, window)
 
 
 def lifting(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:

@@ -7,17 +7,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from coupling.case import Case
 from coupling.drives import build_drive, travel
 from coupling.measured import MotionFit, fit_motion
-from coupling.pictures import Unit
 from coupling.platform_case import AXES, MotionCase, PlatformCase
 from coupling.progress import Progress
+from coupling.readable import Unit
 from coupling.scene import Ground
 from particle import AnyDrive, Drive, SurfaceMotion, Trajectory, platform_surface
 
@@ -57,13 +57,19 @@ class PlatformScene:
         return None
 
     def draw(
-        self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit, window: FloatArray | None
-    ) -> list[Line2D]:
+        self,
+        figure: Figure,
+        axes: list[Axes],
+        ground: Ground,
+        moment: float,
+        units: list[Unit],
+        window: FloatArray | None,
+    ) -> list[Artist]:
         """Nothing but its extent: it looks the same everywhere."""
         (left, bottom), (right, top) = ground.points.min(axis=0), ground.points.max(axis=0)
-        axes.set_xlim(left * unit.per_metre, right * unit.per_metre)
-        axes.set_ylim(bottom * unit.per_metre, top * unit.per_metre)
-        axes.grid(alpha=0.3)
+        axes[0].set_xlim(left * units[0].per_si, right * units[0].per_si)
+        axes[0].set_ylim(bottom * units[0].per_si, top * units[0].per_si)
+        axes[0].grid(alpha=0.3)
         return []
 
 

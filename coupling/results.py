@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from coupling.case import Case
 from coupling.csv_file import write_csv
 from coupling.drives import frame_times, stroke_heights
-from coupling.pictures import draw_run
+from coupling.pictures import draw_run, moment_of_most
 from coupling.progress import Tell, untold
 from coupling.scene import Scene
 from coupling.summary import Summary
@@ -58,6 +58,7 @@ def write_results(
     }
     samples = trajectory.at(times)
     place = scene.onto(samples.position)
+    spread: list[float] = []
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
         part_file(folder, case.name, metadata) as part,
@@ -66,6 +67,7 @@ def write_results(
             if k % AT_ONCE == 0:
                 tell(k, len(times))
                 deflections = ground.lifted(heights[k : k + AT_ONCE]).astype(np.float32)
+                spread.extend(np.square(deflections, dtype=np.float64).mean(axis=1))
             plate.append(time, deflection=deflections[k % AT_ONCE])
             part.append(
                 time,
@@ -76,7 +78,7 @@ def write_results(
                 friction_force=samples.friction_force[k],
             )
     picture = folder / f"{case.name}.png"
-    draw_run(case, scene, trajectory, ground, picture)
+    draw_run(case, scene, trajectory, ground, float(times[moment_of_most(np.array(spread))]), picture)
     files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf", picture]
     if csv:
         files.append(write_csv(trajectory, folder / f"{case.name}.csv", times))

@@ -6,14 +6,14 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from coupling.case import Case
 from coupling.measured import MotionFit
-from coupling.pictures import Unit
+from coupling.readable import Unit
 from coupling.summary import PlateFigures
 from fem_plate import PlateShapes
 from particle import AnyDrive, SurfaceMotion, Trajectory
@@ -66,9 +66,15 @@ class Scene(Protocol):
         """What the summary says of a plate; None: it is none."""
 
     def draw(
-        self, figure: Figure, axes: Axes, ground: Ground, heights: FloatArray, unit: Unit, window: FloatArray | None
-    ) -> list[Line2D]:
-        """Draw what lies under the path, lifted to heights (N,), in a unit of length; return its keys.
+        self,
+        figure: Figure,
+        axes: list[Axes],
+        ground: Ground,
+        moment: float,
+        units: list[Unit],
+        window: FloatArray | None,
+    ) -> list[Artist]:
+        """Draw what lies under the path, as it is at a moment [s], in units of length of each axes; return its keys.
 
-        window: (2, 2) m, the part of it to show; None: all.
+        axes: for all of it and, where there is a window (2, 2) [m], for what is in that.
         """

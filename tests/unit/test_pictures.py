@@ -1,0 +1,205 @@
+"""The picture of a run: when there is a window, what is marked, what the axes show; and nothing that is not there."""
+
+import warnings
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from coupling import plate_picture
+from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
+from coupling.drawn_plate import drawn_plate
+from coupling.pictures import compose, moment_of_most
+from coupling.plate_picture import BOTH_WAYS, FEW, UPWARDS, Scale, draw_plate, fine_field, marker_size
+from coupling.plate_scene import lifting
+from coupling.readable import readable
+from coupling.run import run_case
+from coupling.scene import Ground
+from coupling.time_picture import limits
+from coupling.window import LEAST, MOST, path_window
+from fem_plate import Plate, PlateSection
+from meshes import disc
+
+BOX = np.array([[-50.0, -50.0], [50.0, 50.0]])
+DISC = {"shape": "disc", "radius": 3e-4, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 2e-5}
+
+
+def straight(length, middle=(10.0, 10.0)):
+    return np.array(middle) + length * np.array([[-0.5, -0.1], [0.5, 0.1]])
+
+
+def lattice(n, pitch=1.0):
+    side = pitch * (np.arange(n) - (n - 1) / 2)
+    return np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
+
+
+@pytest.mark.parametrize(("length", "times"), [(0.15, MOST), (0.7, 2.2 / 0.7), (5.0, LEAST), (16.0, LEAST)])
+def test_a_short_path_has_a_window_of_a_few_lengths_or_two_pitches(length, times):
+    window = path_window(straight(length), BOX, lattice(100))
+    assert np.ptp(window, axis=0) == pytest.approx([times * length] * 2)
+    assert window.mean(axis=0) == pytest.approx([10.0, 10.0])
+
+
+@pytest.mark.parametrize("length", [0.0, 0.09, 17.0, 80.0])
+def test_a_long_path_and_one_that_is_a_point_have_none(length):
+    assert path_window(straight(length), BOX, lattice(100)) is None
+
+
+@pytest.mark.parametrize("actuators", [lattice(1), lattice(2, 1e-6), lattice(2, 1e3)])
+def test_any_actuators_leave_the_path_visible_in_a_window_smaller_than_the_plate(actuators):
+    for length in np.geomspace(0.11, 16, 9):
+        side = np.ptp(path_window(straight(length), BOX, actuators), axis=0).max()
+        assert length <= side / LEAST * (1 + 1e-9) and side <= min(MOST * length, 0.42 * 100) * (1 + 1e-9)
+
+
+def test_markers_shrink_with_the_pitch_and_go_before_they_merge():
+    frame = np.array([[-1.0, -1.0], [1.0, 1.0]])
+    sizes = [marker_size(lattice(n, 2 / n), frame) for n in (2, 10, 40, 100)]
+    assert sizes[0] >= sizes[1] > sizes[2] > sizes[3] == 0
+    assert all(0 < size <= 0.5 * 330 / n for size, n in zip(sizes, (2, 10, 40), strict=False))
+    assert marker_size(np.stack([np.linspace(-1, 1, 100), np.zeros(100)], axis=1), frame) == 0  # a row
+    assert marker_size(np.zeros((FEW, 2)), frame) > 0
+
+
+@pytest.mark.parametrize(
+    ("largest", "name", "number"),
+    [
+        (0.0, "m", 0),
+        (1e-13, "m", 0),
+        (8e-11, "nm", 0.08),
+        (2.6e-6, "µm", 2.6),
+        (1e-3, "mm", 1),
+        (0.05, "mm", 50),
+        (4, "m", 4),
+    ],
+)
+def test_numbers_have_a_prefix_of_their_size(largest, name, number):
+    unit = readable(np.array([-largest, largest / 2]), "m")
+    assert unit.name == name
+    assert largest * unit.per_si == pytest.approx(number, abs=1e-12)
+
+
+def test_limits_hold_zero_and_every_value_and_are_never_empty():
+    for values in ([0.0, 0.0], [3.0, 5.0], [-5.0, -3.0], [-1.0, 4.0], [1e-17]):
+        low, high = limits(np.array(values))
+        assert low < min(0, *values) and high > max(0, *values)
+        assert high - low < 1.2 * max(np.ptp([0, *values]), 1.0)
+
+
+def test_heights_below_zero_have_a_colour_of_their_own_and_zero_is_white_where_they_matter():
+    up, both = Scale.of(np.array([-1e-8, 1e-5])), Scale.of(np.array([-2e-6, 1e-5]))
+    assert up.colours is UPWARDS and both.colours is BOTH_WAYS
+    for scale in (up, both):
+        assert scale.colours(scale.norm(0.0))[:3] == pytest.approx((1, 1, 1), abs=0.01)
+        assert scale.norm(10.0) == pytest.approx(1)
+    assert min(both.colours(both.norm(-2.0))[:3]) < 0.95
+    assert Scale.of(np.zeros(3)).colours is UPWARDS
+
+
+def test_the_moment_shown_is_the_first_of_the_most():
+    assert moment_of_most(np.array([0.0, 1.0, 4.0, 2.0, 4.0])) == 2
+    assert moment_of_most(np.array([0.0, 1.0, 3.9999, 2.0, 4.0])) == 2
+    assert moment_of_most(np.array([0.0, 3.9, 4.0])) == 2
+    assert moment_of_most(np.zeros(5)) == 0
+
+
+def drawn(case, tmp_path):
+    """The figure of a run, drawn, with warnings as errors."""
+    result = run_case(case, tmp_path)
+    figure = Figure()
+    canvas = FigureCanvasAgg(figure)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ground = result.scene.ground(result.trajectory)
+        compose(figure, case, result.scene, result.trajectory, ground, result.trajectory.time[-1] / 3)
+        canvas.draw()
+    return figure
+
+
+def texts(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def plate_case(duration=1e-3, limit=1e-9, strokes=(5e-5, 4e-5)):
+    return Case(
+        plate=DISC,
+        actuators=[
+            ActuatorCase(position=(x, 0.0), stroke=stroke, frequency=700.0)
+            for x, stroke in zip((-1e-4, 1e-4), strokes, strict=True)
+        ],
+        part=PartCase(mass=2e-9, position=(-1.8e-4, 4e-5)),
+        friction=ConstantCase(limit=limit),
+        run=RunCase(duration=duration),
+        name="small",
+    )
+
+
+@pytest.mark.compiled
+def test_a_short_path_is_drawn_in_a_window_with_keys_for_what_is_there(tmp_path):
+    figure = drawn(plate_case(), tmp_path)
+    assert figure.axes[0].get_title() == "The plate at 0.3333 ms, when it is deflected most"
+    assert figure.axes[1].get_title() == "Around the path, also at 0.3333 ms"
+    assert texts(figure)[:1] == ["path"] and "actuator" in texts(figure) and "in flight" not in texts(figure)
+    map_axes, window = figure.axes[:2]
+    path = next(line for line in window.lines if line.get_label() == "path").get_xydata()
+    low, high = np.transpose([window.get_xlim(), window.get_ylim()])
+    assert (path > low).all() and (path < high).all()
+    assert np.ptp(path, axis=0).max() > (high - low).max() / (1.01 * MOST)
+    assert np.ptp(map_axes.get_xlim()) > 600  # µm: all of the plate
+    start = next(line for line in window.lines if line.get_label() == "start")
+    assert start.get_markerfacecolor() == "none"
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("case", [plate_case(limit=1e-3), plate_case(2.6e-6, 1e-3), plate_case(strokes=(0.0, 0.0))])
+def test_a_part_at_rest_is_a_point_on_the_map_with_axes_that_can_be_read(case, tmp_path):
+    figure = drawn(case, tmp_path)
+    assert texts(figure) == ["the part, which stays where it is", "actuator", "stuck"]
+    panel = next(axes for axes in figure.axes if axes.get_ylabel().startswith("speed"))
+    assert panel.get_yticks().tolist() == [0] and panel.get_ylim()[0] > -0.1
+    assert panel.get_xlabel() == ("time [µs]" if case.run.duration < 1e-5 else "time [ms]")
+    assert not any(axis.get_offset_text().get_text() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis))
+
+
+def small_plate():
+    plate = Plate(disc(3e-4, 1e-4), PlateSection(169e9, 0.3, 2e-5, 2330.0))
+    shapes = plate.influence([(-1e-4, 0.0), (1e-4, 0.0)])
+    points, triangles = drawn_plate(plate.mesh, shapes.points)
+    return shapes, Ground(points, triangles, lifting(shapes, points))
+
+
+def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():
+    shapes, ground = small_plate()
+    heights = np.array([2e-6, -1e-6])
+    xy, cells, w = fine_field(shapes, ground, heights, shapes.outline.box)
+    assert len(cells) >= 4 * len(ground.triangles)
+    inside = np.hypot(*xy.T) < 2.9e-4
+    assert w[inside] == pytest.approx(shapes.evaluate(xy[inside], heights)[0], abs=1e-15)
+    a, b, c = np.moveaxis(xy[cells], 1, 0)
+    (p, q), (r, s) = (b - a).T, (c - a).T
+    assert np.abs(p * s - q * r).sum() / 2 == pytest.approx(np.pi * 9e-8, rel=3e-3)
+    window = np.array([[0.0, 0.0], [5e-5, 5e-5]])
+    xy, cells, _ = fine_field(shapes, ground, heights, window)
+    longest = np.hypot(*(xy[cells] - xy[np.roll(cells, 1, axis=1)]).reshape(-1, 2).T).max()
+    assert longest < 5e-5 / 25 and xy.min() > -5e-5 and xy.max() < 1e-4
+    figure = Figure()
+    axes, units = list(figure.subplots(1, 2)), [readable(shapes.outline.box, "m"), readable(window, "m")]
+    keys = draw_plate(figure, axes, shapes, ground, heights, units, window)
+    FigureCanvasAgg(figure).draw()
+    assert [key.get_label() for key in keys] == ["actuator"]
+    assert np.transpose([axes[1].get_xlim(), axes[1].get_ylim()]) == pytest.approx(window * 1e6)
+    assert 0 in figure.axes[2].get_yticks()
+    assert sum(line.get_xdata().size for line in axes[1].lines) == 0  # both stand outside of the window
+
+
+def test_a_map_whose_lines_would_merge_is_shaded_and_its_bar_ends_where_the_heights_do(monkeypatch):
+    shapes, ground = small_plate()
+    monkeypatch.setattr(plate_picture, "FEW", 1)
+    monkeypatch.setattr(plate_picture, "LINES_APART", 500.0)  # the window's actuators would be further apart
+    window, figure = np.array([[0.0, 0.0], [5e-5, 5e-5]]), Figure()
+    axes, units = list(figure.subplots(1, 2)), [readable(shapes.outline.box, "m"), readable(window, "m")]
+    draw_plate(figure, axes, shapes, ground, np.array([2e-6, -1e-6]), units, window)
+    FigureCanvasAgg(figure).draw()
+    low, high = figure.axes[2].get_ylim()
+    assert -1.3 < low <= -1 and 2 <= high < 2.5
