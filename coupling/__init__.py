@@ -15,6 +15,8 @@ _HOMES = {
     "build_surface": "coupling.run",
     "write_csv": "coupling.csv_file",
     "surface_motion": "coupling.surface",
+    "write_surface": "coupling.surface_file",
+    "read_surface": "coupling.surface_file",
 }
 
 __all__ = list(_HOMES)  # noqa: PLE0605

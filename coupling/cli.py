@@ -45,7 +45,8 @@ def main() -> None:
 @click.option("--quiet", "-q", is_flag=True, help="Print no summary.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 @click.option("--csv", is_flag=True, help="Also write the trajectory to NAME.csv.")
-def run(case: Path, output: Path | None, quiet: bool, as_json: bool, csv: bool) -> None:
+@click.option("--save-surface", is_flag=True, help="Also write the moving surface to NAME.surface.h5.")
+def run(case: Path, output: Path | None, quiet: bool, as_json: bool, csv: bool, save_surface: bool) -> None:
     """Run CASE and write its results."""
     read = _read(case)
     from coupling import report
@@ -56,7 +57,7 @@ def run(case: Path, output: Path | None, quiet: bool, as_json: bool, csv: bool) 
     folder = output or DEFAULT_OUTPUT
     _refusing(check_folder, folder)
     with StageBar(STAGES) as bar:
-        result = _refusing(run_case, read, folder, bar, csv)
+        result = _refusing(run_case, read, folder, bar, csv, save_surface)
     if as_json:
         said = {"warnings": report.warnings(result.summary), "files": [str(file) for file in result.files]}
         click.echo(json.dumps(result.summary.as_dict() | said, indent=2))

@@ -23,6 +23,7 @@ from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
 from coupling.scene import Scene
 from coupling.summary import Summary, summarise
+from coupling.surface_file import write_surface
 from fem_plate import PlateShapes
 from particle import SurfaceMotion, Trajectory
 from particle.fixed import default_step
@@ -50,20 +51,27 @@ class Result:
         return self.scene.shapes
 
 
-def run_case(case: Case, output: str | Path | None = None, progress: Progress = silent, csv: bool = False) -> Result:
+def run_case(
+    case: Case,
+    output: str | Path | None = None,
+    progress: Progress = silent,
+    csv: bool = False,
+    save_surface: bool = False,
+) -> Result:
     """Run a case; with `output`, a folder, also write NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png there.
 
-    csv: whether to write the trajectory to NAME.csv as well.
+    csv: whether to write the trajectory to NAME.csv as well.  save_surface: whether to write the moving surface, with
+    the cells that the part came to, to NAME.surface.h5 (`read_surface`).
     Raises ValueError when the case cannot be run, and before any work when NAME.csv is a file of something else.
     """
     if output is not None and csv:
         check_csv(Path(output) / f"{case.name}.csv")
     # Many small systems: BLAS threads would only wait for each other, and take two to four times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return _run(case, None if output is None else Path(output), progress, csv)
+        return _run(case, None if output is None else Path(output), progress, csv, save_surface)
 
 
-def _run(case: Case, output: Path | None, progress: Progress, csv: bool) -> Result:
+def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_surface: bool) -> Result:
     scene = build_scene(case, progress)
     with progress("Following the part (the first run compiles: half a minute)"):
         friction = build_friction(case)
@@ -75,6 +83,8 @@ def _run(case: Case, output: Path | None, progress: Progress, csv: bool) -> Resu
         return Result(case, scene, trajectory, summary)
     with progress("Writing the results") as tell:
         files = write_results(case, scene, trajectory, summary, output, csv, tell)
+        if save_surface:
+            files += (write_surface(scene.surface, output / f"{case.name}.surface.h5"),)
     return Result(case, scene, trajectory, summary, files)
 
 

@@ -91,6 +91,20 @@ class OneCell:
         """There is nothing left to build."""
 
 
+class BuiltCells:
+    """Cells to which no more are added."""
+
+    def __init__(self, cells: Cells, error: float) -> None:
+        self.cells, self.error = cells, error
+
+    def build(self, places: FloatArray) -> None:
+        """Raises ValueError: there is nothing to build them from."""
+        x, y = (places[0] * 1e6).tolist()
+        raise ValueError(
+            f"The surface has no cell at ({x:.6g}, {y:.6g}) um: it was saved before anything had been asked of it there"
+        )
+
+
 class CellPool:
     """Cells as they are added, in arrays that grow. `rows` that are shared are kept once."""
 
