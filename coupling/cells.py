@@ -145,16 +145,23 @@ class PlateCells:
         }
         self._make(list(found.values()))
         leaves = [leaf for cell in found.values() for leaf in cell.leaves()]
-        own = np.array([leaf.error + leaf.left_out for leaf in leaves])
-        places = lattice.spread([leaf.fit for leaf in leaves if leaf.fit])
-        for pitches in places:
-            for leaf, most in zip(leaves, np.maximum(self._worth, WORSE * own), strict=True):
-                moved = self._moved(lattice, leaf, pitches)
-                error, left_out = misfit(moved, self._checks, self.shapes, self._heights)
-                if error + left_out > most:
-                    return {}
+        fits = [leaf.fit for leaf in leaves if leaf.fit]
+        most = [max(self._worth, WORSE * (leaf.error + leaf.left_out)) for leaf in leaves]
+        farther = 0
+        while len(places := lattice.spread(fits, farther)):
+            if all(self._is_good(lattice, leaves, most, pitches) for pitches in places):
+                return found
+            farther = 2 * farther + 1
+        return {}
+
+    def _is_good(self, lattice: Lattice, leaves: Sequence[Cell], most: Sequence[float], pitches: IntArray) -> bool:
+        """Whether cells moved some pitches (2,) are off by `most` each, at most; what they are off by is kept."""
+        off = [misfit(self._moved(lattice, leaf, pitches), self._checks, self.shapes, self._heights) for leaf in leaves]
+        good = all(error + left_out <= bound for (error, left_out), bound in zip(off, most, strict=True))
+        for leaf, (error, left_out) in zip(leaves, off, strict=True):
+            if good:
                 leaf.error, leaf.left_out = max(leaf.error, error), max(leaf.left_out, left_out)
-        return found if len(places) else {}
+        return good
 
     def _translate(self, place: IntArray) -> Cell | None:
         """A cell of a lattice from its original in the middle; None where it is like no other."""

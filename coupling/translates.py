@@ -18,6 +18,7 @@ IntArray = NDArray[np.int64]
 PER_PITCH = 2  # cells from one actuator of a lattice to the next
 FEWEST = 100  # actuators of a lattice with an inside
 SIDES = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j])  # ways to go from the middle
+NEARER = 1e-9  # of places that are equally far out that way, the one nearest to the middle
 
 
 class Lattice:
@@ -48,21 +49,23 @@ class Lattice:
         )
         return np.asarray(full)
 
-    def spread(self, fits: Sequence[CellFit]) -> IntArray:
+    def spread(self, fits: Sequence[CellFit], farther: int) -> IntArray:
         """Where the block may be moved whose cells have these fits: to where all actuators of theirs are, too.
 
+        farther: rows and columns of actuators that are to be around those.
         Returns the pitches (k, 2) from the middle to the outermost of these places on each side; none where the middle
         itself is too near to where the lattice or the plate ends.
         """
         rows = np.unique(np.concatenate([used for fit in fits for used in (fit.drive, fit.near)]))
         off = np.concatenate([self._sites[rows] - self.middle, [[0, 0], [1, 1]]])
-        low, high = off.min(axis=0), off.max(axis=0)
+        low, high = off.min(axis=0) - farther, off.max(axis=0) + farther
         reach = float((np.maximum(0.5 - low, high - 0.5) * self.pitch).max())
         self._alike = self._full(low, high) & (self._gap > reach)
         if not self._alike[tuple(self.middle)]:
             return np.empty((0, 2), dtype=np.int64)
         pitches = np.argwhere(self._alike) - self.middle
-        return np.unique(pitches[(pitches @ SIDES.T).argmax(axis=0)], axis=0)
+        along = pitches @ SIDES.T - NEARER * (pitches**2).sum(axis=1)[:, None]
+        return np.unique(pitches[along.argmax(axis=0)], axis=0)
 
     def pitches(self, place: IntArray) -> IntArray | None:
         """How many pitches (2,) from the cell of the middle of which it is a translate a cell is; None: it is none.
