@@ -93,7 +93,7 @@ def test_fits_are_shared_only_where_that_is_as_good_as_the_tolerance(name, secti
     found, (w, _, hessian) = surface.driven_by(drives).evaluate(xy, 1.0), shapes.evaluate(xy, strokes)
     assert 0 < surface.error < 1e-3
     assert np.abs(found.w - w).max() < 1e-3 * shapes.own_heights().max()
-    assert np.abs(found.hessian - hessian).max() < 1e-2 * np.abs(hessian).max()
+    assert np.abs(found.hessian - hessian).max() < 2e-3 * np.abs(hessian).max()
 
 
 def test_a_block_is_moved_only_to_where_all_that_its_fits_use_is(section):
