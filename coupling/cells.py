@@ -8,7 +8,6 @@ good enough is divided into four, and so is one with too many logarithms.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from threading import Lock
 
 import numpy as np
@@ -16,8 +15,9 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from threadpoolctl import threadpool_limits
 
+from coupling.cell import Cell, misfit, monomials, powers
 from coupling.rim import rim_curves
-from coupling.translates import PER_PITCH, lattice_of
+from coupling.translates import PER_PITCH, Lattice, lattice_of
 from fem_plate import PatchedShapes, Shapes
 from fem_plate.singular import UNIT_STRENGTH, point_value
 from particle.cells import NOWHERE, UNBUILT, WHOLE, CellFit, CellPool, Cells
@@ -35,30 +35,16 @@ RCOND = 1e-12
 DEEPEST = 6  # times that a cell is divided
 # Dividing pays where it leaves of the error at most this; first where the error is so large that no order shows yet.
 LESS_AT_FIRST, COARSE, LESS = 0.75, 1e-3, 0.1
+WORSE = 2.0  # times as far off a shared fit may be elsewhere
 ACROSS = 8  # cells along the plate's longer side, at least
 PER_SPACING = 2.0  # cells from one actuator to the next
+MOST_ROOTS = 16.0  # cells for each actuator: where some stand much closer together, these alone are divided
 # The polynomial's error falls with the distance of the nearest logarithm that it takes up, in half widths.
 REACH, REACHED, REACH_ORDER = 8.0, 1e-9, 9
 BLOCK = 3  # cells a side that are built together
 MOST_DIVIDED = 128  # at once: where more are not good enough, the shapes are not
 BUILDING = Lock()  # one for all surfaces, as the limit of BLAS threads is the process's
 MOST_VALUES = 4_000_000  # points times shapes that are evaluated at once
-
-
-@dataclass(eq=False)
-class _Cell:
-    """A cell in the making."""
-
-    centre: FloatArray
-    half: FloatArray
-    fit: CellFit | None = None  # None: off the plate
-    error: float = 0.0  # of the fit, over the shapes' heights
-    left_out: float = 0.0  # the sum of what the shapes left out reach there
-    quarters: list[_Cell] = field(default_factory=list)
-    shared: bool = False  # whether translates of it are cells, too
-
-    def leaves(self) -> list[_Cell]:
-        return [leaf for quarter in self.quarters for leaf in quarter.leaves()] if self.quarters else [self]
 
 
 class PlateCells:
@@ -72,7 +58,8 @@ class PlateCells:
         self.shapes, self.error = shapes, 0.0
         # Shapes that are cut off are not worth a fit that is much better than that.
         truncation = shapes.truncation_error if isinstance(shapes, PatchedShapes) else 0.0
-        self._aim, self._negligible = max(tolerance, 0.1 * truncation), max(tolerance, truncation) / 4
+        self._worth = max(tolerance, truncation)
+        self._aim, self._negligible = max(tolerance, 0.1 * truncation), self._worth / 4
         self._heights = shapes.own_heights()
         self._few = len(shapes.points) <= FEW
         self._reach = REACH * (REACHED / self._aim) ** (1 / REACH_ORDER)
@@ -81,12 +68,14 @@ class PlateCells:
         self._nodes = np.stack(np.meshgrid(nodes, nodes, indexing="ij"), axis=-1).reshape(-1, 2)
         self._inverses = {degree: np.linalg.pinv(monomials(self._nodes, degree)) for degree in DEGREES}
         self._checks = np.random.default_rng(0).uniform(-1, 1, (CHECKS, 2))
-        self._lattice = None if self._few else lattice_of(shapes, tolerance)
-        self._originals: dict[tuple[int, int], _Cell] = {}
-        self._pool = CellPool(*self._grid())
-        self.cells: Cells = self._pool.cells()
-        if self._few:
-            with BUILDING:
+        self._lattice = None if self._few else lattice_of(shapes)
+        with BUILDING:
+            self._originals = self._shared(self._lattice) if self._lattice else {}
+            if not self._originals:
+                self._lattice = None
+            self._pool = CellPool(*self._grid())
+            self.cells: Cells = self._pool.cells()
+            if self._few:
                 self._build(np.argwhere(self._pool.roots == UNBUILT))
 
     def _grid(self) -> tuple[FloatArray, FloatArray, IntArray]:
@@ -102,9 +91,9 @@ class PlateCells:
             counts = np.ceil((high - origin) / width - 1e-9).astype(int)
             return origin, width, self._wanted(origin, width, counts)
         if not self._few:
-            across = max(
-                across, PER_SPACING * longest / float(np.median(self._tree.query(self._tree.data, 2)[0][:, 1]))
-            )
+            spacing = float(np.median(self._tree.query(self._tree.data, 2)[0][:, 1]))
+            most = np.sqrt(MOST_ROOTS * len(self.shapes.points) * longest / float((high - low).min()))
+            across = max(across, min(PER_SPACING * longest / spacing, most))
         width = longest / np.ceil(across * (1 - 1e-9))
         counts = np.ceil((high - low) / width * (1 - 1e-9)).astype(int)
         origin = (low + high - counts * width) / 2
@@ -140,50 +129,64 @@ class PlateCells:
             self.error = max([self.error, *(leaf.error + leaf.left_out for leaf in cell.leaves())])
         self.cells = pool.cells()
 
-    def _cell(self, place: IntArray) -> _Cell:
+    def _cell(self, place: IntArray) -> Cell:
         half = self._pool.width / 2
-        return _Cell(self._pool.origin + (2 * place + 1) * half, half)
+        return Cell(self._pool.origin + (2 * place + 1) * half, half)
 
-    def _make(self, cells: Sequence[_Cell]) -> None:
+    def _make(self, cells: Sequence[Cell]) -> None:
         # Many small systems: BLAS threads would only wait for each other (a hundred times slower on two busy cores).
         if cells:
             with threadpool_limits(limits=1, user_api="blas"):
                 self._fit(cells)
                 self._divide(cells, DEEPEST)
 
-    def _translate(self, place: IntArray) -> _Cell | None:
+    def _shared(self, lattice: Lattice) -> dict[tuple[int, int], Cell]:
+        """The cells in the middle of a lattice by their place there; none where their translates were not as good."""
+        half = lattice.pitch / PER_PITCH / 2
+        corner = lattice.origin + lattice.middle * lattice.pitch
+        found = {
+            (i, j): Cell(corner + half * (2 * i + 1, 2 * j + 1), half) for i, j in np.ndindex(PER_PITCH, PER_PITCH)
+        }
+        self._make(list(found.values()))
+        leaves = [leaf for cell in found.values() for leaf in cell.leaves()]
+        fits = [leaf.fit for leaf in leaves if leaf.fit]
+        most = [max(self._worth, WORSE * (leaf.error + leaf.left_out)) for leaf in leaves]
+        farther = 0
+        while len(places := lattice.spread(fits, farther)):
+            if all(self._is_good(lattice, leaves, most, pitches) for pitches in places):
+                return found
+            farther = 2 * farther + 1
+        return {}
+
+    def _is_good(self, lattice: Lattice, leaves: Sequence[Cell], most: Sequence[float], pitches: IntArray) -> bool:
+        """Whether cells moved some pitches (2,) are off by `most` each, at most; what they are off by is kept."""
+        off = [misfit(self._moved(lattice, leaf, pitches), self._checks, self.shapes, self._heights) for leaf in leaves]
+        good = all(error + left_out <= bound for (error, left_out), bound in zip(off, most, strict=True))
+        for leaf, (error, left_out) in zip(leaves, off, strict=True):
+            if good:
+                leaf.error, leaf.left_out = max(leaf.error, error), max(leaf.left_out, left_out)
+        return good
+
+    def _translate(self, place: IntArray) -> Cell | None:
         """A cell of a lattice from its original in the middle; None where it is like no other."""
         lattice = self._lattice
         if not lattice:
             return None
-        first = np.round((self._pool.origin - lattice.origin) / self._pool.width).astype(np.int64)
-        pitches = lattice.pitches(place + first)
+        place = place + np.round((self._pool.origin - lattice.origin) / self._pool.width).astype(np.int64)
+        pitches = lattice.pitches(place)
         if pitches is None:
             return None
-        if not self._originals:
-            places = [lattice.middle * PER_PITCH - first + (i, j) for i, j in np.ndindex(PER_PITCH, PER_PITCH)]
-            originals = [self._cell(one) for one in places]
-            for cell in originals:
-                cell.shared = True
-            self._make(originals)
-            self._originals = {tuple(one.tolist()): cell for one, cell in zip(places, originals, strict=True)}
-        return self._moved(self._originals[tuple((place - pitches * PER_PITCH).tolist())], pitches)
+        i, j = (place % PER_PITCH).tolist()
+        return self._moved(lattice, self._originals[i, j], pitches)
 
-    def _moved(self, cell: _Cell, pitches: IntArray) -> _Cell:
-        assert self._lattice
-        centre = cell.centre + pitches * self._lattice.pitch
+    def _moved(self, lattice: Lattice, cell: Cell, pitches: IntArray) -> Cell:
+        centre = cell.centre + pitches * lattice.pitch
         clear = float(self.shapes.outline.gap(centre[None])[0]) - OVERHANG * float(np.hypot(*cell.half))
-        fit = cell.fit and self._lattice.moved(cell.fit, pitches, max(clear, 0.0))
-        return _Cell(
-            centre,
-            cell.half,
-            fit,
-            cell.error,
-            cell.left_out,
-            [self._moved(quarter, pitches) for quarter in cell.quarters],
-        )
+        fit = cell.fit and lattice.moved(cell.fit, pitches, max(clear, 0.0))
+        quarters = [self._moved(lattice, quarter, pitches) for quarter in cell.quarters]
+        return Cell(centre, cell.half, fit, cell.error, cell.left_out, quarters)
 
-    def _add_quarters(self, cell: _Cell) -> int:
+    def _add_quarters(self, cell: Cell) -> int:
         below = [self._add_quarters(quarter) for quarter in cell.quarters]
         rows = [
             self._pool.add(quarter.centre, quarter.half, quarter.fit, first)
@@ -191,7 +194,7 @@ class PlateCells:
         ]
         return rows[0] if rows else WHOLE
 
-    def _divide(self, cells: Sequence[_Cell], deepest: int) -> None:
+    def _divide(self, cells: Sequence[Cell], deepest: int) -> None:
         """Divide those that are not good enough, if it helps: what finite elements are off by stays."""
         crowded = [cell for cell in cells if not self._few and cell.fit and len(cell.fit.near) > FEW]
         poor = [cell for cell in cells if cell.error > self._aim and cell not in crowded]
@@ -201,7 +204,7 @@ class PlateCells:
         quarters = []
         for cell in tried:
             centres = [cell.centre + cell.half / 2 * side for side in ([-1, -1], [-1, 1], [1, -1], [1, 1])]
-            quarters.append([_Cell(centre, cell.half / 2, shared=cell.shared) for centre in centres])
+            quarters.append([Cell(centre, cell.half / 2) for centre in centres])
         self._fit([quarter for four in quarters for quarter in four])
         for cell, four in zip(tried, quarters, strict=True):
             errors = np.array([quarter.error for quarter in four])
@@ -211,13 +214,13 @@ class PlateCells:
                 cell.quarters, cell.fit = four, None
         self._divide([quarter for cell in tried for quarter in cell.quarters], deepest - 1)
 
-    def _fit(self, cells: Sequence[_Cell]) -> None:
+    def _fit(self, cells: Sequence[Cell]) -> None:
         """Fit cells of one size."""
         some = max(1, MOST_VALUES // (len(self.shapes.points) * (len(self._nodes) + CHECKS)))
         for start in range(0, len(cells), some):
             self._fit_some(cells[start : start + some])
 
-    def _fit_some(self, cells: Sequence[_Cell]) -> None:
+    def _fit_some(self, cells: Sequence[Cell]) -> None:
         half = cells[0].half
         centres = np.array([cell.centre for cell in cells])
         gap, radius = self.shapes.outline.gap(centres), float(np.hypot(*half))
@@ -242,7 +245,7 @@ class PlateCells:
                 self._fit_one(cell, local[k], len(samples[k]), rows, values[here], clear)
 
     def _fit_one(
-        self, cell: _Cell, local: FloatArray, samples: int, rows: IntArray, values: FloatArray, clear: float
+        self, cell: Cell, local: FloatArray, samples: int, rows: IntArray, values: FloatArray, clear: float
     ) -> None:
         """Fit the shapes `rows` with values (n, k) at points, of which the first few are for the fit."""
         relative = np.abs(values).max(axis=0) / self._heights[rows]
@@ -251,8 +254,6 @@ class PlateCells:
         least = 0 if self._few else int(np.searchsorted(dropped, self._negligible))
         keep = np.full(len(rows), True)
         keep[order[:least]] = False
-        if cell.shared and self._lattice:
-            keep &= self._lattice.nearby(cell.centre, rows)
         kept = np.flatnonzero(keep)
         left_out = float(relative[~keep].sum())
         rows, target = rows[kept], values[:, kept]
@@ -281,10 +282,9 @@ class PlateCells:
         assert chosen
         degree, fitted, error = chosen
         cell.error, cell.left_out = error, left_out
-        table = np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy()
-        cell.fit = CellFit(degree, rows, near, table, clear, cell.shared)
+        cell.fit = CellFit(degree, rows, near, np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy(), clear)
 
-    def _at_rim(self, cell: _Cell, reach: float, spacing: float) -> FloatArray:
+    def _at_rim(self, cell: Cell, reach: float, spacing: float) -> FloatArray:
         """Points of a cell that the rim cuts, on the plate and on the rim, in half widths from its centre."""
         side = np.linspace(-reach, reach, round(4 * NODES * spacing))
         grid = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -293,15 +293,3 @@ class PlateCells:
         step = 2 * float(cell.half.max()) / NODES * spacing
         rim = (np.concatenate(rim_curves(self.shapes.outline, step)) - cell.centre) / cell.half
         return np.concatenate([grid, rim[np.abs(rim).max(axis=1) <= reach]])
-
-
-def monomials(local: FloatArray, degree: int) -> FloatArray:
-    """x^i y^j at points (n, 2), sorted by powers of x, then of y: (n, M)."""
-    i, j = powers(degree).T
-    each = local[:, :, None] ** np.arange(degree + 1)
-    return np.asarray(each[:, 0, i] * each[:, 1, j])
-
-
-def powers(degree: int) -> IntArray:
-    """The powers (M, 2) of x and y in a polynomial of a degree."""
-    return np.array([(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)])

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from contextlib import suppress
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt, minimum_filter
 
 from fem_plate import InfluenceShapes, PatchedShapes, Shapes
-from fem_plate.patches import SAME, margin, spacing
+from fem_plate.patches import SAME, spacing
 from particle.cells import CellFit
 
 FloatArray = NDArray[np.float64]
@@ -17,76 +17,83 @@ IntArray = NDArray[np.int64]
 
 PER_PITCH = 2  # cells from one actuator of a lattice to the next
 FEWEST = 100  # actuators of a lattice with an inside
-TRIED = 100  # actuators, from the middle on
+SIDES = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j])  # ways to go from the middle
+NEARER = 1e-9  # of places that are equally far out that way, the one nearest to the middle
 
 
 class Lattice:
     """The actuators of a plate where all stand on a lattice and are held alike.
 
-    pitch: (2,) m.  origin: (2,) m, of actuator (0, 0).
-    middle: an actuator's place (2,) in the lattice that has all its neighbours, as far inside as there is.
-    Raises LookupError when no actuator has.
+    Its blocks are the rectangles between four neighbours; one is named by the actuator at its lower left.
+    pitch: (2,) m.  origin: (2,) m, of actuator (0, 0).  middle: (2,), the block that is farthest inside.
     """
 
-    def __init__(self, shapes: InfluenceShapes | PatchedShapes, pitch: FloatArray, tolerance: float) -> None:
+    def __init__(self, shapes: InfluenceShapes | PatchedShapes, pitch: FloatArray) -> None:
         self.pitch, self.origin = pitch, shapes.points.min(axis=0)
-        self._outline = shapes.outline
         self._sites = np.round((shapes.points - self.origin) / pitch).astype(np.int64)
         self._rows = np.full(self._sites.max(axis=0) + 1, -1)
         self._rows[tuple(self._sites.T)] = np.arange(len(self._sites))
-        truncation = shapes.truncation_error if isinstance(shapes, PatchedShapes) else 0.0
-        # As far off as a patch's cut must be, so that the lattice's end does not show.
-        self._depth = math.ceil(margin(max(truncation, 0.1 * tolerance)))
-        self.middle = self._deepest()
+        blocks = np.stack(np.meshgrid(*map(np.arange, self._rows.shape), indexing="ij"), axis=-1)
+        self._gap = shapes.outline.gap(self.origin + (blocks + 0.5) * pitch)
+        whole = np.pad(self._full(np.zeros(2, dtype=np.int64), np.ones(2, dtype=np.int64)), 1)
+        inside = np.minimum(distance_transform_edt(whole, sampling=pitch)[1:-1, 1:-1], self._gap)
+        deepest = np.argwhere(inside > inside.max() - 1e-9 * pitch.min())
+        self.middle: IntArray = deepest[np.abs(deepest + 0.5 - self._sites.mean(axis=0)).max(axis=1).argmin()]
+        self._alike = np.zeros(self._rows.shape, dtype=np.bool_)
 
-    def _deepest(self) -> IntArray:
-        by_distance = np.argsort(np.abs(self._sites - self._sites.mean(axis=0)).max(axis=1), kind="stable")
-        for site in self._sites[by_distance[:TRIED]]:
-            if self._is_deep(site):
-                return np.asarray(site)
-        raise LookupError("no actuator of the lattice has all its neighbours")
+    def _full(self, low: IntArray, high: IntArray) -> NDArray[np.bool_]:
+        """From which sites there are actuators all over the columns and rows from `low` (2,) to `high` (2,) off."""
+        size = high - low + 1
+        full = minimum_filter(
+            self._rows >= 0, size=tuple(size), origin=tuple(-low - size // 2), mode="constant", cval=0
+        )
+        return np.asarray(full)
 
-    def _is_deep(self, site: IntArray) -> bool:
-        """Whether a site has all its neighbours as far as they count, and the rim is farther off than these."""
-        low, high = site - self._depth + 1, site + self._depth + 1
-        if (low < 0).any() or (high > self._rows.shape).any():
-            return False
-        middle = self.origin + (site + 0.5) * self.pitch
-        reach = self._depth * float(self.pitch.max())
-        square = self._rows[low[0] : high[0], low[1] : high[1]]
-        return bool((square >= 0).all() and float(self._outline.gap(middle[None])[0]) > reach)
+    def spread(self, fits: Sequence[CellFit], farther: int) -> IntArray:
+        """Where the block may be moved whose cells have these fits: to where all actuators of theirs are, too.
+
+        farther: rows and columns of actuators that are to be around those.
+        Returns the pitches (k, 2) from the middle to the outermost of these places on each side; none where the middle
+        itself is too near to where the lattice or the plate ends.
+        """
+        rows = np.unique(np.concatenate([used for fit in fits for used in (fit.drive, fit.near)]))
+        off = np.concatenate([self._sites[rows] - self.middle, [[0, 0], [1, 1]]])
+        low, high = off.min(axis=0) - farther, off.max(axis=0) + farther
+        reach = float((np.maximum(0.5 - low, high - 0.5) * self.pitch).max())
+        self._alike = self._full(low, high) & (self._gap > reach)
+        if not self._alike[tuple(self.middle)]:
+            return np.empty((0, 2), dtype=np.int64)
+        pitches = np.argwhere(self._alike) - self.middle
+        along = pitches @ SIDES.T - NEARER * (pitches**2).sum(axis=1)[:, None]
+        return np.unique(pitches[along.argmax(axis=0)], axis=0)
 
     def pitches(self, place: IntArray) -> IntArray | None:
-        """How many pitches (2,) from the cell around `middle` of which it is a translate a cell is; None: it is none.
+        """How many pitches (2,) from the cell of the middle of which it is a translate a cell is; None: it is none.
 
         place: (2,), counted from the origin.
         """
         site = place // PER_PITCH
-        return site - self.middle if self._is_deep(site) else None
-
-    def nearby(self, centre: FloatArray, rows: IntArray) -> NDArray[np.bool_]:
-        """Which of the actuators are so near to a cell that each of its translates has them, too."""
-        away = self._sites[rows] - np.floor((centre - self.origin) / self.pitch)
-        return np.asarray((np.abs(away - 0.5) < self._depth).all(axis=1))
+        if (site < 0).any() or (site >= self._alike.shape).any() or not self._alike[tuple(site)]:
+            return None
+        return np.asarray(site - self.middle)
 
     def moved(self, fit: CellFit, pitches: IntArray, clear: float) -> CellFit:
         """A cell's fit some pitches (2,) away, `clear` [m] of the rim."""
-        return fit._replace(drive=self._shift(fit.drive, pitches), near=self._shift(fit.near, pitches), clear=clear)
+        drive, near = self._shift(fit.drive, pitches), self._shift(fit.near, pitches)
+        return fit._replace(drive=drive, near=near, clear=clear, shared=True)
 
     def _shift(self, rows: IntArray, pitches: IntArray) -> IntArray:
         return np.asarray(self._rows[tuple((self._sites[rows] + pitches).T)])
 
 
-def lattice_of(shapes: Shapes, tolerance: float) -> Lattice | None:
-    """The lattice on which all actuators stand, if they do, are held alike and are so many that cells may be shared."""
-    if not isinstance(shapes, InfluenceShapes | PatchedShapes) or np.any(shapes.springs != shapes.springs[0]):
+def lattice_of(shapes: Shapes) -> Lattice | None:
+    """The lattice on which all actuators stand, if they do, hold the plate alike and are enough for an inside."""
+    if not isinstance(shapes, InfluenceShapes | PatchedShapes) or len(shapes.points) < FEWEST:
         return None
-    if len(shapes.points) < FEWEST:
+    if shapes.springs[0] == 0 or np.any(shapes.springs != shapes.springs[0]):
         return None
     pitch = spacing(shapes.points)
     sites = (shapes.points - shapes.points.min(axis=0)) / pitch
     if np.abs(sites - np.round(sites)).max() > 10.0**-SAME * np.ptp(sites):
         return None
-    with suppress(LookupError):
-        return Lattice(shapes, pitch, tolerance)
-    return None
+    return Lattice(shapes, pitch)

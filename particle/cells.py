@@ -1,4 +1,4 @@
-"""The cells of a moving surface: squares of a background grid, each with the shapes of the drives that count there.
+"""The cells of a moving surface: rectangles of a background grid, each with the shapes of the drives that count there.
 
 In a cell, shape i is a polynomial plus the logarithms around the actuators close by. The polynomial has taken up
 everything else, the logarithms farther off included, so that a cell knows neither how many actuators there are nor how
@@ -28,7 +28,7 @@ class Cells(NamedTuple):
 
     origin: FloatArray  # (2,) m, the grid's lower left corner
     width: FloatArray  # (2,) m, of the grid's cells; inf: one cell is everywhere
-    roots: IntArray  # (nx, ny), the cell of each square of the grid, or NOWHERE or UNBUILT
+    roots: IntArray  # (nx, ny), the cell of each rectangle of the grid, or NOWHERE or UNBUILT
     quarters: IntArray  # (c,) the first of the four cells that a cell is divided into, those at lower x first, or WHOLE
     centre: FloatArray  # (c, 2) m
     half: FloatArray  # (c, 2) m, half its width

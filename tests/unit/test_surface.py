@@ -191,3 +191,17 @@ def test_a_close_pair_of_actuators_is_fitted_relative_to_its_steep_shapes(radius
 def test_time_may_lie_before_the_start(surface):
     assert surface.evaluate([[0.0, 0.0]], -1e-3).w == 0.0
     assert math.isfinite(surface.evaluate([[0.0, 0.0]], 1e3).w_tt[0])
+
+
+def test_pairs_close_together_do_not_set_the_grid_of_the_whole_plate():
+    radius, apart = 300e-6, 0.4e-6
+    left = np.random.default_rng(0).uniform(-0.5, 0.5, (6, 2)) * radius
+    points = np.concatenate([left, left + [apart, 0.0]])
+    shapes, stroke = DiscShapes(points, radius), 1e-6
+    surface = surface_motion(shapes, [Drive(stroke, 300.0, cycle="up")] * 12)
+    assert surface.store.cells.roots.size <= 16 * 12 * 1.2
+    xy = np.concatenate([left + [apart / 2, apart], left + [5 * apart, 0.0], left + [0.1 * radius, 0.0]])
+    found, (w, gradient, _) = surface.evaluate(xy, 1.0), shapes.evaluate(xy, np.full(12, stroke))
+    close(found.w, w, 1e-7)
+    close(found.gradient, gradient, 1e-4)
+    assert surface.error < 1e-7

@@ -8,6 +8,7 @@ from coupling.translates import lattice_of
 from fem_plate import Plate
 from meshes import disc, rectangle
 from particle import Drive
+from particle.cells import CellFit
 
 PITCH, ACROSS = 150e-6, 16
 TRUNCATION = 1e-2
@@ -68,6 +69,53 @@ def test_near_the_ends_of_a_lattice_cells_are_their_own(surface, shapes):
     assert np.abs(surface.evaluate(xy, time).w - shapes.evaluate(xy, strokes)[0]).max() < TRUNCATION * 1e-6
 
 
+LATTICES = {
+    "rigid": ((14, 14), (PITCH, PITCH), np.inf),
+    "soft": ((14, 14), (PITCH, PITCH), 10.0),
+    "very soft": ((14, 14), (PITCH, PITCH), 1e-2),
+    "floating": ((14, 14), (PITCH, PITCH), 0.0),
+    "narrow": ((40, 14), (PITCH / 3, PITCH), np.inf),
+    "narrow and soft": ((14, 40), (PITCH, PITCH / 3), 100.0),
+}
+
+
+@pytest.mark.parametrize("name", LATTICES)
+def test_fits_are_shared_only_where_that_is_as_good_as_the_tolerance(name, section):
+    counts, pitch, stiffness = LATTICES[name]
+    points = lattice(*counts) / PITCH * pitch
+    low = points.min(axis=0)
+    mesh = rectangle(*(-2 * low + 2 * np.array(pitch)), max(pitch))
+    shapes = Plate(mesh, section).influence(points, stiffness)
+    surface = surface_motion(shapes, [Drive(1e-6, 300.0)] * len(points), surface_tolerance=1e-3)
+    xy = np.random.default_rng(3).uniform(-1, 1, (40, 2)) * pitch
+    strokes = np.random.default_rng(4).uniform(-1, 1, len(points))
+    drives = [Drive(float(stroke), 300.0, cycle="up") for stroke in strokes]
+    found, (w, _, hessian) = surface.driven_by(drives).evaluate(xy, 1.0), shapes.evaluate(xy, strokes)
+    assert 0 < surface.error < 1e-3
+    assert np.abs(found.w - w).max() < 1e-3 * shapes.own_heights().max()
+    assert np.abs(found.hessian - hessian).max() < 2e-3 * np.abs(hessian).max()
+
+
+def test_a_block_is_moved_only_to_where_all_that_its_fits_use_is(section):
+    points = np.delete(lattice(16, 12), 5, axis=0)  # at the left, five up
+    shapes = Plate(rectangle(18 * PITCH, 14 * PITCH, PITCH), section).influence(points, truncation=TRUNCATION)
+    grid = lattice_of(shapes)
+    at = {tuple(site): row for row, site in enumerate(np.round((points - points.min(axis=0)) / PITCH).astype(int))}
+    i, j = grid.middle.tolist()
+    used = [at[i - 3, j], at[i + 4, j + 1], at[i, j - 2], at[i, j + 3]]
+    fit = CellFit(2, np.array(used), np.array(used[:1]), np.zeros((4, 7)), 0.0)
+    outermost = grid.spread([fit], 0)
+    assert (i, j) == (7, 5) and outermost.min(axis=0).tolist() == [-4, -3] and outermost.max(axis=0).tolist() == [4, 3]
+    for place in np.ndindex(40, 40):
+        pitches = grid.pitches(np.array(place) - 4)
+        x, y = ((np.array(place) - 4) // 2).tolist()
+        there = [(x + a, y + b) in at for a in range(-3, 5) for b in range(-2, 4)]
+        assert (pitches is not None) == all(there)
+        if pitches is not None:
+            moved = grid.moved(fit, pitches, 1e-6)
+            assert points[moved.drive] - points[fit.drive] == pytest.approx(np.tile(pitches * PITCH, (4, 1)), abs=1e-12)
+
+
 @pytest.mark.parametrize("change", ["one moved", "one missing in the middle", "springs", "few", "round plate"])
 def test_what_is_no_lattice_with_an_inside_shares_nothing(change, section):
     points, springs, mesh = lattice(11, 11), np.full(121, np.inf), rectangle(12 * PITCH, 12 * PITCH, PITCH)
@@ -82,4 +130,8 @@ def test_what_is_no_lattice_with_an_inside_shares_nothing(change, section):
     if change == "round plate":
         mesh = disc(9 * PITCH, PITCH)
     shapes = Plate(mesh, section).influence(points, springs, truncation=TRUNCATION)
-    assert lattice_of(shapes, 1e-8) is None
+    surface = surface_motion(shapes, [Drive(1e-6, 300.0)] * len(points))
+    surface.evaluate(np.random.default_rng(5).uniform(-1, 1, (20, 2)) * PITCH, 0.0)
+    first_row = surface.store.cells.first_row
+    leaves = first_row[first_row >= 0]
+    assert len(np.unique(leaves)) == len(leaves)
