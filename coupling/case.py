@@ -147,8 +147,7 @@ class TableCase(Table):
         except ValidationError as error:
             errors = list(error.errors())
         points, mistakes = friction_points.of_table(data, info.context or {})
-        told = {error["loc"] for error in errors}
-        for location, message in (mistake for mistake in mistakes if mistake[0] not in told):
+        for location, message in mistakes:
             context = {"error": ValueError(message)}
             errors.append({"type": "value_error", "loc": location, "input": None, "ctx": context})
         if errors:

@@ -61,10 +61,10 @@ def evaluations(surface: SurfaceMotion, xy: FloatArray, time: float, rounds: int
 @numba.njit(error_model="numpy", nogil=True)
 def _evaluations(surface: Any, local: Any, xy: FloatArray, time: float, rounds: int) -> FloatArray:
     out = np.empty((len(xy), 10))
-    for _ in range(rounds):
-        for n in range(len(xy)):
-            if n == 0 or not within_cell(local, xy[n, 0], xy[n, 1]):
-                enter(surface, local, xy[n, 0], xy[n, 1], time, np.inf)
+    for n in range(len(xy)):
+        if n == 0 or not within_cell(local, xy[n, 0], xy[n, 1]):
+            enter(surface, local, xy[n, 0], xy[n, 1], time, np.inf)
+        for _ in range(rounds):
             f = fields(local, xy[n, 0], xy[n, 1], time)
             row = out[n]
             row[0], row[1], row[2], row[3], row[4] = f.w, f.w_t, f.w_tt, f.x, f.y
