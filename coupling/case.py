@@ -157,6 +157,9 @@ class TableCase(Table):
         return case
 
 
+FrictionCase = KogutEtsionCase | ConstantCase | CoulombCase | TableCase
+
+
 class RunCase(Table):
     """The run: `duration` in s, `gravity` in m/s^2 towards the plate or along x, y, z, `tolerance` without dimension.
 
@@ -204,7 +207,7 @@ class _CaseTables(Table):
     actuators: tuple[ActuatorCase, ...]
     lattice: LatticeCase | None = None
     part: PartCase
-    friction: Annotated[KogutEtsionCase | ConstantCase | CoulombCase | TableCase, Field(discriminator="model")]
+    friction: Annotated[FrictionCase, Field(discriminator="model")]
     run: RunCase
 
     @model_validator(mode="wrap")

@@ -39,7 +39,7 @@ _SYNTAX = {
     "Cannot overwrite a value": "this is given twice",
     r"Illegal character '\n'": "a text lacks its closing quote",
 }
-_EACH = {"actuators": "actuator", "segments": "segment"}
+_EACH = {"actuators": "actuator", "segments": "segment", "axes": "axis"}
 """What is written in double brackets, and once for each of what."""
 
 
@@ -104,7 +104,7 @@ def find_problems(
     problems = []
     for detail in details:
         location = _in_file(detail)
-        message = _message(detail, _value(data, location), tables)
+        message = message_of(detail, _value(data, location), tables)
         if message.startswith("is missing") and detail["loc"] in misspelt:
             continue
         line = next((lines[location[:n]] for n in range(len(location), 0, -1) if location[:n] in lines), None)
@@ -117,7 +117,7 @@ def shown_location(location: Location) -> str:
     return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in location).lstrip(".")
 
 
-def _message(detail: ErrorDetails, value: object, tables: Mapping[str, type[BaseModel]]) -> str:
+def message_of(detail: ErrorDetails, value: object, tables: Mapping[str, type[BaseModel]]) -> str:
     """Return what is wrong with `value`, in the words of the case file rather than of the validation."""
     kind, location, context = detail["type"], detail["loc"], detail.get("ctx", {})
     got = f"; got {shown(value)}"
@@ -173,7 +173,7 @@ def _header(location: Location) -> str:
     name = str(location[0])
     if "segments" in location[1:-1]:
         return f"[[{name}.segments]]"
-    return f"[[{name}]]" if name == "actuators" else f"[{name}]"
+    return f"[[{name}]]" if name in _EACH else f"[{name}]"
 
 
 def _doubled(header: str) -> str:
@@ -194,7 +194,7 @@ def _near(location: Location, tables: Mapping[str, type[BaseModel]]) -> str | No
 def _known(location: Location, tables: Mapping[str, type[BaseModel]]) -> str:
     keys = [key for key in _fields(location, tables) if key != "model"]
     if len(location) == 1:
-        return "a case file has " + ", ".join(_header((key,)) for key in keys)
+        return "the file has " + ", ".join(_header((key,)) for key in keys)
     model = f' with model = "{location[1]}"' if location[0] == "friction" else ""
     model = f" with {location[1]}" if location[0] == "plate" and len(location) == 3 else model
     return f"{_header(location)}{model} has {', '.join(keys)}"

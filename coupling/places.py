@@ -78,7 +78,7 @@ class Places(BaseModel, from_attributes=True):
         stand = None
         if isinstance(self.lattice, (dict, LatticeCase)):
             unit = written_unit(self.lattice.get("pitch") if isinstance(self.lattice, dict) else None)
-            stand = Stand.on(LatticeCase.values(self.lattice, context), mesh, unit)
+            stand = Stand.on(LatticeCase.values_of(self.lattice, context), mesh, unit)
             mistakes += stand.mistakes
         if plate and mesh:
             given = _Plate.model_validate(self.plate, context=context)

@@ -1,0 +1,63 @@
+"""Basins of attraction: to which actuator parts come from where they start."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+from coupling.plate_case import PlateCase
+from coupling.rim import rim_curves
+from particle import Outcome
+from studies.heat import COLOURS, draw_classes, draw_field
+from studies.record import OUTCOMES
+from studies.shown import Scale, Shown, mean
+
+STARTS = (("part", "position", 0), ("part", "position", 1))
+STAYING = (Outcome.STUCK, Outcome.MOVING)
+MOST_ACTUATORS = 20  # with a colour each
+
+
+def is_over_starts(shown: Shown) -> bool:
+    """Whether a sweep's axes are the start's x and y, over a few actuators."""
+    found = {scale.axis.field.locations[0] for scale in shown.axes}
+    return found == set(STARTS) and 0 < len(shown.study.case.actuators) <= MOST_ACTUATORS
+
+
+def draw_basins(figure: Figure, axes: list[Axes], shown: Shown) -> None:
+    """Draw the actuator that is nearest to the end into the first axes, and how near it is into the second."""
+    turned = shown.axes[0].axis.field.locations[0] == STARTS[1]
+    across, up = reversed(shown.axes) if turned else shown.axes
+    actuators = np.array([actuator.position for actuator in shown.study.case.actuators])
+    away = np.linalg.norm(shown.end[..., None, :] - actuators, axis=-1)  # (n, m, repeats, N)
+    numbers, staying = shown.usual_outcome, [OUTCOMES.index(outcome.value) for outcome in STAYING]
+    nearest = np.argmin(mean(np.moveaxis(away, -2, -1)), axis=-1)
+    classes = np.where(np.isin(numbers, staying), len(OUTCOMES) + nearest, numbers)
+    lengths = np.where(np.isin(numbers, staying), mean(away.min(axis=-1)), np.nan)
+    names = (*OUTCOMES, *(f"ends nearest to actuator {k}" for k in range(len(actuators))))
+    colours = (*COLOURS, *(colormaps["tab20"](2 * k % 20 + 2 * k // 20) for k in range(len(actuators))))
+    if turned:
+        classes, lengths = classes.T, lengths.T
+    draw_classes(axes[0], across, up, classes, names, colours)
+    axes[0].set_title("nearest actuator at the end", fontsize=10)
+    draw_field(figure, axes[1], across, up, lengths, "distance of the end from it")
+    for one in axes:
+        _draw_plate(one, shown, across, up)
+
+
+def _draw_plate(axes: Axes, shown: Shown, across: Scale, up: Scale) -> None:
+    """Draw the rim and the actuators, without making the frame larger."""
+    scale = np.array([across.unit.per_si, up.unit.per_si])
+    limits = axes.get_xlim(), axes.get_ylim()
+    plate = shown.study.case.plate
+    if isinstance(plate, PlateCase):
+        outline = plate.coarse_mesh.outline
+        step = float(np.ptp(outline.box, axis=0).max()) / 200
+        axes.add_collection(LineCollection([c * scale for c in rim_curves(outline, step)], colors="black"))
+    actuators = np.array([actuator.position for actuator in shown.study.case.actuators]) * scale
+    axes.plot(*actuators.T, "^", color="white", markeredgecolor="black", markersize=7)
+    axes.set_aspect("equal")
+    axes.set_xlim(*limits[0])
+    axes.set_ylim(*limits[1])

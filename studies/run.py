@@ -1,0 +1,104 @@
+"""One sweep, from study to results: this file reads as the pipeline.
+
+study -> chunks of points -> records of their paths -> chunks on disk -> one file of all -> picture
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coupling.progress import Tell, untold
+from studies.chunk_store import ChunkStore
+from studies.dataset import key_of, read_dataset, write_dataset
+from studies.engine import Engine
+from studies.map import draw_sweep
+from studies.record import OUTCOMES, Records
+from studies.refusal import refusals
+from studies.study import Study
+from studies.variants import Variants
+
+if TYPE_CHECKING:
+    import xarray
+
+ENDING = ".nc"
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """What a sweep found; `files` are those it wrote."""
+
+    study: Study
+    dataset: xarray.Dataset = field(repr=False)
+    files: tuple[Path, ...] = ()
+
+    @property
+    def outcomes(self) -> dict[str, int]:
+        """How many paths ended how."""
+        counts = np.bincount(self.dataset["outcome"].values.ravel(), minlength=len(OUTCOMES))
+        return {name: int(count) for name, count in zip(OUTCOMES, counts, strict=True) if count}
+
+    @property
+    def first_refused(self) -> list[str]:
+        """What is wrong with the first point that was refused; nothing: none was."""
+        refused = np.flatnonzero(self.dataset["mistakes"].values.ravel())
+        return (
+            refusals(self.study, Variants(self.study.case, self.study.points.axes), int(refused[0]))
+            if len(refused)
+            else []
+        )
+
+
+def run_study(study: Study, output: str | Path | None = None, threads: int | None = None, tell: Tell = untold) -> Sweep:
+    """Find all paths of a study; with `output`, a folder, write NAME.nc and NAME.png there.
+
+    With a folder, chunks of finished paths are kept in NAME.sweep there until all are done, and a sweep that was
+    interrupted goes on from them. If NAME.nc is of the same study, nothing is done again.
+    threads: how many paths are found at a time, by default one on each processor.
+    tell: gets how many paths are done, and of how many.
+    Raises ValueError when NAME.nc is a file of something else, and KeyboardInterrupt upon Ctrl-C.
+    """
+    if output is None:
+        with tempfile.TemporaryDirectory() as folder:
+            file = _found(study, Path(folder), threads, tell)
+            with read_dataset(file) as dataset:
+                return Sweep(study, dataset.load())
+    file = _found(study, Path(output), threads, tell)
+    dataset = read_dataset(file)
+    picture = draw_sweep(study, dataset, file.with_suffix(".png"))
+    return Sweep(study, dataset, (file, picture))
+
+
+def _found(study: Study, folder: Path, threads: int | None, tell: Tell) -> Path:
+    """The file of all results in a folder."""
+    file = folder / f"{study.name}{ENDING}"
+    key, known = study.key, key_of(file)
+    if file.exists() and known is None:
+        raise ValueError(
+            f"Input output must be free of files of other kinds; got {folder}, whose {file.name} is no sweep"
+        )
+    store = ChunkStore(folder / f"{study.name}.sweep", key)
+    if known != key:
+        engine = Engine(study, threads)
+        for chunk in range(engine.chunks):
+            start, stop = engine.span(chunk)
+            if store.load(chunk, stop - start) is None:
+                store.save(chunk, engine.records(chunk))
+            tell(stop, engine.paths)
+        write_dataset(study, _chunks(engine, store), file)
+    store.clear()
+    return file
+
+
+def _chunks(engine: Engine, store: ChunkStore) -> Iterator[tuple[int, Records]]:
+    for chunk in range(engine.chunks):
+        start, stop = engine.span(chunk)
+        records = store.load(chunk, stop - start)
+        if records is None:
+            raise OSError(f"{store.folder}: chunk {chunk} of the sweep is gone; the same command finds it again")
+        yield start, records

@@ -1,0 +1,117 @@
+"""Shown: what of a sweep's results its picture shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.readable import Unit, readable
+from studies.axis import Axis
+from studies.record import OUTCOMES, REFUSED
+from studies.study import Study
+
+if TYPE_CHECKING:
+    import xarray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+MOST_POINTS = 100_000  # of random ones
+NAMED = "m", "s", "N", "Hz", "kg", "m/s", "Pa"
+"""Units that take a prefix."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scale:
+    """An axis of the picture; a text has its number in `values`, and itself in `texts`."""
+
+    axis: Axis
+    unit: Unit
+    values: FloatArray
+    texts: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, axis: Axis, values: NDArray[Any]) -> Scale:
+        if axis.field.kind == "text":
+            texts = tuple(dict.fromkeys(str(value) for value in values))
+            return cls(axis, Unit("", 1.0), np.array([texts.index(str(value)) for value in values], float), texts)
+        numbers = np.asarray(values, dtype=float)
+        unit = readable(numbers, axis.field.unit) if axis.field.unit in NAMED else Unit(axis.field.unit, 1.0)
+        return cls(axis, unit, numbers)
+
+    @property
+    def label(self) -> str:
+        return self.axis.name if self.unit.name in ("", "1") else f"{self.axis.name} [{self.unit.name}]"
+
+    @property
+    def drawn(self) -> FloatArray:
+        """Its values in its unit."""
+        return self.values * self.unit.per_si
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """Results along at most two axes of a grid, or at points; repeats are along the last dimension.
+
+    fixed: the values of axes that are not shown, in words.
+    """
+
+    study: Study
+    axes: tuple[Scale, ...]
+    distance: FloatArray  # m, nan where refused
+    outcome: IntArray
+    end: FloatArray  # (..., 2) m
+    fixed: dict[str, str]
+    scattered: bool
+
+    @classmethod
+    def of(cls, study: Study, dataset: xarray.Dataset) -> Shown:
+        points = study.points
+        scattered = points.sampling != "grid"
+        picked: dict[str, Any] = {"point": slice(0, MOST_POINTS)} if scattered else {}
+        axes = sorted(points.axes, key=lambda axis: -len(axis.values))[:2] if not scattered else points.axes[:2]
+        axes = tuple(axis for axis in points.axes if axis in axes)
+        fixed = {}
+        for axis in () if scattered else points.axes:
+            if axis not in axes:
+                picked[axis.name] = len(axis.values) // 2
+                scale = Scale.of(axis, np.array([axis.values[picked[axis.name]]], axis.kind))
+                number = scale.texts[0] if scale.texts else f"{scale.drawn[0]:.4g} {scale.unit.name}".rstrip("1 ")
+                fixed[axis.name] = number
+        part = dataset.isel(picked)
+        arrays = {name: part[name].values for name in ("distance", "outcome", "end_x", "end_y")}
+        if points.repeats == 1:
+            arrays = {name: array[..., None] for name, array in arrays.items()}
+        return cls(
+            study,
+            tuple(Scale.of(axis, part[axis.name].values) for axis in axes),
+            arrays["distance"],
+            arrays["outcome"].astype(np.int64),
+            np.stack([arrays["end_x"], arrays["end_y"]], axis=-1),
+            fixed,
+            scattered,
+        )
+
+    @property
+    def mean_distance(self) -> FloatArray:
+        """The mean over repeats [m]; nan where all were refused."""
+        return mean(self.distance)
+
+    @property
+    def usual_outcome(self) -> IntArray:
+        """The most frequent outcome of the repeats, of two that are as frequent that with the lower number."""
+        counts = np.stack([(self.outcome == k).sum(axis=-1) for k in range(len(OUTCOMES))])
+        return np.argmax(counts, axis=0)
+
+
+def mean(values: FloatArray) -> FloatArray:
+    """The mean over repeats; nan where none has a value."""
+    known = np.isfinite(values)
+    total, count = np.where(known, values, 0.0).sum(axis=-1), known.sum(axis=-1)
+    return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+
+
+REFUSED_NUMBER = OUTCOMES.index(REFUSED)
