@@ -158,6 +158,7 @@ class TableCase(Table):
 
 
 FrictionCase = KogutEtsionCase | ConstantCase | CoulombCase | TableCase
+AnyFriction = Annotated[FrictionCase, Field(discriminator="model")]
 
 
 class RunCase(Table):
@@ -207,7 +208,7 @@ class _CaseTables(Table):
     actuators: tuple[ActuatorCase, ...]
     lattice: LatticeCase | None = None
     part: PartCase
-    friction: Annotated[FrictionCase, Field(discriminator="model")]
+    friction: AnyFriction
     run: RunCase
 
     @model_validator(mode="wrap")
@@ -254,7 +255,7 @@ _FRICTION: dict[str, type[BaseModel]] = {
     "coulomb": CoulombCase,
     "table": TableCase,
 }
-_TABLES: dict[str, type[BaseModel]] = {
+TABLES: dict[str, type[BaseModel]] = {
     "": _CaseTables,
     "actuators": ActuatorCase,
     "lattice": LatticeCase,
@@ -263,7 +264,10 @@ _TABLES: dict[str, type[BaseModel]] = {
     BY_DRIVES: MotionCase,
     "part": PartCase,
     "run": RunCase,
+    **_FRICTION,
+    **PLATES,
 }
+"""The models by the names of their tables, of those with several by what tells them apart."""
 
 
 def read_case(path: str | os.PathLike[str]) -> Case:
@@ -272,5 +276,5 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     try:
         tables = _CaseTables.model_validate(data, context=units.UNITS_REQUIRED | {"folder": Path(path).parent})
     except ValidationError as error:
-        raise CaseError(os.fspath(path), find_problems(error, text, data, _TABLES | _FRICTION | PLATES)) from None
+        raise CaseError(os.fspath(path), find_problems(error, text, data, TABLES)) from None
     return Case.model_construct(**dict(tables), name=Path(path).stem, source=text)

@@ -35,6 +35,9 @@ RULES = {
 }
 """What a value must be, by the kind of a failed validation."""
 
+LACKS_DEFAULT = "default_factory_not_called"
+"""The kind of a failed validation that is no mistake of its own: a default depends on a wrong field."""
+
 _SYNTAX = {
     "Cannot overwrite a value": "this is given twice",
     r"Illegal character '\n'": "a text lacks its closing quote",
@@ -93,8 +96,7 @@ def find_problems(
     `tables` gives the model of each table by name, those of [friction] by their `model` and the whole file's as "".
     """
     lines = _lines(text)
-    # That a default which depends on a wrong field is lacking is no mistake of its own.
-    details = [detail for detail in error.errors() if detail["type"] != "default_factory_not_called"]
+    details = [detail for detail in error.errors() if detail["type"] != LACKS_DEFAULT]
     # Nor is it one that a key is missing where it is only misspelt.
     misspelt = {
         (*detail["loc"][:-1], _near(detail["loc"], tables)) for detail in details if detail["type"] == "extra_forbidden"
@@ -103,7 +105,7 @@ def find_problems(
         misspelt.add(("actuators",))
     problems = []
     for detail in details:
-        location = _in_file(detail)
+        location = in_file(detail)
         message = message_of(detail, _value(data, location), tables)
         if message.startswith("is missing") and detail["loc"] in misspelt:
             continue
@@ -147,7 +149,7 @@ def message_of(detail: ErrorDetails, value: object, tables: Mapping[str, type[Ba
             return f"must be {RULES.get(kind, 'different').format(**context)}{got}" + (", in quotes" if quoted else "")
 
 
-def _in_file(detail: ErrorDetails) -> Location:
+def in_file(detail: ErrorDetails) -> Location:
     """Return where in the file an error is: without what validation chose between, as the model of [friction]."""
     location = tuple(key for key in detail["loc"] if key not in TAGS)
     if detail["type"].startswith("union_tag"):

@@ -44,12 +44,14 @@ class Axes:
         if WRONG in table.values():
             return None
         key = "values" if table["values"] is not None else "range"
-        values, wrong = _read(field, table[key] or ())
+        if table[key] is None:
+            return None
+        values, wrong = _read(field, table[key])
         if wrong:
             self.mistakes += [(("axes", k, key, place), message) for place, message in wrong]
         elif mistakes := list(self._misfits(field, key, values, table)):
             self.mistakes += [(("axes", k, at), message) for at, message in mistakes]
-        elif values:
+        else:
             return self._made(field, key, values, table)
         return None
 

@@ -9,6 +9,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from coupling.plate_case import PlateCase
+from coupling.readable import readable
 from coupling.rim import rim_curves
 from particle import Outcome
 from studies.heat import COLOURS, draw_classes, draw_field
@@ -18,6 +19,8 @@ from studies.shown import Scale, Shown, mean
 STARTS = (("part", "position", 0), ("part", "position", 1))
 STAYING = (Outcome.STUCK, Outcome.MOVING)
 MOST_ACTUATORS = 20  # with a colour each
+SHORT = 0.02  # of the distance between the outermost actuators: less is hardly a way
+STAYS = "#f2efe6"
 
 
 def is_over_starts(shown: Shown) -> bool:
@@ -34,15 +37,19 @@ def draw_basins(figure: Figure, axes: list[Axes], shown: Shown) -> None:
     away = np.linalg.norm(shown.end[..., None, :] - actuators, axis=-1)  # (n, m, repeats, N)
     numbers, staying = shown.usual_outcome, [OUTCOMES.index(outcome.value) for outcome in STAYING]
     nearest = np.argmin(mean(np.moveaxis(away, -2, -1)), axis=-1)
-    classes = np.where(np.isin(numbers, staying), len(OUTCOMES) + nearest, numbers)
+    near = SHORT * float(np.ptp(actuators, axis=0).max() if len(actuators) > 1 else np.abs(across.values).max())
+    carried = shown.mean_distance > near
+    classes = np.where(np.isin(numbers, staying), len(OUTCOMES) + np.where(carried, 1 + nearest, 0), numbers)
     lengths = np.where(np.isin(numbers, staying), mean(away.min(axis=-1)), np.nan)
-    names = (*OUTCOMES, *(f"ends nearest to actuator {k}" for k in range(len(actuators))))
-    colours = (*COLOURS, *(colormaps["tab20"](2 * k % 20 + 2 * k // 20) for k in range(len(actuators))))
+    unit = readable(np.array([near]), "m")
+    stays = f"carried less than {near * unit.per_si:.2g} {unit.name}"
+    names = (*OUTCOMES, stays, *(f"carried, nearest to actuator {k}" for k in range(len(actuators))))
+    colours = (*COLOURS, STAYS, *(colormaps["tab20"](2 * k % 20 + 2 * k // 20) for k in range(len(actuators))))
     if turned:
         classes, lengths = classes.T, lengths.T
     draw_classes(axes[0], across, up, classes, names, colours)
-    axes[0].set_title("nearest actuator at the end", fontsize=10)
-    draw_field(figure, axes[1], across, up, lengths, "distance of the end from it")
+    axes[0].set_title("where the part is carried", fontsize=10)
+    draw_field(figure, axes[1], across, up, lengths, "end to nearest actuator")
     for one in axes:
         _draw_plate(one, shown, across, up)
 

@@ -22,7 +22,7 @@ from coupling.run import build_scene
 from particle import Micropart, SurfaceMotion, simulate_many
 from particle.friction import Contact
 from studies.record import Records, new_records, put
-from studies.refusal import contact_of, start_faults
+from studies.refusal import contact_of, mistakes_of, start_faults
 from studies.study import Study
 from studies.variants import Base, Variants
 
@@ -46,7 +46,7 @@ class Engine:
 
     def __init__(self, study: Study, threads: int | None = None) -> None:
         self.study, self._threads = study, threads
-        self._variants = Variants(study.case, study.points.axes)
+        self.variants = Variants(study.case, study.points.axes)
         self._surfaces = lru_cache(SURFACES)(self._new_surface)
         self._bases: dict[str, Base] = {}
         self.paths = len(study.points)
@@ -65,7 +65,7 @@ class Engine:
     def _chunk_length(self) -> int:
         case, points = self.study.case, self.study.points
         fastest = max((drive.frequency for drive in build_drives(case)), default=0.0)
-        each = A_PATH + A_CYCLE * case.run.duration * fastest + A_PLATE / self._variants.paths_of_a_base(points)
+        each = A_PATH + A_CYCLE * case.run.duration * fastest + A_PLATE / self.variants.paths_of_a_base(points)
         return int(np.clip(AT_ONCE / each, 1, MOST))
 
     def records(self, chunk: int) -> Records:
@@ -82,9 +82,9 @@ class Engine:
         grounds: dict[str, list[tuple[int, Case, Base]]] = defaultdict(list)
         for row, values in enumerate(points.values(start, stop)):
             try:
-                case, base = self._variants.at(values)
+                case, base = self.variants.at(values)
             except ValidationError as error:
-                records["mistakes"][row] = error.error_count()
+                records["mistakes"][row] = len(mistakes_of(error))
             else:
                 grounds[base.ground].append((row, case, base))
         for ground, several in grounds.items():
@@ -105,7 +105,7 @@ class Engine:
 
     def _follow(self, records: Records, paths: Sequence[_Path], surface: SurfaceMotion, run: RunCase) -> None:
         parts = [path.part for path in paths]
-        drives = [build_drives(path.case) for path in paths] if self._variants.drives_vary else None
+        drives = [build_drives(path.case) for path in paths] if self.variants.drives_vary else None
         frictions = [path.friction for path in paths]
         found = simulate_many(
             surface,

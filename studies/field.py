@@ -89,7 +89,9 @@ def _ends(
         return
     within = getattr(value, key, None)
     if not rest:
-        yield here, _model_of(value, at), key, field.annotation, field.metadata
+        # Supports are one text or a table of texts.
+        annotation = str if isinstance(within, str) else field.annotation
+        yield here, _model_of(value, at), key, annotation, field.metadata
     else:
         yield from _inside(rest, here, within, field.annotation, field.metadata)
 
@@ -107,7 +109,7 @@ def _inside(keys: list[str], at: Location, value: Any, annotation: Any, metadata
         return
     name = shown_location(at)
     if not isinstance(value, tuple) or not value:
-        has = "is not given" if value is None else "has none in it"
+        has = "is not given" if value is None else "is empty" if value == () else "is a single value"
         raise ValueError(f"must be a field of the case; its {name} {has}")
     if key != ALL and not (key.isdecimal() and int(key) < len(value)):
         raise ValueError(

@@ -51,6 +51,8 @@ def _study(path: Path, text: str, data: Mapping[str, Any]) -> tuple[Study | None
     tables = [table for table in written if isinstance(table, dict)] if isinstance(written, list) else []
     axes = Axes(case, [AxisTable.values_of(table, UNITS_REQUIRED) for table in tables], given["sampling"])
     mistakes += axes.mistakes
+    if written == []:
+        mistakes.append((("axes",), "must be at least one table, written [[axes]]; got none"))
     if case is None or not axes.whole or WRONG in given.values():
         return None, mistakes
     points = Points(

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from coupling.case import Case, FrictionCase
-from coupling.case_lines import message_of, shown_location
+from coupling.case import TABLES, Case, FrictionCase
+from coupling.case_lines import LACKS_DEFAULT, in_file, message_of, shown_location
 from coupling.lattice_places import SAME_PLACE, beyond, gaps, half_size
 from coupling.plate_case import PlateCase
 from coupling.run import friction_law
@@ -44,8 +44,14 @@ def refusals(study: Study, variants: Variants, k: int) -> list[str]:
         case, base = variants.at(values)
         start = study.points.displacements(k, k + 1)[0] + case.part.position
     except ValidationError as error:
-        return [f"{shown_location(detail['loc'])} {message_of(detail, None, {})}" for detail in error.errors()]
+        return mistakes_of(error)
     return [law] if isinstance(law := contact_of(case.friction), str) else start_faults(base.case, start[None])[0]
+
+
+def mistakes_of(error: ValidationError) -> list[str]:
+    """What is wrong with the tables of a case."""
+    details = [detail for detail in error.errors() if detail["type"] != LACKS_DEFAULT]
+    return [f"{shown_location(in_file(detail))} {message_of(detail, detail['input'], TABLES)}" for detail in details]
 
 
 @lru_cache(LAWS)

@@ -76,7 +76,7 @@ class StudyTables(Table):
     """All that a study file holds."""
 
     study: StudyTable
-    axes: Annotated[tuple[AxisTable, ...], Field(min_length=1)]
+    axes: tuple[AxisTable, ...]
 
 
 TABLES: dict[str, type[BaseModel]] = {"": StudyTables, "study": StudyTable, "axes": AxisTable}

@@ -10,10 +10,9 @@ from typing import Any, Final, NamedTuple
 
 from pydantic import TypeAdapter, ValidationError
 
-from coupling.case import Case
+from coupling.case import AnyFriction, Case, PartCase, RunCase
 from coupling.case_lines import Location
 from coupling.drive_case import ActuatorCase
-from coupling.keyed_table import adapter
 from coupling.plate_scene import springs
 from coupling.platform_case import PlatformCase
 from coupling.table import Table
@@ -121,10 +120,15 @@ def is_deep(case: Case, axis: Axis) -> bool:
 
 
 def _reader(head: Location) -> TypeAdapter[Any]:
-    return _ACTUATOR if head[0] == "actuators" else adapter(Case, str(head[0]))
+    return _READERS[str(head[0])]
 
 
-_ACTUATOR: Final = TypeAdapter(ActuatorCase)
+_READERS: Final[dict[str, TypeAdapter[Any]]] = {
+    "actuators": TypeAdapter(ActuatorCase),
+    "part": TypeAdapter(PartCase),
+    "friction": TypeAdapter(AnyFriction),
+    "run": TypeAdapter(RunCase),
+}
 
 
 def lattice_of(case: Case) -> tuple[dict[str, Any] | None, int]:
@@ -141,7 +145,7 @@ def _plain(value: Any) -> Any:
             key: _plain(item)
             for key in fields
             if (item := getattr(value, key)) is not None
-            and (key in value.model_fields_set or fields[key].default is None)
+            and (key in value.model_fields_set or fields[key].default is None or isinstance(item, tuple))
         }
     if isinstance(value, tuple):
         return tuple(_plain(item) for item in value)
