@@ -61,7 +61,7 @@ class Axes:
             return Axis(name, field, tuple(values))
         if table["count"] is None:
             return Axis(name, field, (), values[0], values[1], logarithmic)
-        return Axis(name, field, spaced(values[0], values[1], table["count"], logarithmic))
+        return Axis(name, field, spaced(values[0], values[1], table["count"], logarithmic), logarithmic=logarithmic)
 
     def _misfits(
         self, field: Field, key: str, values: list[Any], table: Mapping[str, Any]

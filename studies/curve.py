@@ -36,5 +36,6 @@ def draw_curve(axes: list[Axes], shown: Shown) -> None:
     axes[1].stackplot(where, 100 * shares, colors=list(COLOURS), step="mid", linewidth=0)
     axes[1].set_ylabel("share of the paths [%]")
     axes[1].set_ylim(0, 100)
-    axes[1].set_xlim(where.min(), where.max())
+    if len(where) > 1:
+        axes[1].set_xlim(where.min(), where.max())
     add_key(axes[1], shown.outcome, OUTCOMES, COLOURS)

@@ -27,8 +27,8 @@ from studies.study import Study
 from studies.variants import Base, Variants
 
 AT_ONCE: Final = 1.0  # s, about, that a chunk takes
-A_PATH, A_CYCLE, A_PLATE = 4e-4, 1e-4, 0.5  # s, about, that a path takes, each cycle of its fastest drive, and a plate
-MOST: Final = 4096  # paths of a chunk
+A_PATH, A_CYCLE, A_PLATE = 4e-4, 3e-4, 0.5  # s, about, that a path takes, each cycle of its fastest drive, and a plate
+MOST: Final = 256  # paths of a chunk: handing out more at a time costs more
 SURFACES: Final = 4  # kept
 
 

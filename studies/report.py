@@ -26,7 +26,8 @@ def figures(sweep: Sweep) -> dict[str, Any]:
 def lines(sweep: Sweep) -> list[tuple[str, str]]:
     """Rows (label, text) to print."""
     sizes = sweep.study.points.dimensions
-    shape = " x ".join(f"{count} {name}" for name, count in sizes.items())
+    plural = {"point": "points", "repeat": "repeats"}
+    shape = " x ".join(f"{count} {plural.get(name, name)}" for name, count in sizes.items())
     rows = [
         ("paths", f"{len(sweep.study.points)}: {shape}"),
         ("outcomes", ", ".join(f"{count} {name}" for name, count in sweep.outcomes.items())),
