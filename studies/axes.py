@@ -14,7 +14,6 @@ from studies.field import Field, Value, find_field
 from studies.variants import is_deep, lattice_of
 
 Mistake = tuple[Location, str]
-RESERVED = ("point", "repeat")
 
 
 class Axes:
@@ -103,8 +102,6 @@ def _read(field: Field, written: Sequence[Any]) -> tuple[list[Value], list[tuple
 def _doubled(axes: Sequence[tuple[int, Axis]]) -> Iterator[Mistake]:
     """What two axes both have."""
     for n, (k, axis) in enumerate(axes):
-        if axis.name in RESERVED:
-            yield ("axes", k, "name"), f"must not be {axis.name}, which the results have themselves"
         for _, other in axes[:n]:
             if shared := set(axis.field.locations) & set(other.field.locations):
                 at = ".".join(map(str, min(shared, key=str)))

@@ -17,6 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from coupling.case import Case, RunCase
 from coupling.drives import build_drives
+from coupling.plate_case import PlateCase
 from coupling.progress import interruptible
 from coupling.run import build_scene
 from particle import Micropart, SurfaceMotion, simulate_many
@@ -27,7 +28,8 @@ from studies.study import Study
 from studies.variants import Base, Variants
 
 AT_ONCE: Final = 1.0  # s, about, that a chunk takes
-A_PATH, A_CYCLE, A_PLATE = 4e-4, 3e-4, 0.5  # s, about, that a path takes, each cycle of its fastest drive, and a plate
+A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about, that a path takes, and each cycle of its fastest drive
+A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about, that these take
 MOST: Final = 256  # paths of a chunk: handing out more at a time costs more
 SURFACES: Final = 4  # kept
 
@@ -65,7 +67,8 @@ class Engine:
     def _chunk_length(self) -> int:
         case, points = self.study.case, self.study.points
         fastest = max((drive.frequency for drive in build_drives(case)), default=0.0)
-        each = A_PATH + A_CYCLE * case.run.duration * fastest + A_PLATE / self.variants.paths_of_a_base(points)
+        base = A_PLATE if isinstance(case.plate, PlateCase) else A_PLATFORM
+        each = A_PATH + A_CYCLE * case.run.duration * fastest + base / self.variants.paths_of_a_base(points)
         return int(np.clip(AT_ONCE / each, 1, MOST))
 
     def records(self, chunk: int) -> Records:

@@ -134,7 +134,9 @@ def _model_of(value: Any, at: Location) -> Any:
 def _unknown(key: str, at: Location, known: Iterable[str]) -> str:
     near = difflib.get_close_matches(key, known, 1)
     owner = shown_location(at) if at else "the case"
-    return f"{owner} has no {key}; " + (f"did you mean {near[0]}?" if near else f"it has {', '.join(known)}")
+    return f"{owner} has no {key or shown(key)}; " + (
+        f"did you mean {near[0]}?" if near else f"it has {', '.join(known)}"
+    )
 
 
 def _parts(annotation: Any) -> list[Any]:

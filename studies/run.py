@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     import xarray
 
 ENDING = ".nc"
+AT_ONCE = 65536  # paths whose records are written together, at least
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,9 +97,14 @@ def _found(study: Study, folder: Path, threads: int | None, tell: Tell) -> Path:
 
 
 def _chunks(engine: Engine, store: ChunkStore) -> Iterator[tuple[int, Records]]:
+    """Yield the records of all chunks, of many at once, and the number of the first path of each such lot."""
+    first, lot = 0, []
     for chunk in range(engine.chunks):
         start, stop = engine.span(chunk)
         records = store.load(chunk, stop - start)
         if records is None:
             raise OSError(f"{store.folder}: chunk {chunk} of the sweep is gone; the same command finds it again")
-        yield start, records
+        lot.append(records)
+        if stop - first >= AT_ONCE or stop == engine.paths:
+            yield first, np.concatenate(lot)
+            first, lot = stop, []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
@@ -11,8 +12,13 @@ from coupling.keyed_table import WRONG, Contradictions, KeyedTable
 from coupling.table import Table
 from coupling.units import Length, shown
 from studies.points import Sampling
+from studies.record import COLUMNS
 
-MOST_PATHS = 1_000_000_000
+MOST_PATHS, MOST_VALUES = 1_000_000_000, 1_000_000
+
+
+TAKEN = ("point", "repeat", *COLUMNS)
+"""Names that the results have themselves."""
 
 
 def _several(value: object) -> object:
@@ -27,13 +33,28 @@ def _two(value: object) -> object:
     return value
 
 
+class _File:
+    wanted = 'the name of a case file such as "two_actuators.toml"'
+
+
+class _Path:
+    wanted = 'the path of a field such as "actuators.0.frequency"'
+
+
+def _name(value: object) -> object:
+    if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z][\w.*-]*", value) or value in TAKEN:
+        rule = "a letter, followed by letters, digits or any of _ . * -, and none of the results' own names"
+        raise ValueError(f"must be {rule}; got {shown(value)}")
+    return value
+
+
 class StudyTable(KeyedTable):
     """What is swept: the file of the base `case`, beside the study's, and how points are chosen.
 
     points: how many, of random and Sobol ones.  repeats: of each point.  jitter: how far in m starts are displaced.
     """
 
-    case: StrictStr
+    case: Annotated[StrictStr, _File()]
     sampling: Sampling = "grid"
     points: StrictInt | None = Field(default=None, ge=1, le=MOST_PATHS)
     repeats: StrictInt = Field(default=1, ge=1, le=1_000_000)
@@ -54,11 +75,11 @@ class StudyTable(KeyedTable):
 class AxisTable(KeyedTable):
     """An axis: the path of a `field` of the case, and its `values`, or their `range` and `count`."""
 
-    field: StrictStr
-    name: Annotated[StrictStr, Field(pattern=r"^[A-Za-z][\w.*-]*$")] | None = None
+    field: Annotated[StrictStr, _Path()]
+    name: Annotated[str, BeforeValidator(_name)] | None = None
     values: Annotated[tuple[Any, ...], BeforeValidator(_several)] | None = None
     range: Annotated[tuple[Any, Any], BeforeValidator(_two)] | None = None
-    count: StrictInt | None = Field(default=None, ge=1, le=MOST_PATHS)
+    count: StrictInt | None = Field(default=None, ge=1, le=MOST_VALUES)
     spacing: Literal["linear", "logarithmic"] = "linear"
 
     @classmethod

@@ -43,6 +43,7 @@ def test_axes_of_the_plate_vary_slowest(tmp_path):
         ("actuators.0.frequenzy", "actuators[1] has no frequenzy; did you mean frequency?"),
         ("actuatos.0.stroke", "the case has no actuatos; did you mean actuators?"),
         ("actuators.2.stroke", "its actuators are counted from 0 to 1, * for all; got 2"),
+        ("part.", 'part has no ""; it has mass, position, velocity, size, squeeze'),
         ("actuators.stroke", "its actuators are counted from 0 to 1, * for all; got stroke"),
         ("part.position", "must be a single value; got part.position, which is a list or table; name one in it"),
         ("part.position.2", "its part.position are counted from 0 to 1, * for all; got 2"),
@@ -81,7 +82,10 @@ def test_a_field_that_there_is_not_is_told(tmp_path, field, message):
             'range = ["0 um", "2 um"]\ncount = 3\nspacing = "logarithmic"',
             'must have values above 0 with spacing = "logarithmic"',
         ),
-        ('values = ["1 um"]\nname = "point"', "axes[1].name must not be point, which the results have themselves"),
+        ('values = ["1 um"]\nname = "point"', 'any of _ . * -, and none of the results\' own names; got "point"'),
+        ('values = ["1 um"]\nname = "end_x"', 'none of the results\' own names; got "end_x"'),
+        ('values = ["1 um"]\nname = "a/b"', 'none of the results\' own names; got "a/b"'),
+        ('range = ["1 um", "2 um"]\ncount = 1_000_000_000', "axes[1].count must be at most 1e+06; got 1000000000"),
         ('value = ["1 um"]', "axes[1].value is not known; did you mean values?"),
     ],
 )
@@ -131,6 +135,14 @@ def test_a_file_without_axes_and_one_without_a_case_are_told(tmp_path):
     ]
     (told,) = mistakes(tmp_path, '[study]\ncase = "nowhere.toml"\n' + STROKE)
     assert "2 study.case must be the file of a case; " in told and "nowhere.toml" in told
+
+
+def test_missing_keys_are_told_with_what_they_must_be(tmp_path):
+    told = mistakes(tmp_path, '[study]\n[[axes]]\nvalues = ["1 um"]\n')
+    assert told == [
+        '1 study.case is missing; it must be the name of a case file such as "two_actuators.toml"',
+        '2 axes[1].field is missing; it must be the path of a field such as "actuators.0.frequency"',
+    ]
 
 
 def test_mistakes_of_the_base_case_are_told(tmp_path):
