@@ -33,8 +33,9 @@ CHECKS = 48  # points between those, at which its error is measured
 FEW = 8  # actuators whose logarithms are kept everywhere: their exact sum is cheaper than smaller cells
 RCOND = 1e-12
 DEEPEST = 6  # times that a cell is divided
-# Dividing pays where it leaves of the error at most this; first where the error is so large that no order shows yet.
-LESS_AT_FIRST, COARSE, LESS = 0.75, 1e-3, 0.1
+LESS = 0.1  # of its error: dividing many cells pays if that is left at most
+# Where few are not good enough, as at a corner, or errors are so large that no order shows yet, this is enough.
+LESS_AT_CORNERS, FEW_POOR, COARSE = 0.75, 16, 1e-3
 WORSE = 2.0  # times as far off a shared fit may be elsewhere
 ACROSS = 8  # cells along the plate's longer side, at least
 PER_SPACING = 2.0  # cells from one actuator to the next
@@ -208,7 +209,7 @@ class PlateCells:
         self._fit([quarter for four in quarters for quarter in four])
         for cell, four in zip(tried, quarters, strict=True):
             errors = np.array([quarter.error for quarter in four])
-            less = LESS_AT_FIRST if cell.error > COARSE else LESS
+            less = LESS_AT_CORNERS if len(tried) <= FEW_POOR or cell.error > COARSE else LESS
             helps = errors.max() < less * cell.error or (errors <= self._aim).sum() >= 2
             if cell in crowded or helps:
                 cell.quarters, cell.fit = four, None
