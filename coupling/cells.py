@@ -34,8 +34,8 @@ FEW = 8  # actuators whose logarithms are kept everywhere: their exact sum is ch
 RCOND = 1e-12
 DEEPEST = 6  # times that a cell is divided
 LESS = 0.1  # of its error: dividing many cells pays if that is left at most
-# Where few are not good enough, as at a corner, or errors are so large that no order shows yet, this is enough.
-LESS_AT_CORNERS, FEW_POOR, COARSE = 0.75, 16, 1e-3
+# This is enough for those that stand out of their like, as at corners, and where errors are too large to show an order.
+LESS_AT_CORNERS, OUTSTANDING, COARSE = 0.75, 10.0, 1e-3
 WORSE = 2.0  # times as far off a shared fit may be elsewhere
 ACROSS = 8  # cells along the plate's longer side, at least
 PER_SPACING = 2.0  # cells from one actuator to the next
@@ -207,9 +207,10 @@ class PlateCells:
             centres = [cell.centre + cell.half / 2 * side for side in ([-1, -1], [-1, 1], [1, -1], [1, 1])]
             quarters.append([Cell(centre, cell.half / 2) for centre in centres])
         self._fit([quarter for four in quarters for quarter in four])
+        typical = float(np.median([cell.error for cell in cells]))
         for cell, four in zip(tried, quarters, strict=True):
             errors = np.array([quarter.error for quarter in four])
-            less = LESS_AT_CORNERS if len(tried) <= FEW_POOR or cell.error > COARSE else LESS
+            less = LESS_AT_CORNERS if cell.error > min(COARSE, OUTSTANDING * typical) else LESS
             helps = errors.max() < less * cell.error or (errors <= self._aim).sum() >= 2
             if cell in crowded or helps:
                 cell.quarters, cell.fit = four, None
