@@ -25,6 +25,8 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/plate.py
 	$(BIN)/python benchmarks/contact.py
 	$(BIN)/python benchmarks/schemes.py
+	$(BIN)/python benchmarks/evaluation.py
+	$(BIN)/python benchmarks/cycles.py
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many
 
