@@ -48,7 +48,7 @@ def lattice(side: int) -> Lattice:
     x, y = np.meshgrid(*(PITCH * (np.arange(side) - (side - 1) / 2),) * 2)
     points = np.column_stack([x.ravel(), y.ravel()])
     width = (side + 1) * PITCH
-    shapes = Plate(rectangle(width, width, 1.5 * PITCH), SECTION, "clamped").influence(points, truncation=TRUNCATION)
+    shapes = Plate(rectangle(width, width, 6 * PITCH), SECTION, "clamped").influence(points, truncation=TRUNCATION)
     delays = np.tile(np.arange(side), side) * STAGGER / FREQUENCY % (1 / FREQUENCY)
     surface = surface_motion(shapes, [Drive(STROKE, FREQUENCY, delay=delay) for delay in delays.tolist()])
     xy = np.random.default_rng(0).uniform(-PITCH, PITCH, (SAMPLES, 2))
