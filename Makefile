@@ -4,6 +4,9 @@ BIN := .venv/bin
 # Small dense systems gain nothing from BLAS threads and lose much where cores are busy.
 export OPENBLAS_NUM_THREADS ?= 1
 
+# Tests run on all processors, those of a file on one, as they share what is made for them.
+SIDE_BY_SIDE := -n auto --dist loadfile
+
 .PHONY: demo test lint docs benchmark clean
 
 demo: .venv/installed
@@ -11,9 +14,9 @@ demo: .venv/installed
 
 test: lint
 	@echo "== tests in plain Python, with coverage (1 of 2)"
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q --cov --cov-report=term:skip-covered -m "not slow and not compiled"
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q $(SIDE_BY_SIDE) --cov --cov-report=term:skip-covered -m "not slow and not compiled"
 	@echo "== tests with compiled kernels (2 of 2)"
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q $(SIDE_BY_SIDE)
 
 lint: .venv/developer
 	$(BIN)/ruff check .
@@ -25,6 +28,8 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/plate.py
 	$(BIN)/python benchmarks/contact.py
 	$(BIN)/python benchmarks/schemes.py
+	$(BIN)/python benchmarks/evaluation.py
+	$(BIN)/python benchmarks/cycles.py
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coupling.cells import OVERHANG, PlateCells
+from coupling.cell_maker import OVERHANG
+from coupling.cells import PlateCells
 from fem_plate import Shapes
 from particle import AnyDrive, SurfaceMotion
 from particle.drive import drive_table

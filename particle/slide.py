@@ -103,8 +103,9 @@ def slide(
     pair, reach = pairs.long, 1.0
     if pairs.short.order < pairs.long.order and remaining < SHORT * h:
         pair, reach = pairs.short, SHORT
+    # Before the first attempt only: a step that is refused and tried a little shorter must not become as long again.
+    h = remaining if h >= 0.9 * remaining else h
     while True:
-        h = remaining if h >= 0.9 * remaining else h
         if mode == SLIDING:
             h = _to_passage(local, state, h)
         if h < shortest and h < remaining:

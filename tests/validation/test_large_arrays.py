@@ -14,6 +14,8 @@ from coupling.steepest import steepest
 from fem_plate import PatchedShapes, Plate, patches
 from meshes import annulus, disc, polygon, rectangle
 
+pytestmark = pytest.mark.slow  # it has no kernels, so that the compiled pass is enough
+
 PITCH = 25e-6
 TRUNCATION = 1e-2
 DERIVATIVE = (1, 3, 10)  # what is left out of w, its slope and its curvature, times the pitch to the order
@@ -90,7 +92,6 @@ def test_more_than_2000_actuators_take_patches_by_themselves(section):
         assert np.abs(found - truth).max() * PITCH**order < 10.0**order * (shapes.error_estimate + short.error_estimate)
 
 
-@pytest.mark.slow
 def test_a_lattice_of_2025_is_1_at_each_actuator_and_0_at_the_others(section):
     points = lattice(45, 45)
     shapes = Plate(rectangle(46 * PITCH, 46 * PITCH, 6 * PITCH), section).influence(points)
