@@ -10,12 +10,13 @@ from typing import Annotated, Any, Final, Literal, get_args, get_origin
 from pydantic import TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
+from coupling.annotations import of_kind, parts_of, quantity_of
 from coupling.case import Case
 from coupling.case_lines import Location, message_of, shown_location
 from coupling.keyed_table import adapter
 from coupling.lattice_case import LatticeCase
 from coupling.table import Table
-from coupling.units import UNITS_REQUIRED, Directed, Quantity, shown
+from coupling.units import UNITS_REQUIRED, Directed, shown
 
 Value = float | int | str
 
@@ -59,7 +60,7 @@ def find_field(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Fiel
     found = list(_ends(keys, (), case, fields, lattice))
     locations = tuple(location for location, *_ in found)
     _, owner, key, annotation, metadata = found[0]
-    quantity, kind = _quantity(annotation, metadata), _kind(annotation, metadata)
+    quantity, kind = quantity_of(annotation, metadata), _kind(annotation, metadata)
     if kind is None:
         raise ValueError(f"must be a single value; got {path}, which is a list or table; name one in it")
     marked: Any = Annotated[float, quantity] if quantity else annotation
@@ -105,7 +106,7 @@ def _inside(keys: list[str], at: Location, value: Any, annotation: Any, metadata
     if isinstance(value, dict):
         if key not in value:
             raise ValueError(f"must be a field of the case; {_unknown(key, at, value)}")
-        yield (*at, key), None, key, get_args(_of_kind(annotation, dict))[1], []
+        yield (*at, key), None, key, get_args(of_kind(annotation, dict))[1], []
         return
     name = shown_location(at)
     if not isinstance(value, tuple) or not value:
@@ -115,8 +116,8 @@ def _inside(keys: list[str], at: Location, value: Any, annotation: Any, metadata
         raise ValueError(
             f"must be a field of the case; its {name} are counted from 0 to {len(value) - 1}, * for all; got {key}"
         )
-    quantity = _quantity(annotation, metadata)
-    types = get_args(_of_kind(annotation, tuple))
+    quantity = quantity_of(annotation, metadata)
+    types = get_args(of_kind(annotation, tuple))
     for index in range(len(value)) if key == ALL else [int(key)]:
         item = types[0] if types[-1:] == (...,) else types[index]
         here = (*at, index)
@@ -139,29 +140,9 @@ def _unknown(key: str, at: Location, known: Iterable[str]) -> str:
     )
 
 
-def _parts(annotation: Any) -> list[Any]:
-    """An annotation and all that it is made of."""
-    return [annotation, *(part for inner in get_args(annotation) for part in _parts(inner))]
-
-
-def _of_kind(annotation: Any, kind: type) -> Any:
-    return next(part for part in _parts(annotation) if get_origin(part) is kind)
-
-
-def _marks(annotation: Any, metadata: list[Any]) -> list[Any]:
-    """All that marks an annotation or a part of it."""
-    return [*metadata, *(mark for part in _parts(annotation) for mark in getattr(part, "__metadata__", ()))]
-
-
-def _quantity(annotation: Any, metadata: list[Any]) -> Quantity | None:
-    """What marks a number, or several of one kind, as a quantity."""
-    marks = [mark.quantity if isinstance(mark, Directed) else mark for mark in _marks(annotation, metadata)]
-    return next((mark for mark in marks if isinstance(mark, Quantity)), None)
-
-
 def _kind(annotation: Any, metadata: list[Any]) -> Literal["number", "whole", "text"] | None:
     """What a value is; None where it is several."""
-    parts = _parts(annotation)
+    parts = parts_of(annotation)
     if any(isinstance(mark, Directed) for mark in metadata):
         return "number"
     if any(get_origin(part) in (tuple, dict) or (isinstance(part, type) and issubclass(part, Table)) for part in parts):
