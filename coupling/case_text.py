@@ -81,7 +81,9 @@ def _text(value: Any, annotation: Any) -> str:
         keys = type(value).model_fields.items()
         found = [(key, field, getattr(value, key)) for key, field in keys]
         kept = [(key, field, item) for key, field, item in found if _needed(value, key, field, item)]
-        return "{ " + ", ".join(f"{key} = {_text(item, field.rebuild_annotation())}" for key, field, item in kept) + " }"
+        return (
+            "{ " + ", ".join(f"{key} = {_text(item, field.rebuild_annotation())}" for key, field, item in kept) + " }"
+        )
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{json.dumps(key)} = {_text(item, str)}" for key, item in value.items()) + " }"
     if isinstance(value, tuple):

@@ -1,0 +1,104 @@
+"""Paths: where a part goes under each of many drives, over one plate whose cells they share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from coupling.case import Case
+from coupling.drive_case import ActuatorCase
+from coupling.drives import build_drives
+from coupling.run import build_friction
+from particle import Micropart, Outcome, SurfaceMotion, Trajectory, simulate_many
+from particle.friction import Contact, ScaledFriction
+
+FloatArray = NDArray[np.float64]
+
+AT_ONCE = 256  # paths: handing out more at a time costs more
+SETTLING = 1e-3  # s: a part on the move counts as that much farther away, at its speed
+
+
+class Disturbance(NamedTuple):
+    """How a run differs from its case."""
+
+    friction: float = 1.0  # times as much
+    strokes: tuple[float, ...] | None = None  # times as much, of each actuator; None: all as they are
+    shift: tuple[float, float] = (0.0, 0.0)  # m, of the start
+
+
+class Paths:
+    """Finds the paths of a case's part."""
+
+    def __init__(self, case: Case, surface: SurfaceMotion, threads: int | None = None) -> None:
+        self.case, self.surface, self._threads = case, surface, threads
+        self.found = 0
+        self._friction = build_friction(case)
+
+    def of(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
+        """The path of each run: its actuators, and how it is disturbed. The same bits as from the case itself."""
+        found: list[Trajectory] = []
+        # Many small systems: BLAS threads would only wait for each other.
+        with threadpool_limits(limits=1, user_api="blas"):
+            for start in range(0, len(runs), AT_ONCE):
+                found += self._chunk(runs[start : start + AT_ONCE])
+        self.found += len(found)
+        return found
+
+    def _chunk(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
+        run = self.case.run
+        drives = [build_drives(driven(self.case, actuators, way.strokes)) for actuators, way in runs]
+        return simulate_many(
+            self.surface,
+            [self._part(way.shift) for _, way in runs],
+            [self._contact(way.friction) for _, way in runs],
+            run.duration,
+            run.gravity,
+            run.tolerance,
+            run.after_detachment,
+            drives,
+            self._threads,
+        )
+
+    def _contact(self, factor: float) -> Contact:
+        return self._friction if factor == 1.0 else ScaledFriction(self._friction, factor)
+
+    def _part(self, shift: tuple[float, float]) -> Micropart:
+        part = self.case.part
+        x, y = part.position
+        return Micropart(part.mass, (x + shift[0], y + shift[1]), part.velocity, part.squeeze)
+
+
+def driven(case: Case, actuators: tuple[ActuatorCase, ...], factors: Sequence[float] | None = None) -> Case:
+    """A case with other actuators, whose strokes are so many times as high."""
+    if factors is not None:
+        actuators = tuple(_raised(one, factor) for one, factor in zip(actuators, factors, strict=True))
+    return case.model_copy(update={"actuators": actuators, "source": None})
+
+
+def _raised(actuator: ActuatorCase, factor: float) -> ActuatorCase:
+    update: dict[str, object] = {}
+    if actuator.stroke is not None:
+        update["stroke"] = actuator.stroke * factor
+    if actuator.segments is not None:
+        update["segments"] = tuple(
+            segment if segment.stroke is None else segment.model_copy(update={"stroke": segment.stroke * factor})
+            for segment in actuator.segments
+        )
+    return actuator.model_copy(update=update)
+
+
+def cost(trajectory: Trajectory, target: tuple[float, float], duration: float, size: float) -> float:
+    """How far [m] the end is from a target [m], more for a part that does not rest there at the end of the duration.
+
+    size: m, of the surface.
+    """
+    away = float(np.hypot(*(trajectory.position[-1] - target)))
+    if trajectory.outcome is Outcome.STUCK:
+        return away
+    if trajectory.outcome is Outcome.MOVING:
+        return away + SETTLING * float(np.hypot(*trajectory.velocity[-1]))
+    return away + size * (2 - float(trajectory.time[-1]) / duration)  # the later it was lost, the better

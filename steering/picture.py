@@ -1,0 +1,123 @@
+"""The picture of an aim or plan: the path over the plate with its targets, and where disturbed runs end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from numpy.typing import NDArray
+
+from coupling.case import Case
+from coupling.path_picture import HALO, draw_path
+from coupling.plate_case import PlateCase
+from coupling.readable import Unit, plain_ticks, readable
+from coupling.rim import rim_curves
+from particle import Trajectory
+from steering.aimed import Aimed
+from steering.scatter import Scatter
+
+FloatArray = NDArray[np.float64]
+Place = tuple[float, float]
+
+SIZE = 5.6  # inches, of a panel
+SAMPLES = 4000
+MARGIN = 0.04  # of the plate's longer side
+ROOM = 1.15  # of the farthest end that is drawn
+SHARE = 0.97  # of the ends are drawn at least
+TARGET: dict[str, Any] = {"marker": "+", "color": "#c8371b", "markersize": 15, "markeredgewidth": 2.2}
+ENDS: dict[str, Any] = {"marker": "o", "color": "#1b4f9c", "markersize": 4, "markeredgewidth": 0, "alpha": 0.6}
+
+
+def draw_aim(found: Aimed, path: Path) -> Path:
+    """Draws what a search found into a PNG file; returns that."""
+    return draw_path_and_ends(found.task.name, found.case, found.trajectory, [found.task.target], found.scatter, path)
+
+
+def draw_path_and_ends(
+    name: str, case: Case, trajectory: Trajectory, targets: Sequence[Place], scatter: Scatter, path: Path
+) -> Path:
+    """Draws a path over its plate with the targets [m] in their order, and the ends of disturbed runs, into a file."""
+    figure = Figure(figsize=(2 * SIZE + 0.8, SIZE + 0.5), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = [figure.add_subplot(1, 2, k + 1) for k in range(2)]
+    keys = _draw_plate(axes[0], case, trajectory, targets)
+    keys += _draw_ends(axes[1], trajectory, targets[-1], scatter)
+    x, y = trajectory.position[-1] - targets[-1]
+    figure.suptitle(f"{name}: the part ends {_length(float(np.hypot(x, y)))} from the target")
+    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
+    partial = path.with_suffix(".partial.png")
+    figure.savefig(partial, dpi=110)
+    partial.replace(path)
+    return path
+
+
+def _draw_plate(axes: Axes, case: Case, trajectory: Trajectory, targets: Sequence[Place]) -> list[Artist]:
+    assert isinstance(case.plate, PlateCase)
+    outline = case.plate.coarse_mesh.outline
+    box = outline.box
+    unit, longest = readable(box, "m"), float(np.ptp(box, axis=0).max())
+    _label(axes, unit)
+    curves = [curve * unit.per_si for curve in rim_curves(outline, longest / 200)]
+    axes.add_collection(LineCollection(curves, colors="black", linewidths=1.5))
+    frame = (box + MARGIN * longest * np.array([[-1.0], [1.0]])) * unit.per_si
+    axes.set_xlim(*frame[:, 0])
+    axes.set_ylim(*frame[:, 1])
+    keys: list[Artist] = []
+    moving = np.array([bool(actuator.stroke) or actuator.segments is not None for actuator in case.actuators])
+    places = np.array([actuator.position for actuator in case.actuators]) * unit.per_si
+    looks = ((moving, "#7fa8c9", "moving actuator"), (~moving, "white", "actuator at rest"))
+    for chosen, colour, label in looks:
+        if chosen.any():
+            look: dict[str, Any] = {"color": colour, "markeredgecolor": "black", "linestyle": "", "markersize": 7}
+            keys += axes.plot(*places[chosen].T, "^", **look, label=label)
+    line = trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)).position
+    keys += draw_path(axes, trajectory, line, unit, True)
+    drawn = np.array(targets) * unit.per_si
+    keys += axes.plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
+    for number, place in enumerate(drawn.tolist() if len(targets) > 1 else [], 1):
+        axes.annotate(str(number), place, (7, 5), textcoords="offset points", fontsize=11, path_effects=HALO)
+    return keys
+
+
+def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatter) -> list[Artist]:
+    """Draw the ends around the target, those far off left out, with circles that hold half and nine tenths of them."""
+    off, end = scatter.ends - target, trajectory.position[-1] - target
+    far = np.hypot(*off.T)
+    shown = max(float(np.quantile(far, SHARE)), float(np.hypot(*end)))
+    unit = readable(np.array([shown]), "m")
+    _label(axes, unit, " from the target")
+    keys: list[Artist] = []
+    keys += axes.plot(*(off * unit.per_si).T, linestyle="", **ENDS, label="ends of disturbed runs")
+    axes.plot(0, 0, linestyle="", **TARGET, zorder=4)
+    axes.plot(*(end * unit.per_si), "x", color="black", markersize=7, markeredgewidth=1.6, path_effects=HALO, zorder=5)
+    for share in (0.5, 0.9):
+        radius = scatter.quantile(share) * unit.per_si
+        axes.add_patch(Circle((0, 0), radius, fill=False, edgecolor="#606060", linewidth=0.8))
+        axes.annotate(f"{share:.0%}", (0, radius), (2, 1), textcoords="offset points", fontsize=9, color="#606060")
+    side = ROOM * max(shown, scatter.quantile(0.9)) * unit.per_si
+    axes.set_xlim(-side, side)
+    axes.set_ylim(-side, side)
+    beyond = int((np.abs(off).max(axis=1) * unit.per_si > side).sum())
+    more = f", {beyond} of them beyond this frame" if beyond else ""
+    axes.set_title(f"Where {len(off)} disturbed runs end{more}", fontsize=10)
+    return keys
+
+
+def _label(axes: Axes, unit: Unit, where: str = "") -> None:
+    axes.set_aspect("equal")
+    plain_ticks(axes)
+    axes.set_xlabel(f"x{where} [{unit.name}]")
+    axes.set_ylabel(f"y{where} [{unit.name}]")
+
+
+def _length(length: float) -> str:
+    unit = readable(np.array([length]), "m")
+    return f"{length * unit.per_si:.3g} {unit.name}"

@@ -1,0 +1,75 @@
+"""Reading an aim file, or a case file that is to be aimed as it is: every mistake in it at once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from coupling.case import Case, CaseError, read_case
+from coupling.case_lines import find_problems, load
+from coupling.keyed_table import adapter
+from coupling.units import UNITS_REQUIRED
+from steering.tables import TABLES, AimTable, AimTables, Settings
+from steering.task import Mistake, Task, mistakes
+
+Place = tuple[float, float]
+
+
+def read_task(path: str | os.PathLike[str], target: Place | None = None, quantile: float | None = None) -> Task:
+    """The task in the file at `path`, which is an aim file or a case file.
+
+    target: m, in place of the file's.  quantile: likewise.
+    Raises CaseError with every mistake in the file, and ValueError for a target that does not suit the case.
+    """
+    case, settings, told = read_settings(path, target is None)
+    goal = target or told
+    if goal is None:
+        raise ValueError("the target is missing; it must be two lengths, as --target 100,-50 or in the file's [aim]")
+    if quantile is not None:
+        settings = Settings(**(dict(settings) | {"quantile": quantile}))
+    return Task(case, goal, settings, Path(path).stem)
+
+
+def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Settings, Place | None]:
+    """The case, the settings and the target [m], if any, in the file at `path`; CaseError with every mistake in it.
+
+    aims: whether its target counts.
+    """
+    text, data = load(path)
+    if "aim" not in data:
+        return read_case(path), Settings(), None
+    errors: list[Any] = []
+    table: AimTable | None = None
+    try:
+        table = AimTables.model_validate(data, context=UNITS_REQUIRED).aim
+    except ValidationError as error:
+        errors += error.errors()
+    written = data["aim"] if isinstance(data["aim"], dict) else {}
+    case, wrong = _case(Path(path), written)
+    if case and table:
+        wrong += mistakes(case, table, table.target if aims else None)
+    for key, message in wrong:
+        context = {"error": ValueError(message)}
+        errors.append({"type": "value_error", "loc": ("aim", key), "input": None, "ctx": context})
+    if errors:
+        found = ValidationError.from_exception_data("AimTables", errors)
+        raise CaseError(os.fspath(path), find_problems(found, text, data, TABLES))
+    assert case and table
+    own = {key: getattr(table, key) for key in Settings.model_fields}
+    return case, Settings.model_construct(**own), table.target
+
+
+def _case(path: Path, table: Mapping[str, Any]) -> tuple[Case | None, list[Mistake]]:
+    """The case that an aim file names, and what is wrong with it."""
+    try:
+        name = adapter(AimTable, "case").validate_python(table.get("case"))
+    except ValidationError:
+        return None, []
+    try:
+        return read_case(path.parent / name), []
+    except CaseError as error:
+        return None, [("case", "must be the file of a case; " + str(error).replace("\n", "\n    "))]
