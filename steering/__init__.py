@@ -11,7 +11,7 @@ _HOMES = {
     "Task": "steering.task",
     "read_task": "steering.read",
     "Aimed": "steering.aimed",
-    "aim": "steering.aim",
+    "aim": "steering.aiming",
 }
 
 __all__ = list(_HOMES)  # noqa: PLE0605

@@ -42,7 +42,7 @@ def aim(
     from coupling.progress import CountBar, untold
     from coupling.results import check_folder
     from steering import report
-    from steering.aim import aim as find
+    from steering.aiming import aim as find
     from steering.places import read_place
     from steering.read import read_task
 

@@ -19,7 +19,7 @@ SAMPLES = 16  # disturbed runs of each trial, where a quantile of them is made s
 
 
 class Best(NamedTuple):
-    """The best turn of the knobs so far."""
+    """A turn of the knobs, the best of several."""
 
     cost: float = np.inf  # m
     values: FloatArray = np.zeros(0)  # of the knobs
@@ -27,15 +27,23 @@ class Best(NamedTuple):
 
 
 class Objective:
-    """What a search makes small: the distance from the target, or a quantile of it over disturbed runs."""
+    """What a search makes small: the distance from the target, or a quantile of it over disturbed runs.
+
+    `best` is the best turn of the knobs so far, `recent` that since `forget` was called.
+    """
 
     def __init__(self, task: Task, knobs: Knobs, paths: Paths, tell: Tell) -> None:
         self._task, self._knobs, self._paths, self._tell = task, knobs, paths, tell
-        self.best, self.trials = Best(), 0
+        self.best = self.recent = Best()
+        self.trials = 0
         settings, count = task.settings, len(task.case.actuators)
         disturbed = settings.quantile is not None
         # The same for every trial, so that trials differ in nothing but their drives.
         self._ways = disturbances(SAMPLES, count, settings.seed, SEARCHED) if disturbed else [Disturbance()]
+
+    def forget(self) -> None:
+        """Makes what comes next the best of its own, whatever there was before."""
+        self.recent = Best()
 
     @property
     def reached(self) -> bool:
@@ -61,8 +69,9 @@ class Objective:
         costs = each[:, 0] if quantile is None else np.quantile(each, quantile, axis=1)
         off = ends.mean(axis=1) - target
         least = int(np.argmin(costs))
-        if costs[least] < self.best.cost:
-            self.best = Best(float(costs[least]), values[least].copy(), off[least])
+        if costs[least] < self.recent.cost:
+            self.recent = Best(float(costs[least]), values[least].copy(), off[least])
+            self.best = min(self.best, self.recent, key=lambda one: one.cost)
         self.trials += len(values)
         self._tell(min(self.trials, self._task.settings.trials), self._task.settings.trials)
         return off, costs
