@@ -102,7 +102,7 @@ def _item(value: Any, annotation: Any, marks: list[Any]) -> str:
     if quantity is None or not isinstance(value, float):
         return json.dumps(value, ensure_ascii=False)
     unit, power = PREFIXED.get(quantity.unit, (quantity.unit, 0))
-    return f'"{_plain(Decimal(repr(value)).scaleb(power))} {unit}"'
+    return f'"{_plain(Decimal(repr(float(value))).scaleb(power))} {unit}"'
 
 
 def _plain(number: Decimal) -> str:

@@ -12,6 +12,10 @@ _HOMES = {
     "read_task": "steering.read",
     "Aimed": "steering.aimed",
     "aim": "steering.aiming",
+    "Route": "steering.route",
+    "read_route": "steering.read",
+    "Planned": "steering.planning",
+    "plan": "steering.planning",
 }
 
 __all__ = list(_HOMES)  # noqa: PLE0605

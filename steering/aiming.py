@@ -21,7 +21,7 @@ from steering.knobs import Knobs
 from steering.objective import Objective
 from steering.paths import Paths
 from steering.picture import draw_aim
-from steering.search import NEAR, search
+from steering.search import NEAR, search, search_robust
 from steering.task import Task
 
 
@@ -29,7 +29,7 @@ def aim(task: Task, output: str | Path | None = None, threads: int | None = None
     """Find the drives that bring a part to a target; with `output`, a folder, write NAME_aimed.toml and NAME_aim.png.
 
     threads: how many paths are found at a time, by default one on each processor; the result is the same for any.
-    tell: gets how many drives have been tried, and of how many at most.
+    tell: gets how many paths have been found, and of how many at most.
     Upon Ctrl-C the best drive so far counts, if there is one.
     """
     surface = interruptible(build_scene, task.case).surface
@@ -47,11 +47,17 @@ def aim_over(surface: SurfaceMotion, task: Task, threads: int | None = None, tel
     """The same over a surface that is there already."""
     paths = Paths(task.case, surface, threads)
     knobs = Knobs(task.case, task.settings, task.movers)
-    objective = Objective(task, knobs, paths, tell)
-    interrupted = False
+    settings, near, interrupted = task.settings, NEAR * surface.size, False
+    robust = settings.quantile is not None
+    objective = nominal = Objective(task, knobs, paths, tell, settings.most // 2 if robust else settings.most)
     try:
-        search(task, knobs, objective, NEAR * surface.size)
+        if robust:
+            objective = Objective(task, knobs, paths, tell, settings.most, disturbed=True)
+            search_robust(knobs, nominal, objective, near, settings.seed)
+        else:
+            search(knobs, nominal, near, settings.seed)
     except KeyboardInterrupt:
+        objective = objective if np.isfinite(objective.best.cost) else nominal
         if not np.isfinite(objective.best.cost):
             raise
         interrupted = True

@@ -50,7 +50,7 @@ def aim(
     task = refusing(read_task, file, place, robust)
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(untold) if quiet else CountBar("drives") as tell:
+    with nullcontext(untold) if quiet else CountBar("paths") as tell:
         found = refusing(find, task, folder, threads, tell)
     if as_json:
         click.echo(json.dumps(report.figures(found), indent=2))

@@ -37,7 +37,7 @@ class Knobs:
     """All knobs of the actuators that take part; those that do not are at rest."""
 
     def __init__(self, case: Case, settings: Settings, movers: tuple[int, ...]) -> None:
-        self.still = tuple(actuator if k in movers else _at_rest(actuator) for k, actuator in enumerate(case.actuators))
+        self.still = tuple(actuator if k in movers else at_rest(actuator) for k, actuator in enumerate(case.actuators))
         self.case, self._movers = case, movers
         self._fixed: dict[int, dict[str, float]] = {}
         self.knobs: list[Knob] = []
@@ -90,7 +90,7 @@ def _bounds(actuator: ActuatorCase, settings: Settings, duration: float) -> dict
     }
 
 
-def _at_rest(actuator: ActuatorCase) -> ActuatorCase:
+def at_rest(actuator: ActuatorCase) -> ActuatorCase:
     """An actuator that holds its place at height 0, or floats without a force."""
     once: dict[str, object] = {"frequency": actuator.frequency or 1.0, "cycle": "up-down", "cycles": 1}
     without = dict.fromkeys(("table", "segments")) | {"repeats": 1, "delay": 0.0, "dwell": 0.0}

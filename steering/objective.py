@@ -27,19 +27,19 @@ class Best(NamedTuple):
 
 
 class Objective:
-    """What a search makes small: the distance from the target, or a quantile of it over disturbed runs.
+    """What a search makes small: the distance from the target, or the task's quantile of it over disturbed runs.
 
     `best` is the best turn of the knobs so far, `recent` that since `forget` was called.
     """
 
-    def __init__(self, task: Task, knobs: Knobs, paths: Paths, tell: Tell) -> None:
-        self._task, self._knobs, self._paths, self._tell = task, knobs, paths, tell
+    def __init__(self, task: Task, knobs: Knobs, paths: Paths, tell: Tell, most: int, disturbed: bool = False) -> None:
+        """most: of the paths found in all, after which the search is to end."""
+        self._task, self._knobs, self._paths, self._tell, self._most = task, knobs, paths, tell, most
         self.best = self.recent = Best()
-        self.trials = 0
-        settings, count = task.settings, len(task.case.actuators)
-        disturbed = settings.quantile is not None
+        count = len(task.case.actuators)
         # The same for every trial, so that trials differ in nothing but their drives.
-        self._ways = disturbances(SAMPLES, count, settings.seed, SEARCHED) if disturbed else [Disturbance()]
+        self._ways = disturbances(SAMPLES, count, task.settings.seed, SEARCHED) if disturbed else [Disturbance()]
+        self._quantile = task.settings.quantile if disturbed else None
 
     def forget(self) -> None:
         """Makes what comes next the best of its own, whatever there was before."""
@@ -47,31 +47,30 @@ class Objective:
 
     @property
     def reached(self) -> bool:
-        """Whether the best is within the tolerance."""
-        return self.best.cost <= self._task.settings.tolerance
+        """Whether the most recent best is within the tolerance."""
+        return self.recent.cost <= self._task.settings.tolerance
 
     @property
     def exhausted(self) -> bool:
-        """Whether there have been as many trials as there may be."""
-        return self.trials >= self._task.settings.trials
+        """Whether there have been as many paths as there may be."""
+        return self._paths.found >= self._most
 
     def of(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """How far off the ends are (m, 2) [m], and the costs (m,) [m], of trials (m, n).
 
         Of disturbed runs the ends' mean counts.
         """
-        case, target, quantile = self._task.case, self._task.target, self._task.settings.quantile
+        case, target = self._task.case, self._task.target
         turned = [self._knobs.actuators(row) for row in values]
         found = self._paths.of([(actuators, way) for actuators in turned for way in self._ways])
         size = self._paths.surface.size
         ends = np.array([path.position[-1] for path in found]).reshape(len(values), len(self._ways), 2)
         each = np.array([cost(path, target, case.run.duration, size) for path in found]).reshape(ends.shape[:2])
-        costs = each[:, 0] if quantile is None else np.quantile(each, quantile, axis=1)
+        costs = each[:, 0] if self._quantile is None else np.quantile(each, self._quantile, axis=1)
         off = ends.mean(axis=1) - target
         least = int(np.argmin(costs))
         if costs[least] < self.recent.cost:
             self.recent = Best(float(costs[least]), values[least].copy(), off[least])
             self.best = min(self.best, self.recent, key=lambda one: one.cost)
-        self.trials += len(values)
-        self._tell(min(self.trials, self._task.settings.trials), self._task.settings.trials)
+        self._tell(min(self._paths.found, self._task.settings.most), self._task.settings.most)
         return off, costs

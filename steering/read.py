@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from coupling.case import Case, CaseError, read_case
 from coupling.case_lines import find_problems, load
 from coupling.keyed_table import adapter
 from coupling.units import UNITS_REQUIRED
+from steering.route import Route
 from steering.tables import TABLES, AimTable, AimTables, Settings
 from steering.task import Mistake, Task, mistakes
 
@@ -32,6 +33,15 @@ def read_task(path: str | os.PathLike[str], target: Place | None = None, quantil
     if quantile is not None:
         settings = Settings(**(dict(settings) | {"quantile": quantile}))
     return Task(case, goal, settings, Path(path).stem)
+
+
+def read_route(path: str | os.PathLike[str], through: Sequence[Place]) -> Route:
+    """The route through way-points [m] that the file at `path`, an aim file or a case file, is to be followed along.
+
+    Raises CaseError with every mistake in the file, and ValueError for way-points that do not suit the case.
+    """
+    case, settings, _ = read_settings(path, False)
+    return Route(case, tuple(through), settings, Path(path).stem)
 
 
 def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Settings, Place | None]:

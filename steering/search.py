@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 from scipy.optimize import differential_evolution
 
 from steering.knobs import Knobs
-from steering.objective import Best, Objective
-from steering.task import Task
+from steering.objective import Objective
 
 FloatArray = NDArray[np.float64]
 
 POPULATION = 8  # to a knob
 CONVERGED = 0.01  # of the mean cost: where all of a population are so close, another one begins
+MOST_GENERATIONS = 10_000
+AROUND = 0.1  # of a knob's range is how far a robust drive is looked for around what there is
 NEAR = 0.1  # of the surface's size, from where on Newton's method is tried
 PATIENCE = 5  # generations that leave more than PROGRESS of the cost: then another population begins
 NEWTONS = 8  # of its steps, at most
@@ -29,29 +30,61 @@ SHARES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.12, 0.06, 0.03)  # of a step, all of whic
 PROGRESS = 0.8  # of the cost before: where a step leaves more, it was the last
 
 
-def search(task: Task, knobs: Knobs, objective: Objective, near: float) -> Best:
-    """The best turn of the knobs: the first within the tolerance, or what there is after all trials.
+def search(knobs: Knobs, objective: Objective, near: float, seed: int) -> None:
+    """Makes an objective small: until it is within the tolerance, or there have been as many paths as there may be.
 
     near: m, from the target, from where on Newton's method is tried. The same for the same seed.
     """
     populations = 0
     while not (objective.reached or objective.exhausted):
-        objective.forget()
-        differential_evolution(
-            lambda values: objective.of(values.T)[1],
-            knobs.bounds,
-            strategy="best1bin",
-            popsize=POPULATION,
-            maxiter=task.settings.trials,
-            tol=CONVERGED,
-            rng=np.random.default_rng((task.settings.seed, populations)),
-            polish=False,
-            vectorized=True,
-            updating="deferred",
-            callback=_Watch(knobs, objective, near),
-        )
+        _evolve(knobs, objective, near, (seed, populations))
         populations += 1
-    return objective.best
+
+
+def search_robust(knobs: Knobs, nominal: Objective, robust: Objective, near: float, seed: int) -> None:
+    """Makes a robust objective small, from drives that reach the target if nothing disturbs them.
+
+    As many of these are found as the nominal objective allows. Around the one that is most robust evolution goes on.
+    """
+    populations = 0
+    while not nominal.exhausted:
+        _evolve(knobs, nominal, near, (seed, populations))
+        robust.of(nominal.recent.values[None])
+        populations += 1
+    low, high = np.array(knobs.bounds).T
+    middle, reach = robust.best.values, AROUND * (high - low)
+    box = list(zip(np.maximum(low, middle - reach), np.minimum(high, middle + reach), strict=True))
+    robust.forget()
+    _minimise(box, robust, (seed, populations), _Watch(knobs, robust, 0.0), middle)
+
+
+def _evolve(knobs: Knobs, objective: Objective, near: float, seed: tuple[int, int]) -> None:
+    """Goes on with a new population until it does not get on any more."""
+    objective.forget()
+    _minimise(knobs.bounds, objective, seed, _Watch(knobs, objective, near))
+
+
+def _minimise(
+    bounds: list[tuple[float, float]],
+    objective: Objective,
+    seed: tuple[int, int],
+    watch: _Watch,
+    first: FloatArray | None = None,
+) -> None:
+    differential_evolution(
+        lambda values: objective.of(values.T)[1],
+        bounds,
+        strategy="best1bin",
+        popsize=POPULATION,
+        maxiter=MOST_GENERATIONS,
+        tol=CONVERGED,
+        rng=np.random.default_rng(seed),
+        polish=False,
+        vectorized=True,
+        updating="deferred",
+        callback=watch,
+        x0=first,
+    )
 
 
 class _Watch:
@@ -74,7 +107,7 @@ class _Watch:
 
 
 def _newton(knobs: Knobs, objective: Objective) -> None:
-    """Newton's method from the best turn of the knobs of a population: each step is the smallest that should meet the target."""
+    """Newton's method from the best turn of a population: each step is the smallest that should meet the target."""
     low, high = np.array(knobs.bounds).T
     smooth, width = knobs.smooth, high - low
     for _ in range(NEWTONS):

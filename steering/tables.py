@@ -50,6 +50,8 @@ class _Numbers:
         return core_schema.no_info_plain_validator_function(self.validate)
 
 
+MOST_PATHS, MOST_PATHS_DISTURBED = 5000, 40_000
+
 Positive = Annotated[Frequency, Field(gt=0)]
 Waiting = Annotated[Time, Field(ge=0)]
 Count = Annotated[StrictInt, Field(ge=1, le=1_000_000)]
@@ -60,9 +62,10 @@ class Settings(Table):
 
     actuators: those that take part, by their numbers from 0; None: the `nearest` to the way to the target.
     frequency: Hz, by default from 0.2 times to twice its own.  stroke: m, from 0 to its own.  delay: s, from 0 to
-    twice its own where it has one, else none.  cycles: of each drive.  trials: drives that are tried at most.
-    tolerance: m, from the target, at which a search ends.  quantile: of the distances of disturbed runs, which is made
-    small in place of the distance itself.  scatter: how many such runs tell how robust the found drive is.
+    twice its own where it has one, else none.  cycles: of each drive.  paths: how many are found at most, None: 5 000,
+    with a quantile 40 000.  tolerance: m, from the target, at which a search ends.  quantile: of the distances of
+    disturbed runs, which is made small in place of the distance itself.  scatter: how many such runs tell how robust
+    the found drive is.
     """
 
     actuators: Annotated[tuple[int, ...], _Numbers()] | None = None
@@ -72,10 +75,15 @@ class Settings(Table):
     delay: Annotated[tuple[Waiting, Waiting], _Bounds('["0 ms", "2 ms"]')] | None = None
     cycles: Annotated[tuple[Count, Count], _Bounds("[1, 5]")] = (1, 5)
     seed: StrictInt = Field(default=0, ge=0, lt=2**32)
-    trials: Count = 5000
+    paths: Count | None = None
     tolerance: Length = Field(default=5e-7, gt=0)
     quantile: StrictFloat | None = Field(default=None, gt=0, le=1)
     scatter: Count = 100
+
+    @property
+    def most(self) -> int:
+        """How many paths are found at most."""
+        return self.paths or (MOST_PATHS if self.quantile is None else MOST_PATHS_DISTURBED)
 
 
 class _File:

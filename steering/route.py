@@ -1,0 +1,40 @@
+"""Route: a part that is to get from where it starts over one way-point after the other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from coupling.case import Case
+from steering.tables import Settings
+from steering.task import Task, mistakes
+
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Route:
+    """A case whose part is to be carried over way-points (x, y) [m], to each within the case's duration.
+
+    Raises ValueError with all that makes no sense, as a way-point that is off the plate or cannot be reached.
+    """
+
+    case: Case
+    through: tuple[Place, ...]  # m
+    settings: Settings = field(default_factory=Settings)
+    name: str = ""  # of the files that are written; "": that of the case
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", self.name or self.case.name)
+        wrong = [] if self.through else ["through must be one way-point or more; got none"]
+        told: dict[str, None] = {}  # each once, in order
+        for number, place in enumerate(self.through, 1):
+            for key, message in mistakes(self.case, self.settings, place):
+                told[f"way-point {number} {message}" if key == "target" else f"{key} {message}"] = None
+        if wrong := wrong + list(told):
+            raise ValueError("; ".join(wrong))
+
+    def leg(self, number: int, start: Place) -> Task:
+        """What is to be done to get to a way-point, counted from 0, from a place [m] where the part rests."""
+        part = self.case.part.model_copy(update={"position": start, "velocity": (0.0, 0.0)} if number else {})
+        case = self.case.model_copy(update={"part": part, "source": None})
+        return Task(case, self.through[number], self.settings, f"{self.name}_{number + 1}")
