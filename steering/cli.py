@@ -1,46 +1,70 @@
-"""The command `active-surface` with `aim`. Heavy imports wait until a command needs them."""
+"""The command `active-surface` with `aim` and `plan`. Heavy imports wait until a command needs them."""
 
 from __future__ import annotations
 
 import json
+import re
 import sys
+from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
+from typing import Any, TypeVar
 
 import click
 
 from coupling.cli import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
 from studies import cli as _sweep  # noqa: F401  # which adds its command
 
+Found = TypeVar("Found")
 QUANTILE = click.FloatRange(min=0, max=1, min_open=True)
 
 
+class _Through(click.Command):
+    """A command whose option --through takes all the points that follow it."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        spread, through = [], False
+        for text in args:
+            point = re.match(r"[+-]?[\d.]", text)
+            if through and point:
+                spread.append(f"--through={text}")
+            elif text != "--through":
+                spread.append(text)
+            through = text == "--through" or (through and point is not None)
+        return super().parse_args(ctx, spread)
+
+
+def _common(command: Callable[..., None]) -> Callable[..., None]:
+    """The options that both commands have."""
+    folder = click.Path(path_type=Path, file_okay=False)
+    for option in (
+        click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON."),
+        click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress."),
+        click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one a processor]."),
+        click.option("--output", "-o", type=folder, help="Folder for the results [results]."),
+    ):
+        command = option(command)
+    return click.argument("file", type=click.Path(path_type=Path), metavar="CASE")(command)
+
+
 @main.command()
-@click.argument("file", type=click.Path(path_type=Path), metavar="CASE")
+@_common
 @click.option("--target", metavar="X,Y", help='Where the part is to go: um, or with units as "0.1 mm,50 um".')
 @click.option("--robust", type=QUANTILE, metavar="Q", help="Make this quantile of the distances small, such as 0.9.")
-@click.option(
-    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
-)
-@click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one on each processor].")
-@click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress.")
-@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 def aim(
     file: Path,
-    target: str | None,
-    robust: float | None,
     output: Path | None,
     threads: int | None,
     quiet: bool,
     as_json: bool,
+    target: str | None,
+    robust: float | None,
 ) -> None:
     """Find the drives that bring the part of CASE to a target.
 
     CASE is a case file, or a file with a table [aim] that names one and says what may be varied. Ctrl-C ends the search
     with the best drives so far.
     """
-    from coupling.progress import CountBar, untold
-    from coupling.results import check_folder
     from steering import report
     from steering.aiming import aim as find
     from steering.places import read_place
@@ -48,14 +72,52 @@ def aim(
 
     place = None if target is None else refusing(read_place, target, "--target")
     task = refusing(read_task, file, place, robust)
+    found = _found(find, task, output, threads, quiet)
+    _tell(found.interrupted, report.figures(found), report.lines(found), quiet, as_json)
+
+
+@main.command(cls=_Through)
+@_common
+@click.option("--through", multiple=True, required=True, metavar="X,Y ...", help="Where it is to go, in this order.")
+def plan(
+    file: Path,
+    output: Path | None,
+    threads: int | None,
+    quiet: bool,
+    as_json: bool,
+    through: tuple[str, ...],
+) -> None:
+    """Find the drives that carry the part of CASE over way-points.
+
+    CASE is as for `aim`, and its duration the time for each leg. Ctrl-C ends the search with the legs so far.
+    """
+    from steering import report
+    from steering.places import read_place
+    from steering.planning import plan as find
+    from steering.read import read_route
+
+    places = [refusing(read_place, text, "--through") for text in through]
+    route = refusing(read_route, file, places)
+    found = _found(find, route, output, threads, quiet)
+    _tell(found.interrupted, report.plan_figures(found), report.plan_lines(found), quiet, as_json)
+
+
+def _found(find: Callable[..., Found], wanted: Any, output: Path | None, threads: int | None, quiet: bool) -> Found:
+    """What a search finds, with a bar meanwhile."""
+    from coupling.progress import CountBar, untold
+    from coupling.results import check_folder
+
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
     with nullcontext(untold) if quiet else CountBar("paths") as tell:
-        found = refusing(find, task, folder, threads, tell)
+        return refusing(find, wanted, folder, threads, tell)
+
+
+def _tell(interrupted: bool, figures: dict[str, Any], lines: list[tuple[str, str]], quiet: bool, as_json: bool) -> None:
     if as_json:
-        click.echo(json.dumps(report.figures(found), indent=2))
+        click.echo(json.dumps(figures, indent=2))
     elif not quiet:
-        for label, text in report.lines(found):
+        for label, text in lines:
             click.echo(f"{label:<12}{text}")
-    if found.interrupted:
+    if interrupted:
         sys.exit(INTERRUPTED)

@@ -6,6 +6,7 @@ from typing import Any
 
 from coupling.drive_case import ActuatorCase
 from steering.aimed import Aimed
+from steering.planning import Planned
 from steering.scatter import Scatter
 
 MICRO, MILLI = 1e6, 1e3
@@ -45,6 +46,32 @@ def lines(found: Aimed) -> list[tuple[str, str]]:
     ]
     for k in found.task.movers:
         rows.append((f"actuator {k}", _drive(found.case.actuators[k])))
+    return [*rows, ("scatter", scatter_line(found.scatter)), *(("wrote", str(file)) for file in found.files)]
+
+
+def plan_figures(found: Planned) -> dict[str, Any]:
+    """The figures of a plan by name, in SI units."""
+    legs = zip(found.route.through, found.arrivals, found.distances, strict=False)
+    return {
+        "legs": [{"target": target, "arrival": time, "distance": distance} for target, time, distance in legs],
+        "complete": found.complete,
+        "outcome": found.trajectory.outcome.value,
+        "interrupted": found.interrupted,
+        "paths": found.paths,
+        "scatter": found.scatter.as_dict(),
+        "files": [str(file) for file in found.files],
+    }
+
+
+def plan_lines(found: Planned) -> list[tuple[str, str]]:
+    """Rows (label, text) to print."""
+    rows = []
+    for k, (time, distance) in enumerate(zip(found.arrivals, found.distances, strict=True)):
+        where = f"{point(found.route.through[k])} by {time * MILLI:g} ms, but for {distance * MICRO:.4f} um"
+        rows.append((f"leg {k + 1}", where))
+    count = f"{len(found.arrivals)} of {len(found.route.through)} legs; {found.paths} paths"
+    rows.append(("found", count + (", stopped by Ctrl-C" if found.interrupted else "")))
+    rows.append(("outcome", f"{found.trajectory.outcome}. {found.trajectory.sentence}"))
     return [*rows, ("scatter", scatter_line(found.scatter)), *(("wrote", str(file)) for file in found.files)]
 
 
