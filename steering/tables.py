@@ -50,7 +50,7 @@ class _Numbers:
         return core_schema.no_info_plain_validator_function(self.validate)
 
 
-MOST_PATHS, MOST_PATHS_DISTURBED = 5000, 40_000
+MOST_PATHS, MOST_PATHS_DISTURBED = 10_000, 40_000
 
 Positive = Annotated[Frequency, Field(gt=0)]
 Waiting = Annotated[Time, Field(ge=0)]
@@ -62,7 +62,7 @@ class Settings(Table):
 
     actuators: those that take part, by their numbers from 0; None: the `nearest` to the way to the target.
     frequency: Hz, by default from 0.2 times to twice its own.  stroke: m, from 0 to its own.  delay: s, from 0 to
-    twice its own where it has one, else none.  cycles: of each drive.  paths: how many are found at most, None: 5 000,
+    twice its own where it has one, else none.  cycles: of each drive.  paths: how many are found at most, None: 10 000,
     with a quantile 40 000.  tolerance: m, from the target, at which a search ends.  quantile: of the distances of
     disturbed runs, which is made small in place of the distance itself.  scatter: how many such runs tell how robust
     the found drive is.
@@ -73,7 +73,7 @@ class Settings(Table):
     frequency: Annotated[tuple[Positive, Positive], _Bounds('["100 Hz", "600 Hz"]')] | None = None
     stroke: Annotated[tuple[Length, Length], _Bounds('["0 um", "60 um"]')] | None = None
     delay: Annotated[tuple[Waiting, Waiting], _Bounds('["0 ms", "2 ms"]')] | None = None
-    cycles: Annotated[tuple[Count, Count], _Bounds("[1, 5]")] = (1, 5)
+    cycles: Annotated[tuple[Count, Count], _Bounds("[1, 5]")] = (1, 3)
     seed: StrictInt = Field(default=0, ge=0, lt=2**32)
     paths: Count | None = None
     tolerance: Length = Field(default=5e-7, gt=0)
