@@ -15,7 +15,7 @@ from coupling.keyed_table import adapter
 from coupling.units import UNITS_REQUIRED
 from steering.route import Route
 from steering.tables import TABLES, AimTable, AimTables, Settings
-from steering.task import Mistake, Task, mistakes
+from steering.task import Mistake, Task, misplaced, mistakes
 
 Place = tuple[float, float]
 
@@ -62,6 +62,8 @@ def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Setti
     case, wrong = _case(Path(path), written)
     if case and table:
         wrong += mistakes(case, table, table.target if aims else None)
+    elif case and aims and (place := _target(written)):
+        wrong += [("target", message) for message in misplaced(case, place)]
     for key, message in wrong:
         context = {"error": ValueError(message)}
         errors.append({"type": "value_error", "loc": ("aim", key), "input": None, "ctx": context})
@@ -83,3 +85,12 @@ def _case(path: Path, table: Mapping[str, Any]) -> tuple[Case | None, list[Mista
         return read_case(path.parent / name), []
     except CaseError as error:
         return None, [("case", "must be the file of a case; " + str(error).replace("\n", "\n    "))]
+
+
+def _target(table: Mapping[str, Any]) -> Place | None:
+    """The target [m] of a table in which anything may be wrong; None where that is the target, or there is none."""
+    try:
+        place: Place | None = adapter(AimTable, "target").validate_python(table.get("target"), context=UNITS_REQUIRED)
+    except ValidationError:
+        return None
+    return place

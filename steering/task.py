@@ -67,10 +67,7 @@ def mistakes(case: Case, settings: Settings, target: tuple[float, float] | None)
     yield from told
     if target is None:
         return
-    if not all(math.isfinite(place) for place in target):
-        yield "target", f"must be two finite lengths; got {target}"
-        return
-    placed = list(_off_plate(case, case.plate, target))
+    placed = list(misplaced(case, target))
     yield from (("target", message) for message in placed)
     if not told and not placed:
         count = len(movers(case, settings, target))
@@ -97,8 +94,14 @@ def _unfit(actuator: ActuatorCase, settings: Settings) -> str:
     return "is 0, which leaves no bounds" if actuator.stroke == 0 and settings.stroke is None else ""
 
 
-def _off_plate(case: Case, plate: PlateCase, target: tuple[float, float]) -> Iterator[str]:
-    mesh = plate.coarse_mesh
+def misplaced(case: Case, target: tuple[float, float]) -> Iterator[str]:
+    """Yield that a target [m] is not on the plate of a case, or so near its rim that the part does not fit."""
+    if not isinstance(case.plate, PlateCase):
+        return
+    if not all(math.isfinite(place) for place in target):
+        yield f"must be two finite lengths; got {target}"
+        return
+    mesh = case.plate.coarse_mesh
     least = SAME_PLACE * half_size(mesh)
     (gap,) = gaps(mesh, [target])
     room = footprint(case) / math.sqrt(2)
