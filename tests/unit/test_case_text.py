@@ -11,7 +11,9 @@ from coupling.case import Case
 from coupling.case_text import case_text, write_case
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-FILES = [file for file in sorted(EXAMPLES.rglob("*.toml")) if "[run]" in file.read_text() and "100x100" not in file.name]
+FILES = [
+    file for file in sorted(EXAMPLES.rglob("*.toml")) if "[run]" in file.read_text() and "100x100" not in file.name
+]
 
 FRICTION = """\
 [friction]

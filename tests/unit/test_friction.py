@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, CoulombAdhesion, FrictionTable, KogutEtsion
-from particle.friction import friction_limit
+from particle.friction import ScaledFriction, friction_limit
 
 
 @pytest.mark.parametrize("load", [-1.0, 0.0, 3.0])
@@ -89,3 +89,20 @@ def test_the_impact_coefficient_is_the_limit_of_friction_over_load(contact):
 def test_a_wrong_number_is_refused_by_name(make, says):
     with pytest.raises(ValueError, match=f"^{says} must be .*; got "):
         make()
+
+
+@pytest.mark.parametrize("contact", CONTACTS, ids=lambda contact: type(contact).__name__)
+@pytest.mark.parametrize("factor", [0.5, 1.01, 3.0])
+def test_a_scaled_law_has_so_many_times_the_limit_and_the_same_pull_off(contact, factor):
+    scaled = ScaledFriction(contact, factor)
+    loads = np.linspace(-0.9 * min(contact.pull_off, 1e-6), min(contact.largest_load, 4e-6), 50)
+    assert scaled.friction_limit(loads) == pytest.approx(factor * contact.friction_limit(loads), rel=1e-12, abs=0)
+    assert scaled.law.impact_coefficient == pytest.approx(factor * contact.law.impact_coefficient, rel=1e-15)
+    assert (scaled.pull_off, scaled.largest_load) == (contact.pull_off, contact.largest_load)
+    assert scaled.law.pull_off == contact.law.pull_off and scaled.law.static_ratio == contact.law.static_ratio
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0, math.inf, math.nan])
+def test_a_law_is_scaled_by_positive_factors_only(factor):
+    with pytest.raises(ValueError, match="^Input factor of ScaledFriction must be positive; got"):
+        ScaledFriction(ConstantFriction(1.0), factor)

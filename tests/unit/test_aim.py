@@ -1,0 +1,211 @@
+"""Aims: the drive that is found does what is said of it, whoever runs it and on however many threads."""
+
+import json
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from sweeps import PLATE
+
+from coupling import read_case
+from coupling.drives import build_drives
+from coupling.run import build_friction, build_surface, follow_part
+from particle import ConstantFriction, Micropart, Outcome, polynomial_surface, simulate
+from steering import Settings, Task, aim
+from steering.aiming import aim_over
+from steering.cli import main
+from steering.knobs import Knobs
+from steering.objective import SAMPLES
+from steering.paths import Disturbance, Paths, cost
+from steering.scatter import SEARCHED, TOLD, disturbances
+
+CASE = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
+TARGET = (-2e-5, 2e-5)
+QUICK = {"scatter": 20, "tolerance": 1e-6}
+
+
+def case_of(folder, text=CASE):
+    (folder / "base.toml").write_text(text)
+    return read_case(folder / "base.toml")
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    return case_of(tmp_path_factory.mktemp("case"))
+
+
+@pytest.fixture(scope="module")
+def surface(case):
+    return build_surface(case)
+
+
+@pytest.mark.compiled
+def test_an_aim_reaches_its_target_and_its_case_file_the_same_point_to_the_bit(case, tmp_path):
+    found = aim(Task(case, TARGET, Settings(**QUICK)), tmp_path, threads=1)
+    assert found.reached and found.distance < 1e-6 and not found.interrupted
+    assert found.trajectory.outcome is Outcome.STUCK and found.trajectory.stays
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["base_aim.png", "base_aimed.toml"]
+    again = read_case(tmp_path / "base_aimed.toml")
+    path = follow_part(again, build_surface(again), build_friction(again))
+    assert path.position.tobytes() == found.trajectory.position.tobytes()
+    assert np.hypot(*(path.position[-1] - TARGET)) == found.distance
+
+
+@pytest.mark.compiled
+def test_an_aim_is_the_same_on_any_number_of_threads_and_another_with_another_seed(case, surface):
+    one, two, other = (
+        aim_over(surface, Task(case, TARGET, Settings(**QUICK, seed=seed)), threads)
+        for seed, threads in ((0, 1), (0, 3), (1, 2))
+    )
+    assert one.case.actuators == two.case.actuators and one.paths == two.paths
+    assert one.scatter.distance.tobytes() == two.scatter.distance.tobytes()
+    assert one.case.actuators != other.case.actuators and other.reached
+
+
+@pytest.mark.compiled
+def test_a_target_beyond_all_bounds_is_missed_and_said_so_after_so_many_paths(case, surface):
+    settings = Settings(**QUICK, stroke=(0.0, 1e-6), paths=300)
+    told = []
+    found = aim_over(surface, Task(case, TARGET, settings), tell=lambda done, of: told.append((done, of)))
+    assert not found.reached and found.distance == pytest.approx(math.dist(case.part.position, TARGET), abs=1e-6)
+    assert 300 <= found.paths < 400
+    assert told[-1] == (300, 300) and [done for done, _ in told] == sorted(done for done, _ in told)
+
+
+@pytest.mark.compiled
+def test_what_was_found_before_an_interruption_counts(case, surface):
+    def stop(done, of):
+        if done >= 100:
+            raise KeyboardInterrupt
+
+    found = aim_over(surface, Task(case, TARGET, Settings(scatter=5, tolerance=1e-12)), tell=stop)
+    assert found.interrupted and not found.reached
+    assert found.distance < math.dist(case.part.position, TARGET) and len(found.scatter.distance) == 5
+
+    def at_once(done, of):
+        raise KeyboardInterrupt
+
+    surface_before_any = Task(case, TARGET, Settings(scatter=5))
+    assert aim_over(surface, surface_before_any, tell=at_once).interrupted
+
+
+@pytest.mark.compiled
+def test_a_robust_aim_makes_the_quantile_small_that_is_asked_for(case, surface):
+    plain = aim_over(surface, Task(case, TARGET, Settings(tolerance=1e-6)))
+    robust = aim_over(surface, Task(case, TARGET, Settings(tolerance=1e-6, quantile=0.9, paths=6000)))
+    ways = disturbances(SAMPLES, 2, 0, SEARCHED)
+
+    def searched(found):
+        paths = Paths(case, surface).of([(found.case.actuators, way) for way in ways])
+        return np.quantile([cost(path, TARGET, case.run.duration, surface.size) for path in paths], 0.9)
+
+    assert searched(robust) < 0.8 * searched(plain)
+    assert robust.scatter.quantile(0.9) < plain.scatter.quantile(0.9)
+
+
+@pytest.mark.compiled
+def test_the_scatter_is_of_disturbed_runs_of_the_found_case(case, surface):
+    found = aim_over(surface, Task(case, TARGET, Settings(**QUICK)))
+    way = disturbances(7, 2, 0, TOLD)[6]
+    actuators = tuple(
+        actuator.model_copy(update={"stroke": actuator.stroke * factor})
+        for actuator, factor in zip(found.case.actuators, way.strokes, strict=True)
+    )
+    driven = surface.driven_by(build_drives(found.case.model_copy(update={"actuators": actuators})))
+    x, y = case.part.position
+    part = Micropart(case.part.mass, (x + way.shift[0], y + way.shift[1]))
+    end = simulate(driven, part, ConstantFriction(case.friction.limit * way.friction), 20e-3).position[-1]
+    assert found.scatter.ends[6].tobytes() == end.tobytes()
+    assert found.scatter.distance[6] == np.hypot(*(end - TARGET))
+
+
+def test_disturbances_are_within_their_bounds_and_a_function_of_their_number():
+    many = disturbances(2000, 3, 5, TOLD)
+    assert disturbances(10, 3, 5, TOLD) == many[:10] != disturbances(10, 3, 5, SEARCHED)
+    friction = np.array([way.friction for way in many])
+    strokes = np.array([way.strokes for way in many])
+    shifts = np.hypot(*np.array([way.shift for way in many]).T)
+    for factors in (friction, *strokes.T):
+        assert 0.99 <= factors.min() < 0.9901 and 1.0099 < factors.max() <= 1.01
+        assert np.std(factors) == pytest.approx(0.01 / math.sqrt(3), rel=0.05)
+    assert 0.99e-6 < shifts.max() <= 1e-6 and np.mean(shifts < 0.5e-6) == pytest.approx(0.25, abs=0.03)
+    assert abs(np.corrcoef(strokes.T)[0, 1]) < 0.08
+
+
+def test_knobs_stay_in_their_bounds_and_end_in_time(case):
+    delayed = case.actuators[1].model_copy(update={"delay": 2e-3, "dwell": 1e-3})
+    delayed_case = case.model_copy(update={"actuators": (case.actuators[0], delayed)})
+    knobs = Knobs(delayed_case, Settings(cycles=(1, 50)), (0, 1))
+    keys = [(knob.actuator, knob.key) for knob in knobs.knobs]
+    assert keys == [(0, "frequency"), (0, "stroke"), (0, "cycles")] + [
+        (1, key) for key in ("frequency", "stroke", "delay", "cycles")
+    ]
+    low, high = np.array(knobs.bounds).T
+    assert low.tolist() == [80, 0, 1, 60, 0, 0, 1]
+    assert high == pytest.approx([800, 60e-6, 17, 600, 60e-6, 4e-3, 13])
+    for values in (low, high, *np.random.default_rng(0).uniform(low, high, (50, len(low)))):
+        for k, actuator in enumerate(knobs.actuators(values)):
+            period = 1 / actuator.frequency + 2 * actuator.dwell
+            assert actuator.cycles == 1 or actuator.delay + actuator.cycles * period <= 20e-3 * (1 + 1e-9)
+            own = (case.actuators[0], delayed)[k]
+            assert 0.2 <= actuator.frequency / own.frequency <= 2 and 0 <= actuator.stroke <= own.stroke
+
+
+def test_those_that_do_not_take_part_are_at_rest_and_equal_bounds_leave_no_knob(case):
+    knobs = Knobs(case, Settings(frequency=(300, 300), cycles=(2, 2)), (1,))
+    assert [(knob.actuator, knob.key) for knob in knobs.knobs] == [(1, "stroke")]
+    still, moving = knobs.actuators(np.array([2e-5]))
+    (drive,) = build_drives(case.model_copy(update={"actuators": (still,)}))
+    assert (
+        not build_drives(case.model_copy(update={"actuators": (still,)}))[0].evaluate(np.linspace(0, 0.02, 99))[0].any()
+    )
+    assert (moving.stroke, moving.frequency, moving.cycles) == (2e-5, 300, 2)
+
+
+def test_a_part_that_is_lost_costs_more_than_one_that_moves_and_that_more_than_one_at_rest():
+    tilted = polynomial_surface([[0.0, 0.0], [0.5, 0.0]])
+    part = Micropart(2e-9, (0.0, 0.0))
+    rest, slide = (simulate(tilted, part, ConstantFriction(limit), 1e-3) for limit in (1e-6, 1e-9))
+    assert (rest.outcome, slide.outcome) == (Outcome.STUCK, Outcome.MOVING)
+    assert cost(rest, (3e-6, 4e-6), 1e-3, 3e-4) == pytest.approx(5e-6)
+    off = np.hypot(*(slide.position[-1] - (3e-6, 4e-6)))
+    assert cost(slide, (3e-6, 4e-6), 1e-3, 3e-4) == pytest.approx(off + 1e-3 * np.hypot(*slide.velocity[-1]))
+
+
+@pytest.mark.compiled
+def test_paths_of_a_case_are_those_of_a_run(case, surface):
+    (path,) = Paths(case, surface).of([(case.actuators, Disturbance())])
+    assert path.position.tobytes() == follow_part(case, surface, build_friction(case)).position.tobytes()
+
+
+@pytest.mark.compiled
+def test_the_command_says_what_was_found(tmp_path):
+    case_of(tmp_path)
+    arguments = ["aim", str(tmp_path / "base.toml"), "--target", "-20,20", "-o", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, [*arguments, "--json"])
+    told = json.loads(done.stdout)
+    assert done.exit_code == 0 and told["reached"] and set(told["drives"]) == {"0", "1"}
+    assert told["scatter"]["count"] == 100 and told["scatter"]["median"] <= told["scatter"]["nine_in_ten"]
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 0 and "within the 0.5 um wanted" in done.stdout
+    assert [line.split()[0] for line in done.stdout.splitlines()].count("actuator") == 2
+
+
+@pytest.mark.parametrize("target", ["-90", "400,0", "0,400 kg"])
+def test_a_target_that_makes_no_sense_leaves_nothing_behind(tmp_path, target):
+    case_of(tmp_path)
+    done = CliRunner().invoke(
+        main, ["aim", str(tmp_path / "base.toml"), "--target", target, "-o", str(tmp_path / "out")]
+    )
+    assert done.exit_code == 2 and "target must" in done.output and len(done.output.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_help_loads_no_solver():
+    code = "import sys; from steering.cli import main; main(['--help'], standalone_mode=False); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert {"aim", "plan", "sweep", "run"} <= set(done.stdout.split())
+    assert not set(done.stdout.split()) & {"numba", "numpy", "matplotlib", "h5py", "pydantic", "scipy"}

@@ -1,0 +1,119 @@
+"""Plans: the schedule of all legs is the legs' drives one after the other, and carries the part over the way-points."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from sweeps import PLATE
+
+from coupling import read_case
+from coupling.drives import build_drives
+from coupling.run import build_friction, build_surface, follow_part
+from steering import Route, Settings, plan
+from steering.cli import main
+from steering.planning import plan_over
+from steering.schedule import Leg, lasting, scheduled
+
+LATTICE = """\
+[lattice]
+rows = 2
+columns = 3
+pitch = "100 um"
+stroke = "50 um"
+frequency = "400 Hz"
+delay = "0.5 ms"
+
+"""
+CASE = (PLATE[: PLATE.index("[[actuators]]")] + LATTICE + PLATE[PLATE.index("[part]") :]).replace(
+    'duration = "5 ms"', 'duration = "20 ms"'
+)
+CASE = CASE.replace('["-140 um", "20 um"]', '["-70 um", "10 um"]')
+THROUGH = ((-3e-5, 0.0), (2e-5, -1e-5), (4e-5, 4e-5))
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    file = tmp_path_factory.mktemp("case") / "base.toml"
+    file.write_text(CASE)
+    return read_case(file)
+
+
+@pytest.fixture(scope="module")
+def surface(case):
+    return build_surface(case)
+
+
+def test_a_schedule_is_the_drives_of_its_legs_one_after_the_other(case):
+    own = case.actuators
+    first = [own[0].model_copy(update={"stroke": 1e-5, "cycles": 3, "delay": 0.0, "dwell": 2e-4}), *own[1:]]
+    first[2] = own[2].model_copy(update={"stroke": 3e-5, "cycles": 1, "delay": 1.1e-3})
+    second = [own[0].model_copy(update={"stroke": 2e-5, "frequency": 700.0, "cycles": 2, "delay": 3e-4}), *own[1:]]
+    legs = [Leg(0.0, tuple(first), (0, 2)), Leg(0.0123, tuple(second), (0,))]
+    assert lasting(first, (0, 2)) == pytest.approx(3 / 400 + 6 * 2e-4) and lasting(first, (2,)) == pytest.approx(3.6e-3)
+    whole = scheduled(case, legs, 0.02)
+    assert whole.run.duration == 0.02 and [bool(actuator.segments) for actuator in whole.actuators][:4] == [1, 0, 1, 0]
+    times = np.linspace(0, 0.02, 4001)
+    heights = [drive.evaluate(times)[0] for drive in build_drives(whole)]
+    wanted = np.zeros((6, len(times)))
+    for leg in legs:
+        drives = build_drives(case.model_copy(update={"actuators": leg.actuators}))
+        for k in leg.movers:
+            wanted[k] += drives[k].evaluate(times - leg.start)[0]
+    assert np.abs(wanted).max(axis=1).tolist() == pytest.approx([2e-5, 0, 3e-5, 0, 0, 0], rel=1e-3)
+    assert np.abs(heights - wanted).max() < 1e-15
+
+
+@pytest.mark.compiled
+def test_a_plan_carries_the_part_over_its_way_points_and_its_file_runs_the_same(case, tmp_path):
+    told = []
+    route = Route(case, THROUGH, Settings(scatter=20), "route")
+    found = plan(route, tmp_path, tell=lambda done, of: told.append((done, of)))
+    assert found.complete and not found.interrupted and max(found.distances) < 0.5e-6
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["route_plan.png", "route_planned.toml"]
+    assert sorted(told) == told and told[-1][0] <= told[-1][1] == 30_000
+    again = read_case(tmp_path / "route_planned.toml")
+    path = follow_part(again, build_surface(again), build_friction(again))
+    assert path.position.tobytes() == found.trajectory.position.tobytes() and path.stays
+    assert again.run.duration == found.arrivals[-1] == path.time[-1]
+    for time, target in zip(found.arrivals, THROUGH, strict=True):
+        there = path.at([time - 1e-4, time])
+        assert np.hypot(*(there.position - target).T).max() < 0.5e-6 and not there.velocity.any()
+    assert plan(route, threads=1).case.actuators == found.case.actuators
+
+
+@pytest.mark.compiled
+def test_legs_before_an_interruption_count(case, surface):
+    def stop(done, of):
+        if done > of / 3 + 200:
+            raise KeyboardInterrupt
+
+    found = plan_over(surface, Route(case, THROUGH, Settings(scatter=5, tolerance=2e-6)), tell=stop)
+    assert found.interrupted and not found.complete
+    assert 1 <= len(found.arrivals) == len(found.distances) < 3 and found.distances[0] < 2e-6
+
+
+@pytest.mark.compiled
+def test_the_command_takes_all_points_after_through(tmp_path):
+    (tmp_path / "base.toml").write_text(CASE)
+    arguments = ["plan", "--quiet", "--through", "-30,0", "20 um,-10 um", str(tmp_path / "base.toml"), "--json"]
+    done = CliRunner().invoke(main, [*arguments, "-o", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    assert [leg["target"] for leg in json.loads(done.stdout)["legs"]] == [[-3e-5, 0.0], [2e-5, -1e-5]]
+    run = ["run", str(tmp_path / "out" / "base_planned.toml"), "-q", "-o", str(tmp_path / "out")]
+    assert CliRunner().invoke(main, run).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("points", "message"),
+    [
+        (["--through", "0,0", "400,0"], "way-point 2 must be inside the rim; got a point 100 um beyond it"),
+        (["--through", "0,0,0"], "--through must be two lengths"),
+        (["--through"], "Missing option"),
+        (["--through", "0,0", "nowhere"], "unexpected extra argument"),
+    ],
+)
+def test_way_points_that_make_no_sense_are_refused(tmp_path, points, message):
+    (tmp_path / "base.toml").write_text(CASE)
+    done = CliRunner().invoke(main, ["plan", str(tmp_path / "base.toml"), *points, "-o", str(tmp_path / "out")])
+    assert done.exit_code == 2 and message in done.output and not (tmp_path / "out").exists()
