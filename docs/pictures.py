@@ -20,12 +20,14 @@ from coupling.drawn_plate import drawn_plate
 from coupling.rim import onto_plate
 from fem_plate import InfluenceShapes, Plate, PlateSection
 from meshes import PlateMesh, annulus, read, rectangle
+from steering import aim, plan, read_route, read_task
 from studies import read_study, run_study
 
 ROOT = Path(__file__).parent.parent
 SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6, density=2330)
 MICRO = 1e6
 PRESSURE, PITCH, ACROSS = 1e3, 100e-6, 100  # Pa, m, actuators along a side
+CORNER = [(-1e-4, -1e-4), (0.0, -1e-4), (1e-4, -1e-4), (1e-4, 0.0), (1e-4, 1e-4)]  # m
 COLOURS = {"clamped": "black", "simply-supported": "#1b4f9c", "free": "#c8371b"}
 
 
@@ -42,6 +44,14 @@ def draw_sweep() -> None:
         run_study(read_study(ROOT / "examples/studies/starts.toml"), folder)
         copy(Path(folder) / "frequency_stroke.png", ROOT / "docs/sweep_map.png")
         copy(Path(folder) / "starts.png", ROOT / "docs/sweep_starts.png")
+
+
+def draw_aims() -> None:
+    with TemporaryDirectory() as folder:
+        aim(read_task(ROOT / "examples/aims/to_target.toml"), folder)
+        plan(read_route(ROOT / "examples/aims/around_the_corner.toml", CORNER), folder)
+        copy(Path(folder) / "to_target_aim.png", ROOT / "docs/aim.png")
+        copy(Path(folder) / "around_the_corner_plan.png", ROOT / "docs/plan.png")
 
 
 def draw_plates() -> None:
@@ -153,6 +163,7 @@ def _draw_decay(axes: Axes) -> None:
 if __name__ == "__main__":
     draw_runs()
     draw_sweep()
+    draw_aims()
     draw_plates()
     draw_contact()
     draw_motion_error()

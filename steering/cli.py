@@ -30,7 +30,7 @@ class _Through(click.Command):
                 spread.append(f"--through={text}")
             elif text != "--through":
                 spread.append(text)
-            through = text == "--through" or (through and point is not None)
+            through = text.startswith("--through") or (through and point is not None)
         return super().parse_args(ctx, spread)
 
 

@@ -36,6 +36,9 @@ def search(knobs: Knobs, objective: Objective, near: float, seed: int) -> None:
     near: m, from the target, from where on Newton's method is tried. The same for the same seed.
     """
     populations = 0
+    if not knobs.knobs:
+        objective.of(np.zeros((1, 0)))
+        return
     while not (objective.reached or objective.exhausted):
         _evolve(knobs, objective, near, (seed, populations))
         populations += 1
@@ -47,6 +50,9 @@ def search_robust(knobs: Knobs, nominal: Objective, robust: Objective, near: flo
     As many of these are found as the nominal objective allows. Around the one that is most robust evolution goes on.
     """
     populations = 0
+    if not knobs.knobs:
+        robust.of(np.zeros((1, 0)))
+        return
     while not nominal.exhausted:
         _evolve(knobs, nominal, near, (seed, populations))
         robust.of(nominal.recent.values[None])
@@ -110,6 +116,8 @@ def _newton(knobs: Knobs, objective: Objective) -> None:
     """Newton's method from the best turn of a population: each step is the smallest that should meet the target."""
     low, high = np.array(knobs.bounds).T
     smooth, width = knobs.smooth, high - low
+    if not len(smooth):
+        return
     for _ in range(NEWTONS):
         start = objective.recent
         side = np.where(start.values + DIFFERENCE * width > high, -DIFFERENCE, DIFFERENCE)[smooth]

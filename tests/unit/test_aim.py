@@ -165,6 +165,16 @@ def test_those_that_do_not_take_part_are_at_rest_and_equal_bounds_leave_no_knob(
     assert (moving.stroke, moving.frequency, moving.cycles) == (2e-5, 300, 2)
 
 
+@pytest.mark.compiled
+@pytest.mark.parametrize("quantile", [None, 0.9])
+def test_a_search_with_nothing_to_turn_or_with_cycles_only_ends(case, surface, quantile):
+    fixed = {"frequency": (300, 300), "stroke": (5e-5, 5e-5), "scatter": 3, "paths": 300, "quantile": quantile}
+    found = aim_over(surface, Task(case, TARGET, Settings(**fixed, cycles=(2, 2))))
+    assert [actuator.cycles for actuator in found.case.actuators] == [2, 2] and found.paths <= SAMPLES
+    found = aim_over(surface, Task(case, TARGET, Settings(**fixed, cycles=(1, 3))))
+    assert {actuator.cycles for actuator in found.case.actuators} <= {1, 2, 3}
+
+
 def test_a_part_that_is_lost_costs_more_than_one_that_moves_and_that_more_than_one_at_rest():
     tilted = polynomial_surface([[0.0, 0.0], [0.5, 0.0]])
     part = Micropart(2e-9, (0.0, 0.0))
