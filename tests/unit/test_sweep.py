@@ -153,17 +153,17 @@ def test_a_chunk_that_is_foreign_torn_or_of_another_length_counts_as_none(tmp_pa
 
 
 def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkeypatch):
-    monkeypatch.setattr("studies.engine.MOST", 2)
+    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 2)
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))
     whole = run_study(study).dataset
     asked = []
     records = Engine.records
 
-    def counted(self, chunk):
+    def counted(self, start, stop):
         if len(asked) == 2:
             raise KeyboardInterrupt
-        asked.append(chunk)
-        return records(self, chunk)
+        asked.append(start // 2)
+        return records(self, start, stop)
 
     monkeypatch.setattr(Engine, "records", counted)
     with pytest.raises(KeyboardInterrupt):
