@@ -134,6 +134,17 @@ def test_a_start_off_the_plate_is_refused_where_it_is_off(tmp_path):
     assert 0 < found["mistakes"].sel({"part.position.0": 290e-6}).sum() < 60
 
 
+@pytest.mark.parametrize(("case", "field"), [(PLATFORM, "part.mass"), (PLATE, "actuators.0.stroke")])
+def test_chunks_are_as_long_as_the_cycles_that_their_paths_take(tmp_path, case, field):
+    unit = "kg" if field == "part.mass" else "m"
+    axes = f'[[axes]]\nfield = "{field}"\nrange = ["1e-9 {unit}", "1e-8 {unit}"]\ncount = 5000\n'
+    lengths = []
+    for duration in ("20 us", "2 ms", "200 ms"):
+        case = re.sub(r'duration = ".*"', f'duration = "{duration}"', case)
+        lengths.append(Engine(read_study(written(tmp_path, axes, case))).chunk_length)
+    assert lengths[0] > 1500 and lengths[0] > lengths[1] > 1.2 * lengths[2] and lengths[2] < 100
+
+
 def test_a_chunk_that_is_foreign_torn_or_of_another_length_counts_as_none(tmp_path):
     store = ChunkStore(tmp_path / "chunks", "ab" * 32)
     assert store.load(0, 3) is None
