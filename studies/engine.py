@@ -32,6 +32,7 @@ AT_ONCE: Final = 1.0  # s, about, that a chunk takes
 A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about, that a path takes, and each cycle of its fastest drive
 A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about, that these take
 SURFACES: Final = 4  # kept
+HELD: Final = 256  # trajectories in memory at a time: each takes 0.13 MB, however short
 
 
 class _Path(NamedTuple):
@@ -112,7 +113,8 @@ class Engine:
                     part = Micropart(case.part.mass, (place[0], place[1]), case.part.velocity, case.part.squeeze)
                     groups[surface, case.run].append(_Path(row, case, part, law))
         for (surface, run), paths in groups.items():
-            self._follow(records, paths, surface, run)
+            for first in range(0, len(paths), HELD):
+                self._follow(records, paths[first : first + HELD], surface, run)
         return records
 
     def _follow(self, records: Records, paths: Sequence[_Path], surface: SurfaceMotion, run: RunCase) -> None:

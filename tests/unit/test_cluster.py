@@ -91,11 +91,12 @@ def test_a_killed_worker_costs_nothing_but_time(tmp_path, cluster):
 
 
 def test_few_chunks_are_under_way_at_a_time(tmp_path, cluster):
-    engine, asked = Engine(read_study(written(tmp_path, SHAKEN, PLATFORM))), []
-    alone = engine.records(0, 24).tobytes()
+    axes = SHAKEN.replace("count = 12", "count = 2")
+    engine, asked = Engine(read_study(written(tmp_path, axes, PLATFORM))), []
+    alone = engine.records(0, 4).tobytes()
 
     def chunks():
-        for _ in range(40):
+        for _ in range(24):
             asked.append(0)
             yield 0
 
@@ -103,7 +104,7 @@ def test_few_chunks_are_under_way_at_a_time(tmp_path, cluster):
     for n, (chunk, found) in enumerate(records_on(cluster.scheduler_address, engine, chunks())):
         ahead.append(len(asked) - n)
         assert chunk == 0 and found.tobytes() == alone
-    assert len(asked) == len(ahead) == 40 and max(ahead) <= 2 * AHEAD + 1
+    assert len(asked) == len(ahead) == 24 and max(ahead) <= 2 * AHEAD + 1
 
 
 def test_a_stop_keeps_the_chunks_that_came_in(tmp_path, cluster, monkeypatch):

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from coupling.run import build_friction, build_surface, follow_part
-from studies import read_study, run_study
+from studies import engine, read_study, run_study
 from studies.chunk_store import ChunkStore
 from studies.cli import main
 from studies.dataset import read_dataset
@@ -90,9 +90,9 @@ def test_a_platform_is_swept_in_memory_and_its_axes_are_labelled(tmp_path):
 def test_each_path_has_the_bits_of_a_run_of_its_case(tmp_path, text, axes):
     study = read_study(written(tmp_path, axes, text))
     records = run_study(study).dataset
-    engine = Engine(study)
+    made = Engine(study)
     for k, values in enumerate(study.points.values(0, len(study.points))):
-        case, _ = engine.variants.at(values)
+        case, _ = made.variants.at(values)
         path = follow_part(case, build_surface(case), build_friction(case))
         found = {name: records[name].values.ravel()[k] for name in COLUMNS}
         assert (found["end_x"], found["end_y"]) == tuple(path.position[-1])
@@ -106,6 +106,19 @@ def test_each_path_has_the_bits_of_a_run_of_its_case(tmp_path, text, axes):
 def test_the_bits_do_not_depend_on_the_number_of_threads(tmp_path):
     study = read_study(written(tmp_path, PLATES.replace("points = 12", "points = 4"), PLATE))
     assert same(run_study(study, threads=1).dataset, run_study(study, threads=3).dataset)
+
+
+def test_few_trajectories_are_held_at_a_time_and_the_bits_do_not_depend_on_it(tmp_path, monkeypatch):
+    study = read_study(written(tmp_path, SHAKEN, PLATFORM))
+    whole, counts, many = run_study(study).dataset, [], engine.simulate_many
+
+    def counted(surface, parts, *rest):
+        counts.append(len(parts))
+        return many(surface, parts, *rest)
+
+    monkeypatch.setattr(engine, "simulate_many", counted)
+    monkeypatch.setattr(engine, "HELD", 1)
+    assert same(whole, run_study(study).dataset) and counts == [1] * 6
 
 
 def test_a_point_that_cannot_be_run_is_refused_and_told(tmp_path):
