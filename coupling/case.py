@@ -274,7 +274,9 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     """Read the case file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read."""
     text, data = load(path)
     try:
-        tables = _CaseTables.model_validate(data, context=units.UNITS_REQUIRED | {"folder": Path(path).parent})
+        tables = _CaseTables.model_validate(
+            data, context=units.UNITS_REQUIRED | {"folder": Path(path).absolute().parent}
+        )
     except ValidationError as error:
         raise CaseError(os.fspath(path), find_problems(error, text, data, TABLES)) from None
     return Case.model_construct(**dict(tables), name=Path(path).stem, source=text)

@@ -12,7 +12,7 @@ from coupling.plate_case import PlateCase
 from coupling.readable import readable
 from coupling.rim import rim_curves
 from particle import Outcome
-from studies.heat import COLOURS, draw_classes, draw_field
+from studies.heat import COLOURS, draw_classes, draw_field, draw_outline
 from studies.record import OUTCOMES
 from studies.shown import Scale, Shown, mean
 
@@ -45,13 +45,15 @@ def draw_basins(figure: Figure, axes: list[Axes], shown: Shown) -> None:
     stays = f"carried less than {near * unit.per_si:.2g} {unit.name}"
     names = (*OUTCOMES, stays, *(f"carried, nearest to actuator {k}" for k in range(len(actuators))))
     colours = (*COLOURS, STAYS, *(colormaps["tab20"](2 * k % 20 + 2 * k // 20) for k in range(len(actuators))))
+    holds = shown.holds
     if turned:
-        classes, lengths = classes.T, lengths.T
+        classes, lengths, holds = classes.T, lengths.T, None if holds is None else holds.T
     draw_classes(axes[0], across, up, classes, names, colours)
     axes[0].set_title("where the part is carried", fontsize=10)
     draw_field(figure, axes[1], across, up, lengths, "end to nearest actuator")
-    for one in axes:
+    for one in axes[:2]:
         _draw_plate(one, shown, across, up)
+        draw_outline(one, across, up, holds)
 
 
 def _draw_plate(axes: Axes, shown: Shown, across: Scale, up: Scale) -> None:

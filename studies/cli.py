@@ -18,13 +18,18 @@ from coupling.cli import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
     "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
 )
 @click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one on each processor].")
+@click.option("--scheduler", "-s", help="Address of a dask scheduler whose workers find the paths, tcp://HOST:PORT.")
 @click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
-def sweep(study: Path, output: Path | None, threads: int | None, quiet: bool, as_json: bool) -> None:
+def sweep(
+    study: Path, output: Path | None, threads: int | None, scheduler: str | None, quiet: bool, as_json: bool
+) -> None:
     """Find the paths at all points of STUDY and write them to one file.
 
     A sweep that was interrupted goes on where it stopped when it is started again.
     """
+    if scheduler is not None and threads is not None:
+        raise click.UsageError("--threads must not be given with --scheduler: each worker uses all of its own threads")
     from coupling.progress import CountBar, untold
     from coupling.results import check_folder
     from studies.read import read_study
@@ -36,7 +41,7 @@ def sweep(study: Path, output: Path | None, threads: int | None, quiet: bool, as
     refusing(check_folder, folder)
     try:
         with nullcontext(untold) if quiet else CountBar("paths") as tell:
-            found = refusing(run_study, read, folder, threads, tell)
+            found = refusing(run_study, read, folder, threads, tell, scheduler)
     except KeyboardInterrupt:
         click.echo("interrupted; the same command goes on where this one stopped", err=True)
         sys.exit(INTERRUPTED)

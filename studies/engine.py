@@ -7,7 +7,7 @@ threads nor on which chunks came before.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Generator, Iterable, Sequence
 from functools import lru_cache
 from typing import Final, NamedTuple
 
@@ -17,8 +17,9 @@ from threadpoolctl import threadpool_limits
 
 from coupling.case import Case, RunCase
 from coupling.drives import build_drives
-from coupling.plate_case import PlateCase
-from coupling.progress import interruptible
+from coupling.platform_case import PlatformCase
+from coupling.platform_scene import platform_scene
+from coupling.progress import interruptible, silent
 from coupling.run import build_scene
 from particle import Micropart, SurfaceMotion, simulate_many
 from particle.friction import Contact
@@ -30,8 +31,8 @@ from studies.variants import Base, Variants
 AT_ONCE: Final = 1.0  # s, about, that a chunk takes
 A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about, that a path takes, and each cycle of its fastest drive
 A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about, that these take
-MOST: Final = 256  # paths of a chunk: handing out more at a time costs more
 SURFACES: Final = 4  # kept
+HELD: Final = 256  # trajectories in memory at a time: each takes 0.13 MB, however short
 
 
 class _Path(NamedTuple):
@@ -66,16 +67,25 @@ class Engine:
 
     def _chunk_length(self) -> int:
         case, points = self.study.case, self.study.points
-        fastest = max((drive.frequency for drive in build_drives(case)), default=0.0)
-        base = A_PLATE if isinstance(case.plate, PlateCase) else A_PLATFORM
+        if isinstance(case.plate, PlatformCase):
+            scene = platform_scene(case.plate, silent)
+            drives, base = [*scene.lifts, *scene.base], A_PLATFORM
+        else:
+            drives, base = build_drives(case), A_PLATE
+        fastest = max((drive.frequency for drive in drives), default=0.0)
         each = A_PATH + A_CYCLE * case.run.duration * fastest + base / self.variants.paths_of_a_base(points)
-        return int(np.clip(AT_ONCE / each, 1, MOST))
+        return max(int(AT_ONCE / each), 1)
 
-    def records(self, chunk: int) -> Records:
-        """The records of a chunk's paths."""
+    def records_of(self, chunks: Iterable[int]) -> Generator[tuple[int, Records], None, None]:
+        """Yield chunks and their records, one after the other."""
+        for chunk in chunks:
+            yield chunk, self.records(*self.span(chunk))
+
+    def records(self, start: int, stop: int) -> Records:
+        """The records of the paths from one to before another."""
         # Many small systems: BLAS threads would only wait for each other.
         with threadpool_limits(limits=1, user_api="blas"):
-            return self._records(*self.span(chunk))
+            return self._records(start, stop)
 
     def _records(self, start: int, stop: int) -> Records:
         points = self.study.points
@@ -103,7 +113,8 @@ class Engine:
                     part = Micropart(case.part.mass, (place[0], place[1]), case.part.velocity, case.part.squeeze)
                     groups[surface, case.run].append(_Path(row, case, part, law))
         for (surface, run), paths in groups.items():
-            self._follow(records, paths, surface, run)
+            for first in range(0, len(paths), HELD):
+                self._follow(records, paths[first : first + HELD], surface, run)
         return records
 
     def _follow(self, records: Records, paths: Sequence[_Path], surface: SurfaceMotion, run: RunCase) -> None:

@@ -6,14 +6,17 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from coupling.readable import plain_ticks, readable
 from studies.record import OUTCOMES
 from studies.shown import FloatArray, IntArray, Scale, Shown
+from studies.threshold import BoolArray
 
 COLOURS = ("#40719c", "#e0c368", "#b8862d", "#c8371b", "#7a4b94", "#8a8a8a", "#dedede")
 """Of the outcomes, by their number."""
@@ -24,6 +27,8 @@ def draw_maps(figure: Figure, axes: list[Axes], shown: Shown) -> None:
     across, up = shown.axes
     draw_field(figure, axes[0], across, up, shown.mean_distance, "distance from the start")
     draw_classes(axes[1], across, up, shown.usual_outcome, OUTCOMES, COLOURS)
+    for one in axes[:2]:
+        draw_outline(one, across, up, shown.holds)
 
 
 def draw_field(figure: Figure, axes: Axes, across: Scale, up: Scale, lengths: FloatArray, said: str) -> None:
@@ -44,6 +49,17 @@ def draw_classes(
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
     axes.pcolormesh(edges(across), edges(up), numbers.T, cmap=ListedColormap(list(colours)), norm=norm)
     add_key(axes, numbers, names, colours)
+
+
+def draw_outline(axes: Axes, across: Scale, up: Scale, holds: BoolArray | None) -> None:
+    """Draw a line between the fields (n, m) of a map where a condition holds and the others; None: there is none."""
+    if holds is None:
+        return
+    x, y = edges(across), edges(up)
+    lines = [[(x[i + 1], y[j]), (x[i + 1], y[j + 1])] for i, j in np.argwhere(holds[1:] != holds[:-1])]
+    lines += [[(x[i], y[j + 1]), (x[i + 1], y[j + 1])] for i, j in np.argwhere(holds[:, 1:] != holds[:, :-1])]
+    black = [withStroke(linewidth=3.0, foreground="black")]
+    axes.add_collection(LineCollection(lines, colors="white", linewidths=1.4, path_effects=black), autolim=False)
 
 
 def add_key(axes: Axes, numbers: NDArray[np.int64], names: tuple[str, ...], colours: tuple[Any, ...]) -> None:

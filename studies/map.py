@@ -15,6 +15,7 @@ from studies.heat import draw_maps
 from studies.scatter import draw_points
 from studies.shown import Shown
 from studies.study import Study
+from studies.threshold_curve import draw_threshold
 
 if TYPE_CHECKING:
     import xarray
@@ -39,7 +40,7 @@ def draw_sweep(study: Study, dataset: xarray.Dataset, path: Path) -> Path:
 def compose(figure: Figure, study: Study, dataset: xarray.Dataset) -> None:
     """Draws the results of a study into an empty figure."""
     shown = Shown.of(study, dataset)
-    panels = 2
+    panels = 2 if shown.holds is None else 3
     figure.set_size_inches(WIDTH * panels, HEIGHT)
     figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
     axes = [figure.add_subplot(1, panels, k + 1) for k in range(panels)]
@@ -51,6 +52,8 @@ def compose(figure: Figure, study: Study, dataset: xarray.Dataset) -> None:
         draw_basins(figure, axes, shown)
     else:
         draw_maps(figure, axes, shown)
+    if shown.holds is not None and study.threshold:
+        draw_threshold(axes[2], shown, shown.holds, study.threshold.said)
     said = ", ".join(f"{name} = {text}" for name, text in shown.fixed.items())
     repeats = f", mean of {study.points.repeats} starts" if study.points.repeats > 1 else ""
     figure.suptitle(f"{study.name}: {int(np.size(dataset['outcome']))} paths{repeats}" + (f", {said}" if said else ""))

@@ -41,6 +41,12 @@ class Points:
             found = {"point": self.count if self.sampling in ("random", "sobol") else len(self.axes[0].values)}
         return found | ({"repeat": self.repeats} if self.repeats > 1 else {})
 
+    @property
+    def longest(self) -> tuple[Axis, ...]:
+        """The two axes with the most values, or the one, in their order."""
+        chosen = sorted(self.axes, key=lambda axis: -len(axis.values))[:2]
+        return tuple(axis for axis in self.axes if axis in chosen)
+
     def __len__(self) -> int:
         """How many paths there are."""
         return math.prod(self.dimensions.values())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +27,14 @@ def read_study(path: str | os.PathLike[str]) -> Study:
     """Read the study file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read."""
     text, data = load(path)
     errors: list[Any] = []
+    threshold = None
     try:
-        StudyTables.model_validate(data, context=UNITS_REQUIRED)
+        threshold = StudyTables.model_validate(data, context=UNITS_REQUIRED).map.threshold
     except ValidationError as error:
         errors += error.errors()
     study, mistakes = _study(Path(path), text, data)
+    if study and threshold and (message := _undrawn(study.points)):
+        mistakes.append((("map", "threshold"), message))
     if study and not errors and not mistakes and (message := all_refused(study)):
         mistakes = [(("axes",), message)]
     for location, message in mistakes:
@@ -39,7 +43,7 @@ def read_study(path: str | os.PathLike[str]) -> Study:
         found = ValidationError.from_exception_data("StudyTables", errors)
         raise CaseError(os.fspath(path), find_problems(found, text, data, TABLES))
     assert study
-    return study
+    return replace(study, threshold=threshold)
 
 
 def _study(path: Path, text: str, data: Mapping[str, Any]) -> tuple[Study | None, list[Mistake]]:
@@ -66,6 +70,14 @@ def _study(path: Path, text: str, data: Mapping[str, Any]) -> tuple[Study | None
     if len(points) > MOST_PATHS:
         mistakes.append((("axes",), f"must make at most {MOST_PATHS} paths; got {len(points)}"))
     return Study(case, points, path.stem, text), mistakes
+
+
+def _undrawn(points: Points) -> str:
+    """Why there is no place where a condition begins; "": there is."""
+    if points.sampling != "grid" or len(points.axes) < 2:
+        return "must not be given without a grid over two axes, between whose points a condition begins to hold"
+    last = points.longest[-1]
+    return f"must not be given with texts along the second axis, {last.name}" if last.field.kind == "text" else ""
 
 
 def _case(path: Path, name: Any) -> tuple[Case | None, list[Mistake]]:

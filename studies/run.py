@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ import numpy as np
 
 from coupling.progress import Tell, untold
 from studies.chunk_store import ChunkStore
+from studies.cluster import records_on
 from studies.dataset import key_of, read_dataset, write_dataset
 from studies.engine import Engine
 from studies.map import draw_sweep
@@ -55,27 +57,35 @@ class Sweep:
         )
 
 
-def run_study(study: Study, output: str | Path | None = None, threads: int | None = None, tell: Tell = untold) -> Sweep:
+def run_study(
+    study: Study,
+    output: str | Path | None = None,
+    threads: int | None = None,
+    tell: Tell = untold,
+    scheduler: str | None = None,
+) -> Sweep:
     """Find all paths of a study; with `output`, a folder, write NAME.nc and NAME.png there.
 
     With a folder, chunks of finished paths are kept in NAME.sweep there until all are done, and a sweep that was
     interrupted goes on from them. If NAME.nc is of the same study, nothing is done again.
     threads: how many paths are found at a time, by default one on each processor.
     tell: gets how many paths are done, and of how many.
-    Raises ValueError when NAME.nc is a file of something else, and KeyboardInterrupt upon Ctrl-C.
+    scheduler: the address of a dask scheduler whose workers find the paths, each with all of its own threads.
+    Raises ValueError when NAME.nc is a file of something else, KeyboardInterrupt upon Ctrl-C, and with a scheduler what
+    `records_on` raises.
     """
     if output is None:
         with tempfile.TemporaryDirectory() as folder:
-            file = _found(study, Path(folder), threads, tell)
+            file = _found(study, Path(folder), threads, tell, scheduler)
             with read_dataset(file) as dataset:
                 return Sweep(study, dataset.load())
-    file = _found(study, Path(output), threads, tell)
+    file = _found(study, Path(output), threads, tell, scheduler)
     dataset = read_dataset(file)
     picture = draw_sweep(study, dataset, file.with_suffix(".png"))
     return Sweep(study, dataset, (file, picture))
 
 
-def _found(study: Study, folder: Path, threads: int | None, tell: Tell) -> Path:
+def _found(study: Study, folder: Path, threads: int | None, tell: Tell, scheduler: str | None) -> Path:
     """The file of all results in a folder."""
     file = folder / f"{study.name}{ENDING}"
     key, known = study.key, key_of(file)
@@ -86,14 +96,34 @@ def _found(study: Study, folder: Path, threads: int | None, tell: Tell) -> Path:
     store = ChunkStore(folder / f"{study.name}.sweep", key)
     if known != key:
         engine = Engine(study, threads)
-        for chunk in range(engine.chunks):
-            start, stop = engine.span(chunk)
-            if store.load(chunk, stop - start) is None:
-                store.save(chunk, engine.records(chunk))
-            tell(stop, engine.paths)
+        _find(engine, store, tell, scheduler)
         write_dataset(study, _chunks(engine, store), file)
     store.clear()
     return file
+
+
+def _find(engine: Engine, store: ChunkStore, tell: Tell, scheduler: str | None) -> None:
+    """Find the chunks that the store does not have yet."""
+    done = 0
+
+    def more(paths: int) -> None:
+        nonlocal done
+        done += paths
+        tell(done, engine.paths)
+
+    def missing() -> Iterator[int]:
+        for chunk in range(engine.chunks):
+            start, stop = engine.span(chunk)
+            if store.load(chunk, stop - start) is None:
+                yield chunk
+            else:
+                more(stop - start)
+
+    found = engine.records_of(missing()) if scheduler is None else records_on(scheduler, engine, missing())
+    with closing(found):
+        for chunk, records in found:
+            store.save(chunk, records)
+            more(len(records))
 
 
 def _chunks(engine: Engine, store: ChunkStore) -> Iterator[tuple[int, Records]]:

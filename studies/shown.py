@@ -12,6 +12,7 @@ from coupling.readable import Unit, readable
 from studies.axis import Axis
 from studies.record import OUTCOMES, REFUSED
 from studies.study import Study
+from studies.threshold import BoolArray
 
 if TYPE_CHECKING:
     import xarray
@@ -56,7 +57,7 @@ class Scale:
 class Shown:
     """Results along at most two axes of a grid, or at points; repeats are along the last dimension.
 
-    fixed: the values of axes that are not shown, in words.
+    fixed: the values of axes that are not shown, in words.  holds: where the study's threshold holds, if it has one.
     """
 
     study: Study
@@ -66,14 +67,14 @@ class Shown:
     end: FloatArray  # (..., 2) m
     fixed: dict[str, str]
     scattered: bool
+    holds: BoolArray | None = None
 
     @classmethod
     def of(cls, study: Study, dataset: xarray.Dataset) -> Shown:
         points = study.points
         scattered = points.sampling != "grid"
         picked: dict[str, Any] = {"point": slice(0, MOST_POINTS)} if scattered else {}
-        axes = sorted(points.axes, key=lambda axis: -len(axis.values))[:2] if not scattered else points.axes[:2]
-        axes = tuple(axis for axis in points.axes if axis in axes)
+        axes = points.axes[:2] if scattered else points.longest
         fixed = {}
         for axis in () if scattered else points.axes:
             if axis not in axes:
@@ -93,6 +94,7 @@ class Shown:
             np.stack([arrays["end_x"], arrays["end_y"]], axis=-1),
             fixed,
             scattered,
+            study.threshold and study.threshold.holds(part, points.repeats),
         )
 
     @property

@@ -13,6 +13,7 @@ from coupling.case import Case
 from coupling.plate_case import MeshCase
 from coupling.platform_case import PlatformCase
 from studies.points import Points
+from studies.threshold import Threshold
 from studies.variants import lattice_of
 
 VERSIONS = ("active-surface", "numpy", "scipy", "numba")
@@ -26,6 +27,7 @@ class Study:
     points: Points
     name: str = "study"
     source: str = ""
+    threshold: Threshold | None = None  # of its picture
 
     @property
     def key(self) -> str:

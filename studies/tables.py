@@ -6,13 +6,14 @@ import re
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, Field, StrictInt, StrictStr
+from pydantic import BaseModel, BeforeValidator, Field, PlainValidator, StrictInt, StrictStr
 
 from coupling.keyed_table import WRONG, Contradictions, KeyedTable
 from coupling.table import Table
 from coupling.units import Length, shown
 from studies.points import Sampling
 from studies.record import COLUMNS
+from studies.threshold import Threshold, read_threshold
 
 MOST_PATHS, MOST_VALUES = 1_000_000_000, 1_000_000
 
@@ -93,12 +94,19 @@ class AxisTable(KeyedTable):
                 yield key, "must not be given with values; it belongs to a range"
 
 
+class MapTable(Table):
+    """What the picture shows: where the condition `threshold` begins to hold."""
+
+    threshold: Annotated[Threshold, PlainValidator(read_threshold)] | None = None
+
+
 class StudyTables(Table):
     """All that a study file holds."""
 
     study: StudyTable
     axes: tuple[AxisTable, ...]
+    map: MapTable = MapTable()
 
 
-TABLES: dict[str, type[BaseModel]] = {"": StudyTables, "study": StudyTable, "axes": AxisTable}
+TABLES: dict[str, type[BaseModel]] = {"": StudyTables, "study": StudyTable, "axes": AxisTable, "map": MapTable}
 """The models by the names of their tables."""

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from coupling.run import build_friction, build_surface, follow_part
-from studies import read_study, run_study
+from studies import engine, read_study, run_study
 from studies.chunk_store import ChunkStore
 from studies.cli import main
 from studies.dataset import read_dataset
@@ -90,9 +90,9 @@ def test_a_platform_is_swept_in_memory_and_its_axes_are_labelled(tmp_path):
 def test_each_path_has_the_bits_of_a_run_of_its_case(tmp_path, text, axes):
     study = read_study(written(tmp_path, axes, text))
     records = run_study(study).dataset
-    engine = Engine(study)
+    made = Engine(study)
     for k, values in enumerate(study.points.values(0, len(study.points))):
-        case, _ = engine.variants.at(values)
+        case, _ = made.variants.at(values)
         path = follow_part(case, build_surface(case), build_friction(case))
         found = {name: records[name].values.ravel()[k] for name in COLUMNS}
         assert (found["end_x"], found["end_y"]) == tuple(path.position[-1])
@@ -106,6 +106,19 @@ def test_each_path_has_the_bits_of_a_run_of_its_case(tmp_path, text, axes):
 def test_the_bits_do_not_depend_on_the_number_of_threads(tmp_path):
     study = read_study(written(tmp_path, PLATES.replace("points = 12", "points = 4"), PLATE))
     assert same(run_study(study, threads=1).dataset, run_study(study, threads=3).dataset)
+
+
+def test_few_trajectories_are_held_at_a_time_and_the_bits_do_not_depend_on_it(tmp_path, monkeypatch):
+    study = read_study(written(tmp_path, SHAKEN, PLATFORM))
+    whole, counts, many = run_study(study).dataset, [], engine.simulate_many
+
+    def counted(surface, parts, *rest):
+        counts.append(len(parts))
+        return many(surface, parts, *rest)
+
+    monkeypatch.setattr(engine, "simulate_many", counted)
+    monkeypatch.setattr(engine, "HELD", 1)
+    assert same(whole, run_study(study).dataset) and counts == [1] * 6
 
 
 def test_a_point_that_cannot_be_run_is_refused_and_told(tmp_path):
@@ -134,6 +147,17 @@ def test_a_start_off_the_plate_is_refused_where_it_is_off(tmp_path):
     assert 0 < found["mistakes"].sel({"part.position.0": 290e-6}).sum() < 60
 
 
+@pytest.mark.parametrize(("case", "field"), [(PLATFORM, "part.mass"), (PLATE, "actuators.0.stroke")])
+def test_chunks_are_as_long_as_the_cycles_that_their_paths_take(tmp_path, case, field):
+    unit = "kg" if field == "part.mass" else "m"
+    axes = f'[[axes]]\nfield = "{field}"\nrange = ["1e-9 {unit}", "1e-8 {unit}"]\ncount = 5000\n'
+    lengths = []
+    for duration in ("20 us", "2 ms", "200 ms"):
+        case = re.sub(r'duration = ".*"', f'duration = "{duration}"', case)
+        lengths.append(Engine(read_study(written(tmp_path, axes, case))).chunk_length)
+    assert lengths[0] > 1500 and lengths[0] > lengths[1] > 1.2 * lengths[2] and lengths[2] < 100
+
+
 def test_a_chunk_that_is_foreign_torn_or_of_another_length_counts_as_none(tmp_path):
     store = ChunkStore(tmp_path / "chunks", "ab" * 32)
     assert store.load(0, 3) is None
@@ -153,17 +177,17 @@ def test_a_chunk_that_is_foreign_torn_or_of_another_length_counts_as_none(tmp_pa
 
 
 def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkeypatch):
-    monkeypatch.setattr("studies.engine.MOST", 2)
+    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 2)
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))
     whole = run_study(study).dataset
     asked = []
     records = Engine.records
 
-    def counted(self, chunk):
+    def counted(self, start, stop):
         if len(asked) == 2:
             raise KeyboardInterrupt
-        asked.append(chunk)
-        return records(self, chunk)
+        asked.append(start // 2)
+        return records(self, start, stop)
 
     monkeypatch.setattr(Engine, "records", counted)
     with pytest.raises(KeyboardInterrupt):
