@@ -33,7 +33,7 @@ RCOND = 1e-12
 DEEPEST = 6  # times that a cell is divided
 LESS = 0.1  # of its error: dividing many cells pays if that is left at most
 # This is enough for those that stand out of their like, as at corners, and where errors are too large to show an order.
-LESS_AT_CORNERS, OUTSTANDING, COARSE = 0.75, 10.0, 1e-3
+LESS_AT_CORNERS, OUTSTANDING, COARSE = 0.75, 3.0, 1e-3
 MOST_DIVIDED = 128  # at once: where more are not good enough, the shapes are not
 # The polynomial's error falls with the distance of the nearest logarithm that it takes up, in half widths.
 REACH, REACHED, REACH_ORDER = 8.0, 1e-9, 9

@@ -10,6 +10,7 @@ from pieces import piece_at
 
 from particle import Drive, HermiteDrive, Segment, SegmentDrive, TableDrive
 from particle.drive import drive_table, monomial_table, next_kink
+from particle.drive_table import jumps
 
 POLYNOMIAL = np.polynomial.Polynomial([1e-6, -2e-3, 3.0, 4e2, -5e4, 6e6])
 
@@ -267,3 +268,19 @@ def test_every_wrong_field_is_named(make, owner, names):
     for part, name in zip(parts, names.split(), strict=True):
         assert part.removeprefix("Input ").startswith(f"{name} of {owner} must ")
         assert "; got " in part
+
+
+@pytest.mark.parametrize(
+    ("drive", "velocity", "acceleration"),
+    [
+        (Drive(1e-6, 300.0), False, False),
+        (Drive(1e-6, 300.0, dwell=1e-3, cycles=3), False, False),
+        (Drive(1e-6, 300.0, "cosine", cycles=2), False, True),
+        (Drive(1e-6, 300.0, "sine", cycles=2), True, False),
+        (SegmentDrive([Segment(1e-6, 300.0, "up"), Segment(-1e-6, 200.0, "up")]), False, False),
+    ],
+    ids=["up-down", "with dwell", "cosine", "sine", "schedule"],
+)
+def test_which_derivatives_jump_at_kinks(drive, velocity, acceleration):
+    table = drive_table([Drive(3e-6, 40.0), drive])
+    assert (bool(jumps(table, 1)), bool(jumps(table, 2))) == (velocity, acceleration)
