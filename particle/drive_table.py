@@ -20,6 +20,10 @@ MERGED = 1e-12  # of a stroke: kinks closer than that are taken as one
 ROUNDING = 4 * np.finfo(float).eps  # of the time: nor are kinks told apart that are closer than that
 
 
+# What a jump of the fourth and fifth derivative adds, over the time of a bridge, to one of the third (see `span`).
+ROUGH_OVER, FOURTH, FIFTH = 0.25, 0.141, 0.036  # a stroke
+
+
 class AnyDrive(Protocol):
     """What every drive has."""
 
@@ -61,6 +65,8 @@ class DriveTable(NamedTuple):
     span: FloatArray  # (N,) s
     repeats: FloatArray  # (N,)
     stroke_time: FloatArray  # (N,) s, the shortest stroke of each; inf: it has none
+    jump: FloatArray  # (N, 2) m/s, m/s^2, by how much its velocity and acceleration jump at kinks at most
+    rough: FloatArray  # (N,) m/s^3, by how much its third derivative does, with the share of those above
 
 
 class Evaluated:
@@ -76,7 +82,8 @@ class Evaluated:
 def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
     """The drives as kernels read them."""
     parts = [drive.segments() for drive in drives]
-    return DriveTable(
+    none = np.zeros((len(drives), 2))
+    table = DriveTable(
         first=np.cumsum([0] + [len(start) for start, *_ in parts]),
         start=np.concatenate([np.zeros(0)] + [start for start, *_ in parts]),
         scale=np.concatenate([np.zeros(0)] + [scale for _, scale, *_ in parts]),
@@ -85,7 +92,13 @@ def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
         span=np.array([start[-1] + scale[-1] for start, scale, *_ in parts], dtype=float),
         repeats=np.array([repeats for *_, repeats in parts], dtype=float),
         stroke_time=np.array([drive.stroke_time for drive in drives], dtype=float),
+        jump=none,
+        rough=none[:, 0],
     )
+    jump = _jumps(table)
+    longest = ROUGH_OVER * np.where(np.isfinite(table.stroke_time), table.stroke_time, 0.0)
+    rough = jump[:, 2] + FOURTH * longest * jump[:, 3] + FIFTH * longest**2 * jump[:, 4]
+    return table._replace(jump=jump[:, :2].copy(), rough=rough)
 
 
 def monomial_table(count: int) -> DriveTable:
@@ -99,35 +112,45 @@ def monomial_table(count: int) -> DriveTable:
         span=np.full(count, math.inf),
         repeats=np.ones(count),
         stroke_time=np.full(count, math.inf),
+        jump=np.zeros((count, 2)),
+        rough=np.zeros(count),
     )
 
 
 @jit
-def jumps(table: DriveTable, order: int) -> bool:
-    """Whether a derivative of any drive jumps at a kink: from one segment to the next, at its start or at its end.
+def _jumps(table: DriveTable) -> FloatArray:
+    """By how much the first five derivatives jump at a drive's kinks at most (N, 5) [m/s, m/s^2, ...].
 
-    order: 1 for its velocity, 2 for its acceleration.
+    Kinks are from one segment to the next, at its start and at its end.
     """
+    out = np.zeros((len(table.span), ORDER - 1))
     for i in range(len(table.span)):
-        if not math.isfinite(table.span[i]):
-            continue
-        low, high = table.first[i], table.first[i + 1]
-        endless, most = not math.isfinite(table.repeats[i]), 0.0
-        for row in range(low, high):
-            most = max(most, np.abs(table.coefficients[row]).max() / table.scale[low:high].min() ** order)
-        first, left = _derivative(table, low, order, 0.0), 0.0
-        last = _derivative(table, high - 1, order, 1.0)
-        # At rest before the start and after the end, if there is one; else the last segment goes on into the first.
-        step = abs(last - first) if endless else max(abs(first), abs(last))
-        if table.repeats[i] > 1:
-            step = max(step, abs(last - first), abs(first))
-        for row in range(low, high):
-            if row > low:
-                step = max(step, abs(_derivative(table, row, order, 0.0) - left))
-            left = _derivative(table, row, order, 1.0)
-        if step > ROUNDING * 100 * most:
-            return True
-    return False
+        if math.isfinite(table.span[i]):
+            for order in range(1, ORDER):
+                out[i, order - 1] = _jump(table, i, order)
+    return out
+
+
+@bare
+def _jump(table: DriveTable, i: int, order: int) -> float:
+    """By how much a derivative of drive i jumps at most; 0 where that is rounding."""
+    low, high = table.first[i], table.first[i + 1]
+    shortest, most = math.inf, 0.0
+    for row in range(low, high):
+        shortest = min(shortest, table.scale[row])
+        for k in range(ORDER):
+            most = max(most, abs(table.coefficients[row, k]))
+    first, left = _derivative(table, low, order, 0.0), 0.0
+    last = _derivative(table, high - 1, order, 1.0)
+    # At rest before the start and after the end, if there is one; else the last segment goes on into the first.
+    step = abs(last - first) if not math.isfinite(table.repeats[i]) else max(abs(first), abs(last))
+    if table.repeats[i] > 1:
+        step = max(step, abs(last - first), abs(first))
+    for row in range(low, high):
+        if row > low:
+            step = max(step, abs(_derivative(table, row, order, 0.0) - left))
+        left = _derivative(table, row, order, 1.0)
+    return step if step > 100 * ROUNDING * most / shortest**order else 0.0
 
 
 @bare

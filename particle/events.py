@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.breakaway import slope
-from particle.cells import UNBUILT
+from particle.cells import NOWHERE, UNBUILT
 from particle.fields import fields
 from particle.flight import JUMP, fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.local import END, enter, gap_at, go_on, new_local
+from particle.local import CELL, END, gap_at, new_local
 from particle.motion import Part, energy_at_rest, margin, pull
 from particle.record import (
     ENDS,
@@ -52,8 +52,10 @@ from particle.slide import (
     TURNED,
     WORK_LIMIT,
     Request,
+    bridge,
     slide,
 )
+from particle.span import enter, go_on
 from particle.stick import leaves_rest, new_rest
 
 FloatArray = NDArray[np.float64]
@@ -119,6 +121,7 @@ def march(surface: Any, request: Request, pairs: Pairs, memory: Memory) -> tuple
                     if mode == FLYING and not request.flies:
                         return _results(record, DETACHED, count)
             count[1] += 1
+        bridge(local, request, mode)
         cell = enter(surface, local, state[0], state[1], time, end)
         if cell == UNBUILT:
             verdict = LACKS_CELL
@@ -159,6 +162,7 @@ def march(surface: Any, request: Request, pairs: Pairs, memory: Memory) -> tuple
             mode, time, h, verdict = slide(surface, local, request, pairs, step, count, mode, time, h, span_end, state)
             if mode == RESTING:
                 event = STOPS
+                local.counts[CELL] = NOWHERE  # from here on without bridges
             elif mode == TURNED:
                 mode, event = MANIFOLD, REVERSES
         if verdict == DETACHED and request.flies:

@@ -7,7 +7,7 @@ import pytest
 
 from particle import ConstantFriction, polynomial_surface
 from particle.fields import fields
-from particle.local import CELL, enter, new_local
+from particle.local import CELL, new_local
 from particle.motion import Part
 from particle.record import SLIDING
 from particle.runge_kutta import (
@@ -20,6 +20,7 @@ from particle.runge_kutta import (
     rate,
     tableau,
 )
+from particle.span import enter
 
 OMEGA = 3.0  # 1/s
 
