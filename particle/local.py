@@ -61,6 +61,14 @@ def new_local(surface: Any) -> Local:
         np.zeros(ORDER),
         np.zeros((surface.cells.most_drives + 2, ORDER + 4)),
     )
+    prepare(surface, local)
+    return local
+
+
+@jit
+def prepare(surface: Any, local: Local) -> None:
+    """Scratch memory of a surface before there is a cell and a time."""
+    local.frame[:] = 0.0
     local.frame[SIZE], local.frame[FLOOR], local.frame[REACH] = (
         surface.size,
         surface.floor / surface.size,
@@ -68,7 +76,6 @@ def new_local(surface: Any) -> Local:
     )
     local.counts[BASE] = 2 * surface.moving_base
     local.counts[CELL] = NOWHERE
-    return local
 
 
 @bare
