@@ -32,7 +32,7 @@ def test_ends_and_loads_are_as_good_as_the_tolerance(run, tolerance, evaluations
     assert np.hypot(*(found.position[-1] - truth.position[-1])) < 5 * tolerance * RADIUS
     moments = np.random.default_rng(0).uniform(0, DURATION, 50)
     samples, true = found.at(moments), truth.at(moments)
-    assert np.hypot(*(samples.position - true.position).T).max() < 5 * tolerance * RADIUS
+    assert np.hypot(*(samples.position - true.position).T).max() < 50 * tolerance * RADIUS
     times = [one.time - other.time for one, other in zip(found.events, truth.events, strict=True)]
     assert np.abs(times).max() < 300 * tolerance * DURATION
     assert found.energy.balance < 30 * tolerance
