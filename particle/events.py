@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.breakaway import slope
-from particle.cells import NOWHERE, UNBUILT
+from particle.cells import UNBUILT
 from particle.fields import fields
 from particle.flight import JUMP, fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.local import CELL, END, gap_at, new_local, prepare
+from particle.local import END, gap_at, new_local, prepare
 from particle.motion import Part, energy_at_rest, margin, pull
 from particle.record import (
     ENDS,
@@ -169,7 +169,6 @@ def march(surface: Any, request: Request, pairs: Pairs, memory: Memory) -> tuple
             mode, time, h, verdict = slide(surface, local, request, pairs, step, count, mode, time, h, span_end, state)
             if mode == RESTING:
                 event = STOPS
-                local.counts[CELL] = NOWHERE  # from here on without bridges
             elif mode == TURNED:
                 mode, event = MANIFOLD, REVERSES
         if verdict == DETACHED and request.flies:

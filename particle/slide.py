@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.breakaway import Slope, lag, slope, velocity
+from particle.cells import NOWHERE
 from particle.fields import Fields, fields
 from particle.jit import bare
-from particle.local import NEAR, UNIT, gap_at
+from particle.local import CELL, LANDED, NEAR, UNIT, gap_at
 from particle.motion import Part, energy_at_rest, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
@@ -55,6 +56,8 @@ class Request(NamedTuple):
 def bridge(local: Any, request: Request, mode: int) -> None:
     """Let kinks be bridged under a sliding part; when one slips, lands or comes off is found without."""
     sliding = mode in (SLIDING, MANIFOLD)
+    if not sliding and local.frame[LANDED] > 0.0:
+        local.counts[CELL] = NOWHERE  # what is prepared may have bridges in it
     allow(local, request.bridged[0] if sliding else 0.0, request.bridged[1] if sliding else 0.0)
 
 
