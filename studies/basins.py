@@ -32,7 +32,8 @@ def is_over_starts(shown: Shown) -> bool:
 def draw_basins(figure: Figure, axes: list[Axes], shown: Shown) -> None:
     """Draw the actuator that is nearest to the end into the first axes, and how near it is into the second."""
     turned = shown.axes[0].axis.field.locations[0] == STARTS[1]
-    across, up = reversed(shown.axes) if turned else shown.axes
+    places = [Scale.of(scale.axis, np.sort(scale.axis.values)) for scale in shown.axes]
+    across, up = reversed(places) if turned else places
     actuators = np.array([actuator.position for actuator in shown.study.case.actuators])
     away = np.linalg.norm(shown.end[..., None, :] - actuators, axis=-1)  # (n, m, repeats, N)
     numbers, staying = shown.usual_outcome, [OUTCOMES.index(outcome.value) for outcome in STAYING]

@@ -20,6 +20,7 @@ from studies.threshold import BoolArray
 
 COLOURS = ("#40719c", "#e0c368", "#b8862d", "#c8371b", "#7a4b94", "#8a8a8a", "#dedede")
 """Of the outcomes, by their number."""
+MOST_NAMES = 12  # along an axis
 
 
 def draw_maps(figure: Figure, axes: list[Axes], shown: Shown) -> None:
@@ -77,24 +78,30 @@ def frame(axes: Axes, across: Scale, up: Scale | None = None) -> None:
     """Label the axes and set their scales."""
     plain_ticks(axes)
     axes.set_xlabel(across.label)
-    if across.axis.logarithmic:
+    if across.logarithmic:
         axes.set_xscale("log")
     if across.texts:
-        axes.set_xticks(range(len(across.texts)), across.texts)
+        axes.set_xticks(*_named(across.texts))
     if up:
         axes.set_ylabel(up.label)
-        if up.axis.logarithmic:
+        if up.logarithmic:
             axes.set_yscale("log")
         if up.texts:
-            axes.set_yticks(range(len(up.texts)), up.texts)
+            axes.set_yticks(*_named(up.texts))
+
+
+def _named(texts: tuple[str, ...]) -> tuple[range, tuple[str, ...]]:
+    """Places of not too many texts along an axis, and these."""
+    places = range(0, len(texts), -(-len(texts) // MOST_NAMES))
+    return places, texts[:: places.step]
 
 
 def edges(scale: Scale) -> FloatArray:
     """The edges (n + 1,) of the fields around its values (n,), half-way to the next ones."""
-    values = np.log(scale.drawn) if scale.axis.logarithmic else scale.drawn
+    values = np.log(scale.drawn) if scale.logarithmic else scale.drawn
     if len(values) == 1:
         values = values[0] + np.array([-0.5, 0.5]) * (abs(values[0]) or 1.0)
-        return np.exp(values) if scale.axis.logarithmic else values
+        return np.exp(values) if scale.logarithmic else values
     middles = (values[1:] + values[:-1]) / 2
     found = np.concatenate([[2 * values[0] - middles[0]], middles, [2 * values[-1] - middles[-1]]])
-    return np.exp(found) if scale.axis.logarithmic else found
+    return np.exp(found) if scale.logarithmic else found
