@@ -19,10 +19,17 @@ from coupling.cli import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
 )
 @click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one on each processor].")
 @click.option("--scheduler", "-s", help="Address of a dask scheduler whose workers find the paths, tcp://HOST:PORT.")
+@click.option("--overwrite", is_flag=True, help="Replace the results of another study of this name.")
 @click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 def sweep(
-    study: Path, output: Path | None, threads: int | None, scheduler: str | None, quiet: bool, as_json: bool
+    study: Path,
+    output: Path | None,
+    threads: int | None,
+    scheduler: str | None,
+    overwrite: bool,
+    quiet: bool,
+    as_json: bool,
 ) -> None:
     """Find the paths at all points of STUDY and write them to one file.
 
@@ -41,7 +48,7 @@ def sweep(
     refusing(check_folder, folder)
     try:
         with nullcontext(untold) if quiet else CountBar("paths") as tell:
-            found = refusing(run_study, read, folder, threads, tell, scheduler)
+            found = refusing(run_study, read, folder, threads, tell, scheduler, overwrite)
     except KeyboardInterrupt:
         click.echo("interrupted; the same command goes on where this one stopped", err=True)
         sys.exit(INTERRUPTED)

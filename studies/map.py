@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,9 +32,12 @@ def draw_sweep(study: Study, dataset: xarray.Dataset, path: Path) -> Path:
     figure = Figure()
     FigureCanvasAgg(figure)
     compose(figure, study, dataset)
-    partial = path.with_suffix(".partial.png")
-    figure.savefig(partial, dpi=110)
-    partial.replace(path)
+    partial = path.with_suffix(f".{os.getpid()}.partial.png")
+    try:
+        figure.savefig(partial, dpi=110)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
     return path
 
 

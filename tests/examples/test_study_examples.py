@@ -20,7 +20,7 @@ def found(tmp_path_factory):
 
 def test_each_leaves_its_results_and_a_picture(found):
     for name, sweep in found.items():
-        assert sorted(file.name for file in sweep.files) == [f"{name}.nc", f"{name}.png"]
+        assert sorted(file.name for file in sweep.files) == [f"{name}.nc", f"{name}.sweep.png"]
         assert (sweep.dataset["mistakes"].values > 0).sum() == sweep.outcomes.get("refused", 0)
 
 

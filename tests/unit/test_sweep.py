@@ -192,19 +192,22 @@ def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkey
     monkeypatch.setattr(Engine, "records", counted)
     with pytest.raises(KeyboardInterrupt):
         run_study(study, tmp_path / "out")
-    assert sorted(file.name for file in (tmp_path / "out").rglob("*.chunk")) == ["00000000.chunk", "00000001.chunk"]
+    assert sorted(file.name for file in (tmp_path / "out").rglob("*.chunk")) == [
+        "0000000000-0000000002.chunk",
+        "0000000002-0000000004.chunk",
+    ]
     asked.clear()
     told = []
     sweep = run_study(study, tmp_path / "out", tell=lambda done, of: told.append((done, of)))
-    assert asked == [2] and told == [(2, 6), (4, 6), (6, 6)]
+    assert asked == [2] and told == [(4, 6), (6, 6)]
     assert same(whole, sweep.dataset)
-    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["study.nc", "study.png"]
+    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["study.nc", "study.sweep.png"]
     asked.clear()
     assert same(whole, run_study(study, tmp_path / "out").dataset) and asked == []
     changed = read_study(written(tmp_path, SHAKEN.replace("40 um", "41 um"), PLATFORM))
     with pytest.raises(KeyboardInterrupt):  # it begins anew, and is stopped after two chunks
-        run_study(changed, tmp_path / "out")
-    assert asked == [0, 1]
+        run_study(changed, tmp_path / "out", overwrite=True)
+    assert asked == [0, 1] and same(whole, read_dataset(tmp_path / "out" / "study.nc").load())
 
 
 def test_the_key_is_that_of_what_the_results_depend_on(tmp_path):
@@ -232,13 +235,6 @@ def test_the_key_knows_the_content_of_a_measured_motion(tmp_path):
         motion.write_text("time [ms], x [um]\n" + "\n".join(rows) + "\n")
         keys.add(read_study(written(tmp_path, '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg"]\n', case)).key)
     assert len(keys) == 2
-
-
-def test_a_file_of_another_kind_is_not_replaced(tmp_path):
-    (tmp_path / "study.nc").write_text("mine")
-    done = CliRunner().invoke(main, ["sweep", str(written(tmp_path, SHAKEN, PLATFORM)), "-o", str(tmp_path)])
-    assert done.exit_code == 2 and "whose study.nc is no sweep" in done.output
-    assert (tmp_path / "study.nc").read_text() == "mine"
 
 
 def test_the_command_says_what_it_found(tmp_path):
@@ -296,7 +292,7 @@ def test_a_sweep_that_is_killed_and_resumed_has_the_bits_of_one_that_was_not(tmp
     assert all(file.read_bytes() == content for file, content in kept.items())
     subprocess.run(command(path, folder), check=True)
     assert same(whole, read_dataset(folder / "study.nc").load())
-    assert sorted(file.name for file in folder.iterdir()) == ["study.nc", "study.png"]
+    assert sorted(file.name for file in folder.iterdir()) == ["study.nc", "study.sweep.png"]
 
 
 def test_records_have_the_kinds_of_their_columns():
