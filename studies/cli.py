@@ -33,13 +33,15 @@ def sweep(
 ) -> None:
     """Find the paths at all points of STUDY and write them to one file.
 
-    A sweep that was interrupted goes on where it stopped when it is started again.
+    A sweep that was interrupted goes on where it stopped when it is started again. Exits with 1 when every point was
+    refused.
     """
     if scheduler is not None and threads is not None:
         raise click.UsageError("--threads must not be given with --scheduler: each worker uses all of its own threads")
     from coupling.progress import CountBar, untold
     from coupling.results import check_folder
     from studies.read import read_study
+    from studies.record import REFUSED
     from studies.report import figures, lines
     from studies.run import run_study
 
@@ -57,3 +59,5 @@ def sweep(
     elif not quiet:
         for label, text in lines(found):
             click.echo(f"{label:<12}{text}")
+    if set(found.outcomes) == {REFUSED}:
+        sys.exit(1)

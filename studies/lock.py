@@ -13,11 +13,12 @@ NAME = "lock"
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Have a folder for oneself; afterwards it is removed if it is empty.
+    """Have a folder for oneself; afterwards it is removed if it is empty, with those around it that were made for it.
 
     Raises RuntimeError when another process has it. The lock of a process that was killed is free.
     """
     file = folder / NAME
+    made = [folder, *(around for around in folder.parents if not around.exists())]
     descriptor = _held(file)
     try:
         yield
@@ -25,7 +26,8 @@ def alone_in(folder: Path) -> Iterator[None]:
         file.unlink(missing_ok=True)
         os.close(descriptor)
         with suppress(OSError):
-            folder.rmdir()
+            for one in made:
+                one.rmdir()
 
 
 def _held(file: Path) -> int:

@@ -22,9 +22,7 @@ from studies.engine import Engine
 from studies.lock import alone_in
 from studies.map import draw_sweep
 from studies.record import OUTCOMES, Records
-from studies.refusal import refusals
 from studies.study import Study
-from studies.variants import Variants
 
 if TYPE_CHECKING:
     import xarray
@@ -54,11 +52,7 @@ class Sweep:
     def first_refused(self) -> list[str]:
         """What is wrong with the first point that was refused; nothing: none was."""
         refused = np.flatnonzero(self.dataset["mistakes"].values.ravel())
-        return (
-            refusals(self.study, Variants(self.study.case, self.study.points.axes), int(refused[0]))
-            if len(refused)
-            else []
-        )
+        return Engine(self.study).faults(int(refused[0])) if len(refused) else []
 
 
 def run_study(
@@ -131,7 +125,8 @@ def _find(engine: Engine, store: ChunkStore, tell: Tell, scheduler: str | None) 
     """Find the chunks that the store does not have yet."""
     missing = [chunk for chunk in range(engine.chunks) if store.load(*engine.span(chunk)) is None]
     done = engine.paths - sum(stop - start for start, stop in map(engine.span, missing))
-    tell(done, engine.paths)
+    if done:
+        tell(done, engine.paths)
     found = engine.records_of(missing) if scheduler is None else records_on(scheduler, engine, missing)
     with closing(found):
         for chunk, records in found:

@@ -13,6 +13,7 @@ import xarray
 from click.testing import CliRunner
 from sweeps import PLATFORM, written
 
+from coupling.progress import CountBar
 from studies import dataset, read_study, run_study, study
 from studies.chunk_store import ChunkStore
 from studies.cli import main
@@ -155,6 +156,13 @@ def test_a_lock_keeps_what_else_is_in_its_folder(tmp_path):
     assert [file.name for file in (tmp_path / "a").iterdir()] == ["chunk"]
 
 
+def test_a_lock_leaves_no_folder_that_was_made_for_it(tmp_path):
+    (tmp_path / "mine").mkdir()
+    with alone_in(tmp_path / "mine" / "a" / "b"):
+        pass
+    assert list((tmp_path / "mine").iterdir()) == []
+
+
 def test_a_full_disk_is_told_before_the_results_are_written_and_chunks_are_kept(tmp_path, monkeypatch):
     usage = shutil.disk_usage(tmp_path)
     with monkeypatch.context() as patch:
@@ -203,3 +211,18 @@ def test_plain_xarray_knows_the_coordinates(tmp_path, sampling):
         (axis,) = sweep.study.points.axes
         assert list(plain.coords) == [axis.name] and set(plain.data_vars) == set(COLUMNS)
     sweep.dataset.close()
+
+
+def test_the_rate_of_a_resumed_sweep_leaves_out_what_was_there(monkeypatch):
+    clock = [0.0]
+    counted = CountBar("paths")
+    monkeypatch.setattr(counted._bar, "get_time", lambda: clock[0])
+    monkeypatch.setattr(counted, "_start", lambda: None)
+    tell = counted.__enter__()
+    for second, done in enumerate((900, 910, 920, 930)):
+        clock[0] = float(second)
+        tell(done, 1000)
+    (task,) = counted._bar.tasks
+    assert task.description == "paths, 10/s" and task.time_remaining == 7
+    tell(1000, 1000)
+    assert task.description == "paths; writing them"
