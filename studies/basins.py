@@ -7,6 +7,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from coupling.plate_case import PlateCase
 from coupling.readable import readable
@@ -21,6 +22,7 @@ STAYING = (Outcome.STUCK, Outcome.MOVING)
 MOST_ACTUATORS = 20  # with a colour each
 SHORT = 0.02  # of the distance between the outermost actuators: less is hardly a way
 STAYS = "#f2efe6"
+WHITE = withStroke(linewidth=2.0, foreground="white")
 
 
 def is_over_starts(shown: Shown) -> bool:
@@ -68,6 +70,8 @@ def _draw_plate(axes: Axes, shown: Shown, across: Scale, up: Scale) -> None:
         axes.add_collection(LineCollection([c * scale for c in rim_curves(outline, step)], colors="black"))
     actuators = np.array([actuator.position for actuator in shown.study.case.actuators]) * scale
     axes.plot(*actuators.T, "^", color="white", markeredgecolor="black", markersize=7)
+    for k, place in enumerate(actuators):
+        axes.annotate(str(k), place, (4, 4), textcoords="offset points", fontsize=8, path_effects=[WHITE], clip_on=True)
     axes.set_aspect("equal")
     axes.set_xlim(*limits[0])
     axes.set_ylim(*limits[1])

@@ -20,6 +20,7 @@ from studies.threshold import BoolArray
 
 COLOURS = ("#40719c", "#e0c368", "#b8862d", "#c8371b", "#7a4b94", "#8a8a8a", "#dedede")
 """Of the outcomes, by their number."""
+OUTCOME = "what became of the part"
 MOST_NAMES = 12  # along an axis
 
 
@@ -28,6 +29,7 @@ def draw_maps(figure: Figure, axes: list[Axes], shown: Shown) -> None:
     across, up = shown.axes
     draw_field(figure, axes[0], across, up, shown.mean_distance, "distance from the start")
     draw_classes(axes[1], across, up, shown.usual_outcome, OUTCOMES, COLOURS)
+    axes[1].set_title(OUTCOME, fontsize=10)
     for one in axes[:2]:
         draw_outline(one, across, up, shown.holds)
 
@@ -39,7 +41,7 @@ def draw_field(figure: Figure, axes: Axes, across: Scale, up: Scale, lengths: Fl
     if np.isfinite(lengths).any():
         unit = readable(lengths[np.isfinite(lengths)], "m")
         mesh = axes.pcolormesh(edges(across), edges(up), np.ma.masked_invalid(lengths).T * unit.per_si, cmap="viridis")
-        figure.colorbar(mesh, ax=axes, label=f"{said} [{unit.name}]")
+        figure.colorbar(mesh, ax=axes, label=f"[{unit.name}]")
 
 
 def draw_classes(

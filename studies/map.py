@@ -6,7 +6,6 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -60,4 +59,6 @@ def compose(figure: Figure, study: Study, dataset: xarray.Dataset) -> None:
         draw_threshold(axes[2], shown, shown.holds, study.threshold.said)
     said = ", ".join(f"{name} = {text}" for name, text in shown.fixed.items())
     repeats = f", mean of {study.points.repeats} starts" if study.points.repeats > 1 else ""
-    figure.suptitle(f"{study.name}: {int(np.size(dataset['outcome']))} paths{repeats}" + (f", {said}" if said else ""))
+    drawn, of = shown.outcome.size, len(study.points)
+    paths = f"{of} paths" if drawn == of else f"{drawn} of {of} paths"
+    figure.suptitle(f"{study.name}: {paths}{repeats}" + (f", {said}" if said else ""))

@@ -102,7 +102,8 @@ class Shown:
             if axis in axes and axis.field.kind != "text":
                 picked[axis.name] = np.argsort(axis.values)
             elif axis not in axes:
-                picked[axis.name] = len(axis.values) // 2
+                order = np.argsort(axis.values) if axis.field.kind != "text" else np.arange(len(axis.values))
+                picked[axis.name] = int(order[len(order) // 2])
                 scale = Scale.of(axis, np.array([axis.values[picked[axis.name]]], axis.kind))
                 number = scale.texts[0] if scale.texts else f"{scale.drawn[0]:.4g} {scale.unit.name}".rstrip("1 ")
                 fixed[axis.name] = number

@@ -108,7 +108,7 @@ def test_a_map_over_a_text_names_it(tmp_path):
 
 def test_axes_beyond_the_longest_two_stay_at_their_middle_value(tmp_path):
     figure = drawn(*made(tmp_path, STROKE + LIMIT + axis("part.mass", '["1e-9 kg", "2e-9 kg", "3e-9 kg"]', "mass")))
-    assert "limit = 2 nN" in figure.get_suptitle()
+    assert "9 of 18 paths, limit = 2 nN" in figure.get_suptitle()
     assert figure.axes[0].get_xlabel() == "stroke [µm]"
 
 
