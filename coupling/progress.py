@@ -112,5 +112,5 @@ class CountBar(_Bar):
             self._begun = True
         speed = self._bar.tasks[0].speed
         rate = f"{self._pieces}, {speed:.0f}/s" if speed else self._pieces
-        said = f"{self._pieces}; writing them" if done == of else rate
+        said = f"{self._pieces}; writing all" if done == of else rate
         self._bar.update(self._task, completed=done, description=said)

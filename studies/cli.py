@@ -59,5 +59,7 @@ def sweep(
     elif not quiet:
         for label, text in lines(found):
             click.echo(f"{label:<12}{text}")
+        for warning in found.warnings:
+            click.secho(f"{'warning':<12}{warning}", fg="yellow")
     if set(found.outcomes) == {REFUSED}:
         sys.exit(1)

@@ -42,6 +42,7 @@ def draw_curve(axes: list[Axes], shown: Shown) -> None:
         low = low + share
     axes[1].set_ylabel("share of the paths [%]")
     axes[1].set_ylim(0, 100)
-    axes[1].set_xlim(borders[0], borders[-1])
+    for one in axes:
+        one.set_xlim(borders[0], borders[-1])
     axes[1].set_title(OUTCOME, fontsize=10)
     add_key(axes[1], shown.outcome, OUTCOMES, COLOURS)

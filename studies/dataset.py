@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -27,16 +27,18 @@ AT_ONCE: Final = 65536  # points whose coordinates are written together
 ROOM: Final = 1_000_000  # bytes, for all that does not grow with the points
 
 
-def write_dataset(study: Study, chunks: Iterable[tuple[int, Records]], path: Path) -> Path:
+def write_dataset(
+    study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str] = ()
+) -> Path:
     """Writes the records of a study to the file at `path`, chunk by chunk, and returns that.
 
-    chunks: the number of each chunk's first path, and the records.
+    chunks: the number of each chunk's first path, and the records.  warnings: what a user must know, kept with them.
     Returns once the file is safe on disk. Raises OSError when it has no room.
     """
     _check_room(study, path.parent)
     partial = path.with_suffix(f".partial{path.suffix}")
     try:
-        _write(study, chunks, partial)
+        _write(study, chunks, partial, warnings)
         _sync(partial)
         os.replace(partial, path)
         _sync(path.parent)
@@ -45,11 +47,11 @@ def write_dataset(study: Study, chunks: Iterable[tuple[int, Records]], path: Pat
     return path
 
 
-def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path) -> None:
+def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:
     sizes = study.points.dimensions
     with h5netcdf.File(path, "w") as file:
         file.dimensions = sizes
-        file.attrs.update(_about(study))
+        file.attrs.update(_about(study), warnings="\n".join(warnings))
         _write_axes(file, study)
         for name, column in COLUMNS.items():
             variable = file.create_variable(name, tuple(sizes), column.kind, fillvalue=_fill(column.kind))

@@ -1,6 +1,7 @@
 """One sweep, from study to results: this file reads as the pipeline.
 
-study -> chunks of points -> records of their paths -> chunks on disk -> one file of all -> picture
+study -> chunks of points -> records of their paths -> chunks on disk -> check of the model -> one file of all
+-> picture
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from studies.lock import alone_in
 from studies.map import draw_sweep
 from studies.record import OUTCOMES, Records
 from studies.study import Study
+from studies.validity import model_warnings
 
 if TYPE_CHECKING:
     import xarray
@@ -47,6 +49,11 @@ class Sweep:
         """How many paths ended how."""
         counts = np.bincount(self.dataset["outcome"].values.ravel(), minlength=len(OUTCOMES))
         return {name: int(count) for name, count in zip(OUTCOMES, counts, strict=True) if count}
+
+    @property
+    def warnings(self) -> list[str]:
+        """Where the model stops holding, at the base case and a few corners of the axes."""
+        return str(self.dataset.attrs["warnings"]).splitlines()
 
     @property
     def first_refused(self) -> list[str]:
@@ -116,7 +123,7 @@ def _found(study: Study, folder: Path, threads: int | None, tell: Tell, schedule
         if key_of(file) != key:
             engine = Engine(study, threads)
             _find(engine, store, tell, scheduler)
-            write_dataset(study, _chunks(engine, store), file)
+            write_dataset(study, _chunks(engine, store), file, model_warnings(study))
         store.clear()
     return file
 

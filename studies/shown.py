@@ -21,7 +21,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 MOST_POINTS = 100_000  # of random ones
-NAMED = "m", "s", "N", "Hz", "kg", "m/s", "Pa"
+NAMED = "m", "s", "N", "Hz", "m/s", "Pa"
 """Units that take a prefix."""
 UNEVEN = 4.0
 """Listed values whose largest step is more times the smallest one are not drawn at their places."""
@@ -43,7 +43,7 @@ class Scale:
             texts = tuple(dict.fromkeys(str(value) for value in values))
             return cls(axis, Unit("", 1.0), np.array([texts.index(str(value)) for value in values], float), texts=texts)
         numbers = np.asarray(values, dtype=float)
-        unit = readable(numbers, axis.field.unit) if axis.field.unit in NAMED else Unit(axis.field.unit, 1.0)
+        unit = _unit(numbers, axis.field.unit)
         return cls(axis, unit, numbers, axis.logarithmic)
 
     def in_cells(self) -> Scale:
@@ -66,6 +66,13 @@ class Scale:
     def drawn(self) -> FloatArray:
         """Its values in its unit."""
         return self.values * self.unit.per_si
+
+
+def _unit(numbers: FloatArray, si: str) -> Unit:
+    if si == "kg" and np.abs(numbers).max() < 1:
+        grams = readable(1e3 * numbers, "g")
+        return Unit(grams.name, 1e3 * grams.per_si)
+    return readable(numbers, si) if si in NAMED else Unit(si, 1.0)
 
 
 def _even(values: FloatArray) -> bool:

@@ -14,6 +14,7 @@ import xarray
 from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
+from coupling import read_case
 from coupling.run import build_friction, build_surface, follow_part
 from studies import engine, read_study, run_study
 from studies.chunk_store import ChunkStore
@@ -70,29 +71,41 @@ def test_a_platform_is_swept_in_memory_and_its_axes_are_labelled(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "axes"),
+    ("text", "axes", "lines"),
     [
-        (PLATFORM, SHAKEN),
+        (PLATFORM, SHAKEN, [('stroke = "20 um"', 'stroke = "{} m"'), ('limit = "20 nN"', 'limit = "{} N"')]),
         pytest.param(
             PLATE,
             '[[axes]]\nfield = "plate.radius"\nvalues = ["300 um", "310 um"]\n'
             '[[axes]]\nfield = "actuators.0.stroke"\nvalues = ["50 um", "70 um"]\n'
             '[[axes]]\nfield = "part.velocity.0"\nvalues = ["0 m/s", "10 mm/s"]\n'
             '[[axes]]\nfield = "run.duration"\nvalues = ["4 ms", "5 ms"]\n',
+            [
+                ('radius = "300 um"', 'radius = "{} m"'),
+                ('stroke = "60 um"', 'stroke = "{} m"'),
+                ("[friction]", 'velocity = ["{} m/s", "0 m/s"]\n[friction]'),
+                ('duration = "5 ms"', 'duration = "{} s"'),
+            ],
             marks=pytest.mark.compiled,
         ),
         pytest.param(
-            LATTICE, '[[axes]]\nfield = "lattice.stroke"\nvalues = ["50 um", "70 um"]\n', marks=pytest.mark.compiled
+            LATTICE,
+            '[[axes]]\nfield = "lattice.stroke"\nvalues = ["50 um", "70 um"]\n',
+            [('stroke = "5 * (1 + column) um"', 'stroke = "{} m"')],
+            marks=pytest.mark.compiled,
         ),
     ],
     ids=["platform", "plate", "lattice"],
 )
-def test_each_path_has_the_bits_of_a_run_of_its_case(tmp_path, text, axes):
+def test_each_path_has_the_bits_of_a_run_of_a_file_with_its_values(tmp_path, text, axes, lines):
     study = read_study(written(tmp_path, axes, text))
     records = run_study(study).dataset
-    made = Engine(study)
     for k, values in enumerate(study.points.values(0, len(study.points))):
-        case, _ = made.variants.at(values)
+        changed = text
+        for value, (old, new) in zip(values, lines, strict=True):
+            changed = changed.replace(old, new.format(value), 1)
+        (tmp_path / "changed.toml").write_text(changed)
+        case = read_case(tmp_path / "changed.toml")
         path = follow_part(case, build_surface(case), build_friction(case))
         found = {name: records[name].values.ravel()[k] for name in COLUMNS}
         assert (found["end_x"], found["end_y"]) == tuple(path.position[-1])

@@ -14,6 +14,7 @@ from studies import engine, read_study, run_study
 from studies.cli import main
 from studies.engine import Engine
 from studies.record import COLUMNS, OUTCOMES
+from studies.validity import corners
 
 FREQUENCY = '[[axes]]\nfield = "plate.motion.x.frequency"\nvalues = ["200 Hz", "1e170 Hz", "300 Hz"]\n'
 
@@ -128,3 +129,34 @@ def test_ten_thousand_actuators_are_varied_in_reasonable_time(tmp_path):
     assert [{actuator.stroke for actuator in made.actuators} for made in cases] == [{1.1e-6}, {1.2e-6}, {1.3e-6}]
     assert len({actuator.position for actuator in cases[0].actuators}) == len(cases[0].actuators) == 10_001
     assert cases[0].actuators[7].position == study.case.actuators[7].position
+
+
+SOFT = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["1 um", "60 um", "0.1 um"]\n'
+
+
+@pytest.mark.compiled
+def test_the_command_warns_where_the_model_stops_holding(tmp_path):
+    case = PLATE.replace('"60 um"', '"0.1 um"')
+    warning, slope = run_study(read_study(written(tmp_path, SOFT, case))).warnings
+    assert slope.startswith("The surface is as steep as ")
+    assert re.match(r"The plate deflects by 1\d(\.\d)? times its thickness", warning)
+    done = CliRunner().invoke(main, ["sweep", str(written(tmp_path, SOFT, case)), "-o", str(tmp_path / "out")])
+    assert f"warning     {warning}\n" in done.output
+    assert run_study(read_study(written(tmp_path, SOFT.replace('"1 um", "60 um"', '"0.2 um"'), case))).warnings == []
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('[[axes]]\nfield = "part.mass"\nvalues = ["2e-9 kg", "3e-9 kg", "1e-9 kg"]\n', [2, 1]),
+        ('sampling = "list"\n[[axes]]\nfield = "part.mass"\nvalues = ["2e-9 kg", "3e-9 kg", "1e-9 kg"]\n', [2, 1]),
+        (
+            '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg", "2e-9 kg", "3e-9 kg"]\n'
+            '[[axes]]\nfield = "actuators.0.cycle"\nvalues = ["up-down", "up"]\n',
+            [0, 1, 4, 5],
+        ),
+        ('[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg"]\n', [0]),
+    ],
+)
+def test_corners_have_the_least_and_the_greatest_values(tmp_path, text, expected):
+    assert corners(read_study(written(tmp_path, text)).points) == expected

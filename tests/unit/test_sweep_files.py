@@ -225,4 +225,4 @@ def test_the_rate_of_a_resumed_sweep_leaves_out_what_was_there(monkeypatch):
     (task,) = counted._bar.tasks
     assert task.description == "paths, 10/s" and task.time_remaining == 7
     tell(1000, 1000)
-    assert task.description == "paths; writing them"
+    assert task.description == "paths; writing all"
