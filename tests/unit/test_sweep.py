@@ -44,6 +44,16 @@ range = ["5 um", "6 um"]
 field = "actuators.*.frequency"
 range = ["350 Hz", "500 Hz"]
 """
+STROKES = """\
+sampling = "random"
+points = 24
+[[axes]]
+field = "actuators.*.stroke"
+range = ["40 um", "70 um"]
+[[axes]]
+field = "actuators.0.frequency"
+range = ["350 Hz", "500 Hz"]
+"""
 
 
 def same(one, other):
@@ -115,9 +125,11 @@ def test_each_path_has_the_bits_of_a_run_of_a_file_with_its_values(tmp_path, tex
         assert found["last_motion"] == (path.time[-1] if path.at_rest_since is None else path.at_rest_since)
 
 
-@pytest.mark.compiled
-def test_the_bits_do_not_depend_on_the_number_of_threads(tmp_path):
-    study = read_study(written(tmp_path, PLATES.replace("points = 12", "points = 4"), PLATE))
+@pytest.mark.parametrize(
+    ("axes", "case"), [(SHAKEN, PLATFORM), pytest.param(STROKES, PLATE, marks=pytest.mark.compiled)]
+)
+def test_the_bits_do_not_depend_on_the_number_of_threads(tmp_path, axes, case):
+    study = read_study(written(tmp_path, axes, case))
     assert same(run_study(study, threads=1).dataset, run_study(study, threads=3).dataset)
 
 
