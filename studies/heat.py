@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.collections import LineCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import ScalarFormatter
 from numpy.typing import NDArray
 
 from coupling.readable import plain_ticks, readable
@@ -22,6 +24,7 @@ COLOURS = ("#40719c", "#e0c368", "#b8862d", "#c8371b", "#7a4b94", "#8a8a8a", "#d
 """Of the outcomes, by their number."""
 OUTCOME = "what became of the part"
 MOST_NAMES = 12  # along an axis
+FEW_DIGITS = 1e-4, 1e7  # numbers between them are written out
 
 
 def draw_maps(figure: Figure, axes: list[Axes], shown: Shown) -> None:
@@ -82,20 +85,22 @@ def frame(axes: Axes, across: Scale, up: Scale | None = None) -> None:
     axes.set_xlabel(across.label)
     if across.logarithmic:
         axes.set_xscale("log")
-    if across.texts:
-        axes.set_xticks(*_named(across.texts))
+    _name_ticks(axes.xaxis, across)
     if up:
         axes.set_ylabel(up.label)
         if up.logarithmic:
             axes.set_yscale("log")
-        if up.texts:
-            axes.set_yticks(*_named(up.texts))
+        _name_ticks(axes.yaxis, up)
 
 
-def _named(texts: tuple[str, ...]) -> tuple[range, tuple[str, ...]]:
-    """Places of not too many texts along an axis, and these."""
-    places = range(0, len(texts), -(-len(texts) // MOST_NAMES))
-    return places, texts[:: places.step]
+def _name_ticks(axis: Axis, scale: Scale) -> None:
+    """Name a few of a scale's texts, and write numbers with a power of ten where they would have many digits."""
+    formatter = axis.get_major_formatter()
+    if scale.texts:
+        places = range(0, len(scale.texts), -(-len(scale.texts) // MOST_NAMES))
+        axis.set_ticks(list(places), list(scale.texts[:: places.step]))
+    elif isinstance(formatter, ScalarFormatter) and not FEW_DIGITS[0] <= np.abs(scale.drawn).max() < FEW_DIGITS[1]:
+        formatter.set_scientific(True)
 
 
 def edges(scale: Scale) -> FloatArray:

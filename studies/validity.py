@@ -14,6 +14,7 @@ from coupling.case import Case
 from coupling.platform_case import PlatformCase
 from coupling.run import run_case
 from coupling.summary import PlateSummary
+from studies.engine import FAILURES
 from studies.points import Points
 from studies.study import Study
 from studies.variants import Variants
@@ -44,7 +45,7 @@ def model_warnings(study: Study) -> tuple[str, ...]:
     for case in _cases(study):
         try:
             summary = run_case(case).summary
-        except (ValueError, ArithmeticError, RuntimeError):
+        except FAILURES:
             continue
         if isinstance(summary, PlateSummary):
             summaries.append(summary)
@@ -62,7 +63,7 @@ def _cases(study: Study) -> Iterator[Case]:
         path = point * points.repeats
         try:
             yield variants.at(points.values(path, path + 1)[0])[0]
-        except (ValueError, ArithmeticError):
+        except FAILURES:
             continue
 
 

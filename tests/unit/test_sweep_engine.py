@@ -61,6 +61,11 @@ def test_a_plate_that_cannot_be_solved_is_refused_with_the_reason(tmp_path):
     assert done.exit_code == 1 and "refused     the first for what the part moves over cannot be made" in done.output
 
 
+def test_what_is_wrong_with_a_length_is_told_with_its_unit(tmp_path):
+    study = read_study(written(tmp_path, '[[axes]]\nfield = "plate.radius"\nvalues = ["10 um", "300 um"]\n'))
+    assert Engine(study).faults(0)[0].endswith("smallest width, 10 um; got 80 um")
+
+
 @pytest.mark.compiled
 def test_a_refused_start_has_its_place(tmp_path):
     axes = '[[axes]]\nfield = "part.position.0"\nvalues = ["0 um", "1 m"]\n'
