@@ -46,7 +46,7 @@ docs: .venv/installed
 	@touch $@
 
 .venv/developer: .venv/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev,cluster]"
 	@touch $@
 
 .venv/benchmarks: .venv/installed

@@ -157,6 +157,10 @@ class TableCase(Table):
         return case
 
 
+FrictionCase = KogutEtsionCase | ConstantCase | CoulombCase | TableCase
+AnyFriction = Annotated[FrictionCase, Field(discriminator="model")]
+
+
 class RunCase(Table):
     """The run: `duration` in s, `gravity` in m/s^2 towards the plate or along x, y, z, `tolerance` without dimension.
 
@@ -204,7 +208,7 @@ class _CaseTables(Table):
     actuators: tuple[ActuatorCase, ...]
     lattice: LatticeCase | None = None
     part: PartCase
-    friction: Annotated[KogutEtsionCase | ConstantCase | CoulombCase | TableCase, Field(discriminator="model")]
+    friction: AnyFriction
     run: RunCase
 
     @model_validator(mode="wrap")
@@ -251,7 +255,7 @@ _FRICTION: dict[str, type[BaseModel]] = {
     "coulomb": CoulombCase,
     "table": TableCase,
 }
-_TABLES: dict[str, type[BaseModel]] = {
+TABLES: dict[str, type[BaseModel]] = {
     "": _CaseTables,
     "actuators": ActuatorCase,
     "lattice": LatticeCase,
@@ -260,14 +264,19 @@ _TABLES: dict[str, type[BaseModel]] = {
     BY_DRIVES: MotionCase,
     "part": PartCase,
     "run": RunCase,
+    **_FRICTION,
+    **PLATES,
 }
+"""The models by the names of their tables, of those with several by what tells them apart."""
 
 
 def read_case(path: str | os.PathLike[str]) -> Case:
     """Read the case file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read."""
     text, data = load(path)
     try:
-        tables = _CaseTables.model_validate(data, context=units.UNITS_REQUIRED | {"folder": Path(path).parent})
+        tables = _CaseTables.model_validate(
+            data, context=units.UNITS_REQUIRED | {"folder": Path(path).absolute().parent}
+        )
     except ValidationError as error:
-        raise CaseError(os.fspath(path), find_problems(error, text, data, _TABLES | _FRICTION | PLATES)) from None
+        raise CaseError(os.fspath(path), find_problems(error, text, data, TABLES)) from None
     return Case.model_construct(**dict(tables), name=Path(path).stem, source=text)

@@ -35,11 +35,14 @@ RULES = {
 }
 """What a value must be, by the kind of a failed validation."""
 
+LACKS_DEFAULT = "default_factory_not_called"
+"""The kind of a failed validation that is no mistake of its own: a default depends on a wrong field."""
+
 _SYNTAX = {
     "Cannot overwrite a value": "this is given twice",
     r"Illegal character '\n'": "a text lacks its closing quote",
 }
-_EACH = {"actuators": "actuator", "segments": "segment"}
+_EACH = {"actuators": "actuator", "segments": "segment", "axes": "axis"}
 """What is written in double brackets, and once for each of what."""
 
 
@@ -93,8 +96,7 @@ def find_problems(
     `tables` gives the model of each table by name, those of [friction] by their `model` and the whole file's as "".
     """
     lines = _lines(text)
-    # That a default which depends on a wrong field is lacking is no mistake of its own.
-    details = [detail for detail in error.errors() if detail["type"] != "default_factory_not_called"]
+    details = [detail for detail in error.errors() if detail["type"] != LACKS_DEFAULT]
     # Nor is it one that a key is missing where it is only misspelt.
     misspelt = {
         (*detail["loc"][:-1], _near(detail["loc"], tables)) for detail in details if detail["type"] == "extra_forbidden"
@@ -103,8 +105,8 @@ def find_problems(
         misspelt.add(("actuators",))
     problems = []
     for detail in details:
-        location = _in_file(detail)
-        message = _message(detail, _value(data, location), tables)
+        location = in_file(detail)
+        message = message_of(detail, _value(data, location), tables)
         if message.startswith("is missing") and detail["loc"] in misspelt:
             continue
         line = next((lines[location[:n]] for n in range(len(location), 0, -1) if location[:n] in lines), None)
@@ -117,7 +119,7 @@ def shown_location(location: Location) -> str:
     return "".join(f"[{key + 1}]" if isinstance(key, int) else f".{key}" for key in location).lstrip(".")
 
 
-def _message(detail: ErrorDetails, value: object, tables: Mapping[str, type[BaseModel]]) -> str:
+def message_of(detail: ErrorDetails, value: object, tables: Mapping[str, type[BaseModel]]) -> str:
     """Return what is wrong with `value`, in the words of the case file rather than of the validation."""
     kind, location, context = detail["type"], detail["loc"], detail.get("ctx", {})
     got = f"; got {shown(value)}"
@@ -147,7 +149,7 @@ def _message(detail: ErrorDetails, value: object, tables: Mapping[str, type[Base
             return f"must be {RULES.get(kind, 'different').format(**context)}{got}" + (", in quotes" if quoted else "")
 
 
-def _in_file(detail: ErrorDetails) -> Location:
+def in_file(detail: ErrorDetails) -> Location:
     """Return where in the file an error is: without what validation chose between, as the model of [friction]."""
     location = tuple(key for key in detail["loc"] if key not in TAGS)
     if detail["type"].startswith("union_tag"):
@@ -173,7 +175,7 @@ def _header(location: Location) -> str:
     name = str(location[0])
     if "segments" in location[1:-1]:
         return f"[[{name}.segments]]"
-    return f"[[{name}]]" if name == "actuators" else f"[{name}]"
+    return f"[[{name}]]" if name in _EACH else f"[{name}]"
 
 
 def _doubled(header: str) -> str:
@@ -194,7 +196,7 @@ def _near(location: Location, tables: Mapping[str, type[BaseModel]]) -> str | No
 def _known(location: Location, tables: Mapping[str, type[BaseModel]]) -> str:
     keys = [key for key in _fields(location, tables) if key != "model"]
     if len(location) == 1:
-        return "a case file has " + ", ".join(_header((key,)) for key in keys)
+        return "the file has " + ", ".join(_header((key,)) for key in keys)
     model = f' with model = "{location[1]}"' if location[0] == "friction" else ""
     model = f" with {location[1]}" if location[0] == "plate" and len(location) == 3 else model
     return f"{_header(location)}{model} has {', '.join(keys)}"

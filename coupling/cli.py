@@ -55,9 +55,9 @@ def run(case: Path, output: Path | None, quiet: bool, as_json: bool, csv: bool, 
     from coupling.run import run_case
 
     folder = output or DEFAULT_OUTPUT
-    _refusing(check_folder, folder)
+    refusing(check_folder, folder)
     with StageBar(STAGES) as bar:
-        result = _refusing(run_case, read, folder, bar, csv, save_surface)
+        result = refusing(run_case, read, folder, bar, csv, save_surface)
     if as_json:
         said = {"warnings": report.warnings(result.summary), "files": [str(file) for file in result.files]}
         click.echo(json.dumps(result.summary.as_dict() | said, indent=2))
@@ -77,7 +77,7 @@ def check(case: Path) -> None:
     read = _read(case)
     from coupling.run import build_friction
 
-    _refusing(lambda: build_friction(read).law)
+    refusing(lambda: build_friction(read).law)
     count = len(read.actuators)
     what = f"{count} actuator{'s' * (count != 1)}" if count else "a platform"
     click.echo(f"{case}: fine; {what}, {read.run.duration * 1e3:g} ms")
@@ -97,7 +97,7 @@ def verify(file: Path | None) -> None:
     from coupling.results import check_folder
 
     if file is not None:
-        _refusing(check_folder, file.parent)
+        refusing(check_folder, file.parent)
     checks = verification.verify()
     for done in checks:
         click.echo(f"{done.name}: {'passed' if done.passed else 'FAILED'}")
@@ -122,10 +122,10 @@ def verify(file: Path | None) -> None:
 def _read(path: Path) -> Case:
     from coupling.case import read_case
 
-    return _refusing(read_case, path)
+    return refusing(read_case, path)
 
 
-def _refusing(work: Callable[..., Answer], *arguments: object) -> Answer:
+def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:
     """work(*arguments), with a refused input said in one message and exit code 2."""
     try:
         return work(*arguments)

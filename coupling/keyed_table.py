@@ -49,7 +49,7 @@ class KeyedTable(Table):
         return table
 
     @classmethod
-    def values(cls, table: Any, context: Any) -> Mapping[str, Any]:
+    def values_of(cls, table: Any, context: Any) -> Mapping[str, Any]:
         """The values by key of a table, or of a dict in which anything may be wrong.
 
         WRONG for each key that is not valid, is lacking, or may be meant by a misspelt one.

@@ -13,7 +13,7 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 import particle
-from coupling.case import Case, ConstantCase, CoulombCase, TableCase
+from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, TableCase
 from coupling.csv_file import check_csv
 from coupling.drives import build_drives as build_drives
 from coupling.plate_scene import plate_scene
@@ -102,7 +102,11 @@ def build_surface(case: Case) -> SurfaceMotion:
 
 def build_friction(case: Case) -> Contact:
     """The friction law between part and surface."""
-    law = case.friction
+    return friction_law(case.friction)
+
+
+def friction_law(law: FrictionCase) -> Contact:
+    """The friction law that a table of a case tells of."""
     if isinstance(law, ConstantCase):
         return particle.ConstantFriction(law.limit)
     if isinstance(law, CoulombCase):

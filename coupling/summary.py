@@ -11,7 +11,7 @@ import numpy as np
 from coupling.case import Case
 from coupling.drives import first_jump, frame_times
 from coupling.measured import MotionFit
-from particle import AnyDrive, EventKind, Outcome, State, Trajectory
+from particle import AnyDrive, EventKind, State, Trajectory
 from particle.friction import Contact
 
 if TYPE_CHECKING:
@@ -85,7 +85,6 @@ class PlateSummary(PlateFigures, Summary):
 
 def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory, friction: Contact) -> Summary:
     """The run's summary; `tighter` is the same run at a hundredth of the tolerance, or with half the time step."""
-    step = np.diff(trajectory.position, axis=0)
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
     drives = [*scene.lifts, *scene.base]
@@ -96,10 +95,10 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         origin=scene.origin,
         end_time=float(trajectory.time[-1]),
         duration=case.run.duration,
-        at_rest_since=_at_rest_since(trajectory) if trajectory.outcome is Outcome.STUCK else None,
+        at_rest_since=trajectory.at_rest_since,
         end_position=(float(trajectory.position[-1, 0]), float(trajectory.position[-1, 1])),
         distance=trajectory.distance,
-        path_length=float(np.hypot(*step.T).sum()),
+        path_length=trajectory.path_length,
         time_stuck=trajectory.time_in(State.STICK),
         time_slipping=trajectory.time_in(State.SLIP),
         time_flying=trajectory.time_in(State.FLIGHT),
@@ -126,10 +125,3 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
 def _frames_per_cycle(case: Case, drives: Sequence[AnyDrive], end: float) -> float | None:
     cycles = end * max(drive.frequency for drive in drives)
     return (len(frame_times(case.run.frames, drives, end)) - 1) / cycles if cycles > 0 else None
-
-
-def _at_rest_since(trajectory: Trajectory) -> float | None:
-    moving = np.flatnonzero(trajectory.state != State.STICK)
-    if len(moving) == 0:
-        return float(trajectory.time[0])
-    return float(trajectory.time[moving[-1] + 1]) if moving[-1] + 1 < len(trajectory.time) else None

@@ -20,6 +20,7 @@ from coupling.drawn_plate import drawn_plate
 from coupling.rim import onto_plate
 from fem_plate import InfluenceShapes, Plate, PlateSection
 from meshes import PlateMesh, annulus, read, rectangle
+from studies import read_study, run_study
 
 ROOT = Path(__file__).parent.parent
 SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6, density=2330)
@@ -33,6 +34,14 @@ def draw_runs() -> None:
         for name in ("two_actuators",):
             run_case(read_case(ROOT / "examples" / f"{name}.toml"), output=folder)
             copy(Path(folder) / f"{name}.png", ROOT / "docs")
+
+
+def draw_sweep() -> None:
+    with TemporaryDirectory() as folder:
+        run_study(read_study(ROOT / "examples/studies/frequency_stroke.toml"), folder)
+        run_study(read_study(ROOT / "examples/studies/starts.toml"), folder)
+        copy(Path(folder) / "frequency_stroke.sweep.png", ROOT / "docs/sweep_map.png")
+        copy(Path(folder) / "starts.sweep.png", ROOT / "docs/sweep_starts.png")
 
 
 def draw_plates() -> None:
@@ -143,6 +152,7 @@ def _draw_decay(axes: Axes) -> None:
 
 if __name__ == "__main__":
     draw_runs()
+    draw_sweep()
     draw_plates()
     draw_contact()
     draw_motion_error()

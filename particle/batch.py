@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor
+from queue import Empty, SimpleQueue
 from typing import TypeGuard
 
 import numpy as np
@@ -76,13 +77,13 @@ def simulate_many(
     try:
         with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as pool:
             try:
-                waiting = {pool.submit(path, k) for k in range(len(parts))}
-                while waiting:
-                    done, waiting = wait(waiting, AWAKE, FIRST_COMPLETED)
-                    for future in done:
-                        future.result()
-                    if done and progress:
-                        progress(len(parts) - len(waiting), len(parts))
+                ended: SimpleQueue[Future[None]] = SimpleQueue()
+                for k in range(len(parts)):
+                    pool.submit(path, k).add_done_callback(ended.put)
+                for done in range(1, len(parts) + 1):
+                    _next(ended).result()
+                    if progress:
+                        progress(done, len(parts))
             except BaseException:
                 stop[0] = 1
                 pool.shutdown(wait=True, cancel_futures=True)
@@ -90,6 +91,15 @@ def simulate_many(
     except KeyboardInterrupt:
         raise Interrupted(found) from None
     return [trajectory for trajectory in found if trajectory is not None]
+
+
+def _next(ended: SimpleQueue[Future[None]]) -> Future[None]:
+    """The next future that ended; a signal is heard while it is waited for."""
+    while True:
+        try:
+            return ended.get(timeout=AWAKE)
+        except Empty:
+            continue
 
 
 def _laws(friction: Contact | Iterable[Contact], count: int) -> tuple[list[Contact], list[str]]:

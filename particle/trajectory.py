@@ -155,6 +155,19 @@ class Trajectory:
         """How far the part ended from where it began [m]."""
         return float(np.hypot(*(self.position[-1] - self.position[0])))
 
+    @property
+    def path_length(self) -> float:
+        """How long the way is that it went in the plane [m]."""
+        return float(np.hypot(*np.diff(self.position, axis=0).T).sum())
+
+    @property
+    def at_rest_since(self) -> float | None:
+        """Since when the part has rested [s]; None: it does not rest at the end."""
+        if self.outcome is not Outcome.STUCK:
+            return None
+        moving = np.flatnonzero(self.state != State.STICK)
+        return float(self.time[moving[-1] + 1] if len(moving) else self.time[0])
+
     def time_in(self, state: State) -> float:
         """How long the part was in a state [s]."""
         return float(np.diff(self.time)[self.state[:-1] == state].sum())

@@ -275,7 +275,7 @@ BROKEN = [
     (("[part]", "[prat]"), "line 23  prat is not known; did you mean part?"),
     (
         ("[plate]", 'name = "x"\n[plate]'),
-        "line 1  name is not known; a case file has [plate], [[actuators]], [lattice], [part]",
+        "line 1  name is not known; the file has [plate], [[actuators]], [lattice], [part]",
     ),
     ((STROKE, STROKE + "\ncolour = 1"), "line 11  actuators[1].colour is not known; [[actuators]] has position, "),
     (("[plate]", "[[plate]]"), "line 1  plate must be a table, written [plate]; got a list of tables"),

@@ -1,0 +1,78 @@
+"""Study: a base case, and the points around it whose paths are found."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from coupling.case import Case
+from coupling.plate_case import MeshCase
+from coupling.platform_case import PlatformCase
+from studies.points import Points
+from studies.threshold import Threshold
+from studies.variants import lattice_of
+
+VERSIONS = ("active-surface", "numpy", "scipy", "numba")
+PACKAGES = ("meshes", "fem_plate", "particle", "coupling", "studies")
+
+
+@dataclass(frozen=True)
+class Study:
+    """What one sweep does; `name` is the stem of the file it was read from, and `source` the text of that file."""
+
+    case: Case
+    points: Points
+    name: str = "study"
+    source: str = ""
+    threshold: Threshold | None = None  # of its picture
+
+    @property
+    def key(self) -> str:
+        """A hash of all that its results depend on."""
+        return _hash(self.traits)
+
+    @property
+    def traits(self) -> dict[str, str]:
+        """Hashes of what its results depend on: case, the files that it reads, points and versions."""
+        return {
+            "case": _hash([self.case.model_dump_json(exclude={"name", "source"}), lattice_of(self.case)]),
+            "files of the case": _hash([hashlib.sha256(file.read_bytes()).hexdigest() for file in _files(self.case)]),
+            "points": _hash(repr(self._plain_points())),
+            "versions": _hash(versions()),
+        }
+
+    def _plain_points(self) -> list[Any]:
+        points = self.points
+        axes = [(a.name, a.field.path, a.values, a.low, a.high, a.logarithmic) for a in points.axes]
+        return [axes, points.sampling, points.count, points.repeats, points.jitter, points.seed]
+
+
+def versions() -> dict[str, str]:
+    """The versions of what a path is found by; that of active-surface has a hash of its sources."""
+    found = {name: version(name) for name in VERSIONS}
+    return found | {VERSIONS[0]: f"{found[VERSIONS[0]]}+{_sources()}"}
+
+
+@cache
+def _sources() -> str:
+    root, digest = Path(__file__).parents[1], hashlib.sha256()
+    for file in sorted(file for package in PACKAGES for file in (root / package).rglob("*.py")):
+        digest.update(f"{file.relative_to(root).as_posix()}\n".encode() + file.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def _hash(said: Any) -> str:
+    return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
+
+
+def _files(case: Case) -> list[Path]:
+    """The files that a case reads when its scene is built."""
+    plate = case.plate
+    if isinstance(plate, MeshCase):
+        return [Path(plate.mesh)]
+    return [Path(plate.motion)] if isinstance(plate, PlatformCase) and isinstance(plate.motion, str) else []

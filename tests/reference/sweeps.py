@@ -1,0 +1,83 @@
+"""Small studies for tests: files of a case and of a study of it, written into a folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+PLATFORM = """\
+[plate]
+shape = "platform"
+
+[plate.motion.x]
+stroke = "20 um"
+frequency = "200 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["0 um", "0 um"]
+
+[friction]
+model = "constant"
+limit = "20 nN"
+
+[run]
+duration = "2 ms"
+"""
+
+PLATE = """\
+[plate]
+shape = "disc"
+radius = "300 um"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+cell_size = "80 um"
+
+[[actuators]]
+position = ["-75 um", "0 um"]
+stroke = "60 um"
+frequency = "400 Hz"
+
+[[actuators]]
+position = ["75 um", "0 um"]
+stroke = "60 um"
+frequency = "300 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["-140 um", "20 um"]
+
+[friction]
+model = "constant"
+limit = "40 nN"
+
+[run]
+duration = "5 ms"
+"""
+
+LATTICE = (
+    PLATE[: PLATE.index("[[actuators]]")]
+    + """\
+[[actuators]]
+position = ["0 um", "200 um"]
+stroke = "1 um"
+frequency = "400 Hz"
+
+[lattice]
+rows = 1
+columns = 3
+pitch = "100 um"
+stroke = "5 * (1 + column) um"
+frequency = "400 Hz"
+
+"""
+    + PLATE[PLATE.index("[part]") :]
+)
+
+
+def written(folder: Path, study: str, case: str = PLATE) -> Path:
+    """The path of a study's file, beside that of its case."""
+    (folder / "base.toml").write_text(case)
+    path = folder / "study.toml"
+    path.write_text(study if "[study]" in study else f'[study]\ncase = "base.toml"\n{study}')
+    return path

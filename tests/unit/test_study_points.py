@@ -1,0 +1,134 @@
+"""The points of a study: each a pure function of its index, and the cases that they lead to."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pydantic import ValidationError
+from sweeps import LATTICE, PLATE, PLATFORM, written
+
+from coupling import read_case
+from studies import read_study
+from studies.slabs import slabs
+from studies.variants import Variants
+
+TWO = """\
+[[axes]]
+field = "actuators.0.frequency"
+range = ["100 Hz", "400 Hz"]
+spacing = "logarithmic"
+[[axes]]
+field = "friction.limit"
+values = ["10 nN", "20 nN", "30 nN"]
+"""
+
+
+@pytest.mark.parametrize("sampling", ["random", "sobol"])
+def test_drawn_points_do_not_depend_on_how_many_are_asked_for(tmp_path, sampling):
+    points = read_study(written(tmp_path, f'sampling = "{sampling}"\npoints = 77\nseed = 3\n{TWO}')).points
+    at_once = points.values(0, 77)
+    assert at_once == [points.values(k, k + 1)[0] for k in range(77)]
+    assert at_once == points.values(0, 5) + points.values(5, 40) + points.values(40, 77)
+    frequency, limit = np.array(at_once).T
+    assert (frequency.min() >= 100) and (frequency.max() < 400) and abs(np.median(frequency) - 200) < 30
+    assert sorted(set(limit)) == [1e-8, 2e-8, 3e-8]
+    other = read_study(written(tmp_path, f'sampling = "{sampling}"\npoints = 77\nseed = 4\n{TWO}')).points
+    assert other.values(0, 77) != at_once
+
+
+def test_repeats_share_their_point_and_start_apart_within_the_jitter(tmp_path):
+    points = read_study(
+        written(tmp_path, 'sampling = "random"\npoints = 40\nrepeats = 50\njitter = "2 um"\n' + TWO)
+    ).points
+    assert len(points) == 2000 and points.dimensions == {"point": 40, "repeat": 50}
+    assert points.values(49, 51) == [points.values(0, 1)[0], points.values(50, 51)[0]]
+    away = points.displacements(0, 2000)
+    assert np.array_equal(away[700:703], points.displacements(700, 703))
+    radii = np.hypot(*away.T)
+    assert radii.max() < 2e-6 and abs((radii**2).mean() / 2e-12 - 1) < 0.1
+    assert np.abs(away.mean(axis=0)).max() < 1e-7 and len(np.unique(away[:, 0])) == 2000
+
+
+def test_a_list_goes_along_all_axes_at_once(tmp_path):
+    listed = TWO.replace('"logarithmic"', '"logarithmic"\ncount = 3')
+    points = read_study(written(tmp_path, f'sampling = "list"\n{listed}')).points
+    assert points.dimensions == {"point": 3}
+    assert points.values(0, 3) == [(100.0, 1e-8), (pytest.approx(200.0), 2e-8), (400.0, 3e-8)]
+
+
+CHANGED = [
+    (PLATE, "actuators.*.stroke", '"30 um"', 'stroke = "60 um"', 'stroke = "30 um"'),
+    (PLATE, "actuators.1.frequency", '"350 Hz"', 'frequency = "300 Hz"', 'frequency = "350 Hz"'),
+    (PLATE, "actuators.0.position.1", '"7 um"', '["-75 um", "0 um"]', '["-75 um", "7 um"]'),
+    (PLATE, "actuators.1.stiffness", '"1e4 N/m"', '"300 Hz"', '"300 Hz"\nstiffness = "1e4 N/m"'),
+    (PLATE, "plate.supports", '"simply-supported"', "cell_size", 'supports = "simply-supported"\ncell_size'),
+    (PLATE, "plate.thickness", '"6 um"', 'thickness = "5 um"', 'thickness = "6 um"'),
+    (PLATE, "part.position.0", '"-120 um"', '"-140 um"', '"-120 um"'),
+    (PLATE, "part.velocity.1", '"1 mm/s"', "[friction]", 'velocity = ["0 m/s", "1 mm/s"]\n[friction]'),
+    (PLATE, "friction.limit", '"1 uN"', '"40 nN"', '"1 uN"'),
+    (PLATE, "run.duration", '"7 ms"', '"5 ms"', '"7 ms"'),
+    (PLATE, "run.gravity", '"1.6 m/s^2"', '"5 ms"', '"5 ms"\ngravity = "1.6 m/s^2"'),
+    (PLATFORM, "plate.motion.x.frequency", '"300 Hz"', '"200 Hz"', '"300 Hz"'),
+    (LATTICE, "lattice.pitch", '"90 um"', '"100 um"', '"90 um"'),
+    (LATTICE, "lattice.columns", "2", "columns = 3", "columns = 2"),
+]
+
+
+@pytest.mark.parametrize(("text", "field", "value", "old", "new"), CHANGED, ids=lambda text: str(text)[:24])
+def test_the_case_at_a_point_is_that_of_a_file_with_its_values(tmp_path, text, field, value, old, new):
+    study = read_study(written(tmp_path, f'[[axes]]\nfield = "{field}"\nvalues = [{value}]\n', text))
+    case, base = Variants(study.case, study.points.axes).at(study.points.values(0, 1)[0])
+    (tmp_path / "changed.toml").write_text(text.replace(old, new))
+    expected = read_case(tmp_path / "changed.toml")
+    assert case.model_dump(exclude={"name", "source"}) == expected.model_dump(exclude={"name", "source"})
+    assert base.case.plate == expected.plate
+
+
+def test_an_actuator_that_a_lattice_made_may_be_varied_by_itself(tmp_path):
+    study = read_study(written(tmp_path, '[[axes]]\nfield = "actuators.3.stroke"\nvalues = ["7 um"]\n', LATTICE))
+    case, _ = Variants(study.case, study.points.axes).at((7e-6,))
+    assert [actuator.stroke for actuator in case.actuators] == pytest.approx([1e-6, 5e-6, 1e-5, 7e-6])
+
+
+def test_points_with_the_same_plate_share_their_ground_and_others_do_not(tmp_path):
+    study = read_study(
+        written(
+            tmp_path,
+            '[[axes]]\nfield = "plate.thickness"\nvalues = ["5 um", "6 um"]\n'
+            + TWO.replace("spacing", "count = 2\nspacing"),
+        )
+    )
+    variants = Variants(study.case, study.points.axes)
+    grounds = [variants.at(values)[1].ground for values in study.points.values(0, len(study.points))]
+    assert grounds == grounds[:1] * 6 + grounds[6:7] * 6 and len(set(grounds)) == 2
+
+
+def test_a_contradiction_at_one_point_is_found_there(tmp_path):
+    coulomb = PLATE.replace('"constant"\nlimit = "40 nN"', '"coulomb"\ncoefficient = 0.2')
+    study = read_study(
+        written(
+            tmp_path,
+            '[[axes]]\nfield = "friction.coefficient"\nvalues = [0.1, 0.3]\n'
+            '[[axes]]\nfield = "friction.static_coefficient"\nvalues = [0.2, 0.4]\n',
+            coulomb,
+        )
+    )
+    variants = Variants(study.case, study.points.axes)
+    for values in study.points.values(0, 4):
+        if values == (0.3, 0.2):
+            with pytest.raises(ValidationError, match="must be at least coefficient"):
+                variants.at(values)
+        else:
+            assert variants.at(values)[0].friction.coefficient == values[0]
+
+
+@given(st.lists(st.integers(1, 5), min_size=1, max_size=4), st.data())
+@settings(max_examples=200, deadline=None)
+def test_slabs_cover_a_run_of_elements_in_order(shape, data):
+    array = np.arange(int(np.prod(shape))).reshape(shape)
+    start = data.draw(st.integers(0, array.size))
+    stop = data.draw(st.integers(start, array.size))
+    pieces = [(array[slab].ravel(), count) for slab, count in slabs(shape, start, stop)]
+    assert all(len(piece) == count for piece, count in pieces)
+    assert np.array_equal(np.concatenate([[], *(piece for piece, _ in pieces)]), np.arange(start, stop))
+    assert len(pieces) <= 2 * len(shape)

@@ -1,0 +1,169 @@
+"""Pictures of sweeps: a map, a curve, points or basins, each with what it must show."""
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+from sweeps import PLATE, PLATFORM, written
+
+from studies import read_study
+from studies.dataset import read_dataset, write_dataset
+from studies.heat import edges
+from studies.map import compose, draw_sweep
+from studies.record import OUTCOMES, new_records
+from studies.shown import Scale
+
+
+def axis(field, values, name=""):
+    name = f'name = "{name}"\n' if name else ""
+    return f'[[axes]]\nfield = "{field}"\n{name}values = {values}\n'
+
+
+STROKE = axis("actuators.0.stroke", '["10 um", "20 um", "40 um"]', "stroke")
+LIMIT = axis("friction.limit", '["1 nN", "2 nN"]', "limit")
+CYCLE = axis("actuators.0.cycle", '["up-down", "up"]', "cycle")
+X = axis("part.position.0", '["-100 um", "0 um", "100 um"]', "x")
+Y = axis("part.position.1", '["0 um", "50 um"]', "y")
+
+
+def made(tmp_path, text, case=PLATE):
+    """A study and results that tell their places: distance and end are functions of the index."""
+    study = read_study(written(tmp_path, text, case))
+    records = new_records(len(study.points))
+    k = np.arange(len(records))
+    records["distance"], records["end_x"], records["end_y"] = k * 1e-6, 75e-6, 0.0
+    records["outcome"] = k % 2
+    records["distance"][0], records["outcome"][0] = np.nan, OUTCOMES.index("refused")
+    path = write_dataset(study, [(0, records[:1]), (1, records[1:])], tmp_path / "found.nc")
+    return study, read_dataset(path)
+
+
+def drawn(study, dataset):
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    compose(figure, study, dataset)
+    figure.canvas.draw()
+    return figure
+
+
+def test_a_map_has_each_value_at_its_place(tmp_path):
+    figure = drawn(*made(tmp_path, STROKE + LIMIT))
+    field, classes = figure.axes[:2]
+    assert (field.get_xlabel(), field.get_ylabel()) == ("stroke [µm]", "limit [nN]")
+    (mesh,) = (one for one in field.collections if isinstance(one, QuadMesh))
+    assert mesh.get_array().tolist() == [[None, 2.0, 4.0], [1.0, 3.0, 5.0]]
+    assert np.asarray(mesh.get_coordinates())[0, :, 0] == pytest.approx([5, 15, 30, 50])
+    assert [text.get_text() for text in classes.get_legend().get_texts()] == [
+        "stuck, 33.3 %",
+        "moving, 50 %",
+        "refused, 16.7 %",
+    ]
+
+
+def shuffled(dataset, *names):
+    """The same results, with the values of axes in the order in which a study listed them."""
+    return dataset.load().isel({name: [2, 0, 1] for name in names})
+
+
+@pytest.mark.parametrize("other", ["", LIMIT])
+def test_the_order_in_which_values_are_listed_does_not_change_the_picture(tmp_path, other):
+    study, dataset = made(tmp_path, STROKE + other)
+    mixed = read_study(
+        written(tmp_path, STROKE.replace('"10 um", "20 um", "40 um"', '"40 um", "10 um", "20 um"') + other)
+    )
+    pictures = []
+    for one, results in ((study, dataset), (mixed, shuffled(dataset, "stroke"))):
+        figure = drawn(one, results)
+        pictures.append(np.asarray(figure.canvas.buffer_rgba()).tobytes())
+    assert pictures[0] == pictures[1]
+
+
+@pytest.mark.parametrize(
+    ("values", "scale", "expected"),
+    [
+        ('["10 nN", "1 nN", "1 uN"]', "log", None),
+        ('["1 nN", "1000 nN", "2 nN"]', "linear", [-0.5, 0.5, 1.5, 2.5]),
+        ('["0 nN", "100 nN", "1 nN"]', "linear", [-0.5, 0.5, 1.5, 2.5]),
+        ('["2 nN", "1 nN", "4 nN"]', "linear", [0.5, 1.5, 3, 5]),
+    ],
+)
+def test_no_cell_of_a_map_is_a_sliver(tmp_path, values, scale, expected):
+    figure = drawn(*made(tmp_path, axis("friction.limit", values, "limit") + CYCLE))
+    (mesh,) = (one for one in figure.axes[0].collections if isinstance(one, QuadMesh))
+    places = np.asarray(mesh.get_coordinates())[0, :, 0]
+    assert figure.axes[0].get_xscale() == scale
+    widths = np.diff(np.log(places) if scale == "log" else places)
+    assert (widths > 0).all() and widths.max() <= 4 * widths.min()
+    if expected:
+        assert places == pytest.approx(expected)
+
+
+def test_a_map_over_a_text_names_it(tmp_path):
+    study, dataset = made(tmp_path, CYCLE + STROKE)
+    assert dataset["cycle"].values.tolist() == ["up-down", "up"]
+    figure = drawn(study, dataset)
+    assert [label.get_text() for label in figure.axes[0].get_xticklabels()] == ["up-down", "up"]
+
+
+def test_axes_beyond_the_longest_two_stay_at_their_middle_value(tmp_path):
+    figure = drawn(*made(tmp_path, STROKE + LIMIT + axis("part.mass", '["1e-9 kg", "2e-9 kg", "3e-9 kg"]', "mass")))
+    assert "9 of 18 paths, limit = 2 nN" in figure.get_suptitle()
+    assert figure.axes[0].get_xlabel() == "stroke [µm]"
+
+
+def test_a_curve_shows_the_mean_and_the_spread_of_repeats(tmp_path):
+    figure = drawn(*made(tmp_path, 'repeats = 4\njitter = "1 um"\n' + STROKE))
+    curve = figure.axes[0].get_lines()[0]
+    assert curve.get_xdata() == pytest.approx([10, 20, 40])
+    assert curve.get_ydata() == pytest.approx([2.0, 5.5, 9.5])  # the refused one is left out
+    assert "mean of 4 starts" in figure.get_suptitle()
+
+
+def test_basins_tell_the_nearest_actuator_of_those_that_were_carried(tmp_path):
+    study, dataset = made(tmp_path, Y + X)
+    dataset = dataset.load()
+    dataset["distance"][:] = 50e-6
+    dataset["distance"][1, 1] = 1e-6
+    figure = drawn(study, dataset)
+    (mesh,) = (one for one in figure.axes[0].collections if isinstance(one, QuadMesh))
+    assert figure.axes[0].get_xlabel() == "x [µm]" and mesh.get_array().shape == (2, 3)
+    refused, stays, second = OUTCOMES.index("refused"), len(OUTCOMES), len(OUTCOMES) + 2
+    assert mesh.get_array().tolist() == [[refused, second, second], [second, stays, second]]
+
+
+def test_starts_over_a_platform_are_a_map(tmp_path):
+    figure = drawn(*made(tmp_path, X + Y, PLATFORM))
+    assert figure.axes[0].get_title() == "distance from the start"
+
+
+@pytest.mark.parametrize("axes", [STROKE, STROKE + LIMIT])
+@pytest.mark.parametrize("sampling", ['sampling = "random"\npoints = 9\n', 'sampling = "list"\n'])
+def test_points_are_drawn_where_they_are(tmp_path, axes, sampling):
+    axes = axes.replace('"2 nN"', '"2 nN", "3 nN"')
+    study, dataset = made(tmp_path, sampling + axes)
+    figure = drawn(study, dataset)
+    marks = np.asarray(figure.axes[1].collections[0].get_offsets())
+    assert len(marks) == len(study.points)
+    assert marks[:, 0] == pytest.approx(dataset["stroke"].values * 1e6)
+
+
+def test_a_sweep_of_refused_points_alone_is_drawn(tmp_path):
+    for text in (STROKE + LIMIT, STROKE, X + Y, 'sampling = "list"\n' + STROKE):
+        study, dataset = made(tmp_path, text)
+        dataset = dataset.load()
+        dataset["distance"][:] = np.nan
+        dataset["outcome"][:] = OUTCOMES.index("refused")
+        assert draw_sweep(study, dataset, tmp_path / "picture.png").stat().st_size > 1000
+
+
+def test_one_value_alone_is_drawn(tmp_path):
+    assert drawn(*made(tmp_path, axis("part.mass", '["1e-9 kg"]') + STROKE))
+    assert drawn(*made(tmp_path, axis("part.mass", '["1e-9 kg"]')))
+
+
+def test_edges_lie_half_way_between_values(tmp_path):
+    text = '[[axes]]\nfield = "part.mass"\nrange = ["1 kg", "100 kg"]\ncount = 3\nspacing = "logarithmic"\n'
+    study, dataset = made(tmp_path, text)
+    scale = Scale.of(study.points.axes[0], dataset["part.mass"].values)
+    assert edges(scale) == pytest.approx(10.0 ** np.array([-0.5, 0.5, 1.5, 2.5]))
