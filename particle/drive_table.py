@@ -24,6 +24,11 @@ ROUNDING = 4 * np.finfo(float).eps  # of the time: nor are kinks told apart that
 ROUGH_OVER, FOURTH, FIFTH = 0.25, 0.141, 0.036  # a stroke
 
 
+# Derivatives 1 to 5 of a segment at its begin and end, times its scale to that power, from its coefficients: (6, 5).
+_AT_END = np.array([[math.perm(k, order) for order in range(1, ORDER)] for k in range(ORDER)], dtype=float)
+_AT_BEGIN = np.where(np.eye(ORDER, ORDER - 1, -1) > 0, _AT_END, 0.0)
+
+
 class AnyDrive(Protocol):
     """What every drive has."""
 
@@ -117,52 +122,26 @@ def monomial_table(count: int) -> DriveTable:
     )
 
 
-@jit
 def _jumps(table: DriveTable) -> FloatArray:
-    """By how much the first five derivatives jump at a drive's kinks at most (N, 5) [m/s, m/s^2, ...].
+    """By how much the first five derivatives jump at a drive's kinks at most (N, 5) [m/s, m/s^2, ...]; 0: by rounding.
 
     Kinks are from one segment to the next, at its start and at its end.
     """
-    out = np.zeros((len(table.span), ORDER - 1))
-    for i in range(len(table.span)):
-        if math.isfinite(table.span[i]):
-            for order in range(1, ORDER):
-                out[i, order - 1] = _jump(table, i, order)
-    return out
-
-
-@bare
-def _jump(table: DriveTable, i: int, order: int) -> float:
-    """By how much a derivative of drive i jumps at most; 0 where that is rounding."""
-    low, high = table.first[i], table.first[i + 1]
-    shortest, most = math.inf, 0.0
-    for row in range(low, high):
-        shortest = min(shortest, table.scale[row])
-        for k in range(ORDER):
-            most = max(most, abs(table.coefficients[row, k]))
-    first, left = _derivative(table, low, order, 0.0), 0.0
-    last = _derivative(table, high - 1, order, 1.0)
-    # At rest before the start and after the end, if there is one; else the last segment goes on into the first.
-    step = abs(last - first) if not math.isfinite(table.repeats[i]) else max(abs(first), abs(last))
-    if table.repeats[i] > 1:
-        step = max(step, abs(last - first), abs(first))
-    for row in range(low, high):
-        if row > low:
-            step = max(step, abs(_derivative(table, row, order, 0.0) - left))
-        left = _derivative(table, row, order, 1.0)
-    return step if step > 100 * ROUNDING * most / shortest**order else 0.0
-
-
-@bare
-def _derivative(table: DriveTable, row: int, order: int, place: float) -> float:
-    """A derivative [m/s^order] of a segment at a place from 0, its beginning, to 1."""
-    total = 0.0
-    for k in range(ORDER - 1, order - 1, -1):
-        factor = table.coefficients[row, k]
-        for j in range(order):
-            factor *= k - j
-        total = total * place + factor
-    return total / table.scale[row] ** order
+    if len(table.span) == 0:
+        return np.zeros((0, ORDER - 1))
+    orders, first, last = np.arange(1, ORDER), table.first[:-1], table.first[1:] - 1
+    per_order = table.scale[:, None] ** orders
+    begins, ends = table.coefficients @ _AT_BEGIN / per_order, table.coefficients @ _AT_END / per_order
+    step = np.zeros_like(begins)
+    step[1:] = np.abs(begins[1:] - ends[:-1])
+    # At rest before the start, and after the end if there is one; before that the last segment goes on into the first.
+    again = np.where((table.repeats > 1)[:, None], np.abs(ends[last] - begins[first]), 0.0)
+    end = np.where(np.isfinite(table.repeats)[:, None], np.abs(ends[last]), 0.0)
+    step[first] = np.maximum(np.maximum(np.abs(begins[first]), end), again)
+    jump = np.maximum.reduceat(step, first)
+    most = np.maximum.reduceat(np.abs(table.coefficients).max(axis=1), first)
+    rounding = 100 * ROUNDING * most[:, None] / np.minimum.reduceat(table.scale, first)[:, None] ** orders
+    return np.where((jump > rounding) & np.isfinite(table.span)[:, None], jump, 0.0)
 
 
 @bare
