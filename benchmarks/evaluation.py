@@ -28,10 +28,10 @@ FloatArray = NDArray[np.float64]
 
 SIDES = (10, 32, 100)
 TRUNCATION = 1e-6
-STROKE, FREQUENCY, STAGGER = 5e-6, 400.0, 0.13  # m, Hz, of a period from one column to the next
-MASS, FRICTION = 2e-9, 20.9 * 2e-9
-MOMENT, SAMPLES, ROUNDS, REPEATS = 7e-4, 400, 500, 7  # s
-DURATION, TOLERANCE = 5e-3, 1e-6  # s
+STROKE, FREQUENCY, STAGGER = 20e-6, 400.0, 0.13  # m, Hz, of a period from one column to the next
+MASS, FRICTION = 2e-9, 2.0 * 2e-9
+MOMENT, SAMPLES, ROUNDS, REPEATS = 7e-4, 100, 20_000, 7  # s
+DURATION, TOLERANCE = 20e-3, 1e-6  # s
 AGREEMENT = 1e-5  # of a stroke
 
 

@@ -29,11 +29,12 @@ OVERHANG = 1.25  # cells are fitted over this many half widths, so that a step m
 NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
 CHECKS = 48  # points between those, at which its error is measured
 FEW = 8  # actuators whose logarithms are kept everywhere: their exact sum is cheaper than smaller cells
+MOST_NEAR = 4  # logarithms in a cell otherwise: each costs as much as 15 monomials
 RCOND = 1e-12
 DEEPEST = 6  # times that a cell is divided
 LESS = 0.1  # of its error: dividing many cells pays if that is left at most
 # This is enough for those that stand out of their like, as at corners, and where errors are too large to show an order.
-LESS_AT_CORNERS, OUTSTANDING, COARSE = 0.75, 10.0, 1e-3
+LESS_AT_CORNERS, OUTSTANDING, COARSE = 0.75, 3.0, 1e-3
 MOST_DIVIDED = 128  # at once: where more are not good enough, the shapes are not
 # The polynomial's error falls with the distance of the nearest logarithm that it takes up, in half widths.
 REACH, REACHED, REACH_ORDER = 8.0, 1e-9, 9
@@ -72,7 +73,7 @@ class CellMaker:
 
     def _divide(self, cells: Sequence[Cell], deepest: int) -> None:
         """Divide those that are not good enough, if it helps: what finite elements are off by stays."""
-        crowded = [cell for cell in cells if not self.few and cell.fit and len(cell.fit.near) > FEW]
+        crowded = [cell for cell in cells if not self.few and cell.fit and len(cell.fit.near) > MOST_NEAR]
         poor = [cell for cell in cells if cell.error > self._aim and cell not in crowded]
         tried = crowded + poor
         if not tried or deepest == 0 or len(tried) > MOST_DIVIDED:
@@ -125,7 +126,8 @@ class CellMaker:
         self, cell: Cell, local: FloatArray, samples: int, rows: IntArray, values: FloatArray, clear: float
     ) -> None:
         """Fit the shapes `rows` with values (n, k) at points, of which the first few are for the fit."""
-        relative = np.abs(values).max(axis=0) / self.heights[rows]
+        weight = np.abs(values).max(axis=0)
+        relative = weight / self.heights[rows]
         order = np.argsort(relative, kind="stable")
         dropped = np.cumsum(relative[order])
         least = 0 if self.few else int(np.searchsorted(dropped, self._negligible))
@@ -159,7 +161,8 @@ class CellMaker:
         assert chosen
         degree, fitted, error = chosen
         cell.error, cell.left_out = error, left_out
-        cell.fit = CellFit(degree, rows, near, np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy(), clear)
+        polynomials_and_logarithms = np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy()
+        cell.fit = CellFit(degree, rows, weight[kept], near, polynomials_and_logarithms, clear)
 
     def _at_rim(self, cell: Cell, reach: float, spacing: float) -> FloatArray:
         """Points of a cell that the rim cuts, on the plate and on the rim, in half widths from its centre."""

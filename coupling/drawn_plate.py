@@ -25,16 +25,15 @@ ROUNDS = 60  # an actuator almost on the rim takes about 30
 
 
 def drawn_plate(mesh: PlateMesh, actuators: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Points (n, 2) [m], the actuators (N, 2) [m] first, and triangles (m, 3) for drawing the plate of a mesh.
+    """Points (n, 2) [m], the actuators (N, 2) [m] first, if any, and triangles (m, 3) for drawing the plate of a mesh.
 
     The points are those of a grid in step with the actuators, and of the rim; the triangles are Delaunay's.
     """
     cell = _cell(mesh, actuators)
     low, high = mesh.outline.box
-    steps = [
-        np.arange(np.ceil((low[k] - actuators[0, k]) / cell[k]), (high[k] - actuators[0, k]) / cell[k]) for k in (0, 1)
-    ]
-    grid = actuators[0] + np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 2) * cell
+    origin = actuators[0] if len(actuators) else low
+    steps = [np.arange(np.ceil((low[k] - origin[k]) / cell[k]), (high[k] - origin[k]) / cell[k]) for k in (0, 1)]
+    grid = origin + np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 2) * cell
     grid = grid[cKDTree(actuators / cell).query(grid / cell)[0] > CLEAR]
     grid = grid[mesh.outline.inside(grid)]
     rim, edges = mesh.points, np.concatenate(list(mesh.boundaries.values()))
@@ -68,7 +67,7 @@ def _cell(mesh: PlateMesh, actuators: FloatArray) -> FloatArray:
     a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
     area = float(np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum() / 2)
     coarse = math.sqrt(2 * area / CELLS)
-    if len(actuators) == 1:
+    if len(actuators) <= 1:
         return np.full(2, coarse)
     pitch = spacing(actuators)
     most = min(max(CELLS / 2, PER_ACTUATOR * len(actuators)), MOST_POINTS)

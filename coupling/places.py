@@ -96,7 +96,8 @@ class Places(BaseModel, from_attributes=True):
             most = plate.measures[0] / 2
             if given.cell_size > most * (1 + SAME_PLACE):
                 limit = f"half of the plate's smallest width, {shown_length(most, written_unit(given.written))}"
-                yield ("plate", "cell_size"), f"must not exceed {limit}; got {shown(given.written)}"
+                got = shown(given.written) if isinstance(given.written, str) else shown_length(given.written)
+                yield ("plate", "cell_size"), f"must not exceed {limit}; got {got}"
         names = list(mesh.boundaries)
         supports = given.supports if isinstance(given.supports, dict) else {}
         for name in (name for name in supports if name not in names):

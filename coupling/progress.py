@@ -90,12 +90,15 @@ class StageBar(_Bar):
 
 
 class CountBar(_Bar):
-    """A bar over many pieces of one kind, with how many are done a second and the time left."""
+    """A bar over many pieces of one kind, with how many are done a second and the time left.
+
+    Those of the first count were done before.
+    """
 
     def __init__(self, pieces: str) -> None:
         from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeRemainingColumn
 
-        self._pieces, self._first = pieces, 0
+        self._pieces, self._begun = pieces, False
         columns = (BarColumn(bar_width=30), MofNCompleteColumn(), TextColumn("{task.description}"))
         super().__init__(SpinnerColumn(), *columns, TimeRemainingColumn(), TextColumn("left"))
 
@@ -104,6 +107,10 @@ class CountBar(_Bar):
         return self._tell
 
     def _tell(self, done: int, of: int) -> None:
+        if not self._begun:
+            self._bar.reset(self._task, completed=done, total=of)
+            self._begun = True
         speed = self._bar.tasks[0].speed
         rate = f"{self._pieces}, {speed:.0f}/s" if speed else self._pieces
-        self._bar.update(self._task, completed=done, total=of, description=rate)
+        said = f"{self._pieces}; writing all" if done == of else rate
+        self._bar.update(self._task, completed=done, description=said)

@@ -42,8 +42,8 @@ def draw_sweep() -> None:
     with TemporaryDirectory() as folder:
         run_study(read_study(ROOT / "examples/studies/frequency_stroke.toml"), folder)
         run_study(read_study(ROOT / "examples/studies/starts.toml"), folder)
-        copy(Path(folder) / "frequency_stroke.png", ROOT / "docs/sweep_map.png")
-        copy(Path(folder) / "starts.png", ROOT / "docs/sweep_starts.png")
+        copy(Path(folder) / "frequency_stroke.sweep.png", ROOT / "docs/sweep_map.png")
+        copy(Path(folder) / "starts.sweep.png", ROOT / "docs/sweep_starts.png")
 
 
 def draw_aims() -> None:

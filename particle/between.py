@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from particle.cells import UNBUILT
 from particle.fixed import fixed_row
 from particle.jit import jit
-from particle.local import enter, new_local
+from particle.local import new_local
 from particle.motion import Part
 from particle.record import COLUMNS, DISSIPATED, MODE, RESTING, TIME, V_X, V_Y, WORK, X, Y
+from particle.span import enter
 
 FloatArray = NDArray[np.float64]
 

@@ -35,6 +35,7 @@ class Cells(NamedTuple):
     clear: FloatArray  # (c,) m, how far it is from the rim at least, overhang included; 0: not known to be
     first_drive: IntArray  # (c + 1,)
     drive: IntArray  # the drives that count in it
+    weight: FloatArray  # how high [m] each one's shape is there at most, for a metre of its drive; inf: not known
     first_near: IntArray  # (c + 1,)
     near: IntArray  # the actuators close by
     first_row: IntArray  # (c,) where its first shape begins in `rows`; NOWHERE off the plate
@@ -48,13 +49,14 @@ class Cells(NamedTuple):
 class CellFit(NamedTuple):
     """What one cell is made of.
 
-    drive: (k,) drives.  near: (j,) actuators.  rows: (k, monomials + j).  clear: m, as in `Cells`.
+    drive: (k,) drives.  weight: (k,), near: (j,) actuators, clear: m, as in `Cells`.  rows: (k, monomials + j).
     shared: whether other cells are made of the same `rows`.
     """
 
     degree: int
 
     drive: IntArray
+    weight: FloatArray
     near: IntArray
     rows: FloatArray
     clear: float
@@ -83,7 +85,8 @@ class OneCell:
 
     def __init__(self, shapes: FloatArray, degree: int, size: float) -> None:
         pool = CellPool(np.zeros(2), np.full(2, math.inf), np.array([[UNBUILT]]))
-        fit = CellFit(degree, np.arange(len(shapes)), np.zeros(0, dtype=np.int64), shapes, clear=0.0)
+        weight, near = np.full(len(shapes), math.inf), np.zeros(0, dtype=np.int64)
+        fit = CellFit(degree, np.arange(len(shapes)), weight, near, shapes, clear=0.0)
         pool.roots[0, 0] = pool.add(np.zeros(2), np.full(2, size), fit)
         self.cells = pool.cells()
 
@@ -113,7 +116,7 @@ class CellPool:
         self._quarters, self._first_row = _Growing(np.int64), _Growing(np.int64)
         self._centre, self._half = _Growing(np.float64, 2), _Growing(np.float64, 2)
         self._clear, self._rows = _Growing(np.float64), _Growing(np.float64)
-        self._drive, self._near = _Growing(np.int64), _Growing(np.int64)
+        self._drive, self._weight, self._near = _Growing(np.int64), _Growing(np.float64), _Growing(np.int64)
         self._first_drive, self._first_near = _Growing(np.int64), _Growing(np.int64)
         self._first_drive.append([0])
         self._first_near.append([0])
@@ -134,6 +137,7 @@ class CellPool:
         self._first_row.append([self._place(fit) if fit else NOWHERE])
         if fit:
             self._drive.append(fit.drive)
+            self._weight.append(fit.weight)
             self._near.append(fit.near)
             self._most_drives = max(self._most_drives, len(fit.drive))
             self._most_near = max(self._most_near, len(fit.near))
@@ -164,6 +168,7 @@ class CellPool:
             self._clear.view(),
             self._first_drive.view(),
             self._drive.view(),
+            self._weight.view(),
             self._first_near.view(),
             self._near.view(),
             self._first_row.view(),

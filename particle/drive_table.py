@@ -20,6 +20,15 @@ MERGED = 1e-12  # of a stroke: kinks closer than that are taken as one
 ROUNDING = 4 * np.finfo(float).eps  # of the time: nor are kinks told apart that are closer than that
 
 
+# What a jump of the fourth and fifth derivative adds, over the time of a bridge, to one of the third (see `span`).
+ROUGH_OVER, FOURTH, FIFTH = 0.25, 0.141, 0.036  # a stroke
+
+
+# Derivatives 1 to 5 of a segment at its begin and end, times its scale to that power, from its coefficients: (6, 5).
+_AT_END = np.array([[math.perm(k, order) for order in range(1, ORDER)] for k in range(ORDER)], dtype=float)
+_AT_BEGIN = np.where(np.eye(ORDER, ORDER - 1, -1) > 0, _AT_END, 0.0)
+
+
 class AnyDrive(Protocol):
     """What every drive has."""
 
@@ -61,6 +70,8 @@ class DriveTable(NamedTuple):
     span: FloatArray  # (N,) s
     repeats: FloatArray  # (N,)
     stroke_time: FloatArray  # (N,) s, the shortest stroke of each; inf: it has none
+    jump: FloatArray  # (N, 2) m/s, m/s^2, by how much its velocity and acceleration jump at kinks at most
+    rough: FloatArray  # (N,) m/s^3, by how much its third derivative does, with the share of those above
 
 
 class Evaluated:
@@ -76,7 +87,8 @@ class Evaluated:
 def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
     """The drives as kernels read them."""
     parts = [drive.segments() for drive in drives]
-    return DriveTable(
+    none = np.zeros((len(drives), 2))
+    table = DriveTable(
         first=np.cumsum([0] + [len(start) for start, *_ in parts]),
         start=np.concatenate([np.zeros(0)] + [start for start, *_ in parts]),
         scale=np.concatenate([np.zeros(0)] + [scale for _, scale, *_ in parts]),
@@ -85,7 +97,13 @@ def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
         span=np.array([start[-1] + scale[-1] for start, scale, *_ in parts], dtype=float),
         repeats=np.array([repeats for *_, repeats in parts], dtype=float),
         stroke_time=np.array([drive.stroke_time for drive in drives], dtype=float),
+        jump=none,
+        rough=none[:, 0],
     )
+    jump = _jumps(table)
+    longest = ROUGH_OVER * np.where(np.isfinite(table.stroke_time), table.stroke_time, 0.0)
+    rough = jump[:, 2] + FOURTH * longest * jump[:, 3] + FIFTH * longest**2 * jump[:, 4]
+    return table._replace(jump=jump[:, :2].copy(), rough=rough)
 
 
 def monomial_table(count: int) -> DriveTable:
@@ -99,47 +117,31 @@ def monomial_table(count: int) -> DriveTable:
         span=np.full(count, math.inf),
         repeats=np.ones(count),
         stroke_time=np.full(count, math.inf),
+        jump=np.zeros((count, 2)),
+        rough=np.zeros(count),
     )
 
 
-@jit
-def jumps(table: DriveTable, order: int) -> bool:
-    """Whether a derivative of any drive jumps at a kink: from one segment to the next, at its start or at its end.
+def _jumps(table: DriveTable) -> FloatArray:
+    """By how much the first five derivatives jump at a drive's kinks at most (N, 5) [m/s, m/s^2, ...]; 0: by rounding.
 
-    order: 1 for its velocity, 2 for its acceleration.
+    Kinks are from one segment to the next, at its start and at its end.
     """
-    for i in range(len(table.span)):
-        if not math.isfinite(table.span[i]):
-            continue
-        low, high = table.first[i], table.first[i + 1]
-        endless, most = not math.isfinite(table.repeats[i]), 0.0
-        for row in range(low, high):
-            most = max(most, np.abs(table.coefficients[row]).max() / table.scale[low:high].min() ** order)
-        first, left = _derivative(table, low, order, 0.0), 0.0
-        last = _derivative(table, high - 1, order, 1.0)
-        # At rest before the start and after the end, if there is one; else the last segment goes on into the first.
-        step = abs(last - first) if endless else max(abs(first), abs(last))
-        if table.repeats[i] > 1:
-            step = max(step, abs(last - first), abs(first))
-        for row in range(low, high):
-            if row > low:
-                step = max(step, abs(_derivative(table, row, order, 0.0) - left))
-            left = _derivative(table, row, order, 1.0)
-        if step > ROUNDING * 100 * most:
-            return True
-    return False
-
-
-@bare
-def _derivative(table: DriveTable, row: int, order: int, place: float) -> float:
-    """A derivative [m/s^order] of a segment at a place from 0, its beginning, to 1."""
-    total = 0.0
-    for k in range(ORDER - 1, order - 1, -1):
-        factor = table.coefficients[row, k]
-        for j in range(order):
-            factor *= k - j
-        total = total * place + factor
-    return total / table.scale[row] ** order
+    if len(table.span) == 0:
+        return np.zeros((0, ORDER - 1))
+    orders, first, last = np.arange(1, ORDER), table.first[:-1], table.first[1:] - 1
+    per_order = table.scale[:, None] ** orders
+    begins, ends = table.coefficients @ _AT_BEGIN / per_order, table.coefficients @ _AT_END / per_order
+    step = np.zeros_like(begins)
+    step[1:] = np.abs(begins[1:] - ends[:-1])
+    # At rest before the start, and after the end if there is one; before that the last segment goes on into the first.
+    again = np.where((table.repeats > 1)[:, None], np.abs(ends[last] - begins[first]), 0.0)
+    end = np.where(np.isfinite(table.repeats)[:, None], np.abs(ends[last]), 0.0)
+    step[first] = np.maximum(np.maximum(np.abs(begins[first]), end), again)
+    jump = np.maximum.reduceat(step, first)
+    most = np.maximum.reduceat(np.abs(table.coefficients).max(axis=1), first)
+    rounding = 100 * ROUNDING * most[:, None] / np.minimum.reduceat(table.scale, first)[:, None] ** orders
+    return np.where((jump > rounding) & np.isfinite(table.span)[:, None], jump, 0.0)
 
 
 @bare

@@ -20,7 +20,7 @@ from particle.fields import fields
 from particle.flight import JUMP, fly, jolt, jump, take_off
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.local import END, enter, gap_at, go_on, new_local
+from particle.local import END, gap_at, new_local, prepare
 from particle.motion import Part, energy_at_rest, margin, pull
 from particle.record import (
     ENDS,
@@ -52,8 +52,10 @@ from particle.slide import (
     TURNED,
     WORK_LIMIT,
     Request,
+    bridge,
     slide,
 )
+from particle.span import enter, go_on
 from particle.stick import leaves_rest, new_rest
 
 FloatArray = NDArray[np.float64]
@@ -78,6 +80,13 @@ class Memory(NamedTuple):
 def new_memory(surface: Any, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
     """Scratch memory that fits the surface as far as its cells are built."""
     return Memory(new_local(surface), new_rest(), new_step(pairs), stop)
+
+
+@jit
+def forget(surface: Any, memory: Memory) -> None:
+    """Make the scratch memory of another path, over a surface of the same measures, as good as new."""
+    prepare(surface, memory.local)
+    memory.step.seen[0] = math.nan
 
 
 @jit
@@ -119,6 +128,7 @@ def march(surface: Any, request: Request, pairs: Pairs, memory: Memory) -> tuple
                     if mode == FLYING and not request.flies:
                         return _results(record, DETACHED, count)
             count[1] += 1
+        bridge(local, request, mode)
         cell = enter(surface, local, state[0], state[1], time, end)
         if cell == UNBUILT:
             verdict = LACKS_CELL

@@ -25,10 +25,10 @@ from particle.local import (
     Local,
     X,
     Y,
-    enter,
     new_local,
 )
 from particle.rim import rim_gap
+from particle.span import enter
 
 FloatArray = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from particle.breakaway import slope
 from particle.cells import UNBUILT
 from particle.fields import fields
 from particle.jit import jit
-from particle.local import Local, enter
+from particle.local import Local
 from particle.moreau import moreau_step
 from particle.motion import Part, margin
 from particle.paper_scheme import paper_step
@@ -40,6 +40,7 @@ from particle.record import (
 )
 from particle.rim import rim_gap
 from particle.slide import GOES_ON, LACKS_CELL, LEFT_PLATE, Request, reason
+from particle.span import enter
 from particle.surface import SurfaceMotion
 
 FloatArray = NDArray[np.float64]

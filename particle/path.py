@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.between import between
-from particle.events import march, new_memory
+from particle.events import Memory, forget, march, new_memory
 from particle.fixed import march_fixed
 from particle.local import missing_place, new_local
 from particle.motion import Part
@@ -33,6 +34,28 @@ _OUTCOMES = {
 }
 
 
+class _Scratch(threading.local):
+    """The scratch memory of the last path on each thread, which serves the next one that needs as much."""
+
+    measures: tuple[int, ...] = ()
+    memory: Memory
+
+
+_scratch = _Scratch()
+
+
+def _memory(record: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
+    """Scratch memory for a path over the surface."""
+    cells = record.cells
+    measures = cells.highest, cells.most_near, cells.most_drives, len(pairs.long.c)
+    if _scratch.measures == measures:
+        memory = _scratch.memory._replace(stop=stop)
+        forget(record, memory)
+        return memory
+    _scratch.measures, _scratch.memory = measures, new_memory(record, pairs, stop)
+    return _scratch.memory
+
+
 def find_path(
     surface: SurfaceMotion, request: Request, tolerance: float, stop: NDArray[np.int64] | None = None
 ) -> Trajectory | None:
@@ -43,7 +66,7 @@ def find_path(
     pairs, stop = pairs_for(tolerance), np.zeros(1, dtype=np.int64) if stop is None else stop
 
     def path(record: Surface) -> tuple[Found, FloatArray]:
-        memory = new_memory(record, pairs, stop)
+        memory = _memory(record, pairs, stop)
         return march(record, request, pairs, memory), missing_place(memory.local)
 
     found = _with_cells(surface, path)

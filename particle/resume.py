@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from particle.fields import fields
 from particle.flight import fly
 from particle.jit import jit
-from particle.local import enter, new_local
+from particle.local import END, new_local
 from particle.motion import Part, energy_at_rest, pull
 from particle.record import (
     COLUMNS,
@@ -31,7 +31,8 @@ from particle.record import (
     row_of,
 )
 from particle.runge_kutta import Pairs, Step, new_step
-from particle.slide import GOES_ON, TURNED, Request, slide
+from particle.slide import GOES_ON, TURNED, Request, bridge, slide
+from particle.span import enter
 
 FloatArray = NDArray[np.float64]
 
@@ -49,6 +50,9 @@ def resume(surface: Any, request: Request, pairs: Pairs, rows: FloatArray, times
         if times[k] <= time or row + 1 == len(rows):
             out[k] = rows[row]
             continue
+        bridge(local, request, mode)
+        if local.frame[END] < times[k]:
+            local.frame[END] = time  # a span from there on lasts as long as the path's own
         if enter(surface, local, rows[row, X], rows[row, Y], time, math.inf) < 0:
             out[k] = rows[row]
             continue

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from particle.drive_table import jumps
 from particle.fixed import MOREAU, MOST_ROWS, PAPER, default_step, shortest_stroke, step_count
 from particle.friction import Contact
 from particle.micropart import Micropart
@@ -17,6 +16,8 @@ from particle.rim import rim_gap
 from particle.slide import Request
 from particle.surface import SurfaceMotion
 from particle.trajectory import Trajectory
+
+BRIDGED = 100.0  # tolerances, relative: how far off the surface's acceleration may be where kinks are bridged
 
 _FIXED_STEPS = {"fixed": MOREAU, "paper": PAPER}
 
@@ -94,14 +95,19 @@ def new_request(
     vector = np.atleast_1d(np.asarray(gravity, dtype=float))
     x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
     stroke_time = shortest_stroke(surface, duration)
+    force = float(part.mass * (np.linalg.norm(vector) + surface.size / stroke_time**2))
+    jumps, bends = (bool((surface.drives.jump[:, k] > 0).any()) for k in (0, 1))
     return Request(
         part=Part(float(part.mass), -float(z), float(x), float(y), float(part.squeeze), friction.law),
         start=np.array([*part.position, *part.velocity], dtype=float),
         duration=float(duration),
         tolerance=tolerance * surface.size,
         stroke_time=stroke_time,
-        force=float(part.mass * (np.linalg.norm(vector) + surface.size / stroke_time**2)),
+        force=force,
         flies=flies,
-        jumps=bool(jumps(surface.drives, 1)),
-        bends=bool(jumps(surface.drives, 2)),
+        jumps=jumps,
+        bends=bends,
+        bridged=(0.0, 0.0)
+        if bends
+        else (tolerance * surface.size / stroke_time, BRIDGED * tolerance * force / part.mass),
     )

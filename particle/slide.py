@@ -9,13 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.breakaway import Slope, lag, slope, velocity
+from particle.cells import NOWHERE
 from particle.fields import Fields, fields
 from particle.jit import bare
-from particle.local import NEAR, UNIT, gap_at
+from particle.local import CELL, LANDED, NEAR, UNIT, gap_at
 from particle.motion import Part, energy_at_rest, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
 from particle.runge_kutta import Pairs, Step, Tableau, attempt, error, fields_at_start, first_excursion, rate
+from particle.span import allow
 from particle.stop import Stop, come_to_rest, frozen_stop, stop_ahead
 
 FloatArray = NDArray[np.float64]
@@ -47,6 +49,16 @@ class Request(NamedTuple):
     flies: bool  # whether a part that comes off is followed to where it lands
     jumps: bool  # whether the surface's velocity jumps at kinks
     bends: bool  # whether its acceleration does
+    bridged: tuple[float, float]  # m/s, m/s^2, how far the surface may be off over kinks on which no step ends
+
+
+@bare
+def bridge(local: Any, request: Request, mode: int) -> None:
+    """Let kinks be bridged under a sliding part; when one slips, lands or comes off is found without."""
+    sliding = mode in (SLIDING, MANIFOLD)
+    if not sliding and local.frame[LANDED] > 0.0:
+        local.counts[CELL] = NOWHERE  # what is prepared may have bridges in it
+    allow(local, request.bridged[0] if sliding else 0.0, request.bridged[1] if sliding else 0.0)
 
 
 @bare

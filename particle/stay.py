@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from particle.drive_table import DriveTable, jumps
+from particle.drive_table import DriveTable
 from particle.jit import jit
-from particle.local import END, enter, new_local
+from particle.local import END, new_local
 from particle.motion import Part
+from particle.span import enter
 from particle.stick import leaves_rest, new_rest
 from particle.surface import SurfaceMotion
 
@@ -25,7 +26,7 @@ def stays(surface: SurfaceMotion, part: Part, x: float, y: float, time: float) -
     None: not known, as the endless drives have no common period of up to a thousand passes of each, a drive is
     a polynomial without end, or a drive's velocity jumps.
     """
-    if jumps(surface.drives, 1):
+    if (surface.drives.jump[:, 0] > 0).any():
         return None
     after = horizon(surface.drives, time)
     if after is None:

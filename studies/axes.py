@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -25,10 +26,12 @@ class Axes:
     def __init__(self, case: Case | None, tables: Sequence[Mapping[str, Any]], sampling: Any) -> None:
         self.mistakes: list[Mistake] = []
         self._sampling = sampling
+        self._lattice = lattice_of(case) if case else (None, 0)
+        self._fields: list[tuple[int, str, Field]] = []
         found = [self._axis(case, k, table) for k, table in enumerate(tables)] if case else []
         self.whole = bool(found) and None not in found
         axes = [(k, axis) for k, axis in enumerate(found) if axis]
-        self.mistakes += [*_doubled(axes), *_unlike(axes, sampling)]
+        self.mistakes += [*self._doubled(), *_unlike(axes, sampling)]
         # What the plate depends on varies slowest: points that follow each other share it.
         self.axes = tuple(sorted((axis for _, axis in axes), key=lambda axis: not (case and is_deep(case, axis))))
 
@@ -36,18 +39,19 @@ class Axes:
         if table["field"] is WRONG:
             return None
         try:
-            field = find_field(case, lattice_of(case)[0], table["field"])
+            field = find_field(case, self._lattice[0], table["field"])
         except ValueError as error:
             self.mistakes.append((("axes", k, "field"), str(error)))
             return None
-        if WRONG in table.values():
-            return None
+        self._fields.append((k, table["name"] if isinstance(table["name"], str) else field.path, field))
         key = "values" if table["values"] is not None else "range"
-        if table[key] is None:
+        if table[key] is None or table[key] is WRONG:
             return None
         values, wrong = _read(field, table[key])
         if wrong:
             self.mistakes += [(("axes", k, key, place), message) for place, message in wrong]
+        elif WRONG in table.values():
+            return None
         elif mistakes := list(self._misfits(field, key, values, table)):
             self.mistakes += [(("axes", k, at), message) for at, message in mistakes]
         else:
@@ -68,7 +72,7 @@ class Axes:
         """What does not fit the field or the sampling, by key."""
         drawn = self._sampling in ("random", "sobol")
         if key == "values":
-            doubled = next((value for k, value in enumerate(values) if value in values[:k]), None)
+            doubled = next((value for value, count in Counter(values).items() if count > 1), None)
             if doubled is not None and self._sampling == "grid":
                 yield (
                     "values",
@@ -88,6 +92,22 @@ class Axes:
         if table["count"] == 1:
             yield "count", "must be at least 2 for a range; got 1"
 
+    def _doubled(self) -> Iterator[Mistake]:
+        """What two axes both have."""
+        makes = next((field.path for *_, field in self._fields if field.locations[0][0] == "lattice"), None)
+        alone = self._lattice[1]
+        for n, (k, name, field) in enumerate(self._fields):
+            numbers = [int(at[1]) for at in field.locations if at[0] == "actuators"]
+            if makes and numbers and max(numbers) >= alone:
+                yield ("axes", k, "field"), f"must not vary actuators from {alone} on: the axis over {makes} makes them"
+            for _, other, varied in self._fields[:n]:
+                if shared := set(field.locations) & set(varied.locations):
+                    at = ".".join(map(str, min(shared, key=str)))
+                    same = f"{at} is varied by the axis {other} already"
+                    yield ("axes", k, "field"), f"must be varied by one axis only; {same}"
+                elif name == other:
+                    yield ("axes", k, "name"), f"must differ from that of another axis; got {shown(name)} twice"
+
 
 def _read(field: Field, written: Sequence[Any]) -> tuple[list[Value], list[tuple[int, str]]]:
     values, wrong = [], []
@@ -97,18 +117,6 @@ def _read(field: Field, written: Sequence[Any]) -> tuple[list[Value], list[tuple
         except ValueError as error:
             wrong.append((place, str(error)))
     return values, wrong
-
-
-def _doubled(axes: Sequence[tuple[int, Axis]]) -> Iterator[Mistake]:
-    """What two axes both have."""
-    for n, (k, axis) in enumerate(axes):
-        for _, other in axes[:n]:
-            if shared := set(axis.field.locations) & set(other.field.locations):
-                at = ".".join(map(str, min(shared, key=str)))
-                same = f"{at} is varied by the axis {other.name} already"
-                yield ("axes", k, "field"), f"must be varied by one axis only; {same}"
-            elif axis.name == other.name:
-                yield ("axes", k, "name"), f"must differ from that of another axis; got {shown(axis.name)} twice"
 
 
 def _unlike(axes: Sequence[tuple[int, Axis]], sampling: Any) -> Iterator[Mistake]:

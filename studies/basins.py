@@ -7,6 +7,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from coupling.plate_case import PlateCase
 from coupling.readable import readable
@@ -21,6 +22,7 @@ STAYING = (Outcome.STUCK, Outcome.MOVING)
 MOST_ACTUATORS = 20  # with a colour each
 SHORT = 0.02  # of the distance between the outermost actuators: less is hardly a way
 STAYS = "#f2efe6"
+WHITE = withStroke(linewidth=2.0, foreground="white")
 
 
 def is_over_starts(shown: Shown) -> bool:
@@ -32,7 +34,8 @@ def is_over_starts(shown: Shown) -> bool:
 def draw_basins(figure: Figure, axes: list[Axes], shown: Shown) -> None:
     """Draw the actuator that is nearest to the end into the first axes, and how near it is into the second."""
     turned = shown.axes[0].axis.field.locations[0] == STARTS[1]
-    across, up = reversed(shown.axes) if turned else shown.axes
+    places = [Scale.of(scale.axis, np.sort(scale.axis.values)) for scale in shown.axes]
+    across, up = reversed(places) if turned else places
     actuators = np.array([actuator.position for actuator in shown.study.case.actuators])
     away = np.linalg.norm(shown.end[..., None, :] - actuators, axis=-1)  # (n, m, repeats, N)
     numbers, staying = shown.usual_outcome, [OUTCOMES.index(outcome.value) for outcome in STAYING]
@@ -67,6 +70,8 @@ def _draw_plate(axes: Axes, shown: Shown, across: Scale, up: Scale) -> None:
         axes.add_collection(LineCollection([c * scale for c in rim_curves(outline, step)], colors="black"))
     actuators = np.array([actuator.position for actuator in shown.study.case.actuators]) * scale
     axes.plot(*actuators.T, "^", color="white", markeredgecolor="black", markersize=7)
+    for k, place in enumerate(actuators):
+        axes.annotate(str(k), place, (4, 4), textcoords="offset points", fontsize=8, path_effects=[WHITE], clip_on=True)
     axes.set_aspect("equal")
     axes.set_xlim(*limits[0])
     axes.set_ylim(*limits[1])

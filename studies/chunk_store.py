@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import os
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -24,10 +25,10 @@ class ChunkStore:
     def __init__(self, folder: Path, key: str) -> None:
         self.folder, self._key = folder, bytes.fromhex(key)
 
-    def load(self, chunk: int, length: int) -> Records | None:
-        """The records of a chunk of a length; None: there are none."""
+    def load(self, start: int, stop: int) -> Records | None:
+        """The records of the paths from one to before another; None: there is no chunk of just these."""
         try:
-            content = self._file(chunk).read_bytes()
+            content = self._file(start, stop).read_bytes()
         except FileNotFoundError:
             return None
         size = len(self._key)
@@ -35,25 +36,31 @@ class ChunkStore:
         if key != self._key or digest != hashlib.sha256(body).digest():
             return None
         records: Records = np.load(io.BytesIO(body))
-        return records if records.shape == (length,) and records.dtype == KIND else None
+        return records if records.shape == (stop - start,) and records.dtype == KIND else None
 
-    def save(self, chunk: int, records: Records) -> None:
-        """Keeps the records of a chunk."""
-        self.folder.mkdir(parents=True, exist_ok=True)
+    def save(self, start: int, records: Records) -> None:
+        """Keeps the records of the paths that begin with one; OSError, which names the folder, when it cannot."""
         buffer = io.BytesIO()
         np.save(buffer, records)
         body = buffer.getvalue()
-        partial = self._file(chunk).with_suffix(f".{os.getpid()}.partial")
-        partial.write_bytes(self._key + hashlib.sha256(body).digest() + body)
-        os.replace(partial, self._file(chunk))
+        file = self._file(start, start + len(records))
+        partial = file.with_suffix(f".{os.getpid()}.partial")
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            partial.write_bytes(self._key + hashlib.sha256(body).digest() + body)
+            os.replace(partial, file)
+        except OSError as error:
+            with suppress(OSError):
+                partial.unlink(missing_ok=True)
+            kept = "finished chunks are kept there, and the same command goes on from them"
+            raise OSError(f"{self.folder}: {error.strerror}; {kept}") from None
 
     def clear(self) -> None:
         """Removes all chunks, and the folder unless there is anything else in it."""
-        if self.folder.is_dir():
-            for file in [*self.folder.glob(f"*{ENDING}"), *self.folder.glob("*.partial")]:
-                file.unlink()
-            if not any(self.folder.iterdir()):
-                self.folder.rmdir()
+        for file in [*self.folder.glob(f"*{ENDING}"), *self.folder.glob("*.partial")]:
+            file.unlink()
+        with suppress(OSError):
+            self.folder.rmdir()
 
-    def _file(self, chunk: int) -> Path:
-        return self.folder / f"{chunk:08d}{ENDING}"
+    def _file(self, start: int, stop: int) -> Path:
+        return self.folder / f"{start:010d}-{stop:010d}{ENDING}"

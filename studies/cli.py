@@ -19,20 +19,29 @@ from coupling.cli import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
 )
 @click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one on each processor].")
 @click.option("--scheduler", "-s", help="Address of a dask scheduler whose workers find the paths, tcp://HOST:PORT.")
+@click.option("--overwrite", is_flag=True, help="Replace the results of another study of this name.")
 @click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
 def sweep(
-    study: Path, output: Path | None, threads: int | None, scheduler: str | None, quiet: bool, as_json: bool
+    study: Path,
+    output: Path | None,
+    threads: int | None,
+    scheduler: str | None,
+    overwrite: bool,
+    quiet: bool,
+    as_json: bool,
 ) -> None:
     """Find the paths at all points of STUDY and write them to one file.
 
-    A sweep that was interrupted goes on where it stopped when it is started again.
+    A sweep that was interrupted goes on where it stopped when it is started again. Exits with 1 when every point was
+    refused.
     """
     if scheduler is not None and threads is not None:
         raise click.UsageError("--threads must not be given with --scheduler: each worker uses all of its own threads")
     from coupling.progress import CountBar, untold
     from coupling.results import check_folder
     from studies.read import read_study
+    from studies.record import REFUSED
     from studies.report import figures, lines
     from studies.run import run_study
 
@@ -41,7 +50,7 @@ def sweep(
     refusing(check_folder, folder)
     try:
         with nullcontext(untold) if quiet else CountBar("paths") as tell:
-            found = refusing(run_study, read, folder, threads, tell, scheduler)
+            found = refusing(run_study, read, folder, threads, tell, scheduler, overwrite)
     except KeyboardInterrupt:
         click.echo("interrupted; the same command goes on where this one stopped", err=True)
         sys.exit(INTERRUPTED)
@@ -50,3 +59,7 @@ def sweep(
     elif not quiet:
         for label, text in lines(found):
             click.echo(f"{label:<12}{text}")
+        for warning in found.warnings:
+            click.secho(f"{'warning':<12}{warning}", fg="yellow")
+    if set(found.outcomes) == {REFUSED}:
+        sys.exit(1)

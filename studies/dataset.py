@@ -4,40 +4,59 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+import shutil
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import h5netcdf
+import h5py
 import numpy as np
 
 from studies.axis import Axis
-from studies.record import COLUMNS, OUTCOMES, SENTENCES, Records
+from studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from studies.slabs import slabs
 from studies.study import Study, versions
 
 if TYPE_CHECKING:
     import xarray
 
-KIND: Final = "active-surface sweep"
+SORT: Final = "active-surface sweep"
 ENGINE: Final = "h5netcdf"
 AT_ONCE: Final = 65536  # points whose coordinates are written together
+ROOM: Final = 1_000_000  # bytes, for all that does not grow with the points
 
 
-def write_dataset(study: Study, chunks: Iterable[tuple[int, Records]], path: Path) -> Path:
+def write_dataset(
+    study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str] = ()
+) -> Path:
     """Writes the records of a study to the file at `path`, chunk by chunk, and returns that.
 
-    chunks: the number of each chunk's first path, and the records.
+    chunks: the number of each chunk's first path, and the records.  warnings: what a user must know, kept with them.
+    Returns once the file is safe on disk. Raises OSError when it has no room.
     """
+    _check_room(study, path.parent)
     partial = path.with_suffix(f".partial{path.suffix}")
+    try:
+        _write(study, chunks, partial, warnings)
+        _sync(partial)
+        os.replace(partial, path)
+        _sync(path.parent)
+    finally:
+        partial.unlink(missing_ok=True)
+    return path
+
+
+def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:
     sizes = study.points.dimensions
-    with h5netcdf.File(partial, "w") as file:
+    with h5netcdf.File(path, "w") as file:
         file.dimensions = sizes
-        file.attrs.update(_about(study))
+        file.attrs.update(_about(study), warnings="\n".join(warnings))
         _write_axes(file, study)
         for name, column in COLUMNS.items():
             variable = file.create_variable(name, tuple(sizes), column.kind, fillvalue=_fill(column.kind))
             variable.attrs["long_name"] = column.meaning
+            variable.attrs["coordinates"] = " ".join(axis.name for axis in study.points.axes)
             if column.unit:
                 variable.attrs["units"] = column.unit
         file["outcome"].attrs.update(
@@ -52,8 +71,25 @@ def write_dataset(study: Study, chunks: Iterable[tuple[int, Records]], path: Pat
                 for name in COLUMNS:
                     file[name][slab] = records[name][first : first + count].reshape(shape)
                 first += count
-    os.replace(partial, path)
-    return path
+
+
+def _check_room(study: Study, folder: Path) -> None:
+    """Raises OSError unless a folder has room for the results: HDF5 does not survive a full disk."""
+    count = len(study.points)
+    coordinates = 0 if study.points.sampling == "grid" else 8 * len(study.points.axes) * count // study.points.repeats
+    needed, free = KIND.itemsize * count + coordinates + ROOM, shutil.disk_usage(folder).free
+    if free < needed:
+        sizes = f"the results take {needed / 1e6:.1f} MB, and {free / 1e6:.1f} MB are free"
+        raise OSError(f"{folder}: {sizes}; finished chunks are kept, and the same command goes on from them")
+
+
+def _sync(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def _fill(kind: str) -> float | None:
@@ -62,8 +98,9 @@ def _fill(kind: str) -> float | None:
 
 def _about(study: Study) -> dict[str, Any]:
     return {
-        "kind": KIND,
+        "kind": SORT,
         "key": study.key,
+        "traits": json.dumps(study.traits),
         "study": study.source,
         "case": study.case.source or study.case.model_dump_json(),
         "versions": json.dumps(versions()),
@@ -88,7 +125,7 @@ def _write_axes(file: h5netcdf.File, study: Study) -> None:
 
 
 def _axis(file: h5netcdf.File, axis: Axis, dimension: str) -> h5netcdf.Variable:
-    kind = h5netcdf.core.h5py.string_dtype() if axis.kind is object else axis.kind
+    kind = h5py.string_dtype() if axis.kind is object else axis.kind
     variable = file.create_variable(axis.name, (dimension,), kind)
     variable.attrs["field"] = axis.field.path
     if axis.field.unit:
@@ -102,15 +139,20 @@ def key_of(path: Path) -> str | None:
         return None
     try:
         with h5netcdf.File(path, "r") as file:
-            return str(file.attrs["key"]) if file.attrs.get("kind") == KIND else None
+            return str(file.attrs["key"]) if file.attrs.get("kind") == SORT else None
     except OSError:
         return None
 
 
+def differences(study: Study, path: Path) -> list[str]:
+    """In what a study differs from the one whose results a file holds."""
+    with h5netcdf.File(path, "r") as file:
+        known = json.loads(file.attrs.get("traits", "{}"))
+    return [name for name, trait in study.traits.items() if known.get(name) != trait]
+
+
 def read_dataset(path: Path) -> xarray.Dataset:
-    """The results of a sweep."""
+    """The results of a sweep, which are read from the file when they are needed, until they are closed."""
     import xarray
 
-    found = xarray.open_dataset(path, engine=ENGINE)
-    axes = [name for name, variable in found.variables.items() if "field" in variable.attrs]
-    return found.set_coords(axes)
+    return xarray.open_dataset(path, engine=ENGINE)

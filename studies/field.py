@@ -24,6 +24,10 @@ ALL: Final = "*"
 LEFT_OUT: Final = ("name", "source")  # of a case, what no file has
 ONE_RUN: Final = ("scheme", "frames", "time_step")
 """Keys of [run] that say nothing to a sweep: it locates events, and writes no frames."""
+FIXED: Final = {"plate.mesh": "a file", "plate.motion": "a file", "friction.file": "a file"} | dict.fromkeys(
+    ("plate.shape", "friction.model"), "which other keys there are"
+)
+"""Fields that cannot be varied, and what they tell."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,8 @@ def find_field(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Fiel
     keys = path.split(".")
     if keys[0] == "run" and keys[1:] and keys[1] in ONE_RUN:
         raise ValueError(f"must be a field that changes a path; got {path}, which a sweep does not use")
+    if path in FIXED:
+        raise ValueError(f"must be a field that can be varied; got {path}, which tells {FIXED[path]}")
     fields = {key: field for key, field in Case.model_fields.items() if key not in LEFT_OUT}
     found = list(_ends(keys, (), case, fields, lattice))
     locations = tuple(location for location, *_ in found)

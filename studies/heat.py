@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.collections import LineCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import ScalarFormatter
 from numpy.typing import NDArray
 
 from coupling.readable import plain_ticks, readable
@@ -20,6 +22,9 @@ from studies.threshold import BoolArray
 
 COLOURS = ("#40719c", "#e0c368", "#b8862d", "#c8371b", "#7a4b94", "#8a8a8a", "#dedede")
 """Of the outcomes, by their number."""
+OUTCOME = "what became of the part"
+MOST_NAMES = 12  # along an axis
+FEW_DIGITS = 1e-4, 1e7  # numbers between them are written out
 
 
 def draw_maps(figure: Figure, axes: list[Axes], shown: Shown) -> None:
@@ -27,6 +32,7 @@ def draw_maps(figure: Figure, axes: list[Axes], shown: Shown) -> None:
     across, up = shown.axes
     draw_field(figure, axes[0], across, up, shown.mean_distance, "distance from the start")
     draw_classes(axes[1], across, up, shown.usual_outcome, OUTCOMES, COLOURS)
+    axes[1].set_title(OUTCOME, fontsize=10)
     for one in axes[:2]:
         draw_outline(one, across, up, shown.holds)
 
@@ -38,7 +44,7 @@ def draw_field(figure: Figure, axes: Axes, across: Scale, up: Scale, lengths: Fl
     if np.isfinite(lengths).any():
         unit = readable(lengths[np.isfinite(lengths)], "m")
         mesh = axes.pcolormesh(edges(across), edges(up), np.ma.masked_invalid(lengths).T * unit.per_si, cmap="viridis")
-        figure.colorbar(mesh, ax=axes, label=f"{said} [{unit.name}]")
+        figure.colorbar(mesh, ax=axes, label=f"[{unit.name}]")
 
 
 def draw_classes(
@@ -77,24 +83,32 @@ def frame(axes: Axes, across: Scale, up: Scale | None = None) -> None:
     """Label the axes and set their scales."""
     plain_ticks(axes)
     axes.set_xlabel(across.label)
-    if across.axis.logarithmic:
+    if across.logarithmic:
         axes.set_xscale("log")
-    if across.texts:
-        axes.set_xticks(range(len(across.texts)), across.texts)
+    _name_ticks(axes.xaxis, across)
     if up:
         axes.set_ylabel(up.label)
-        if up.axis.logarithmic:
+        if up.logarithmic:
             axes.set_yscale("log")
-        if up.texts:
-            axes.set_yticks(range(len(up.texts)), up.texts)
+        _name_ticks(axes.yaxis, up)
+
+
+def _name_ticks(axis: Axis, scale: Scale) -> None:
+    """Name a few of a scale's texts, and write numbers with a power of ten where they would have many digits."""
+    formatter = axis.get_major_formatter()
+    if scale.texts:
+        places = range(0, len(scale.texts), -(-len(scale.texts) // MOST_NAMES))
+        axis.set_ticks(list(places), list(scale.texts[:: places.step]))
+    elif isinstance(formatter, ScalarFormatter) and not FEW_DIGITS[0] <= np.abs(scale.drawn).max() < FEW_DIGITS[1]:
+        formatter.set_scientific(True)
 
 
 def edges(scale: Scale) -> FloatArray:
     """The edges (n + 1,) of the fields around its values (n,), half-way to the next ones."""
-    values = np.log(scale.drawn) if scale.axis.logarithmic else scale.drawn
+    values = np.log(scale.drawn) if scale.logarithmic else scale.drawn
     if len(values) == 1:
         values = values[0] + np.array([-0.5, 0.5]) * (abs(values[0]) or 1.0)
-        return np.exp(values) if scale.axis.logarithmic else values
+        return np.exp(values) if scale.logarithmic else values
     middles = (values[1:] + values[:-1]) / 2
     found = np.concatenate([[2 * values[0] - middles[0]], middles, [2 * values[-1] - middles[-1]]])
-    return np.exp(found) if scale.axis.logarithmic else found
+    return np.exp(found) if scale.logarithmic else found

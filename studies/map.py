@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -31,9 +31,12 @@ def draw_sweep(study: Study, dataset: xarray.Dataset, path: Path) -> Path:
     figure = Figure()
     FigureCanvasAgg(figure)
     compose(figure, study, dataset)
-    partial = path.with_suffix(".partial.png")
-    figure.savefig(partial, dpi=110)
-    partial.replace(path)
+    partial = path.with_suffix(f".{os.getpid()}.partial.png")
+    try:
+        figure.savefig(partial, dpi=110)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
     return path
 
 
@@ -56,4 +59,6 @@ def compose(figure: Figure, study: Study, dataset: xarray.Dataset) -> None:
         draw_threshold(axes[2], shown, shown.holds, study.threshold.said)
     said = ", ".join(f"{name} = {text}" for name, text in shown.fixed.items())
     repeats = f", mean of {study.points.repeats} starts" if study.points.repeats > 1 else ""
-    figure.suptitle(f"{study.name}: {int(np.size(dataset['outcome']))} paths{repeats}" + (f", {said}" if said else ""))
+    drawn, of = shown.outcome.size, len(study.points)
+    paths = f"{of} paths" if drawn == of else f"{drawn} of {of} paths"
+    figure.suptitle(f"{study.name}: {paths}{repeats}" + (f", {said}" if said else ""))

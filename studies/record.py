@@ -33,14 +33,17 @@ COLUMNS: Final = {
     "largest_load": Column("f8", "N", "largest normal force at events and steps"),
     "outcome": Column("i1", "", "how the path ended"),
     "evaluations": Column("i8", "1", "evaluations of the surface"),
-    "mistakes": Column("i4", "1", "how many mistakes the case of a refused point has"),
+    "mistakes": Column("i4", "1", "how many mistakes a refused point has"),
 }
 KIND: Final = np.dtype([(name, column.kind) for name, column in COLUMNS.items()])
 
 REFUSED: Final = "refused"
 OUTCOMES: Final = (*(outcome.value for outcome in Outcome), REFUSED)
 """The outcomes by their number."""
-SENTENCES: Final = (*(outcome.sentence for outcome in Outcome), "The case of this point has mistakes: it was not run.")
+SENTENCES: Final = (
+    *(outcome.sentence for outcome in Outcome),
+    "The case of this point has mistakes, or its plate or path cannot be found.",
+)
 
 
 def new_records(count: int) -> Records:

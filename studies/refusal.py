@@ -60,7 +60,7 @@ def contact_of(friction: FrictionCase) -> Contact | str:
     try:
         law = friction_law(friction)
         law.law  # noqa: B018  # made when it is first asked for
-    except ValueError as error:
+    except (ValueError, ArithmeticError) as error:
         return str(error)
     return law
 

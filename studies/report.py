@@ -18,6 +18,7 @@ def figures(sweep: Sweep) -> dict[str, Any]:
         "dimensions": sweep.study.points.dimensions,
         "outcomes": sweep.outcomes,
         "first_refused": sweep.first_refused,
+        "warnings": sweep.warnings,
         "largest_distance": _largest(sweep),
         "files": [str(file) for file in sweep.files],
     }

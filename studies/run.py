@@ -1,6 +1,7 @@
 """One sweep, from study to results: this file reads as the pipeline.
 
-study -> chunks of points -> records of their paths -> chunks on disk -> one file of all -> picture
+study -> chunks of points -> records of their paths -> chunks on disk -> check of the model -> one file of all
+-> picture
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ import numpy as np
 from coupling.progress import Tell, untold
 from studies.chunk_store import ChunkStore
 from studies.cluster import records_on
-from studies.dataset import key_of, read_dataset, write_dataset
+from studies.dataset import differences, key_of, read_dataset, write_dataset
 from studies.engine import Engine
+from studies.lock import alone_in
 from studies.map import draw_sweep
 from studies.record import OUTCOMES, Records
-from studies.refusal import refusals
 from studies.study import Study
-from studies.variants import Variants
+from studies.validity import model_warnings
 
 if TYPE_CHECKING:
     import xarray
@@ -34,7 +35,10 @@ AT_ONCE = 65536  # paths whose records are written together, at least
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """What a sweep found; `files` are those it wrote."""
+    """What a sweep found; `files` are those it wrote.
+
+    With files, `dataset` reads from the first of them what is asked for, until `dataset.close()`.
+    """
 
     study: Study
     dataset: xarray.Dataset = field(repr=False)
@@ -47,14 +51,15 @@ class Sweep:
         return {name: int(count) for name, count in zip(OUTCOMES, counts, strict=True) if count}
 
     @property
+    def warnings(self) -> list[str]:
+        """Where the model stops holding, at the base case and a few corners of the axes."""
+        return str(self.dataset.attrs["warnings"]).splitlines()
+
+    @property
     def first_refused(self) -> list[str]:
         """What is wrong with the first point that was refused; nothing: none was."""
         refused = np.flatnonzero(self.dataset["mistakes"].values.ravel())
-        return (
-            refusals(self.study, Variants(self.study.case, self.study.points.axes), int(refused[0]))
-            if len(refused)
-            else []
-        )
+        return Engine(self.study).faults(int(refused[0])) if len(refused) else []
 
 
 def run_study(
@@ -63,15 +68,18 @@ def run_study(
     threads: int | None = None,
     tell: Tell = untold,
     scheduler: str | None = None,
+    overwrite: bool = False,
 ) -> Sweep:
-    """Find all paths of a study; with `output`, a folder, write NAME.nc and NAME.png there.
+    """Find all paths of a study; with `output`, a folder, write NAME.nc and NAME.sweep.png there.
 
     With a folder, chunks of finished paths are kept in NAME.sweep there until all are done, and a sweep that was
     interrupted goes on from them. If NAME.nc is of the same study, nothing is done again.
     threads: how many paths are found at a time, by default one on each processor.
     tell: gets how many paths are done, and of how many.
     scheduler: the address of a dask scheduler whose workers find the paths, each with all of its own threads.
-    Raises ValueError when NAME.nc is a file of something else, KeyboardInterrupt upon Ctrl-C, and with a scheduler what
+    overwrite: whether to replace the results of another study, or of other versions, in NAME.nc.
+    Raises ValueError when NAME.nc or NAME.sweep is something else, RuntimeError when another process sweeps in the
+    folder by that name, OSError when the disk is full, KeyboardInterrupt upon Ctrl-C, and with a scheduler what
     `records_on` raises.
     """
     if output is None:
@@ -79,51 +87,59 @@ def run_study(
             file = _found(study, Path(folder), threads, tell, scheduler)
             with read_dataset(file) as dataset:
                 return Sweep(study, dataset.load())
+    _check_output(study, Path(output), overwrite)
     file = _found(study, Path(output), threads, tell, scheduler)
     dataset = read_dataset(file)
-    picture = draw_sweep(study, dataset, file.with_suffix(".png"))
+    picture = draw_sweep(study, dataset, file.with_suffix(".sweep.png"))
     return Sweep(study, dataset, (file, picture))
+
+
+def _check_output(study: Study, folder: Path, overwrite: bool) -> None:
+    """Raises ValueError when the results would replace something else."""
+    file, chunks = _files(study, folder)
+    known = key_of(file)
+    if file.exists() and known is None:
+        wrong = f"free of files of other kinds; got {folder}, whose {file.name} is no sweep"
+    elif known is not None and known != study.key and not overwrite:
+        others = " and ".join(differences(study, file))
+        wrong = f"free of other results; got {folder}, whose {file.name} is of other {others}: --overwrite replaces it"
+    elif chunks.exists() and not chunks.is_dir():
+        wrong = f"free of files of other kinds; got {folder}, whose {chunks.name} is no folder"
+    else:
+        return
+    raise ValueError(f"Input output must be {wrong}")
+
+
+def _files(study: Study, folder: Path) -> tuple[Path, Path]:
+    """The file of all results in a folder, and the folder of chunks."""
+    return folder / f"{study.name}{ENDING}", folder / f"{study.name}.sweep"
 
 
 def _found(study: Study, folder: Path, threads: int | None, tell: Tell, scheduler: str | None) -> Path:
     """The file of all results in a folder."""
-    file = folder / f"{study.name}{ENDING}"
-    key, known = study.key, key_of(file)
-    if file.exists() and known is None:
-        raise ValueError(
-            f"Input output must be free of files of other kinds; got {folder}, whose {file.name} is no sweep"
-        )
-    store = ChunkStore(folder / f"{study.name}.sweep", key)
-    if known != key:
-        engine = Engine(study, threads)
-        _find(engine, store, tell, scheduler)
-        write_dataset(study, _chunks(engine, store), file)
-    store.clear()
+    (file, chunks), key = _files(study, folder), study.key
+    store = ChunkStore(chunks / key[:16], key)
+    with alone_in(chunks):
+        if key_of(file) != key:
+            engine = Engine(study, threads)
+            _find(engine, store, tell, scheduler)
+            write_dataset(study, _chunks(engine, store), file, model_warnings(study))
+        store.clear()
     return file
 
 
 def _find(engine: Engine, store: ChunkStore, tell: Tell, scheduler: str | None) -> None:
     """Find the chunks that the store does not have yet."""
-    done = 0
-
-    def more(paths: int) -> None:
-        nonlocal done
-        done += paths
+    missing = [chunk for chunk in range(engine.chunks) if store.load(*engine.span(chunk)) is None]
+    done = engine.paths - sum(stop - start for start, stop in map(engine.span, missing))
+    if done:
         tell(done, engine.paths)
-
-    def missing() -> Iterator[int]:
-        for chunk in range(engine.chunks):
-            start, stop = engine.span(chunk)
-            if store.load(chunk, stop - start) is None:
-                yield chunk
-            else:
-                more(stop - start)
-
-    found = engine.records_of(missing()) if scheduler is None else records_on(scheduler, engine, missing())
+    found = engine.records_of(missing) if scheduler is None else records_on(scheduler, engine, missing)
     with closing(found):
         for chunk, records in found:
-            store.save(chunk, records)
-            more(len(records))
+            store.save(engine.span(chunk)[0], records)
+            done += len(records)
+            tell(done, engine.paths)
 
 
 def _chunks(engine: Engine, store: ChunkStore) -> Iterator[tuple[int, Records]]:
@@ -131,9 +147,9 @@ def _chunks(engine: Engine, store: ChunkStore) -> Iterator[tuple[int, Records]]:
     first, lot = 0, []
     for chunk in range(engine.chunks):
         start, stop = engine.span(chunk)
-        records = store.load(chunk, stop - start)
+        records = store.load(start, stop)
         if records is None:
-            raise OSError(f"{store.folder}: chunk {chunk} of the sweep is gone; the same command finds it again")
+            raise OSError(f"{store.folder}: paths {start} to {stop - 1} are gone; the same command finds them again")
         lot.append(records)
         if stop - first >= AT_ONCE or stop == engine.paths:
             yield first, np.concatenate(lot)

@@ -10,7 +10,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
 from coupling.readable import readable
-from studies.heat import COLOURS, add_key, frame
+from studies.heat import COLOURS, OUTCOME, add_key, frame
 from studies.record import OUTCOMES
 from studies.shown import Shown
 
@@ -37,4 +37,5 @@ def draw_points(figure: Figure, axes: list[Axes], shown: Shown) -> None:
     figure.colorbar(marks, ax=axes[0], label=f"distance from the start [{unit.name}]")
     norm = BoundaryNorm(np.arange(len(OUTCOMES) + 1) - 0.5, len(OUTCOMES))
     axes[1].scatter(across.drawn, heights, c=outcome, cmap=ListedColormap(list(COLOURS)), norm=norm, **common)
+    axes[1].set_title(OUTCOME, fontsize=10)
     add_key(axes[1], outcome, OUTCOMES, COLOURS)

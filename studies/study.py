@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from studies.threshold import Threshold
 from studies.variants import lattice_of
 
 VERSIONS = ("active-surface", "numpy", "scipy", "numba")
+PACKAGES = ("meshes", "fem_plate", "particle", "coupling", "studies")
 
 
 @dataclass(frozen=True)
@@ -31,15 +33,18 @@ class Study:
 
     @property
     def key(self) -> str:
-        """A hash of all that its results depend on: case, the files that it reads, points and versions."""
-        said = {
-            "case": self.case.model_dump_json(exclude={"name", "source"}),
-            "lattice": lattice_of(self.case),
-            "files": [hashlib.sha256(file.read_bytes()).hexdigest() for file in _files(self.case)],
-            "points": repr(self._plain_points()),
-            "versions": versions(),
+        """A hash of all that its results depend on."""
+        return _hash(self.traits)
+
+    @property
+    def traits(self) -> dict[str, str]:
+        """Hashes of what its results depend on: case, the files that it reads, points and versions."""
+        return {
+            "case": _hash([self.case.model_dump_json(exclude={"name", "source"}), lattice_of(self.case)]),
+            "files of the case": _hash([hashlib.sha256(file.read_bytes()).hexdigest() for file in _files(self.case)]),
+            "points": _hash(repr(self._plain_points())),
+            "versions": _hash(versions()),
         }
-        return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
 
     def _plain_points(self) -> list[Any]:
         points = self.points
@@ -48,8 +53,21 @@ class Study:
 
 
 def versions() -> dict[str, str]:
-    """The versions of what a path is found by."""
-    return {name: version(name) for name in VERSIONS}
+    """The versions of what a path is found by; that of active-surface has a hash of its sources."""
+    found = {name: version(name) for name in VERSIONS}
+    return found | {VERSIONS[0]: f"{found[VERSIONS[0]]}+{_sources()}"}
+
+
+@cache
+def _sources() -> str:
+    root, digest = Path(__file__).parents[1], hashlib.sha256()
+    for file in sorted(file for package in PACKAGES for file in (root / package).rglob("*.py")):
+        digest.update(f"{file.relative_to(root).as_posix()}\n".encode() + file.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def _hash(said: Any) -> str:
+    return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
 
 
 def _files(case: Case) -> list[Path]:

@@ -53,7 +53,7 @@ class Variants:
         self._heads = heads
         self.drives_vary = any(axis.field.locations[0][0] in ("actuators", "lattice") for axis in axes)
         self.base = lru_cache(16)(self._base)
-        self._table = lru_cache(KEPT)(self._new_table)
+        self._tables: dict[tuple[str, str], Any] = {}
 
     def paths_of_a_base(self, points: Points) -> int:
         """How many paths that follow each other share what they move over, about."""
@@ -61,6 +61,11 @@ class Variants:
             return len(points)
         shared = [len(axis.values) for axis in points.axes if axis not in self._deep]
         return points.repeats * (math.prod(shared) if points.sampling == "grid" else 1)
+
+    def grounds(self, points: Points) -> int:
+        """How many different things to move over are to be kept at a time so that none is made twice."""
+        listed = [len(axis.values) for axis in self._deep]
+        return 1 if points.sampling == "grid" or 0 in listed else math.prod(listed)
 
     def deep(self, values: Values) -> Values:
         """Those of the values of all axes that the base depends on."""
@@ -84,11 +89,12 @@ class Variants:
                 continue
             if head[0] == "actuators":
                 actuators[int(head[1])] = table
-                changed["actuators"] = tuple(actuators)
             else:
                 changed[str(head[0])] = table
         if errors:
             raise ValidationError.from_exception_data("Case", errors)
+        if any(head[0] == "actuators" for head in self._heads):
+            changed["actuators"] = tuple(actuators)
         return base.case.model_copy(update=changed) if changed else base.case, base
 
     def _base(self, deep: Values) -> Base:
@@ -101,13 +107,20 @@ class Variants:
         held = [(actuator.position, spring) for actuator, spring in zip(case.actuators, springs(case), strict=True)]
         return Base(case, _plain(case), f"{plate} {held} {case.run.surface_tolerance!r}")
 
-    def _new_table(self, deep: Values, head: Location, values: Values) -> Any:
+    def _table(self, deep: Values, head: Location, values: Values) -> Any:
         plain: Any = self.base(deep).plain
         for key in head:
             plain = plain[key]
         for (_, location), value in zip(self._heads[head], values, strict=True):
             plain = _put(plain, location, value)
-        return _reader(head).validate_python(plain)
+        # Actuators that differ in nothing but their places, which do not vary here, are checked once.
+        own = {"position": plain["position"]} if head[0] == "actuators" else {}
+        known = str(head[0]), repr({key: value for key, value in plain.items() if key not in own})
+        if known not in self._tables:
+            if len(self._tables) == KEPT:
+                self._tables.clear()
+            self._tables[known] = _reader(head).validate_python(plain)
+        return self._tables[known].model_copy(update=own) if own else self._tables[known]
 
 
 def is_deep(case: Case, axis: Axis) -> bool:

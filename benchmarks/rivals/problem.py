@@ -79,7 +79,14 @@ def sunflower(count: int) -> FloatArray:
 
 
 # Starts [m] whose ends are well conditioned: one moved by 1e-9 of the radius moves its end by at most four times that.
-STARTS = {1: (143e-6, -46e-6), 2: (-104e-6, 54e-6), 9: (-161e-6, 103e-6), 25: (-7e-6, 94e-6), 100: (143e-6, -46e-6)}
+STARTS = {
+    1: (143e-6, -46e-6),
+    2: (-104e-6, 54e-6),
+    9: (-161e-6, 103e-6),
+    25: (-7e-6, 94e-6),
+    100: (143e-6, -46e-6),
+    1000: (90e-6, -47e-6),
+}
 ROUGH_START = (145e-6, -18e-6)
 CYCLES = 3.0  # of the slowest drive
 

@@ -5,7 +5,16 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from particle import ConstantFriction, CoulombAdhesion, Drive, EventKind, Micropart, polynomial_surface, simulate
+from particle import (
+    ConstantFriction,
+    CoulombAdhesion,
+    Drive,
+    EventKind,
+    Micropart,
+    platform_surface,
+    polynomial_surface,
+    simulate,
+)
 
 G, MU = 9.80665, 0.3
 STROKE, FREQUENCY = 0.05, 3.4  # at most 3.3 m/s^2, a little more than friction gives
@@ -93,3 +102,13 @@ def test_break_away_on_a_platform_that_turns_its_direction_is_that_of_a_fine_sol
     start = [0.0, 0.0, *(1e-9 * pull(slip) / Q)]
     theirs = solve_ivp(rate, (slip, 0.13), start, method="Radau", rtol=1e-9, atol=1e-14).y[:2, -1]
     assert ours.position[-1] == pytest.approx(theirs, abs=1e-8)
+
+
+def test_a_jump_of_the_acceleration_under_a_sliding_part_ends_a_step():
+    """A cosine begins at full acceleration: x' = v - mu (g t + h'), so x = v t - mu (g t^2 / 2 + h)."""
+    v, mu, drive = 0.2, 0.2, Drive(1.5e-4, 50.0, "cosine", cycles=1, delay=0.003)
+    block = Micropart(1.0, (0.0, 0.0), (v, 0.0))
+    path = simulate(platform_surface(z=drive, size=1e-2), block, CoulombAdhesion(mu), 0.02, tolerance=1e-9)
+    time, height = path.time[-1], float(drive.evaluate(path.time[-1])[0])
+    assert time == 0.02
+    assert path.position[-1, 0] == pytest.approx(v * time - mu * (G * time**2 / 2 + height), abs=1e-13)

@@ -2,11 +2,9 @@
 
 import copy
 import pickle
-import threading
 
 import numpy as np
 import pytest
-from threadpoolctl import threadpool_info
 
 import meshes
 from coupling import surface_motion
@@ -45,21 +43,6 @@ def test_a_kink_at_a_cells_edge_is_no_jump_though_some_drive_has_one():
         assert np.abs(one.position[-1] - other.position[-1]).max() < 1e-3 * RADIUS
 
 
-def test_building_on_two_threads_leaves_blas_its_threads():
-    def threads():
-        return [pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"]
-
-    before, shapes = threads(), DiscShapes(thirteen_points(), RADIUS)
-    surfaces = [surface_motion(shapes, thirteen_drives()) for _ in range(4)]
-    points = np.random.default_rng(1).uniform(-0.6, 0.6, (12, 2)) * RADIUS
-    workers = [threading.Thread(target=surface.evaluate, args=(points, 0.0)) for surface in surfaces]
-    for worker in workers:
-        worker.start()
-    for worker in workers:
-        worker.join()
-    assert threads() == before
-
-
 @pytest.mark.parametrize("count", [2, 13])
 def test_a_surface_and_its_paths_are_copied_and_pickled(count):
     surface = surface_motion(DiscShapes(thirteen_points()[:count], RADIUS), thirteen_drives()[:count])
@@ -81,3 +64,20 @@ def test_actuators_at_the_rim_do_not_make_cells_without_end(gap):
     cells = PlateCells(shapes, 1e-8)
     assert len(cells.cells.quarters) < 1500
     assert cells.error > 1e-6  # and this is said
+
+
+def test_roughness_of_the_shapes_is_not_divided_for_ever():
+    """What finite elements are off by does not become less in smaller cells."""
+
+    class Rough(DiscShapes):
+        def nearby(self, points):
+            rows, values = super().nearby(points)
+            x, y = 1e3 * points.T / RADIUS
+            return rows, values + 1e-6 * self.own_heights()[rows] * np.sin(7 * x + np.cos(3 * y))[:, None]
+
+    points = RADIUS * np.random.default_rng(0).uniform(-0.7, 0.7, (300, 2))
+    smooth, rough = (PlateCells(shapes(thirteen_points(), RADIUS), 1e-8) for shapes in (DiscShapes, Rough))
+    for cells in (smooth, rough):
+        cells.build(points)
+    assert smooth.error < 1e-8 and 5e-7 < rough.error < 2e-6
+    assert len(rough.cells.quarters) < 3.5 * len(smooth.cells.quarters)

@@ -16,7 +16,7 @@ def pool():
 
 
 def fit(rows, shared=False):
-    return CellFit(0, np.arange(len(rows)), NONE, rows, 0.0, shared)
+    return CellFit(0, np.arange(len(rows)), np.ones(len(rows)), NONE, rows, 0.0, shared)
 
 
 def test_rows_that_are_shared_are_kept_once(pool):

@@ -72,9 +72,9 @@ def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
     text = (EXAMPLES / "one_actuator.toml").read_text()
     case = tmp_path / "long.toml"
     case.write_text(re.sub('duration = "[^"]*"', 'duration = "1000 s"', text))
-    command = [sys.executable, "-m", "coupling", "run", str(case), "--output", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "studies", "run", str(case), "--output", str(tmp_path / "out")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(5)
+        time.sleep(12)  # it has begun by then, on a busy machine too
         process.send_signal(signal.SIGINT)
         output, errors = process.communicate(timeout=60)
     assert (process.returncode, output, errors) == (130, "", "interrupted\n")

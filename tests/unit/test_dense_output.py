@@ -46,6 +46,7 @@ def rocking():
 
 CASES = {
     "plate": (plate, Micropart(MASS, (25e-6, 95e-6)), ConstantFriction(20.9 * MASS), 3e-3),
+    "plate, hardly stopping": (plate, Micropart(MASS, (20e-6, 100e-6)), ConstantFriction(20.9 * MASS), 3e-3),
     "rough": (plate, Micropart(MASS, (20e-6, 100e-6)), KogutEtsion.paper(), 3e-3),
     "shaken": (shaken, Micropart(MASS, (0.0, 0.0)), CoulombAdhesion(0.15), 0.2),
     "platform": (platform, Micropart(MASS, (0.0, 0.0)), CoulombAdhesion(0.3), 1.0),
@@ -81,6 +82,12 @@ def test_samples_are_as_good_as_runs_that_end_there(case, tolerance):
     path = run(tolerance)
     samples = path.at(times)
     ours = np.array([e.time for e in path.events])
+    if len(ours) < len(events):
+        # Within the tolerance it may also pass by a stop that the truth hardly makes; its place is as good.
+        assert tolerance == 1e-6 and surface.sources.size > 0
+        ends = np.array([truth.position[-1] for truth in truths])
+        assert np.abs(samples.position - ends).max() / surface.size < bounds[0] * tolerance
+        return
     early, late = np.minimum(ours, events), np.maximum(ours, events)
     speed, load, friction = (np.abs(row).max() for row in (path.velocity, path.normal_force, path.friction_force))
     compared, worst = 0, np.zeros(5)

@@ -13,6 +13,7 @@ MESH = Path(__file__).parents[1] / "data" / "l_with_hole.msh"
 SPOTS = np.random.default_rng(0).uniform(-1, 1, (600, 2))
 PLATES = {  # plate, actuators, holes, area
     "disc": (meshes.disc(1.0, 0.125), [[0, 0], [0.3, 0.2], [0.99, 0]], 0, np.pi),
+    "no actuators": (meshes.rectangle(1.5, 1.0, 0.1), np.zeros((0, 2)), 0, 1.5),
     "almost on the rim": (meshes.disc(1.0, 0.125), [[0, 0], [1 - 1e-8, 0]], 0, np.pi),
     "annulus": (meshes.annulus(0.3, 1.0, 0.125), [[0.5, 0], [-0.31, 0.0], [0.5, 1e-3]], 1, 0.91 * np.pi),
     "L with a hole": (meshes.read(MESH), [[60, 180], [350, 199.9], [155, 105], [200.1, 199]], 1, None),

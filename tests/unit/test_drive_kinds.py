@@ -267,3 +267,19 @@ def test_every_wrong_field_is_named(make, owner, names):
     for part, name in zip(parts, names.split(), strict=True):
         assert part.removeprefix("Input ").startswith(f"{name} of {owner} must ")
         assert "; got " in part
+
+
+@pytest.mark.parametrize(
+    ("drive", "velocity", "acceleration"),
+    [
+        (Drive(1e-6, 300.0), False, False),
+        (Drive(1e-6, 300.0, dwell=1e-3, cycles=3), False, False),
+        (Drive(1e-6, 300.0, "cosine", cycles=2), False, True),
+        (Drive(1e-6, 300.0, "sine", cycles=2), True, False),
+        (SegmentDrive([Segment(1e-6, 300.0, "up"), Segment(-1e-6, 200.0, "up")]), False, False),
+    ],
+    ids=["up-down", "with dwell", "cosine", "sine", "schedule"],
+)
+def test_which_derivatives_jump_at_kinks(drive, velocity, acceleration):
+    jump = drive_table([Drive(3e-6, 40.0), drive]).jump > 0
+    assert jump.tolist() == [[False, False], [velocity, acceleration]]

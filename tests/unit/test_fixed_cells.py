@@ -65,7 +65,7 @@ def test_samples_over_a_hole_that_one_step_has_jumped_keep_the_surface_before_it
     """A square 1 m high, one that is not there, and two 2 m high."""
     pool, none = CellPool(np.zeros(2), np.ones(2), np.full((4, 1), NOWHERE)), np.zeros(0, dtype=np.int64)
     for i, height in ((0, 1.0), (2, 2.0), (3, 2.0)):
-        fit = CellFit(0, np.zeros(1, dtype=np.int64), none, np.array([[height]]), 0.0)
+        fit = CellFit(0, np.zeros(1, dtype=np.int64), np.ones(1), none, np.array([[height]]), 0.0)
         pool.roots[i, 0] = pool.add(np.array([i + 0.5, 0.5]), np.full(2, 0.5), fit)
     surface = SurfaceMotion(monomial_table(1), SimpleNamespace(cells=pool.cells(), error=0.0), np.zeros((0, 2)), 1.0)
     part, friction = Micropart(1.0, (0.75, 0.5), (3.0, 0.0)), ConstantFriction(0.0)

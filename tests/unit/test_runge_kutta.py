@@ -7,10 +7,20 @@ import pytest
 
 from particle import ConstantFriction, polynomial_surface
 from particle.fields import fields
-from particle.local import enter, new_local
+from particle.local import CELL, new_local
 from particle.motion import Part
 from particle.record import SLIDING
-from particle.runge_kutta import Pairs, attempt, error, new_step, pairs_for, rate, tableau
+from particle.runge_kutta import (
+    Pairs,
+    attempt,
+    error,
+    fields_at_start,
+    new_step,
+    pairs_for,
+    rate,
+    tableau,
+)
+from particle.span import enter
 
 OMEGA = 3.0  # 1/s
 
@@ -84,3 +94,23 @@ def test_the_part_does_not_slide_back_within_a_step_under_friction():
     assert attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 0.9)
     assert step.end == pytest.approx([0.9 - 0.5 * 0.81, 0, 0.1, 0, -0.5 * (1 - 0.01) + 0.495, 0.495], abs=1e-14)
     assert not attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 1.5)
+
+
+def test_the_surface_at_a_steps_end_serves_the_next_step_in_the_same_cell():
+    surface, part = bowl().record, Part(1.0, 1e9, 0.0, 0.0, 0.0, ConstantFriction(0.0).law)
+    local, step, count = new_local(surface), new_step(pairs_for(1e-9)), np.zeros(3, dtype=np.int64)
+    enter(surface, local, 0.0, 0.0, 0.0, 1.0)
+    state, h = np.array([0.1, 0.0, 0.0, 0.2, 0.0, 0.0]), 0.01
+    step.loads[0] = rate(
+        fields_at_start(local, step, count, 0.0, state), SLIDING, local, part, 0.0, state, step.rates[0]
+    )
+    assert count[0] == 1
+    assert attempt(SLIDING, surface, local, part, tableau(8), step, 0.0, state, h)
+    assert fields_at_start(local, step, count, h, step.end) == fields(local, step.end[0], step.end[1], h)
+    assert count[0] == 1  # it was kept
+    elsewhere = step.end + np.array([1e-15, 0.0, 0.0, 0.0, 0.0, 0.0])
+    assert fields_at_start(local, step, count, h, elsewhere) == fields(local, elsewhere[0], elsewhere[1], h)
+    fields_at_start(local, step, count, 1.1 * h, step.end)
+    local.counts[CELL] += 1
+    fields_at_start(local, step, count, h, step.end)
+    assert count[0] == 4  # another place, time or cell

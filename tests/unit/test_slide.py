@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, polynomial_surface, slide
-from particle.local import enter, new_local
+from particle.local import new_local
 from particle.motion import Part
 from particle.record import SLIDING
 from particle.runge_kutta import new_step, pairs_for
+from particle.span import enter
 
 
 @pytest.mark.skipif(not numba.config.DISABLE_JIT, reason="compiled kernels cannot be replaced")
@@ -24,7 +25,7 @@ def test_a_step_that_is_cut_a_little_does_not_become_as_long_as_the_span_again(m
     monkeypatch.setattr(slide, "first_excursion", excursion)
     surface, pairs = polynomial_surface([[0.0]]).record, pairs_for(1e-9)
     part = Part(1.0, 9.81, 0.0, 0.0, 0.0, ConstantFriction(1.0).law)
-    request = slide.Request(part, np.array([0.0, 0.0, 5.0, 0.0]), 1.0, 1e-9, 1.0, 1.0, False, False, False)
+    request = slide.Request(part, np.array([0.0, 0.0, 5.0, 0.0]), 1.0, 1e-9, 1.0, 1.0, False, False, False, (0.0, 0.0))
     local, step, count = new_local(surface), new_step(pairs), np.zeros(3, dtype=np.int64)
     enter(surface, local, 0.0, 0.0, 0.0, 1.0)
     state = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0])

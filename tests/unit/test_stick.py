@@ -8,8 +8,9 @@ import pytest
 from particle import ConstantFriction, CoulombAdhesion, Drive, KogutEtsion, polynomial_surface
 from particle.fields import fields
 from particle.friction import friction_limit
-from particle.local import enter, new_local
+from particle.local import new_local
 from particle.motion import Part, length, pull
+from particle.span import enter
 from particle.stick import leaves_rest, new_rest
 
 SAMPLES = 400

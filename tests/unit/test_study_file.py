@@ -1,5 +1,7 @@
 """Study files: what they say, and every mistake in one at once."""
 
+import time
+
 import pytest
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
@@ -175,9 +177,61 @@ def test_a_value_that_contradicts_the_case_everywhere_is_a_mistake(tmp_path):
     assert "actuators[1].force must not be given with a stroke" in told
 
 
-def test_what_decides_on_the_other_keys_cannot_be_varied(tmp_path):
-    (told,) = mistakes(tmp_path, '[[axes]]\nfield = "friction.model"\nvalues = ["coulomb"]\n')
-    assert told.endswith('axes[1].values[1] must be "constant"; got "coulomb"')
+@pytest.mark.parametrize(
+    ("field", "value", "said"),
+    [
+        ("friction.model", "constant", "which other keys there are"),
+        ("plate.shape", "disc", "which other keys there are"),
+        ("plate.mesh", "a.msh", "a file"),
+        ("plate.motion", "a.csv", "a file"),
+        ("friction.file", "a.csv", "a file"),
+    ],
+)
+def test_files_and_what_decides_on_other_keys_cannot_be_varied(tmp_path, field, value, said):
+    (told,) = mistakes(tmp_path, f'[[axes]]\nfield = "{field}"\nvalues = ["{value}"]\n')
+    assert told.endswith(f"axes[1].field must be a field that can be varied; got {field}, which tells {said}")
+
+
+@pytest.mark.parametrize("made", ['lattice.columns"\nvalues = [2, 3]', 'lattice.stroke"\nvalues = ["4 um", "8 um"]'])
+@pytest.mark.parametrize(
+    ("field", "value"), [("*.stroke", "7 um"), ("1.stroke", "7 um"), ("2.position.1", "1 um"), ("0.stroke", "")]
+)
+@pytest.mark.parametrize("first", [True, False])
+def test_an_axis_over_what_another_axis_makes_anew_is_a_mistake(tmp_path, made, field, value, first):
+    axes = [f'[[axes]]\nfield = "{made}\n', f'[[axes]]\nfield = "actuators.{field}"\nvalues = ["{value or "9 um"}"]\n']
+    text = "".join(axes if first else axes[::-1])
+    if value:
+        (told,) = mistakes(tmp_path, text, LATTICE)
+        over = made.split('"')[0]
+        message = f"must not vary actuators from 1 on: the axis over {over} makes them"
+        assert told.endswith(f"axes[{2 if first else 1}].field {message}")
+    else:
+        assert len(read_study(written(tmp_path, text, LATTICE)).points) == 2
+
+
+def test_values_of_an_axis_are_checked_whatever_else_is_wrong_with_it(tmp_path):
+    told = mistakes(
+        tmp_path,
+        '[[axes]]\nfield = "actuators.*.stroke"\nname = "a b"\nvalues = ["10 um", 5, "ten um"]\n'
+        '[[axes]]\nfield = "part.mass"\ncount = 3\nrange = ["1 Hz", "2 ug"]\nspacing = "log"\n'
+        '[[axes]]\nfield = "actuators.0.stroke"\nvalues = ["1 parsec?"]\n',
+    )
+    assert [line.split()[1] for line in told] == [
+        "axes[1].name",
+        "axes[1].values[2]",
+        "axes[1].values[3]",
+        "axes[2].range[1]",
+        "axes[2].spacing",
+        "axes[3].field",
+        "axes[3].values[1]",
+    ]
+
+
+def test_a_value_that_is_listed_twice_is_found_among_many(tmp_path):
+    listed = [*range(1, 60_000), 7]
+    began = time.perf_counter()
+    (told,) = mistakes(tmp_path, f'[[axes]]\nfield = "actuators.0.cycles"\nvalues = {listed}\n')
+    assert "got 7 twice" in told and time.perf_counter() - began < 15
 
 
 def test_fields_of_lattices_platforms_and_texts_are_found(tmp_path):

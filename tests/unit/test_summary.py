@@ -1,9 +1,11 @@
 """The summary of runs with springs, forces and slow and fast drives."""
 
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from coupling import report, run_case
 from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
@@ -85,3 +87,29 @@ def test_long_runs_say_that_their_files_strobe():
     assert summary.deflection_over_thickness == pytest.approx(2.0, rel=1e-6)
     assert summary.frames_per_cycle == pytest.approx(999 / 600)
     assert any("1.7 steps to a cycle" in warning for warning in report.warnings(summary))
+
+
+def test_a_run_keeps_blas_on_one_thread_and_gives_the_others_back():
+    """Its many small systems take two to four times as long on more."""
+
+    def threads():
+        return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+
+    @contextmanager
+    def watched(what):
+        seen.append(threads())
+        yield lambda *_: None
+
+    seen = []
+    moving = PartCase(mass=2e-9, position=(0.0, 0.0))
+    case = Case(
+        plate=PLATE,
+        actuators=ACTUATORS[:1],
+        part=moving,
+        friction=CoulombCase(coefficient=0.3),
+        run=RunCase(duration=1e-4),
+    )
+    with threadpool_limits(limits=2, user_api="blas"):
+        run_case(case, progress=watched)
+        assert threads() == {2}
+    assert seen and all(found == {1} for found in seen)

@@ -16,7 +16,8 @@ from meshes import disc
 from particle import Drive, polynomial_surface
 from particle.cells import UNBUILT, CellPool
 from particle.fields import fields
-from particle.local import enter, new_local, within_cell
+from particle.local import new_local, within_cell
+from particle.span import enter
 
 DRIVES = [Drive(150e-6, 300), Drive(-60e-6, 450, cycle="up", delay=0.2e-3)]
 NAMES = ("w", "w_t", "w_tt", "gradient", "gradient_t", "hessian")

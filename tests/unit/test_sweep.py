@@ -14,6 +14,7 @@ import xarray
 from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
+from coupling import read_case
 from coupling.run import build_friction, build_surface, follow_part
 from studies import engine, read_study, run_study
 from studies.chunk_store import ChunkStore
@@ -43,6 +44,16 @@ range = ["5 um", "6 um"]
 field = "actuators.*.frequency"
 range = ["350 Hz", "500 Hz"]
 """
+STROKES = """\
+sampling = "random"
+points = 24
+[[axes]]
+field = "actuators.*.stroke"
+range = ["40 um", "70 um"]
+[[axes]]
+field = "actuators.0.frequency"
+range = ["350 Hz", "500 Hz"]
+"""
 
 
 def same(one, other):
@@ -70,29 +81,41 @@ def test_a_platform_is_swept_in_memory_and_its_axes_are_labelled(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "axes"),
+    ("text", "axes", "lines"),
     [
-        (PLATFORM, SHAKEN),
+        (PLATFORM, SHAKEN, [('stroke = "20 um"', 'stroke = "{} m"'), ('limit = "20 nN"', 'limit = "{} N"')]),
         pytest.param(
             PLATE,
             '[[axes]]\nfield = "plate.radius"\nvalues = ["300 um", "310 um"]\n'
             '[[axes]]\nfield = "actuators.0.stroke"\nvalues = ["50 um", "70 um"]\n'
             '[[axes]]\nfield = "part.velocity.0"\nvalues = ["0 m/s", "10 mm/s"]\n'
             '[[axes]]\nfield = "run.duration"\nvalues = ["4 ms", "5 ms"]\n',
+            [
+                ('radius = "300 um"', 'radius = "{} m"'),
+                ('stroke = "60 um"', 'stroke = "{} m"'),
+                ("[friction]", 'velocity = ["{} m/s", "0 m/s"]\n[friction]'),
+                ('duration = "5 ms"', 'duration = "{} s"'),
+            ],
             marks=pytest.mark.compiled,
         ),
         pytest.param(
-            LATTICE, '[[axes]]\nfield = "lattice.stroke"\nvalues = ["50 um", "70 um"]\n', marks=pytest.mark.compiled
+            LATTICE,
+            '[[axes]]\nfield = "lattice.stroke"\nvalues = ["50 um", "70 um"]\n',
+            [('stroke = "5 * (1 + column) um"', 'stroke = "{} m"')],
+            marks=pytest.mark.compiled,
         ),
     ],
     ids=["platform", "plate", "lattice"],
 )
-def test_each_path_has_the_bits_of_a_run_of_its_case(tmp_path, text, axes):
+def test_each_path_has_the_bits_of_a_run_of_a_file_with_its_values(tmp_path, text, axes, lines):
     study = read_study(written(tmp_path, axes, text))
     records = run_study(study).dataset
-    made = Engine(study)
     for k, values in enumerate(study.points.values(0, len(study.points))):
-        case, _ = made.variants.at(values)
+        changed = text
+        for value, (old, new) in zip(values, lines, strict=True):
+            changed = changed.replace(old, new.format(value), 1)
+        (tmp_path / "changed.toml").write_text(changed)
+        case = read_case(tmp_path / "changed.toml")
         path = follow_part(case, build_surface(case), build_friction(case))
         found = {name: records[name].values.ravel()[k] for name in COLUMNS}
         assert (found["end_x"], found["end_y"]) == tuple(path.position[-1])
@@ -102,9 +125,11 @@ def test_each_path_has_the_bits_of_a_run_of_its_case(tmp_path, text, axes):
         assert found["last_motion"] == (path.time[-1] if path.at_rest_since is None else path.at_rest_since)
 
 
-@pytest.mark.compiled
-def test_the_bits_do_not_depend_on_the_number_of_threads(tmp_path):
-    study = read_study(written(tmp_path, PLATES.replace("points = 12", "points = 4"), PLATE))
+@pytest.mark.parametrize(
+    ("axes", "case"), [(SHAKEN, PLATFORM), pytest.param(STROKES, PLATE, marks=pytest.mark.compiled)]
+)
+def test_the_bits_do_not_depend_on_the_number_of_threads(tmp_path, axes, case):
+    study = read_study(written(tmp_path, axes, case))
     assert same(run_study(study, threads=1).dataset, run_study(study, threads=3).dataset)
 
 
@@ -192,19 +217,22 @@ def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkey
     monkeypatch.setattr(Engine, "records", counted)
     with pytest.raises(KeyboardInterrupt):
         run_study(study, tmp_path / "out")
-    assert sorted(file.name for file in (tmp_path / "out").rglob("*.chunk")) == ["00000000.chunk", "00000001.chunk"]
+    assert sorted(file.name for file in (tmp_path / "out").rglob("*.chunk")) == [
+        "0000000000-0000000002.chunk",
+        "0000000002-0000000004.chunk",
+    ]
     asked.clear()
     told = []
     sweep = run_study(study, tmp_path / "out", tell=lambda done, of: told.append((done, of)))
-    assert asked == [2] and told == [(2, 6), (4, 6), (6, 6)]
+    assert asked == [2] and told == [(4, 6), (6, 6)]
     assert same(whole, sweep.dataset)
-    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["study.nc", "study.png"]
+    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["study.nc", "study.sweep.png"]
     asked.clear()
     assert same(whole, run_study(study, tmp_path / "out").dataset) and asked == []
     changed = read_study(written(tmp_path, SHAKEN.replace("40 um", "41 um"), PLATFORM))
     with pytest.raises(KeyboardInterrupt):  # it begins anew, and is stopped after two chunks
-        run_study(changed, tmp_path / "out")
-    assert asked == [0, 1]
+        run_study(changed, tmp_path / "out", overwrite=True)
+    assert asked == [0, 1] and same(whole, read_dataset(tmp_path / "out" / "study.nc").load())
 
 
 def test_the_key_is_that_of_what_the_results_depend_on(tmp_path):
@@ -232,13 +260,6 @@ def test_the_key_knows_the_content_of_a_measured_motion(tmp_path):
         motion.write_text("time [ms], x [um]\n" + "\n".join(rows) + "\n")
         keys.add(read_study(written(tmp_path, '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg"]\n', case)).key)
     assert len(keys) == 2
-
-
-def test_a_file_of_another_kind_is_not_replaced(tmp_path):
-    (tmp_path / "study.nc").write_text("mine")
-    done = CliRunner().invoke(main, ["sweep", str(written(tmp_path, SHAKEN, PLATFORM)), "-o", str(tmp_path)])
-    assert done.exit_code == 2 and "whose study.nc is no sweep" in done.output
-    assert (tmp_path / "study.nc").read_text() == "mine"
 
 
 def test_the_command_says_what_it_found(tmp_path):
@@ -296,7 +317,7 @@ def test_a_sweep_that_is_killed_and_resumed_has_the_bits_of_one_that_was_not(tmp
     assert all(file.read_bytes() == content for file, content in kept.items())
     subprocess.run(command(path, folder), check=True)
     assert same(whole, read_dataset(folder / "study.nc").load())
-    assert sorted(file.name for file in folder.iterdir()) == ["study.nc", "study.png"]
+    assert sorted(file.name for file in folder.iterdir()) == ["study.nc", "study.sweep.png"]
 
 
 def test_records_have_the_kinds_of_their_columns():

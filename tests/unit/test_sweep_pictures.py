@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import xarray
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
@@ -62,6 +61,44 @@ def test_a_map_has_each_value_at_its_place(tmp_path):
     ]
 
 
+def shuffled(dataset, *names):
+    """The same results, with the values of axes in the order in which a study listed them."""
+    return dataset.load().isel({name: [2, 0, 1] for name in names})
+
+
+@pytest.mark.parametrize("other", ["", LIMIT])
+def test_the_order_in_which_values_are_listed_does_not_change_the_picture(tmp_path, other):
+    study, dataset = made(tmp_path, STROKE + other)
+    mixed = read_study(
+        written(tmp_path, STROKE.replace('"10 um", "20 um", "40 um"', '"40 um", "10 um", "20 um"') + other)
+    )
+    pictures = []
+    for one, results in ((study, dataset), (mixed, shuffled(dataset, "stroke"))):
+        figure = drawn(one, results)
+        pictures.append(np.asarray(figure.canvas.buffer_rgba()).tobytes())
+    assert pictures[0] == pictures[1]
+
+
+@pytest.mark.parametrize(
+    ("values", "scale", "expected"),
+    [
+        ('["10 nN", "1 nN", "1 uN"]', "log", None),
+        ('["1 nN", "1000 nN", "2 nN"]', "linear", [-0.5, 0.5, 1.5, 2.5]),
+        ('["0 nN", "100 nN", "1 nN"]', "linear", [-0.5, 0.5, 1.5, 2.5]),
+        ('["2 nN", "1 nN", "4 nN"]', "linear", [0.5, 1.5, 3, 5]),
+    ],
+)
+def test_no_cell_of_a_map_is_a_sliver(tmp_path, values, scale, expected):
+    figure = drawn(*made(tmp_path, axis("friction.limit", values, "limit") + CYCLE))
+    (mesh,) = (one for one in figure.axes[0].collections if isinstance(one, QuadMesh))
+    places = np.asarray(mesh.get_coordinates())[0, :, 0]
+    assert figure.axes[0].get_xscale() == scale
+    widths = np.diff(np.log(places) if scale == "log" else places)
+    assert (widths > 0).all() and widths.max() <= 4 * widths.min()
+    if expected:
+        assert places == pytest.approx(expected)
+
+
 def test_a_map_over_a_text_names_it(tmp_path):
     study, dataset = made(tmp_path, CYCLE + STROKE)
     assert dataset["cycle"].values.tolist() == ["up-down", "up"]
@@ -71,7 +108,7 @@ def test_a_map_over_a_text_names_it(tmp_path):
 
 def test_axes_beyond_the_longest_two_stay_at_their_middle_value(tmp_path):
     figure = drawn(*made(tmp_path, STROKE + LIMIT + axis("part.mass", '["1e-9 kg", "2e-9 kg", "3e-9 kg"]', "mass")))
-    assert "limit = 2 nN" in figure.get_suptitle()
+    assert "9 of 18 paths, limit = 2 nN" in figure.get_suptitle()
     assert figure.axes[0].get_xlabel() == "stroke [µm]"
 
 
@@ -130,4 +167,3 @@ def test_edges_lie_half_way_between_values(tmp_path):
     study, dataset = made(tmp_path, text)
     scale = Scale.of(study.points.axes[0], dataset["part.mass"].values)
     assert edges(scale) == pytest.approx(10.0 ** np.array([-0.5, 0.5, 1.5, 2.5]))
-    assert isinstance(dataset, xarray.Dataset)

@@ -104,7 +104,7 @@ def test_the_curve_and_the_line_lie_where_the_condition_begins(tmp_path):
     for one in maps:
         (outline,) = (c for c in one.collections if isinstance(c, LineCollection))
         assert any(isinstance(c, QuadMesh) for c in one.collections)
-        assert len(outline.get_segments()) == 5
+        assert len(outline.get_segments()) == 7
 
 
 def test_a_condition_that_holds_from_the_first_value_on_is_marked(tmp_path):

@@ -103,7 +103,7 @@ def test_a_block_is_moved_only_to_where_all_that_its_fits_use_is(section):
     at = {tuple(site): row for row, site in enumerate(np.round((points - points.min(axis=0)) / PITCH).astype(int))}
     i, j = grid.middle.tolist()
     used = [at[i - 3, j], at[i + 4, j + 1], at[i, j - 2], at[i, j + 3]]
-    fit = CellFit(2, np.array(used), np.array(used[:1]), np.zeros((4, 7)), 0.0)
+    fit = CellFit(2, np.array(used), np.ones(len(used)), np.array(used[:1]), np.zeros((4, 7)), 0.0)
     outermost = grid.spread([fit], 0)
     assert (i, j) == (7, 5) and outermost.min(axis=0).tolist() == [-4, -3] and outermost.max(axis=0).tolist() == [4, 3]
     for place in np.ndindex(40, 40):

@@ -156,6 +156,15 @@ def test_tables_tell_what_was_not_tried():
     assert len(lines) == 2
 
 
+@pytest.mark.parametrize(("count", "tolerance"), [(25, 1e-6), (100, 1e-9)])
+def test_a_kink_of_many_drives_costs_few_evaluations(count, tolerance):
+    """About one step of the pair of order 5 each, as the surface at its end serves the next."""
+    many = problem(count, STARTS[count], duration=5e-3)
+    path = ours.path_of(many, ours.surface_of(many))(tolerance=tolerance)
+    assert len(path.events) > 0
+    assert path.evaluations < 8.5 * (len(many.kinks) - 1)
+
+
 @pytest.mark.parametrize("counts", [["0"], ["1", "1001"], ["-3"]])
 def test_counts_that_make_no_sense_are_refused(counts, monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["paths.py", "--counts", *counts])

@@ -1,4 +1,4 @@
-"""The cell where the part is: moving it on in time must be as good as preparing it anew."""
+"""Spans of the cell where the part is: moving on in time is as good as preparing anew, bridges are as good as asked."""
 
 import math
 
@@ -9,8 +9,10 @@ from coupling.surface import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import Drive, platform_surface
 from particle.cells import NOWHERE, UNBUILT
+from particle.drive import next_kink
 from particle.fields import fields
-from particle.local import END, cell_at, enter, missing_place, new_local
+from particle.local import END, HALF_X, HALF_Y, X, Y, cell_at, missing_place, new_local
+from particle.span import allow, enter
 
 RADIUS, STROKE = 300e-6, 10e-6
 
@@ -82,3 +84,43 @@ def test_a_base_moves_on_as_well():
         assert f.base_ax == pytest.approx(a, abs=1e-6 * STROKE)
         time = local.frame[END]
     assert math.isclose(time, 0.05)
+
+
+@pytest.mark.parametrize("off", [1e-3, 1e-5])
+def test_bridges_are_as_good_as_asked_and_meet_the_surface_at_both_ends(off):
+    surface, (x, y) = spread(100), (0.31 * RADIUS, 0.2 * RADIUS)
+    surface.evaluate([[x, y]], 0.0)
+    record, end = surface.record, 0.05
+    velocity, acceleration = off * STROKE * 1e3, 10 * off * STROKE * 1e6
+    exact, bridged, time, kinks, spans = new_local(record), new_local(record), 0.0, 0, 0
+    allow(bridged, velocity, acceleration)
+    rng = np.random.default_rng(0)
+    while time < end:
+        assert enter(record, bridged, x, y, time, end) >= 0
+        until, spans = bridged.frame[END], spans + 1
+        begin = time
+        while time < until:
+            enter(record, exact, x, y, time, until)
+            kinks += 1
+            for at in (time, 0.5 * (time + exact.frame[END]), exact.frame[END]):
+                u, v = rng.uniform(-1, 1, 2) * bridged.frame[[HALF_X, HALF_Y]]
+                place = bridged.frame[X] + u, bridged.frame[Y] + v
+                one, other = fields(exact, *place, at), fields(bridged, *place, at)
+                share = 0.01 if at in (begin, until) else 1.0  # what rounding makes of the shortest bridges
+                assert abs(one.w_t - other.w_t) < share * velocity
+                assert abs(one.w_tt - other.w_tt) < share * acceleration
+            time = exact.frame[END]
+    assert time == end
+    assert spans < {1e-3: 0.35, 1e-5: 0.8}[off] * kinks
+
+
+def test_only_what_hardly_counts_is_bridged():
+    """Over two actuators every kink ends a span, whatever is allowed short of the motion itself."""
+    surface = spread(2)
+    record = surface.record
+    local, time = new_local(record), 0.0
+    allow(local, 1e-4 * STROKE * 1e3, 1e-3 * STROKE * 1e6)
+    while time < 0.05:
+        enter(record, local, 0.0, 0.0, time, 0.05)
+        assert local.frame[END] == min(next_kink(record.drives, time), 0.05)
+        time = local.frame[END]

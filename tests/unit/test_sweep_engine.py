@@ -1,0 +1,167 @@
+"""The engine of sweeps: what cannot be found, memory, the length of chunks, many actuators."""
+
+import gc
+import re
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from sweeps import LATTICE, PLATE, PLATFORM, written
+
+from studies import engine, read_study, run_study
+from studies.cli import main
+from studies.engine import Engine
+from studies.record import COLUMNS, OUTCOMES
+from studies.validity import corners
+
+FREQUENCY = '[[axes]]\nfield = "plate.motion.x.frequency"\nvalues = ["200 Hz", "1e170 Hz", "300 Hz"]\n'
+
+
+def test_a_path_that_cannot_be_found_is_refused_and_the_others_are_not(tmp_path, monkeypatch):
+    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 3)
+    sweep = run_study(read_study(written(tmp_path, FREQUENCY, PLATFORM)))
+    assert sweep.dataset["mistakes"].values.tolist() == [0, 1, 0]
+    assert OUTCOMES[int(sweep.dataset["outcome"][1])] == "refused"
+    assert sweep.first_refused == ["its path cannot be found: float division by zero"]
+    good = run_study(read_study(written(tmp_path, FREQUENCY.replace('"1e170 Hz", ', ""), PLATFORM))).dataset
+    for name in COLUMNS:
+        assert good[name].values.tobytes() == sweep.dataset[name].values[[0, 2]].tobytes()
+
+
+@pytest.mark.parametrize("failure", [ValueError, ZeroDivisionError, RuntimeError])
+def test_a_group_that_fails_is_followed_path_by_path(tmp_path, monkeypatch, failure):
+    study = read_study(
+        written(tmp_path, '[[axes]]\nfield = "part.mass"\nrange = ["1e-9 kg", "9e-9 kg"]\ncount = 9\n', PLATFORM)
+    )
+    whole, many = run_study(study).dataset, engine.simulate_many
+
+    def failing(surface, parts, *rest):
+        if any(abs(part.mass - 4e-9) < 1e-12 for part in parts):
+            raise failure("it went wrong")
+        return many(surface, parts, *rest)
+
+    monkeypatch.setattr(engine, "simulate_many", failing)
+    sweep = run_study(study)
+    assert sweep.dataset["mistakes"].values.tolist() == [0, 0, 0, 1, 0, 0, 0, 0, 0]
+    assert sweep.first_refused == ["its path cannot be found: it went wrong"]
+    others = np.arange(9) != 3
+    assert sweep.dataset["end_x"].values[others].tobytes() == whole["end_x"].values[others].tobytes()
+
+
+@pytest.mark.compiled
+def test_a_plate_that_cannot_be_solved_is_refused_with_the_reason(tmp_path):
+    axes = '[[axes]]\nfield = "plate.thickness"\nvalues = [{}]\n'
+    sweep = run_study(read_study(written(tmp_path, axes.format('"1e-110 m", "5 um"'))))
+    assert sweep.dataset["mistakes"].values.tolist() == [1, 0]
+    assert sweep.first_refused == ["what the part moves over cannot be made: float division by zero"]
+    path = written(tmp_path, axes.format('"1e-110 m", "1e-111 m"'))
+    done = CliRunner().invoke(main, ["sweep", str(path), "-o", str(tmp_path / "out")])
+    assert done.exit_code == 1 and "refused     the first for what the part moves over cannot be made" in done.output
+
+
+def test_what_is_wrong_with_a_length_is_told_with_its_unit(tmp_path):
+    study = read_study(written(tmp_path, '[[axes]]\nfield = "plate.radius"\nvalues = ["10 um", "300 um"]\n'))
+    assert Engine(study).faults(0)[0].endswith("smallest width, 10 um; got 80 um")
+
+
+@pytest.mark.compiled
+def test_a_refused_start_has_its_place(tmp_path):
+    axes = '[[axes]]\nfield = "part.position.0"\nvalues = ["0 um", "1 m"]\n'
+    found = run_study(read_study(written(tmp_path, axes))).dataset
+    assert found["mistakes"].values.tolist() == [0, 1]
+    assert found["start_x"].values.tolist() == [0.0, 1.0] and found["start_y"].values.tolist() == [2e-5, 2e-5]
+
+
+def memory():
+    """Bytes that this process has in memory."""
+    gc.collect()
+    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+
+
+@pytest.mark.compiled
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="reads /proc")
+def test_memory_does_not_grow_with_plates(tmp_path):
+    axes = '[[axes]]\nfield = "plate.thickness"\nrange = ["5 um", "6 um"]\ncount = 14\n'
+    made = Engine(read_study(written(tmp_path, axes, PLATE.replace("5 ms", "10 us"))))
+    made.records(0, 2)
+    before = memory()
+    made.records(2, 14)
+    assert memory() - before < 40e6  # 12 plates that are not given up take 65 to 100 MB
+
+
+def test_plates_that_come_again_are_solved_once(tmp_path, monkeypatch):
+    axes = '[[axes]]\nfield = "plate.motion.x.stroke"\nvalues = ["5 um", "6 um", "7 um", "8 um", "9 um", "10 um"]\n'
+    made, build = [], engine.build_scene
+    monkeypatch.setattr(engine, "build_scene", lambda case: made.append(case) or build(case))
+    one = Engine(read_study(written(tmp_path, f'sampling = "random"\npoints = 40\nseed = 1\n{axes}', PLATFORM)))
+    for k in range(40):
+        one.records(k, k + 1)
+    assert len(made) == 6
+    drawn = axes.replace("values", "range").replace(', "6 um", "7 um", "8 um", "9 um"', "")
+    one = Engine(read_study(written(tmp_path, f'sampling = "random"\npoints = 40\n{drawn}', PLATFORM)))
+    one.records(0, 40)
+    assert len(one._surfaces) == 1
+
+
+@pytest.mark.parametrize(
+    ("field", "low", "high"),
+    [("run.duration", "20 us", "2 s"), ("plate.motion.x.frequency", "2 Hz", "100 kHz"), ("part.mass", "1 ug", "2 ug")],
+)
+def test_chunks_are_as_long_as_the_longest_of_their_paths_lets_them_be(tmp_path, field, low, high):
+    axes = f'[[axes]]\nfield = "{field}"\nrange = ["{low}", "{{}}"]\ncount = 5000\n'
+    case = PLATFORM.replace('"200 Hz"', '"2 Hz"').replace('"2 ms"', '"20 us"' if field == "run.duration" else '"10 ms"')
+    case = re.sub(r'frequency = "2 Hz"', 'frequency = "200 Hz"', case) if field == "run.duration" else case
+    short, long = (
+        Engine(read_study(written(tmp_path, axes.format(to), case))).chunk_length
+        for to in (f"{low[:-3]}1{low[-3:]}", high)
+    )
+    assert long < short / 20 if field != "part.mass" else long == short
+
+
+def test_ten_thousand_actuators_are_varied_in_reasonable_time(tmp_path):
+    case = LATTICE.replace("rows = 1", "rows = 100").replace("columns = 3", "columns = 100")
+    case = case.replace('pitch = "100 um"', 'pitch = "2 um"').replace('"5 * (1 + column) um"', '"5 um"')
+    study = read_study(
+        written(tmp_path, '[[axes]]\nfield = "actuators.*.stroke"\nrange = ["1 um", "2 um"]\ncount = 9\n', case)
+    )
+    variants = Engine(study).variants
+    variants.at((1e-6,))
+    began = time.process_time()
+    cases = [variants.at((stroke * 1e-6,))[0] for stroke in (1.1, 1.2, 1.3)]
+    assert time.process_time() - began < 3
+    assert [{actuator.stroke for actuator in made.actuators} for made in cases] == [{1.1e-6}, {1.2e-6}, {1.3e-6}]
+    assert len({actuator.position for actuator in cases[0].actuators}) == len(cases[0].actuators) == 10_001
+    assert cases[0].actuators[7].position == study.case.actuators[7].position
+
+
+SOFT = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["1 um", "60 um", "0.1 um"]\n'
+
+
+@pytest.mark.compiled
+def test_the_command_warns_where_the_model_stops_holding(tmp_path):
+    case = PLATE.replace('"60 um"', '"0.1 um"')
+    warning, slope = run_study(read_study(written(tmp_path, SOFT, case))).warnings
+    assert slope.startswith("The surface is as steep as ")
+    assert re.match(r"The plate deflects by 1\d(\.\d)? times its thickness", warning)
+    done = CliRunner().invoke(main, ["sweep", str(written(tmp_path, SOFT, case)), "-o", str(tmp_path / "out")])
+    assert f"warning     {warning}\n" in done.output
+    assert run_study(read_study(written(tmp_path, SOFT.replace('"1 um", "60 um"', '"0.2 um"'), case))).warnings == []
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('[[axes]]\nfield = "part.mass"\nvalues = ["2e-9 kg", "3e-9 kg", "1e-9 kg"]\n', [2, 1]),
+        ('sampling = "list"\n[[axes]]\nfield = "part.mass"\nvalues = ["2e-9 kg", "3e-9 kg", "1e-9 kg"]\n', [2, 1]),
+        (
+            '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg", "2e-9 kg", "3e-9 kg"]\n'
+            '[[axes]]\nfield = "actuators.0.cycle"\nvalues = ["up-down", "up"]\n',
+            [0, 1, 4, 5],
+        ),
+        ('[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg"]\n', [0]),
+    ],
+)
+def test_corners_have_the_least_and_the_greatest_values(tmp_path, text, expected):
+    assert corners(read_study(written(tmp_path, text)).points) == expected

@@ -1,0 +1,228 @@
+"""Files of sweeps: nothing is lost or replaced unasked, and nothing of another sweep is taken."""
+
+import errno
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+from click.testing import CliRunner
+from sweeps import PLATFORM, written
+
+from coupling.progress import CountBar
+from studies import dataset, read_study, run_study, study
+from studies.chunk_store import ChunkStore
+from studies.cli import main
+from studies.engine import Engine
+from studies.lock import alone_in
+from studies.record import COLUMNS
+
+MASS = """\
+[[axes]]
+field = "part.mass"
+name = "mass"
+range = ["1e-9 kg", "9e-9 kg"]
+count = 9
+"""
+
+
+def swept(tmp_path, text=MASS, *options):
+    path = written(tmp_path, text, PLATFORM)
+    return CliRunner().invoke(main, ["sweep", str(path), "-o", str(tmp_path / "out"), *options])
+
+
+def names(tmp_path):
+    return sorted(file.relative_to(tmp_path / "out").as_posix() for file in (tmp_path / "out").rglob("*"))
+
+
+def test_a_file_of_another_kind_is_not_replaced(tmp_path):
+    (tmp_path / "study.nc").write_text("mine")
+    done = CliRunner().invoke(main, ["sweep", str(written(tmp_path, MASS, PLATFORM)), "-o", str(tmp_path)])
+    assert done.exit_code == 2 and "whose study.nc is no sweep" in done.output
+    assert (tmp_path / "study.nc").read_text() == "mine"
+
+
+def test_chunks_of_another_length_are_not_taken_for_others(tmp_path, monkeypatch):
+    """Nine paths in a chunk of six and one of three; after a stop in chunks of three."""
+    made = read_study(written(tmp_path, MASS, PLATFORM))
+    expected = run_study(made).dataset["distance"].values
+    assert len(set(expected)) == 9
+    whole = Engine(made).records(0, 9)
+    store = ChunkStore(tmp_path / "out" / "study.sweep" / made.key[:16], made.key)
+    store.save(6, whole[6:])
+    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 3)
+    assert [store.load(*span) is not None for span in map(Engine(made).span, range(3))] == [False, False, True]
+    found = run_study(made, tmp_path / "out").dataset["distance"].values
+    assert found.tobytes() == expected.tobytes()
+
+
+def test_results_of_other_sources_are_not_taken_for_those_of_these(tmp_path, monkeypatch):
+    path = written(tmp_path, MASS, PLATFORM)
+    keys = {read_study(path).key}
+    monkeypatch.setattr(study, "_sources", lambda: "0" * 12)
+    assert read_study(path).key not in keys
+
+
+def test_the_sources_are_hashed_with_their_places(tmp_path, monkeypatch):
+    found = set()
+    for name, content in (("a", "1"), ("a", "2"), ("b", "2")):
+        shutil.rmtree(tmp_path / "particle", ignore_errors=True)
+        (tmp_path / "particle").mkdir()
+        (tmp_path / "particle" / f"{name}.py").write_text(content)
+        monkeypatch.setattr(study, "__file__", str(tmp_path / "studies" / "study.py"))
+        found.add(study._sources.__wrapped__())
+    assert len(found) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "case", "said"),
+    [
+        (MASS.replace("count = 9", "count = 8"), PLATFORM, "points"),
+        (MASS, PLATFORM.replace("20 nN", "30 nN"), "case"),
+        (MASS.replace("count = 9", "count = 8"), PLATFORM.replace("20 nN", "30 nN"), "case and points"),
+    ],
+)
+def test_results_of_another_study_are_replaced_only_when_that_is_asked_for(tmp_path, text, case, said):
+    assert swept(tmp_path).exit_code == 0
+    kept = (tmp_path / "out" / "study.nc").read_bytes()
+    path = written(tmp_path, text, case)
+    command = ["sweep", str(path), "-o", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, command)
+    assert done.exit_code == 2 and f"whose study.nc is of other {said}: --overwrite replaces it" in done.output
+    assert (tmp_path / "out" / "study.nc").read_bytes() == kept
+    assert CliRunner().invoke(main, [*command, "--overwrite"]).exit_code == 0
+    assert (tmp_path / "out" / "study.nc").read_bytes() != kept
+    assert CliRunner().invoke(main, command).exit_code == 0
+
+
+def test_the_picture_of_a_run_is_not_replaced(tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "study.png").write_text("mine")
+    assert swept(tmp_path).exit_code == 0
+    assert names(tmp_path) == ["study.nc", "study.png", "study.sweep.png"]
+    assert (tmp_path / "out" / "study.png").read_text() == "mine"
+
+
+def test_chunks_go_only_when_all_results_are_on_disk(tmp_path, monkeypatch):
+    synced, fsync = [], os.fsync
+
+    def noted(descriptor):
+        fsync(descriptor)
+        place = Path(os.readlink(f"/proc/self/fd/{descriptor}"))
+        synced.append(
+            (place.name, len(list((tmp_path / "out").rglob("*.chunk"))), (tmp_path / "out/study.nc").exists())
+        )
+
+    monkeypatch.setattr(os, "fsync", noted)
+    run_study(read_study(written(tmp_path, MASS, PLATFORM)), tmp_path / "out")
+    assert synced == [("study.partial.nc", 1, False), ("out", 1, True)]
+    assert names(tmp_path) == ["study.nc", "study.sweep.png"]
+
+
+HOLD = """\
+import pathlib, sys
+from studies.lock import alone_in
+with alone_in(pathlib.Path(sys.argv[1])):
+    print("held", flush=True)
+    sys.stdin.readline()
+"""
+
+
+def test_two_sweeps_at_once_do_not_meet(tmp_path):
+    chunks = tmp_path / "out" / "study.sweep"
+    arguments = [sys.executable, "-c", HOLD, str(chunks)]
+    for end in ("line", "kill"):
+        with subprocess.Popen(arguments, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
+            assert other.stdout.readline() == "held\n"
+            done = swept(tmp_path)
+            assert done.exit_code == 2
+            assert done.output == f"another sweep of this name is running in {tmp_path / 'out'}\n"
+            if end == "kill":
+                other.kill()
+            else:
+                other.communicate("\n")
+    assert chunks.exists()  # of the one that was killed
+    assert swept(tmp_path).exit_code == 0
+    assert names(tmp_path) == ["study.nc", "study.sweep.png"]
+
+
+def test_a_lock_keeps_what_else_is_in_its_folder(tmp_path):
+    with alone_in(tmp_path / "a"):
+        (tmp_path / "a" / "chunk").touch()
+    assert [file.name for file in (tmp_path / "a").iterdir()] == ["chunk"]
+
+
+def test_a_lock_leaves_no_folder_that_was_made_for_it(tmp_path):
+    (tmp_path / "mine").mkdir()
+    with alone_in(tmp_path / "mine" / "a" / "b"):
+        pass
+    assert list((tmp_path / "mine").iterdir()) == []
+
+
+def test_a_full_disk_is_told_before_the_results_are_written_and_chunks_are_kept(tmp_path, monkeypatch):
+    usage = shutil.disk_usage(tmp_path)
+    with monkeypatch.context() as patch:
+        patch.setattr(shutil, "disk_usage", lambda folder: usage._replace(free=1000))
+        done = swept(tmp_path)
+    assert done.exit_code == 2
+    assert f"{tmp_path / 'out'}: the results take 1.0 MB, and 0.0 MB are free; finished chunks are kept" in done.output
+    assert len(list((tmp_path / "out").rglob("*.chunk"))) == 1 and not list((tmp_path / "out").glob("*.nc"))
+    monkeypatch.setattr(Engine, "records", None)
+    assert swept(tmp_path).exit_code == 0
+
+
+def test_a_disk_that_is_full_while_chunks_are_kept_is_told(tmp_path, monkeypatch):
+    def full(path, content):
+        path.touch()
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    store = ChunkStore(tmp_path / "chunks", "ab" * 32)
+    with pytest.raises(OSError, match=f"^{tmp_path / 'chunks'}: No space left on device; finished chunks are kept"):
+        store.save(0, np.zeros(3))
+    assert not list((tmp_path / "chunks").iterdir())
+
+
+def test_results_that_cannot_be_written_leave_no_part(tmp_path, monkeypatch):
+    def broken(*_):
+        raise OSError("broken")
+
+    monkeypatch.setattr(dataset, "_write_axes", broken)
+    assert swept(tmp_path).exit_code == 2
+    assert not list((tmp_path / "out").glob("*.nc"))
+
+
+def test_a_file_in_the_place_of_the_chunks_is_told(tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "study.sweep").write_text("mine")
+    done = swept(tmp_path)
+    assert done.exit_code == 2 and "whose study.sweep is no folder" in done.output
+
+
+@pytest.mark.parametrize("sampling", ["", 'sampling = "list"\n', 'sampling = "random"\npoints = 3\n'])
+def test_plain_xarray_knows_the_coordinates(tmp_path, sampling):
+    text = MASS if not sampling else sampling + '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg", "2e-9 kg"]\n'
+    sweep = run_study(read_study(written(tmp_path, text, PLATFORM)), tmp_path / "out")
+    with xarray.open_dataset(sweep.files[0], engine="h5netcdf") as plain:
+        (axis,) = sweep.study.points.axes
+        assert list(plain.coords) == [axis.name] and set(plain.data_vars) == set(COLUMNS)
+    sweep.dataset.close()
+
+
+def test_the_rate_of_a_resumed_sweep_leaves_out_what_was_there(monkeypatch):
+    clock = [0.0]
+    counted = CountBar("paths")
+    monkeypatch.setattr(counted._bar, "get_time", lambda: clock[0])
+    monkeypatch.setattr(counted, "_start", lambda: None)
+    tell = counted.__enter__()
+    for second, done in enumerate((900, 910, 920, 930)):
+        clock[0] = float(second)
+        tell(done, 1000)
+    (task,) = counted._bar.tasks
+    assert task.description == "paths, 10/s" and task.time_remaining == 7
+    tell(1000, 1000)
+    assert task.description == "paths; writing all"
