@@ -30,8 +30,11 @@ def write_case(case: Case, path: Path, said: str = "") -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(path.name + ".partial")
     comment = "".join(f"# {line}\n" for line in said.splitlines())
-    partial.write_text(comment + ("\n" if said else "") + case_text(case, path.parent), encoding="utf-8")
-    partial.replace(path)
+    try:
+        partial.write_text(comment + ("\n" if said else "") + case_text(case, path.parent), encoding="utf-8")
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
     return path
 
 

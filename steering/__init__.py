@@ -14,7 +14,7 @@ _HOMES = {
     "aim": "steering.aiming",
     "Route": "steering.route",
     "read_route": "steering.read",
-    "Planned": "steering.planning",
+    "Planned": "steering.planned",
     "plan": "steering.planning",
 }
 

@@ -1,33 +1,26 @@
-"""Aimed: what a search found."""
+"""Aimed: what an aim found."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
 import numpy as np
 
-from coupling.case import Case
-from particle import Trajectory
-from steering.paths import Disturbance, Paths
-from steering.scatter import TOLD, Scatter, disturbances
+from steering.found import Found
+from steering.paths import settled
+from steering.schedule import Leg
 from steering.task import Task
 
 
-@dataclass(frozen=True, eq=False)
-class Aimed:
-    """The case with the drives that were found, its path, and how far it ends from the target; `files` were written.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Aimed(Found):
+    """The case with the drives that were found, its path, and how far it ends from the target.
 
-    paths: how many were followed to find it.  interrupted: whether the search was stopped before its end.
+    legs: in which it comes there, one after the other; the drives of a single one are cycles, of several segments.
     """
 
     task: Task
-    case: Case
-    trajectory: Trajectory = field(repr=False)
-    scatter: Scatter = field(repr=False)
-    paths: int
-    interrupted: bool = False
-    files: tuple[Path, ...] = ()
+    legs: tuple[Leg, ...]
 
     @property
     def distance(self) -> float:
@@ -36,19 +29,5 @@ class Aimed:
 
     @property
     def reached(self) -> bool:
-        """Whether the part ends within the tolerance of the target."""
-        return self.distance <= self.task.settings.tolerance
-
-
-def scattered(paths: Paths, case: Case, target: tuple[float, float], count: int, seed: int) -> Scatter:
-    """The ends of so many disturbed runs of a case, and their distances from a target [m]."""
-    ways = disturbances(count, len(case.actuators), seed, TOLD)
-    found = paths.of([(case.actuators, way) for way in ways])
-    ends = np.array([path.position[-1] for path in found])
-    lost = sum(path.time[-1] < case.run.duration for path in found)
-    return Scatter(ends, np.hypot(*(ends - target).T), int(lost))
-
-
-def path_of(paths: Paths, case: Case) -> Trajectory:
-    """The path of a case."""
-    return paths.of([(case.actuators, Disturbance())])[0]
+        """Whether the part comes to rest for good within the tolerance of the target."""
+        return self.distance <= self.task.settings.tolerance and settled(self.trajectory)

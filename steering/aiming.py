@@ -1,71 +1,77 @@
 """One aim, from task to drive: this file reads as the pipeline.
 
-task -> surface -> knobs -> search -> case -> path and scatter -> case file and picture
+task -> surface -> approach, leg by leg: knobs, search -> case and path -> case file -> scatter and picture
 """
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
-from coupling.case import Case
 from coupling.case_text import write_case
-from coupling.progress import Tell, interruptible, untold
-from coupling.run import build_scene
+from coupling.progress import Tell, untold
 from coupling.units import shown_length
 from particle import SurfaceMotion
-from steering.aimed import Aimed, path_of, scattered
-from steering.knobs import Knobs
-from steering.objective import Objective
+from steering.aimed import Aimed
+from steering.approach import Approach
+from steering.found import check_free, drawn, prepared, with_scatter
 from steering.paths import Paths
 from steering.picture import draw_aim
-from steering.search import NEAR, search, search_robust
 from steering.task import Task
+from steering.unbroken import unbroken
 
 
-def aim(task: Task, output: str | Path | None = None, threads: int | None = None, tell: Tell = untold) -> Aimed:
+def aim(
+    task: Task,
+    output: str | Path | None = None,
+    threads: int | None = None,
+    tell: Tell = untold,
+    overwrite: bool = False,
+) -> Aimed:
     """Find the drives that bring a part to a target; with `output`, a folder, write NAME_aimed.toml and NAME_aim.png.
 
     threads: how many paths are found at a time, by default one on each processor; the result is the same for any.
-    tell: gets how many paths have been found, and of how many at most.
-    Upon Ctrl-C the best drive so far counts, if there is one.
+    tell: gets how many paths have been found, and of how many at most.  overwrite: whether to replace those files.
+    Upon Ctrl-C the best drives so far count, if there are any.
     """
-    surface = interruptible(build_scene, task.case).surface
-    found = aim_over(surface, task, threads, tell)
     if output is None:
-        return found
-    folder, name = Path(output), task.name
-    x, y = (shown_length(place) for place in task.target)
-    said = f"The drives bring the part to ({x}, {y}), but for {shown_length(found.distance)}."
-    file = write_case(found.case, folder / f"{name}_aimed.toml", said)
-    return replace(found, files=(file, draw_aim(found, folder / f"{name}_aim.png")))
+        return aim_over(prepared(task.case, threads), task, threads, tell)
+    file, picture = Path(output) / f"{task.name}_aimed.toml", Path(output) / f"{task.name}_aim.png"
+    check_free((file, picture), overwrite)
+    found = aim_over(prepared(task.case, threads), task, threads, tell, file)
+    return drawn(found, draw_aim, picture)
 
 
-def aim_over(surface: SurfaceMotion, task: Task, threads: int | None = None, tell: Tell = untold) -> Aimed:
-    """The same over a surface that is there already."""
-    paths = Paths(task.case, surface, threads)
-    knobs = Knobs(task.case, task.settings, task.movers)
-    settings, near, interrupted = task.settings, NEAR * surface.size, False
-    robust = settings.quantile is not None
-    objective = nominal = Objective(task, knobs, paths, tell, settings.most // 2 if robust else settings.most)
-    try:
-        if robust:
-            objective = Objective(task, knobs, paths, tell, settings.most, disturbed=True)
-            search_robust(knobs, nominal, objective, near, settings.seed)
+def aim_over(
+    surface: SurfaceMotion,
+    task: Task,
+    threads: int | None = None,
+    tell: Tell = untold,
+    file: Path | None = None,
+) -> Aimed:
+    """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
+    approach, interrupted = Approach(surface, task, threads, tell), False
+    with ExitStack() as shield:
+        try:
+            approach.run()
+        except KeyboardInterrupt:
+            shield.enter_context(unbroken())
+            interrupted = True
         else:
-            search(knobs, nominal, near, settings.seed)
-    except KeyboardInterrupt:
-        objective = objective if np.isfinite(objective.best.cost) else nominal
-        if not np.isfinite(objective.best.cost):
-            raise
-        interrupted = True
-    used = paths.found
-    case = _named(knobs.turned(objective.best.values), f"{task.name}_aimed")
-    scatter = scattered(paths, case, task.target, task.settings.scatter, task.settings.seed)
-    return Aimed(task, case, path_of(paths, case), scatter, used, interrupted)
-
-
-def _named(case: Case, name: str) -> Case:
-    return case.model_copy(update={"name": name})
+            shield.enter_context(unbroken())
+        case, path = approach.close()
+        case = case.model_copy(update={"name": f"{task.name}_aimed"})
+        found = Aimed(
+            task=task,
+            case=case,
+            trajectory=path,
+            legs=approach.legs,
+            paths=approach.paths,
+            interrupted=interrupted,
+        )
+        if file is not None:
+            x, y = (shown_length(place) for place in task.target)
+            said = f"The drives bring the part to ({x}, {y}), but for {shown_length(found.distance)}."
+            found = replace(found, files=(write_case(case, file, said),))
+    return with_scatter(found, Paths(case, surface, threads), task.target, task.settings)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import sys
 from collections.abc import Callable
 from contextlib import nullcontext
@@ -25,12 +24,12 @@ class _Through(click.Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         spread, through = [], False
         for text in args:
-            point = re.match(r"[+-]?[\d.]", text)
+            point = "," in text and not text.startswith("--") and not Path(text).exists()
             if through and point:
                 spread.append(f"--through={text}")
             elif text != "--through":
                 spread.append(text)
-            through = text.startswith("--through") or (through and point is not None)
+            through = text.startswith("--through") or (through and point)
         return super().parse_args(ctx, spread)
 
 
@@ -40,6 +39,7 @@ def _common(command: Callable[..., None]) -> Callable[..., None]:
     for option in (
         click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON."),
         click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress."),
+        click.option("--overwrite", is_flag=True, help="Replace the results of another search of this name."),
         click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one a processor]."),
         click.option("--output", "-o", type=folder, help="Folder for the results [results]."),
     ):
@@ -55,6 +55,7 @@ def aim(
     file: Path,
     output: Path | None,
     threads: int | None,
+    overwrite: bool,
     quiet: bool,
     as_json: bool,
     target: str | None,
@@ -72,7 +73,7 @@ def aim(
 
     place = None if target is None else refusing(read_place, target, "--target")
     task = refusing(read_task, file, place, robust)
-    found = _found(find, task, output, threads, quiet)
+    found = _found(find, task, output, threads, overwrite, quiet)
     _tell(found.interrupted, report.figures(found), report.lines(found), quiet, as_json)
 
 
@@ -83,6 +84,7 @@ def plan(
     file: Path,
     output: Path | None,
     threads: int | None,
+    overwrite: bool,
     quiet: bool,
     as_json: bool,
     through: tuple[str, ...],
@@ -98,11 +100,13 @@ def plan(
 
     places = [refusing(read_place, text, "--through") for text in through]
     route = refusing(read_route, file, places)
-    found = _found(find, route, output, threads, quiet)
+    found = _found(find, route, output, threads, overwrite, quiet)
     _tell(found.interrupted, report.plan_figures(found), report.plan_lines(found), quiet, as_json)
 
 
-def _found(find: Callable[..., Found], wanted: Any, output: Path | None, threads: int | None, quiet: bool) -> Found:
+def _found(
+    find: Callable[..., Found], wanted: Any, output: Path | None, threads: int | None, overwrite: bool, quiet: bool
+) -> Found:
     """What a search finds, with a bar meanwhile."""
     from coupling.progress import CountBar, untold
     from coupling.results import check_folder
@@ -110,7 +114,7 @@ def _found(find: Callable[..., Found], wanted: Any, output: Path | None, threads
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
     with nullcontext(untold) if quiet else CountBar("paths") as tell:
-        return refusing(find, wanted, folder, threads, tell)
+        return refusing(find, wanted, folder, threads, tell, overwrite)
 
 
 def _tell(interrupted: bool, figures: dict[str, Any], lines: list[tuple[str, str]], quiet: bool, as_json: bool) -> None:

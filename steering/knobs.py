@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -74,6 +75,16 @@ class Knobs:
     def turned(self, values: FloatArray) -> Case:
         """The case with the knobs (n,) turned so."""
         return self.case.model_copy(update={"actuators": self.actuators(values), "source": None})
+
+
+def shortest(case: Case, settings: Settings, movers: Iterable[int]) -> float:
+    """The time [s] within which each of the actuators that take part can end one cycle."""
+    return max(_shortest(case.actuators[k], settings, case.run.duration) for k in movers)
+
+
+def _shortest(actuator: ActuatorCase, settings: Settings, duration: float) -> float:
+    bounds = _bounds(actuator, settings, duration)
+    return bounds["delay"][0] + 1 / bounds["frequency"][1] + 2 * actuator.dwell
 
 
 def _bounds(actuator: ActuatorCase, settings: Settings, duration: float) -> dict[str, tuple[float, float]]:

@@ -15,11 +15,14 @@ from coupling.drives import build_drives
 from coupling.run import build_friction
 from particle import Micropart, Outcome, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact, ScaledFriction
+from studies.refusal import start_faults
 
 FloatArray = NDArray[np.float64]
 
 AT_ONCE = 256  # paths: handing out more at a time costs more
 SETTLING = 1e-3  # s: a part on the move counts as that much farther away, at its speed
+NOT_FOR_GOOD = 2.0  # tolerances: no nearer counts a part that does not rest for good
+LOST = 3.0  # of the surface's size: so much farther away counts a part that is lost, than which no other can be
 
 
 class Disturbance(NamedTuple):
@@ -53,7 +56,7 @@ class Paths:
         drives = [build_drives(driven(self.case, actuators, way.strokes)) for actuators, way in runs]
         return simulate_many(
             self.surface,
-            [self._part(way.shift) for _, way in runs],
+            self._parts(np.array([way.shift for _, way in runs])),
             [self._contact(way.friction) for _, way in runs],
             run.duration,
             run.gravity,
@@ -66,10 +69,27 @@ class Paths:
     def _contact(self, factor: float) -> Contact:
         return self._friction if factor == 1.0 else ScaledFriction(self._friction, factor)
 
-    def _part(self, shift: tuple[float, float]) -> Micropart:
+    def _parts(self, shifts: FloatArray) -> list[Micropart]:
+        """Parts with shifted starts (n, 2) [m]: the other way where that is off the plate, not at all if both are."""
         part = self.case.part
-        x, y = part.position
-        return Micropart(part.mass, (x + shift[0], y + shift[1]), part.velocity, part.squeeze)
+        starts = np.repeat(np.array([part.position]), len(shifts), axis=0)
+        left = shifts.any(axis=1)
+        for way in (1.0, -1.0):
+            moved = starts + way * shifts
+            good = left & np.array([not faults for faults in start_faults(self.case, moved)])
+            starts[good] = moved[good]
+            left &= ~good
+        return [Micropart(part.mass, (x, y), part.velocity, part.squeeze) for x, y in starts.tolist()]
+
+
+def path_of(paths: Paths, case: Case) -> Trajectory:
+    """The path of a case."""
+    return paths.of([(case.actuators, Disturbance())])[0]
+
+
+def settled(trajectory: Trajectory) -> bool:
+    """Whether the part rests for good at the end."""
+    return trajectory.outcome is Outcome.STUCK and bool(trajectory.stays)
 
 
 def driven(case: Case, actuators: tuple[ActuatorCase, ...], factors: Sequence[float] | None = None) -> Case:
@@ -91,14 +111,14 @@ def _raised(actuator: ActuatorCase, factor: float) -> ActuatorCase:
     return actuator.model_copy(update=update)
 
 
-def cost(trajectory: Trajectory, target: tuple[float, float], duration: float, size: float) -> float:
+def cost(trajectory: Trajectory, target: tuple[float, float], duration: float, size: float, tolerance: float) -> float:
     """How far [m] the end is from a target [m], more for a part that does not rest there at the end of the duration.
 
-    size: m, of the surface.
+    size: m, of the surface.  tolerance: m, which only a part that rests for good is within.
     """
     away = float(np.hypot(*(trajectory.position[-1] - target)))
-    if trajectory.outcome is Outcome.STUCK:
-        return away
     if trajectory.outcome is Outcome.MOVING:
-        return away + SETTLING * float(np.hypot(*trajectory.velocity[-1]))
-    return away + size * (2 - float(trajectory.time[-1]) / duration)  # the later it was lost, the better
+        away += min(SETTLING * float(np.hypot(*trajectory.velocity[-1])), size)
+    elif trajectory.outcome is not Outcome.STUCK:
+        return away + size * (LOST + 1 - float(trajectory.time[-1]) / duration)  # the later it was lost, the better
+    return away if away > tolerance or settled(trajectory) else NOT_FOR_GOOD * tolerance

@@ -22,6 +22,8 @@ from coupling.readable import Unit, plain_ticks, readable
 from coupling.rim import rim_curves
 from particle import Trajectory
 from steering.aimed import Aimed
+from steering.found import Found
+from steering.planned import Planned
 from steering.scatter import Scatter
 
 FloatArray = NDArray[np.float64]
@@ -38,13 +40,18 @@ ENDS: dict[str, Any] = {"marker": "o", "color": "#1b4f9c", "markersize": 4, "mar
 
 def draw_aim(found: Aimed, path: Path) -> Path:
     """Draws what a search found into a PNG file; returns that."""
-    return draw_path_and_ends(found.task.name, found.case, found.trajectory, [found.task.target], found.scatter, path)
+    return _draw(found, found.task.name, [found.task.target], path)
 
 
-def draw_path_and_ends(
-    name: str, case: Case, trajectory: Trajectory, targets: Sequence[Place], scatter: Scatter, path: Path
-) -> Path:
+def draw_plan(found: Planned, path: Path) -> Path:
+    """Draws what a plan found into a PNG file; returns that."""
+    return _draw(found, found.route.name, found.route.through[: max(len(found.arrivals), 1)], path)
+
+
+def _draw(found: Found, name: str, targets: Sequence[Place], path: Path) -> Path:
     """Draws a path over its plate with the targets [m] in their order, and the ends of disturbed runs, into a file."""
+    assert found.scatter is not None
+    case, trajectory, scatter = found.case, found.trajectory, found.scatter
     figure = Figure(figsize=(2 * SIZE + 0.8, SIZE + 0.5), layout="constrained")
     FigureCanvasAgg(figure)
     axes = [figure.add_subplot(1, 2, k + 1) for k in range(2)]
@@ -54,8 +61,11 @@ def draw_path_and_ends(
     figure.suptitle(f"{name}: the part ends {_length(float(np.hypot(x, y)))} from the target")
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
     partial = path.with_suffix(".partial.png")
-    figure.savefig(partial, dpi=110)
-    partial.replace(path)
+    try:
+        figure.savefig(partial, dpi=110)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
     return path
 
 

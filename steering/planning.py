@@ -1,114 +1,143 @@
 """One plan, from route to schedule: this file reads as the pipeline.
 
-route -> surface -> leg by leg: task -> aim -> schedule so far -> place reached -> case file and picture
+route -> surface -> leg by leg: task -> approach -> schedule so far -> place reached -> case file -> scatter and picture
 """
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field, replace
+from contextlib import ExitStack
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from coupling.case import Case
 from coupling.case_text import write_case
-from coupling.progress import Tell, interruptible, untold
-from coupling.run import build_scene
+from coupling.progress import Tell, untold
 from coupling.units import shown_length
 from particle import SurfaceMotion, Trajectory
-from steering.aimed import path_of, scattered
-from steering.aiming import aim_over
-from steering.paths import Paths
-from steering.picture import draw_path_and_ends
+from steering.approach import Approach, next_start
+from steering.found import check_free, drawn, prepared, with_scatter
+from steering.paths import Paths, path_of, settled
+from steering.picture import draw_plan
+from steering.planned import Planned
 from steering.route import Route
-from steering.scatter import Scatter
-from steering.schedule import Leg, lasting, scheduled
-
-PAUSE = 5e-4  # s, at rest between legs
-STEP = 1e-6  # s, of which times of legs are multiples
+from steering.schedule import Leg, scheduled
+from steering.unbroken import unbroken
 
 
-@dataclass(frozen=True, eq=False)
-class Planned:
-    """The case with the schedule that was found, its path, and what became of each leg; `files` were written.
-
-    arrivals: s, when the part rests at each way-point.  paths: how many were followed to find the schedule.
-    interrupted: whether the search was stopped before its end. A plan that was stopped, or whose part was lost, has
-    less arrivals than way-points.
-    """
-
-    route: Route
-    case: Case
-    trajectory: Trajectory = field(repr=False)
-    arrivals: tuple[float, ...]
-    scatter: Scatter = field(repr=False)
-    paths: int
-    interrupted: bool = False
-    files: tuple[Path, ...] = ()
-
-    @property
-    def distances(self) -> list[float]:
-        """From the part to each way-point [m] when it has arrived there."""
-        there = self.trajectory.at(self.arrivals).position
-        return [float(np.hypot(*off)) for off in there - self.route.through[: len(self.arrivals)]]
-
-    @property
-    def complete(self) -> bool:
-        """Whether there is a leg to every way-point."""
-        return len(self.arrivals) == len(self.route.through)
-
-
-def plan(route: Route, output: str | Path | None = None, threads: int | None = None, tell: Tell = untold) -> Planned:
+def plan(
+    route: Route,
+    output: str | Path | None = None,
+    threads: int | None = None,
+    tell: Tell = untold,
+    overwrite: bool = False,
+) -> Planned:
     """Find the drives that carry a part over way-points; with `output`, write NAME_planned.toml and NAME_plan.png.
 
     threads: how many paths are found at a time, by default one on each processor; the result is the same for any.
-    tell: gets how many paths have been found, and of how many at most.
-    Upon Ctrl-C the legs so far count, if there is one.
+    tell: gets how many paths have been found, and of how many at most.  overwrite: whether to replace those files.
+    Upon Ctrl-C the legs so far count, if there are any.
     """
-    surface = interruptible(build_scene, route.case).surface
-    found = plan_over(surface, route, threads, tell)
     if output is None:
-        return found
-    folder, through = Path(output), route.through[: len(found.arrivals)]
-    places = ", ".join(f"({shown_length(x)}, {shown_length(y)})" for x, y in through)
-    file = write_case(found.case, folder / f"{route.name}_planned.toml", f"The drives carry the part over {places}.")
-    picture = folder / f"{route.name}_plan.png"
-    draw_path_and_ends(route.name, found.case, found.trajectory, through, found.scatter, picture)
-    return replace(found, files=(file, picture))
+        return plan_over(prepared(route.case, threads), route, threads, tell)
+    file, picture = Path(output) / f"{route.name}_planned.toml", Path(output) / f"{route.name}_plan.png"
+    check_free((file, picture), overwrite)
+    found = plan_over(prepared(route.case, threads), route, threads, tell, file)
+    return drawn(found, draw_plan, picture)
 
 
-def plan_over(surface: SurfaceMotion, route: Route, threads: int | None = None, tell: Tell = untold) -> Planned:
-    """The same over a surface that is there already."""
-    start, now, used, interrupted = route.case.part.position, 0.0, 0, False
-    legs: list[Leg] = []
-    arrivals: list[float] = []
-    for number in range(len(route.through)):
-        task = route.leg(number, start)
+def plan_over(
+    surface: SurfaceMotion,
+    route: Route,
+    threads: int | None = None,
+    tell: Tell = untold,
+    file: Path | None = None,
+) -> Planned:
+    """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
+    work, interrupted = _Work(surface, route, threads, tell), False
+    with ExitStack() as shield:
         try:
-            found = aim_over(surface, task, threads, partial(_tell_leg, tell, number, len(route.through)))
+            work.run()
         except KeyboardInterrupt:
-            if not legs:
-                raise
+            shield.enter_context(unbroken())
             interrupted = True
-            break
-        used += found.paths
-        legs.append(Leg(now, found.case.actuators, task.movers))
-        rest = found.trajectory.at_rest_since
-        last = max(lasting(found.case.actuators, task.movers), task.case.run.duration if rest is None else rest)
-        now = round(now + math.ceil((last + PAUSE) / STEP) * STEP, 9)
-        whole = scheduled(route.case, legs, now).model_copy(update={"name": f"{route.name}_planned"})
-        path = path_of(Paths(whole, surface, threads), whole)
-        arrivals.append(now)
-        if path.at_rest_since is None or found.interrupted:
-            interrupted = found.interrupted
-            break
-        x, y = path.position[-1].tolist()
-        start = (x, y)
-    settings, target = route.settings, route.through[len(arrivals) - 1]
-    scatter = scattered(Paths(whole, surface, threads), whole, target, settings.scatter, settings.seed)
-    return Planned(route, whole, path, tuple(arrivals), scatter, used, interrupted)
+        else:
+            shield.enter_context(unbroken())
+        found = replace(work.close(), interrupted=interrupted)
+        if file is not None:
+            through = route.through[: len(found.arrivals)]
+            places = ", ".join(f"({shown_length(x)}, {shown_length(y)})" for x, y in through)
+            said = f"The drives carry the part over {places}." if through else found.failure
+            found = replace(found, files=(write_case(found.case, file, said),))
+    target = route.through[max(len(found.arrivals) - 1, 0)]
+    return with_scatter(found, Paths(found.case, surface, threads), target, route.settings)
+
+
+class _Work:
+    """The legs of a plan, as they are found."""
+
+    def __init__(self, surface: SurfaceMotion, route: Route, threads: int | None, tell: Tell) -> None:
+        self._surface, self._route, self._threads, self._tell = surface, route, threads, tell
+        self._approach: Approach | None = None
+        self._legs: tuple[Leg, ...] = ()
+        self._arrivals: tuple[float, ...] = ()
+        self._now, self._paths, self._failure = 0.0, 0, ""
+        self._whole: tuple[Case, Trajectory] | None = None
+
+    def run(self) -> None:
+        """Find leg after leg, until one fails; after Ctrl-C `close` has those so far."""
+        route, place = self._route, self._route.case.part.position
+        for number in range(len(route.through)):
+            try:
+                task = route.leg(number, place)
+            except ValueError as error:
+                self._failure = f"leg {number + 1}: {error}"
+                return
+            tell = partial(_tell_leg, self._tell, number, len(route.through))
+            self._approach = Approach(self._surface, task, self._threads, tell)
+            self._approach.run()
+            path = self._end_leg()
+            if self._failure:
+                return
+            x, y = path.position[-1].tolist()
+            place = (x, y)
+
+    def close(self) -> Planned:
+        """What was found; KeyboardInterrupt where there is nothing."""
+        if self._approach is not None:
+            try:
+                self._end_leg()
+            except KeyboardInterrupt:
+                if not self._legs:
+                    raise
+        assert self._whole is not None
+        case, path = self._whole
+        return Planned(
+            route=self._route,
+            case=case,
+            trajectory=path,
+            arrivals=self._arrivals,
+            paths=self._paths,
+            failure=self._failure,
+        )
+
+    def _end_leg(self) -> Trajectory:
+        """Take the leg that is under way into the schedule, and find out where the whole of it leads."""
+        assert self._approach is not None
+        approach, self._approach = self._approach, None
+        self._paths += approach.paths
+        _, path = approach.close()
+        end = round(self._now + next_start(approach.legs, path), 9)
+        self._legs += tuple(leg._replace(start=leg.start + self._now) for leg in approach.legs)
+        case = scheduled(self._route.case, self._legs, end)
+        case = case.model_copy(update={"name": f"{self._route.name}_planned"})
+        path = path_of(Paths(case, self._surface, self._threads), case)
+        self._whole = case, path
+        if settled(path):
+            self._arrivals, self._now = (*self._arrivals, end), end
+        else:
+            self._failure = f"leg {len(self._arrivals) + 1}: {path.sentence} At {path.time[-1] * 1e3:g} ms."
+        return path
 
 
 def _tell_leg(tell: Tell, leg: int, legs: int, done: int, of: int) -> None:

@@ -6,10 +6,12 @@ from typing import Any
 
 from coupling.drive_case import ActuatorCase
 from steering.aimed import Aimed
-from steering.planning import Planned
+from steering.found import Found
+from steering.planned import Planned
 from steering.scatter import Scatter
 
 MICRO, MILLI = 1e6, 1e3
+KEYS = ("frequency", "stroke", "delay", "cycles")
 
 
 def figures(found: Aimed) -> dict[str, Any]:
@@ -22,44 +24,52 @@ def figures(found: Aimed) -> dict[str, Any]:
         "reached": found.reached,
         "interrupted": found.interrupted,
         "paths": found.paths,
-        "drives": {
-            str(k): {key: getattr(found.case.actuators[k], key) for key in ("frequency", "stroke", "delay", "cycles")}
-            for k in found.task.movers
-        },
-        "scatter": found.scatter.as_dict(),
-        "files": [str(file) for file in found.files],
+        "legs": [
+            {
+                "start": leg.start,
+                "drives": {str(k): {key: getattr(leg.actuators[k], key) for key in KEYS} for k in leg.movers},
+            }
+            for leg in found.legs
+        ],
+        **_common(found),
     }
 
 
 def lines(found: Aimed) -> list[tuple[str, str]]:
     """Rows (label, text) to print."""
-    tolerance = found.task.settings.tolerance * MICRO
-    verdict = "within" if found.reached else "not within"
+    verdict = _verdict(found.distance, found.task.settings.tolerance)
+    if found.distance <= found.task.settings.tolerance and not found.reached:
+        verdict += ", but it does not rest there for good"
     how = ", stopped by Ctrl-C" if found.interrupted else ""
     rows = [
         ("target", point(found.task.target)),
         (
             "distance",
-            f"{found.distance * MICRO:.4f} um, {verdict} the {tolerance:g} um wanted; {found.paths} paths{how}",
+            f"{found.distance * MICRO:.4f} um, {verdict}; {found.paths} paths{how}",
         ),
         ("outcome", f"{found.trajectory.outcome}. {found.trajectory.sentence}"),
     ]
-    for k in found.task.movers:
-        rows.append((f"actuator {k}", _drive(found.case.actuators[k])))
-    return [*rows, ("scatter", scatter_line(found.scatter)), *(("wrote", str(file)) for file in found.files)]
+    for number, leg in enumerate(found.legs, 1):
+        if len(found.legs) > 1:
+            rows.append((f"leg {number}", f"from {leg.start * MILLI:g} ms on"))
+        rows += [(f"actuator {k}", _drive(leg.actuators[k])) for k in leg.movers]
+    return rows + _last_lines(found)
 
 
 def plan_figures(found: Planned) -> dict[str, Any]:
     """The figures of a plan by name, in SI units."""
-    legs = zip(found.route.through, found.arrivals, found.distances, strict=False)
+    legs = zip(found.route.through, found.arrivals, found.distances, found.reached, strict=False)
     return {
-        "legs": [{"target": target, "arrival": time, "distance": distance} for target, time, distance in legs],
+        "legs": [
+            {"target": target, "arrival": time, "distance": distance, "reached": reached}
+            for target, time, distance, reached in legs
+        ],
         "complete": found.complete,
+        "failure": found.failure,
         "outcome": found.trajectory.outcome.value,
         "interrupted": found.interrupted,
         "paths": found.paths,
-        "scatter": found.scatter.as_dict(),
-        "files": [str(file) for file in found.files],
+        **_common(found),
     }
 
 
@@ -68,11 +78,34 @@ def plan_lines(found: Planned) -> list[tuple[str, str]]:
     rows = []
     for k, (time, distance) in enumerate(zip(found.arrivals, found.distances, strict=True)):
         where = f"{point(found.route.through[k])} by {time * MILLI:g} ms, but for {distance * MICRO:.4f} um"
+        where += f", {_verdict(distance, found.route.settings.tolerance)}"
         rows.append((f"leg {k + 1}", where))
-    count = f"{len(found.arrivals)} of {len(found.route.through)} legs; {found.paths} paths"
+    if found.failure:
+        label, _, said = found.failure.partition(": ")
+        rows.append((label, said))
+    tolerance = f"{found.route.settings.tolerance * MICRO:g} um"
+    count = f"{sum(found.reached)} of {len(found.route.through)} way-points within {tolerance}; {found.paths} paths"
     rows.append(("found", count + (", stopped by Ctrl-C" if found.interrupted else "")))
     rows.append(("outcome", f"{found.trajectory.outcome}. {found.trajectory.sentence}"))
-    return [*rows, ("scatter", scatter_line(found.scatter)), *(("wrote", str(file)) for file in found.files)]
+    return rows + _last_lines(found)
+
+
+def _common(found: Found) -> dict[str, Any]:
+    return {
+        "scatter": None if found.scatter is None else found.scatter.as_dict(),
+        "warnings": list(found.warnings),
+        "files": [str(file) for file in found.files],
+    }
+
+
+def _last_lines(found: Found) -> list[tuple[str, str]]:
+    scatter = "not looked for, after Ctrl-C" if found.scatter is None else scatter_line(found.scatter)
+    warnings = [("warning", said) for said in found.warnings]
+    return [("scatter", scatter), *(("wrote", str(file)) for file in found.files), *warnings]
+
+
+def _verdict(distance: float, tolerance: float) -> str:
+    return f"{'within' if distance <= tolerance else 'not within'} the {tolerance * MICRO:g} um wanted"
 
 
 def point(place: tuple[float, float]) -> str:

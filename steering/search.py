@@ -17,6 +17,7 @@ from steering.knobs import Knobs
 from steering.objective import Objective
 
 FloatArray = NDArray[np.float64]
+Seed = tuple[int, ...]
 
 POPULATION = 8  # to a knob
 CONVERGED = 0.01  # of the mean cost: where all of a population are so close, another one begins
@@ -30,7 +31,7 @@ SHARES = (1.0, 0.7, 0.5, 0.35, 0.25, 0.12, 0.06, 0.03)  # of a step, all of whic
 PROGRESS = 0.8  # of the cost before: where a step leaves more, it was the last
 
 
-def search(knobs: Knobs, objective: Objective, near: float, seed: int) -> None:
+def search(knobs: Knobs, objective: Objective, near: float, seed: Seed) -> None:
     """Makes an objective small: until it is within the tolerance, or there have been as many paths as there may be.
 
     near: m, from the target, from where on Newton's method is tried. The same for the same seed.
@@ -40,11 +41,11 @@ def search(knobs: Knobs, objective: Objective, near: float, seed: int) -> None:
         objective.of(np.zeros((1, 0)))
         return
     while not (objective.reached or objective.exhausted):
-        _evolve(knobs, objective, near, (seed, populations))
+        _evolve(knobs, objective, near, (*seed, populations))
         populations += 1
 
 
-def search_robust(knobs: Knobs, nominal: Objective, robust: Objective, near: float, seed: int) -> None:
+def search_robust(knobs: Knobs, nominal: Objective, robust: Objective, near: float, seed: Seed) -> None:
     """Makes a robust objective small, from drives that reach the target if nothing disturbs them.
 
     As many of these are found as the nominal objective allows. Around the one that is most robust evolution goes on.
@@ -54,17 +55,17 @@ def search_robust(knobs: Knobs, nominal: Objective, robust: Objective, near: flo
         robust.of(np.zeros((1, 0)))
         return
     while not nominal.exhausted:
-        _evolve(knobs, nominal, near, (seed, populations))
+        _evolve(knobs, nominal, near, (*seed, populations))
         robust.of(nominal.recent.values[None])
         populations += 1
     low, high = np.array(knobs.bounds).T
     middle, reach = robust.best.values, AROUND * (high - low)
     box = list(zip(np.maximum(low, middle - reach), np.minimum(high, middle + reach), strict=True))
     robust.forget()
-    _minimise(box, robust, (seed, populations), _Watch(knobs, robust, 0.0), middle)
+    _minimise(box, robust, (*seed, populations), _Watch(knobs, robust, 0.0), middle)
 
 
-def _evolve(knobs: Knobs, objective: Objective, near: float, seed: tuple[int, int]) -> None:
+def _evolve(knobs: Knobs, objective: Objective, near: float, seed: Seed) -> None:
     """Goes on with a new population until it does not get on any more."""
     objective.forget()
     _minimise(knobs.bounds, objective, seed, _Watch(knobs, objective, near))
@@ -73,7 +74,7 @@ def _evolve(knobs: Knobs, objective: Objective, near: float, seed: tuple[int, in
 def _minimise(
     bounds: list[tuple[float, float]],
     objective: Objective,
-    seed: tuple[int, int],
+    seed: Seed,
     watch: _Watch,
     first: FloatArray | None = None,
 ) -> None:
@@ -124,10 +125,12 @@ def _newton(knobs: Knobs, objective: Objective) -> None:
         moved = np.repeat(start.values[None], len(smooth), axis=0)
         moved[np.arange(len(smooth)), smooth] += side * width[smooth]
         off, _ = objective.of(moved)
+        if objective.exhausted:
+            return
         slopes = ((off - start.off) / side[:, None]).T  # (2, smooth) m, over the ranges of the knobs
         step = -np.linalg.pinv(slopes) @ start.off * width[smooth]
         steps = np.repeat(start.values[None], len(SHARES), axis=0)
         steps[:, smooth] = np.clip(steps[:, smooth] + np.outer(SHARES, step), low[smooth], high[smooth])
         objective.of(steps)
-        if objective.reached or objective.recent.cost > PROGRESS * start.cost:
+        if objective.reached or objective.exhausted or objective.recent.cost > PROGRESS * start.cost:
             return

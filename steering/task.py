@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from coupling.drive_case import ActuatorCase
 from coupling.lattice_places import SAME_PLACE, beyond, gaps, half_size
 from coupling.plate_case import PlateCase
 from coupling.units import shown_length
+from steering.knobs import shortest
 from steering.reach import off_the_line
 from steering.tables import Settings
 
@@ -45,6 +46,17 @@ class Task:
         """The numbers of the actuators that take part, ascending."""
         return movers(self.case, self.settings, self.target)
 
+    def within(self, duration: float, start: tuple[float, float] | None = None) -> Task:
+        """The same within another duration [s], and from a place [m] where the part rests.
+
+        Raises ValueError where the target cannot be reached from there.
+        """
+        case = self.case
+        run = case.run.model_copy(update={"duration": duration})
+        moved = {} if start is None else {"position": start, "velocity": (0.0, 0.0)}
+        part = case.part.model_copy(update=moved)
+        return replace(self, case=case.model_copy(update={"run": run, "part": part, "source": None}))
+
 
 def movers(case: Case, settings: Settings, target: tuple[float, float]) -> tuple[int, ...]:
     """The numbers of the actuators that take part on the way to a target [m]: those that are told, or the nearest."""
@@ -69,9 +81,20 @@ def mistakes(case: Case, settings: Settings, target: tuple[float, float] | None)
         return
     placed = list(misplaced(case, target))
     yield from (("target", message) for message in placed)
-    if not told and not placed:
-        count = len(movers(case, settings, target))
-        yield from (("target", said) for said in off_the_line(case, case.plate, target, settings.tolerance, count))
+    if told:
+        return
+    chosen = movers(case, settings, target)
+    soonest, duration = shortest(case, settings, chosen), case.run.duration
+    if soonest > duration:
+        key = "delay" if settings.delay else "frequency" if settings.frequency else "case"
+        yield (
+            key,
+            "must leave time for a cycle of each actuator that takes part; the soonest that all can end is "
+            f"{soonest * 1e3:g} ms, and the run ends at {duration * 1e3:g} ms",
+        )
+    if not placed:
+        wrong = off_the_line(case, case.plate, target, settings.tolerance, len(chosen))
+        yield from (("target", message) for message in wrong)
 
 
 def _actuator_mistakes(case: Case, settings: Settings) -> Iterator[Mistake]:

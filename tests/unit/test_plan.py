@@ -76,6 +76,7 @@ def test_a_plan_carries_the_part_over_its_way_points_and_its_file_runs_the_same(
     path = follow_part(again, build_surface(again), build_friction(again))
     assert path.position.tobytes() == found.trajectory.position.tobytes() and path.stays
     assert again.run.duration == found.arrivals[-1] == path.time[-1]
+    assert found.reached == [True] * 3 and not found.failure
     for time, target in zip(found.arrivals, THROUGH, strict=True):
         there = path.at([time - 1e-4, time])
         assert np.hypot(*(there.position - target).T).max() < 0.5e-6 and not there.velocity.any()
