@@ -21,7 +21,7 @@ FloatArray = NDArray[np.float64]
 
 AT_ONCE = 256  # paths: handing out more at a time costs more
 SETTLING = 1e-3  # s: a part on the move counts as that much farther away, at its speed
-NOT_FOR_GOOD = 2.0  # tolerances: no nearer counts a part that does not rest for good
+NOT_FOR_GOOD = 0.1  # of the surface's size: no nearer counts a part that does not rest for good
 LOST = 3.0  # of the surface's size: so much farther away counts a part that is lost, than which no other can be
 
 
@@ -121,4 +121,5 @@ def cost(trajectory: Trajectory, target: tuple[float, float], duration: float, s
         away += min(SETTLING * float(np.hypot(*trajectory.velocity[-1])), size)
     elif trajectory.outcome is not Outcome.STUCK:
         return away + size * (LOST + 1 - float(trajectory.time[-1]) / duration)  # the later it was lost, the better
-    return away if away > tolerance or settled(trajectory) else NOT_FOR_GOOD * tolerance
+    least = max(NOT_FOR_GOOD * size, 2 * tolerance)
+    return away if away > least or settled(trajectory) else least

@@ -182,9 +182,10 @@ def test_a_part_that_is_lost_costs_more_than_one_that_moves_and_that_more_than_o
     rest, slide = (simulate(tilted, part, ConstantFriction(limit), 1e-3) for limit in (1e-6, 1e-9))
     assert (rest.outcome, slide.outcome) == (Outcome.STUCK, Outcome.MOVING)
     assert cost(rest, (3e-6, 4e-6), 1e-3, 3e-4, 1e-7) == pytest.approx(5e-6)
-    off = np.hypot(*(slide.position[-1] - (3e-6, 4e-6)))
-    assert cost(slide, (3e-6, 4e-6), 1e-3, 1.0, 1e-7) == pytest.approx(off + 1e-3 * np.hypot(*slide.velocity[-1]))
+    off = np.hypot(*(slide.position[-1] - (3e-4, 4e-4)))
+    assert cost(slide, (3e-4, 4e-4), 1e-3, 3e-4, 1e-7) == pytest.approx(off + 1e-3 * np.hypot(*slide.velocity[-1]))
     assert cost(slide, slide.position[-1], 1e-3, 1e-9, 1e-7) == 2e-7
+    assert cost(slide, slide.position[-1], 1e-3, 1.0, 1e-7) == pytest.approx(0.1)
     size = 3e-4  # of a plate, so that no two places on it are farther apart than twice that
     lost, later = (
         dataclasses.replace(rest, outcome=Outcome.LEFT_PLATE, time=rest.time[-1:] * when) for when in (0.1, 0.9)
