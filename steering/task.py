@@ -93,7 +93,7 @@ def mistakes(case: Case, settings: Settings, target: tuple[float, float] | None)
             f"{soonest * 1e3:g} ms, and the run ends at {duration * 1e3:g} ms",
         )
     if not placed:
-        wrong = off_the_line(case, case.plate, target, settings.tolerance, len(chosen))
+        wrong = off_the_line(case, case.plate, target, settings.tolerance, chosen)
         yield from (("target", message) for message in wrong)
 
 

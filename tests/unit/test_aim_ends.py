@@ -1,0 +1,134 @@
+"""Aims at their ends: parts that go on, starts at the rim, parts that are lost, Ctrl-C at any moment."""
+
+import json
+import signal
+import threading
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from sweeps import PLATE
+
+from coupling import build_surface, read_case
+from particle import Outcome
+from steering import Route, Settings, Task, aim, found
+from steering.aiming import aim_over
+from steering.cli import main
+from steering.paths import Disturbance, Paths
+from steering.planning import plan_over
+from steering.report import lines
+
+TARGET = (-2e-5, 2e-5)
+pytestmark = pytest.mark.compiled
+
+
+def case_of(folder, *changes):
+    text = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "base.toml").write_text(text)
+    return read_case(folder / "base.toml")
+
+
+def test_a_part_that_passes_a_target_has_not_reached_it(tmp_path):
+    case = case_of(tmp_path, ('"20 ms"', '"2.6 ms"'), ("40 nN", "1 nN"))
+    surface = build_surface(case)
+    fixed = {"frequency": (400, 400), "stroke": (5e-5, 5e-5), "cycles": (1, 1), "scatter": 1}
+    end = aim_over(surface, Task(case, TARGET, Settings(**fixed))).trajectory.position[-1]
+    passing = aim_over(surface, Task(case, (float(end[0]), float(end[1])), Settings(**fixed)))
+    assert passing.distance == 0.0 and passing.trajectory.outcome is Outcome.MOVING and not passing.reached
+    assert dict(lines(passing))["distance"].startswith(
+        "0.0000 um, within the 0.5 um wanted, but it does not rest there for good"
+    )
+
+
+def test_a_start_at_the_rim_is_disturbed_on_the_plate_only(tmp_path):
+    case = case_of(tmp_path, ('["0 um", "40 um"]', '["0 um", "299.8 um"]'))
+    surface = build_surface(case)
+    shifts = [(0.0, 1e-6), (0.0, -1e-6), (1e-7, 0.0), (5e-7, 9e-7)]
+    paths = Paths(case, surface).of([(case.actuators, Disturbance(shift=shift)) for shift in shifts])
+    starts = np.array([path.position[0] for path in paths]) - case.part.position
+    assert starts == pytest.approx(np.array([(0.0, -1e-6), (0.0, -1e-6), (1e-7, 0.0), (-5e-7, -9e-7)]), abs=1e-15)
+    found = aim_over(surface, Task(case, TARGET, Settings(paths=50, scatter=20)))
+    assert len(found.scatter.distance) == 20
+
+
+def test_a_search_is_not_lost_by_an_interruption_of_its_scatter(tmp_path, monkeypatch):
+    case = case_of(tmp_path)
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(found, "scattered", stop)
+    aimed = aim(Task(case, TARGET), tmp_path / "out")
+    assert aimed.interrupted and aimed.reached and aimed.scatter is None
+    assert [file.name for file in aimed.files] == ["base_aimed.toml"]
+    assert [file.name for file in (tmp_path / "out").iterdir()] == ["base_aimed.toml"]
+    (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\ntolerance = "5 um"\n')
+    arguments = [str(tmp_path / "aim.toml"), "-o", str(tmp_path / "out"), "--overwrite"]
+    done = CliRunner().invoke(main, ["aim", *arguments, "--target", "-20,20"])
+    assert done.exit_code == 130 and "not looked for, after Ctrl-C" in done.stdout
+    done = CliRunner().invoke(main, ["plan", *arguments, "--json", "--through", "-20,20", "0,20"])
+    told = json.loads(done.stdout)
+    assert done.exit_code == 130 and len(told["legs"]) == 2 and told["scatter"] is None
+
+
+def test_a_second_interruption_does_not_undo_the_first(tmp_path, monkeypatch):
+    case = case_of(tmp_path)
+    written = []
+
+    def write(*given):
+        signal.raise_signal(signal.SIGINT)
+        written.append(given)
+        return given[1]
+
+    def stop(done, of):
+        raise KeyboardInterrupt
+
+    assert threading.current_thread() is threading.main_thread()
+    before = signal.getsignal(signal.SIGINT)
+    monkeypatch.setattr("steering.aiming.write_case", write)
+    aimed = aim_over(build_surface(case), Task(case, TARGET, Settings(scatter=5)), tell=stop, file=tmp_path / "a.toml")
+    assert aimed.interrupted and len(written) == 1 and signal.getsignal(signal.SIGINT) is before
+
+
+def test_a_folder_in_place_of_a_result_is_refused_before_the_search(tmp_path):
+    (tmp_path / "base_aim.png").mkdir()
+    with pytest.raises(ValueError, match="free for base_aim.png; got .* where that is a folder"):
+        aim(Task(case_of(tmp_path), TARGET), tmp_path, overwrite=True)
+
+
+LIFTED = {"stroke": (3e-4, 4e-4), "frequency": (1900.0, 2000.0), "paths": 1, "scatter": 5}
+
+
+def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(tmp_path):
+    case = case_of(tmp_path)
+    surface = build_surface(case)
+    planned = plan_over(surface, Route(case, (TARGET, (0.0, 0.0)), Settings(**LIFTED)))
+    assert planned.trajectory.time[-1] < planned.case.run.duration
+    assert not planned.arrivals and not planned.complete and planned.scatter.lost == 5
+    assert planned.failure.startswith("leg 1: The part ")
+    assert planned.failure.endswith(f"At {planned.trajectory.time[-1] * 1e3:g} ms.")
+
+
+def test_a_plan_says_which_way_points_it_missed(tmp_path):
+    case_of(tmp_path)
+    (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\npaths = 3\nscatter = 2\n')
+    arguments = ["plan", str(tmp_path / "aim.toml"), "-o", str(tmp_path / "out"), "--through", "-90,120", "90,120"]
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 0 and "not within the 0.5 um wanted" in done.stdout
+    assert "0 of 2 way-points within 0.5 um" in done.stdout
+    told = json.loads(CliRunner().invoke(main, [*arguments, "--json", "--overwrite"]).stdout)
+    assert [leg["reached"] for leg in told["legs"]] == [False, False] and not told["complete"]
+
+
+def test_bounds_that_leave_no_time_for_a_cycle_are_refused(tmp_path):
+    case = case_of(tmp_path)
+    with pytest.raises(
+        ValueError, match=r"^frequency must leave time for a cycle .* is 25 ms, and the run ends at 20 ms$"
+    ):
+        Task(case, TARGET, Settings(frequency=(10.0, 40.0)))
+    with pytest.raises(ValueError, match=r"^delay must leave time .* is 20.6667 ms, and"):
+        Task(case, TARGET, Settings(delay=(19e-3, 40e-3)))
+    Task(case, TARGET, Settings(delay=(18e-3, 40e-3)))

@@ -1,0 +1,78 @@
+"""Targets that symmetry keeps a part from are refused, and no others."""
+
+from pathlib import Path
+
+import pytest
+
+from coupling import read_case
+from steering import Settings, Task
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+NINE = (EXAMPLES / "array_3x3.toml").read_text()
+SQUARE = 'shape = "rectangle"\nwidth = "600 um"\nheight = "600 um"\n'
+OFF = (2e-5, -4e-5)
+
+
+def nine(folder, start, *changes):
+    text = NINE
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "base.toml").write_text(text)
+    case = read_case(folder / "base.toml")
+    return case.model_copy(update={"part": case.part.model_copy(update={"position": start})})
+
+
+def refused(case, target, movers):
+    try:
+        Task(case, target, Settings(actuators=movers))
+    except ValueError as error:
+        return str(error)
+    return ""
+
+
+def test_those_at_rest_on_both_sides_of_a_line_leave_it_a_line(tmp_path):
+    case = nine(tmp_path, (5e-5, 0.0))
+    assert "these 3 actuators move the part only along the line" in refused(case, OFF, (1, 4, 7))
+    assert not refused(case, (-8e-5, 4e-7), (1, 4, 7))
+    assert not refused(case, OFF, (1, 4, 8)) and not refused(case, OFF, (0, 1, 2))
+    stiff = [*case.actuators]
+    stiff[0] = stiff[0].model_copy(update={"stiffness": 1e3})
+    assert not refused(case.model_copy(update={"actuators": tuple(stiff)}), OFF, (1, 4, 7))
+    assert not refused(case.model_copy(update={"actuators": case.actuators[:-1]}), OFF, (1, 4, 7))
+    assert not refused(nine(tmp_path, (5e-5, 1e-9)), OFF, (1, 4, 7))
+
+
+@pytest.mark.parametrize(("edges", "kept"), [("clamped", True), ("left", False)])
+def test_the_diagonals_of_a_square_are_such_lines(tmp_path, edges, kept):
+    supports = 'supports = "clamped"' if kept else 'supports = { left = "clamped", right = "simply-supported" }'
+    changes = [('shape = "disc"\nradius = "300 um"\n', SQUARE), ('supports = "clamped"', supports)]
+    case = nine(tmp_path, (5e-5, -5e-5), *changes)
+    assert ("at 135 degrees" in refused(case, OFF, (2, 4, 6))) == kept
+    assert ("at 45 degrees" in refused(nine(tmp_path, (5e-5, 5e-5), *changes), OFF, (0, 4, 8))) == kept
+    wide = [(changes[0][0], SQUARE.replace('width = "600', 'width = "700')), *changes[1:]]
+    assert not refused(nine(tmp_path, (5e-5, -5e-5), *wide), OFF, (2, 4, 6))
+
+
+def test_an_ellipse_of_equal_axes_is_a_disc(tmp_path):
+    circle = 'shape = "ellipse"\nsemi_axis_x = "300 um"\nsemi_axis_y = "300 um"\n'
+    changed = ('shape = "disc"\nradius = "300 um"\n', circle)
+    start = (4e-5, -4e-5)
+    assert "at 135 degrees" in refused(nine(tmp_path, start, changed), OFF, (2, 4, 6))
+    flat = (changed[0], circle.replace('y = "300', 'y = "290'))
+    assert not refused(nine(tmp_path, start, flat), OFF, (2, 4, 6))
+
+
+def test_nothing_moves_a_part_that_stands_on_the_only_actuator_that_moves(tmp_path):
+    case = nine(tmp_path, (0.0, 0.0))
+    assert "cannot be reached: nothing moves the part" in refused(case, (0.0, 1e-5), (4,))
+    assert not refused(case, (0.0, 4e-7), (4,)) and not refused(case, (0.0, 4e-5), (3, 4))
+    assert "along the line" in refused(case, OFF, (3, 4))
+
+
+def test_a_push_along_the_line_may_be_rounded(tmp_path):
+    case = nine(tmp_path, (4e-5, -4e-5))
+    tilted = case.model_copy(update={"run": case.run.model_copy(update={"gravity": (0.1, -0.1 * (1 + 1e-15), -9.8)})})
+    assert "at 135 degrees" in refused(tilted, OFF, (2, 4, 6))
+    tilted = case.model_copy(update={"run": case.run.model_copy(update={"gravity": (0.1, -0.11, -9.8)})})
+    assert not refused(tilted, OFF, (2, 4, 6))
