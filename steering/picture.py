@@ -20,6 +20,7 @@ from coupling.path_picture import HALO, draw_path
 from coupling.plate_case import PlateCase
 from coupling.readable import Unit, plain_ticks, readable
 from coupling.rim import rim_curves
+from coupling.window import is_visible
 from particle import Trajectory
 from steering.aimed import Aimed
 from steering.found import Found
@@ -33,23 +34,42 @@ SIZE = 5.6  # inches, of a panel
 SAMPLES = 4000
 MARGIN = 0.04  # of the plate's longer side
 ROOM = 1.15  # of the farthest end that is drawn
+FAR = 4.0  # times the spread of the ends: a target farther off is pointed at
+LEAST = 0.01  # of the way to a target that is pointed at, which the frame shows
+SMALLEST = 1e-9  # m: no frame is smaller
 SHARE = 0.97  # of the ends are drawn at least
-TARGET: dict[str, Any] = {"marker": "+", "color": "#c8371b", "markersize": 15, "markeredgewidth": 2.2}
+NUMBERED = 100  # actuators at most
+TARGET: dict[str, Any] = {
+    "marker": "D",
+    "markerfacecolor": "none",
+    "markeredgecolor": "#c8371b",
+    "markersize": 14,
+    "markeredgewidth": 1.8,
+}
+NUMBER: dict[str, Any] = {"textcoords": "offset points", "fontsize": 9, "path_effects": HALO}
 ENDS: dict[str, Any] = {"marker": "o", "color": "#1b4f9c", "markersize": 4, "markeredgewidth": 0, "alpha": 0.6}
 
 
 def draw_aim(found: Aimed, path: Path) -> Path:
     """Draws what a search found into a PNG file; returns that."""
-    return _draw(found, found.task.name, [found.task.target], path)
+    said = f"{found.task.name}: the part ends {_off(found, found.task.target)}"
+    return _draw(found, said, [found.task.target], path)
 
 
 def draw_plan(found: Planned, path: Path) -> Path:
     """Draws what a plan found into a PNG file; returns that."""
-    return _draw(found, found.route.name, found.route.through[: max(len(found.arrivals), 1)], path)
+    route = found.route
+    targets = route.through[: max(len(found.arrivals), 1)]
+    which = "the last of them" if len(targets) == len(route.through) else f"way-point {len(targets)}"
+    count = f"{sum(found.reached)} of {len(route.through)} way-points within {_length(route.settings.tolerance)}"
+    return _draw(found, f"{route.name}: {count}; the part ends {_off(found, targets[-1], which)}", targets, path)
 
 
-def _draw(found: Found, name: str, targets: Sequence[Place], path: Path) -> Path:
-    """Draws a path over its plate with the targets [m] in their order, and the ends of disturbed runs, into a file."""
+def _draw(found: Found, said: str, targets: Sequence[Place], path: Path) -> Path:
+    """Draws a path over its plate with the targets [m] in their order, and the ends of disturbed runs, into a file.
+
+    said: above both.
+    """
     assert found.scatter is not None
     case, trajectory, scatter = found.case, found.trajectory, found.scatter
     figure = Figure(figsize=(2 * SIZE + 0.8, SIZE + 0.5), layout="constrained")
@@ -57,8 +77,7 @@ def _draw(found: Found, name: str, targets: Sequence[Place], path: Path) -> Path
     axes = [figure.add_subplot(1, 2, k + 1) for k in range(2)]
     keys = _draw_plate(axes[0], case, trajectory, targets)
     keys += _draw_ends(axes[1], trajectory, targets[-1], scatter)
-    x, y = trajectory.position[-1] - targets[-1]
-    figure.suptitle(f"{name}: the part ends {_length(float(np.hypot(x, y)))} from the target")
+    figure.suptitle(said)
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
     partial = path.with_suffix(".partial.png")
     try:
@@ -75,6 +94,7 @@ def _draw_plate(axes: Axes, case: Case, trajectory: Trajectory, targets: Sequenc
     box = outline.box
     unit, longest = readable(box, "m"), float(np.ptp(box, axis=0).max())
     _label(axes, unit)
+    axes.set_title("The path over the plate, and the actuators by their numbers", fontsize=10)
     curves = [curve * unit.per_si for curve in rim_curves(outline, longest / 200)]
     axes.add_collection(LineCollection(curves, colors="black", linewidths=1.5))
     frame = (box + MARGIN * longest * np.array([[-1.0], [1.0]])) * unit.per_si
@@ -88,37 +108,61 @@ def _draw_plate(axes: Axes, case: Case, trajectory: Trajectory, targets: Sequenc
         if chosen.any():
             look: dict[str, Any] = {"color": colour, "markeredgecolor": "black", "linestyle": "", "markersize": 7}
             keys += axes.plot(*places[chosen].T, "^", **look, label=label)
+    for number in range(len(places)) if len(places) <= NUMBERED else ():
+        axes.annotate(str(number), places[number], (0, -13), ha="center", color="#606060", **NUMBER)
     line = trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)).position
-    keys += draw_path(axes, trajectory, line, unit, True)
+    keys += draw_path(axes, trajectory, line, unit, is_visible(line, box))
     drawn = np.array(targets) * unit.per_si
     keys += axes.plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
     for number, place in enumerate(drawn.tolist() if len(targets) > 1 else [], 1):
-        axes.annotate(str(number), place, (7, 5), textcoords="offset points", fontsize=11, path_effects=HALO)
+        axes.annotate(str(number), place, (8, 8), color=TARGET["markeredgecolor"], weight="bold", **NUMBER)
     return keys
 
 
 def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatter) -> list[Artist]:
-    """Draw the ends around the target, those far off left out, with circles that hold half and nine tenths of them."""
+    """Draw the ends about the target, those far off left out, with circles that hold half and nine tenths of them.
+
+    Where all are far from the target they are drawn about their middle, with an arrow towards it.
+    """
     off, end = scatter.ends - target, trajectory.position[-1] - target
-    far = np.hypot(*off.T)
-    shown = max(float(np.quantile(far, SHARE)), float(np.hypot(*end)))
-    unit = readable(np.array([shown]), "m")
+    middle = np.median(np.vstack([off, end]), axis=0)
+    spread = float(np.quantile(np.hypot(*(np.vstack([off, end]) - middle).T), SHARE))
+    missed = float(np.hypot(*middle)) > FAR * spread
+    if missed:
+        centre, shown = middle, max(spread, LEAST * float(np.hypot(*middle)))
+    else:
+        centre = np.zeros(2)
+        shown = max(float(np.quantile(np.hypot(*off.T), SHARE)), float(np.hypot(*end)), scatter.quantile(0.9))
+    side = ROOM * max(shown, SMALLEST)
+    unit = readable(np.array([side + float(np.hypot(*centre))]), "m")
     _label(axes, unit, " from the target")
     keys: list[Artist] = []
     keys += axes.plot(*(off * unit.per_si).T, linestyle="", **ENDS, label="ends of disturbed runs")
-    axes.plot(0, 0, linestyle="", **TARGET, zorder=4)
     axes.plot(*(end * unit.per_si), "x", color="black", markersize=7, markeredgewidth=1.6, path_effects=HALO, zorder=5)
-    for share in (0.5, 0.9):
-        radius = scatter.quantile(share) * unit.per_si
-        axes.add_patch(Circle((0, 0), radius, fill=False, edgecolor="#606060", linewidth=0.8))
-        axes.annotate(f"{share:.0%}", (0, radius), (2, 1), textcoords="offset points", fontsize=9, color="#606060")
-    side = ROOM * max(shown, scatter.quantile(0.9)) * unit.per_si
-    axes.set_xlim(-side, side)
-    axes.set_ylim(-side, side)
-    beyond = int((np.abs(off).max(axis=1) * unit.per_si > side).sum())
+    if missed:
+        way = -middle / np.hypot(*middle) * side * unit.per_si
+        tail, tip = (centre * unit.per_si + share * way for share in (0.55, 0.95))
+        axes.annotate("", tip, tail, arrowprops={"arrowstyle": "->", "color": TARGET["markeredgecolor"], "lw": 1.8})
+        axes.annotate(f"target, {_length(float(np.hypot(*middle)))}", tail, (0, 6), ha="center", **NUMBER)
+    else:
+        axes.plot(0, 0, linestyle="", **TARGET, zorder=4)
+        for share in (0.5, 0.9):
+            radius = scatter.quantile(share) * unit.per_si
+            axes.add_patch(Circle((0, 0), radius, fill=False, edgecolor="#606060", linewidth=0.8))
+            axes.annotate(f"{share:.0%}", (0, radius), (2, 1), color="#606060", **NUMBER)
+    low, high = (centre - side) * unit.per_si, (centre + side) * unit.per_si
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    beyond = int((np.abs(off - centre).max(axis=1) > side).sum())
     more = f", {beyond} of them beyond this frame" if beyond else ""
     axes.set_title(f"Where {len(off)} disturbed runs end{more}", fontsize=10)
     return keys
+
+
+def _off(found: Found, target: Place, name: str = "the target") -> str:
+    """How far from a target [m] the part ends, in words."""
+    away = float(np.hypot(*(found.trajectory.position[-1] - target)))
+    return f"{_length(away)} from {name}" if away > 0 else f"at {name}"
 
 
 def _label(axes: Axes, unit: Unit, where: str = "") -> None:
