@@ -109,7 +109,7 @@ def _draw_plate(axes: Axes, case: Case, trajectory: Trajectory, targets: Sequenc
             look: dict[str, Any] = {"color": colour, "markeredgecolor": "black", "linestyle": "", "markersize": 7}
             keys += axes.plot(*places[chosen].T, "^", **look, label=label)
     for number in range(len(places)) if len(places) <= NUMBERED else ():
-        axes.annotate(str(number), places[number], (0, -13), ha="center", color="#606060", **NUMBER)
+        axes.annotate(str(number), places[number], (0, -20), ha="center", color="#606060", **NUMBER)
     line = trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)).position
     keys += draw_path(axes, trajectory, line, unit, is_visible(line, box))
     drawn = np.array(targets) * unit.per_si
@@ -143,7 +143,7 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
         way = -middle / np.hypot(*middle) * side * unit.per_si
         tail, tip = (centre * unit.per_si + share * way for share in (0.55, 0.95))
         axes.annotate("", tip, tail, arrowprops={"arrowstyle": "->", "color": TARGET["markeredgecolor"], "lw": 1.8})
-        axes.annotate(f"target, {_length(float(np.hypot(*middle)))}", tail, (0, 6), ha="center", **NUMBER)
+        axes.annotate(f"target, {_length(float(np.hypot(*middle)))}", tail, (0, 14), ha="center", **NUMBER)
     else:
         axes.plot(0, 0, linestyle="", **TARGET, zorder=4)
         for share in (0.5, 0.9):
