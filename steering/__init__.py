@@ -3,8 +3,7 @@
 Names are loaded when they are first used, so that `active-surface --help` does not wait for the solvers.
 """
 
-from importlib import import_module
-from typing import Any
+from coupling.lazy import lazy
 
 _HOMES = {
     "Settings": "steering.tables",
@@ -20,12 +19,4 @@ _HOMES = {
 
 __all__ = list(_HOMES)  # noqa: PLE0605
 
-
-def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOMES])
-
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(import_module(_HOMES[name]), name)
-    raise AttributeError(f"module 'steering' has no attribute {name!r}")
+__getattr__, __dir__ = lazy(__name__, _HOMES)

@@ -36,10 +36,10 @@ def aim(
     Upon Ctrl-C the best drives so far count, if there are any.
     """
     if output is None:
-        return aim_over(prepared(task.case, threads), task, threads, tell)
+        return aim_over(prepared(task.case), task, threads, tell)
     file, picture = Path(output) / f"{task.name}_aimed.toml", Path(output) / f"{task.name}_aim.png"
     check_free((file, picture), overwrite)
-    found = aim_over(prepared(task.case, threads), task, threads, tell, file)
+    found = aim_over(prepared(task.case), task, threads, tell, file)
     return drawn(found, draw_aim, picture)
 
 

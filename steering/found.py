@@ -12,9 +12,9 @@ import numpy as np
 from coupling.case import Case
 from coupling.progress import interruptible
 from coupling.report import warnings
-from coupling.run import build_scene, run_case
+from coupling.run import build_friction, build_scene, follow_part, run_case
 from particle import SurfaceMotion, Trajectory
-from steering.paths import Paths, path_of
+from steering.paths import Paths
 from steering.scatter import TOLD, Scatter, disturbances
 from steering.tables import Settings
 
@@ -40,10 +40,10 @@ Kind = TypeVar("Kind", bound=Found)
 Place = tuple[float, float]
 
 
-def prepared(case: Case, threads: int | None) -> SurfaceMotion:
+def prepared(case: Case) -> SurfaceMotion:
     """The moving surface of a case. Whatever paths need is compiled, so that Ctrl-C is heard from then on."""
     surface = interruptible(build_scene, case).surface
-    interruptible(path_of, Paths(case, surface, threads), case)
+    interruptible(follow_part, case, surface, build_friction(case))
     return surface
 
 

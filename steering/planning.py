@@ -39,10 +39,10 @@ def plan(
     Upon Ctrl-C the legs so far count, if there are any.
     """
     if output is None:
-        return plan_over(prepared(route.case, threads), route, threads, tell)
+        return plan_over(prepared(route.case), route, threads, tell)
     file, picture = Path(output) / f"{route.name}_planned.toml", Path(output) / f"{route.name}_plan.png"
     check_free((file, picture), overwrite)
-    found = plan_over(prepared(route.case, threads), route, threads, tell, file)
+    found = plan_over(prepared(route.case), route, threads, tell, file)
     return drawn(found, draw_plan, picture)
 
 

@@ -14,6 +14,7 @@ from particle import Outcome
 from steering import Route, Settings, Task, aim, found
 from steering.aiming import aim_over
 from steering.cli import main
+from steering.objective import SAMPLES
 from steering.paths import Disturbance, Paths
 from steering.planning import plan_over
 from steering.report import lines
@@ -132,3 +133,20 @@ def test_bounds_that_leave_no_time_for_a_cycle_are_refused(tmp_path):
     with pytest.raises(ValueError, match=r"^delay must leave time .* is 20.6667 ms, and"):
         Task(case, TARGET, Settings(delay=(19e-3, 40e-3)))
     Task(case, TARGET, Settings(delay=(18e-3, 40e-3)))
+
+
+def test_a_case_file_may_follow_the_way_points(tmp_path):
+    case_of(tmp_path)
+    (tmp_path / "1.toml").write_text('[aim]\ncase = "base.toml"\npaths = 3\nscatter = 2\n')
+    arguments = ["plan", "--through", "-90,120", "90,120", str(tmp_path / "1.toml"), "-o", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, [*arguments, "--json"])
+    assert done.exit_code == 0 and len(json.loads(done.stdout)["legs"]) == 2
+
+
+def test_the_option_robust_is_the_quantile(tmp_path):
+    case_of(tmp_path)
+    (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\npaths = 200\nscatter = 2\n')
+    arguments = ["aim", str(tmp_path / "aim.toml"), "--target=-20,20", "--json", "-o", str(tmp_path / "out")]
+    plain = json.loads(CliRunner().invoke(main, arguments).stdout)
+    robust = json.loads(CliRunner().invoke(main, [*arguments, "--robust", "0.9", "--overwrite"]).stdout)
+    assert robust["paths"] <= 200 + SAMPLES and robust["legs"] != plain["legs"]
