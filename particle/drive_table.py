@@ -122,6 +122,7 @@ def monomial_table(count: int) -> DriveTable:
     )
 
 
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # strokes too fast for numbers fail where they are used
 def _jumps(table: DriveTable) -> FloatArray:
     """By how much the first five derivatives jump at a drive's kinks at most (N, 5) [m/s, m/s^2, ...]; 0: by rounding.
 

@@ -29,7 +29,7 @@ TRUTHS_AGREE = 5e-10  # of the path: ours on cells and scipy on exact sums, each
 STEPS_AGREE = 1e-9  # of the path: the same fixed steps in numpy, numba, JAX and by this project's scheme "fixed"
 FEW, COARSE, FINE = 200, 20_000, 200_000  # steps: in which methods must agree, and from which the order is measured
 ORDER = (0.9, 1.1)
-MOST_TRIED, MORE = 20_000_000, 1.05  # steps, and their growth where they do not do
+MOST_TRIED, MORE = 2_000_000_000, 1.05  # steps times actuators, and the steps' growth where they do not do
 LEAST_TIME = 0.02  # s, of one measurement
 
 OURS = "active-surface"
@@ -96,7 +96,7 @@ class Comparison:
         self.end, self.length = truth.position[-1], float(np.hypot(*np.diff(truth.position, axis=0).T).sum())
         self.starts = np.array(problem.start) + np.zeros((PARTS, 1))
         self.rough = isinstance(problem.friction, KogutEtsion)
-        self.steppers = self._steppers()
+        self.steppers, self.most = self._steppers(), MOST_TRIED // max(len(problem.points), 100)
         self._agree()
         self.per_step = self._first_order()
 
@@ -174,16 +174,16 @@ class Comparison:
                 yield self._row(target, name, [count * time for time in times], own[target], count)
 
     def _count(self, target: float) -> int:
-        """How many fixed steps meet a target: tried out up to MOST_TRIED, by their order above."""
+        """How many fixed steps meet a target: tried out up to `most`, by their order above."""
         count, steps = int(np.ceil(self.per_step / target)), self.steppers[COMPILED][0]
-        while count <= MOST_TRIED and self.off(steps(count, self.problem.duration / count)) > target:
+        while count <= self.most and self.off(steps(count, self.problem.duration / count)) > target:
             count = int(np.ceil(MORE * count))
         return count
 
     def _row(self, target: float, method: str, times: list[float], own: list[float], work: int) -> Row:
         ratios = [time / base for time, base in zip(times, own, strict=True)]
         figures = median(ratios), min(ratios), max(ratios)
-        beyond = method in self.steppers and work > MOST_TRIED
+        beyond = method in self.steppers and work > self.most
         return Row(self.problem.name, len(self.problem.points), target, method, figures, work, beyond)
 
     def _ours(self, tolerance: float) -> tuple[float, int]:
