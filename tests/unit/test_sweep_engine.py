@@ -10,8 +10,8 @@ import pytest
 from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
+from command_line.main import main
 from studies import engine, read_study, run_study
-from studies.cli import main
 from studies.engine import Engine
 from studies.record import COLUMNS, OUTCOMES
 from studies.validity import corners

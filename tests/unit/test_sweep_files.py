@@ -13,10 +13,10 @@ import xarray
 from click.testing import CliRunner
 from sweeps import PLATFORM, written
 
+from command_line.main import main
 from coupling.progress import CountBar
 from studies import dataset, read_study, run_study, study
 from studies.chunk_store import ChunkStore
-from studies.cli import main
 from studies.engine import Engine
 from studies.lock import alone_in
 from studies.record import COLUMNS

@@ -1,4 +1,4 @@
-"""The command `active-surface` with `sweep`. Heavy imports wait until a command needs them."""
+"""The command `sweep`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from coupling.cli import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
+from command_line.group import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
 
 
 @main.command()

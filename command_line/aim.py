@@ -1,4 +1,4 @@
-"""The command `active-surface` with `aim` and `plan`. Heavy imports wait until a command needs them."""
+"""The commands `aim` and `plan`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ from typing import Any, TypeVar
 
 import click
 
-from coupling.cli import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
-from studies import cli as _sweep  # noqa: F401  # which adds its command
+from command_line.group import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
 
 Found = TypeVar("Found")
 QUANTILE = click.FloatRange(min=0, max=1, min_open=True)
