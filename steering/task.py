@@ -92,7 +92,14 @@ def mistakes(case: Case, settings: Settings, target: tuple[float, float] | None)
             "must leave time for a cycle of each actuator that takes part; the soonest that all can end is "
             f"{soonest * 1e3:g} ms, and the run ends at {duration * 1e3:g} ms",
         )
-    if not placed:
+    away = math.dist(target, case.part.position)
+    if away <= settings.tolerance and not any(case.part.velocity):
+        yield (
+            "target",
+            f"must be farther from the part than the tolerance, {shown_length(settings.tolerance)}; "
+            f"got a point {shown_length(away)} from where it starts: it is there already",
+        )
+    elif not placed:
         wrong = off_the_line(case, case.plate, target, settings.tolerance, chosen)
         yield from (("target", message) for message in wrong)
 

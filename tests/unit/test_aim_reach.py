@@ -66,7 +66,7 @@ def test_an_ellipse_of_equal_axes_is_a_disc(tmp_path):
 def test_nothing_moves_a_part_that_stands_on_the_only_actuator_that_moves(tmp_path):
     case = nine(tmp_path, (0.0, 0.0))
     assert "cannot be reached: nothing moves the part" in refused(case, (0.0, 1e-5), (4,))
-    assert not refused(case, (0.0, 4e-7), (4,)) and not refused(case, (0.0, 4e-5), (3, 4))
+    assert not refused(case, (0.0, 4e-5), (3, 4))
     assert "along the line" in refused(case, OFF, (3, 4))
 
 
@@ -76,3 +76,15 @@ def test_a_push_along_the_line_may_be_rounded(tmp_path):
     assert "at 135 degrees" in refused(tilted, OFF, (2, 4, 6))
     tilted = case.model_copy(update={"run": case.run.model_copy(update={"gravity": (0.1, -0.11, -9.8)})})
     assert not refused(tilted, OFF, (2, 4, 6))
+
+
+def test_a_target_where_the_part_is_already_is_refused_unless_the_part_moves(tmp_path):
+    case = nine(tmp_path, (5e-5, 0.0))
+    said = refused(case, (5.04e-5, 0.0), (1, 4, 8))
+    assert said == (
+        "target must be farther from the part than the tolerance, 0.5 um; "
+        "got a point 0.4 um from where it starts: it is there already"
+    )
+    assert not refused(case, (5.06e-5, 0.0), (1, 4, 8))
+    moving = case.part.model_copy(update={"velocity": (1e-3, 0.0)})
+    assert not refused(case.model_copy(update={"part": moving}), (5.04e-5, 0.0), (1, 4, 8))
