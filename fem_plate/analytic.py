@@ -66,6 +66,13 @@ def smooth_part(x: FloatArray, sources: FloatArray) -> Fields:
     return value / (16 * np.pi), gradient / (16 * np.pi), hessian / (16 * np.pi)
 
 
+def smooth_value(x: FloatArray, sources: FloatArray) -> FloatArray:
+    """The value (n, N) of `smooth_part` alone, in a twentieth of its memory."""
+    near, far, product = (x**2).sum(axis=1)[:, None], (sources**2).sum(axis=1), 2 * x @ sources.T
+    big_r, big_s = near + far - product, near * far - product + 1
+    return np.asarray((big_s - big_r * (np.log(big_s) + 1)) / (16 * np.pi))
+
+
 class DiscShapes(Shapes):
     """The influence functions of a clamped disc in closed form (Boggio): what `Plate.influence` computes, exactly.
 
@@ -79,7 +86,7 @@ class DiscShapes(Shapes):
         self.points, self.size = np.ascontiguousarray(points), radius
         self.outline = Outline(conics=np.array([[0.0, 0.0, radius, radius]]))
         x = points / radius
-        compliance = point_value(x, x) + smooth_part(x, x)[0]
+        compliance = point_value(x, x) + smooth_value(x, x)
         self.strengths = np.asarray(np.linalg.inv((compliance + compliance.T) / 2))
 
     def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:
@@ -101,4 +108,4 @@ class DiscShapes(Shapes):
 
     def _values(self, x: FloatArray) -> FloatArray:
         sources = self.points / self.size
-        return np.asarray((smooth_part(x, sources)[0] + point_value(x, sources)) @ self.strengths)
+        return np.asarray((smooth_value(x, sources) + point_value(x, sources)) @ self.strengths)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_plate.analytic import DiscShapes, central_load, disc_green
+from fem_plate.analytic import DiscShapes, central_load, disc_green, smooth_part, smooth_value
 
 RADIUS, RIGIDITY = 300e-6, 1.9e-6
 SOURCES = [(0.0, 0.0), (90e-6, 40e-6), (-60e-6, 250e-6)]
@@ -111,3 +111,10 @@ def test_disc_shapes_are_the_greens_functions_that_meet_unit_heights(exact, layo
 def test_disc_shapes_refuse_points_beyond_the_radius_and_doubled_ones():
     with pytest.raises(ValueError, match="point 2 at .* must lie inside the rim.*; points 1 and 3 must differ"):
         DiscShapes([[0.0, 0.0], [0.0, 1.1 * RADIUS], [0.0, 0.0]], RADIUS)
+
+
+def test_the_smooth_value_is_that_of_the_smooth_part():
+    rng = np.random.default_rng(4)
+    x, sources = rng.uniform(-0.7, 0.7, (40, 2)), rng.uniform(-0.7, 0.7, (30, 2))
+    for points in (x, sources):
+        assert smooth_value(points, sources) == pytest.approx(smooth_part(points, sources)[0], abs=2e-16, rel=0)
