@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.breakaway import Slope, lag, slope, velocity
+from particle.bridge import allow
 from particle.cells import NOWHERE
 from particle.fields import Fields, fields
 from particle.jit import bare
@@ -17,7 +18,6 @@ from particle.motion import Part, energy_at_rest, length, margin
 from particle.record import MANIFOLD, RESTING, SLIDING
 from particle.rim import ROUNDING, first_beyond, rim_gap
 from particle.runge_kutta import Pairs, Step, Tableau, attempt, error, fields_at_start, first_excursion, rate
-from particle.span import allow
 from particle.stop import Stop, come_to_rest, frozen_stop, stop_ahead
 
 FloatArray = NDArray[np.float64]

@@ -3,10 +3,6 @@
 `enter` prepares a span. In a new cell it multiplies the cell's shapes with the drives that count there; later it moves
 the polynomial on in time and exchanges the shapes of the drives that had a kink. After that an evaluation costs the
 same for any number of drives.
-
-The kinks of drives that hardly count in the cell need not end a span: over these such a drive is replaced by the
-quintic that has its height, velocity and acceleration at both ends, so that it takes up nothing but what the third
-derivative's jump does in between.
 """
 
 from __future__ import annotations
@@ -17,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from particle.bridge import bridge, drive_of, find_end, find_roughness, is_bridged
 from particle.cells import UNBUILT
 from particle.drive import ORDER, drive_kink, drive_piece, kink_slack
 from particle.jit import bare
 from particle.local import (
-    ACCELERATION,
     BASE,
     BEGUN,
     CELL,
@@ -31,19 +27,16 @@ from particle.local import (
     END,
     HALF_X,
     HALF_Y,
-    LANDED,
     LONGEST,
     MISSING_X,
     MISSING_Y,
     MONOMIALS,
     NEAR,
-    ROUGH,
     SINCE,
     SLACK,
     TIME,
     UNIT,
     UNTIL,
-    VELOCITY,
     Local,
     X,
     Y,
@@ -54,11 +47,6 @@ from particle.local import (
 FloatArray = NDArray[np.float64]
 
 FRESH = 2.0  # units of time over which a polynomial is moved on; rounding grows with the fifth power of that
-# A jump J of the third derivative, bridged over a time T, is off by up to these times J T^2 and J T.
-OFF_VELOCITY, OFF_ACCELERATION = 0.004737, 0.0625
-LONGEST_BRIDGE, SHORTEST_BRIDGE = 0.25, 0.02  # of the shortest stroke, of the longest bridge: rounding makes more of it
-FINER, FINEST = 4.0, 1e-12  # steps of the roughness from which kinks end a span
-PAYS = 0.9  # of the spans: how many may be left for bridges to be worth it
 
 
 @bare
@@ -90,21 +78,6 @@ def go_on(surface: Any, local: Local, time: float, end: float) -> None:
 
 
 @bare
-def allow(local: Local, velocity: float, acceleration: float) -> None:
-    """By how much [m/s, m/s^2] the surface's motion may be off, from the next span on, where kinks are bridged."""
-    local.frame[VELOCITY], local.frame[ACCELERATION] = velocity, acceleration
-
-
-@bare
-def _drive(surface: Any, local: Local, i: int) -> int:
-    """The drive that is i-th in the cell; the base's two follow the cell's."""
-    beyond = i - (local.counts[DRIVES] - local.counts[BASE])
-    if beyond >= 0:
-        return int(surface.shape_count + beyond)
-    return int(surface.cells.drive[surface.cells.first_drive[local.counts[CELL]] + i])
-
-
-@bare
 def _begin(surface: Any, local: Local, cell: int, time: float, end: float) -> None:
     """Prepare for a cell from nothing."""
     cells, f, counts = surface.cells, local.frame, local.counts
@@ -125,11 +98,11 @@ def _begin(surface: Any, local: Local, cell: int, time: float, end: float) -> No
         local.base[k, 0] = local.base[k, 1] = 0.0
     for i in range(counts[DRIVES]):
         _find_piece(surface, local, i)
-        _find_roughness(surface, local, i)
+        find_roughness(surface, local, i)
     f[LONGEST] = 0.0
-    _find_end(surface, local, end)
+    find_end(surface, local, end)
     for i in range(counts[DRIVES]):
-        _bridge(surface, local, i)
+        bridge(surface, local, i)
         _add(surface, local, i, 1.0)
 
 
@@ -150,14 +123,14 @@ def _move_on(surface: Any, local: Local, time: float, end: float) -> bool:
         if _has_passed(clock, i, time):
             _take_out(surface, local, i)
             _find_piece(surface, local, i)
-    _find_end(surface, local, end)
+    find_end(surface, local, end)
     for i in range(counts[DRIVES]):
         exchanged = clock[i, SINCE] == time
-        if not exchanged and _is_bridged(local, i):
+        if not exchanged and is_bridged(local, i):
             _take_out(surface, local, i)
             exchanged = True
         if exchanged:
-            _bridge(surface, local, i)
+            bridge(surface, local, i)
             _add(surface, local, i, 1.0)
     return True
 
@@ -171,7 +144,7 @@ def _has_passed(clock: FloatArray, i: int, time: float) -> bool:
 @bare
 def _find_piece(surface: Any, local: Local, i: int) -> None:
     """The quintic of the i-th drive, from frame[TIME] to its next kink."""
-    time, unit, drive, row = local.frame[TIME], local.frame[UNIT], _drive(surface, local, i), local.clock[i]
+    time, unit, drive, row = local.frame[TIME], local.frame[UNIT], drive_of(surface, local, i), local.clock[i]
     until = drive_kink(surface.drives, drive, time)
     # It is chosen in the middle of the span, where rounding at its ends cannot mistake it.
     ahead = 0.5 * min(until - time, unit)
@@ -179,88 +152,6 @@ def _find_piece(surface: Any, local: Local, i: int) -> None:
     _shift_one(row, -ahead / unit)
     row[SINCE], row[UNTIL] = time, until
     row[SLACK] = kink_slack(surface.drives, drive, until) if math.isfinite(until) else 0.0
-
-
-@bare
-def _find_roughness(surface: Any, local: Local, i: int) -> None:
-    """How rough the i-th drive is in this cell."""
-    cells, rough = surface.cells, surface.drives.rough[_drive(surface, local, i)]
-    counted = i < local.counts[DRIVES] - local.counts[BASE]
-    weight = cells.weight[cells.first_drive[local.counts[CELL]] + i] if counted else math.inf
-    local.clock[i, ROUGH] = weight * rough if rough > 0.0 else 0.0
-
-
-@bare
-def _find_end(surface: Any, local: Local, end: float) -> None:
-    """Where the span from frame[TIME] ends, at most at `end` [s]."""
-    f, clock = local.frame, local.clock
-    if f[VELOCITY] == 0.0:
-        f[LANDED] = f[LONGEST] = 0.0
-    elif f[LONGEST] == 0.0:
-        _choose(surface, local)
-    first = landed = end
-    for i in range(local.counts[DRIVES]):
-        first = min(first, clock[i, UNTIL])
-        if clock[i, ROUGH] >= f[LANDED]:
-            landed = min(landed, clock[i, UNTIL])
-    f[END] = max(first, min(landed, f[TIME] + f[LONGEST]))
-
-
-@bare
-def _choose(surface: Any, local: Local) -> None:
-    """From which roughness on kinks end a span, and how long the others may be bridged: what makes fewest spans."""
-    f, clock, drives = local.frame, local.clock, surface.drives
-    roughest = kinks = 0.0
-    for i in range(local.counts[DRIVES]):
-        kinks += _kink_rate(drives, _drive(surface, local, i))
-        if math.isfinite(clock[i, ROUGH]):
-            roughest = max(roughest, clock[i, ROUGH])
-    f[LANDED], f[LONGEST], fewest = 0.0, LONGEST_BRIDGE * f[UNIT], PAYS * kinks
-    limit = FINER * roughest
-    while limit > FINEST * roughest:
-        landed = rough = 0.0
-        for i in range(local.counts[DRIVES]):
-            if clock[i, ROUGH] >= limit:
-                landed += _kink_rate(drives, _drive(surface, local, i))
-            else:
-                rough += clock[i, ROUGH]
-        longest = LONGEST_BRIDGE * f[UNIT]
-        if rough > 0.0:
-            by_velocity = math.sqrt(f[VELOCITY] / (OFF_VELOCITY * rough))
-            longest = min(longest, by_velocity, f[ACCELERATION] / (OFF_ACCELERATION * rough))
-        if landed + 1 / longest < fewest:
-            f[LANDED], f[LONGEST], fewest = limit, longest, landed + 1 / longest
-        limit /= FINER
-
-
-@bare
-def _kink_rate(drives: Any, i: int) -> float:
-    """Kinks a second of a drive that is running."""
-    return float((drives.first[i + 1] - drives.first[i]) / drives.span[i])
-
-
-@bare
-def _is_bridged(local: Local, i: int) -> bool:
-    """Whether the i-th drive has a kink within the span."""
-    f, row = local.frame, local.clock[i]
-    return bool(row[UNTIL] < f[END] - row[SLACK] and f[END] - f[TIME] > SHORTEST_BRIDGE * f[LONGEST])
-
-
-@bare
-def _bridge(surface: Any, local: Local, i: int) -> None:
-    """Replace the piece of the i-th drive from frame[TIME] on by a bridge to frame[END], if it needs one."""
-    if not _is_bridged(local, i):
-        return
-    f, row, ahead = local.frame, local.clock[i], local.ahead
-    drive_piece(surface.drives, _drive(surface, local, i), f[END], f[UNIT], ahead)
-    s = (f[END] - f[TIME]) / f[UNIT]
-    height = ahead[0] - (row[0] + s * (row[1] + s * row[2]))
-    velocity = s * (ahead[1] - (row[1] + 2 * s * row[2]))
-    acceleration = s * s * (ahead[2] - row[2])
-    row[3] = (10 * height - 4 * velocity + acceleration) / s**3
-    row[4] = (7 * velocity - 15 * height - 2 * acceleration) / s**4
-    row[5] = (6 * height - 3 * velocity + acceleration) / s**5
-    row[UNTIL] = f[END]
 
 
 @bare
