@@ -15,9 +15,7 @@ Mistake = tuple[str, str]
 """An argument or option, and what is wrong with it."""
 
 
-def mistakes_in(
-    error: click.UsageError, again: Callable[[Sequence[click.Parameter]], object] | None
-) -> list[Mistake]:
+def mistakes_in(error: click.UsageError, again: Callable[[Sequence[click.Parameter]], object] | None) -> list[Mistake]:
     """What is wrong with the words of a command that failed on an error.
 
     again: parses them once more, with other parameters, and raises the next error; None: there is no more to find.

@@ -39,9 +39,7 @@ def _tell(done: Check) -> None:
     from coupling import verification
 
     click.echo(f"{done.name}: {'passed' if done.passed else 'FAILED'}")
-    click.echo(
-        f"  {'unknowns':<10}" + "".join(f"{n:>11}" for n in done.unknowns) + f"{'order':>9}{'bound, order':>16}"
-    )
+    click.echo(f"  {'unknowns':<10}" + "".join(f"{n:>11}" for n in done.unknowns) + f"{'order':>9}{'bound, order':>16}")
     for k, name in enumerate(verification.QUANTITIES):
         order = done.orders[name]
         said = "rounding" if order is None else f"{order:.2f}"

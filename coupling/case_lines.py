@@ -135,10 +135,10 @@ def message_of(detail: ErrorDetails, value: object, tables: Mapping[str, type[Ba
             return "is not known; " + (f"did you mean {near}?" if near else _known(location, tables))
         case "union_tag_not_found":
             models = [name for name, model in tables.items() if "model" in model.model_fields]
-            return f"is missing; it must be {_one_of(models)}"
+            return f"is missing; it must be {one_of(models)}"
         case "literal_error" | "union_tag_invalid":
             choices = re.findall("'([^']*)'", context["expected" if kind == "literal_error" else "expected_tags"])
-            return f"must be {_one_of(choices)}{got}"
+            return f"must be {one_of(choices)}{got}"
         case "tuple_type":
             header = _header((*location, 0))
             return _doubled(header) + (f"; got {header[1:-1]}" if isinstance(value, dict) else got)
@@ -208,11 +208,11 @@ def _wanted(field: FieldInfo) -> str:
         if hasattr(mark, "wanted"):
             return str(mark.wanted)
     if get_origin(field.annotation) is Literal:
-        return _one_of(get_args(field.annotation))
+        return one_of(get_args(field.annotation))
     return "a whole number" if field.annotation is int else "a number"
 
 
-def _one_of(choices: Sequence[str]) -> str:
+def one_of(choices: Sequence[str]) -> str:
     *others, last = (f'"{choice}"' for choice in choices)
     return f"{', '.join(others)} or {last}" if others else last
 
