@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from command_line.ctrl_c import heard_again
-from command_line.refusal import Refusal, refusal, refusal_of
+from command_line.refusal import refusal, refusal_of
 from command_line.usage import mistakes_in, unknown
 
 if TYPE_CHECKING:
@@ -41,13 +41,14 @@ class Command(click.Command):
         try:
             return super().make_context(info_name, args, parent, **extra)
         except click.UsageError as error:
-            raise _misused(error, error.ctx, JSON in given, again) from None
+            command = " ".join([*([parent.command_path] if parent else []), info_name or ""])
+            raise refusal(command, mistakes_in(error, again), JSON in given) from None
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
             return super().invoke(ctx)
         except click.UsageError as error:
-            raise _misused(error, ctx, bool(ctx.params.get("as_json"))) from None
+            raise refusal(ctx.command_path, mistakes_in(error), bool(ctx.params.get("as_json"))) from None
 
 
 class Group(Command, click.Group):
@@ -74,17 +75,6 @@ class Group(Command, click.Group):
         except KeyboardInterrupt:
             click.echo("interrupted", err=True)
             sys.exit(INTERRUPTED)
-
-
-def _misused(
-    error: click.UsageError,
-    context: click.Context | None,
-    as_json: bool,
-    again: Callable[[Sequence[click.Parameter]], object] | None = None,
-) -> Refusal:
-    """What is wrong with the words of a command; again: parses them once more, with other parameters."""
-    command = context.command_path if context else "active-surface"
-    return refusal(command, mistakes_in(error, again), as_json)
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})

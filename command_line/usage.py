@@ -11,11 +11,15 @@ from typing import Any
 
 import click
 
+PATHS = (" is a file", " is a directory", " does not exist", " is not readable", " is not writable")
+"""What click says of a path that cannot be used."""
 Mistake = tuple[str, str]
 """An argument or option, and what is wrong with it."""
 
 
-def mistakes_in(error: click.UsageError, again: Callable[[Sequence[click.Parameter]], object] | None) -> list[Mistake]:
+def mistakes_in(
+    error: click.UsageError, again: Callable[[Sequence[click.Parameter]], object] | None = None
+) -> list[Mistake]:
     """What is wrong with the words of a command that failed on an error.
 
     again: parses them once more, with other parameters, and raises the next error; None: there is no more to find.
@@ -55,14 +59,19 @@ def _mistake(error: click.UsageError) -> Mistake:
         return error.option_name, "must be followed by its value; got nothing"
     param = getattr(error, "param", None)
     if isinstance(error, click.MissingParameter) and param is not None:
-        return _named(param), f"is missing; it must be {_wanted(param)}"
+        like = f", as in {_usage(error.ctx)}" if isinstance(param, click.Argument) and error.ctx else ""
+        return _named(param), f"is missing; it must be {_wanted(param)}{like}"
     if isinstance(error, click.BadParameter) and param is not None:
         return _named(param), f"must be {_wanted(param)}; got {_got(error.message)}"
     extra = re.fullmatch(r"Got unexpected extra arguments? \((.*)\)", error.message)
     if extra and error.ctx:
-        usage = " ".join(error.ctx.command.collect_usage_pieces(error.ctx))
-        return extra[1], f"is too much; it must be {name} {usage}"
+        return extra[1], f"is too much; the command is {_usage(error.ctx)}"
     return "", error.message
+
+
+def _usage(context: click.Context) -> str:
+    """How a command is written."""
+    return " ".join([context.command_path, *context.command.collect_usage_pieces(context)])
 
 
 def _named(param: click.Parameter) -> str:
@@ -72,10 +81,13 @@ def _named(param: click.Parameter) -> str:
 
 
 def _got(message: str) -> str:
-    """The value that click complains about in a message."""
-    found = re.match(r"(?:\w+ )?'(.*?)'|(\S+)", message)
+    """The value that click complains about in a message, and of a path why."""
+    found = re.match(r"(?:\w+ )?'(.*?)'(.*)|(\S+)", message)
     assert found
-    return json.dumps(found[1], ensure_ascii=False) if found[1] is not None else found[2]
+    if found[1] is None:
+        return found[3]
+    why = next((f", which{end}" for end in PATHS if found[2] == f"{end}."), "")
+    return json.dumps(found[1], ensure_ascii=False) + why
 
 
 def _wanted(param: click.Parameter) -> str:

@@ -51,14 +51,16 @@ def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
 
 
 class _Bar:
-    """A bar on the terminal's error stream after a while of silence; nothing where that is not a terminal."""
+    """A bar on the terminal's error stream after a while of silence; nothing where that cannot show one."""
 
     def __init__(self, *columns: Any, total: int | None = None) -> None:
         from rich.console import Console
         from rich.progress import Progress as Bar
 
         console = Console(stderr=True)
-        self._bar = Bar(*columns, console=console, transient=True, disable=not console.is_terminal)
+        self._bar = Bar(
+            *columns, console=console, transient=True, disable=not console.is_terminal or console.is_dumb_terminal
+        )
         self._task = self._bar.add_task("", total=total)
         self._timer = threading.Timer(PATIENCE, self._bar.start)
         self._timer.daemon = True
