@@ -39,8 +39,9 @@ class Refusal(click.ClickException):
 
 def refusal_of(error: Exception, command: str, as_json: bool) -> Refusal:
     """What is wrong with the input where work for a command raised an error."""
-    file, problems = getattr(error, "file", None), getattr(error, "problems", None)
-    if problems is not None:  # of a CaseError, which knows its lines
+    file = getattr(error, "file", None)
+    if file is not None:  # of a CaseError, which knows its lines
+        problems: Iterable[Any] = getattr(error, "problems", ())
         mistakes = [Mistake(file, problem.line, problem.field, problem.message) for problem in problems]
         return Refusal(str(error), mistakes, as_json)
     if isinstance(error, OSError) and error.strerror:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import copy
-import difflib
 import json
 import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import click
+
+from coupling.near import near
 
 PATHS = (" is a file", " is a directory", " does not exist", " is not readable", " is not writable")
 """What click says of a path that cannot be used."""
@@ -39,8 +40,8 @@ def mistakes_in(
 def unknown(name: str, known: Iterable[str], owner: str) -> Mistake:
     """That there is no command or option of a name."""
     choices = sorted(known)
-    near = difflib.get_close_matches(name.lower(), choices, 1)
-    return name, "is not known; " + (f"did you mean {near[0]}?" if near else f"{owner} has {', '.join(choices)}")
+    meant = near(name, choices)
+    return name, "is not known; " + (f"did you mean {meant}?" if meant else f"{owner} has {', '.join(choices)}")
 
 
 def _lenient(param: click.Parameter) -> click.Parameter:

@@ -2,7 +2,7 @@
 
 Every quantity is stored as a float in SI units, and every position as (x, y) from the centre of the plate. Built in
 Python, a float is taken as SI and text with a unit is converted; in a file every quantity must state its unit.
-Python gets a `pydantic.ValidationError` for a wrong value, `read_case` raises a `CaseError`.
+Python gets an `InputError` for wrong values, and from `read_case` a `CaseError`; both are a ValueError.
 """
 
 from __future__ import annotations

@@ -6,13 +6,15 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from coupling.expression import KEYWORDS, PLACES, Expression, parse, split, unreadable
 from coupling.units import Quantity, shown
+
+EXAMPLE: Final = '"hypot(x, y) > 100e-6"'  # of a condition
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ class Amount(Quantity):
 class Choice:
     """Marks a `Condition`."""
 
-    wanted = 'an expression that is true or false, such as "hypot(x, y) > 100e-6"'
+    wanted = f"an expression that is true or false, such as {EXAMPLE}"
 
     def validate(self, value: object) -> Condition:
         """The condition that a text states; ValueError unless it is one."""
@@ -105,7 +107,10 @@ class Choice:
             raise ValueError(f"must be {self.wanted}; got {shown(value)}")
         words, rest = _words(value)
         if rest:
-            raise _refusal(value, unreadable(rest) or f'"{rest}" is too much; it has no unit, x and y are in metres')
+            raise _refusal(
+                value,
+                unreadable(rest) or f'"{rest}" is too much; it has no unit, x and y are in metres, as in {EXAMPLE}',
+            )
         return Condition(value, _parsed(value, words))
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:

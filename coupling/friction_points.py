@@ -44,7 +44,9 @@ def of_table(table: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[dict
     if not isinstance(file, str):
         return {}, mistakes
     points, wrong = _read(Path(context.get("folder", ""), file))
-    return points | {"file": None}, mistakes + [(("file",), message) for message in wrong]
+    where = f"in {Path(file).name}: "
+    told = [message if message.startswith("cannot be read") else where + message for message in wrong]
+    return points | {"file": None}, mistakes + [(("file",), message) for message in told]
 
 
 def _given(table: Mapping[str, Any], context: Mapping[str, Any]) -> Iterator[tuple[Location, str]]:

@@ -39,6 +39,17 @@ DIMENSIONS: Final = {
 _USUAL_UNITS: Final = [
     *("m", "cm", "mm", "um", "nm", "m^2", "mm^2", "um^2", "nm^2", "m^3", "meter", "micrometer", "nanometer", "micron"),
     *("s", "ms", "us", "s^2", "second", "Hz", "kHz", "MHz", "hertz", "kg", "g", "mg", "ug", "ng", "gram"),
+    *(
+        "metre",
+        "micrometre",
+        "nanometre",
+        "millisecond",
+        "microsecond",
+        "kilohertz",
+        "milligram",
+        "microgram",
+        "nanogram",
+    ),
     *("N", "mN", "uN", "nN", "newton", "Pa", "kPa", "MPa", "GPa", "pascal", "J", "mJ", "uJ", "nJ", "joule"),
 ]
 

@@ -100,7 +100,8 @@ def test_everything_wrong_with_a_file_is_told_at_once_with_its_lines(write, poin
     found = mistakes(write(FILE, points))
     assert len(found) == len(says)
     for (line, message), said in zip(found, says, strict=True):
-        assert line == 2 and message.startswith(f"friction.file {said}")
+        where = "" if said.startswith("cannot be read") else "in friction.csv: "
+        assert line == 2 and message.startswith(f"friction.file {where}{said}")
 
 
 MISSING = 'friction.loads is missing; it must be forces such as ["-1 uN", "0 N", "5 uN"], or have file = "friction.csv"'

@@ -4,9 +4,9 @@ import time
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from coupling.case import ActuatorCase, Case, CaseError, ConstantCase, LatticeCase, PartCase, RunCase, read_case
+from coupling.input_error import InputError
 from coupling.plate_case import DiscCase
 from coupling.run import build_drives
 from particle.drive import drive_table
@@ -309,7 +309,7 @@ def test_in_python_text_and_numbers_do():
     lattice = LatticeCase(rows=2, columns=2, pitch=1e-4, stroke="row um", frequency=300, delay=1e-3)
     case = python_case(lattice=lattice, actuators=[ActuatorCase(position=(0, 0), stroke=0, frequency=1)])
     assert [a.stroke for a in case.actuators] == pytest.approx([0, 0, 0, 1e-6, 1e-6])
-    with pytest.raises(ValidationError, match="divides by zero at row 0, column 0"):
+    with pytest.raises(InputError, match="divides by zero at row 0, column 0"):
         python_case(lattice=lattice.model_dump() | {"stroke": "1 / row um"})
 
 
