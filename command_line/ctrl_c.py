@@ -32,10 +32,10 @@ def heard_again() -> Iterator[None]:
     sys.unraisablehook = hook
     try:
         yield
+    finally:
+        sys.unraisablehook = before
         still = [timer for timer in coming if timer.is_alive()]
         for timer in still:
             timer.cancel()
         if still:
             raise KeyboardInterrupt
-    finally:
-        sys.unraisablehook = before

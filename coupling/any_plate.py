@@ -37,6 +37,7 @@ class ShapelessCase(PlateCase):
     model_config = ConfigDict(extra="ignore")
 
     shape: Annotated[Literal["disc", "rectangle", "annulus", "ellipse", "polygon", "platform"], _Wanted()]
+    """Which of these it is."""
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:

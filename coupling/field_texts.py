@@ -19,7 +19,7 @@ def field_texts(table: type[BaseModel]) -> dict[str, str]:
     for owner in reversed(table.__mro__):
         if issubclass(owner, Table) and owner is not Table:
             texts |= _own(owner)
-    return texts
+    return {key: text for key, text in texts.items() if key in table.model_fields}
 
 
 def _own(table: type[Table]) -> dict[str, str]:

@@ -120,7 +120,10 @@ WRONG = [
     (DRIVE + 'delay = "row * column"\n', '"row * column", which has no unit'),
     (DRIVE + 'delay = "row * column um"\n', '"row * column um", a length'),
     (DRIVE + "delay = 3\n", "got 3, which has no unit"),
-    (DRIVE + 'delay = "colum ms"\n', 'lattice.delay cannot be "colum ms": there is no colum; did you mean column?'),
+    (
+        DRIVE + 'delay = "colum ms"\n',
+        'lattice.delay must be an expression and its unit; got "colum ms": there is no colum; did you mean column?',
+    ),
     (DRIVE + 'delay = "2 row ms"\n', 'an operator such as * is missing before "row ms"'),
     (DRIVE + 'delay = "row.real ms"\n', 'an operator such as * is missing before ".real ms"'),
     (
@@ -259,7 +262,10 @@ def test_where_and_margin_leave_out_together(tmp_path):
         ('"row > 5"', 'lattice.where must be true for one actuator or more; "row > 5" is true for none'),
         ('"column"', 'true or false for each actuator; "column" is a number and not a comparison at row 0, column 0'),
         ('"1 / column > 2"', '"1 / column > 2" divides by zero at row 0, column 0'),
-        ('"rwo > 2"', 'lattice.where cannot be "rwo > 2": there is no rwo; did you mean row?'),
+        (
+            '"rwo > 2"',
+            'must be an expression that is true or false; got "rwo > 2": there is no rwo; did you mean row?',
+        ),
         ('"x > 10 um"', '"um" is too much; it has no unit'),
         ('""', "lattice.where must be an expression that is true or false, such as"),
         ("true", "lattice.where must be an expression that is true or false, such as"),
