@@ -6,6 +6,7 @@ import json
 import shutil
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -13,8 +14,6 @@ from click.testing import CliRunner
 from command_line.main import main
 from command_line.schema import AIM, CASE, STUDY, _model
 from coupling.field_texts import all_tables, field_texts
-
-jsonschema = pytest.importorskip("jsonschema")
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = (CASE, STUDY, AIM)
@@ -24,6 +23,12 @@ def schema(kind: str) -> dict:
     done = CliRunner().invoke(main, ["schema", kind])
     assert done.exit_code == 0
     return json.loads(done.stdout)
+
+
+def checker(kind: str) -> Any:
+    validator = pytest.importorskip("jsonschema").Draft202012Validator
+    validator.check_schema(schema(kind))
+    return validator(schema(kind))
 
 
 def template(kind: str) -> str:
@@ -39,9 +44,7 @@ def kind_of(path: Path) -> str:
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.rglob("*.toml")), ids=lambda path: path.stem)
 def test_examples_are_right_by_their_schema(path: Path) -> None:
-    known = schema(kind_of(path))
-    jsonschema.Draft202012Validator.check_schema(known)
-    jsonschema.Draft202012Validator(known).validate(tomllib.loads(path.read_text()))
+    checker(kind_of(path)).validate(tomllib.loads(path.read_text()))
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -75,16 +78,16 @@ def test_what_a_schema_refuses(old: str, new: str) -> None:
         ("= 1\n", "= 2\n"),
     ):
         text = text.replace(wrong, right)
-    checker = jsonschema.Draft202012Validator(schema(CASE))
-    assert checker.is_valid(tomllib.loads(text))
+    cases = checker(CASE)
+    assert cases.is_valid(tomllib.loads(text))
     assert old in text
-    assert not checker.is_valid(tomllib.loads(text.replace(old, new, 1)))
+    assert not cases.is_valid(tomllib.loads(text.replace(old, new, 1)))
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_template_is_fine_as_it_is(kind: str, tmp_path: Path) -> None:
     text = template(kind)
-    jsonschema.Draft202012Validator(schema(kind)).validate(tomllib.loads(text))
+    checker(kind).validate(tomllib.loads(text))
     path = tmp_path / "template.toml"
     path.write_text(text)
     for name in ("one_actuator.toml", "array_3x3.toml"):
