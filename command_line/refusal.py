@@ -44,9 +44,11 @@ def refusal_of(error: Exception, command: str, as_json: bool) -> Refusal:
         problems: Iterable[Any] = getattr(error, "problems", ())
         mistakes = [Mistake(file, problem.line, problem.field, problem.message) for problem in problems]
         return Refusal(str(error), mistakes, as_json)
-    if isinstance(error, OSError) and error.strerror:
-        name = f"{error.filename}: " if error.filename else ""
-        return refusal(command, [("", name + error.strerror.lower())], as_json)
+    if not isinstance(error, ValueError):  # no mistake, but something in the way
+        said = str(error)
+        if isinstance(error, OSError) and error.strerror:
+            said = ": ".join([*([str(error.filename)] if error.filename else []), error.strerror.lower()])
+        return Refusal(f"{command}: {said}", [Mistake(None, None, "", said)], as_json)
     return refusal(command, [("", said) for said in re.split(r"\n|; (?=Inputs? )", str(error))], as_json)
 
 

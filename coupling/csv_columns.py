@@ -67,6 +67,11 @@ def read_columns(path: Path, known: Mapping[str, Quantity], needed: Sequence[Seq
     return File(whole, tuple(number for number, _ in rows), told(mistakes))
 
 
+def unreadable(file: str, error: OSError) -> str:
+    """That a file cannot be read, and why."""
+    return f"must be a file that can be read; got {shown(file)}: {(error.strerror or str(error)).lower()}"
+
+
 def told(mistakes: Sequence[str]) -> list[str]:
     """The first mistakes, and how many more there are."""
     more = len(mistakes) - MOST_MISTAKES

@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHan
 
 from coupling.any_plate import outline_of
 from coupling.case_lines import Location, shown_location
+from coupling.csv_columns import unreadable
 from coupling.drive_case import ActuatorCase
 from coupling.lattice_case import LatticeCase
 from coupling.lattice_places import SAME_PLACE, Place, Stand, beyond, gaps, half_size, shared_places
@@ -138,7 +139,7 @@ def _mesh(plate: PlateCase) -> tuple[PlateMesh | None, list[str]]:
     try:
         return plate.coarse_mesh, []
     except OSError as error:
-        return None, [f"cannot be read: {(error.strerror or str(error)).lower()}"]
+        return None, [unreadable(str(error.filename), error)]
     except ValueError as error:
         return None, [re.sub(r"^Input \w+ of \w+ ", "", line) for line in str(error).splitlines()]
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple
 
 from pydantic import Discriminator, Field, StrictStr, Tag, ValidationInfo, field_validator
 
-from coupling.csv_columns import Columns, File, read_columns, told
+from coupling.csv_columns import Columns, File, read_columns, told, unreadable
 from coupling.drive_case import CLOSEST, DriveCase
 from coupling.table import Table
 from coupling.units import Length, Quantity
@@ -96,7 +96,7 @@ class PlatformCase(Table):
         try:
             measured, mistakes = self.read_motion
         except OSError as error:
-            yield where, f"cannot be read: {(error.strerror or str(error)).lower()}"
+            yield where, unreadable(Path(str(self.motion)).name, error)
             return
         for mistake in mistakes:
             yield where, f"in {Path(str(self.motion)).name}: {mistake}"
