@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable
 from contextlib import nullcontext
@@ -11,13 +10,14 @@ from typing import Any, TypeVar
 
 import click
 
-from command_line.group import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
+from command_line import options
+from command_line.group import DEFAULT_OUTPUT, INTERRUPTED, Command, main, refusing
 
 Found = TypeVar("Found")
 QUANTILE = click.FloatRange(min=0, max=1, min_open=True)
 
 
-class _Through(click.Command):
+class _Through(Command):
     """A command whose option --through takes all the points that follow it."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -34,14 +34,8 @@ class _Through(click.Command):
 
 def _common(command: Callable[..., None]) -> Callable[..., None]:
     """The options that both commands have."""
-    folder = click.Path(path_type=Path, file_okay=False)
-    for option in (
-        click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON."),
-        click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress."),
-        click.option("--overwrite", is_flag=True, help="Replace the results of another search of this name."),
-        click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one a processor]."),
-        click.option("--output", "-o", type=folder, help="Folder for the results [results]."),
-    ):
+    overwrite = click.option("--overwrite", is_flag=True, help="Replace the results of another search of this name.")
+    for option in (options.as_json, options.quiet, overwrite, options.threads, options.folder):
         command = option(command)
     return click.argument("file", type=click.Path(path_type=Path), metavar="CASE")(command)
 
@@ -117,10 +111,6 @@ def _found(
 
 
 def _tell(interrupted: bool, figures: dict[str, Any], lines: list[tuple[str, str]], quiet: bool, as_json: bool) -> None:
-    if as_json:
-        click.echo(json.dumps(figures, indent=2))
-    elif not quiet:
-        for label, text in lines:
-            click.echo(f"{label:<12}{text}")
+    options.tell(figures, lines, quiet, as_json)
     if interrupted:
         sys.exit(INTERRUPTED)

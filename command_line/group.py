@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import copy
+import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+
+from command_line.ctrl_c import heard_again
+from command_line.refusal import refusal, refusal_of
+from command_line.usage import mistakes_in, unknown
 
 if TYPE_CHECKING:
     from coupling.case import Case
@@ -16,20 +22,62 @@ Answer = TypeVar("Answer")
 
 DEFAULT_OUTPUT = Path("results")
 INTERRUPTED = 130  # 128 and the number of the signal
+JSON = "--json"
 
 
-class _Command(click.Group):
-    """A command that ends with the exit code of an interrupted one on Ctrl-C."""
+class Command(click.Command):
+    """A command that tells all that is wrong with its words at once."""
+
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
+    ) -> click.Context:
+        given = list(args)
+
+        def again(params: Sequence[click.Parameter]) -> None:
+            other = copy.copy(self)
+            other.params = list(params)
+            click.Command.make_context(other, info_name, list(given), parent, **extra)
+
+        try:
+            return super().make_context(info_name, args, parent, **extra)
+        except click.UsageError as error:
+            command = " ".join([*([parent.command_path] if parent else []), info_name or ""])
+            raise refusal(command, mistakes_in(error, again), JSON in given) from None
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
             return super().invoke(ctx)
+        except click.UsageError as error:
+            raise refusal(ctx.command_path, mistakes_in(error), bool(ctx.params.get("as_json"))) from None
+
+
+class Group(Command, click.Group):
+    """The commands: errors in one style, colours only where they are wanted, and the exit code of Ctrl-C."""
+
+    command_class = Command
+
+    def make_context(self, *arguments: Any, **extra: Any) -> click.Context:
+        context = super().make_context(*arguments, **extra)
+        if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+            context.color = False
+        return context
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
+            mistake = unknown(args[0], self.list_commands(ctx), ctx.command_path)
+            raise refusal(ctx.command_path, [mistake], JSON in args)
+        return super().resolve_command(ctx, args)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            with heard_again():
+                return super().invoke(ctx)
         except KeyboardInterrupt:
             click.echo("interrupted", err=True)
             sys.exit(INTERRUPTED)
 
 
-@click.group(cls=_Command, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="active-surface")
 def main() -> None:
     """Simulate microparts on active surfaces: thin plates pushed from below by point actuators."""
@@ -46,9 +94,5 @@ def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:
     try:
         return work(*arguments)
     except (ValueError, OSError, RuntimeError) as error:
-        _refuse(str(error))
-
-
-def _refuse(message: str) -> NoReturn:
-    click.echo(message, err=True)
-    sys.exit(2)
+        context = click.get_current_context()
+        raise refusal_of(error, context.command_path, bool(context.params.get("as_json"))) from None

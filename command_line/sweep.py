@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from contextlib import nullcontext
 from pathlib import Path
 
 import click
 
+from command_line import options
 from command_line.group import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
 
 
 @main.command()
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option(
-    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
-)
-@click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one on each processor].")
+@options.folder
+@options.threads
 @click.option("--scheduler", "-s", help="Address of a dask scheduler whose workers find the paths, tcp://HOST:PORT.")
 @click.option("--overwrite", is_flag=True, help="Replace the results of another study of this name.")
-@click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress.")
-@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
+@options.quiet
+@options.as_json
 def sweep(
     study: Path,
     output: Path | None,
@@ -54,12 +52,6 @@ def sweep(
     except KeyboardInterrupt:
         click.echo("interrupted; the same command goes on where this one stopped", err=True)
         sys.exit(INTERRUPTED)
-    if as_json:
-        click.echo(json.dumps(figures(found), indent=2))
-    elif not quiet:
-        for label, text in lines(found):
-            click.echo(f"{label:<12}{text}")
-        for warning in found.warnings:
-            click.secho(f"{'warning':<12}{warning}", fg="yellow")
+    options.tell(figures(found), lines(found), quiet, as_json, found.warnings)
     if set(found.outcomes) == {REFUSED}:
         sys.exit(1)

@@ -8,6 +8,7 @@ from coupling.lazy import lazy
 _HOMES = {
     "Case": "coupling.case",
     "CaseError": "coupling.case",
+    "InputError": "coupling.input_error",
     "read_case": "coupling.case",
     "Result": "coupling.run",
     "run_case": "coupling.run",

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import ConfigDict, Discriminator, Tag, ValidationError
+from pydantic import ConfigDict, Discriminator, GetJsonSchemaHandler, Tag, ValidationError
+from pydantic_core import CoreSchema
 
 from coupling.plate_case import (
     ONE_SUPPORT,
@@ -36,6 +37,11 @@ class ShapelessCase(PlateCase):
     model_config = ConfigDict(extra="ignore")
 
     shape: Annotated[Literal["disc", "rectangle", "annulus", "ellipse", "polygon", "platform"], _Wanted()]
+    """Which of these it is."""
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"not": {}}  # no plate is right that is one of these
 
     def build_mesh(self) -> PlateMesh:
         raise AssertionError("a plate with a known shape is one of the other models")

@@ -2,7 +2,7 @@
 
 Every quantity is stored as a float in SI units, and every position as (x, y) from the centre of the plate. Built in
 Python, a float is taken as SI and text with a unit is converted; in a file every quantity must state its unit.
-Python gets a `pydantic.ValidationError` for a wrong value, `read_case` raises a `CaseError`.
+Python gets an `InputError` for wrong values, and from `read_case` a `CaseError`; both are a ValueError.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import (
     BaseModel,
+    ConfigDict,
     Field,
     ModelWrapValidatorHandler,
     StrictFloat,
@@ -44,16 +45,18 @@ MOST_STEPS: Final = 100_000_000  # of a fixed scheme
 
 
 class PartCase(Table):
-    """The micropart at the start: `mass` in kg, `position` in m, `velocity` in m/s, `size` (side length) in m.
-
-    `squeeze` in N presses it onto the surface, along the normal. On a platform place and velocity count from that.
-    """
+    """The micropart at the start, in kg, m, m/s and N."""
 
     mass: units.Mass = Field(gt=0)
-    position: Point
+    """Its mass."""
+    position: Point = Field(examples=[["100 um", "50 um"]])
+    """Where it is at the start; on the plate, or counted from the platform."""
     velocity: units.Velocity = (0.0, 0.0)
-    size: Length | None = Field(default=None, gt=0)
+    """How fast it moves at the start, over the platform if there is one."""
+    size: Length | None = Field(default=None, gt=0, examples=["100 um"])
+    """The side of its footprint, for the check of curvature; without it the root of the contact area."""
     squeeze: units.Force = Field(default=0.0, ge=0)
+    """A constant force that presses it onto the surface, along the normal."""
 
 
 def _plasticity_index(data: dict[str, Any]) -> float:
@@ -61,24 +64,31 @@ def _plasticity_index(data: dict[str, Any]) -> float:
 
 
 class KogutEtsionCase(Table):
-    """Friction of rough surfaces with adhesion, after Kogut and Etsion.
-
-    `roughness` and `intermolecular_distance` in m, `contact_area` in m^2, `hardness` in Pa, `adhesion_energy` in
-    J/m^2. The preset "paper" sets the plasticity index to 4.9128.
-    """
+    """Friction of rough surfaces with adhesion, after Kogut and Etsion, in m, m^2, Pa and J/m^2."""
 
     model: Literal["kogut-etsion"] = "kogut-etsion"
+    """The law: rough surfaces with adhesion, after Kogut and Etsion."""
     preset: Literal["paper"] | None = None
+    """All parameters as the paper has them, the plasticity index 4.9128 among them."""
     roughness: Length = Field(default=20e-9, gt=0)
+    """The standard deviation of the heights of asperities."""
     contact_area: units.Area = Field(default=1e-8, gt=0)
+    """The nominal area of contact, the footprint of the part."""
     hardness: units.Pressure = Field(default=1.96133e9, gt=0)
+    """The hardness of the softer material."""
     poisson_ratio: StrictFloat = Field(default=0.3, ge=0, lt=0.5)
+    """That of the softer material."""
     adhesion_energy: units.SurfaceEnergy = Field(default=1.0, gt=0)
-    plasticity_index: StrictFloat = Field(default_factory=_plasticity_index, gt=0)
+    """The work of adhesion of the two surfaces."""
+    plasticity_index: StrictFloat = Field(default_factory=_plasticity_index, gt=0, examples=[2.5])
+    """How far asperities yield: well below 1 they are elastic, well above plastic. Without it 2.5."""
     # The model takes the root of 1 - 3.717e-4 / asperity_beta^2.
     asperity_beta: StrictFloat = Field(default=0.0601, gt=math.sqrt(3.717e-4))
+    """Density of asperities times their radius times the roughness."""
     intermolecular_distance: Length = Field(default=0.3e-9, gt=0)
+    """The distance of atoms in equilibrium."""
     coefficients: Literal["printed", "unrounded"] = "printed"
+    """Numbers of the model as its authors printed them, or without their rounding."""
 
     @field_validator("plasticity_index")
     @classmethod
@@ -101,16 +111,22 @@ class ConstantCase(Table):
     """A friction force of at most `limit`, in N, whatever the normal force."""
 
     model: Literal["constant"] = "constant"
-    limit: units.Force = Field(ge=0)
+    """The law: a limit that does not depend on the load."""
+    limit: units.Force = Field(ge=0, examples=["40 nN"])
+    """The largest friction force."""
 
 
 class CoulombCase(Table):
     """Friction in proportion to the normal force and `adhesion`, in N; `static_coefficient` is for a part at rest."""
 
     model: Literal["coulomb"] = "coulomb"
-    coefficient: StrictFloat = Field(ge=0)
+    """The law: in proportion to the load, with adhesion added to it."""
+    coefficient: StrictFloat = Field(ge=0, examples=[0.3])
+    """Friction force over load while the part slides."""
     adhesion: units.Force = Field(default=0.0, ge=0)
-    static_coefficient: StrictFloat | None = Field(default=None, ge=0)
+    """A force added to the load; the part comes off where it is pulled harder."""
+    static_coefficient: StrictFloat | None = Field(default=None, ge=0, examples=[0.4])
+    """The same while the part rests; without it as while it slides."""
 
     @field_validator("static_coefficient")
     @classmethod
@@ -130,10 +146,15 @@ class TableCase(Table):
     """
 
     model: Literal["table"] = "table"
-    loads: friction_points.Forces | None = None
-    limits: friction_points.Forces | None = None
+    """The law: as measured at points."""
+    loads: friction_points.Forces | None = Field(default=None, examples=[["-1 uN", "0 uN", "2 uN", "5 uN"]])
+    """Net loads, increasing; the first is minus the pull-off force."""
+    limits: friction_points.Forces | None = Field(default=None, examples=[["4 nN", "18 nN", "35 nN", "52 nN"]])
+    """The largest friction force at each load; it does not fall."""
     static_ratio: StrictFloat = Field(default=1.0, ge=1)
-    file: StrictStr | None = None
+    """The limit at rest over that of sliding."""
+    file: StrictStr | None = Field(default=None, examples=["friction.csv"])
+    """A CSV file with a column of each, in place of the two lists, beside the case file."""
 
     @model_validator(mode="wrap")
     @classmethod
@@ -162,20 +183,24 @@ AnyFriction = Annotated[FrictionCase, Field(discriminator="model")]
 
 
 class RunCase(Table):
-    """The run: `duration` in s, `gravity` in m/s^2 towards the plate or along x, y, z, `tolerance` without dimension.
+    """The run, in s and m/s^2."""
 
-    `surface_tolerance` is how well the moving surface is fitted to the plate's shapes, of a unit stroke.
-    `frames` is the number of time steps in the result files, `time_step` in s that of a scheme of fixed steps.
-    """
-
-    duration: units.Time = Field(gt=0)
+    duration: units.Time = Field(gt=0, examples=["50 ms"])
+    """How long the part is followed."""
     gravity: units.Gravity = 9.80665
+    """Towards the plate; or three, along x, y and z, on a tilted device."""
     tolerance: StrictFloat = Field(default=1e-9, ge=1e-12, le=1e-2)
+    """The error of one step of the integrator, relative to half of the plate's longer side."""
     surface_tolerance: StrictFloat = Field(default=1e-8, ge=1e-13, le=1e-3)
-    frames: StrictInt | None = Field(default=None, ge=2)
+    """The error of the moving surface, relative to a stroke."""
+    frames: StrictInt | None = Field(default=None, ge=2, examples=[200])
+    """The time steps in the result files; without it 20 a cycle, from 100 to 1000."""
     scheme: Literal["events", "fixed", "paper"] = "events"
-    time_step: units.Time | None = Field(default=None, gt=0)
+    """How the path is found: by located events, or for comparison by fixed steps."""
+    time_step: units.Time | None = Field(default=None, gt=0, examples=["0.1 us"])
+    """That of fixed steps; without it 1e-4 of the shortest stroke."""
     after_detachment: Literal["stop", "fly"] = "stop"
+    """Whether the run ends where the part comes off, or follows its flight."""
 
     @field_validator("time_step")
     @classmethod
@@ -198,18 +223,37 @@ class RunCase(Table):
         return after
 
 
-class _CaseTables(Table):
+def _actuators_or(schema: dict[str, Any]) -> None:
+    """Has a JSON schema ask for what a case with that plate needs: actuators, a lattice or neither."""
+    schema["required"].remove("actuators")
+    platform = {"properties": {"shape": {"const": "platform"}}, "required": ["shape"]}
+    schema["anyOf"] = [
+        {"required": ["actuators"]},
+        {"required": ["lattice"]},
+        {"properties": {"plate": platform}},
+    ]
+
+
+class CaseTables(Table):
     """All that a case file holds; a platform has no actuators.
 
     A lattice becomes actuators, after those that are given one by one; then there is no `lattice` any more.
     """
 
+    model_config = ConfigDict(json_schema_extra=_actuators_or)
+
     plate: AnyPlate
+    """The plate, or a platform."""
     actuators: tuple[ActuatorCase, ...]
+    """The actuators, one table each; none with a platform, and none needed beside a lattice."""
     lattice: LatticeCase | None = None
+    """Many actuators in rows and columns, which come after those that are given one by one."""
     part: PartCase
+    """The part, which lies on the surface."""
     friction: AnyFriction
+    """The friction between part and surface."""
     run: RunCase
+    """How long the part is followed, and how exactly."""
 
     @model_validator(mode="wrap")
     @classmethod
@@ -242,7 +286,7 @@ class _CaseTables(Table):
         return case
 
 
-class Case(_CaseTables):
+class Case(CaseTables):
     """What one run simulates; `name` is the stem of the file it was read from, and `source` the text of that file."""
 
     name: str = "case"
@@ -256,7 +300,7 @@ _FRICTION: dict[str, type[BaseModel]] = {
     "table": TableCase,
 }
 TABLES: dict[str, type[BaseModel]] = {
-    "": _CaseTables,
+    "": CaseTables,
     "actuators": ActuatorCase,
     "lattice": LatticeCase,
     "segments": SegmentCase,
@@ -274,7 +318,7 @@ def read_case(path: str | os.PathLike[str]) -> Case:
     """Read the case file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read."""
     text, data = load(path)
     try:
-        tables = _CaseTables.model_validate(
+        tables = CaseTables.model_validate(
             data, context=units.UNITS_REQUIRED | {"folder": Path(path).absolute().parent}
         )
     except ValidationError as error:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import re
 import tomllib
@@ -17,6 +16,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from coupling.any_plate import TAGS
+from coupling.near import near
 from coupling.platform_case import AXES
 from coupling.units import shown
 
@@ -131,14 +131,15 @@ def message_of(detail: ErrorDetails, value: object, tables: Mapping[str, type[Ba
         case "missing":
             return f"is missing; it must be {_wanted(_fields(location, tables)[str(location[-1])])}"
         case "extra_forbidden":
-            near = _near(location, tables)
-            return "is not known; " + (f"did you mean {near}?" if near else _known(location, tables))
+            meant = _near(location, tables)
+            return "is not known; " + (f"did you mean {meant}?" if meant else _known(location, tables))
         case "union_tag_not_found":
             models = [name for name, model in tables.items() if "model" in model.model_fields]
-            return f"is missing; it must be {_one_of(models)}"
+            return f"is missing; it must be {one_of(models)}"
         case "literal_error" | "union_tag_invalid":
             choices = re.findall("'([^']*)'", context["expected" if kind == "literal_error" else "expected_tags"])
-            return f"must be {_one_of(choices)}{got}"
+            meant = near(value, choices) if isinstance(value, str) else None
+            return f"must be {one_of(choices)}{got}" + (f'; did you mean "{meant}"?' if meant else "")
         case "tuple_type":
             header = _header((*location, 0))
             return _doubled(header) + (f"; got {header[1:-1]}" if isinstance(value, dict) else got)
@@ -190,7 +191,7 @@ def _fields(location: Location, tables: Mapping[str, type[BaseModel]]) -> dict[s
 
 
 def _near(location: Location, tables: Mapping[str, type[BaseModel]]) -> str | None:
-    return next(iter(difflib.get_close_matches(str(location[-1]).lower(), _fields(location, tables), 1)), None)
+    return near(str(location[-1]), _fields(location, tables))
 
 
 def _known(location: Location, tables: Mapping[str, type[BaseModel]]) -> str:
@@ -208,11 +209,11 @@ def _wanted(field: FieldInfo) -> str:
         if hasattr(mark, "wanted"):
             return str(mark.wanted)
     if get_origin(field.annotation) is Literal:
-        return _one_of(get_args(field.annotation))
+        return one_of(get_args(field.annotation))
     return "a whole number" if field.annotation is int else "a number"
 
 
-def _one_of(choices: Sequence[str]) -> str:
+def one_of(choices: Sequence[str]) -> str:
     *others, last = (f'"{choice}"' for choice in choices)
     return f"{', '.join(others)} or {last}" if others else last
 

@@ -66,7 +66,7 @@ def _lines(table: Table, name: str, folder: Path, without: str = "") -> Iterator
             continue
         if (name, key) in FILES and isinstance(value, str):
             value = os.path.relpath(value, folder)
-        yield f"{key} = {_text(value, field.rebuild_annotation())}"
+        yield f"{key} = {written(value, field.rebuild_annotation())}"
 
 
 def _needed(table: Table, key: str, field: FieldInfo, value: Any) -> bool:
@@ -78,17 +78,17 @@ def _needed(table: Table, key: str, field: FieldInfo, value: Any) -> bool:
     return names_its_table or field.is_required() or value != field.default
 
 
-def _text(value: Any, annotation: Any) -> str:
+def written(value: Any, annotation: Any) -> str:
     """A value as TOML; annotation: of the field that has it."""
     if isinstance(value, Table):
         keys = type(value).model_fields.items()
         found = [(key, field, getattr(value, key)) for key, field in keys]
         kept = [(key, field, item) for key, field, item in found if _needed(value, key, field, item)]
         return (
-            "{ " + ", ".join(f"{key} = {_text(item, field.rebuild_annotation())}" for key, field, item in kept) + " }"
+            "{ " + ", ".join(f"{key} = {written(item, field.rebuild_annotation())}" for key, field, item in kept) + " }"
         )
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{json.dumps(key)} = {_text(item, str)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{json.dumps(key)} = {written(item, str)}" for key, item in value.items()) + " }"
     if isinstance(value, tuple):
         types = get_args(of_kind(annotation, tuple))
         kinds = [types[0]] * len(value) if types[-1] is Ellipsis else types
@@ -100,12 +100,14 @@ def _text(value: Any, annotation: Any) -> str:
 def _item(value: Any, annotation: Any, marks: list[Any]) -> str:
     """An item of a list, or a single value; marks: of all items, for those that have none of their own."""
     if isinstance(value, (tuple, Table)):
-        return _text(value, annotation)
+        return written(value, annotation)
     quantity = quantity_of(annotation, []) or quantity_of(None, marks)
     if quantity is None or not isinstance(value, float):
         return json.dumps(value, ensure_ascii=False)
-    unit, power = PREFIXED.get(quantity.unit, (quantity.unit, 0))
-    return f'"{_plain(Decimal(repr(float(value))).scaleb(power))} {unit}"'
+    number, (unit, power) = Decimal(repr(float(value))), PREFIXED.get(quantity.unit, (quantity.unit, 0))
+    if abs(number.scaleb(power)) >= LARGEST:
+        unit, power = quantity.unit, 0
+    return f'"{_plain(number.scaleb(power))} {unit}"'
 
 
 def _plain(number: Decimal) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from coupling.near import near
 from coupling.units import DIMENSIONS, Quantity, shown
 
 MOST_MISTAKES = 10  # of a file that are told one by one
@@ -48,7 +48,7 @@ def read_columns(path: Path, known: Mapping[str, Quantity], needed: Sequence[Seq
         message = f'line {number} must be a header such as "{example}"; got {shown(", ".join(header))}'
         return File({}, (), [message])
     columns, mistakes = _header(header, known)
-    meant = {near for cell in header if (near := _near(cell.partition("[")[0], known))}
+    meant = {like for cell in header if (like := near(cell.partition("[")[0], known))}
     mistakes += [f'must have a column {_either(names)}, as in "{example}"' for names in needed if not meant & {*names}]
     if mistakes:
         return File({}, (), [f"line {number} {mistake}" for mistake in mistakes])
@@ -67,6 +67,11 @@ def read_columns(path: Path, known: Mapping[str, Quantity], needed: Sequence[Seq
     return File(whole, tuple(number for number, _ in rows), told(mistakes))
 
 
+def unreadable(file: str, error: OSError) -> str:
+    """That a file cannot be read, and why."""
+    return f"must be a file that can be read; got {shown(file)}: {(error.strerror or str(error)).lower()}"
+
+
 def told(mistakes: Sequence[str]) -> list[str]:
     """The first mistakes, and how many more there are."""
     more = len(mistakes) - MOST_MISTAKES
@@ -81,8 +86,8 @@ def _header(header: Sequence[str], known: Mapping[str, Quantity]) -> tuple[list[
         match = re.fullmatch(r"([^\[\]]*?)\s*(?:\[(.*)\])?", cell)
         name, unit = match.groups() if match else (cell, None)
         if name not in known:
-            near = _near(name, known)
-            hint = f"did you mean {near}?" if near else f"there may be {', '.join(known)}"
+            like = near(name, known)
+            hint = f"did you mean {like}?" if like else f"there may be {', '.join(known)}"
             mistakes.append(f"has a column {shown(cell)} that is not known; {hint}")
             continue
         if any(name == other for other, _ in columns):
@@ -98,10 +103,6 @@ def _header(header: Sequence[str], known: Mapping[str, Quantity]) -> tuple[list[
             reason = str(error).partition(f'got "1 {unit}"')[2].replace('"1 ', '"')
             mistakes.append(f"must give {name} in a unit of {DIMENSIONS[quantity.unit][2:]}; got [{unit}]{reason}")
     return columns, mistakes
-
-
-def _near(name: str, known: Iterable[str]) -> str | None:
-    return next(iter(difflib.get_close_matches(name.strip().lower(), known, 1)), None)
 
 
 def _either(names: Sequence[str]) -> str:

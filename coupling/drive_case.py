@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import accumulate
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import Field, GetCoreSchemaHandler, StrictInt
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictInt
 from pydantic_core import CoreSchema, core_schema
 
 from coupling import units
@@ -31,6 +31,9 @@ class _Passes:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.validate)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": [{"type": "integer", "minimum": 1}, {"const": ENDLESS}]}
 
 
 @dataclass(frozen=True)
@@ -65,16 +68,18 @@ Repeats = Annotated[int | Literal["endless"], _Passes()]
 
 
 class SegmentCase(KeyedTable):
-    """A part of a schedule: `stroke` in m, `frequency` in Hz, `dwell` in s after each stroke.
+    """A part of a schedule, in m, Hz and s; a hold has only a `dwell`."""
 
-    A hold has only a `dwell`, the time that it lasts.
-    """
-
-    stroke: Length | None = None
+    stroke: Length | None = Field(default=None, examples=["50 um"])
+    """How far it rises from where it is; negative: down. Not with "hold"."""
     frequency: units.Frequency | None = Field(default=None, gt=0)
+    """A stroke takes half of one over this, with "up" all of it. Not with "hold"."""
     cycle: Literal["up-down", "up", "hold"] = "up-down"
+    """Up and down again, up to stay, or a wait of one dwell."""
     cycles: StrictInt = Field(default=1, ge=1, le=1_000_000)
+    """How often; several of "up" climb on."""
     dwell: units.Time = Field(default=0.0, ge=0)
+    """The rest after each stroke; with "hold" how long it waits."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -148,34 +153,39 @@ class Driven(KeyedTable):
 
 
 class DriveCase(Driven):
-    """A drive over time: `delay` in s, and what moves it.
+    """A drive over time, in m, Hz and s: a `stroke` with a `frequency`, a `table`, or `segments`, a schedule."""
 
-    That is a `stroke` in m with a `frequency` in Hz, a `cycle`, `cycles` (None: no end) and a `dwell` in s; or a
-    `table` of times in s and heights in m; or `segments`, a schedule. The last two come `repeats` times.
-    """
-
-    stroke: Length | None = None
+    stroke: Length | None = Field(default=None, examples=["50 um"])
+    """How far it rises; 0: it only holds the plate; negative: down."""
     frequency: units.Frequency | None = Field(default=None, gt=0)
+    """One cycle takes one over this, and the dwells."""
     cycle: Cycle = "up-down"
-    cycles: StrictInt | None = Field(default=None, ge=1)
+    """Up in the first half and down in the second; up once and held; or sines."""
+    cycles: StrictInt | None = Field(default=None, ge=1, examples=[5])
+    """How many cycles there are, after which it rests at 0; without it they do not end."""
     dwell: units.Time = Field(default=0.0, ge=0)
-    table: Points | None = None
+    """The rest after each stroke, up and down."""
+    table: Points | None = Field(default=None, examples=[[["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "20 um"]]])
+    """In place of a stroke: heights at given times, with a smooth stroke from each to the next."""
     segments: tuple[SegmentCase, ...] | None = None
+    """In place of a stroke: a schedule, one table after the other."""
     repeats: Repeats = 1
+    """How often a table or schedule comes."""
     delay: units.Time = Field(default=0.0, ge=0)
+    """The rest before all this."""
 
 
 class _Place(KeyedTable):
-    position: Point
-    force: units.Force | None = None
+    position: Point = Field(examples=[["0 um", "0 um"]])
+    """Where it stands, inside the rim."""
+    force: units.Force | None = Field(default=None, examples=["1 mN"])
+    """In place of a stroke: it floats and pushes with this force; negative: it pulls."""
     stiffness: units.Stiffness | None = Field(default=None, gt=0)
+    """That of a spring between actuator and plate; without it there is none. Not with a force."""
 
 
 class ActuatorCase(DriveCase, _Place):
-    """A point actuator: `position` in m, `stiffness` in N/m, and what drives it: a drive, or a `force` in N.
-
-    A force takes the place of a stroke. `stiffness` is that of a spring between actuator and plate, None for rigid.
-    """
+    """A point actuator, in m, N/m and N, and what drives it: a drive, or a `force` in place of its stroke."""
 
     owner: ClassVar[str] = "an actuator"
     drivers: ClassVar[tuple[str, ...]] = ("stroke", "force", "table", "segments")

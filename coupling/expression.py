@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import difflib
 import math
 import operator
 import re
@@ -15,6 +14,7 @@ from typing import Any, Final
 
 from simpleeval import SimpleEval
 
+from coupling.near import near
 from coupling.units import shown
 
 PLACES: Final = ("row", "column", "rows", "columns")
@@ -181,5 +181,5 @@ def _mistake(tree: ast.AST) -> str:
 
 
 def _hint(name: str, known: Collection[str]) -> str:
-    near = difflib.get_close_matches(name.lower(), known, 1)
-    return f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+    meant = near(name, known)
+    return f"did you mean {meant}?" if meant else f"there are {', '.join(known)}"

@@ -6,13 +6,17 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
-from pydantic import GetCoreSchemaHandler
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from coupling.expression import KEYWORDS, PLACES, Expression, parse, split, unreadable
 from coupling.units import Quantity, shown
+
+FORMULA: Final = "an expression and its unit"
+CONDITION: Final = "an expression that is true or false"
+EXAMPLE: Final = '"hypot(x, y) > 100e-6"'  # of a condition
 
 
 @dataclass(frozen=True)
@@ -68,12 +72,12 @@ class Amount(Quantity):
 
     def parse(self, text: str) -> float | Formula:  # type: ignore[override]
         """The quantity or formula that a text states; ValueError unless it is one, of this dimension."""
-        words, rest = _words(text)
+        words, rest = _words(text, FORMULA)
         digits = words[-1:] and words[-1][0] in "0123456789."
         try:
             if not words or (digits and len(words) == 1) or (digits and len(words) == 2 and words[0] in ("+", "-")):
                 return super().parse(text)
-            expression = _parsed(text, words)
+            expression = _parsed(text, words, FORMULA)
             return Formula(text, expression, rest, self.convert(text, "1", rest))
         except ValueError:
             reason = unreadable(rest) if rest else ""
@@ -82,17 +86,20 @@ class Amount(Quantity):
                 reason = f"the unit must come once, at the end, as in {shown(example)}"
             if not reason:
                 raise
-            raise _refusal(text, reason) from None
+            raise _refusal(text, reason, FORMULA) from None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(self.validate)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"type": "string", "examples": [self.example]}
 
 
 @dataclass(frozen=True)
 class Choice:
     """Marks a `Condition`."""
 
-    wanted = 'an expression that is true or false, such as "hypot(x, y) > 100e-6"'
+    wanted = f"{CONDITION}, such as {EXAMPLE}"
 
     def validate(self, value: object) -> Condition:
         """The condition that a text states; ValueError unless it is one."""
@@ -100,28 +107,32 @@ class Choice:
             return value
         if not isinstance(value, str) or not value.strip():
             raise ValueError(f"must be {self.wanted}; got {shown(value)}")
-        words, rest = _words(value)
+        words, rest = _words(value, CONDITION)
         if rest:
-            raise _refusal(value, unreadable(rest) or f'"{rest}" is too much; it has no unit, x and y are in metres')
-        return Condition(value, _parsed(value, words))
+            no_unit = f'"{rest}" is too much; it has no unit, x and y are in metres, as in {EXAMPLE}'
+            raise _refusal(value, unreadable(rest) or no_unit, CONDITION)
+        return Condition(value, _parsed(value, words, CONDITION))
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.validate)
 
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"type": "string"}
 
-def _words(text: str) -> tuple[list[str], str]:
+
+def _words(text: str, wanted: str) -> tuple[list[str], str]:
     try:
         return split(text)
     except ValueError as error:
-        raise _refusal(text, str(error)) from None
+        raise _refusal(text, str(error), wanted) from None
 
 
-def _parsed(text: str, words: list[str]) -> Expression:
+def _parsed(text: str, words: list[str], wanted: str) -> Expression:
     try:
         return parse(words)
     except ValueError as error:
-        raise _refusal(text, str(error)) from None
+        raise _refusal(text, str(error), wanted) from None
 
 
-def _refusal(text: str, reason: str) -> ValueError:
-    return ValueError(f"cannot be {shown(text)}: {reason}")
+def _refusal(text: str, reason: str, wanted: str) -> ValueError:
+    return ValueError(f"must be {wanted}; got {shown(text)}: {reason}")

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Final
 
 from pydantic import BeforeValidator, TypeAdapter, ValidationError
 
+from coupling.csv_columns import unreadable
 from coupling.units import Force, Quantity, shown
 
 Location = tuple[int | str, ...]
@@ -44,7 +45,9 @@ def of_table(table: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[dict
     if not isinstance(file, str):
         return {}, mistakes
     points, wrong = _read(Path(context.get("folder", ""), file))
-    return points | {"file": None}, mistakes + [(("file",), message) for message in wrong]
+    where = f"in {Path(file).name}: "
+    told = [message if message.startswith("must be a file") else where + message for message in wrong]
+    return points | {"file": None}, mistakes + [(("file",), message) for message in told]
 
 
 def _given(table: Mapping[str, Any], context: Mapping[str, Any]) -> Iterator[tuple[Location, str]]:
@@ -85,7 +88,7 @@ def _read(path: Path) -> tuple[dict[str, Any], list[str]]:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
-        return {}, [f"cannot be read: {(error.strerror or str(error)).lower()}"]
+        return {}, [unreadable(path.name, error)]
     except UnicodeDecodeError:
         return {}, ["is not UTF-8 text"]
     rows = [

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any, Final, Self
 
 from pydantic import ModelWrapValidatorHandler, TypeAdapter, ValidationError, ValidationInfo, model_validator
 
+from coupling.near import near
 from coupling.table import Table
 
 WRONG: Final = object()
@@ -66,7 +66,8 @@ class KeyedTable(Table):
         for key, value in data.items():
             if key not in cls.model_fields:
                 # A misspelt key is a mistake already; what it stands for is not missing as well.
-                given |= dict.fromkeys(difflib.get_close_matches(str(key).lower(), cls.model_fields, 1), WRONG)
+                meant = near(str(key), cls.model_fields)
+                given |= {meant: WRONG} if meant else {}
             elif value is not None:
                 try:
                     valid = adapter(cls, key).validate_python(value, context=context)

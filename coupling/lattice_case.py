@@ -70,34 +70,53 @@ class _Apart:
 
 
 class LatticeCase(Driven):
-    """Actuators in `rows` along y and `columns` along x, `pitch` apart, around a `centre`, in m.
-
-    Those nearer than `margin` in m to the rim, or beyond it, are left out, None: none is; and those for which the
-    `Condition` `where` is false. The other keys are those of an actuator; `Formula`s give each its own value.
-    """
+    """Actuators in rows and columns, in SI units; `Formula`s give each its own value."""
 
     owner: ClassVar[str] = ActuatorCase.owner
     drivers: ClassVar[tuple[str, ...]] = ActuatorCase.drivers
     in_place: ClassVar[str] = ActuatorCase.in_place
     segments_table: ClassVar[str] = "[[lattice.segments]]"
 
-    rows: StrictInt = Field(ge=1)
-    columns: StrictInt = Field(ge=1)
-    pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um"), "xy"), _Apart()]
+    rows: StrictInt = Field(ge=1, examples=[3])
+    """How many rows there are, along y."""
+    columns: StrictInt = Field(ge=1, examples=[3])
+    """How many columns there are, along x."""
+    pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um"), "xy"), _Apart()] = Field(
+        examples=["100 um"]
+    )
+    """The distance of neighbours, or two: along x and along y."""
     centre: Point = (0.0, 0.0)
-    margin: Length | None = Field(default=None, ge=0)
-    where: Annotated[Condition, Choice()] | None = None
-    force: Annotated[float | Formula, AMOUNTS["force"], _Ruled("force")] | None = None
+    """The lattice's middle."""
+    margin: Length | None = Field(default=None, ge=0, examples=["20 um"])
+    """Actuators nearer than this to the rim, or beyond it, are left out; without it they are a mistake."""
+    where: Annotated[Condition, Choice()] | None = Field(default=None, examples=["not (row == 1 and column == 1)"])
+    """An expression of row, column, x and y that is true where there is an actuator."""
+    force: Annotated[float | Formula, AMOUNTS["force"], _Ruled("force")] | None = Field(default=None, examples=["1 mN"])
+    """As of an actuator, or an expression and its unit."""
     stiffness: Annotated[float | Formula, AMOUNTS["stiffness"], _Ruled("stiffness")] | None = None
-    stroke: Annotated[float | Formula, AMOUNTS["stroke"], _Ruled("stroke")] | None = None
+    """As of an actuator, or an expression and its unit."""
+    stroke: Annotated[float | Formula, AMOUNTS["stroke"], _Ruled("stroke")] | None = Field(
+        default=None, examples=["5 um"]
+    )
+    """As of an actuator, or an expression and its unit."""
     frequency: Annotated[float | Formula, AMOUNTS["frequency"], _Ruled("frequency")] | None = None
+    """As of an actuator, or an expression and its unit."""
     cycle: Cycle = "up-down"
-    cycles: StrictInt | None = Field(default=None, ge=1)
+    """As of an actuator, the same for all."""
+    cycles: StrictInt | None = Field(default=None, ge=1, examples=[5])
+    """As of an actuator, the same for all."""
     dwell: Annotated[float | Formula, AMOUNTS["dwell"], _Ruled("dwell")] = 0.0
-    table: Points | None = None
+    """As of an actuator, or an expression and its unit."""
+    table: Points | None = Field(default=None, examples=[[["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "20 um"]]])
+    """As of an actuator, the same for all."""
     segments: tuple[SegmentCase, ...] | None = None
+    """As of an actuator, the same for all."""
     repeats: Repeats = 1
-    delay: Annotated[float | Formula, AMOUNTS["delay"], _Ruled("delay")] = 0.0
+    """As of an actuator, the same for all."""
+    delay: Annotated[float | Formula, AMOUNTS["delay"], _Ruled("delay")] = Field(
+        default=0.0, examples=["0.05 * (row + column) ms"]
+    )
+    """As of an actuator, or an expression and its unit."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -11,9 +10,11 @@ from pydantic import BaseModel, Field, ValidationError, ValidatorFunctionWrapHan
 
 from coupling.any_plate import outline_of
 from coupling.case_lines import Location, shown_location
+from coupling.csv_columns import unreadable
 from coupling.drive_case import ActuatorCase
 from coupling.lattice_case import LatticeCase
 from coupling.lattice_places import SAME_PLACE, Place, Stand, beyond, gaps, half_size, shared_places
+from coupling.near import near
 from coupling.plate_case import PlateCase, ShapeCase, Supports
 from coupling.platform_case import platform_of
 from coupling.units import Length, Point, Time, shown, shown_length, written_unit
@@ -101,8 +102,8 @@ class Places(BaseModel, from_attributes=True):
         names = list(mesh.boundaries)
         supports = given.supports if isinstance(given.supports, dict) else {}
         for name in (name for name in supports if name not in names):
-            near = difflib.get_close_matches(name, names, 1)
-            hint = f"did you mean {near[0]}? " if near else ""
+            meant = near(name, names)
+            hint = f"did you mean {meant}? " if meant else ""
             has = f"It has {', '.join(names)}" if hint else f"it has {', '.join(names)}"
             yield ("plate", "supports", name), f"is no boundary of the plate; {hint}{has}"
         spots = [(("actuators", index), spot) for index, spot in enumerate(self.actuators or ()) if spot]
@@ -138,7 +139,7 @@ def _mesh(plate: PlateCase) -> tuple[PlateMesh | None, list[str]]:
     try:
         return plate.coarse_mesh, []
     except OSError as error:
-        return None, [f"cannot be read: {(error.strerror or str(error)).lower()}"]
+        return None, [unreadable(str(error.filename), error)]
     except ValueError as error:
         return None, [re.sub(r"^Input \w+ of \w+ ", "", line) for line in str(error).splitlines()]
 

@@ -30,19 +30,21 @@ Supports = Annotated[
 
 
 class PlateCase(Table, ABC):
-    """The plate: `thickness` in m, `youngs_modulus` in Pa and `density` in kg/m^3.
-
-    supports: how the whole rim is held, or each boundary by name; those left out are free.
-    """
+    """The plate, in m, Pa and kg/m^3."""
 
     outlined_by: ClassVar[str] = "shape"
     """The key at which a mistake in the outline as a whole is reported."""
 
     supports: Supports = "clamped"
+    """How the whole rim is held, or a table with how each boundary is; those left out are free."""
     youngs_modulus: units.Pressure = Field(gt=0)
-    poisson_ratio: StrictFloat = Field(ge=0, lt=0.5)
-    thickness: Length = Field(gt=0)
+    """Young's modulus."""
+    poisson_ratio: StrictFloat = Field(ge=0, lt=0.5, examples=[0.3])
+    """Poisson's ratio."""
+    thickness: Length = Field(gt=0, examples=["5 um"])
+    """How thick it is."""
     density: units.Density | None = Field(default=None, gt=0)
+    """With it drives are compared with the plate's first frequency."""
 
     @abstractmethod
     def build_mesh(self) -> PlateMesh:
@@ -66,9 +68,10 @@ class PlateCase(Table, ABC):
 
 
 class ShapeCase(PlateCase):
-    """A plate given by a few lengths, around the origin; `cell_size` in m."""
+    """A plate given by a few lengths in m, around the origin."""
 
-    cell_size: Length | None = Field(default=None, gt=0)
+    cell_size: Length | None = Field(default=None, gt=0, examples=["50 um"])
+    """The size of the mesh's cells, at most half of the smallest width; without it the mesh is refined as it needs."""
 
     @property
     @abstractmethod
@@ -96,10 +99,12 @@ class ShapeCase(PlateCase):
 
 
 class DiscCase(ShapeCase):
-    """A disc; `radius` in m."""
+    """A disc."""
 
     shape: Literal["disc"]
-    radius: Length = Field(gt=0)
+    """A disc around the origin; its boundary is rim."""
+    radius: Length = Field(gt=0, examples=["300 um"])
+    """From the centre to the rim."""
 
     @property
     def measures(self) -> tuple[float, float]:
@@ -107,11 +112,14 @@ class DiscCase(ShapeCase):
 
 
 class RectangleCase(ShapeCase):
-    """A rectangle; `width` along x and `height` along y in m."""
+    """A rectangle."""
 
     shape: Literal["rectangle"]
-    width: Length = Field(gt=0)
-    height: Length = Field(gt=0)
+    """A rectangle around the origin; its boundaries are left, right, bottom and top."""
+    width: Length = Field(gt=0, examples=["600 um"])
+    """Along x."""
+    height: Length = Field(gt=0, examples=["400 um"])
+    """Along y."""
 
     @property
     def measures(self) -> tuple[float, float]:
@@ -119,11 +127,14 @@ class RectangleCase(ShapeCase):
 
 
 class AnnulusCase(ShapeCase):
-    """A disc with a round hole in its middle; both radii in m."""
+    """A disc with a round hole in its middle."""
 
     shape: Literal["annulus"]
-    inner_radius: Length = Field(gt=0)
-    outer_radius: Length = Field(gt=0)
+    """A disc with a round hole; its boundaries are inner and outer."""
+    inner_radius: Length = Field(gt=0, examples=["100 um"])
+    """The radius of the hole."""
+    outer_radius: Length = Field(gt=0, examples=["300 um"])
+    """The radius of the disc."""
 
     @field_validator("outer_radius")
     @classmethod
@@ -139,11 +150,14 @@ class AnnulusCase(ShapeCase):
 
 
 class EllipseCase(ShapeCase):
-    """An ellipse; its semi-axes along x and y in m."""
+    """An ellipse."""
 
     shape: Literal["ellipse"]
-    semi_axis_x: Length = Field(gt=0)
-    semi_axis_y: Length = Field(gt=0)
+    """An ellipse around the origin; its boundary is rim."""
+    semi_axis_x: Length = Field(gt=0, examples=["300 um"])
+    """Half of its axis along x."""
+    semi_axis_y: Length = Field(gt=0, examples=["200 um"])
+    """Half of its axis along y."""
 
     @property
     def measures(self) -> tuple[float, float]:
@@ -151,13 +165,16 @@ class EllipseCase(ShapeCase):
 
 
 class PolygonCase(ShapeCase):
-    """A polygon; `corners` in m, in either sense; `sides` names the sides, each from its corner to the next."""
+    """A polygon."""
 
     outlined_by = "corners"
 
     shape: Literal["polygon"]
-    corners: tuple[Point, ...]
-    sides: tuple[StrictStr, ...] | None = None
+    """A polygon, which may turn inwards; its boundary is rim, or by sides."""
+    corners: tuple[Point, ...] = Field(examples=[[["-300 um", "-300 um"], ["300 um", "-300 um"], ["0 um", "300 um"]]])
+    """Its corners, three or more, in either sense."""
+    sides: tuple[StrictStr, ...] | None = Field(default=None, examples=[["base", "flank", "flank"]])
+    """A name for each side, the first from the first corner to the second; sides of one name are one boundary."""
 
     @field_validator("corners", mode="before")
     @classmethod
@@ -189,12 +206,14 @@ class PolygonCase(ShapeCase):
 
 
 class MeshCase(PlateCase):
-    """A plate read from a mesh file; `mesh` is its path, `mesh_unit` the length in m that its coordinates count."""
+    """A plate read from a mesh file."""
 
     outlined_by = "mesh"
 
-    mesh: StrictStr
-    mesh_unit: Length = Field(default=1.0, gt=0)
+    mesh: StrictStr = Field(examples=["plate.msh"])
+    """A mesh file of gmsh, VTU or XDMF, beside the case file; its boundaries are the physical curves."""
+    mesh_unit: Length = Field(default=1.0, gt=0, examples=["1 um"])
+    """What one unit of its coordinates stands for."""
 
     @field_validator("mesh")
     @classmethod

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple
 
 from pydantic import Discriminator, Field, StrictStr, Tag, ValidationInfo, field_validator
 
-from coupling.csv_columns import Columns, File, read_columns, told
+from coupling.csv_columns import Columns, File, read_columns, told, unreadable
 from coupling.drive_case import CLOSEST, DriveCase
 from coupling.table import Table
 from coupling.units import Length, Quantity
@@ -39,26 +39,28 @@ class MotionCase(Table):
     """What moves a platform; along an axis that is not given it does not move."""
 
     x: AxisCase | None = None
+    """The drive along x."""
     y: AxisCase | None = None
+    """The drive along y."""
     z: AxisCase | None = None
+    """The drive along z."""
 
 
 class PlatformCase(Table):
-    """A flat rigid surface without end; None: it stands still.
-
-    motion: drives of its axes, or the name of a CSV file of measured positions.  smoothing: the noise of these, in m;
-    None: they are followed exactly.
-    """
+    """A flat rigid surface without end; without a motion it stands still."""
 
     shape: Literal["platform"]
+    """No plate, but a flat rigid surface without end that moves as a whole."""
     motion: (
         Annotated[
             Annotated[StrictStr, Tag(FROM_FILE)] | Annotated[MotionCase, Tag(BY_DRIVES)],
             Discriminator(lambda value: FROM_FILE if isinstance(value, str) else BY_DRIVES),
         ]
         | None
-    ) = None
-    smoothing: Length | None = Field(default=None, gt=0)
+    ) = Field(default=None, examples=["shaker.csv"])
+    """What moves it: a CSV file of measured positions beside the case file, or a table for each axis."""
+    smoothing: Length | None = Field(default=None, gt=0, examples=["0.1 um"])
+    """The noise of the positions in the file; without it they are followed exactly."""
 
     @field_validator("motion")
     @classmethod
@@ -94,7 +96,7 @@ class PlatformCase(Table):
         try:
             measured, mistakes = self.read_motion
         except OSError as error:
-            yield where, f"cannot be read: {(error.strerror or str(error)).lower()}"
+            yield where, unreadable(Path(str(self.motion)).name, error)
             return
         for mistake in mistakes:
             yield where, f"in {Path(str(self.motion)).name}: {mistake}"

@@ -27,35 +27,40 @@ def silent(stage: str) -> AbstractContextManager[Tell]:
 def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
     """work(*arguments) on another thread, so that Ctrl-C ends the wait for it.
 
-    A signal that arrives inside a compiled kernel would otherwise be handled when the kernel returns, if at all.
+    A signal that arrives inside a compiled kernel, or while one is compiled, would otherwise be handled late or never.
     """
+    from particle.interrupt import wait  # here, because it comes with the kernels
+
     done: list[Answer] = []
     failed: list[BaseException] = []
+    ended = threading.Event()
 
     def run() -> None:
         try:
             done.append(work(*arguments))
         except BaseException as error:  # handed to the caller below
             failed.append(error)
+        finally:
+            ended.set()
 
-    thread = threading.Thread(target=run, daemon=True)
-    thread.start()
-    while thread.is_alive():
-        thread.join(0.1)
+    threading.Thread(target=run, daemon=True).start()
+    wait(ended.wait)
     if failed:
         raise failed[0]
     return done[0]
 
 
 class _Bar:
-    """A bar on the terminal's error stream after a while of silence; nothing where that is not a terminal."""
+    """A bar on the terminal's error stream after a while of silence; nothing where that cannot show one."""
 
     def __init__(self, *columns: Any, total: int | None = None) -> None:
         from rich.console import Console
         from rich.progress import Progress as Bar
 
         console = Console(stderr=True)
-        self._bar = Bar(*columns, console=console, transient=True, disable=not console.is_terminal)
+        self._bar = Bar(
+            *columns, console=console, transient=True, disable=not console.is_terminal or console.is_dumb_terminal
+        )
         self._task = self._bar.add_task("", total=total)
         self._timer = threading.Timer(PATIENCE, self._bar.start)
         self._timer.daemon = True

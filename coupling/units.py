@@ -18,7 +18,7 @@ from functools import cache
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
-from pydantic import GetCoreSchemaHandler, ValidationInfo
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
 if TYPE_CHECKING:
@@ -39,6 +39,17 @@ DIMENSIONS: Final = {
 _USUAL_UNITS: Final = [
     *("m", "cm", "mm", "um", "nm", "m^2", "mm^2", "um^2", "nm^2", "m^3", "meter", "micrometer", "nanometer", "micron"),
     *("s", "ms", "us", "s^2", "second", "Hz", "kHz", "MHz", "hertz", "kg", "g", "mg", "ug", "ng", "gram"),
+    *(
+        "metre",
+        "micrometre",
+        "nanometre",
+        "millisecond",
+        "microsecond",
+        "kilohertz",
+        "milligram",
+        "microgram",
+        "nanogram",
+    ),
     *("N", "mN", "uN", "nN", "newton", "Pa", "kPa", "MPa", "GPa", "pascal", "J", "mJ", "uJ", "nJ", "joule"),
 ]
 
@@ -48,6 +59,10 @@ _NUMBER_AND_UNIT: Final = re.compile(
     r"(?P<number>[+-]?(?:(?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?|(?:nan|inf)\b))"
     r"[ \t]*(?P<unit>[\w \t.*/^()+⁻·⋅°%-]*)"
 )
+
+# The same for JSON schemas, as far as it goes without a list of all units.
+WRITTEN: Final = r"^\s*[+-]?\.?[0-9][0-9_.]*([eE][+-]?[0-9]+)?\s*([^0-9_.,;\s]|[0-9]+/).*$"
+POSITIVE: Final = WRITTEN.replace("[+-]?", "[+]?", 1)
 
 _COUNTS: Final = {2: "two", 3: "three"}
 _NONSENSE: Final = ", which is not a number and a unit"
@@ -125,6 +140,9 @@ class Quantity:
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_before_validator_function(self.validate, handler(source))
 
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"type": "string", "pattern": WRITTEN, "examples": [self.example]}
+
 
 @dataclass(frozen=True)
 class Pair:
@@ -179,6 +197,10 @@ class Directed:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(self.validate)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        one, count = self.quantity.__get_pydantic_json_schema__(schema, handler), len(self.axes)
+        return {"anyOf": [one, {"type": "array", "items": one, "minItems": count, "maxItems": count}]}
 
 
 def shown(value: object) -> str:

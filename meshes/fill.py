@@ -69,7 +69,9 @@ def fill(points: FloatArray, rim: Rim, outline: Outline, cell_size: float) -> tu
             points = np.concatenate([points, centres])
         points = rim.cut(points, cut)
     else:
-        raise ValueError(f"No cells of {cell_size!r} m were found that fit the outline; try smaller ones")
+        raise ValueError(
+            f"Input cell_size of a plate must be small enough for cells to fit the outline; got {cell_size!r} m"
+        )
     used, rows = np.unique(triangles, return_inverse=True)
     rim.edges = np.searchsorted(used, rim.edges)
     return _smoothed(points[used], rows.reshape(-1, 3), rim), rows.reshape(-1, 3)

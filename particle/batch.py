@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from queue import Empty, SimpleQueue
 from typing import TypeGuard
 
@@ -12,14 +13,13 @@ import numpy as np
 
 from particle.drive import AnyDrive
 from particle.friction import Contact, FrictionLaw
+from particle.interrupt import wait
 from particle.micropart import Micropart
 from particle.path import find_path
 from particle.rim import rim_gap
 from particle.simulate import faults, new_request
 from particle.surface import SurfaceMotion
 from particle.trajectory import Trajectory
-
-AWAKE = 0.1  # s between looks at whether somebody wants to stop
 
 
 class Interrupted(KeyboardInterrupt):
@@ -94,12 +94,16 @@ def simulate_many(
 
 
 def _next(ended: SimpleQueue[Future[None]]) -> Future[None]:
-    """The next future that ended; a signal is heard while it is waited for."""
-    while True:
-        try:
-            return ended.get(timeout=AWAKE)
-        except Empty:
-            continue
+    """The next future that ended; Ctrl-C is heard while it is waited for."""
+    found: list[Future[None]] = []
+
+    def look(seconds: float) -> bool:
+        with suppress(Empty):
+            found.append(ended.get(timeout=seconds))
+        return bool(found)
+
+    wait(look)
+    return found[0]
 
 
 def _laws(friction: Contact | Iterable[Contact], count: int) -> tuple[list[Contact], list[str]]:

@@ -10,6 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from particle.checks import finite, not_negative, positive, refuse
 from particle.jit import bare, jit
 
 FloatArray = NDArray[np.float64]
@@ -150,7 +151,7 @@ class ConstantFriction:
     largest_load = math.inf
 
     def __post_init__(self) -> None:
-        _require(0 <= self.limit < math.inf, "limit", "ConstantFriction", "0 or a positive force in N", self.limit)
+        refuse("ConstantFriction", [(not_negative(self.limit), "limit", "0 or a positive force in N", self.limit)])
 
     @property
     def law(self) -> FrictionLaw:
@@ -166,7 +167,7 @@ class CoulombAdhesion:
     """Q = max(0, coefficient (N + adhesion)), the part comes off below N = -adhesion.
 
     static_coefficient, at least the (kinetic) coefficient, holds a part that is stuck.
-    Raises ValueError, naming the field that is wrong.
+    Raises ValueError, naming every field that is wrong.
     """
 
     coefficient: float
@@ -177,15 +178,15 @@ class CoulombAdhesion:
     largest_load = math.inf
 
     def __post_init__(self) -> None:
-        _require(0 <= self.coefficient < math.inf, "coefficient", "CoulombAdhesion", "0 or positive", self.coefficient)
-        _require(
-            0 <= self.adhesion < math.inf, "adhesion", "CoulombAdhesion", "0 or a positive force in N", self.adhesion
-        )
-        static = self.static_coefficient
-        if static is not None:
-            at_least = f"at least the coefficient {self.coefficient!r}, which must then be positive"
-            good = math.inf > static >= self.coefficient > 0
-            _require(good, "static_coefficient", "CoulombAdhesion", at_least, static)
+        static, sliding = self.static_coefficient, self.coefficient
+        checks = [
+            (not_negative(sliding), "coefficient", "0 or positive", sliding),
+            (not_negative(self.adhesion), "adhesion", "0 or a positive force in N", self.adhesion),
+        ]
+        if static is not None and not_negative(sliding):
+            at_least = f"at least the coefficient {sliding!r}, which must then be positive"
+            checks.append((finite(static) and static >= sliding > 0, "static_coefficient", at_least, static))
+        refuse("CoulombAdhesion", checks)
 
     @property
     def pull_off(self) -> float:
@@ -213,7 +214,7 @@ class ScaledFriction:
     factor: float
 
     def __post_init__(self) -> None:
-        _require(0 < self.factor < math.inf, "factor", "ScaledFriction", "positive", self.factor)
+        refuse("ScaledFriction", [(positive(self.factor), "factor", "positive", self.factor)])
 
     @property
     def pull_off(self) -> float:
@@ -243,8 +244,3 @@ class ScaledFriction:
     def friction_limit(self, net_load: ArrayLike) -> FloatArray:
         """Q [N] under net loads [N] of any shape; ValueError for one outside the law."""
         return friction_limits(self.law, net_load)
-
-
-def _require(good: bool, name: str, owner: str, right: str, got: object) -> None:
-    if not good:
-        raise ValueError(f"Input {name} of {owner} must be {right}; got {got!r}")

@@ -13,13 +13,13 @@ from coupling.case_text import write_case
 from coupling.progress import Tell, untold
 from coupling.units import shown_length
 from particle import SurfaceMotion
+from particle.interrupt import unbroken
 from steering.aimed import Aimed
 from steering.approach import Approach
 from steering.found import check_free, drawn, prepared, with_scatter
 from steering.paths import Paths
 from steering.picture import draw_aim
 from steering.task import Task
-from steering.unbroken import unbroken
 
 
 def aim(

@@ -15,6 +15,7 @@ from coupling.case_text import write_case
 from coupling.progress import Tell, untold
 from coupling.units import shown_length
 from particle import SurfaceMotion, Trajectory
+from particle.interrupt import unbroken
 from steering.approach import Approach, next_start
 from steering.found import check_free, drawn, prepared, with_scatter
 from steering.paths import Paths, path_of, settled
@@ -22,7 +23,6 @@ from steering.picture import draw_plan
 from steering.planned import Planned
 from steering.route import Route
 from steering.schedule import Leg, scheduled
-from steering.unbroken import unbroken
 
 
 def plan(

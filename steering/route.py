@@ -31,7 +31,7 @@ class Route:
             for key, message in mistakes(self.case, self.settings, place):
                 told[f"way-point {number} {message}" if key == "target" else f"{key} {message}"] = None
         if wrong := wrong + list(told):
-            raise ValueError("; ".join(wrong))
+            raise ValueError("\n".join(wrong))
 
     def leg(self, number: int, start: Place) -> Task:
         """What is to be done to get to a way-point, counted from 0, from a place [m] where the part rests."""

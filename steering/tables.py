@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, Final
 
-from pydantic import BaseModel, Field, GetCoreSchemaHandler, StrictFloat, StrictInt, StrictStr
+from pydantic import BaseModel, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictFloat, StrictInt, StrictStr
 from pydantic_core import CoreSchema, core_schema
 
 from coupling.table import Table
@@ -49,6 +49,10 @@ class _Numbers:
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.validate)
 
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        whole = {"type": "integer", "minimum": 0}
+        return {"type": "array", "items": whole, "minItems": 1, "uniqueItems": True}
+
 
 MOST_PATHS, MOST_PATHS_DISTURBED = 10_000, 40_000
 
@@ -58,27 +62,30 @@ Count = Annotated[StrictInt, Field(ge=1, le=1_000_000)]
 
 
 class Settings(Table):
-    """How drives are searched for. Bounds hold for each actuator that takes part; None: they follow from its drive.
+    """How drives are searched for. Bounds hold for each actuator that takes part; None: they follow from its drive."""
 
-    actuators: those that take part, by their numbers from 0; None: the `nearest` to the way to the target.
-    frequency: Hz, by default from 0.2 times to twice its own.  stroke: m, from 0 to its own.  delay: s, from 0 to
-    twice its own where it has one, else none.  cycles: of each drive.  paths: how many are found at most, None: 10 000,
-    with a quantile 40 000.  tolerance: m, from the target, at which a search ends.  quantile: of the distances of
-    disturbed runs, which is made small in place of the distance itself.  scatter: how many such runs tell how robust
-    the found drive is.
-    """
-
-    actuators: Annotated[tuple[int, ...], _Numbers()] | None = None
+    actuators: Annotated[tuple[int, ...], _Numbers()] | None = Field(default=None, examples=[[0, 4]])
+    """Those that take part, by their numbers from 0; without it the nearest to the way to the target."""
     nearest: Count = 4
+    """How many these are."""
     frequency: Annotated[tuple[Positive, Positive], _Bounds('["100 Hz", "600 Hz"]')] | None = None
+    """Bounds; without them from 0.2 times to twice its own."""
     stroke: Annotated[tuple[Length, Length], _Bounds('["0 um", "60 um"]')] | None = None
+    """Bounds; without them from 0 to its own."""
     delay: Annotated[tuple[Waiting, Waiting], _Bounds('["0 ms", "2 ms"]')] | None = None
+    """Bounds; without them from 0 to twice its own, where it has one."""
     cycles: Annotated[tuple[Count, Count], _Bounds("[1, 5]")] = (1, 3)
+    """Bounds of how many cycles each drive has."""
     seed: StrictInt = Field(default=0, ge=0, lt=2**32)
-    paths: Count | None = None
+    """From which random numbers follow."""
+    paths: Count | None = Field(default=None, examples=[10000])
+    """How many are found at most; without it 10 000, with a quantile 40 000."""
     tolerance: Length = Field(default=5e-7, gt=0)
-    quantile: StrictFloat | None = Field(default=None, gt=0, le=1)
+    """The distance from the target at which a search ends."""
+    quantile: StrictFloat | None = Field(default=None, gt=0, le=1, examples=[0.9])
+    """This quantile of the distances of disturbed runs is made small in place of the distance."""
     scatter: Count = 100
+    """How many disturbed runs tell how robust the found drives are."""
 
     @property
     def most(self) -> int:
@@ -93,14 +100,17 @@ class _File:
 class AimTable(Settings):
     """The file of the `case`, beside this one; where the part is to go, unless that is told elsewhere; `Settings`."""
 
-    case: Annotated[StrictStr, _File()]
-    target: Point | None = None
+    case: Annotated[StrictStr, _File()] = Field(examples=["array_3x3.toml"])
+    """The case whose part is to be moved, a file beside this one."""
+    target: Point | None = Field(default=None, examples=[["100 um", "-50 um"]])
+    """Where the part is to go, unless the command tells it."""
 
 
 class AimTables(Table):
     """All that an aim file holds."""
 
     aim: AimTable
+    """What may be varied, and how long to search."""
 
 
 TABLES: Final[dict[str, type[BaseModel]]] = {"": AimTables, "aim": AimTable}

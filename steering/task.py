@@ -39,7 +39,7 @@ class Task:
         object.__setattr__(self, "name", self.name or self.case.name)
         wrong = [f"{key} {message}" for key, message in mistakes(self.case, self.settings, self.target)]
         if wrong:
-            raise ValueError("; ".join(wrong))
+            raise ValueError("\n".join(wrong))
 
     @property
     def movers(self) -> tuple[int, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Final, Literal, get_args, get_origin
@@ -15,6 +14,7 @@ from coupling.case import Case
 from coupling.case_lines import Location, message_of, shown_location
 from coupling.keyed_table import adapter
 from coupling.lattice_case import LatticeCase
+from coupling.near import near
 from coupling.table import Table
 from coupling.units import UNITS_REQUIRED, Directed, shown
 
@@ -139,10 +139,10 @@ def _model_of(value: Any, at: Location) -> Any:
 
 
 def _unknown(key: str, at: Location, known: Iterable[str]) -> str:
-    near = difflib.get_close_matches(key, known, 1)
+    meant = near(key, known)
     owner = shown_location(at) if at else "the case"
     return f"{owner} has no {key or shown(key)}; " + (
-        f"did you mean {near[0]}?" if near else f"it has {', '.join(known)}"
+        f"did you mean {meant}?" if meant else f"it has {', '.join(known)}"
     )
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, Field, PlainValidator, StrictInt, StrictStr
+from pydantic import BaseModel, BeforeValidator, Field, PlainValidator, StrictInt, StrictStr, WithJsonSchema
 
 from coupling.keyed_table import WRONG, Contradictions, KeyedTable
 from coupling.table import Table
@@ -50,17 +50,20 @@ def _name(value: object) -> object:
 
 
 class StudyTable(KeyedTable):
-    """What is swept: the file of the base `case`, beside the study's, and how points are chosen.
+    """What is swept, and how points are chosen; jitter in m."""
 
-    points: how many, of random and Sobol ones.  repeats: of each point.  jitter: how far in m starts are displaced.
-    """
-
-    case: Annotated[StrictStr, _File()]
+    case: Annotated[StrictStr, _File()] = Field(examples=["one_actuator.toml"])
+    """The base case, a file beside the study's."""
     sampling: Sampling = "grid"
-    points: StrictInt | None = Field(default=None, ge=1, le=MOST_PATHS)
-    repeats: StrictInt = Field(default=1, ge=1, le=1_000_000)
-    jitter: Length = Field(default=0.0, ge=0)
+    """How points are chosen: all of a grid, one for each entry of lists, or drawn."""
+    points: StrictInt | None = Field(default=None, ge=1, le=MOST_PATHS, examples=[1000])
+    """How many, of random and Sobol ones."""
+    repeats: StrictInt = Field(default=1, ge=1, le=1_000_000, examples=[10])
+    """How many paths there are of each point."""
+    jitter: Length = Field(default=0.0, ge=0, examples=["1 um"])
+    """How far the starts of repeats are displaced at most."""
     seed: StrictInt = Field(default=0, ge=0, lt=2**32)
+    """From which random numbers follow."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -76,12 +79,22 @@ class StudyTable(KeyedTable):
 class AxisTable(KeyedTable):
     """An axis: the path of a `field` of the case, and its `values`, or their `range` and `count`."""
 
-    field: Annotated[StrictStr, _Path()]
-    name: Annotated[str, BeforeValidator(_name)] | None = None
-    values: Annotated[tuple[Any, ...], BeforeValidator(_several)] | None = None
-    range: Annotated[tuple[Any, Any], BeforeValidator(_two)] | None = None
-    count: StrictInt | None = Field(default=None, ge=1, le=MOST_VALUES)
+    field: Annotated[StrictStr, _Path()] = Field(examples=["actuators.*.frequency"])
+    """The field of the case that is varied; * stands for every actuator."""
+    name: Annotated[str, BeforeValidator(_name)] | None = Field(default=None, examples=["frequency"])
+    """The axis's name in the results; without it the field's."""
+    values: Annotated[tuple[Any, ...], BeforeValidator(_several)] | None = Field(
+        default=None, examples=[["300 Hz", "400 Hz"]]
+    )
+    """The values that it takes."""
+    range: Annotated[tuple[Any, Any], BeforeValidator(_two)] | None = Field(
+        default=None, examples=[["200 Hz", "600 Hz"]]
+    )
+    """In place of values: the first and the last."""
+    count: StrictInt | None = Field(default=None, ge=1, le=MOST_VALUES, examples=[41])
+    """How many values a range has."""
     spacing: Literal["linear", "logarithmic"] = "linear"
+    """How those of a range lie."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -97,15 +110,21 @@ class AxisTable(KeyedTable):
 class MapTable(Table):
     """What the picture shows: where the condition `threshold` begins to hold."""
 
-    threshold: Annotated[Threshold, PlainValidator(read_threshold)] | None = None
+    threshold: Annotated[Threshold, PlainValidator(read_threshold), WithJsonSchema({"type": "string"})] | None = Field(
+        default=None, examples=["distance > 1 um"]
+    )
+    """A condition; the picture shows where it begins to hold."""
 
 
 class StudyTables(Table):
     """All that a study file holds."""
 
     study: StudyTable
+    """What is swept, and how."""
     axes: tuple[AxisTable, ...]
+    """The axes, one table each."""
     map: MapTable = MapTable()
+    """The picture."""
 
 
 TABLES: dict[str, type[BaseModel]] = {"": StudyTables, "study": StudyTable, "axes": AxisTable, "map": MapTable}

@@ -223,5 +223,5 @@ def test_a_target_that_makes_no_sense_leaves_nothing_behind(tmp_path, target):
     done = CliRunner().invoke(
         main, ["aim", str(tmp_path / "base.toml"), "--target", target, "-o", str(tmp_path / "out")]
     )
-    assert done.exit_code == 2 and "target must" in done.output and len(done.output.splitlines()) == 1
+    assert done.exit_code == 2 and "target must" in done.output and len(done.output.splitlines()) == 2
     assert not (tmp_path / "out").exists()

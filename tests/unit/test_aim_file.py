@@ -144,7 +144,7 @@ def test_way_points_are_checked_before_any_search(tmp_path):
     with pytest.raises(ValueError) as error:
         read_route(tmp_path / "base.toml", [(0.0, 1e-5), (4e-4, 0.0), (0.0, -3e-4)])
     assert str(error.value) == (
-        "way-point 2 must be inside the rim; got a point 100 um beyond it; "
+        "way-point 2 must be inside the rim; got a point 100 um beyond it\n"
         "way-point 3 must be inside the rim; got a point on it"
     )
     with pytest.raises(ValueError, match="through must be one way-point or more"):

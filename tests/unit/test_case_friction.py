@@ -74,7 +74,7 @@ MANY = """load [uN], limit [nN]
 3, -3
 """
 BAD_FILES = [
-    (None, ["cannot be read: no such file or directory"]),
+    (None, ['must be a file that can be read; got "friction.csv": no such file or directory']),
     (b"load [uN], limit [nN]\n-1 \xb5", ["is not UTF-8 text"]),
     ("# nothing\n", ['is empty; it must begin with a header such as "load [uN], limit [nN]"']),
     ("load; limit\n1; 2\n", ['line 1 must name one column "load"', 'line 1 must name one column "limit"']),
@@ -100,7 +100,8 @@ def test_everything_wrong_with_a_file_is_told_at_once_with_its_lines(write, poin
     found = mistakes(write(FILE, points))
     assert len(found) == len(says)
     for (line, message), said in zip(found, says, strict=True):
-        assert line == 2 and message.startswith(f"friction.file {said}")
+        where = "" if said.startswith("must be a file") else "in friction.csv: "
+        assert line == 2 and message.startswith(f"friction.file {where}{said}")
 
 
 MISSING = 'friction.loads is missing; it must be forces such as ["-1 uN", "0 N", "5 uN"], or have file = "friction.csv"'
@@ -169,7 +170,7 @@ REFUSED = [
     ('model = "coulomb"\ncoefficient = 0.1\nadhesion = "-1 N"', 'friction.adhesion must be at least 0; got "-1 N"'),
     ('model = "coulomb"\ncoefficient = 0.0\nstatic_coefficient = 0.5', "friction.static_coefficient must not"),
     (LISTS.replace('"20 nN"', '"2 nN"'), "friction.limits[2] must not be less than the one before"),
-    (FILE, "friction.file cannot be read"),
+    (FILE, "friction.file must be a file that can be read"),
 ]
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from coupling.any_plate import PLATES
 from coupling.case import ActuatorCase, Case, CaseError, ConstantCase, PartCase, RunCase, read_case
+from coupling.input_error import InputError
 from coupling.plate_case import AnnulusCase, DiscCase, MeshCase, PolygonCase, RectangleCase
 
 MESH = Path(__file__).parents[1] / "data" / "l_with_hole.msh"
@@ -286,7 +286,7 @@ def test_a_case_of_any_shape_is_built_in_python():
         "run": RunCase(duration=1.0),
     }
     assert Case(plate=plate | material, **others).plate == RectangleCase(**plate, **material)
-    with pytest.raises(ValidationError, match="free to move"):
+    with pytest.raises(InputError, match="free to move"):
         Case(plate=plate | material | {"supports": "free"}, **others)
 
 

@@ -98,7 +98,10 @@ ONLY_X = "[plate.motion.x]\n"
 WRONG = [
     ('radius = "3 um"', '3 plate.radius is not known; [plate] with shape = "platform" has shape, motion, smoothing'),
     ("motion = 3", "3 plate.motion must be a table, written [plate.motion]; got 3"),
-    ('motion = "nowhere.csv"', "3 plate.motion cannot be read: no such file or directory"),
+    (
+        'motion = "nowhere.csv"',
+        '3 plate.motion must be a file that can be read; got "nowhere.csv": no such file or directory',
+    ),
     ('smoothing = "1 um"', '3 plate.smoothing must not be given without motion = "file.csv"'),
     ("[plate.motion]\nx = 3", "4 plate.motion.x must be a table, written [plate.motion.x]; got 3"),
     ("[plate.motion]\nw = 3", "4 plate.motion.w is not known; [plate.motion] has x, y, z"),

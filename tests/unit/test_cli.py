@@ -62,6 +62,7 @@ def test_an_interrupt_exits_130_with_one_line(command, tmp_path, monkeypatch):
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("coupling.case.read_case", interrupted)
+    monkeypatch.setattr("coupling.case_lines.load", interrupted)
     done = CliRunner().invoke(main, [command, "any.toml"])
     assert (done.exit_code, done.stdout, done.stderr) == (130, "", "interrupted\n")
 
@@ -103,11 +104,10 @@ def test_examples_are_fine(path):
     assert "fine" in done.output
 
 
-def test_verify_passes_and_writes_every_figure(tmp_path):
-    file = tmp_path / "verify.json"
-    done = CliRunner().invoke(main, ["verify", "--json", str(file)])
-    assert done.exit_code == 0
-    checks = json.loads(file.read_text())
+def test_verify_passes_and_says_every_figure():
+    done, told = (CliRunner().invoke(main, ["verify", *more]) for more in ([], ["--json"]))
+    assert (done.exit_code, told.exit_code) == (0, 0)
+    checks = json.loads(told.stdout)
     assert [check["passed"] for check in checks] == [True, True]
     for check in checks:
         for figure in check["errors"]["hessian"]:
@@ -137,5 +137,5 @@ def test_help_loads_no_solver():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     said = set(done.stdout.split())
-    assert {"run", "check", "sweep", "aim", "plan", "verify"} <= said
+    assert {"run", "check", "sweep", "aim", "plan", "verify", "schema", "completion"} <= said
     assert not said & {"numba", "numpy", "scipy", "matplotlib", "h5py", "pydantic", "xarray", "h5netcdf", "pyvista"}

@@ -150,7 +150,8 @@ def refused(tmp_path, address):
     done = CliRunner().invoke(main, ["sweep", str(path), "-o", str(tmp_path / "out"), "--scheduler", address])
     assert done.exit_code == 2 and time.monotonic() - begin < 30 and not (tmp_path / "out").exists()
     said, got = done.output.split(f"; got {address!r}: ")
-    assert said == "Input scheduler must be the address of a running dask scheduler such as tcp://127.0.0.1:8786"
+    wanted = "the address of a running dask scheduler such as tcp://127.0.0.1:8786"
+    assert said == f"main sweep: 1 mistake\n  Input scheduler must be {wanted}"
     assert got.count("\n") == 1
     return got.strip()
 

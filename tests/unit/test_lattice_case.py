@@ -4,9 +4,9 @@ import time
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from coupling.case import ActuatorCase, Case, CaseError, ConstantCase, LatticeCase, PartCase, RunCase, read_case
+from coupling.input_error import InputError
 from coupling.plate_case import DiscCase
 from coupling.run import build_drives
 from particle.drive import drive_table
@@ -120,7 +120,10 @@ WRONG = [
     (DRIVE + 'delay = "row * column"\n', '"row * column", which has no unit'),
     (DRIVE + 'delay = "row * column um"\n', '"row * column um", a length'),
     (DRIVE + "delay = 3\n", "got 3, which has no unit"),
-    (DRIVE + 'delay = "colum ms"\n', 'lattice.delay cannot be "colum ms": there is no colum; did you mean column?'),
+    (
+        DRIVE + 'delay = "colum ms"\n',
+        'lattice.delay must be an expression and its unit; got "colum ms": there is no colum; did you mean column?',
+    ),
     (DRIVE + 'delay = "2 row ms"\n', 'an operator such as * is missing before "row ms"'),
     (DRIVE + 'delay = "row.real ms"\n', 'an operator such as * is missing before ".real ms"'),
     (
@@ -259,7 +262,10 @@ def test_where_and_margin_leave_out_together(tmp_path):
         ('"row > 5"', 'lattice.where must be true for one actuator or more; "row > 5" is true for none'),
         ('"column"', 'true or false for each actuator; "column" is a number and not a comparison at row 0, column 0'),
         ('"1 / column > 2"', '"1 / column > 2" divides by zero at row 0, column 0'),
-        ('"rwo > 2"', 'lattice.where cannot be "rwo > 2": there is no rwo; did you mean row?'),
+        (
+            '"rwo > 2"',
+            'must be an expression that is true or false; got "rwo > 2": there is no rwo; did you mean row?',
+        ),
         ('"x > 10 um"', '"um" is too much; it has no unit'),
         ('""', "lattice.where must be an expression that is true or false, such as"),
         ("true", "lattice.where must be an expression that is true or false, such as"),
@@ -309,7 +315,7 @@ def test_in_python_text_and_numbers_do():
     lattice = LatticeCase(rows=2, columns=2, pitch=1e-4, stroke="row um", frequency=300, delay=1e-3)
     case = python_case(lattice=lattice, actuators=[ActuatorCase(position=(0, 0), stroke=0, frequency=1)])
     assert [a.stroke for a in case.actuators] == pytest.approx([0, 0, 0, 1e-6, 1e-6])
-    with pytest.raises(ValidationError, match="divides by zero at row 0, column 0"):
+    with pytest.raises(InputError, match="divides by zero at row 0, column 0"):
         python_case(lattice=lattice.model_dump() | {"stroke": "1 / row um"})
 
 

@@ -140,7 +140,7 @@ def test_two_sweeps_at_once_do_not_meet(tmp_path):
             assert other.stdout.readline() == "held\n"
             done = swept(tmp_path)
             assert done.exit_code == 2
-            assert done.output == f"another sweep of this name is running in {tmp_path / 'out'}\n"
+            assert done.output == f"main sweep: another sweep of this name is running in {tmp_path / 'out'}\n"
             if end == "kill":
                 other.kill()
             else:

@@ -1,0 +1,39 @@
+"""Options that several commands have, and how those tell what they found."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+WIDTH = 12  # of labels
+
+folder = click.option(
+    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
+)
+quiet = click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress.")
+as_json = click.option("--json", "as_json", is_flag=True, help="Print the summary, or what is wrong, as JSON.")
+threads = click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one a processor].")
+
+
+def tell(
+    figures: Mapping[str, Any],
+    lines: Iterable[tuple[str, str]],
+    quiet: bool,
+    as_json: bool,
+    warnings: Iterable[str] = (),
+    files: Iterable[Path] = (),
+) -> None:
+    """Prints what a command found, as figures or in words."""
+    if as_json:
+        click.echo(json.dumps(figures, indent=2))
+    elif not quiet:
+        for label, text in lines:
+            click.echo(f"{label:<{WIDTH}}{text}")
+        for warning in warnings:
+            click.secho(f"{'warning':<{WIDTH}}{warning}", fg="yellow")
+        for file in files:
+            click.echo(f"{'wrote':<{WIDTH}}{file}")

@@ -1,0 +1,230 @@
+"""Mistakes in case files: messages that say where one is and what would be right."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import pytest
+from case_files import ACTUATOR, DURATION, FRICTION, GOOD, PART, POISSON, RADIUS, STROKE, changed, problems, read
+
+from coupling.case import (
+    CaseError,
+    Problem,
+    read_case,
+)
+
+
+def test_five_mistakes_at_once(tmp_path: Path) -> None:
+    text = changed(
+        (RADIUS, 'raduis = "300 um"'),
+        (POISSON, "poisson_ratio = 0.5"),
+        (STROKE, 'stroke = "150 Hz"'),
+        ("cycles = 5", "cycles = 5.0"),
+        ("[run]\n" + DURATION, ""),
+    )
+    with pytest.raises(CaseError) as caught:
+        read(tmp_path, text)
+    assert str(caught.value) == (
+        f"{tmp_path}/test.toml: 5 mistakes\n"
+        "  the file  run is missing; it must be a table, written [run]\n"
+        "  line 3    plate.raduis is not known; did you mean radius?\n"
+        "  line 5    plate.poisson_ratio must be less than 0.5; got 0.5\n"
+        '  line 10   actuators[1].stroke must be a length such as "150 um"; got "150 Hz", a frequency\n'
+        "  line 20   actuators[2].cycles must be a whole number; got 5.0"
+    )
+    assert caught.value.problems[3] == Problem(
+        10, "actuators[1].stroke", 'must be a length such as "150 um"; got "150 Hz", a frequency'
+    )
+
+
+BROKEN = [
+    # Keys and tables
+    ((STROKE, ""), 'line 8  actuators[1].stroke is missing; it must be a length such as "150 um"'),
+    (
+        ('shape = "disc"', ""),
+        'line 1  plate.shape is missing; it must be "disc", "rectangle", "annulus", "ellipse", "polygon" or "platf',
+    ),
+    ((POISSON, ""), "line 1  plate.poisson_ratio is missing; it must be a number"),
+    ((PART, ""), 'two lengths, x and y, such as ["100 um", "100 um"]'),
+    (("[part]", "[prat]"), "line 23  prat is not known; did you mean part?"),
+    (
+        ("[plate]", 'name = "x"\n[plate]'),
+        "line 1  name is not known; the file has [plate], [[actuators]], [lattice], [part]",
+    ),
+    ((STROKE, STROKE + "\ncolour = 1"), "line 11  actuators[1].colour is not known; [[actuators]] has position, "),
+    (("[plate]", "[[plate]]"), "line 1  plate must be a table, written [plate]; got a list of tables"),
+    ((RADIUS, "[plate.radius]"), 'plate.radius must be a length such as "150 um"; got a table'),
+    ((GOOD, "actuators = 3\nplate = 1\n" + GOOD[GOOD.index("[part]") :]), "line 2  plate must be a table, written"),
+    # Numbers and choices
+    ((POISSON, 'poisson_ratio = "0.3"'), 'line 5  plate.poisson_ratio must be a number; got "0.3", in quotes'),
+    ((POISSON, "poisson_ratio = true"), "plate.poisson_ratio must be a number; got true"),
+    ((POISSON, "poisson_ratio = nan"), "plate.poisson_ratio must be a finite number; got nan"),
+    ((POISSON, "poisson_ratio = -0.1"), "plate.poisson_ratio must be at least 0; got -0.1"),
+    (("cycles = 5", "cycles = 0"), "actuators[2].cycles must be at least 1; got 0"),
+    (("cycles = 5", "cycles = true"), "actuators[2].cycles must be a whole number; got true"),
+    (("cycles = 5", 'cycles = 5\ncycle = "up"'), 'line 20  actuators[2].cycles must not be given with cycle = "up"'),
+    (("cycles = 5", 'cycle = "down"'), 'actuators[2].cycle must be "up-down", "up", "sine" or "cosine"; got "down"'),
+    (
+        ('shape = "disc"', 'shape = "square"'),
+        'line 2  plate.shape must be "disc", "rectangle", "annulus", "ellipse", "polygon" or "platform"; got "square"',
+    ),
+    (('"300 Hz"', '"0 Hz"'), 'actuators[1].frequency must be greater than 0; got "0 Hz"'),
+    (('"1 ms"', '"-1 ms"'), 'actuators[2].delay must be at least 0; got "-1 ms"'),
+    ((RADIUS, 'radius = "-3 um"'), 'plate.radius must be greater than 0; got "-3 um"'),
+    (
+        (RADIUS, RADIUS + '\ncell_size = "301 um"'),
+        'plate.cell_size must not exceed half of the plate\'s smallest width, 300 um; got "301 um"',
+    ),
+    ((DURATION, DURATION + "\ntolerance = 0.1"), "line 32  run.tolerance must be at most 0.01; got 0.1"),
+    ((DURATION, DURATION + "\nframes = 1"), "run.frames must be at least 2; got 1"),
+    # Positions
+    ((PART, 'position = "100 um"'), "line 25  part.position must be two lengths, x and y, such as"),
+    ((PART, 'position = ["1 um"]'), 'such as ["100 um", "100 um"]; got ["1 um"]'),
+    ((PART, 'position = ["1 um", "2 um", "3 um"]'), 'got ["1 um", "2 um", "3 um"]'),
+    ((PART, 'position = ["1 um", 2]'), 'part.position[2] must be a length such as "150 um"; got 2, which has no unit'),
+    (('"0.15 mm"', '"0.15 ms"'), "line 14  actuators[2].position[1] must be a length"),
+    (
+        (PART, PART + "\nvelocity = 0"),
+        'part.velocity must be two velocities, x and y, such as ["0 m/s", "0 m/s"]; got 0',
+    ),
+    ((PART, 'position = ["300 um", "0 um"]'), "part.position must be inside the rim; got a point on it"),
+    (('"0.15 mm"', '"-0.3 mm"'), "line 14  actuators[2].position must be inside the rim; got a point on it"),
+    (('"0.15 mm"', '"0 m"'), "line 14  actuators[2].position must differ from actuators[1].position; got the same"),
+    # Friction
+    ((FRICTION, ""), 'line 27  friction.model is missing; it must be "kogut-etsion", "constant", "coulomb" or "table"'),
+    (
+        (FRICTION, "model = 3"),
+        'line 28  friction.model must be "kogut-etsion", "constant", "coulomb" or "table"; got 3',
+    ),
+    (("[friction]", "[[friction]]"), "line 27  friction must be a table, written [friction]; got a list of tables"),
+    ((FRICTION, 'model = "constant"'), 'line 27  friction.limit is missing; it must be a force such as "2 uN"'),
+    ((FRICTION, FRICTION + '\nlimit = "1 N"'), 'line 29  friction.limit is not known; [friction] with model = "kogut-'),
+    ((FRICTION, FRICTION + "\nrougness = 1"), "line 29  friction.rougness is not known; did you mean roughness?"),
+    ((FRICTION, FRICTION + "\nasperity_beta = 0.01"), "friction.asperity_beta must be greater than 0.01928; got 0.01"),
+    ((FRICTION, FRICTION + '\nadhesion_energy = "0 J/m^2"'), "friction.adhesion_energy must be greater than 0"),
+    ((FRICTION, FRICTION + '\npreset = "papers"'), 'friction.preset must be "paper"; got "papers"'),
+    (
+        (FRICTION, FRICTION + '\npreset = "paper"\nplasticity_index = 2.5'),
+        'line 30  friction.plasticity_index must not be given with preset = "paper", which sets it to 4.9128',
+    ),
+    (
+        (FRICTION, FRICTION + '\ncoefficients = "unrounded"\npreset = "paper"'),
+        'line 29  friction.coefficients must be "printed" with preset = "paper"',
+    ),
+    (
+        (FRICTION, 'model = "coulomb"\ncoefficient = 0.3\nstatic_coefficient = 0.2'),
+        "friction.static_coefficient must be at least coefficient, 0.3; got 0.2",
+    ),
+    # Text that is not TOML
+    (
+        (RADIUS, "radius = 300 um"),
+        "line 3  is not valid TOML: expected newline or end of document after a statement; a "
+        'value with a unit needs quotes, "300 um"',
+    ),
+    ((RADIUS, 'radius = "300 um'), "line 3  is not valid TOML: a text lacks its closing quote"),
+    ((RADIUS, RADIUS + "\n" + RADIUS), "line 4  is not valid TOML: this is given twice"),
+    (("[part]", "[plate]"), "line 23  is not valid TOML: cannot declare [plate] twice"),
+    (("[[actuators]]  #", "[actuators]  #"), "line 13  actuators must be written [[actuators]], in double brackets"),
+]
+
+
+@pytest.mark.parametrize(("change", "expected"), BROKEN)
+def test_each_kind_of_mistake(tmp_path: Path, change: tuple[str, str], expected: str) -> None:
+    found = problems(tmp_path, changed(change))
+    assert any(expected in line for line in found), found
+
+
+def test_places_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
+    text = changed(
+        ("[plate]\n", '[plate]\ndensity = "1 s"\n'),
+        (ACTUATOR, 'position = ["0.4 mm", "0 um"]\nspeed = 3\n'),
+        ('"0.15 mm"', '"0.4 mm"'),
+        (PART, 'position = ["0 um", "-1 mm"]'),
+        ('mass = "2e-9 kg"\n', ""),
+    )
+    outside = "must be inside the rim; got a point"
+    assert problems(tmp_path, text) == [
+        'line 2   plate.density must be a density such as "2330 kg/m^3"; got "1 s", a time',
+        f"line 10  actuators[1].position {outside} 0.1 mm beyond it",
+        "line 11  actuators[1].speed is not known; "
+        "[[actuators]] has position, force, stiffness, stroke, frequency, cycle, cycles, dwell, table, segments, "
+        "repeats, delay",
+        f"line 16  actuators[2].position {outside} 0.1 mm beyond it",
+        "line 16  actuators[2].position must differ from actuators[1].position; got the same point",
+        'line 25  part.mass is missing; it must be a mass such as "2e-9 kg"',
+        f"line 26  part.position {outside} 700 um beyond it",
+    ]
+
+
+def test_keys_of_the_friction_table_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
+    table = FRICTION + '\npreset = "paper"\nroughness = 3\nplasticity_index = 2\ncoefficients = "unrounded"'
+    lines = [line.split()[:3] for line in problems(tmp_path, changed((FRICTION, table)))]
+    assert lines == [
+        ["line", "30", "friction.roughness"],
+        ["line", "31", "friction.plasticity_index"],
+        ["line", "32", "friction.coefficients"],
+    ]
+
+
+def test_missing_tables(tmp_path: Path) -> None:
+    assert problems(tmp_path, "") == [
+        f"the file  {name} is missing; it must be a table, written {header}"
+        for name, header in [
+            ("plate", "[plate]"),
+            ("actuators", "[[actuators]]"),
+            ("part", "[part]"),
+            ("friction", "[friction]"),
+            ("run", "[run]"),
+        ]
+    ]
+
+
+def test_no_actuators(tmp_path: Path) -> None:
+    text = "actuators = []\n" + GOOD[: GOOD.index("[[")] + GOOD[GOOD.index("[part]") :]
+    assert problems(tmp_path, text) == ["line 1  actuators must be at least one table, written [[actuators]]; got none"]
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_actuators_in_single_brackets(tmp_path: Path, count: int) -> None:
+    text = GOOD.replace("[[actuators]]", "[actuators]")
+    if count == 1:
+        text = text[: text.rindex("[actuators]")] + text[text.index("[part]") :]
+    assert problems(tmp_path, text) == [
+        "line 8  actuators must be written [[actuators]], in double brackets, once for each actuator; got [actuators]"
+    ]
+
+
+def test_lines_of_dotted_keys_and_inline_tables(tmp_path: Path) -> None:
+    text = (
+        '# a case\nplate.radius = "3 Hz"\n"plate"."shape" = "x"\npart = { mass = "1 s" }\n'
+        'actuators = [{ stroke = "1 s" }]\n[run]\nduration = """\n[plate]\n"""\n  # tab\n  frames = 1\n'
+    )
+    found = {line.split()[2]: int(line.split()[1]) for line in problems(tmp_path, text) if line.startswith("line")}
+    assert found["plate.thickness"] == 2
+    assert found["plate.shape"] == 3
+    assert found["part.mass"] == found["part.position"] == 4
+    assert found["actuators[1].stroke"] == 5
+    assert found["run.duration"] == 7
+    assert found["run.frames"] == 11
+
+
+def test_unreadable_files(tmp_path: Path) -> None:
+    with pytest.raises(CaseError) as caught:
+        read_case(tmp_path / "none.toml")
+    assert (
+        str(caught.value) == f"{tmp_path}/none.toml: 1 mistake\n  the file  cannot be read: no such file or directory"
+    )
+    with pytest.raises(CaseError, match="cannot be read: is a directory"):
+        read_case(str(tmp_path))
+    (tmp_path / "latin.toml").write_bytes('[plate]\nradius = "300 µm"\n'.encode("latin-1"))
+    with pytest.raises(CaseError, match="line 2  is not UTF-8 text; got the byte 0xb5"):
+        read_case(tmp_path / "latin.toml")
+
+
+def test_case_error_survives_pickling(tmp_path: Path) -> None:
+    with pytest.raises(CaseError) as caught:
+        read(tmp_path, "")
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert str(again) == str(caught.value)
+    assert again.problems == caught.value.problems

@@ -1,0 +1,92 @@
+"""Ctrl-C: heard whatever the thread that waits is doing, and not while something must not be broken off."""
+
+import signal
+import threading
+import time
+
+import pytest
+
+from coupling.progress import interruptible
+from particle.interrupt import unbroken, wait
+
+
+class Swallower:
+    """Ctrl-C arrives in its finaliser, which keeps any exception to itself, as many do."""
+
+    def __del__(self):
+        try:
+            signal.raise_signal(signal.SIGINT)
+            time.sleep(0)
+        except BaseException:
+            pass
+
+
+class Dropper:
+    """Ctrl-C arrives in its finaliser, from which Python passes on no exception."""
+
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+
+
+@pytest.fixture(autouse=True)
+def default_handler():
+    assert threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("kind", [Swallower, Dropper])
+def test_ctrl_c_in_a_finaliser_ends_a_wait(kind):
+    victims = [kind()]
+
+    def ended(seconds):
+        victims.clear()
+        time.sleep(0.01)
+        return time.monotonic() > late
+
+    late = time.monotonic() + 2
+    with pytest.raises(KeyboardInterrupt):
+        wait(ended)
+    assert time.monotonic() < late
+
+
+def test_ctrl_c_ends_the_wait_for_another_thread():
+    over = threading.Event()
+    threading.Timer(0.2, lambda: signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        interruptible(over.wait, 5)
+    over.set()
+
+
+def test_a_wait_gives_back_what_was_found_or_raised():
+    assert interruptible(divmod, 7, 2) == (3, 1)
+    with pytest.raises(ZeroDivisionError):
+        interruptible(divmod, 7, 0)
+
+
+def test_a_wait_on_another_thread_leaves_the_signal_alone():
+    assert interruptible(interruptible, divmod, 7, 2) == (3, 1)
+
+
+def test_nothing_is_heard_where_nothing_must_be_broken_off():
+    over = threading.Event()
+
+    def press(seconds):
+        signal.raise_signal(signal.SIGINT)
+        over.set()
+        return True
+
+    with unbroken():
+        signal.raise_signal(signal.SIGINT)
+        wait(press)
+    assert over.is_set()
+
+
+def test_a_handler_of_somebody_else_is_left_in_place():
+    heard = []
+    signal.signal(signal.SIGINT, lambda *_: heard.append(1))
+    wait(lambda seconds: signal.raise_signal(signal.SIGINT) or True)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    assert heard == [1]

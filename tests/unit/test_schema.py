@@ -1,0 +1,118 @@
+"""The schemas of files, and their templates."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+
+from command_line.main import main
+from command_line.schema import AIM, CASE, STUDY, _model
+from coupling.field_texts import all_tables, field_texts
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+KINDS = (CASE, STUDY, AIM)
+
+
+def schema(kind: str) -> dict:
+    done = CliRunner().invoke(main, ["schema", kind])
+    assert done.exit_code == 0
+    return json.loads(done.stdout)
+
+
+def checker(kind: str) -> Any:
+    validator = pytest.importorskip("jsonschema").Draft202012Validator
+    validator.check_schema(schema(kind))
+    return validator(schema(kind))
+
+
+def template(kind: str) -> str:
+    done = CliRunner().invoke(main, ["schema", kind, "--template"])
+    assert done.exit_code == 0
+    return done.stdout
+
+
+def kind_of(path: Path) -> str:
+    tables = tomllib.loads(path.read_text())
+    return STUDY if "study" in tables else AIM if "aim" in tables else CASE
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.rglob("*.toml")), ids=lambda path: path.stem)
+def test_examples_are_right_by_their_schema(path: Path) -> None:
+    checker(kind_of(path)).validate(tomllib.loads(path.read_text()))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_field_is_without_a_text(kind: str) -> None:
+    for table in all_tables(_model(kind)):
+        assert not table.model_fields.keys() - field_texts(table).keys(), table
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"300 um"', "300"),
+        ('"300 um"', '"300"'),
+        ('"300 um"', '"-300 um"'),
+        ("poisson_ratio = 0.3", "poisson_ratio = 0.5"),
+        ("thickness", "thicknes"),
+        ('"disc"', '"dics"'),
+        ('["0 um", "0 um"]', '["0 um"]'),
+        ("[[actuators]]", "[[actuator]]"),
+        ("[run]", "[runs]"),
+        ("frames = 2", "frames = 1"),
+    ],
+)
+def test_what_a_schema_refuses(old: str, new: str) -> None:
+    text = (EXAMPLES.parent / "tests/broken/ranges.toml").read_text()
+    for wrong, right in (
+        ("0.6", "0.3"),
+        ('"-5 um"', '"5 um"'),
+        ('"0 Hz"', '"3 Hz"'),
+        ("= 0.1\n", "= 1e-9\n"),
+        ("= 1\n", "= 2\n"),
+    ):
+        text = text.replace(wrong, right)
+    cases = checker(CASE)
+    assert cases.is_valid(tomllib.loads(text))
+    assert old in text
+    assert not cases.is_valid(tomllib.loads(text.replace(old, new, 1)))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_template_is_fine_as_it_is(kind: str, tmp_path: Path) -> None:
+    text = template(kind)
+    checker(kind).validate(tomllib.loads(text))
+    path = tmp_path / "template.toml"
+    path.write_text(text)
+    for name in ("one_actuator.toml", "array_3x3.toml"):
+        shutil.copy(EXAMPLES / name, tmp_path)
+    done = CliRunner().invoke(main, ["check", str(path)])
+    assert done.exit_code == 0, done.output
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_field_stands_in_a_template_as_toml_with_its_text(kind: str) -> None:
+    text = template(kind)
+    prose = " ".join(line.removeprefix("#").strip() for line in text.splitlines())
+    for table in all_tables(_model(kind)):
+        if table.model_config["extra"] == "forbid":
+            for key, said in field_texts(table).items():
+                assert f"\n{key} = " in text or f"\n#{key} = " in text or f"{key}]" in text, key
+                assert said in prose
+    for line in text.splitlines():
+        if line.startswith("#") and not line.startswith("# ") and " = " in line and not line.startswith("#   "):
+            tomllib.loads(line.removeprefix("#"))
+
+
+def test_defaults_are_as_a_file_states_them() -> None:
+    definitions = schema(CASE)["$defs"]
+    assert definitions["KogutEtsionCase"]["properties"]["roughness"]["default"] == "0.02 um"
+    assert definitions["RunCase"]["properties"]["gravity"]["default"] == "9.80665 m/s^2"
+    assert definitions["MeshCase"]["properties"]["mesh_unit"]["default"] == "1 m"
+    assert definitions["RunCase"]["properties"]["scheme"]["default"] == "events"

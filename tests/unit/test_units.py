@@ -1,0 +1,76 @@
+"""Quantities: numbers with units, in files."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from case_files import STROKE, changed, problems
+
+from coupling.units import Quantity
+
+
+@pytest.mark.parametrize(
+    ("value", "reason"),
+    [
+        ('"150 Hz"', ", a frequency"),
+        ('"20 degC"', ", a temperature"),
+        ('"5 K*m"', ", a quantity in K * m"),
+        ('"50 %"', ", a plain number"),
+        ('"150 umm"', ', but there is no unit "umm"; did you mean "150 um"?'),
+        ('"150 UM"', ', but there is no unit "UM"; did you mean "150 um"?'),
+        ('"5 frobs/umm"', ', but there is no unit "frobs"'),
+        ('"150"', ", which has no unit"),
+        ("150", ", which has no unit"),
+        ("0", ", which has no unit"),
+        ("nan", ", which has no unit"),
+        ('"nan um"', ", which is not finite"),
+        ('"-inf um"', ", which is not finite"),
+        ('"1e999 um"', ", which is not finite"),
+        ('"1e308 km"', ", which is not finite"),
+        ('"1,5 mm"', "; write decimals with a point"),
+        ('""', ", which is not a number and a unit"),
+        ('"um"', ", which is not a number and a unit"),
+        ('"far away"', ", which is not a number and a unit"),
+        ('"\N{MINUS SIGN}5 um"', ", which is not a number and a unit"),
+        ('"5 um; 3"', ", which is not a number and a unit"),
+        ('"5 (um"', ", which is not a number and a unit"),
+        ('"1/300 um"', ", which is not a number and a unit"),
+        ("true", ""),
+        ('["1 um"]', ""),
+        ("1979-05-27", ""),
+    ],
+)
+def test_wrong_lengths(tmp_path: Path, value: str, reason: str) -> None:
+    found = problems(tmp_path, changed((STROKE, f"stroke = {value}")))
+    assert found == [f'line 10  actuators[1].stroke must be a length such as "150 um"; got {value}{reason}']
+
+
+def test_an_angular_velocity_is_not_a_frequency(tmp_path: Path) -> None:
+    (found,) = problems(tmp_path, changed(('"300 Hz"', '"60 rpm"')))
+    assert found.endswith('must be a frequency such as "300 Hz"; got "60 rpm", an angular velocity')
+
+
+@pytest.mark.parametrize(
+    ("unit", "text", "value"),
+    [
+        ("m", "150um", 150e-6),
+        ("m", " .5 µm ", 0.5e-6),
+        ("m", "1_000 nm", 1e-6),
+        ("m", "+1 in", 0.0254),
+        ("m^2", "1e4 um²", 1e-8),
+        ("Hz", "300 1/s", 300),
+        ("m/s", "5 m·s⁻¹", 5),
+        ("J/m^2", "50 mN/m", 0.05),
+        ("kg/m^3", "2.33 g / cm**3", 2330),
+    ],
+)
+def test_units(unit: str, text: str, value: float) -> None:
+    assert Quantity(unit, "").parse(text) == pytest.approx(value, rel=1e-15)
+
+
+def test_import_does_not_load_pint() -> None:
+    code = "import coupling.case, sys; sys.exit('pint' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2]).returncode == 0

@@ -1,0 +1,148 @@
+"""The words of a command: what is said about wrong ones, colours, completion, and Ctrl-C that Python drops."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner
+
+from command_line.group import Group
+from command_line.main import main
+from command_line.options import tell
+
+ROOT = Path(__file__).parents[2]
+MISUSES = [
+    (["rnu", "x"], "active-surface: 1 mistake\n  rnu is not known; did you mean run?"),
+    (["--versoin"], "active-surface: 1 mistake\n  --versoin is not known; did you mean --version?"),
+    (
+        ["run"],
+        "active-surface run: 1 mistake\n  CASE is missing; it must be the name of a file, as in active-surface run",
+    ),
+    (["run", "x", "y"], "  y is too much; the command is active-surface run [OPTIONS] CASE"),
+    (["run", "x", "--ouput", "y"], "active-surface run: 1 mistake\n  --ouput is not known; did you mean --output?"),
+    (["run", "x", "--frob"], "  --frob is not known; active-surface run has --csv, --help, --json, --output"),
+    (["run", "x", "-o"], "active-surface run: 1 mistake\n  -o must be followed by its value; got nothing"),
+    (["sweep", "x", "-t", "0"], "  --threads must be a whole number of at least 1; got 0"),
+    (["sweep", "x", "-t", "ab"], '  --threads must be a whole number of at least 1; got "ab"'),
+    (["completion", "bsh"], '  SHELL must be bash, zsh or fish; got "bsh"'),
+    (["sweep", "x", "-t", "1", "-s", "y"], "active-surface sweep: 1 mistake\n  --threads must not be given with"),
+    (
+        ["aim", "--robust", "2", "--threads", "0"],
+        "active-surface aim: 3 mistakes\n"
+        "  --robust must be a number greater than 0 and at most 1; got 2.0\n"
+        "  --threads must be a whole number of at least 1; got 0\n"
+        "  CASE is missing; it must be the name of a file",
+    ),
+    (["plan", "x"], "  --through is missing; it must be X,Y ..."),
+]
+
+
+@pytest.mark.parametrize(("words", "said"), MISUSES, ids=lambda value: " ".join(value) if type(value) is list else "")
+def test_misuse_exits_2_with_all_that_is_wrong(words, said):
+    done = CliRunner().invoke(main, words, prog_name="active-surface")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert said in done.stderr and "Traceback" not in done.stderr and "Usage:" not in done.stderr
+
+
+def test_a_file_in_place_of_a_folder(tmp_path):
+    (tmp_path / "file").touch()
+    done = CliRunner().invoke(main, ["run", "x", "-o", str(tmp_path / "file")])
+    assert done.exit_code == 2
+    assert f'--output must be the name of a folder; got "{tmp_path / "file"}", which is a file' in done.stderr
+
+
+@pytest.mark.parametrize(
+    "words", [["rnu"], ["run"], ["run", "none.toml"], ["sweep", "-t", "0"], ["check", "none.toml"]]
+)
+def test_refusals_are_json_where_that_is_waited_for(words):
+    done = CliRunner().invoke(main, [*words, "--json"])
+    assert (done.exit_code, done.stderr) == (2, "")
+    mistakes = json.loads(done.stdout)["mistakes"]
+    assert mistakes and all(set(mistake) == {"file", "line", "field", "message"} for mistake in mistakes)
+
+
+def test_quiet_says_nothing_of_what_is_fine():
+    done = CliRunner().invoke(main, ["check", str(ROOT / "examples/one_actuator.toml"), "--quiet"])
+    assert (done.exit_code, done.output) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("settings", "coloured"),
+    [({}, True), ({"NO_COLOR": "1"}, False), ({"NO_COLOR": ""}, True), ({"TERM": "dumb"}, False)],
+)
+def test_colours_only_where_they_are_wanted(settings, coloured, monkeypatch):
+    @click.group(cls=Group)
+    def group():
+        pass
+
+    @group.command()
+    def warn():
+        tell({}, [], False, False, ["too hot"])
+
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    for name, value in settings.items():
+        monkeypatch.setenv(name, value)
+    done = CliRunner().invoke(group, ["warn"], color=True)  # as on a terminal
+    assert ("\x1b[33m" in done.output) is coloured
+
+
+def test_no_colours_where_there_is_no_terminal():
+    command = [sys.executable, "-m", "command_line", "check", "examples/one_actuator.toml"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, env={**os.environ, "TERM": "xterm"}, check=True)
+    assert b"\x1b" not in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_shell_gets_a_script_that_it_can_read(shell):
+    done = CliRunner().invoke(main, ["completion", shell])
+    assert done.exit_code == 0 and "_ACTIVE_SURFACE_COMPLETE" in done.stdout
+    if shutil.which(shell):
+        subprocess.run([shell, "-n"], input=done.stdout, text=True, check=True)
+
+
+def test_commands_and_options_are_completed():
+    def completed(*words):
+        env = {**os.environ, "COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
+        env["_ACTIVE_SURFACE_COMPLETE"] = "bash_complete"
+        code = "from command_line.main import main; main(prog_name='active-surface')"
+        return subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, env=env).stdout
+
+    assert set(completed("active-surface", "ch").split()) == {"plain,check"}
+    assert set(completed("active-surface", "run", "--js").split()) == {"plain,--json"}
+
+
+class Pressed:
+    """Ctrl-C arrives in its finaliser, from which Python passes on no exception."""
+
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+
+
+@pytest.mark.parametrize("after", [0.0, 2.0])
+def test_ctrl_c_that_python_drops_ends_a_command_all_the_same(after, monkeypatch):
+    assert threading.current_thread() is threading.main_thread()
+    begun = time.monotonic()
+
+    def read(path):
+        victim = Pressed()
+        del victim
+        while time.monotonic() < begun + after:
+            time.sleep(0.01)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    monkeypatch.setattr("coupling.case_lines.load", read)
+    done = CliRunner().invoke(main, ["check", "any.toml"])
+    signal.signal(signal.SIGINT, before)
+    assert (done.exit_code, done.stderr) == (130, "interrupted\n")
+    assert after == 0 or time.monotonic() < begun + after
