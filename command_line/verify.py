@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from command_line import options
-from command_line.group import main
+from command_line.group import main, refusing
 
 if TYPE_CHECKING:
     from coupling.verification import Check
@@ -17,21 +18,29 @@ if TYPE_CHECKING:
 
 @main.command()
 @options.quiet
-@options.as_json
-def verify(quiet: bool, as_json: bool) -> None:
+@click.option(
+    "--json", "file", type=click.Path(path_type=Path, dir_okay=False), help="Also write every figure to FILE."
+)
+def verify(quiet: bool, file: Path | None) -> None:
     """Check the plate against theory.
 
     Solves equation (2) and an off-centre layout on three meshes; exits with 1 when an error on the finest mesh or an
     observed order misses its bound.
     """
     from coupling import verification
+    from coupling.results import check_folder
 
+    if file is not None:
+        refusing(check_folder, file.parent)
     checks = verification.verify()
-    if as_json:
-        click.echo(json.dumps([done.as_dict() for done in checks], indent=2))
-    elif not quiet:
+    if not quiet:
         for done in checks:
             _tell(done)
+    if file is not None:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        partial = file.with_name(file.name + ".partial")
+        partial.write_text(json.dumps([done.as_dict() for done in checks], indent=2) + "\n")
+        partial.replace(file)
     sys.exit(0 if all(done.passed for done in checks) else 1)
 
 

@@ -20,7 +20,7 @@ RADIUS, MASS, GRAVITY = 300e-6, 2e-9, 9.80665
 OUT_TO = 0.8  # of the radius, the outermost actuator
 COUNTS, MOST = (1, 2, 9, 25, 100, 1000, 10_000), 10_000  # actuators by default, and at most
 FEWEST_IN_WAVES = 5000  # actuators: the forces of that many drives, each with its kinks, would not fit in memory
-DELAYS, WAVE = 100, 0.012  # delays that differ in a wave; its stroke, over the radius
+DELAYS, WAVE = 100, 0.06  # delays that differ in a wave; its stroke, over the radius
 QUINTIC = np.array([0.0, 0.0, 0.0, 10.0, -15.0, 6.0])  # a stroke from 0 to 1
 CONSTANT = ConstantFriction(20.9 * MASS)
 
@@ -88,6 +88,7 @@ STARTS = {
     25: (-7e-6, 94e-6),
     100: (143e-6, -46e-6),
     1000: (90e-6, -47e-6),
+    10_000: (73e-6, 49e-6),
 }
 ROUGH_START = (145e-6, -18e-6)
 CYCLES = 3.0  # of the slowest drive
