@@ -28,7 +28,7 @@ AT_ONCE = 64  # time steps whose deflections are found together
 UNITS = {
     "time": "s",
     "deflection": "m",
-    "velocity": "m/s; of the plate upwards, of the part along x, y and z",
+    "velocity": "m/s",
     "curvature": "1/m, the Laplacian of the deflection, positive where the plate is bent like a bowl; at an actuator, "
     "where it has no bound, that at a millionth of the plate's half length from it",
     "drive": "m (N where a force drives) at actuators, 0 elsewhere",

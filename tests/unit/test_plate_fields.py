@@ -82,7 +82,9 @@ def test_patches_bend_as_the_whole_plate_and_leave_out_what_is_small(monkeypatch
     assert len({id(tile.patch) for tile in shapes.tiles}) > 1
     largest = np.abs(whole).max(axis=0)
     every, some = shapes.laplacians(spots, floor), shapes.laplacians(spots, floor, 1e-4)
-    assert np.abs((every - whole) / largest).max() < 1e-4
+    assert np.abs((every - whole) / largest).max() < 2e-3  # a patch has cells as wide as the pitch
+    bent = np.trace(shapes.evaluate(spots[24:])[2], axis1=-2, axis2=-1)
+    assert np.abs((every[24:] - bent) / largest).max() < 1e-12
     left_out = np.abs((every - some).toarray()) / np.abs(np.diag(every[:24].toarray()))
     assert 0 < left_out.max() <= 1e-4 and some.nnz < 0.8 * every.nnz
 
