@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-from importlib.metadata import version
 from pathlib import Path
 from uuid import uuid4
 
@@ -19,6 +18,7 @@ from coupling.pictures import draw_run, moment_of_most
 from coupling.progress import Tell, untold
 from coupling.scene import Ground, Scene
 from coupling.summary import Summary
+from coupling.versions import versions
 from coupling.vtkhdf import part_file, plate_file
 from particle import Samples, Trajectory
 
@@ -61,7 +61,7 @@ def write_results(
         "case": case.source or record.text,
         "summary": json.dumps(summary.as_dict()),
         "units": json.dumps(UNITS | {"points": f"m, counted from {scene.origin}"}),
-        "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")}),
+        "versions": json.dumps(versions()),
         "actuators": len(case.actuators),
     }
     samples = trajectory.at(times)
