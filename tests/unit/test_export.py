@@ -24,7 +24,7 @@ def folder(tmp_path_factory):
         plate=PLATE | {"cell_size": 100e-6},
         actuators=({"position": (0.0, 30e-6), "stroke": 4e-6, "frequency": 300.0},),
         part=PartCase(mass=2e-9, position=(10e-6, 20e-6)),
-        friction=ConstantCase(limit=2e-10),
+        friction=ConstantCase(limit=1e-12),
         run=RunCase(duration=4e-4, frames=9, tolerance=1e-5),
         name="one",
     )
