@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import json
 import os
-from importlib.metadata import version
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
+from coupling.case_record import CaseRecord, record_of
 from coupling.csv_file import write_csv
 from coupling.drives import frame_times, stroke_heights
 from coupling.pictures import draw_run, moment_of_most
 from coupling.progress import Tell, untold
-from coupling.scene import Scene
+from coupling.scene import Ground, Scene
 from coupling.summary import Summary
+from coupling.versions import versions
 from coupling.vtkhdf import part_file, plate_file
-from particle import Trajectory
+from particle import Samples, Trajectory
 
 FloatArray = NDArray[np.float64]
 
@@ -27,6 +29,9 @@ UNITS = {
     "time": "s",
     "deflection": "m",
     "velocity": "m/s",
+    "curvature": "1/m, the Laplacian of the deflection, positive where the plate is bent like a bowl; at an actuator, "
+    "where it has no bound, that at a millionth of the plate's half length from it",
+    "drive": "m (N where a force drives) at actuators, 0 elsewhere",
     "normal_force": "N",
     "friction_force": "N",
     "state": "0: stuck, 1: slipping, 2: flying",
@@ -49,12 +54,15 @@ def write_results(
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
     ground = scene.ground(trajectory)
-    heights = stroke_heights(scene.lifts, times)
-    metadata = {
-        "case": case.source or case.model_dump_json(),
+    record = record_of(case)
+    heights, speeds = stroke_heights(scene.lifts, times), stroke_heights(scene.lifts, times, 1)
+    metadata: dict[str, str | int] = {
+        "run": uuid4().hex,  # the same in both files, which so find each other
+        "case": case.source or record.text,
         "summary": json.dumps(summary.as_dict()),
         "units": json.dumps(UNITS | {"points": f"m, counted from {scene.origin}"}),
-        "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")}),
+        "versions": json.dumps(versions()),
+        "actuators": len(case.actuators),
     }
     samples = trajectory.at(times)
     place = scene.onto(samples.position)
@@ -63,12 +71,14 @@ def write_results(
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
         part_file(folder, case.name, metadata) as part,
     ):
+        for group, arrays in _arrays(record, trajectory).items():
+            part.add_arrays(group, arrays)
         for k, time in enumerate(times.tolist()):
             if k % AT_ONCE == 0:
                 tell(k, len(times))
-                deflections = ground.lifted(heights[k : k + AT_ONCE]).astype(np.float32)
-                spread.extend(np.square(deflections, dtype=np.float64).mean(axis=1))
-            plate.append(time, deflection=deflections[k % AT_ONCE])
+                fields = _fields(ground, heights[k : k + AT_ONCE], speeds[k : k + AT_ONCE])
+                spread.extend(np.square(fields["deflection"], dtype=np.float64).mean(axis=1))
+            plate.append(time, **{name: values[k % AT_ONCE] for name, values in fields.items()})
             part.append(
                 time,
                 (*place[k], samples.height[k]),
@@ -83,6 +93,33 @@ def write_results(
     if csv:
         files.append(write_csv(trajectory, folder / f"{case.name}.csv", times))
     return tuple(files)
+
+
+def _fields(ground: Ground, heights: FloatArray, speeds: FloatArray) -> dict[str, NDArray[np.float32]]:
+    """The fields (k, n) of the surface as drawn under heights [m] and speeds [m/s] (k, N) of its drives."""
+    single = np.float32
+    found = {"deflection": ground.lifted(heights).astype(single), "velocity": ground.lifted(speeds).astype(single)}
+    if ground.bent is not None:
+        found["curvature"] = ground.bent(heights).astype(single)
+        found["drive"] = np.zeros_like(found["curvature"])
+        found["drive"][:, : heights.shape[1]] = heights  # the actuators are the first of the points
+    return found
+
+
+def _arrays(record: CaseRecord, trajectory: Trajectory) -> dict[str, dict[str, NDArray]]:
+    """What the part's file holds beside its steps, by groups: the case and its files, all rows, all events."""
+    events = {
+        "kind": np.array([event.kind for event in trajectory.events], np.int64),
+        "position": np.array([event.position for event in trajectory.events], float).reshape(-1, 2),
+    }
+    for key in ("time", "speed", "load"):
+        events[key] = np.array([getattr(event, key) for event in trajectory.events], float)
+    return {
+        "case": {"json": np.frombuffer(record.text.encode(), np.uint8)},
+        "files": {name: np.frombuffer(content, np.uint8) for name, content in record.files.items()},
+        "rows": {key: getattr(trajectory, key) for key in Samples._fields},
+        "events": events,
+    }
 
 
 def check_folder(folder: Path) -> None:
