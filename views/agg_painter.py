@@ -11,7 +11,7 @@ from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
 from views.frames import Frame
-from views.look import AMBIENT, DIFFUSE, LIGHT, Look
+from views.look import AMBIENT, DIFFUSE, Look
 
 FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -20,7 +20,7 @@ Soup = tuple[FloatArray, FloatArray, FloatArray]  # triangles (k, 3, 2) in pixel
 
 NEARER = 0.03  # lengths of the scene by which lines and marks pass for nearer, lest triangles beside them cover them
 WIDER = 1.0  # pixels by which the renderer draws a triangle wider than it is
-RINGS = 6  # of the ball
+CORNERS, RINGS = 32, 6  # of the ball
 
 
 class AggPainter:
@@ -30,12 +30,14 @@ class AggPainter:
 
     def __init__(self, look: Look) -> None:
         self._look = look
-        self._light = LIGHT / np.linalg.norm(LIGHT)
+        self._light = look.light
 
     def __enter__(self) -> AggPainter:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         pass
 
     def paint(self, frame: Frame) -> Image:
@@ -89,9 +91,25 @@ class AggPainter:
     def _ball(self, frame: Frame) -> Soup:
         look, camera = self._look, self._look.layout.camera
         middle, colour = look.part(frame)
-        height = np.sqrt(1 - np.linspace(0.99, 0, RINGS) ** 2)  # of the ball's rings, from its outline to its top
-        discs = []
-        for share, up in zip(np.linspace(0.99, 0, RINGS), height, strict=True):
-            pass
-        corners, colours, depth = (np.concatenate(part) for part in zip(*discs, strict=True))
-        return corners, colours, depth
+        share, turn = np.meshgrid(np.linspace(0, 1, RINGS + 1), np.linspace(0, 2 * np.pi, CORNERS + 1), indexing="ij")
+        normal = np.stack([share * np.cos(turn), share * np.sin(turn), np.sqrt(1 - share**2)], axis=-1)
+        toward = np.clip(normal @ self._light, 0, None)[..., None]
+        lit = np.clip(np.array(colour) * (0.35 + 0.75 * toward) + 0.5 * toward**30, 0, 1)
+        places = look.layout.pixels(middle) + look.part_radius * look.layout.scale * normal[..., :2]
+        a, b, c, d = (
+            (slice(None, -1), slice(None, -1)),
+            (slice(1, None), slice(None, -1)),
+            np.s_[1:, 1:],
+            np.s_[:-1, 1:],
+        )
+        corners, colours = (
+            np.concatenate(
+                [
+                    np.stack([part[k] for k in three], axis=2).reshape(-1, 3, part.shape[-1])
+                    for three in ((a, b, c), (a, c, d))
+                ]
+            )
+            for part in (places, lit)
+        )
+        depth = middle @ camera.towards + look.part_radius + NEARER
+        return corners, colours, np.full(len(corners), depth)

@@ -62,7 +62,7 @@ def read_camera(text: str) -> Camera:
         azimuth = elevation = math.nan
     if not (math.isfinite(azimuth) and -90 <= elevation <= 90):
         raise ValueError(
-            f"Input camera must be {', '.join(CAMERAS)}, or azimuth,elevation in degrees, the elevation from -90 to 90, "
-            f"as in -60,30; got {text!r}"
+            f"Input camera must be {', '.join(CAMERAS)}, or azimuth,elevation in degrees, as in -60,30, the elevation "
+            f"from -90 to 90; got {text!r}"
         )
     return Camera(azimuth, elevation)

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
+from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
 from coupling.path_picture import PATH_COLOUR, STICK_COLOUR
+from coupling.platform_case import PlatformCase
 from coupling.readable import STEPS, readable
 from coupling.time_picture import SHADES, stretches
 from particle import State
@@ -25,6 +30,7 @@ from views.stage import Stage
 Image = NDArray[np.uint8]
 
 DPI = 100
+LEAST_LETTER = 9.0  # pixels
 WORDS = {State.STICK: "part stuck", State.SLIP: "part slipping", State.FLIGHT: "part in flight"}
 COLOURS = {State.STICK: STICK_COLOUR, State.SLIP: PATH_COLOUR, State.FLIGHT: "#303030"}
 
@@ -35,7 +41,7 @@ class Captions:
     def __init__(self, stage: Stage, layout: Layout, pace: Pace) -> None:
         self._figure = Figure(figsize=(layout.width / DPI, layout.height / DPI), dpi=DPI, facecolor="none")
         self._canvas = FigureCanvasAgg(self._figure)
-        self._letter = max(min(layout.height * 0.021, layout.width * 0.0125), 6.0) * 72 / DPI  # points
+        self._letter = max(min(layout.height * 0.021, layout.width * 0.0165), LEAST_LETTER) * 72 / DPI  # points
         self._stage, self._layout = stage, layout
         self._time_unit = readable(stage.run.time, "s")
         self._draw_bar()
@@ -43,23 +49,24 @@ class Captions:
         self._draw_notes(pace)
         if stage.window:
             self._draw_map()
-        self._moving = [*self._draw_clock(), *self._draw_time_line()]
+        self._clock, self._state = self._draw_clock()
+        self._hand = self._draw_time_line()
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(self._figure.bbox)
 
     def put_on(self, image: Image, frame: Frame) -> Image:
         """The picture (height, width, 3) with all captions of a frame."""
-        clock, state, hand = self._moving
         now = frame.time * self._time_unit.per_si
-        clock.set_text(f"{now:.{self._digits}f} {self._time_unit.name}")
+        self._clock.set_text(f"{now:.{self._digits}f} {self._time_unit.name}")
         flight = readable(np.array([frame.flight]), "m")
         above = f", {frame.flight * flight.per_si:.3g} {flight.name} above" if frame.flight > 0 else ""
-        state.set_text(f"{WORDS[frame.state]}{above}")
-        state.set_color(COLOURS[frame.state])
-        hand.set_xdata([now])
+        self._state.set_text(f"{WORDS[frame.state]}{above}")
+        self._state.set_color(COLOURS[frame.state])
+        self._hand.set_xdata([now])
         self._canvas.restore_region(self._still)
-        for artist in self._moving:
-            artist.axes.draw_artist(artist) if artist.axes else self._figure.draw_artist(artist)
+        for text in (self._clock, self._state):
+            self._figure.draw_artist(text)
+        self._figure.draw_artist(self._hand)
         drawn = np.asarray(self._canvas.buffer_rgba())
         touched = np.flatnonzero(drawn[..., 3].any(axis=1))
         rows = slice(touched[0], touched[-1] + 1)
@@ -70,12 +77,13 @@ class Captions:
 
     def _draw_bar(self) -> None:
         """The scale of colours, no longer than the heights that there are."""
+        if self._stage.flat:
+            return
         low, high = (float(part) for part in (self._stage.reach[0].min(), self._stage.reach[1].max()))
         scale = self._stage.scale
         unit = scale.unit
-        if high - low < 1e-12:
-            return
-        axes = self._figure.add_axes((0.89, BOTTOM + 0.12, 0.016, 0.48))
+        tall = 0.38 if self._stage.window else 0.48
+        axes = self._figure.add_axes((0.89, BOTTOM + 0.12, 0.016, tall))
         bar = self._figure.colorbar(ScalarMappable(scale.norm, scale.colours), cax=axes)
         axes.set_ylim(low * unit.per_si, high * unit.per_si)
         bar.set_ticks(MaxNLocator(6, steps=STEPS))
@@ -88,10 +96,10 @@ class Captions:
         layout, figure = self._layout, self._figure
         left, bottom = 0.045 * layout.width, (BOTTOM + 0.01) * layout.height
         whole = 0.13 * min(layout.width, layout.height)
-        dot = {"color": "black", "linewidth": max(layout.height / 500, 1.0), "solid_capstyle": "butt"}
-        rise = np.linalg.norm(layout.camera.up[2:]) * layout.exaggeration
+        dot: dict[str, Any] = {"color": "black", "linewidth": max(layout.height / 500, 1.0), "solid_capstyle": "butt"}
+        rise = float(abs(layout.camera.up[2])) * layout.exaggeration
         for up, per_metre in ((False, layout.scale / layout.size), (True, layout.scale / layout.size * rise)):
-            if per_metre * layout.size < 0.05 * layout.scale:
+            if per_metre * layout.size < 0.05 * layout.scale or (up and self._stage.flat):
                 continue
             length = nice_length(whole / per_metre)
             pixels = length * per_metre
@@ -102,8 +110,8 @@ class Captions:
             text = f"{length * unit.per_si:.6g} {unit.name}"
             place = (shares[0][-1], shares[1][-1])
             if up:
-                kept = {"ha": "center", "va": "bottom"}
-                figure.text(place[0], place[1] + 0.006, text + self._times, fontsize=self._letter * 0.9, **kept)
+                kept: dict[str, Any] = {"ha": "left", "va": "bottom"}
+                figure.text(0.03, place[1] + 0.006, text + self._times, fontsize=self._letter * 0.9, **kept)
             else:
                 figure.text(place[0] + 0.006, place[1], text, fontsize=self._letter * 0.9, va="center")
 
@@ -117,14 +125,20 @@ class Captions:
         unit = readable(np.array([stage.mesh_width]), "m")
         times = self._layout.exaggeration
         said = [
-            "heights true to scale" if times == 1 else f"heights drawn {times:.6g} times larger",
+            "flat"
+            if stage.flat
+            else "heights true to scale"
+            if times == 1
+            else f"heights drawn {times:.6g} times larger",
             f"squares of {stage.mesh_width * unit.per_si:.6g} {unit.name}",
             pace.words,
         ]
+        if isinstance(stage.run.case.plate, PlatformCase):
+            said.append("seen from the platform")
         self._figure.text(0.5, 0.012, "   ·   ".join(said), fontsize=letter, ha="center", va="bottom", color="#404040")
         self._figure.text(0.975, 0.972, stage.run.name, fontsize=letter, ha="right", va="top", color="#404040")
         keys: list[Artist] = []
-        look = {"color": "none", "marker": "o", "markeredgecolor": "black", "markersize": letter * 0.6}
+        look: dict[str, Any] = {"color": "none", "marker": "o", "markeredgecolor": "black", "markersize": letter * 0.6}
         if len(stage.actuators):
             keys.append(Line2D([], [], markerfacecolor="white", label="actuator", **look))
         if len(stage.trail):
@@ -133,18 +147,24 @@ class Captions:
             if (stage.run.state == state).any():
                 keys.append(Patch(color=colour, alpha=0.25, linewidth=0, label=name))
         if keys:
-            place = {"loc": "lower right", "bbox_to_anchor": (0.985, 0.115), "borderpad": 0, "labelspacing": 0.3}
+            place: dict[str, Any] = {
+                "loc": "lower right",
+                "bbox_to_anchor": (0.985, 0.115),
+                "borderpad": 0,
+                "labelspacing": 0.3,
+            }
             self._figure.legend(handles=keys, fontsize=letter * 0.9, frameon=False, handlelength=1.4, **place)
 
-    def _draw_clock(self) -> list:
+    def _draw_clock(self) -> tuple[Text, Text]:
         last, frames = self._stage.run.time[-1] * self._time_unit.per_si, 500
         self._digits = int(np.clip(np.ceil(np.log10(frames / last)), 0, 6)) if last > 0 else 0
-        common = {"ha": "left", "va": "top", "animated": True}
+        common: dict[str, Any] = {"ha": "left", "va": "top", "animated": True}
         clock = self._figure.text(0.03, 0.972, "", fontsize=1.9 * self._letter, weight="bold", **common)
-        state = self._figure.text(0.031, 0.922, "", fontsize=1.15 * self._letter, **common)
-        return [clock, state]
+        below = 0.972 - 2.7 * self._letter * DPI / 72 / self._layout.height
+        state = self._figure.text(0.031, below, "", fontsize=1.15 * self._letter, **common)
+        return clock, state
 
-    def _draw_time_line(self) -> list:
+    def _draw_time_line(self) -> Line2D:
         run, unit, letter = self._stage.run, self._time_unit, self._letter
         axes = self._figure.add_axes((0.045, 0.09, 0.8, 0.024), facecolor="none")
         edges = run.time * unit.per_si
@@ -156,21 +176,25 @@ class Captions:
         axes.set_ylim(0, 1)
         axes.xaxis.set_major_locator(MaxNLocator(10, steps=STEPS))
         axes.tick_params(labelsize=0.9 * letter, length=2, pad=2)
-        self._figure.text(0.853, 0.087, unit.name, fontsize=0.9 * letter, va="top")
+        self._figure.text(0.862, 0.0845, unit.name, fontsize=0.9 * letter, va="top")
         for spine in axes.spines.values():
             spine.set_linewidth(0.6)
-        return [axes.axvline(edges[0], color="black", linewidth=max(letter / 6, 1.2), animated=True)]
+        return axes.axvline(edges[0], color="black", linewidth=max(letter / 6, 1.2), animated=True)
 
     def _draw_map(self) -> None:
         """Where on the plate the frame is."""
         stage, layout = self._stage, self._layout
         side = 0.2 * min(layout.width, layout.height)
-        axes = self._figure.add_axes((0.975 - side / layout.width, 0.92 - side / layout.height, side / layout.width, side / layout.height))
-        from matplotlib.collections import LineCollection
+        axes = self._figure.add_axes(
+            (0.975 - side / layout.width, 0.92 - side / layout.height, side / layout.width, side / layout.height)
+        )
+
         run = stage.run
-        axes.add_collection(LineCollection(list(stage.outer), colors="black", linewidths=0.8))
+        axes.add_collection(LineCollection(list(stage.outer), colors="black", linewidths=0.8, clip_on=False))
         corner, sides = stage.frame[0], np.ptp(stage.frame, axis=0)
-        axes.add_patch(Rectangle(tuple(corner), *sides, facecolor=PATH_COLOUR, edgecolor=to_rgb(PATH_COLOUR), linewidth=1.5))
+        axes.add_patch(
+            Rectangle(tuple(corner), *sides, facecolor=PATH_COLOUR, edgecolor=to_rgb(PATH_COLOUR), linewidth=1.5)
+        )
         axes.set_aspect("equal", anchor="NE")
         axes.set_axis_off()
         axes.set_xlim(run.points[:, 0].min(), run.points[:, 0].max())

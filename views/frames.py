@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle import State
-from views.stage import Stage, stored_heights
+from views.stage import Stage
 
 FloatArray = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def frames_of(stage: Stage, times: FloatArray) -> Iterator[Frame]:
     run = stage.run
     step = np.clip(np.searchsorted(run.time, times, side="right") - 1, 0, max(len(run.time) - 2, 0))
     before: FloatArray | None = None
-    for first, heights in stored_heights(run):
+    for first, heights in stage.stored_heights():
         known = heights if before is None else np.concatenate([before, heights])
         start = first - (before is not None)
         before = heights[-1:]

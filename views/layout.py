@@ -54,9 +54,7 @@ def layout_of(stage: Stage, camera: Camera, size: tuple[int, int], exaggeration:
     room = np.array([(RIGHT - LEFT) * width, (TOP - BOTTOM) * height])
     scale = float((room / np.maximum(high - low, 1e-3)).min())
     offset = np.array([(LEFT + RIGHT - 1) * width, (BOTTOM + TOP - 1) * height]) / 2
-    return Layout(
-        width, height, camera, exaggeration, bare.middle, bare.size, (low + high) / 2 - offset / scale, scale
-    )
+    return Layout(width, height, camera, exaggeration, bare.middle, bare.size, (low + high) / 2 - offset / scale, scale)
 
 
 def read_size(text: str) -> tuple[int, int]:
@@ -65,12 +63,17 @@ def read_size(text: str) -> tuple[int, int]:
     Raises ValueError for anything else.
     """
     found = re.fullmatch(r"\s*(\d+)\s*[x×,]\s*(\d+)\s*", text)
-    size = tuple(map(int, found.groups())) if found else (0, 0)
+    if not found:
+        raise ValueError(f"Input size must be WIDTHxHEIGHT in pixels, as in 1280x720; got {text!r}")
+    size = int(found[1]), int(found[2])
+    check_size(size)
+    return size
+
+
+def check_size(size: tuple[int, int]) -> None:
+    """Raises ValueError unless a picture of this width and height [pixels] can be drawn and read."""
     if not all(LEAST <= side <= MOST for side in size):
-        raise ValueError(
-            f"Input size must be WIDTHxHEIGHT in pixels, each from {LEAST} to {MOST}, as in 1280x720; got {text!r}"
-        )
-    return size[0], size[1]
+        raise ValueError(f"Input size must be from {LEAST} to {MOST} pixels each way; got {size[0]}x{size[1]}")
 
 
 def nice_length(most: float) -> float:

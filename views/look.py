@@ -14,13 +14,15 @@ from coupling.plate_picture import Scale
 from views.captions import COLOURS
 from views.frames import Frame
 from views.layout import Layout
-from views.stage import Lines, Stage
+from views.lines import Lines
+from views.stage import Stage
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-AMBIENT, DIFFUSE = 0.40, 0.58
-LIGHT = np.array([-0.35, 0.55, 0.76])  # right, up and towards the camera
+AMBIENT, DIFFUSE = 0.42, 0.60  # brightness of what has no light, and what light adds at most
+LIGHT = np.array([-0.35, 0.55, 0.76])  # right, up and towards the camera, where light comes from,
+FROM_ABOVE = 0.8  # and by so much more from above, lest the level plate is dim in any view
 CORNERS = 24  # of a disc
 LIFT = 0.004  # of the frame's longer side towards the camera: lines lie before the surface, not in it
 
@@ -46,6 +48,13 @@ class Look:
     def pixel(self) -> float:
         """What is a pixel in a picture of 720 lines, in pixels of this one."""
         return min(self.layout.width / 1280, self.layout.height / 720)
+
+    @property
+    def light(self) -> FloatArray:
+        """The unit vector (3,) to the light, counted right, up and towards the camera."""
+        camera = self.layout.camera
+        total = LIGHT + FROM_ABOVE * np.array([0.0, camera.up[2], camera.towards[2]])
+        return np.asarray(total / np.linalg.norm(total))
 
     @property
     def strokes(self) -> dict[str, Stroke]:
@@ -114,8 +123,8 @@ class Look:
             return []
         towards, radius = LIFT * self.layout.camera.towards, self.dot_radius
         return [
-            (self.discs(places + 2.2 * towards, radius), (0.0, 0.0, 0.0)),
-            (self.discs(places + 2.6 * towards, 0.68 * radius), (1.0, 1.0, 1.0)),
+            (self.discs(places + 5.0 * towards, radius), (0.0, 0.0, 0.0)),
+            (self.discs(places + 5.4 * towards, 0.68 * radius), (1.0, 1.0, 1.0)),
         ]
 
     def discs(self, middles: FloatArray, radius: float) -> FloatArray:
@@ -130,4 +139,5 @@ class Look:
         """The middle (3,) of the ball that stands for the part, which lies on the surface or flies, and its colour."""
         height = max(float(frame.part[2]), frame.under)
         middle = self.layout.scene(frame.part[None, :2], np.array([height]))[0]
-        return middle + np.array([0.0, 0.0, self.part_radius]), to_rgb(COLOURS[frame.state])
+        before = 5.4 * LIFT * self.layout.camera.towards
+        return middle + np.array([0.0, 0.0, self.part_radius]) + before, to_rgb(COLOURS[frame.state])

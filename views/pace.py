@@ -83,7 +83,7 @@ def warnings_of(pace: Pace, time: FloatArray, cycle: float | None) -> list[str]:
         shown = cycle * frames / float(time[-1] - time[0])
         if shown < FEWEST:
             said.append(
-                f"The film has {shown:.2g} frames to a cycle of the fastest drive: what moves fast looks slow, jumpy or "
-                "still in it; a larger --slow-motion shows it."
+                f"The film has {shown:.2g} frames to a cycle of the fastest drive: what moves fast looks slow, jumpy "
+                "or still in it; a larger --slow-motion shows it."
             )
     return said

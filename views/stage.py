@@ -15,7 +15,7 @@ from scipy.sparse import csr_matrix
 from coupling.plate_picture import Scale
 from coupling.saved import SavedRun
 from coupling.window import extent, is_visible, path_window, pitch
-from meshes.refine import edge_numbers
+from views.lines import Lines, clipped, divided, net, net_width, outer_edges, path_points
 from views.pace import nearest_round
 from views.smooth import Smooth
 
@@ -24,21 +24,13 @@ IntArray = NDArray[np.int64]
 
 MOST_TRIANGLES = 40_000  # of a mesh that is made finer to be drawn
 ACROSS = 120  # cells along a window
-SQUARES = 12  # of the net of lines, about, along the longer side
 FINE = 1 / 200  # of the longer side: the length of a piece of a line
 RISE = 0.2  # of the longer side: about so high are heights drawn without a wish
 ALMOST_TRUE = 2.0  # a smaller exaggeration is none
 FLAT = 1e-12  # m: a smaller range of heights is none
+AROUND = 0.5  # of the longer side: points further from the frame do not shape what is in it
 AT_ONCE = 16  # steps that are read together
 CROWDED = 1 / 60  # of the longer side: actuators nearer to each other are not marked
-
-
-@dataclass(frozen=True, eq=False)
-class Lines:
-    """Points (k, 2) [m] and the two of each piece (s, 2) of a line."""
-
-    xy: FloatArray
-    pieces: IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +38,8 @@ class Stage:
     """What there is to draw, in m; `frame` (2, 2) is the part of the plane that is shown."""
 
     run: SavedRun = field(repr=False)
-    smooth: Smooth
+    used: IntArray  # (n',) the points of the run that what is shown depends on
+    smooth: Smooth  # heights of these
     frame: FloatArray
     window: bool  # whether the frame is only a part of the plate
     surface: FloatArray  # (p, 2)
@@ -67,7 +60,7 @@ class Stage:
     @property
     def outer(self) -> FloatArray:
         """The pieces (s, 2, 2) [m] of the plate's whole rim."""
-        return self.run.points[_rim(self.run.points, self.run.triangles)]
+        return self.run.points[outer_edges(self.run.points, self.run.triangles)]
 
     @cached_property
     def matrices(self) -> dict[str, csr_matrix]:
@@ -80,17 +73,23 @@ class Stage:
             "actuators": self.actuators,
             "trail": self.trail,
         }
-        return {name: self.smooth.at(xy) if len(xy) else csr_matrix((0, len(self.run.points))) for name, xy in things.items()}
+        return {name: self.smooth.at(xy) if len(xy) else csr_matrix((0, len(self.used))) for name, xy in things.items()}
 
     @cached_property
     def reach(self) -> tuple[FloatArray, FloatArray]:
         """The lowest and the highest height (p,) [m] of each point of the surface in all steps."""
         low = np.full(len(self.surface), np.inf)
         high = -low
-        for first, heights in stored_heights(self.run):
+        for _, heights in self.stored_heights():
             found = self.matrices["surface"] @ heights.T
             low, high = np.minimum(low, found.min(axis=1)), np.maximum(high, found.max(axis=1))
         return low, high
+
+    def stored_heights(self) -> Iterator[tuple[int, FloatArray]]:
+        """The first step of some, and their deflections (k, n') [m] at the used points, until all steps have been."""
+        for first in range(0, len(self.run.time), AT_ONCE):
+            found = self.run.plate_field("deflection", slice(first, first + AT_ONCE))
+            yield first, np.asarray(found[:, self.used], dtype=np.float64)
 
     @property
     def scale(self) -> Scale:
@@ -99,36 +98,40 @@ class Stage:
         return Scale.of(np.array([low.min(), high.max()]))
 
     @property
+    def flat(self) -> bool:
+        """Whether all heights are the same."""
+        low, high = self.reach
+        return float(high.max() - low.min()) < FLAT
+
+    @property
     def exaggeration(self) -> float:
         """By how much heights are drawn larger without a wish."""
         low, high = self.reach
         rise = float(high.max() - low.min())
-        wanted = RISE * self.size / rise if rise > FLAT else 1.0
+        wanted = 1.0 if self.flat else RISE * self.size / rise
         return nearest_round(wanted) if wanted >= ALMOST_TRUE else 1.0
-
-
-def stored_heights(run: SavedRun) -> Iterator[tuple[int, FloatArray]]:
-    """The first step of some, and the deflections (k, n) [m] of these, until all steps have been."""
-    for first in range(0, len(run.time), AT_ONCE):
-        yield first, np.asarray(run.plate_field("deflection", slice(first, first + AT_ONCE)), dtype=np.float64)
 
 
 def stage_of(run: SavedRun) -> Stage:
     """The stage of a run: all of its surface, or a window around a path that is short beside it."""
-    smooth = Smooth(run.points, run.triangles)
     box = np.stack([run.points.min(axis=0), run.points.max(axis=0)])
     path = run.position[:, :2]
     window = path_window(path, box, run.actuators)
     frame = box if window is None else np.array([np.maximum(window[0], box[0]), np.minimum(window[1], box[1])])
+    used, kept = _near(run, frame)
+    smooth = Smooth(run.points[used], kept)
     surface, triangles = _finer(run) if window is None else _grid(smooth, frame)
     size = extent(frame)
-    outer = _rim(run.points, run.triangles)
-    rim = _clipped(_divided(Lines(run.points, outer), FINE * size), frame)
-    cut = Lines(surface, _rim(surface, triangles)) if window is not None else Lines(surface[:0], outer[:0])
-    width = _mesh_width(size)
-    trail, trail_time = _trail(path, run.time, FINE * size) if is_visible(path, frame) else (path[:0], run.time[:0])
+    outer = outer_edges(run.points, run.triangles)
+    rim = clipped(divided(Lines(run.points, outer), FINE * size), frame)
+    cut = Lines(surface, outer_edges(surface, triangles)) if window is not None else Lines(surface[:0], outer[:0])
+    width = net_width(size)
+    trail, trail_time = (
+        path_points(path, run.time, FINE * size) if is_visible(path, frame) else (path[:0], run.time[:0])
+    )
     return Stage(
         run,
+        used,
         smooth,
         frame,
         window is not None,
@@ -136,12 +139,21 @@ def stage_of(run: SavedRun) -> Stage:
         triangles,
         rim,
         cut,
-        _net(smooth, frame, width),
+        net(smooth, frame, width, FINE * size),
         width,
         _marked(run.actuators, frame),
         trail,
         trail_time,
     )
+
+
+def _near(run: SavedRun, frame: FloatArray) -> tuple[IntArray, IntArray]:
+    """The points of a run that are in a frame (2, 2) [m] or near it, and the triangles between them."""
+    low, high = frame + AROUND * extent(frame) * np.array([[-1.0], [1.0]])
+    near = ((run.points >= low) & (run.points <= high)).all(axis=1)
+    touching = run.triangles[near[run.triangles].any(axis=1)]
+    used, rows = np.unique(touching, return_inverse=True)
+    return used, rows.reshape(-1, 3)
 
 
 def _finer(run: SavedRun) -> tuple[FloatArray, IntArray]:
@@ -155,74 +167,18 @@ def _finer(run: SavedRun) -> tuple[FloatArray, IntArray]:
 
 
 def _grid(smooth: Smooth, frame: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Points of a grid in a frame (2, 2) [m], and the triangles that lie on the plate."""
-    counts = np.maximum(np.ceil(ACROSS * np.ptp(frame, axis=0) / extent(frame)), 1).astype(int)
-    x, y = (np.linspace(*frame[:, k], counts[k] + 1) for k in (0, 1))
+    """Points of a grid in a frame (2, 2) [m], and the triangles of those on the plate; points beyond are drawn to its rim."""
+    counts = np.maximum(np.ceil(ACROSS * np.ptp(frame, axis=0) / extent(frame)), 1)
+    x, y = (np.linspace(frame[0, k], frame[1, k], int(counts[k]) + 1) for k in (0, 1))
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
-    inside = smooth.locate(points)[2]
+    triangle, shares, inside = smooth.locate(points)
+    nearest = (smooth.points[smooth.triangles[triangle]] * shares[..., None]).sum(axis=1)
+    points[~inside] = nearest[~inside]
     number = np.arange(len(points)).reshape(len(x), len(y))
     a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
-    kept = triangles[inside[triangles].all(axis=1)]
-    used, rows = np.unique(kept, return_inverse=True)
+    used, rows = np.unique(triangles[inside[triangles].any(axis=1)], return_inverse=True)
     return points[used], rows.reshape(-1, 3)
-
-
-def _rim(points: FloatArray, triangles: IntArray) -> IntArray:
-    """The edges (s, 2) that only one triangle has."""
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    _, first, counts = np.unique(edge_numbers(edges, len(points)), return_index=True, return_counts=True)
-    return edges[first[counts == 1]]
-
-
-def _divided(lines: Lines, longest: float) -> Lines:
-    """The same lines in pieces that are no longer than so [m]."""
-    ends = lines.xy[lines.pieces]
-    parts = max(1, math.ceil(float(np.hypot(*(ends[:, 1] - ends[:, 0]).T).max()) / longest))
-    share = np.linspace(0, 1, parts + 1)[:, None]
-    xy = (1 - share) * ends[:, None, 0] + share * ends[:, None, 1]
-    first = (np.arange(len(ends))[:, None] * (parts + 1) + np.arange(parts)).ravel()
-    return Lines(xy.reshape(-1, 2), np.stack([first, first + 1], axis=1))
-
-
-def _clipped(lines: Lines, frame: FloatArray) -> Lines:
-    """The pieces of lines that lie in a frame (2, 2) [m]."""
-    slack = 1e-9 * extent(frame)
-    seen = ((lines.xy >= frame[0] - slack) & (lines.xy <= frame[1] + slack)).all(axis=1)
-    return Lines(lines.xy, lines.pieces[seen[lines.pieces].all(axis=1)])
-
-
-def _mesh_width(size: float) -> float:
-    """The distance of the net's lines: 1, 2 or 5 with a power of ten."""
-    wanted = size / SQUARES
-    power = 10.0 ** math.floor(math.log10(wanted))
-    return next(digits * power for digits in (1, 2, 5, 10) if digits * power >= wanted * (1 - 1e-9))
-
-
-def _net(smooth: Smooth, frame: FloatArray, width: float) -> Lines:
-    """Lines of equal x and of equal y, `width` [m] apart, as far as they are on the plate."""
-    parts = math.ceil(extent(frame) / (FINE * extent(frame)))
-    lines = []
-    for k in (0, 1):
-        across = np.arange(math.ceil(frame[0, k] / width), math.floor(frame[1, k] / width) + 1) * width
-        along = np.linspace(frame[0, 1 - k], frame[1, 1 - k], parts + 1)
-        pair = np.meshgrid(across, along, indexing="ij")
-        lines.append(np.stack(pair if k == 0 else pair[::-1], axis=-1).reshape(-1, 2))
-    xy = np.concatenate(lines)
-    rows = np.arange(len(xy)).reshape(-1, parts + 1)
-    pieces = np.stack([rows[:, :-1].ravel(), rows[:, 1:].ravel()], axis=1)
-    inside = smooth.locate(xy)[2] if len(xy) else np.empty(0, dtype=bool)
-    return Lines(xy, pieces[inside[pieces].all(axis=1)])
-
-
-def _trail(path: FloatArray, time: FloatArray, longest: float) -> tuple[FloatArray, FloatArray]:
-    """Points (r, 2) along a path (k, 2) [m] that are so near to each other [m], and when the part was there."""
-    length = np.hypot(*np.diff(path, axis=0).T)
-    parts = np.ceil(length / longest).astype(int)
-    moved = np.repeat(np.arange(len(length)), parts)
-    share = (np.arange(len(moved)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[moved]
-    xy = path[moved] + share[:, None] * (path[moved + 1] - path[moved])
-    return np.concatenate([xy, path[-1:]]), np.concatenate([time[moved] + share * (time[moved + 1] - time[moved]), time[-1:]])
 
 
 def _marked(actuators: FloatArray, frame: FloatArray) -> FloatArray:

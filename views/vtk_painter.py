@@ -9,7 +9,7 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 from views.frames import Frame
-from views.look import AMBIENT, DIFFUSE, LIGHT, Look
+from views.look import AMBIENT, DIFFUSE, Look
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -32,7 +32,7 @@ class VtkPainter:
         )
         plotter.set_background("white")
         plotter.enable_anti_aliasing("msaa", multi_samples=4)
-        light = pv.Light(position=tuple(LIGHT), focal_point=(0, 0, 0), light_type="camera light")
+        light = pv.Light(position=tuple(look.light), focal_point=(0, 0, 0), light_type="camera light")
         plotter.add_light(light)
         camera = layout.camera
         focus = layout.focus @ np.stack([camera.right, camera.up])
@@ -48,7 +48,7 @@ class VtkPainter:
         self._surface = pv.PolyData.from_regular_faces(np.zeros((len(look.stage.surface), 3)), cells)
         self._surface["colours"] = np.zeros((len(look.stage.surface), 3), np.uint8)
         self._surface.point_data.active_normals = np.tile([0.0, 0.0, 1.0], (len(look.stage.surface), 1))
-        light_of = {"ambient": AMBIENT, "diffuse": DIFFUSE, "specular": 0.06, "specular_power": 25}
+        light_of = {"ambient": AMBIENT, "diffuse": DIFFUSE, "specular": 0.0}
         plotter.add_mesh(self._surface, scalars="colours", rgb=True, smooth_shading=True, **light_of)
         self._ball = pv.Sphere(radius=look.part_radius, theta_resolution=40, phi_resolution=40)
         shine = {"ambient": 0.35, "diffuse": 0.75, "specular": 0.6, "specular_power": 30, "smooth_shading": True}
@@ -57,7 +57,9 @@ class VtkPainter:
     def __enter__(self) -> VtkPainter:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self._plotter.close()
 
     def paint(self, frame: Frame) -> Image:

@@ -1,0 +1,168 @@
+"""Film file: MP4, GIF, or a folder of PNG pictures; it has its name only once it is complete."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image as Pictures
+
+Image = NDArray[np.uint8]
+
+FORMATS = ("mp4", "gif", "png")
+PARTIAL = ".partial"
+QUALITY = 20  # of x264: no loss is seen
+GIF_COLOURS = 256
+FASTEST_GIF, MOST_GIF = 50, 1000  # frames a second, which viewers slow down above, and frames, which are all in memory
+PICTURE = re.compile(r"\d{5}\.png")
+
+
+class Writer(Protocol):
+    """Takes the frames one after the other."""
+
+    def add(self, image: Image) -> None:
+        """Add the picture (height, width, 3) of the next frame."""
+
+    def end(self) -> None:
+        """Put down what is not yet written."""
+
+    def drop(self) -> None:
+        """Let go of what is open; what was written will be thrown away."""
+
+
+def format_of(output: Path | None, wanted: str | None) -> str:
+    """The format that is asked for, or that of a name.
+
+    Raises ValueError when there is none, or when the two differ.
+    """
+    ending = output.suffix.lower().removeprefix(".") if output else ""
+    if wanted not in (None, *FORMATS):
+        raise ValueError(f"Input format must be {', '.join(FORMATS)}; got {wanted!r}")
+    if ending in FORMATS:
+        if wanted not in (None, ending):
+            raise ValueError(f"Input format must be that of output; got {wanted} for {output}")
+        return ending
+    if output and wanted != "png":
+        raise ValueError(f"Input output must end with {', '.join('.' + name for name in FORMATS)}; got {output}")
+    return wanted or "mp4"
+
+
+def check_film(path: Path, kind: str, size: tuple[int, int], fps: float, frames: int) -> None:
+    """Raises ValueError when a film cannot be written so, with all that is wrong: better before the work than after."""
+    mistakes = []
+    if kind == "mp4" and any(side % 2 for side in size):
+        mistakes.append(f"Input size must be even numbers for mp4; got {size[0]}x{size[1]}")
+    if kind == "gif" and fps > FASTEST_GIF:
+        mistakes.append(f"Input fps must be at most {FASTEST_GIF} for gif; got {fps:g}")
+    if kind == "gif" and frames > MOST_GIF:
+        mistakes.append(f"Input slow-motion must make at most {MOST_GIF} frames of a gif; got {frames}")
+    if kind == "png" and path.exists() and not _ours(path):
+        mistakes.append(f"Input output must be a new folder or one of frames; got {path}, which has something else")
+    if kind != "png" and path.is_dir():
+        mistakes.append(f"Input output must be a file; got {path}, which is a folder")
+    if mistakes:
+        raise ValueError("\n".join(mistakes))
+
+
+@contextmanager
+def film_file(path: Path, kind: str, size: tuple[int, int], fps: float) -> Iterator[Writer]:
+    """Write a film under a partial name; it replaces `path` when the `with` block ends well, and is removed if not.
+
+    Raises RuntimeError when ffmpeg cannot be run, OSError when nothing can be written.
+    """
+    partial = path.with_name(f"{path.stem}{PARTIAL}{path.suffix}")
+    _remove(partial)
+    writers: dict[str, Callable[[Path, tuple[int, int], float], Writer]]
+    writers = {"mp4": _Mp4, "gif": _Gif, "png": _Folder}
+    writer = writers[kind](partial, size, fps)
+    try:
+        yield writer
+        writer.end()
+    except BaseException:
+        writer.drop()
+        _remove(partial)
+        raise
+    if kind == "png" and path.exists():
+        shutil.rmtree(path)
+    partial.replace(path)
+
+
+class _Mp4:
+    """H.264, which every viewer and slide program plays."""
+
+    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
+        import imageio_ffmpeg
+
+        settings = ["-crf", str(QUALITY), "-preset", "medium", "-movflags", "+faststart"]
+        self._pipe = imageio_ffmpeg.write_frames(
+            str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2, output_params=settings
+        )
+        self._pipe.send(None)
+
+    def add(self, image: Image) -> None:
+        self._pipe.send(np.ascontiguousarray(image))
+
+    def end(self) -> None:
+        self._pipe.close()
+
+    drop = end
+
+
+class _Gif:
+    """A GIF, whose colours are those of the first picture, the last and some between."""
+
+    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
+        self._path, self._fps = path, fps
+        self._frames: list[Pictures.Image] = []
+
+    def add(self, image: Image) -> None:
+        picture = Pictures.fromarray(image)
+        self._frames.append(
+            picture.quantize(GIF_COLOURS, method=Pictures.Quantize.MAXCOVERAGE, dither=Pictures.Dither.NONE)
+        )
+
+    def end(self) -> None:
+        moments = np.rint(100 * np.arange(len(self._frames) + 1) / self._fps).astype(int)  # a GIF counts hundredths
+        delays = (10 * np.diff(moments)).tolist()
+        first, *others = self._frames
+        first.save(
+            self._path, format="GIF", save_all=True, append_images=others, duration=delays, loop=0, optimize=False
+        )
+
+    def drop(self) -> None:
+        self._frames.clear()
+
+
+class _Folder:
+    """Numbered pictures."""
+
+    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
+        path.mkdir()
+        self._path, self._count = path, 0
+
+    def add(self, image: Image) -> None:
+        self._count += 1
+        Pictures.fromarray(image).save(self._path / f"{self._count:05d}.png")
+
+    def end(self) -> None:
+        pass
+
+    drop = end
+
+
+def _ours(path: Path) -> bool:
+    """Whether this is a folder that has nothing but frames."""
+    return path.is_dir() and all(PICTURE.fullmatch(entry.name) for entry in path.iterdir())
+
+
+def _remove(partial: Path) -> None:
+    if _ours(partial):
+        shutil.rmtree(partial)
+    else:
+        partial.unlink(missing_ok=True)
