@@ -26,7 +26,7 @@ from command_line.group import main, refusing
     "--slow-motion", type=float, metavar="S", help="Seconds of film for each of the run [it lasts about 8 s]."
 )
 @click.option("--fps", type=float, help="Frames a second [30, of a GIF 20].")
-@click.option("--size", metavar="WxH", help="Pixels [1280x720, of a GIF 960x540].")
+@click.option("--size", metavar="WxH", help="Pixels [1280x720, of a GIF 800x450].")
 @click.option("--renderer", type=click.Choice(["auto", "pyvista", "matplotlib"]), default="auto", show_default=True)
 @click.option("--quiet", "-q", is_flag=True, help="Print nothing but warnings, show no progress.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was made as JSON.")

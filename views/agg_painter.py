@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from types import TracebackType
+import math
 
 import numpy as np
 from matplotlib.backends.backend_agg import RendererAgg
@@ -16,7 +16,9 @@ from views.look import AMBIENT, DIFFUSE, Look
 FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]
 Colour = tuple[float, float, float]
-Soup = tuple[FloatArray, FloatArray, FloatArray]  # triangles (k, 3, 2) in pixels, colours (k, 3, 3), depths (k,)
+Soup = tuple[
+    FloatArray, FloatArray, FloatArray
+]  # triangles (k, 3, 2) in pixels, colours with opacity (k, 3, 4), depths (k,)
 
 NEARER = 0.03  # lengths of the scene by which lines and marks pass for nearer, lest triangles beside them cover them
 WIDER = 1.0  # pixels by which the renderer draws a triangle wider than it is
@@ -26,19 +28,9 @@ CORNERS, RINGS = 32, 6  # of the ball
 class AggPainter:
     """Draws frames with matplotlib's renderer of shaded triangles; lines and marks are triangles as well."""
 
-    name = "matplotlib"
-
     def __init__(self, look: Look) -> None:
         self._look = look
         self._light = look.light
-
-    def __enter__(self) -> AggPainter:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        pass
 
     def paint(self, frame: Frame) -> Image:
         """The picture (height, width, 3) of a frame, without words."""
@@ -56,8 +48,7 @@ class AggPainter:
         graphics.set_linewidth(0)
         paper = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * [look.layout.width, look.layout.height]
         renderer.draw_path(graphics, Path(paper, closed=False), IdentityTransform(), (1.0, 1.0, 1.0, 1.0))
-        full = np.concatenate([colours[order], np.ones((len(order), 3, 1))], axis=2)
-        renderer.draw_gouraud_triangles(graphics, corners[order], full, IdentityTransform())
+        renderer.draw_gouraud_triangles(graphics, corners[order], colours[order], IdentityTransform())
         return np.asarray(renderer.buffer_rgba())[..., :3].copy()
 
     def _surface(self, frame: Frame) -> Soup:
@@ -67,7 +58,7 @@ class AggPainter:
         lit = look.colours(frame) * (AMBIENT + DIFFUSE * np.clip(toward, 0, None))[:, None]
         corners = points[look.stage.triangles]
         depth = (corners @ camera.towards).mean(axis=1)
-        return look.layout.pixels(corners), np.clip(lit, 0, 1)[look.stage.triangles], depth
+        return look.layout.pixels(corners), _opaque(np.clip(lit, 0, 1)[look.stage.triangles]), depth
 
     def _line(self, ends: FloatArray, colour: Colour, width: float) -> Soup:
         """Pieces of a line, ends (s, 2, 3), as strips of a width in pixels."""
@@ -75,18 +66,19 @@ class AggPainter:
         a, b = np.moveaxis(self._look.layout.pixels(ends), 1, 0)
         along = b - a
         length = np.maximum(np.hypot(*along.T), 1e-9)[:, None]
+        opacity = 1 - math.sqrt(1 - min(width / WIDER, 1.0))  # of each half of a strip, which cover the same pixels
         width = max(width - WIDER, 0.05)
         side = width / 2 * np.stack([-along[:, 1], along[:, 0]], axis=1) / length
         over = width / 4 * along / length  # so that pieces of a bend meet
         p, q, r, s = a - over - side, a - over + side, b + over + side, b + over - side
         corners = np.concatenate([np.stack([p, q, r], axis=1), np.stack([p, r, s], axis=1)])
         depth = (ends @ self._look.layout.camera.towards).mean(axis=1) + NEARER
-        return corners, np.broadcast_to(np.array(colour), corners.shape[:2] + (3,)), np.tile(depth, 2)
+        return corners, np.broadcast_to(np.array([*colour, opacity]), corners.shape[:2] + (4,)), np.tile(depth, 2)
 
     def _flat(self, corners: FloatArray, colour: Colour) -> Soup:
         """Triangles (k, 3, 3) of one colour, which face the camera."""
         depth = (corners @ self._look.layout.camera.towards).mean(axis=1) + NEARER
-        return self._look.layout.pixels(corners), np.broadcast_to(np.array(colour), corners.shape), depth
+        return self._look.layout.pixels(corners), _opaque(np.broadcast_to(np.array(colour), corners.shape)), depth
 
     def _ball(self, frame: Frame) -> Soup:
         look, camera = self._look, self._look.layout.camera
@@ -112,4 +104,9 @@ class AggPainter:
             for part in (places, lit)
         )
         depth = middle @ camera.towards + look.part_radius + NEARER
-        return corners, colours, np.full(len(corners), depth)
+        return corners, _opaque(colours), np.full(len(corners), depth)
+
+
+def _opaque(colours: FloatArray) -> FloatArray:
+    """Colours (k, 3, 3) with an opacity of one."""
+    return np.concatenate([colours, np.ones((len(colours), 3, 1))], axis=2)

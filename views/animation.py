@@ -32,7 +32,9 @@ from views.stage import Stage, stage_of
 Image = NDArray[np.uint8]
 
 FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
-SIZE = {"mp4": (1280, 720), "gif": (960, 540), "png": (1280, 720)}
+SIZE = {"mp4": (1280, 720), "gif": (800, 450), "png": (1280, 720)}
+
+HELP = "It needs OpenGL; Debian has it in libegl1 and libgl1-mesa-dri."
 
 
 @dataclass(frozen=True)
@@ -96,7 +98,7 @@ def animate(
         for k, image in enumerate(_images(stage, view, wanted, times, pace, taken)):
             film.add(image)
             tell(k + 1, len(pace.times))
-    said = [] if reason is None else [f"pyvista cannot draw here, so matplotlib has: {reason}"]
+    said = [] if reason is None else [f"pyvista cannot draw here, so matplotlib has: {reason}. {HELP}"]
     said += warnings_of(pace, run.time, _cycle(run.case))
     if not run.complete:
         said.append("The result is partial: its run was interrupted, or has not ended. The film ends where it does.")

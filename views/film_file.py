@@ -17,9 +17,20 @@ Image = NDArray[np.uint8]
 
 FORMATS = ("mp4", "gif", "png")
 PARTIAL = ".partial"
-QUALITY = 20  # of x264: no loss is seen
-GIF_COLOURS = 256
-FASTEST_GIF, MOST_GIF = 50, 1000  # frames a second, which viewers slow down above, and frames, which are all in memory
+# Of ffmpeg: codec, pixels, settings. H.264 as every viewer plays it, with no loss that is seen; a GIF whose 256 colours
+# are chosen for the whole film.
+ENCODERS = {
+    ".mp4": ("libx264", "yuv420p", ("-crf", "20", "-preset", "medium", "-movflags", "+faststart")),
+    ".gif": (
+        "gif",
+        "pal8",
+        (
+            "-filter_complex",
+            "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle",
+        ),
+    ),
+}
+FASTEST_GIF, MOST_GIF = 50, 600  # frames a second, which viewers slow down above, and frames, which are all in memory
 PICTURE = re.compile(r"\d{5}\.png")
 
 
@@ -76,10 +87,10 @@ def film_file(path: Path, kind: str, size: tuple[int, int], fps: float) -> Itera
 
     Raises RuntimeError when ffmpeg cannot be run, OSError when nothing can be written.
     """
-    partial = path.with_name(f"{path.stem}{PARTIAL}{path.suffix}")
+    partial = path.with_name(f"{path.stem}{PARTIAL}{path.suffix.lower()}")
     _remove(partial)
     writers: dict[str, Callable[[Path, tuple[int, int], float], Writer]]
-    writers = {"mp4": _Mp4, "gif": _Gif, "png": _Folder}
+    writers = {"mp4": _Film, "gif": _Film, "png": _Folder}
     writer = writers[kind](partial, size, fps)
     try:
         yield writer
@@ -93,15 +104,23 @@ def film_file(path: Path, kind: str, size: tuple[int, int], fps: float) -> Itera
     partial.replace(path)
 
 
-class _Mp4:
-    """H.264, which every viewer and slide program plays."""
+class _Film:
+    """A film by ffmpeg."""
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
         import imageio_ffmpeg
 
-        settings = ["-crf", str(QUALITY), "-preset", "medium", "-movflags", "+faststart"]
+        codec, pixels, settings = ENCODERS[path.suffix]
         self._pipe = imageio_ffmpeg.write_frames(
-            str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2, output_params=settings
+            str(path),
+            size,
+            fps=fps,
+            codec=codec,
+            pix_fmt_out=pixels,
+            quality=None,
+            macro_block_size=1,
+            ffmpeg_log_level="error",
+            output_params=list(settings),
         )
         self._pipe.send(None)
 
@@ -112,31 +131,6 @@ class _Mp4:
         self._pipe.close()
 
     drop = end
-
-
-class _Gif:
-    """A GIF, whose colours are those of the first picture, the last and some between."""
-
-    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
-        self._path, self._fps = path, fps
-        self._frames: list[Pictures.Image] = []
-
-    def add(self, image: Image) -> None:
-        picture = Pictures.fromarray(image)
-        self._frames.append(
-            picture.quantize(GIF_COLOURS, method=Pictures.Quantize.MAXCOVERAGE, dither=Pictures.Dither.NONE)
-        )
-
-    def end(self) -> None:
-        moments = np.rint(100 * np.arange(len(self._frames) + 1) / self._fps).astype(int)  # a GIF counts hundredths
-        delays = (10 * np.diff(moments)).tolist()
-        first, *others = self._frames
-        first.save(
-            self._path, format="GIF", save_all=True, append_images=others, duration=delays, loop=0, optimize=False
-        )
-
-    def drop(self) -> None:
-        self._frames.clear()
 
 
 class _Folder:

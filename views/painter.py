@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, closing, nullcontext
 from typing import Protocol
 
 import numpy as np
@@ -44,7 +44,7 @@ def painter(renderer: str, look: Look) -> AbstractContextManager[Painter]:
     if renderer == "pyvista":
         from views.vtk_painter import VtkPainter
 
-        return VtkPainter(look)
+        return closing(VtkPainter(look))
     from views.agg_painter import AggPainter
 
-    return AggPainter(look)
+    return nullcontext(AggPainter(look))

@@ -73,7 +73,8 @@ class Stage:
             "actuators": self.actuators,
             "trail": self.trail,
         }
-        return {name: self.smooth.at(xy) if len(xy) else csr_matrix((0, len(self.used))) for name, xy in things.items()}
+        none = csr_matrix((0, len(self.used)))
+        return {name: self.smooth.at(xy) if len(xy) else none for name, xy in things.items()}
 
     @cached_property
     def reach(self) -> tuple[FloatArray, FloatArray]:
@@ -123,7 +124,7 @@ def stage_of(run: SavedRun) -> Stage:
     surface, triangles = _finer(run) if window is None else _grid(smooth, frame)
     size = extent(frame)
     outer = outer_edges(run.points, run.triangles)
-    rim = clipped(divided(Lines(run.points, outer), FINE * size), frame)
+    rim = clipped(divided(clipped(Lines(run.points, outer), frame), FINE * size), frame)
     cut = Lines(surface, outer_edges(surface, triangles)) if window is not None else Lines(surface[:0], outer[:0])
     width = net_width(size)
     trail, trail_time = (
@@ -167,7 +168,7 @@ def _finer(run: SavedRun) -> tuple[FloatArray, IntArray]:
 
 
 def _grid(smooth: Smooth, frame: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Points of a grid in a frame (2, 2) [m], and the triangles of those on the plate; points beyond are drawn to its rim."""
+    """Points of a grid in a frame (2, 2) [m], those beyond the plate drawn to its rim, and the triangles on it."""
     counts = np.maximum(np.ceil(ACROSS * np.ptp(frame, axis=0) / extent(frame)), 1)
     x, y = (np.linspace(frame[0, k], frame[1, k], int(counts[k]) + 1) for k in (0, 1))
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)

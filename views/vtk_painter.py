@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import TracebackType
-
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
@@ -21,8 +19,6 @@ FAR = 10.0  # lengths of the scene from it is the camera
 
 class VtkPainter:
     """Draws frames with pyvista; only after `offscreen.prepare` has found that it can."""
-
-    name = "pyvista"
 
     def __init__(self, look: Look) -> None:
         self._look = look
@@ -54,12 +50,8 @@ class VtkPainter:
         shine = {"ambient": 0.35, "diffuse": 0.75, "specular": 0.6, "specular_power": 30, "smooth_shading": True}
         self._part = plotter.add_mesh(self._ball, **shine)
 
-    def __enter__(self) -> VtkPainter:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Let go of the window."""
         self._plotter.close()
 
     def paint(self, frame: Frame) -> Image:
