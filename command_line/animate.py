@@ -50,9 +50,7 @@ def animate(
     """
     from coupling.progress import CountBar, untold
     from views.animation import animate as make
-    from views.layout import read_size
 
-    pixels = None if size is None else refusing(read_size, size)
     with nullcontext(untold) if quiet else CountBar("frames") as tell:
         made = refusing(
             partial(
@@ -64,7 +62,7 @@ def animate(
                 fps=fps,
                 slow_motion=slow_motion,
                 exaggeration=exaggeration,
-                size=pixels,
+                size=size,
                 renderer=renderer,
                 tell=tell,
             )

@@ -6,7 +6,7 @@ run -> stage -> pace -> layout -> painter -> frames, each painted and captioned 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,16 +19,17 @@ from coupling.drives import build_drives
 from coupling.progress import Tell, untold
 from coupling.results import check_folder
 from coupling.saved import SavedRun, read_run
-from views.camera import Camera, read_camera
+from views.camera import Camera, camera_of
 from views.captions import Captions
 from views.film_file import check_film, film_file, format_of
 from views.frames import frames_of
-from views.layout import check_size, layout_of
+from views.layout import layout_of, size_of
 from views.look import Look
 from views.pace import Pace, pace_of, warnings_of
 from views.painter import chosen, painter
 from views.stage import Stage, stage_of
 
+FloatArray = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
@@ -63,7 +64,7 @@ def animate(
     fps: float | None = None,
     slow_motion: float | None = None,
     exaggeration: float | None = None,
-    size: tuple[int, int] | None = None,
+    size: str | tuple[int, int] | None = None,
     renderer: str = "auto",
     tell: Tell = untold,
 ) -> Animation:
@@ -73,29 +74,34 @@ def animate(
     pictures; without one NAME.mp4 beside the result.  kind: "mp4", "gif" or "png"; without one as `output` ends.
     camera: a name in `CAMERAS`, "azimuth,elevation" in degrees, or a camera.  fps: frames a second.  slow_motion:
     seconds of film for each second of the run; without it the film lasts about 8 s.  exaggeration: of heights;
-    without it a round number that shows them.  size: width and height in pixels.  renderer: "pyvista", "matplotlib",
-    or "auto", pyvista where it can draw.  tell: gets how many frames are done, and of how many.
+    without it a round number that shows them.  size: "WIDTHxHEIGHT" in pixels, or the two numbers.  renderer:
+    "pyvista", "matplotlib", or "auto", pyvista where it can draw.  tell: gets how many frames are done, and of how
+    many.
 
     Between stored steps heights and places are interpolated linearly. An older film of that name is replaced.
     Raises ValueError when the result cannot be read or an input is refused, OSError when the film cannot be written.
     """
-    form = format_of(None if output is None else Path(output), kind)
-    view = read_camera(camera) if isinstance(camera, str) else camera
-    wanted, rate = size or SIZE[form], fps or FPS[form]
-    check_size(wanted)
-    _check_exaggeration(exaggeration)
-    run = result if isinstance(result, SavedRun) else read_run(result)
+    tries = _Tries()
+    form = tries(format_of, None if output is None else Path(output), kind) or "mp4"
+    rate, wanted = FPS[form] if fps is None else fps, SIZE[form] if size is None else size
+    view = tries(camera_of, camera)
+    wanted = tries(size_of, wanted) or SIZE[form]
+    for name, value in (("exaggeration", exaggeration), ("fps", rate), ("slow-motion", slow_motion)):
+        tries(_check_positive, name, value)
+    run = tries(_run_of, result)
+    tries.end()
     path = _output(run, output, form)
-    check_folder(path.parent)
-    pace = pace_of(run.time, rate, slow_motion)
-    check_film(path, form, wanted, rate, len(pace.times))
-    taken, reason = chosen(renderer)
+    tries(check_folder, path.parent)
+    pace = tries(pace_of, run.time, rate, slow_motion)
+    tries(check_film, path, form, wanted, rate, len(pace.times) if pace else 0)
+    taken, reason = tries(chosen, renderer) or ("", None)
+    tries.end()
 
     stage = stage_of(run)
     times = exaggeration or stage.exaggeration
     path.parent.mkdir(parents=True, exist_ok=True)
     with film_file(path, form, wanted, rate) as film:
-        for k, image in enumerate(_images(stage, view, wanted, times, pace, taken)):
+        for k, image in enumerate(_images(stage, view, wanted, times, pace.times, pace, taken)):
             film.add(image)
             tell(k + 1, len(pace.times))
     said = [] if reason is None else [f"pyvista cannot draw here, so matplotlib has: {reason}. {HELP}"]
@@ -111,28 +117,35 @@ def still(
     *,
     camera: str | Camera = "iso",
     exaggeration: float | None = None,
-    size: tuple[int, int] = SIZE["png"],
+    size: str | tuple[int, int] = SIZE["png"],
     renderer: str = "auto",
 ) -> Image:
     """The picture (height, width, 3) of a film at a time [s]; otherwise as `animate`."""
-    check_size(size)
-    _check_exaggeration(exaggeration)
-    view = read_camera(camera) if isinstance(camera, str) else camera
-    run = result if isinstance(result, SavedRun) else read_run(result)
+    tries = _Tries()
+    view, pixels = tries(camera_of, camera), tries(size_of, size)
+    tries(_check_positive, "exaggeration", exaggeration)
+    run = tries(_run_of, result)
+    tries.end()
     if not run.time[0] <= time <= run.time[-1]:
         raise ValueError(f"Input time must be from {run.time[0]:g} to {run.time[-1]:g} s; got {time!r}")
     stage = stage_of(run)
-    moment = Pace(0.0, 0.0, np.array([time]))
-    return next(_images(stage, view, size, exaggeration or stage.exaggeration, moment, chosen(renderer)[0]))
+    taken, times = chosen(renderer)[0], exaggeration or stage.exaggeration
+    return next(_images(stage, view, pixels, times, np.array([time]), None, taken))
 
 
 def _images(
-    stage: Stage, camera: Camera, size: tuple[int, int], exaggeration: float, pace: Pace, renderer: str
+    stage: Stage,
+    camera: Camera,
+    size: tuple[int, int],
+    exaggeration: float,
+    times: FloatArray,
+    pace: Pace | None,
+    renderer: str,
 ) -> Iterator[Image]:
     layout = layout_of(stage, camera, size, exaggeration)
     captions = Captions(stage, layout, pace)
     with painter(renderer, Look(stage, layout, stage.scale)) as drawn:
-        for frame in frames_of(stage, pace.times):
+        for frame in frames_of(stage, times):
             yield captions.put_on(drawn.paint(frame), frame)
 
 
@@ -144,9 +157,33 @@ def _output(run: SavedRun, output: str | Path | None, form: str) -> Path:
     return path.with_suffix("") if form == "png" and path.suffix.lower() == ".png" else path
 
 
-def _check_exaggeration(exaggeration: float | None) -> None:
-    if exaggeration is not None and not (math.isfinite(exaggeration) and exaggeration > 0):
-        raise ValueError(f"Input exaggeration must be a finite number above 0; got {exaggeration!r}")
+class _Tries:
+    """Collects what is refused, to say it all at once."""
+
+    def __init__(self) -> None:
+        self._mistakes: list[str] = []
+
+    def __call__(self, work: Callable[..., Any], *arguments: object) -> Any:
+        """work(*arguments), or None where it is refused."""
+        try:
+            return work(*arguments)
+        except ValueError as error:
+            self._mistakes.append(str(error))
+            return None
+
+    def end(self) -> None:
+        """Raises ValueError with all that was refused."""
+        if self._mistakes:
+            raise ValueError("\n".join(self._mistakes))
+
+
+def _run_of(result: str | Path | SavedRun) -> SavedRun:
+    return result if isinstance(result, SavedRun) else read_run(result)
+
+
+def _check_positive(name: str, value: float | None) -> None:
+    if value is not None and not (math.isfinite(value) and value > 0):
+        raise ValueError(f"Input {name} must be a finite number above 0; got {value!r}")
 
 
 def _cycle(case: Case) -> float | None:

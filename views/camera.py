@@ -48,11 +48,13 @@ CAMERAS = {
 }
 
 
-def read_camera(text: str) -> Camera:
+def camera_of(text: str | Camera) -> Camera:
     """The camera of a name, or of "azimuth,elevation" in degrees.
 
     Raises ValueError for anything else.
     """
+    if isinstance(text, Camera):
+        return text
     name = text.strip().lower()
     if name in CAMERAS:
         return CAMERAS[name]

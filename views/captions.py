@@ -38,7 +38,7 @@ COLOURS = {State.STICK: STICK_COLOUR, State.SLIP: PATH_COLOUR, State.FLIGHT: "#3
 class Captions:
     """Words and scales of a film. They are drawn once; clock, state and the time line's hand for each frame."""
 
-    def __init__(self, stage: Stage, layout: Layout, pace: Pace) -> None:
+    def __init__(self, stage: Stage, layout: Layout, pace: Pace | None) -> None:
         self._figure = Figure(figsize=(layout.width / DPI, layout.height / DPI), dpi=DPI, facecolor="none")
         self._canvas = FigureCanvasAgg(self._figure)
         self._letter = max(min(layout.height * 0.021, layout.width * 0.0165), LEAST_LETTER) * 72 / DPI  # points
@@ -120,7 +120,7 @@ class Captions:
         times = self._layout.exaggeration
         return "" if times == 1 else f" (×{times:.6g})"
 
-    def _draw_notes(self, pace: Pace) -> None:
+    def _draw_notes(self, pace: Pace | None) -> None:
         stage, letter = self._stage, self._letter
         unit = readable(np.array([stage.mesh_width]), "m")
         times = self._layout.exaggeration
@@ -131,12 +131,14 @@ class Captions:
             if times == 1
             else f"heights drawn {times:.6g} times larger",
             f"squares of {stage.mesh_width * unit.per_si:.6g} {unit.name}",
-            pace.words,
         ]
+        if pace is not None:
+            said.append(pace.words)
         if isinstance(stage.run.case.plate, PlatformCase):
             said.append("seen from the platform")
-        self._figure.text(0.5, 0.012, "   ·   ".join(said), fontsize=letter, ha="center", va="bottom", color="#404040")
-        self._figure.text(0.975, 0.972, stage.run.name, fontsize=letter, ha="right", va="top", color="#404040")
+        grey: dict[str, Any] = {"fontsize": letter, "color": "#404040"}
+        self._fit(self._figure.text(0.5, 0.012, "   ·   ".join(said), ha="center", va="bottom", **grey), 0.97)
+        self._fit(self._figure.text(0.975, 0.972, stage.run.name, ha="right", va="top", **grey), 0.6)
         keys: list[Artist] = []
         look: dict[str, Any] = {"color": "none", "marker": "o", "markeredgecolor": "black", "markersize": letter * 0.6}
         if len(stage.actuators):
@@ -155,8 +157,13 @@ class Captions:
             }
             self._figure.legend(handles=keys, fontsize=letter * 0.9, frameon=False, handlelength=1.4, **place)
 
+    def _fit(self, text: Text, share: float) -> None:
+        """Make letters so small that a text is no wider than a share of the picture."""
+        wide = text.get_window_extent(self._canvas.get_renderer()).width / self._layout.width
+        text.set_fontsize(float(text.get_fontsize()) * min(1.0, share / wide))
+
     def _draw_clock(self) -> tuple[Text, Text]:
-        last, frames = self._stage.run.time[-1] * self._time_unit.per_si, 500
+        last, frames = self._stage.run.time[-1] * self._time_unit.per_si, 250
         self._digits = int(np.clip(np.ceil(np.log10(frames / last)), 0, 6)) if last > 0 else 0
         common: dict[str, Any] = {"ha": "left", "va": "top", "animated": True}
         clock = self._figure.text(0.03, 0.972, "", fontsize=1.9 * self._letter, weight="bold", **common)

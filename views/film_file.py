@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Protocol
+from subprocess import DEVNULL, PIPE, Popen
+from tempfile import TemporaryFile
+from typing import IO, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,19 +19,11 @@ Image = NDArray[np.uint8]
 
 FORMATS = ("mp4", "gif", "png")
 PARTIAL = ".partial"
-# Of ffmpeg: codec, pixels, settings. H.264 as every viewer plays it, with no loss that is seen; a GIF whose 256 colours
-# are chosen for the whole film.
-ENCODERS = {
-    ".mp4": ("libx264", "yuv420p", ("-crf", "20", "-preset", "medium", "-movflags", "+faststart")),
-    ".gif": (
-        "gif",
-        "pal8",
-        (
-            "-filter_complex",
-            "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle",
-        ),
-    ),
-}
+# Settings of ffmpeg: H.264 as every viewer plays it, with no loss that is seen; a GIF whose 256 colours are chosen for
+# the whole film.
+H264 = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-preset", "medium", "-movflags", "+faststart"]
+COLOURS = "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=sierra2_4a"
+ENCODERS = {".mp4": H264, ".gif": ["-filter_complex", COLOURS]}
 FASTEST_GIF, MOST_GIF = 50, 600  # frames a second, which viewers slow down above, and frames, which are all in memory
 PICTURE = re.compile(r"\d{5}\.png")
 
@@ -85,7 +79,7 @@ def check_film(path: Path, kind: str, size: tuple[int, int], fps: float, frames:
 def film_file(path: Path, kind: str, size: tuple[int, int], fps: float) -> Iterator[Writer]:
     """Write a film under a partial name; it replaces `path` when the `with` block ends well, and is removed if not.
 
-    Raises RuntimeError when ffmpeg cannot be run, OSError when nothing can be written.
+    Raises RuntimeError when there is no ffmpeg, OSError when the film cannot be written.
     """
     partial = path.with_name(f"{path.stem}{PARTIAL}{path.suffix.lower()}")
     _remove(partial)
@@ -108,29 +102,41 @@ class _Film:
     """A film by ffmpeg."""
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
-        import imageio_ffmpeg
+        from imageio_ffmpeg import get_ffmpeg_exe
 
-        codec, pixels, settings = ENCODERS[path.suffix]
-        self._pipe = imageio_ffmpeg.write_frames(
-            str(path),
-            size,
-            fps=fps,
-            codec=codec,
-            pix_fmt_out=pixels,
-            quality=None,
-            macro_block_size=1,
-            ffmpeg_log_level="error",
-            output_params=list(settings),
-        )
-        self._pipe.send(None)
+        frames = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps!r}", "-i", "-"]
+        command = [get_ffmpeg_exe(), "-y", "-v", "error", *frames, *ENCODERS[path.suffix], str(path)]
+        self._said = TemporaryFile()  # noqa: SIM115
+        # In a session of its own: Ctrl-C is for us, who then end it.
+        self._ffmpeg = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=self._said, start_new_session=True)
 
     def add(self, image: Image) -> None:
-        self._pipe.send(np.ascontiguousarray(image))
+        try:
+            self._pipe.write(np.ascontiguousarray(image).data)
+        except BrokenPipeError:
+            self.end()
 
     def end(self) -> None:
-        self._pipe.close()
+        with suppress(BrokenPipeError):
+            self._pipe.close()
+        self._ffmpeg.wait()
+        self._said.seek(0)
+        said = self._said.read().decode(errors="replace").strip()
+        self._said.close()
+        if self._ffmpeg.returncode != 0:
+            raise OSError(f"ffmpeg cannot write the film: {said or f'exit code {self._ffmpeg.returncode}'}")
 
-    drop = end
+    def drop(self) -> None:
+        self._ffmpeg.kill()
+        self._ffmpeg.wait()
+        with suppress(BrokenPipeError):
+            self._pipe.close()
+        self._said.close()
+
+    @property
+    def _pipe(self) -> IO[bytes]:
+        assert self._ffmpeg.stdin is not None
+        return self._ffmpeg.stdin
 
 
 class _Folder:

@@ -14,7 +14,7 @@ from views.stage import Stage
 
 FloatArray = NDArray[np.float64]
 
-LEAST, MOST = 160, 8192  # pixels
+LEAST, MOST = (320, 240), 8192  # pixels: width and height, either
 LEFT, RIGHT, BOTTOM, TOP = 0.03, 0.86, 0.17, 0.88  # of the picture: the part of it that the surface fills
 HIGHEST = 0.5  # of the frame's longer side: a part that flies higher may leave the picture
 
@@ -57,23 +57,21 @@ def layout_of(stage: Stage, camera: Camera, size: tuple[int, int], exaggeration:
     return Layout(width, height, camera, exaggeration, bare.middle, bare.size, (low + high) / 2 - offset / scale, scale)
 
 
-def read_size(text: str) -> tuple[int, int]:
+def size_of(wanted: str | tuple[int, int]) -> tuple[int, int]:
     """The width and height [pixels] of "1280x720".
 
-    Raises ValueError for anything else.
+    Raises ValueError for anything else, and unless a picture of this size can be drawn and read.
     """
-    found = re.fullmatch(r"\s*(\d+)\s*[x×,]\s*(\d+)\s*", text)
-    if not found:
-        raise ValueError(f"Input size must be WIDTHxHEIGHT in pixels, as in 1280x720; got {text!r}")
-    size = int(found[1]), int(found[2])
-    check_size(size)
-    return size
-
-
-def check_size(size: tuple[int, int]) -> None:
-    """Raises ValueError unless a picture of this width and height [pixels] can be drawn and read."""
-    if not all(LEAST <= side <= MOST for side in size):
-        raise ValueError(f"Input size must be from {LEAST} to {MOST} pixels each way; got {size[0]}x{size[1]}")
+    if isinstance(wanted, str):
+        found = re.fullmatch(r"\s*(\d+)\s*[x×,]\s*(\d+)\s*", wanted)
+        if not found:
+            raise ValueError(f"Input size must be WIDTHxHEIGHT in pixels, as in 1280x720; got {wanted!r}")
+        wanted = int(found[1]), int(found[2])
+    if not all(least <= side <= MOST for least, side in zip(LEAST, wanted, strict=True)):
+        raise ValueError(
+            f"Input size must be from {LEAST[0]}x{LEAST[1]} to {MOST}x{MOST} pixels; got {wanted[0]}x{wanted[1]}"
+        )
+    return wanted
 
 
 def nice_length(most: float) -> float:

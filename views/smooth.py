@@ -31,7 +31,7 @@ class Smooth:
     def locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
         """The triangle (k,) of points (k, 2) [m], their barycentric coordinates (k, 3), and whether they are in it.
 
-        A point that is in none has the nearest place of a triangle near it.
+        A point that is in none has a place near it, on the rim.
         """
         near = self._tree.query(xy, k=min(NEAREST, len(self.triangles)))[1].reshape(len(xy), -1)
         corners = self.points[self.triangles[near]]  # (k, NEAREST, 3, 2)
@@ -42,11 +42,12 @@ class Smooth:
         second = (p[..., 0] * v[..., 1] - p[..., 1] * v[..., 0]) / area
         third = (u[..., 0] * p[..., 1] - u[..., 1] * p[..., 0]) / area
         shares = np.stack([1 - second - third, second, third], axis=-1)
-        best = shares.min(axis=-1).argmax(axis=1)
-        rows = np.arange(len(xy))
+        kept = np.clip(shares, 0, None)
+        kept /= kept.sum(axis=-1, keepdims=True)
+        away = np.square((corners * kept[..., None]).sum(axis=2) - xy[:, None]).sum(axis=-1)
+        best, rows = away.argmin(axis=1), np.arange(len(xy))
         inside = shares[rows, best].min(axis=-1) >= -OUTSIDE
-        found = np.clip(shares[rows, best], 0, None)
-        return near[rows, best], found / found.sum(axis=1, keepdims=True), inside
+        return near[rows, best], kept[rows, best], inside
 
     def at(self, xy: FloatArray) -> csr_matrix:
         """The matrix (k, n) from heights (n,) at the mesh's points to those at points (k, 2) [m] on it."""
