@@ -14,7 +14,8 @@ from scipy.sparse import csr_matrix
 
 from coupling.plate_picture import Scale
 from coupling.saved import SavedRun
-from coupling.window import extent, is_visible, path_window, pitch
+from coupling.window import PITCHES, extent, is_visible, path_window, pitch
+from particle import State
 from views.lines import Lines, clipped, divided, net, net_width, outer_edges, path_points
 from views.pace import nearest_round
 from views.smooth import Smooth
@@ -24,6 +25,8 @@ IntArray = NDArray[np.int64]
 
 MOST_TRIANGLES = 40_000  # of a mesh that is made finer to be drawn
 ACROSS = 120  # cells along a window
+WIDER = 3.0  # times what the part goes up and down is the least width of a window
+MOST_OF_PLATE = 0.6  # of the plate's longer side: a wider window shows all of it
 FINE = 1 / 200  # of the longer side: the length of a piece of a line
 RISE = 0.2  # of the longer side: about so high are heights drawn without a wish
 ALMOST_TRUE = 1.5  # a smaller exaggeration is none
@@ -115,17 +118,15 @@ class Stage:
 
 def stage_of(run: SavedRun) -> Stage:
     """The stage of a run: all of its surface, or a window around a path that is short beside it."""
-    box = np.stack([run.points.min(axis=0), run.points.max(axis=0)])
     path = run.position[:, :2]
-    window = path_window(path, box, run.actuators)
-    frame = box if window is None else np.array([np.maximum(window[0], box[0]), np.minimum(window[1], box[1])])
+    frame, window = _frame(run)
     used, kept = _near(run, frame)
     smooth = Smooth(run.points[used], kept)
-    surface, triangles = _finer(run) if window is None else _grid(smooth, frame)
+    surface, triangles = _grid(smooth, frame) if window else _finer(run)
     size = extent(frame)
     outer = outer_edges(run.points, run.triangles)
     rim = clipped(divided(clipped(Lines(run.points, outer), frame), FINE * size), frame)
-    cut = Lines(surface, outer_edges(surface, triangles)) if window is not None else Lines(surface[:0], outer[:0])
+    cut = Lines(surface, outer_edges(surface, triangles)) if window else Lines(surface[:0], outer[:0])
     width = net_width(size)
     trail, trail_time = (
         path_points(path, run.time, FINE * size) if is_visible(path, frame) else (path[:0], run.time[:0])
@@ -135,7 +136,7 @@ def stage_of(run: SavedRun) -> Stage:
         used,
         smooth,
         frame,
-        window is not None,
+        window,
         surface,
         triangles,
         rim,
@@ -146,6 +147,26 @@ def stage_of(run: SavedRun) -> Stage:
         trail,
         trail_time,
     )
+
+
+def _frame(run: SavedRun) -> tuple[FloatArray, bool]:
+    """The frame (2, 2) [m], and whether it is a window around a path that is short beside the plate.
+
+    Its sides are a few lengths of the path, two pitches, and some times what the part goes up and down with the plate,
+    whichever is most.
+    """
+    box = np.stack([run.points.min(axis=0), run.points.max(axis=0)])
+    window = path_window(run.position[:, :2], box, run.actuators)
+    if window is None:
+        return box, False
+    heights = run.position[run.state != State.FLIGHT, 2]
+    rise = float(np.ptp(heights)) if len(heights) else 0.0
+    side = max(extent(window), PITCHES * pitch(run.actuators), WIDER * rise)
+    if side > MOST_OF_PLATE * extent(box):
+        return box, False
+    sides = np.minimum(side, np.ptp(box, axis=0))
+    low = np.clip(window.mean(axis=0) - sides / 2, box[0], box[1] - sides)
+    return np.stack([low, low + sides]), True
 
 
 def _near(run: SavedRun, frame: FloatArray) -> tuple[IntArray, IntArray]:

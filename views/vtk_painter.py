@@ -27,7 +27,7 @@ class VtkPainter:
             off_screen=True, window_size=[layout.width, layout.height], lighting="none"
         )
         plotter.set_background("white")
-        plotter.enable_anti_aliasing("msaa", multi_samples=4)
+        plotter.enable_anti_aliasing("msaa", multi_samples=8)
         light = pv.Light(position=tuple(look.light), focal_point=(0, 0, 0), light_type="camera light")
         plotter.add_light(light)
         camera = layout.camera
