@@ -132,7 +132,7 @@ class Captions:
             else f"heights drawn {times:.6g} times larger",
             f"squares of {stage.mesh_width * unit.per_si:.6g} {unit.name}",
         ]
-        if pace is not None:
+        if pace is not None and len(pace.times) > 1:
             said.append(pace.words)
         if isinstance(stage.run.case.plate, PlatformCase):
             said.append("seen from the platform")
@@ -179,9 +179,13 @@ class Captions:
             for begin, end in stretches(run.state == state):
                 axes.axvspan(edges[begin], edges[end], color=colour, alpha=0.25, linewidth=0)
         axes.set_yticks([])
-        axes.set_xlim(edges[0], max(edges[-1], edges[0] + 1e-9))
         axes.set_ylim(0, 1)
-        axes.xaxis.set_major_locator(MaxNLocator(10, steps=STEPS))
+        if len(edges) > 1:
+            axes.set_xlim(edges[0], edges[-1])
+            axes.xaxis.set_major_locator(MaxNLocator(10, steps=STEPS))
+        else:
+            axes.set_xlim(edges[0] - 1, edges[0] + 1)
+            axes.set_xticks(edges)
         axes.tick_params(labelsize=0.9 * letter, length=2, pad=2)
         self._figure.text(0.862, 0.0845, unit.name, fontsize=0.9 * letter, va="top")
         for spine in axes.spines.values():

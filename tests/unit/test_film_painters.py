@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from made_runs import hill, made_run
+from PIL import Image
 
 from particle import State
-from views.animation import still
+from views.animation import animate, still
 from views.camera import CAMERAS
 from views.captions import Captions
 from views.frames import frames_of
@@ -114,6 +115,13 @@ def test_no_word_is_clipped(size, state):
     captions.put_on(np.full((size[1], size[0], 3), 255, np.uint8), frame)
     box = captions._figure.get_tightbbox().padded(-0.02).transformed(captions._figure.dpi_scale_trans)
     assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= size[0] and box.y1 <= size[1]
+
+
+def test_a_film_of_one_step_is_a_frame(renderer, tmp_path):
+    made = animate(made_run([[0.0, 0.0]], lambda points: hill(points, 1e-5)), tmp_path / "f.gif", renderer=renderer)
+    with Image.open(made.file) as film:
+        assert made.frames == film.n_frames == 1
+    assert made.renderer == renderer and made.exaggeration == 20 and made.warnings == ()
 
 
 def test_a_still_is_the_frame_of_its_time(refused):
