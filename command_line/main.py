@@ -1,6 +1,6 @@
 """The command `active-surface`, with all its commands."""
 
-from command_line import aim, animate, run, sweep, verify
+from command_line import aim, animate, export, rerun, run, sweep, verify
 from command_line.group import main
 
-__all__ = ["main", "run", "sweep", "aim", "animate", "verify"]
+__all__ = ["main", "run", "rerun", "export", "animate", "sweep", "aim", "verify"]
