@@ -17,7 +17,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
-from coupling.path_picture import PATH_COLOUR, STICK_COLOUR
+from coupling.path_picture import HALO, PATH_COLOUR, STICK_COLOUR
 from coupling.platform_case import PlatformCase
 from coupling.readable import STEPS, readable
 from coupling.time_picture import SHADES, stretches
@@ -165,7 +165,7 @@ class Captions:
     def _draw_clock(self) -> tuple[Text, Text]:
         last, frames = self._stage.run.time[-1] * self._time_unit.per_si, 250
         self._digits = int(np.clip(np.ceil(np.log10(frames / last)), 0, 6)) if last > 0 else 0
-        common: dict[str, Any] = {"ha": "left", "va": "top", "animated": True}
+        common: dict[str, Any] = {"ha": "left", "va": "top", "animated": True, "path_effects": HALO}
         clock = self._figure.text(0.03, 0.972, "", fontsize=1.9 * self._letter, weight="bold", **common)
         below = 0.972 - 2.7 * self._letter * DPI / 72 / self._layout.height
         state = self._figure.text(0.031, below, "", fontsize=1.15 * self._letter, **common)
