@@ -2,6 +2,7 @@
 
 from command_line import (
     aim,
+    animate,
     check,
     completion,
     export,
@@ -16,6 +17,7 @@ from command_line.group import main
 __all__ = [
     "main",
     "aim",
+    "animate",
     "check",
     "completion",
     "export",

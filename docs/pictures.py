@@ -5,6 +5,7 @@ from shutil import copy
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from animation_pictures import draw_animation
 from contact_pictures import draw_contact
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -162,6 +163,7 @@ def _draw_decay(axes: Axes) -> None:
 
 if __name__ == "__main__":
     draw_runs()
+    draw_animation()
     draw_sweep()
     draw_aims()
     draw_plates()

@@ -104,12 +104,13 @@ def test_a_run_is_not_written_over_itself(folder):
 
 
 @pytest.mark.parametrize("command", [["export", "--format", "pvd"], ["rerun"]])
-def test_what_is_no_result_is_told_in_one_line(tmp_path, command):
+def test_what_is_no_result_is_told(tmp_path, command):
     (tmp_path / "case.toml").write_text("[plate]\n")
     output = tmp_path / "out"
     done = CliRunner().invoke(main, [*command, str(tmp_path / "case.toml"), "--output", str(output)])
     assert done.exit_code == 2 and not output.exists()
-    (line,) = done.output.splitlines()
-    assert line.startswith("Input path of read_run must be a result of `active-surface run`; got ")
+    title, line = done.output.splitlines()
+    assert title == f"active-surface {command[0]}: 1 mistake"
+    assert line.startswith("  Input path of read_run must be a result of `active-surface run`; got ")
     with pytest.raises(ValueError, match="must be one of pvd, xdmf, vtkhdf; got 'csv'"):
         export_run(None, output, "csv")

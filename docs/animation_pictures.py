@@ -1,0 +1,23 @@
+"""Draws the still of an animation that the documentation shows."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from PIL import Image
+
+from coupling import read_case, run_case
+from views.animation import still
+
+ROOT = Path(__file__).parent.parent
+MOMENT = 2.2e-3  # s
+
+
+def draw_animation() -> None:
+    with TemporaryDirectory() as folder:
+        run_case(read_case(ROOT / "examples/two_actuators.toml"), output=folder)
+        picture = still(Path(folder) / "two_actuators", MOMENT)
+    Image.fromarray(picture).save(ROOT / "docs/animation.png", optimize=True)
+
+
+if __name__ == "__main__":
+    draw_animation()
