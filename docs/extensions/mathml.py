@@ -16,7 +16,7 @@ def inline(translator: HTML5Translator, node: Element) -> None:
 def block(translator: HTML5Translator, node: Element) -> None:
     """A formula on lines of its own; if it has a label it has a number, and links lead to it."""
     translator.body.append(translator.starttag(node, "div", CLASS="formula"))
-    translator.body.append(tex2mathml(node.astext(), as_block=True))
+    translator.body.append(f'<div class="drawn">{tex2mathml(node.astext(), as_block=True)}</div>')
     if node["number"]:
         translator.body.append(f'<span class="number">({get_node_equation_number(translator, node)})</span>')
     translator.body.append("</div>\n")
