@@ -1,6 +1,7 @@
 """Draws the pictures of the documentation anew: `make docs`."""
 
 from pathlib import Path
+from runpy import run_path
 from shutil import copy
 from tempfile import TemporaryDirectory
 
@@ -160,7 +161,13 @@ def _draw_decay(axes: Axes) -> None:
     )
 
 
+def draw_gallery() -> None:
+    for script in sorted((ROOT / "docs/gallery").glob("*.py")):
+        run_path(str(script), run_name="__main__")
+
+
 if __name__ == "__main__":
+    draw_gallery()
     draw_runs()
     draw_sweep()
     draw_aims()
