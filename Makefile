@@ -33,7 +33,7 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many
 
-docs: .venv/installed
+docs: .venv/developer
 	$(BIN)/python docs/pictures.py
 
 site: .venv/site
