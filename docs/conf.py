@@ -18,6 +18,7 @@ math_numfig = True
 math_eqref_format = "({number})"
 default_role = "literal"
 smartquotes = False
+highlight_language = "text"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
