@@ -123,7 +123,7 @@ class KogutEtsion:
 
     @cached_property
     def branch(self) -> tuple[float, float]:
-        """The separations between which the contact is stable and friction grows with the load.
+        """The separations d / sigma between which the contact is stable and friction grows with the load.
 
         From the peak of Q (closer, fully plastic asperities carry none) to pull-off. Raises ValueError when the
         parameters leave no such branch.

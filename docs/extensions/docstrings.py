@@ -68,11 +68,8 @@ def process_text(app: Sphinx, what: str, name: str, obj: Any, options: Any, line
 def process_signature(
     app: Sphinx, what: str, name: str, obj: Any, options: Any, signature: str | None, returned: str | None
 ) -> tuple[str | None, str | None]:
-    if isinstance(obj, type) and issubclass(obj, BaseModel):
-        keys = (key + ("" if field.is_required() else "=...") for key, field in obj.model_fields.items())
-        return f"(*, {', '.join(keys)})", None
-    if getattr(obj, "_is_protocol", False):
-        return None, None
+    if isinstance(obj, type) and (issubclass(obj, BaseModel) or getattr(obj, "_is_protocol", False)):
+        return "", None  # the fields say it all
     for long, short in LONG_TYPES.items():
         signature, returned = (text and re.sub(long, short, text) for text in (signature, returned))
     return signature, returned

@@ -52,7 +52,7 @@ class Row(NamedTuple):
 def of(kind: type) -> list[Row]:
     """The fields of a dataclass, a named tuple or a table of a case file, those of the classes it extends first."""
     if issubclass(kind, Enum):
-        return [Row(member.name, "", repr(member.value), "") for member in kind]
+        return _members(kind)
     if not (is_dataclass(kind) or issubclass(kind, BaseModel) or hasattr(kind, "_fields")):
         return []
     found: dict[str, Row] = {}
@@ -63,24 +63,42 @@ def of(kind: type) -> list[Row]:
 
 
 def _own(kind: type) -> list[Row]:
+    body, comments = _parsed(kind)
+    found = []
+    for line in body:
+        if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name) and line.target.id[0] != HIDDEN:
+            text, unit = _without_units(_kind(line.annotation))
+            if not text.startswith("ClassVar"):
+                comment = comments.get(line.end_lineno or 0, unit)
+                found.append(Row(line.target.id, text, _default(line.value), comment))
+    return found
+
+
+def _members(kind: type[Enum]) -> list[Row]:
+    body, comments = _parsed(kind)
+    notes = {
+        ast.unparse(line.targets[0]): comments.get(line.end_lineno or 0, "")
+        for line in body
+        if isinstance(line, ast.Assign)
+    }
+    return [
+        Row(member.name, "", repr(member.value), notes.get(member.name) or getattr(member, "sentence", ""))
+        for member in kind
+    ]
+
+
+def _parsed(kind: type) -> tuple[list[ast.stmt], dict[int, str]]:
+    """What a class consists of, and the comments in its source by their lines."""
     source = textwrap.dedent(inspect.getsource(kind))
+    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
     comments = {
         token.start[0]: token.string.lstrip("# ")
-        for token in tokenize.generate_tokens(io.StringIO(source).readline)
+        for token in tokens
         if token.type == tokenize.COMMENT and "type: ignore" not in token.string
     }
-    body = ast.parse(source).body[0]
-    assert isinstance(body, ast.ClassDef)
-    found = []
-    for line in body.body:
-        if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name) and line.target.id[0] != HIDDEN:
-            kind_text = _kind(line.annotation)
-            if kind_text.startswith("ClassVar"):
-                continue
-            kind_text, unit = _without_units(kind_text)
-            comment = comments.get(line.end_lineno or 0, unit)
-            found.append(Row(line.target.id, kind_text, _default(line.value), comment))
-    return found
+    definition = ast.parse(source).body[0]
+    assert isinstance(definition, ast.ClassDef)
+    return definition.body, comments
 
 
 def _without_units(kind: str) -> tuple[str, str]:
