@@ -1,10 +1,14 @@
 """The project's own pages: links lead somewhere, equations that are referred to exist, the site shows every page."""
 
+import importlib
 import re
 from collections import Counter
 from pathlib import Path
 
 import pytest
+
+import particle
+from coupling.case import PartCase
 
 ROOT = Path(__file__).parents[2]
 DOCS = sorted((ROOT / "docs").rglob("*.md"))
@@ -61,3 +65,50 @@ def test_site_shows_every_page():
                 assert found, f"{name(page)} lists {entry}"
                 shown |= set(found)
     assert [name(page) for page in DOCS if page not in shown] == []
+
+
+@pytest.fixture
+def fields(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "docs/extensions"))
+    return importlib.import_module("fields")
+
+
+@pytest.mark.parametrize("package", ["meshes", "fem_plate", "particle", "coupling", "studies", "steering"])
+def test_public_fields_with_numbers_state_units_or_meaning(package, fields):
+    """What the reference says of a field is the comment behind it, or the docstring of its class."""
+    module = importlib.import_module(package)
+    classes = [found for found in (getattr(module, item) for item in module.__all__) if isinstance(found, type)]
+    silent = [
+        f"{kind.__name__}.{row.name}"
+        for kind in classes
+        for row in fields.of(kind)
+        if re.search("float|Array", row.kind)
+        and not row.comment
+        and not re.search(rf"\b{row.name}\b", kind.__doc__ or "")
+    ]
+    assert classes and not silent
+
+
+def test_fields_have_type_default_and_comment(fields):
+    rows = {row.name: row for row in fields.of(particle.Drive)}
+    assert rows["stroke"] == ("stroke", "float", "", "m")
+    assert rows["dwell"].default == "0.0" and rows["dwell"].comment.startswith("s, ")
+    of_case = {row.name: row for row in fields.of(PartCase)}
+    assert of_case["mass"] == ("mass", "float", "", "kg")
+    assert of_case["velocity"][1:] == ("tuple[float, float]", "(0.0, 0.0)", "m/s")
+    assert [row.name for row in fields.of(particle.State)] == ["STICK", "SLIP", "FLIGHT"]
+
+
+def test_docstrings_become_lists(fields):
+    docstrings = pytest.importorskip("docstrings", reason="needs sphinx, the extra docs")
+    lines, names = docstrings.paragraphs(
+        ["A disc.", "", "radius: m.  rigidity: N m, |x| * 2", "and more.", "Raises X."]
+    )
+    assert names == {"radius", "rigidity"}
+    assert [line for line in lines if line] == [
+        "A disc.",
+        "* `radius`: m.",
+        r"* `rigidity`: N m, \|x\| \* 2",
+        "  and more.",
+        "Raises X.",
+    ]
