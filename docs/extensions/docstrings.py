@@ -5,6 +5,7 @@ reStructuredText would take for markup is kept as it is written.
 """
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
 import fields
@@ -30,8 +31,8 @@ def written(text: str) -> str:
     return "".join(f"`{part}`" if k % 2 else re.sub(r"([\\*|_])", r"\\\1", part) for k, part in enumerate(parts))
 
 
-def paragraphs(lines: list[str]) -> tuple[list[str], set[str]]:
-    """The lines of a docstring as reStructuredText, and the names that have an item."""
+def paragraphs(lines: list[str], kinds: Mapping[str, str] | None = None) -> tuple[list[str], set[str]]:
+    """The lines of a docstring as reStructuredText, and the names of its items; kinds: what stands behind names."""
     found: list[str] = []
     names: set[str] = set()
     item = False
@@ -47,7 +48,7 @@ def paragraphs(lines: list[str]) -> tuple[list[str], set[str]]:
                 item = False
             found.append(("  " if item else "") + written(before))
         for words, text in zip(pieces[::2], pieces[1::2], strict=True):
-            head = ", ".join(f"`{word}`" for word in words.split(", "))
+            head = ", ".join(f"`{word}`{(kinds or {}).get(word, '')}" for word in words.split(", "))
             found += ["", f"* {head}: {written(text)}"]
             names |= set(words.split(", "))
             item = True
@@ -58,8 +59,9 @@ def process_text(app: Sphinx, what: str, name: str, obj: Any, options: Any, line
     if what == "module":
         lines[:] = []
         return
-    lines[:], known = paragraphs(lines)
     rows = fields.of(obj) if isinstance(obj, type) else []
+    unsigned = isinstance(obj, type) and issubclass(obj, BaseModel)
+    lines[:], known = paragraphs(lines, {row.name: row.described for row in rows} if unsigned else None)
     rest = [f"* `{row.name}`{row.described}: {written(row.comment)}" for row in rows if row.name not in known]
     if rest:
         lines += ["", "Values:" if rows[0].is_member else "Fields:", "", *(row.rstrip(": ") for row in rest), ""]
