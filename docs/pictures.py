@@ -40,6 +40,15 @@ def draw_runs() -> None:
             copy(Path(folder) / f"{name}.png", ROOT / "docs")
 
 
+def draw_first() -> None:
+    """The case of the quick start."""
+    with TemporaryDirectory() as folder:
+        case = Path(folder) / "first.toml"
+        case.write_text((ROOT / "docs/quick-start.md").read_text().split("```toml\n")[1].split("```")[0])
+        run_case(read_case(case), output=folder)
+        copy(Path(folder) / "first.png", ROOT / "docs")
+
+
 def draw_sweep() -> None:
     with TemporaryDirectory() as folder:
         run_study(read_study(ROOT / "examples/studies/frequency_stroke.toml"), folder)
@@ -170,6 +179,7 @@ def draw_gallery() -> None:
 if __name__ == "__main__":
     draw_gallery()
     draw_runs()
+    draw_first()
     draw_sweep()
     draw_aims()
     draw_plates()
