@@ -1,4 +1,4 @@
-# make demo: set up and run the main job.   make test: set up and pass every check.
+# make demo: set up and run the main job.   make test: set up and pass every check.   make site: the documentation site.
 PYTHON ?= python3
 BIN := .venv/bin
 # Small dense systems gain nothing from BLAS threads and lose much where cores are busy.
@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests run on all processors, those of a file on one, as they share what is made for them.
 SIDE_BY_SIDE := -n auto --dist loadfile
 
-.PHONY: demo test lint docs benchmark clean
+.PHONY: demo test lint docs site benchmark clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/two_actuators.toml
@@ -33,8 +33,12 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many
 
-docs: .venv/installed
+docs: .venv/developer
 	$(BIN)/python docs/pictures.py
+
+site: .venv/site
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/site
+	@echo "wrote       build/site/index.html"
 
 .venv/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed; try make PYTHON=python3.12"; exit 2; }
@@ -53,6 +57,10 @@ docs: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[benchmarks]"
 	@touch $@
 
+.venv/site: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[docs]"
+	@touch $@
+
 clean:
-	rm -rf .venv results .coverage .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
+	rm -rf .venv build results .coverage .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -70,7 +70,11 @@ class _Apart:
 
 
 class LatticeCase(Driven):
-    """Actuators in rows and columns, in SI units; `Formula`s give each its own value."""
+    """Actuators in `rows` along y and `columns` along x, `pitch` apart, around a `centre`, in m.
+
+    Those nearer than `margin` in m to the rim, or beyond it, are left out, None: none is; and those for which the
+    `Condition` `where` is false. The other keys are those of an actuator; a `Formula` gives each its own value.
+    """
 
     owner: ClassVar[str] = ActuatorCase.owner
     drivers: ClassVar[tuple[str, ...]] = ActuatorCase.drivers

@@ -32,7 +32,11 @@ from particle.friction import Contact
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What a run found; `files` are those it wrote."""
+    """What a run found.
+
+    case: what was run.  scene: what the part moved over.  trajectory: the part's path.
+    summary: its figures, and how exact they are.  files: those that were written.
+    """
 
     case: Case
     scene: Scene = field(repr=False)
@@ -96,7 +100,7 @@ def build_scene(case: Case, progress: Progress = silent) -> Scene:
 
 
 def build_surface(case: Case) -> SurfaceMotion:
-    """The moving surface of a case."""
+    """The moving surface of a case, without a path; raises ValueError when its plate cannot be solved."""
     return build_scene(case).surface
 
 

@@ -1,6 +1,7 @@
 """Draws the pictures of the documentation anew: `make docs`."""
 
 from pathlib import Path
+from runpy import run_path
 from shutil import copy
 from tempfile import TemporaryDirectory
 
@@ -14,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from motion_pictures import draw_motion_error
+from paraview_pictures import draw_paraview
 from tolerance_pictures import draw_tolerance
 
 from coupling import read_case, run_case
@@ -37,6 +39,15 @@ def draw_runs() -> None:
         for name in ("two_actuators",):
             run_case(read_case(ROOT / "examples" / f"{name}.toml"), output=folder)
             copy(Path(folder) / f"{name}.png", ROOT / "docs")
+
+
+def draw_first() -> None:
+    """The case of the quick start."""
+    with TemporaryDirectory() as folder:
+        case = Path(folder) / "first.toml"
+        case.write_text((ROOT / "docs/quick-start.md").read_text().split("```toml\n")[1].split("```")[0])
+        run_case(read_case(case), output=folder)
+        copy(Path(folder) / "first.png", ROOT / "docs")
 
 
 def draw_sweep() -> None:
@@ -161,12 +172,20 @@ def _draw_decay(axes: Axes) -> None:
     )
 
 
+def draw_gallery() -> None:
+    for script in sorted((ROOT / "docs/gallery").glob("*.py")):
+        run_path(str(script), run_name="__main__")
+
+
 if __name__ == "__main__":
+    draw_gallery()
     draw_runs()
     draw_animation()
+    draw_first()
     draw_sweep()
     draw_aims()
     draw_plates()
     draw_contact()
     draw_motion_error()
     draw_tolerance()
+    draw_paraview()

@@ -53,9 +53,9 @@ class KogutEtsion:
     roughness: float = 20e-9  # m, standard deviation of surface heights
     contact_area: float = 1e-8  # m^2, nominal
     hardness: float = 1.96133e9  # Pa
-    poisson_ratio: float = 0.3
+    poisson_ratio: float = 0.3  # 1, of the softer surface
     adhesion_energy: float = 1.0  # J/m^2
-    plasticity_index: float = 2.5
+    plasticity_index: float = 2.5  # 1; large where asperities yield early
     asperity_beta: float = 0.0601  # asperity density times tip radius times roughness
     intermolecular_distance: float = 0.3e-9  # m
     coefficients: str = "printed"
@@ -123,7 +123,7 @@ class KogutEtsion:
 
     @cached_property
     def branch(self) -> tuple[float, float]:
-        """The separations between which the contact is stable and friction grows with the load.
+        """The separations d / sigma between which the contact is stable and friction grows with the load.
 
         From the peak of Q (closer, fully plastic asperities carry none) to pull-off. Raises ValueError when the
         parameters leave no such branch.

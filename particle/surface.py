@@ -52,20 +52,17 @@ class Surface(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SurfaceMotion:
-    """A moving surface; made by `coupling.surface_motion`, `platform_surface` or `polynomial_surface`.
+    """A moving surface; made by `coupling.surface_motion`, `platform_surface` or `polynomial_surface`."""
 
-    What is not described here is as in `Surface`.
-    """
-
-    drives: DriveTable
+    drives: DriveTable  # its base's x and y are the last two where it moves
     store: CellStore  # its cells; those of a large plate are built where a part comes to
-    sources: FloatArray
-    size: float
-    floor: float = 0.0
-    overhang: float = math.inf
-    conics: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
-    edges: FloatArray = field(default_factory=lambda: np.zeros((0, 3, 2)))
-    moving_base: bool = False
+    sources: FloatArray  # (J, 2) m, the centres of the logarithms
+    size: float  # m, that tolerances refer to
+    floor: float = 0.0  # m, radius below which the Hessian of a logarithm grows no more
+    overhang: float = math.inf  # a cell's polynomials hold out to this many half widths
+    conics: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))  # (k, 4) m, as in `Outline`
+    edges: FloatArray = field(default_factory=lambda: np.zeros((0, 3, 2)))  # (m, 3, 2) m, as in `Outline`
+    moving_base: bool = False  # whether two more drives carry the base in its plane
 
     @property
     def record(self) -> Surface:

@@ -21,21 +21,21 @@ LEAST_ENERGY = 1e-6
 class State(enum.IntEnum):
     """How the part is in contact."""
 
-    STICK = 0
-    SLIP = 1
-    FLIGHT = 2
+    STICK = 0  # at rest on the surface
+    SLIP = 1  # sliding
+    FLIGHT = 2  # off the surface
 
 
 class EventKind(enum.IntEnum):
     """What happens to the part at one moment."""
 
-    SLIPS = 0
-    STOPS = 1
-    REVERSES = 2
-    DETACHES = 3
-    LEAVES_PLATE = 4
-    OVERLOADS = 5
-    LANDS = 6
+    SLIPS = 0  # begins to slide
+    STOPS = 1  # comes to rest on the surface
+    REVERSES = 2  # stops sliding and slides on in another direction at once
+    DETACHES = 3  # comes off
+    LEAVES_PLATE = 4  # goes over the rim
+    OVERLOADS = 5  # is pressed on more than the friction law covers
+    LANDS = 6  # touches the surface again after a flight
 
 
 class Outcome(enum.StrEnum):
@@ -50,6 +50,7 @@ class Outcome(enum.StrEnum):
 
     @property
     def sentence(self) -> str:
+        """What happened, in one sentence."""
         return _SENTENCES[self]
 
 

@@ -37,6 +37,8 @@ def plan(
     threads: how many paths are found at a time, by default one on each processor; the result is the same for any.
     tell: gets how many paths have been found, and of how many at most.  overwrite: whether to replace those files.
     Upon Ctrl-C the legs so far count, if there are any.
+    Raises ValueError when the case cannot be run or those files are there and not to be replaced, and KeyboardInterrupt
+    upon Ctrl-C before there are any legs.
     """
     if output is None:
         return plan_over(prepared(route.case), route, threads, tell)

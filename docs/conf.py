@@ -1,0 +1,36 @@
+"""Sphinx settings of the documentation site: `make site`."""
+
+import sys
+from pathlib import Path
+
+sys.path[:0] = [str(Path(__file__).parent / "extensions"), str(Path(__file__).parent.parent)]
+
+project = "active-surface"
+author = "the authors of active-surface"
+project_copyright = author
+exclude_patterns = ["extensions"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "docstrings"]
+
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 3
+numfig = True  # equations are counted by page, as (2.7)
+math_numfig = True
+math_eqref_format = "({number})"
+default_role = "literal"
+smartquotes = False
+highlight_language = "text"
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_type_aliases = {name: name for name in ("ArrayLike", "FloatArray", "IntArray", "BoolArray")}
+python_use_unqualified_type_names = True
+add_module_names = False
+maximum_signature_line_length = 90
+
+html_math_renderer = "mathml"
+html_theme = "furo"
+html_title = "active-surface"
+html_static_path = ["extensions/site.css"]
+html_css_files = ["site.css"]
+html_show_sphinx = False
+html_copy_source = False
