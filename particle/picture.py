@@ -1,0 +1,81 @@
+"""The look of a path in pictures: its line and places, and what the part does over time as shades."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
+
+from particle.trajectory import State
+
+FloatArray = NDArray[np.float64]
+
+PATH_COLOUR, STICK_COLOUR = "#c8371b", "#1b4f9c"
+HALO = [withStroke(linewidth=2.6, foreground="white")]
+RING: dict[str, Any] = {"marker": "o", "markerfacecolor": "none", "markersize": 8, "markeredgewidth": 1.4}
+CROSS: dict[str, Any] = {"marker": "x", "markersize": 7, "markeredgewidth": 1.6}
+PLACE: dict[str, Any] = {"color": "black", "linestyle": "", "path_effects": HALO, "zorder": 5}
+REST: dict[str, Any] = {"color": STICK_COLOUR, "markeredgecolor": "white", "markeredgewidth": 0.6, "markersize": 4.5}
+SHADES: dict[State, tuple[dict[str, Any], str]] = {
+    State.STICK: ({"color": STICK_COLOUR, "alpha": 0.18}, "stuck"),
+    State.FLIGHT: ({"facecolor": "none", "edgecolor": "#808080", "hatch": "////"}, "in flight"),
+}
+
+
+class Rows(Protocol):
+    """A path at n moments, such as a `Trajectory`; a state holds from its row to the next."""
+
+    @property
+    def time(self) -> FloatArray:
+        """(n,) s."""
+
+    @property
+    def position(self) -> FloatArray:
+        """(n, 2) m."""
+
+    @property
+    def state(self) -> NDArray[np.int64]:
+        """(n,) State."""
+
+
+def draw_line(axes: Axes, rows: Rows, line: FloatArray, per_metre: float = 1.0) -> list[Artist]:
+    """Draw a path, points (k, 2) [m] along it, its ends and where the part rests; return keys."""
+    points = rows.position * per_metre
+    keys: list[Artist] = []
+    keys += axes.plot(
+        *(line * per_metre).T, color=PATH_COLOUR, linewidth=1.2, path_effects=HALO, zorder=3, label="path"
+    )
+    rests = np.unique(points[rows.state == State.STICK], axis=0)
+    if rests.size:
+        keys += axes.plot(*rests.T, "o", **REST, zorder=4, label="rests here")
+    keys += axes.plot(*points[:1].T, **RING, **PLACE, label="start")
+    keys += axes.plot(*points[-1:].T, **CROSS, **PLACE, label="end")
+    return keys
+
+
+def shade(axes: Axes, rows: Rows, per_second: float = 1.0) -> None:
+    """Shade the times at which the part does not slip."""
+    edges = rows.time * per_second
+    for state, (look, _) in SHADES.items():
+        for begin, end in stretches(rows.state == state):
+            axes.axvspan(edges[begin], edges[end], linewidth=0, zorder=0, **look)
+
+
+def shade_keys(rows: Rows) -> list[Artist]:
+    """Keys of the shades that there are."""
+    return [
+        Patch(linewidth=0, label=name, **look)
+        for state, (look, name) in SHADES.items()
+        if stretches(rows.state == state)
+    ]
+
+
+def stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First and last row of each stretch of rows during which something (n,) holds."""
+    change = np.diff(np.concatenate([[0], holds[:-1].astype(int), [0]]))
+    return list(zip(np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist(), strict=True))
