@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -59,15 +61,16 @@ class Findings:
         return self.axes[:2] if self.scattered else longest(self.axes)
 
 
-def read_findings(path: Path) -> Findings:
-    """The findings in a file that a sweep left, which stays open; ValueError when it is none."""
+@contextmanager
+def read_findings(path: Path) -> Iterator[Findings]:
+    """Yield the findings in a file that a sweep left, which is closed at the end; ValueError when it is none."""
     if key_of(path) is None:
         raise ValueError(f"{path}: must be the netCDF file of a sweep; it is not")
-    dataset = read_dataset(path)
-    if not {"axes", "rim"} <= dataset.attrs.keys():
-        raise ValueError(f"{path}: must be of a sweep by this version of active-surface; it is of an older one")
-    said = tomllib.loads(dataset.attrs["study"]).get("map", {}).get("threshold")
-    return Findings.of(path.stem, dataset, read_threshold(said) if said else None)
+    with read_dataset(path) as dataset:
+        if not {"axes", "rim"} <= dataset.attrs.keys():
+            raise ValueError(f"{path}: must be of a sweep by this version of active-surface; it is of an older one")
+        said = tomllib.loads(dataset.attrs["study"]).get("map", {}).get("threshold")
+        yield Findings.of(path.stem, dataset, read_threshold(said) if said else None)
 
 
 def _axis(name: str, array: xarray.DataArray, listed: bool) -> Axis:

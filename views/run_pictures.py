@@ -119,7 +119,7 @@ def _draw_events(axes: Axes, portrait: Portrait, per_second: float) -> list[Arti
     axes.set_yticks([])
     axes.set_ylim(0, 1)
     axes.tick_params(bottom=False, labelbottom=False)
-    room = 72 * SHARE * axes.figure.get_figwidth() / APART
+    room = 72 * SHARE * axes.figure.bbox.width / axes.figure.dpi / APART
     keys: list[Artist] = []
     for kind, (marker, colour, said) in MARKS.items():
         times = [event.time for event in portrait.events if event.kind is kind]

@@ -19,6 +19,7 @@ from particle import Samples
 FloatArray = NDArray[np.float64]
 
 AT_ONCE = 64  # steps whose deflections are read together
+SCALARS = ("vertical_velocity", "height", "normal_force", "friction_force")
 BETWEEN = 4  # pieces of a line from one moment to the next
 
 
@@ -58,9 +59,11 @@ def samples_of(run: SavedRun) -> Samples:
     before = places.astype(np.int64)
     time = np.interp(places, np.arange(len(known.time)), known.time)
     line = CubicHermiteSpline(known.time, known.position, known.velocity) if len(known.time) > 1 else None
-    scalars = (np.interp(time, known.time, values) for values in known[3:7])
-    velocity = np.stack([np.interp(time, known.time, values) for values in known.velocity.T], axis=1)
-    return Samples(time, line(time) if line else known.position, velocity, *scalars, known.state[before])
+    columns = {
+        "velocity": np.stack([np.interp(time, known.time, values) for values in known.velocity.T], axis=1),
+        **{name: np.interp(time, known.time, getattr(known, name)) for name in SCALARS},
+    }
+    return Samples(time, line(time) if line else known.position, state=known.state[before], **columns)
 
 
 def _spread(run: SavedRun) -> FloatArray:
