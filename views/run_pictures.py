@@ -18,12 +18,13 @@ from coupling.portrait import FloatArray, Portrait
 from coupling.readable import NOTHING, readable
 from coupling.time_picture import Curves, curves_of, draw_over_time
 from coupling.window import is_visible, path_window
-from particle import EventKind
-from particle.picture import shade, shade_keys
+from particle import EventKind, State
+from particle.picture import shade, shade_keys, stretches
 from views.sheet import MM, Picture, put_keys
 
 SHARE = 0.75  # of the width is a map's, about
 PANEL, STRIP, REST = 27.0, 3.5, 16.0  # mm: the height of a panel, of the strip of events, of labels and keys
+LONG = 18  # letters: a longer label has its unit on a line of its own
 APART = 3.5  # points: nearer to each other, marks of events merge
 FAR = 3.0  # times its extent a path is from the origin: then displacements are shown
 MARKS: dict[EventKind, tuple[str, str, str]] = {  # marker, its colour, what is said
@@ -86,12 +87,12 @@ def courses(portrait: Portrait) -> list[Curves]:
     way = samples.position - samples.position[0]
     moved = np.abs(samples.position).max() > FAR * max(float(np.ptp(samples.position, axis=0).max()), NOTHING)
     x, y = (way if moved else samples.position).T
-    on = f" on {portrait.origin}" if portrait.base else ""
-    found = [Curves(f"displacement{on}" if moved else f"position{on}", "m", {"along x": x, "along y": y})]
+    relative = "relative " if portrait.base else ""
+    found = [Curves(relative + ("displacement" if moved else "position"), "m", {"along x": x, "along y": y})]
     if samples.height.any():
         found.append(Curves("height", "m", {"": samples.height}))
     v_x, v_y = samples.velocity.T
-    found.append(Curves(f"velocity{on}", "m/s", {"along x": v_x, "along y": v_y}))
+    found.append(Curves(f"{relative}velocity", "m/s", {"along x": v_x, "along y": v_y}))
     found += [curves for curves in curves_of(portrait) if "platform" in curves.values]
     forces = {"normal load": samples.normal_force, "friction": samples.friction_force}
     return [*found, Curves("contact force", "N", forces)]
@@ -107,9 +108,13 @@ def _draw_course(figure: Figure, portrait: Portrait) -> None:
     for panel, curves in zip(panels, shown, strict=True):
         draw_over_time(panel, rows, times, curves, unit)
         panel.tick_params(labelbottom=panel is panels[-1])
+        if len(panel.get_ylabel()) > LONG:
+            panel.set_ylabel(panel.get_ylabel().replace(" [", "\n["))
     panels[-1].set_xlabel(f"time [{unit.name}]")
     figure.align_ylabels(panels)
-    keys = shade_keys(rows) + [Patch(facecolor="white", edgecolor="#808080", linewidth=0.5, label="slipping")]
+    keys = shade_keys(rows)
+    if stretches(rows.state == State.SLIP):
+        keys.append(Patch(facecolor="white", edgecolor="#808080", linewidth=0.5, label="slipping"))
     put_keys(figure, keys + _draw_events(strip, portrait, unit.per_si))
 
 
