@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from coupling.readable import Unit, readable
 from coupling.window import extent
+from particle.picture import PATH_COLOUR as PATH_COLOUR
 from particle.picture import PLACE, RING, Rows, draw_line
+from particle.picture import STICK_COLOUR as STICK_COLOUR
 
 FloatArray = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ The plate is shown at one moment, the time step of the result files at which it 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -15,9 +15,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from coupling.case import Case
+from coupling.drives import frame_times
 from coupling.path_picture import draw_path
 from coupling.plate_picture import AXES_WIDTH, draw_plate, draw_window, join
-from coupling.portrait import Portrait, portrait_of
+from coupling.portrait import Portrait, deflected_most, portrait_of
 from coupling.portrait import moment_of_most as moment_of_most
 from coupling.readable import Unit, plain_ticks, readable
 from coupling.scene import Ground, Scene
@@ -25,6 +26,7 @@ from coupling.time_picture import curves_of, draw_over_time
 from coupling.window import is_visible, path_window
 from particle import Trajectory
 from particle.picture import shade_keys
+from plotting.drawing import Drawing, plan
 
 PANEL = 5.5  # inches, about, of which a picture has two or three side by side
 SLIMMEST = 0.6  # of a panel is the least width of a map
@@ -38,6 +40,24 @@ def draw_run(case: Case, scene: Scene, trajectory: Trajectory, ground: Ground, m
     partial = path.with_suffix(".partial.png")
     figure.savefig(partial, dpi=110)
     partial.replace(path)
+
+
+def plot_run(case: Case, scene: Scene, trajectory: Trajectory, axes: Axes | None = None) -> Figure:
+    """The picture of a run; with axes in m, only the path over its surface, drawn into these."""
+    ground = scene.ground(trajectory)
+    times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
+    moment = deflected_most(scene, ground, times)
+    portrait = portrait_of(case.name, scene, trajectory, ground, moment)
+    if axes is None:
+        drawing = Drawing()
+        compose(drawing, portrait)
+        return drawing
+    figure, unit = cast(Figure, axes.figure), Unit("m", 1.0)
+    draw_surface(figure, axes, portrait, unit)
+    line = portrait.samples.position
+    draw_path(axes, trajectory, line, unit, is_visible(line, portrait.box))
+    plan(axes)
+    return figure
 
 
 def compose(figure: Figure, portrait: Portrait) -> None:

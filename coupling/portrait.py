@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from coupling.drives import stroke_heights
 from coupling.plate_picture import Relief
 from coupling.readable import readable
 from particle import AnyDrive, Event, Samples, Trajectory
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 SAMPLES = 4000
+AT_ONCE = 64  # moments at which deflections are found together
 AS_MUCH = 0.999  # of the largest deflection: the first moment with so much is shown
 
 
@@ -59,6 +61,13 @@ def portrait_of(name: str, scene: Scene, trajectory: Trajectory, ground: Ground,
         moment,
         scene.base,
     )
+
+
+def deflected_most(scene: Scene, ground: Ground, times: FloatArray) -> float:
+    """The first of times (k,) [s] at which the surface is deflected the most."""
+    heights = stroke_heights(scene.lifts, times)
+    lots = (heights[start : start + AT_ONCE] for start in range(0, len(times), AT_ONCE))
+    return float(times[moment_of_most(np.concatenate([np.square(ground.lifted(lot)).mean(axis=1) for lot in lots]))])
 
 
 def moment_of_most(spread: FloatArray) -> int:

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from coupling.portrait import Portrait
 from coupling.readable import NOTHING, Unit, plain_ticks, readable
 from particle.picture import PATH_COLOUR, Rows, shade
+from particle.picture import SHADES as SHADES
+from particle.picture import stretches as stretches
 
 FloatArray = NDArray[np.float64]
 

@@ -11,7 +11,8 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-from particle.trajectory import State
+from particle.trajectory import State, Trajectory
+from plotting.drawing import SIZE, Drawing, in_unit, plan
 
 FloatArray = NDArray[np.float64]
 
@@ -21,10 +22,8 @@ RING: dict[str, Any] = {"marker": "o", "markerfacecolor": "none", "markersize": 
 CROSS: dict[str, Any] = {"marker": "x", "markersize": 7, "markeredgewidth": 1.6}
 PLACE: dict[str, Any] = {"color": "black", "linestyle": "", "path_effects": HALO, "zorder": 5}
 REST: dict[str, Any] = {"color": STICK_COLOUR, "markeredgecolor": "white", "markeredgewidth": 0.6, "markersize": 4.5}
-SHADES: dict[State, tuple[dict[str, Any], str]] = {
-    State.STICK: ({"color": STICK_COLOUR, "alpha": 0.18}, "stuck"),
-    State.FLIGHT: ({"facecolor": "none", "edgecolor": "#808080", "hatch": "////"}, "in flight"),
-}
+SHADES = {State.STICK: (STICK_COLOUR, "stuck"), State.FLIGHT: ("#606060", "in flight")}
+SAMPLES = 2000
 
 
 class Rows(Protocol):
@@ -61,21 +60,47 @@ def draw_line(axes: Axes, rows: Rows, line: FloatArray, per_metre: float = 1.0) 
 def shade(axes: Axes, rows: Rows, per_second: float = 1.0) -> None:
     """Shade the times at which the part does not slip."""
     edges = rows.time * per_second
-    for state, (look, _) in SHADES.items():
+    for state in SHADES:
         for begin, end in stretches(rows.state == state):
-            axes.axvspan(edges[begin], edges[end], linewidth=0, zorder=0, **look)
+            axes.axvspan(edges[begin], edges[end], zorder=0, **_look(state))
 
 
 def shade_keys(rows: Rows) -> list[Artist]:
     """Keys of the shades that there are."""
-    return [
-        Patch(linewidth=0, label=name, **look)
-        for state, (look, name) in SHADES.items()
-        if stretches(rows.state == state)
-    ]
+    return [Patch(label=name, **_look(state)) for state, (_, name) in SHADES.items() if stretches(rows.state == state)]
+
+
+def _look(state: State) -> dict[str, Any]:
+    colour = SHADES[state][0]
+    if state is State.STICK:
+        return {"color": colour, "alpha": 0.18, "linewidth": 0}
+    return {"facecolor": "none", "edgecolor": colour, "hatch": "////", "linewidth": 0}  # also told from it in grey
 
 
 def stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """First and last row of each stretch of rows during which something (n,) holds."""
     change = np.diff(np.concatenate([[0], holds[:-1].astype(int), [0]]))
     return list(zip(np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist(), strict=True))
+
+
+def plot(trajectory: Trajectory) -> Drawing:
+    """The path, and beside it the speed over time, in SI units."""
+    figure = Drawing(figsize=(2 * SIZE[0], SIZE[1]))
+    places, speeds = figure.subplots(1, 2)
+    keys = plot_path(trajectory, places) + shade_keys(trajectory)
+    samples = trajectory.at(np.linspace(trajectory.time[0], trajectory.time[-1], SAMPLES))
+    speeds.plot(samples.time, np.hypot(*samples.velocity.T), color="black", linewidth=1.0)
+    shade(speeds, trajectory)
+    in_unit(speeds.xaxis, "time", "s")
+    in_unit(speeds.yaxis, "speed in the plane", "m/s")
+    speeds.set_xlim(trajectory.time[0], trajectory.time[-1])
+    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
+    return figure
+
+
+def plot_path(trajectory: Trajectory, axes: Axes) -> list[Artist]:
+    """Draw the path into axes in m; return keys."""
+    samples = trajectory.at(np.linspace(trajectory.time[0], trajectory.time[-1], SAMPLES))
+    keys = draw_line(axes, trajectory, samples.position)
+    plan(axes)
+    return keys

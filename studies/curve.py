@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from studies.heat import COLOURS, add_key, edges, frame, put_below
+from plotting.drawing import put_below
+from studies.heat import COLOURS, add_key, edges, frame
 from studies.record import OUTCOMES
 from studies.shown import Shown
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.collections import LineCollection
@@ -14,10 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import ScalarFormatter
-from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from coupling.readable import Unit, plain_ticks
+from plotting.drawing import put_below
 from studies.record import OUTCOMES
 from studies.shown import FloatArray, IntArray, Scale, Shown, labelled
 from studies.threshold import BoolArray
@@ -26,7 +25,6 @@ COLOURS = ("#40719c", "#e0c368", "#b8862d", "#c8371b", "#7a4b94", "#8a8a8a", "#d
 """Of the outcomes, by their number."""
 OUTCOME = "what became of the part"
 NARROW = 5.0  # inches: a figure with one key a line
-BELOW = 3.6  # times the size of the letters: room for an axis and its label
 MOST_NAMES = 12  # along an axis
 FEW_DIGITS = 1e-4, 1e7  # numbers between them are written out
 
@@ -86,13 +84,6 @@ def add_key(axes: Axes, numbers: NDArray[np.int64], names: tuple[str, ...], colo
     put_below(
         axes, handles=patches, ncols=2 if len(patches) > 1 and axes.figure.bbox.width > NARROW * axes.figure.dpi else 1
     )
-
-
-def put_below(axes: Axes, **legend: Any) -> None:
-    """Put a legend below axes and their label."""
-    down = ScaledTranslation(0, -BELOW * rcParams["font.size"] / 72, axes.figure.dpi_scale_trans)
-    place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": axes.transAxes + down}
-    axes.legend(frameon=False, fontsize="small", **place, **legend)
 
 
 def frame(axes: Axes, across: Scale, up: Scale | None = None) -> None:

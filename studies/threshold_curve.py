@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from studies.heat import edges, frame, put_below
+from plotting.drawing import put_below
+from studies.heat import edges, frame
 from studies.shown import Shown
 from studies.threshold import BoolArray, lowest
 
