@@ -10,13 +10,13 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
-from matplotlib.ticker import EngFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from meshes import Outline, PlateMesh
 from meshes.fill import delaunay
 from meshes.rim_curves import rim_curves
-from plotting.drawing import THIN_SPACE, plan, put_below
+from plotting.drawing import in_unit, plan, put_below
 
 if TYPE_CHECKING:
     from fem_plate.influence import Shapes
@@ -35,6 +35,8 @@ CLEAR = 0.6  # of their distance, from the rim
 SAME = 9  # digits of the box to which points are the same
 MOST_MARKED = 400  # actuators
 LEVELS = 10  # about
+FLAT = 1e-6  # of the largest level: nothing
+MARGIN = 0.05  # of the frame
 TRIANGLE: dict[str, Any] = {"marker": "^", "color": "white", "markeredgecolor": "black", "linestyle": ""}
 
 
@@ -51,7 +53,7 @@ def draw_rim(axes: Axes, mesh: PlateMesh, supports: Mapping[str, str]) -> list[A
         colour, width = RIMS[supports[name]]
         pieces = list(mesh.arcs(name, ALONG)[0])
         axes.add_collection(LineCollection(pieces, colors=colour, linewidths=width, capstyle="round"))
-    axes.autoscale_view()
+    leave_room(axes)
     used = [support for support in RIMS if support in set(supports.values())]
     return [Line2D([], [], color=RIMS[support][0], linewidth=RIMS[support][1], label=support) for support in used]
 
@@ -70,22 +72,31 @@ def draw_shapes(shapes: Shapes, weights: FloatArray | None, axes: Axes) -> None:
     if weights is None:
         middle = int(np.argmin(np.hypot(*(shapes.points - shapes.points.mean(axis=0)).T)))
         weights = np.eye(1, len(shapes.points), middle)[0]
-        said = f"shape of actuator {middle} [{'1' if shapes.springs[middle] > 0 else 'm/N'}]"
+        said, unit = f"shape of actuator {middle}", "" if shapes.springs[middle] > 0 else "m/N"
     else:
-        weights = np.asarray(weights, dtype=float)
-        said = "deflection [m]"
+        said, unit = "deflection", "m"
     points = grid_on(shapes.outline)
     w = shapes.values(points, weights[:, None])[:, 0]
     triangles = delaunay(points, shapes.outline)
     levels = MaxNLocator(LEVELS).tick_values(w.min(), w.max())
     filled = axes.tricontourf(*points.T, triangles, w, levels=levels, cmap="Blues")
-    axes.tricontour(*points.T, triangles, w, levels=levels, colors="#404040", linewidths=0.3)
-    axes.figure.colorbar(filled, ax=axes, label=said, format=EngFormatter(sep=THIN_SPACE))
+    lines = levels[np.abs(levels) > FLAT * np.abs(levels).max()]  # that of 0 winds about where nothing is deflected
+    axes.tricontour(*points.T, triangles, w, levels=lines, colors="#404040", linewidths=0.3)
+    bar = axes.figure.colorbar(filled, ax=axes, label=said, shrink=0.8)
+    if unit:
+        in_unit(bar.ax.yaxis, said, unit)
     step = float(np.ptp(shapes.outline.box, axis=0).max()) / (4 * ACROSS)
     axes.add_collection(LineCollection(rim_curves(shapes.outline, step), colors="black", linewidths=1.5))
     mark_actuators(axes, shapes.points)
-    axes.autoscale_view()
+    leave_room(axes)
     plan(axes)
+
+
+def leave_room(axes: Axes) -> None:
+    """Leave a margin around all."""
+    axes.use_sticky_edges = False
+    axes.margins(MARGIN)
+    axes.autoscale_view()
 
 
 def grid_on(outline: Outline) -> FloatArray:

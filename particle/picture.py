@@ -24,6 +24,8 @@ PLACE: dict[str, Any] = {"color": "black", "linestyle": "", "path_effects": HALO
 REST: dict[str, Any] = {"color": STICK_COLOUR, "markeredgecolor": "white", "markeredgewidth": 0.6, "markersize": 4.5}
 SHADES = {State.STICK: (STICK_COLOUR, "stuck"), State.FLIGHT: ("#606060", "in flight")}
 SAMPLES = 2000
+ROOM = 0.6  # of a path's extent, from its middle to the frame
+SMALLEST = 1e-6  # m: so far from the part is the frame where there is no path
 
 
 class Rows(Protocol):
@@ -102,5 +104,10 @@ def plot_path(trajectory: Trajectory, axes: Axes) -> list[Artist]:
     """Draw the path into axes in m; return keys."""
     samples = trajectory.at(np.linspace(trajectory.time[0], trajectory.time[-1], SAMPLES))
     keys = draw_line(axes, trajectory, samples.position)
+    low, high = samples.position.min(axis=0), samples.position.max(axis=0)
+    half = ROOM * float((high - low).max()) or SMALLEST
+    (left, bottom), (right, top) = (low + high) / 2 - half, (low + high) / 2 + half
+    axes.set_xlim(left, right)
+    axes.set_ylim(bottom, top)
     plan(axes)
     return keys

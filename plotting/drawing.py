@@ -1,7 +1,8 @@
-"""Drawing: a figure that a notebook shows, with axes in SI units whose ticks have prefixes."""
+"""Drawing: a figure that a notebook shows, with axes of numbers in SI units that are labelled with prefixes."""
 
 from __future__ import annotations
 
+import math
 from base64 import b64encode
 from collections.abc import Callable
 from html import escape
@@ -13,14 +14,16 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, MaxNLocator
+from matplotlib.ticker import EngFormatter, FuncFormatter, MaxNLocator
 from matplotlib.transforms import ScaledTranslation
 
 SIZE = 4.2, 3.6  # inches, of one pair of axes
 DOTS = 80  # an inch, in a notebook
 TICKS = 5
+LEAST = -12  # the power of ten of the smallest prefix
+ROUNDING = 1e-9
+MINUS = "\N{MINUS SIGN}"
 BELOW = 3.6  # times the size of the letters: room for an axis and its label
-THIN_SPACE = "\N{THIN SPACE}"
 
 
 class Drawing(Figure):
@@ -51,17 +54,24 @@ def html(thing: Any) -> str:
 
 
 def plan(axes: Axes) -> None:
-    """Make axes ready for places in m."""
+    """Make axes that show places in m ready."""
     axes.set_aspect("equal")
-    in_unit(axes.xaxis, "x", "m")
-    in_unit(axes.yaxis, "y", "m")
+    extent = max(_extent(axes.xaxis), _extent(axes.yaxis))
+    for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
+        in_unit(axis, name, "m", extent)
 
 
-def in_unit(axis: Axis, name: str, unit: str) -> None:
-    """Label an axis of numbers in an SI unit; its ticks have prefixes such as µ."""
+def in_unit(axis: Axis, name: str, unit: str, extent: float | None = None) -> None:
+    """Label an axis of numbers in an SI unit as in one with a prefix, such as µm, by what it shows or an extent."""
+    largest = extent or _extent(axis)
+    power = min(max(3 * math.floor(math.log10(largest) / 3 + ROUNDING), LEAST), 0) if largest else 0
     axis.set_major_locator(MaxNLocator(TICKS))
-    axis.set_major_formatter(EngFormatter(sep=THIN_SPACE))
-    axis.set_label_text(f"{name} [{unit}]")
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / 10.0**power:.6g}".replace("-", MINUS)))
+    axis.set_label_text(f"{name} [{EngFormatter.ENG_PREFIXES[power]}{unit}]")
+
+
+def _extent(axis: Axis) -> float:
+    return max(map(abs, axis.get_view_interval()))
 
 
 def put_below(axes: Axes, **legend: Any) -> None:

@@ -76,7 +76,7 @@ def _draw_window(figure: Figure, portrait: Portrait, window: FloatArray) -> None
 
 
 def _map_axes(figure: Figure, portrait: Portrait, unit: Any) -> Axes:
-    axes = figure.add_subplot(anchor="S")  # what is left over is above, where it is cut off
+    axes = figure.add_subplot(anchor="SW")  # what is left over is above, where it is cut off, and not beside labels
     label_places(axes, portrait, unit)
     return axes
 
