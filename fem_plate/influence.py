@@ -82,8 +82,9 @@ class Shapes(ABC):
         kinds = {"rigid": np.isinf(self.springs), "floating": self.springs == 0}
         kinds["springy"] = ~(kinds["rigid"] | kinds["floating"])
         told = ", ".join(f"{int(which.sum())} {kind}" for kind, which in kinds.items() if which.any())
+        many = "s" * (len(self.points) != 1)
         width, height = np.ptp(self.outline.box, axis=0)
-        return f"{type(self).__name__} of {told} actuators on a plate of {width:.4g} m x {height:.4g} m"
+        return f"{type(self).__name__} of {told} actuator{many} on a plate of {width:.4g} m x {height:.4g} m"
 
     def plot(self, weights: ArrayLike | None = None, axes: Axes | None = None) -> Figure:
         """Draw the sum of the shapes with weights (N,), such as strokes [m], into axes in m or new ones.

@@ -71,8 +71,9 @@ def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tu
 def _is_run(path: Path) -> bool:
     """Whether a path is of a run's two files, or of FOLDER/NAME that has them."""
     ends = [f"{partial}.{KINDS[0]}{SUFFIX}" for partial in ("", PARTIAL)]
-    beside = any(path.with_name(path.name + end).is_file() for end in ends)
-    return beside or (path.name.endswith(SUFFIX) and path.is_file())
+    if any(path.with_name(path.name + end).is_file() for end in ends):
+        return True
+    return path.name.endswith(tuple(f".{kind}{SUFFIX}" for kind in KINDS)) and path.is_file()
 
 
 def _instead(path: Path) -> str:

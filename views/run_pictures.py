@@ -24,7 +24,6 @@ from views.sheet import MM, Picture, put_keys
 
 SHARE = 0.75  # of the width is a map's, about
 PANEL, STRIP, REST = 27.0, 3.5, 16.0  # mm: the height of a panel, of the strip of events, of labels and keys
-LONG = 18  # letters: a longer label has its unit on a line of its own
 APART = 3.5  # points: nearer to each other, marks of events merge
 FAR = 3.0  # times its extent a path is from the origin: then displacements are shown
 MARKS: dict[EventKind, tuple[str, str, str]] = {  # marker, its colour, what is said
@@ -76,7 +75,7 @@ def _draw_window(figure: Figure, portrait: Portrait, window: FloatArray) -> None
 
 
 def _map_axes(figure: Figure, portrait: Portrait, unit: Any) -> Axes:
-    axes = figure.add_subplot(anchor="SW")  # what is left over is above, where it is cut off, and not beside labels
+    axes = figure.add_subplot()
     label_places(axes, portrait, unit)
     return axes
 
@@ -108,8 +107,6 @@ def _draw_course(figure: Figure, portrait: Portrait) -> None:
     for panel, curves in zip(panels, shown, strict=True):
         draw_over_time(panel, rows, times, curves, unit)
         panel.tick_params(labelbottom=panel is panels[-1])
-        if len(panel.get_ylabel()) > LONG:
-            panel.set_ylabel(panel.get_ylabel().replace(" [", "\n["))
     panels[-1].set_xlabel(f"time [{unit.name}]")
     figure.align_ylabels(panels)
     keys = shade_keys(rows)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from textwrap import fill
 from typing import Any, Final, NamedTuple
 
 from matplotlib import rc_context
@@ -12,6 +13,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 FORMATS: Final = ("pdf", "svg", "png")
 WIDTH: Final = 85.0  # mm, of a column of many journals
@@ -19,7 +21,8 @@ NARROWEST, WIDEST = 50.0, 500.0  # mm
 MM = 1 / 25.4  # inches
 DOTS = 600  # an inch, of pixels in any format
 PAD = 1.0  # mm, around all
-ROUNDS, CLOSE = 4, 0.2  # mm: how well the height is fitted
+SHORT = 8  # letters of a label that stay on one line
+ROUNDS, CLOSE = 6, 0.2  # mm: how well the height is fitted
 TEXT = {"font.size": 8.0, "xtick.labelsize": 7.0, "ytick.labelsize": 7.0, "legend.fontsize": 7.0, "axes.titlesize": 8.0}
 LINES = {
     "axes.linewidth": 0.6,
@@ -57,13 +60,26 @@ def drawn(picture: Picture, width: float = WIDTH) -> Figure:
         FigureCanvasAgg(figure)
         figure.set_layout_engine("constrained", w_pad=PAD * MM, h_pad=PAD * MM, hspace=0.03, wspace=0.03)
         picture.draw(figure)
+        figure.axes[0].set_anchor("SW")  # beside its labels; what is left over is above, where it is cut off
         for _ in range(ROUNDS):
             figure.draw_without_rendering()
+            wrapped = [_wrap(label, axes) for axes in figure.axes for label in (axes.xaxis.label, axes.yaxis.label)]
             left_over = _left_over(figure.axes[0]) * figure.get_figheight()
-            if abs(left_over) < CLOSE * MM:
+            if not any(wrapped) and abs(left_over) < CLOSE * MM:
                 break
             figure.set_figheight(figure.get_figheight() - left_over)
         return figure
+
+
+def _wrap(label: Text, axes: Axes) -> bool:
+    """Put a label that is longer than its axes on several lines; return whether it was."""
+    box, room = label.get_window_extent(), axes.get_window_extent()
+    share = room.width / box.width if label.get_rotation() == 0 else room.height / box.height
+    if share >= 1 or " " not in label.get_text():
+        return False
+    longest = max(map(len, label.get_text().splitlines()))
+    label.set_text(fill(" ".join(label.get_text().split()), max(int(longest * share), SHORT), break_long_words=False))
+    return True
 
 
 def _left_over(axes: Axes) -> float:

@@ -30,7 +30,7 @@ def sweep_pictures(
 def _picture(panel: Panel, shown: Shown) -> Picture:
     def draw(figure: Figure) -> None:
         figure.set_figheight(0.85 * figure.get_figwidth())
-        panel.draw(figure, figure.add_subplot(anchor="SW"))
+        panel.draw(figure, figure.add_subplot())
 
     said = panel.title[0].upper() + panel.title[1:]
     return Picture(panel.name, f"{said}: {about(shown)}.", draw)

@@ -53,7 +53,7 @@ def folder(tmp_path_factory):
         "one": FREQUENCY,
         "two": FREQUENCY + STROKE + '[map]\nthreshold = "distance > 1 um"\n',
         "three": FREQUENCY + STROKE + MASS,
-        "points": 'sampling = "random"\npoints = 8\n' + FREQUENCY + STROKE,
+        "points": 'sampling = "random"\npoints = 8\n' + FREQUENCY.replace("count = 4\n", "") + STROKE,
         "starts": X + Y,
         "again": 'repeats = 3\njitter = "1 um"\n' + FREQUENCY,
     }
@@ -101,14 +101,14 @@ def check(figure, width):
         assert box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1, said
     for axes in figure.axes:
         for label in (axes.get_xlabel(), axes.get_ylabel()):
-            assert not label or re.search(r"\[(.*)\]$", label) or label == "cycle", label
+            assert not label or re.search(r"\[(.+)\]$", label), label
     labels = [axes.yaxis.label.get_window_extent() for axes in figure.axes if axes.get_ylabel()]
     for one, other in pairwise(sorted(labels, key=lambda box: (round(box.x0, -1), box.y0))):
         assert one.x1 <= other.x0 or one.y1 <= other.y0 + 1 or other.y1 <= one.y0 + 1
     pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3]
     assert 0.01 < (pixels.min(axis=-1) < 250).mean() < 0.95
     for edge in (pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]):
-        assert (edge == 255).all()
+        assert (edge > 200).all()
 
 
 @pytest.mark.compiled
@@ -226,10 +226,12 @@ def test_files_have_text_as_text_and_the_wanted_width(folder, tmp_path):
 def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
     (tmp_path / "text.nc").write_text("mine")
     (tmp_path / "text.vtkhdf").write_text("mine")
+    (tmp_path / "text.part.vtkhdf").write_text("mine")
     wrong = {
         tmp_path / "none": "which is no file",
         tmp_path: "which is something else",
         tmp_path / "text.nc": "which is something else",
+        tmp_path / "text.vtkhdf": "which is something else",
         folder / "case.png": "which is something else",
         folder / "one.toml": "which tells what to do; what one of these commands makes of it can be drawn",
     }
@@ -238,7 +240,7 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
         wanted = "must be a file that `active-surface run` or `active-surface sweep` left"
         assert done.exit_code == 2 and done.output == f"Input result of plot {wanted}; got {path}, {said}\n"
     others = [
-        ([tmp_path / "text.vtkhdf"], "no HDF5 file"),
+        ([tmp_path / "text.part.vtkhdf"], "but there is no"),
         ([folder / "case", "--value", "distance"], "value of plot must be given for a sweep only"),
         ([folder / "two.nc", "--x", "strok"], "must be one of frequency, stroke; got strok; did you mean stroke?"),
         ([folder / "two.nc", "--value", "distanc"], "did you mean distance?"),
