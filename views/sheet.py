@@ -73,9 +73,11 @@ def drawn(picture: Picture, width: float = WIDTH) -> Figure:
 
 def _wrap(label: Text, axes: Axes) -> bool:
     """Put a label that is longer than its axes on several lines; return whether it was."""
+    if " " not in label.get_text():
+        return False
     box, room = label.get_window_extent(), axes.get_window_extent()
     share = room.width / box.width if label.get_rotation() == 0 else room.height / box.height
-    if share >= 1 or " " not in label.get_text():
+    if share >= 1:
         return False
     longest = max(map(len, label.get_text().splitlines()))
     label.set_text(fill(" ".join(label.get_text().split()), max(int(longest * share), SHORT), break_long_words=False))

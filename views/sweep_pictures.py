@@ -11,6 +11,7 @@ from studies.shown import Shown
 from views.sheet import Picture
 
 OUTCOME = "outcome"
+HEIGHT = 0.85  # of the width, where a picture has no shape of its own
 
 
 def sweep_pictures(
@@ -29,8 +30,10 @@ def sweep_pictures(
 
 def _picture(panel: Panel, shown: Shown) -> Picture:
     def draw(figure: Figure) -> None:
-        figure.set_figheight(0.85 * figure.get_figwidth())
-        panel.draw(figure, figure.add_subplot())
+        axes = figure.add_subplot()
+        panel.draw(figure, axes)
+        if axes.get_aspect() == "auto":
+            figure.set_figheight(HEIGHT * figure.get_figwidth())
 
     said = panel.title[0].upper() + panel.title[1:]
     return Picture(panel.name, f"{said}: {about(shown)}.", draw)
