@@ -50,7 +50,16 @@ def draw_over_time(axes: Axes, rows: Rows, times: FloatArray, curves: Curves, ti
             times * time_unit.per_si, values * unit.per_si, color=colour, linestyle=style, linewidth=1.2, label=name
         )
     if len(curves.values) > 1:
-        axes.legend(frameon=False, fontsize="small", loc="lower left", bbox_to_anchor=(0, 0.97), ncols=2, borderpad=0.1)
+        axes.legend(
+            frameon=False,
+            fontsize="small",
+            loc="lower left",
+            bbox_to_anchor=(0, 0.97),
+            ncols=2,
+            borderpad=0.1,
+            handlelength=1.6,
+            columnspacing=1.0,
+        )
     shade(axes, rows, time_unit.per_si)
     plain_ticks(axes)
     axes.set_xlim(0, rows.time[-1] * time_unit.per_si)

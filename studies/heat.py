@@ -21,7 +21,7 @@ from studies.record import OUTCOMES
 from studies.shown import FloatArray, IntArray, Scale, Shown, labelled
 from studies.threshold import BoolArray
 
-COLOURS = ("#40719c", "#e0c368", "#b8862d", "#7d1f0e", "#7a4b94", "#a8a8a8", "#ededed")
+COLOURS = ("#40719c", "#e0c368", "#b8862d", "#7d1f0e", "#7a4b94", "#a8a8a8", "#dedede")
 """Of the outcomes, by their number; they differ in grey, too."""
 OUTCOME = "what became of the part"
 NARROW = 5.0  # inches: a figure with one key a line
