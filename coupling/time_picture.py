@@ -50,8 +50,7 @@ def draw_over_time(axes: Axes, rows: Rows, times: FloatArray, curves: Curves, ti
             times * time_unit.per_si, values * unit.per_si, color=colour, linestyle=style, linewidth=1.2, label=name
         )
     if len(curves.values) > 1:
-        place = {"loc": "lower left", "bbox_to_anchor": (0, 0.97), "borderpad": 0.1}
-        axes.legend(frameon=False, fontsize="small", ncols=2, handlelength=1.6, columnspacing=1.0, **place)
+        axes.legend(
             frameon=False,
             fontsize="small",
             loc="lower left",
