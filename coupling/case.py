@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Self
 
 from pydantic import (
     BaseModel,
@@ -39,6 +39,10 @@ from coupling.places import Places
 from coupling.platform_case import AXES, BY_DRIVES, AxisCase, MotionCase
 from coupling.table import Table
 from coupling.units import Length, Point
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 PAPER_PLASTICITY_INDEX: Final = 4.9128
 MOST_STEPS: Final = 100_000_000  # of a fixed scheme
@@ -292,6 +296,26 @@ class Case(CaseTables):
 
     name: str = "case"
     source: str | None = None
+
+    def __repr__(self) -> str:
+        count, part, friction = len(self.actuators), self.part, self.friction.model
+        over = f"{count} actuator{'s' * (count != 1)} under a plate" if count else "a platform"
+        moved = f"a part of {part.mass:.4g} kg at ({part.position[0]:.4g}, {part.position[1]:.4g}) m"
+        return f"Case {self.name!r}: {over}, {moved}, {friction} friction, {self.run.duration:.4g} s"
+
+    __str__ = __repr__
+
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Draw the plate from above with its actuators, and where the part starts, into axes in m or new ones."""
+        from coupling.case_picture import draw_case  # here, because reading a case is to be quick
+        from plotting.drawing import plotted
+
+        return plotted(lambda axes: draw_case(self, axes), axes)
+
+    def _repr_html_(self) -> str:
+        from plotting.drawing import html
+
+        return html(self)
 
 
 _FRICTION: dict[str, type[BaseModel]] = {

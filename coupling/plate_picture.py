@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from coupling.scene import Ground
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Patch = tuple[FloatArray, IntArray, FloatArray]
+"""Points (n, 2) [m], triangles (m, 3) and deflections (n,) [m] that cover a piece of a plate."""
 
 MOST_TRIANGLES = 60_000  # of a mesh that is made finer to be drawn
 FINEST = 4  # times that its edges are halved
@@ -64,58 +68,81 @@ class Scale(NamedTuple):
         return Scale(unit, 0.0, high, UPWARDS)
 
 
+class Relief(NamedTuple):
+    """A plate as it is at one moment, to be drawn."""
+
+    box: FloatArray  # (2, 2) m, around it
+    actuators: FloatArray  # (N, 2) m
+    deflection: FloatArray  # (n,) m, of all of it
+    within: Callable[[FloatArray], Patch]  # what covers it within a frame (2, 2) [m]
+    rim: Callable[[float], list[FloatArray]]  # its curves (k, 2) [m], with points so far apart [m]
+
+    @property
+    def frame(self) -> FloatArray:
+        """The corners (2, 2) [m] of a picture of all of it."""
+        return self.box + MARGIN * extent(self.box) * np.array([[-1.0], [1.0]])
+
+
+def relief_of(shapes: PlateShapes, ground: Ground, heights: FloatArray) -> Relief:
+    """The plate of some shapes with its drives at heights (N,) [m]."""
+    return Relief(
+        shapes.outline.box,
+        shapes.points,
+        ground.lifted(heights[None])[0],
+        lambda frame: fine_field(shapes, ground, heights, frame),
+        lambda spacing: rim_curves(shapes.outline, spacing),
+    )
+
+
 def draw_plate(
     figure: Figure,
-    axes: list[Axes],
-    shapes: PlateShapes,
-    ground: Ground,
-    heights: FloatArray,
-    units: list[Unit],
-    window: FloatArray | None,
+    axes: Axes,
+    relief: Relief,
+    unit: Unit,
+    frame: FloatArray,
+    side: Literal["left", "right"] = "right",
+    width: float = AXES_WIDTH,
 ) -> list[Artist]:
-    """Draw the whole plate into the first axes, and what is in the window (2, 2) [m] into the second; return keys.
-
-    heights: (N,) m, those of the drives.  units: of the lengths along each pair of axes.
-    """
-    scale = Scale.of(ground.lifted(heights[None])[0])
-    box = shapes.outline.box
-    frames = [box + MARGIN * extent(box) * np.array([[-1.0], [1.0]])]
-    if window is not None:
-        frames.append(window)
-        _join(figure, axes, units[0], window)
-    marked = 0
-    for one, unit, frame in zip(axes, units, frames, strict=True):
-        points, triangles, w = fine_field(shapes, ground, heights, frame)
-        side: Literal["left", "right"] = "right" if one is axes[-1] else "left"  # nothing between map and window
-        lined = apart(shapes.points, frame) >= LINES_APART
-        _draw_heights(figure, one, points * unit.per_si, triangles, w * scale.unit.per_si, scale, side, lined)
-        curves = [curve * unit.per_si for curve in rim_curves(shapes.outline, extent(frame) / 200)]
-        one.add_collection(LineCollection(curves, colors="black", linewidths=1.5))
-        one.set_xlim(*(frame[:, 0] * unit.per_si))
-        one.set_ylim(*(frame[:, 1] * unit.per_si))
-        marked += _mark_actuators(one, shapes.points, frame, unit)
-    marker = Line2D([], [], color="white", marker="^", markeredgecolor="black", linestyle="", label="actuator")
-    return [marker] if marked else []
+    """Draw what of a plate is in a frame (2, 2) [m] into axes so wide [points], with its bar at a side; return keys."""
+    scale = Scale.of(relief.deflection)
+    points, triangles, w = relief.within(frame)
+    lined = apart(relief.actuators, frame, width) >= LINES_APART
+    _draw_heights(figure, axes, points * unit.per_si, triangles, w * scale.unit.per_si, scale, side, lined)
+    curves = [curve * unit.per_si for curve in relief.rim(extent(frame) / 200)]
+    axes.add_collection(LineCollection(curves, colors="black", linewidths=1.5))
+    axes.set_xlim(*(frame[:, 0] * unit.per_si))
+    axes.set_ylim(*(frame[:, 1] * unit.per_si))
+    return _mark_actuators(axes, relief.actuators, frame, unit, width)
 
 
-def fine_field(
-    shapes: PlateShapes, ground: Ground, heights: FloatArray, frame: FloatArray
-) -> tuple[FloatArray, NDArray[np.int64], FloatArray]:
-    """Points (n, 2) [m], triangles (m, 3) and deflections (n,) [m] that cover the plate within a frame (2, 2) [m].
+def fine_field(shapes: PlateShapes, ground: Ground, heights: FloatArray, frame: FloatArray) -> Patch:
+    """What covers the plate within a frame (2, 2) [m].
 
     The triangles are those of the drawn plate, divided until they are so small that contours look smooth.
     """
-    lowest, highest = (f(ground.points[ground.triangles], axis=1) for f in (np.min, np.max))
-    triangles = ground.triangles[((highest > frame[0]) & (lowest < frame[1])).all(axis=1)]
-    used, rows = np.unique(triangles, return_inverse=True)
-    points, triangles = ground.points[used], rows.reshape(-1, 3)
-    halvings = min(int(math.log(max(MOST_TRIANGLES / max(len(triangles), 1), 1), 4)), FINEST)
-    if not halvings:
+    points, triangles, used = cut_out(ground.points, ground.triangles, frame)
+    fine = divided(points, triangles)
+    if fine is None:
         return points, triangles, ground.lifted(heights[None])[0][used]
-    fine = UniformTriRefiner(Triangulation(*points.T, triangles)).refine_triangulation(subdiv=halvings)
     points = np.stack([fine.x, fine.y], axis=1)
     w = shapes.values(onto_plate(shapes.outline, points), heights[:, None])[:, 0]
     return points, fine.triangles.astype(np.int64), w
+
+
+def cut_out(points: FloatArray, triangles: IntArray, frame: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:
+    """Points, the triangles of a mesh that reach into a frame (2, 2) [m], and the rows of the points in the mesh."""
+    lowest, highest = (f(points[triangles], axis=1) for f in (np.min, np.max))
+    triangles = triangles[((highest > frame[0]) & (lowest < frame[1])).all(axis=1)]
+    used, rows = np.unique(triangles, return_inverse=True)
+    return points[used], rows.reshape(-1, 3), used
+
+
+def divided(points: FloatArray, triangles: IntArray) -> Triangulation | None:
+    """Triangles divided until they are so small that contours look smooth; None: they are."""
+    halvings = min(int(math.log(max(MOST_TRIANGLES / max(len(triangles), 1), 1), 4)), FINEST)
+    if not halvings:
+        return None
+    return UniformTriRefiner(Triangulation(*points.T, triangles)).refine_triangulation(subdiv=halvings)
 
 
 def _draw_heights(
@@ -147,35 +174,41 @@ def _draw_heights(
     figure.colorbar(filled, ticks=levels[labelled], **bar).add_lines(lines)
 
 
-def apart(places: FloatArray, frame: FloatArray) -> float:
-    """How far apart [points] places (N, 2) [m] are in a frame (2, 2) [m]; inf where they are few."""
-    return AXES_WIDTH * pitch(places) / extent(frame) if len(places) > FEW else math.inf
+def apart(places: FloatArray, frame: FloatArray, width: float = AXES_WIDTH) -> float:
+    """How far apart [points] places (N, 2) [m] are in a frame (2, 2) [m] so wide [points]; inf where they are few."""
+    return width * pitch(places) / extent(frame) if len(places) > FEW else math.inf
 
 
-def marker_size(places: FloatArray, frame: FloatArray) -> float:
-    """The size [points] of markers at places (N, 2) [m] in a frame (2, 2) [m], apart from each other; 0: they merge."""
-    distance = apart(places, frame)
+def marker_size(places: FloatArray, frame: FloatArray, width: float = AXES_WIDTH) -> float:
+    """The size [points] of markers at places (N, 2) [m], apart from each other; 0: they merge.
+
+    frame: (2, 2) m, that of axes so wide [points].
+    """
+    distance = apart(places, frame, width)
     return float(np.clip(0.3 * distance, *MARKERS)) if distance >= LEAST_APART else 0.0
 
 
-def _mark_actuators(axes: Axes, actuators: FloatArray, frame: FloatArray, unit: Unit) -> int:
-    """Mark the actuators (N, 2) [m] whose markers lie within a frame whole; return how many these are."""
+def _mark_actuators(axes: Axes, actuators: FloatArray, frame: FloatArray, unit: Unit, width: float) -> list[Artist]:
+    """Mark the actuators (N, 2) [m] whose markers lie within a frame whole; return a key of these."""
     seen = actuators[((actuators > frame[0]) & (actuators < frame[1])).all(axis=1)]
-    size = marker_size(seen, frame)
+    size = marker_size(seen, frame, width)
     if not size:
-        axes.set_title(f"{axes.get_title()}\n{len(actuators)} actuators, too many to be marked", fontsize=10)
-        return 0
-    edge = size / AXES_WIDTH * extent(frame)
+        return [Line2D([], [], linestyle="", label=f"{len(actuators)} actuators, too many to be marked")]
+    edge = size / width * extent(frame)
     seen = seen[((seen > frame[0] + edge) & (seen < frame[1] - edge)).all(axis=1)]
-    look: dict[str, Any] = {"color": "white", "markeredgecolor": "black", "markeredgewidth": size / MARKERS[1]}
-    axes.plot(*(seen.T * unit.per_si), "^", markersize=size, zorder=2.5, **look)
-    return len(seen)
+    look: dict[str, Any] = {"color": "white", "marker": "^", "markeredgecolor": "black", "linestyle": ""}
+    axes.plot(*(seen.T * unit.per_si), **look, markersize=size, markeredgewidth=size / MARKERS[1], zorder=2.5)
+    return [Line2D([], [], **look, label="actuator")] if len(seen) else []
 
 
-def _join(figure: Figure, axes: list[Axes], unit: Unit, window: FloatArray) -> None:
-    """Show on the map where the window is, and join the two."""
+def draw_window(axes: Axes, unit: Unit, window: FloatArray) -> None:
+    """Show on a map where a window (2, 2) [m] is."""
     corner, sides = window[0] * unit.per_si, np.ptp(window, axis=0) * unit.per_si
-    axes[0].add_patch(Rectangle(tuple(corner), *sides, fill=False, edgecolor="black", linewidth=1.2, zorder=4))
+    axes.add_patch(Rectangle(tuple(corner), *sides, fill=False, edgecolor="black", linewidth=1.2, zorder=4))
+
+
+def join(figure: Figure, axes: list[Axes], unit: Unit, window: FloatArray) -> None:
+    """Join a window (2, 2) [m] on a map in the first axes to the second ones, on its right."""
     for k in (0, 1):
         place = np.array([window[1, 0], window[k, 1]]) * unit.per_si
         ends: dict[str, Any] = {"axesA": axes[0], "coordsA": "data", "axesB": axes[1], "coordsB": "axes fraction"}

@@ -8,9 +8,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from coupling.case import Case
@@ -19,9 +16,8 @@ from coupling.drives import build_drives, stroke_heights
 from coupling.measured import MotionFit
 from coupling.plate_case import PlateCase
 from coupling.plate_figures import plate_figures
-from coupling.plate_picture import draw_plate
+from coupling.plate_picture import Relief, relief_of
 from coupling.progress import Progress
-from coupling.readable import Unit
 from coupling.rim import onto_plate
 from coupling.scene import Ground
 from coupling.summary import PlateFigures
@@ -63,17 +59,8 @@ class PlateScene:
     def figures(self, case: Case, trajectory: Trajectory) -> PlateFigures:
         return plate_figures(case, self.plate, self.shapes, self.surface, self.lifts, trajectory)
 
-    def draw(
-        self,
-        figure: Figure,
-        axes: list[Axes],
-        ground: Ground,
-        moment: float,
-        units: list[Unit],
-        window: FloatArray | None,
-    ) -> list[Artist]:
-        heights = stroke_heights(self.lifts, np.array([moment]))[0]
-        return draw_plate(figure, axes, self.shapes, ground, heights, units, window)
+    def relief(self, ground: Ground, moment: float) -> Relief:
+        return relief_of(self.shapes, ground, stroke_heights(self.lifts, np.array([moment]))[0])
 
 
 def lifting(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:

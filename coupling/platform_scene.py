@@ -7,9 +7,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from coupling.case import Case
@@ -17,7 +14,6 @@ from coupling.drives import build_drive, travel
 from coupling.measured import MotionFit, fit_motion
 from coupling.platform_case import AXES, MotionCase, PlatformCase
 from coupling.progress import Progress
-from coupling.readable import Unit
 from coupling.scene import Ground
 from particle import AnyDrive, Drive, SurfaceMotion, Trajectory, platform_surface
 
@@ -56,21 +52,8 @@ class PlatformScene:
     def figures(self, case: Case, trajectory: Trajectory) -> None:
         return None
 
-    def draw(
-        self,
-        figure: Figure,
-        axes: list[Axes],
-        ground: Ground,
-        moment: float,
-        units: list[Unit],
-        window: FloatArray | None,
-    ) -> list[Artist]:
-        """Nothing but its extent: it looks the same everywhere."""
-        (left, bottom), (right, top) = ground.points.min(axis=0), ground.points.max(axis=0)
-        axes[0].set_xlim(left * units[0].per_si, right * units[0].per_si)
-        axes[0].set_ylim(bottom * units[0].per_si, top * units[0].per_si)
-        axes[0].grid(alpha=0.3)
-        return []
+    def relief(self, ground: Ground, moment: float) -> None:
+        return None
 
 
 def platform_scene(platform: PlatformCase, progress: Progress) -> PlatformScene:

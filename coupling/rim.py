@@ -1,4 +1,4 @@
-"""The rim as points: to fit to, to draw, and to put a part back on that has just slid over it."""
+"""The rim as a run needs it: as points, and to put a part back on that has just slid over it."""
 
 from __future__ import annotations
 
@@ -6,21 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes import Outline
+from meshes.rim_curves import rim_curves as rim_curves
 
 FloatArray = NDArray[np.float64]
-
-
-def rim_curves(outline: Outline, spacing: float) -> list[FloatArray]:
-    """Points (n, 2) [m] along each ellipse and each edge of the rim, at most about `spacing` [m] apart."""
-    curves = []
-    for x, y, a, b in outline.conics.tolist():
-        angle = np.linspace(0, 2 * np.pi, int(np.ceil(2 * np.pi * max(a, b) / spacing)) + 4)
-        curves.append(np.stack([x + a * np.cos(angle), y + b * np.sin(angle)], axis=1))
-    for start, middle, end in outline.edges:
-        length = np.linalg.norm(middle - start) + np.linalg.norm(end - middle)
-        s = np.linspace(0, 1, int(np.ceil(length / spacing)) + 1)[:, None]
-        curves.append((1 - s) * (1 - 2 * s) * start + 4 * s * (1 - s) * middle + s * (2 * s - 1) * end)
-    return curves
 
 
 def onto_plate(outline: Outline, xy: FloatArray) -> FloatArray:

@@ -6,9 +6,9 @@ case -> scene (mesh -> plate influence shapes, or a platform's drives -> surface
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from threadpoolctl import threadpool_limits
 
@@ -29,8 +29,12 @@ from particle import SurfaceMotion, Trajectory
 from particle.fixed import default_step
 from particle.friction import Contact
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Result:
     """What a run found.
 
@@ -39,8 +43,8 @@ class Result:
     """
 
     case: Case
-    scene: Scene = field(repr=False)
-    trajectory: Trajectory = field(repr=False)
+    scene: Scene
+    trajectory: Trajectory
     summary: Summary
     files: tuple[Path, ...] = ()
 
@@ -53,6 +57,24 @@ class Result:
     def shapes(self) -> PlateShapes | None:
         """The influence shapes of a plate; None: there is a platform."""
         return self.scene.shapes
+
+    def __repr__(self) -> str:
+        said = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."
+        return f"Result of {self.case!r}. {said}"
+
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Draw the path over the surface as it is when it is deflected most, and the motion over time.
+
+        With axes, only the path over the surface, into these, in m.
+        """
+        from coupling.pictures import plot_run  # here, because matplotlib is loaded for pictures only
+
+        return plot_run(self.case, self.scene, self.trajectory, axes)
+
+    def _repr_html_(self) -> str:
+        from plotting.drawing import html
+
+        return html(self)
 
 
 def run_case(

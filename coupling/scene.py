@@ -6,14 +6,11 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from coupling.case import Case
 from coupling.measured import MotionFit
-from coupling.readable import Unit
+from coupling.plate_picture import Relief
 from coupling.summary import PlateFigures
 from fem_plate import PlateShapes
 from particle import AnyDrive, SurfaceMotion, Trajectory
@@ -66,16 +63,5 @@ class Scene(Protocol):
     def figures(self, case: Case, trajectory: Trajectory) -> PlateFigures | None:
         """What the summary says of a plate; None: it is none."""
 
-    def draw(
-        self,
-        figure: Figure,
-        axes: list[Axes],
-        ground: Ground,
-        moment: float,
-        units: list[Unit],
-        window: FloatArray | None,
-    ) -> list[Artist]:
-        """Draw what lies under the path, as it is at a moment [s], in units of length of each axes; return its keys.
-
-        axes: for all of it and, where there is a window (2, 2) [m], for what is in that.
-        """
+    def relief(self, ground: Ground, moment: float) -> Relief | None:
+        """The plate as it is at a moment [s], to be drawn; None: it is none."""

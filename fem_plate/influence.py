@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,10 @@ from fem_plate.field import Estimated, Field, Fields
 from fem_plate.model import PlateModel
 from fem_plate.singular import point_value
 from meshes import Outline
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -26,9 +31,10 @@ class Shapes(ABC):
     Each is a sum of free-space point loads and a smooth part, phi_i = sum_j strengths[j, i] F((x - x_j)/size) + v_i(x).
 
     points: (N, 2) m.  size: m, the length that makes everything dimensionless.  outline: the plate's rim.
-    strengths: (N, N), dimensionless forces.
+    strengths: (N, N), dimensionless forces.  springs: (N,) N/m of the actuators, inf rigid, 0 floating.
     """
 
+    springs: FloatArray
     points: FloatArray
     size: float
     outline: Outline
@@ -69,13 +75,40 @@ class Shapes(ABC):
         if weights is None:
             value, gradient, hessian = self.fields(xy / self.size, None)
             return value, gradient / self.size, hessian / self.size**2
-        weights = np.asarray(weights, dtype=float)
-        if weights.shape != (len(self.points),):
-            raise ValueError(
-                f"Input weights of evaluate must be one an actuator, {len(self.points)}; got shape {weights.shape}"
-            )
-        value, gradient, hessian = self.fields(xy / self.size, weights[:, None])
+        value, gradient, hessian = self.fields(xy / self.size, self._one_each(weights, "evaluate")[:, None])
         return value[:, 0], gradient[:, 0] / self.size, hessian[:, 0] / self.size**2
+
+    def __repr__(self) -> str:
+        kinds = {"rigid": np.isinf(self.springs), "floating": self.springs == 0}
+        kinds["springy"] = ~(kinds["rigid"] | kinds["floating"])
+        told = ", ".join(f"{int(which.sum())} {kind}" for kind, which in kinds.items() if which.any())
+        many = "s" * (len(self.points) != 1)
+        width, height = np.ptp(self.outline.box, axis=0)
+        return f"{type(self).__name__} of {told} actuator{many} on a plate of {width:.4g} m x {height:.4g} m"
+
+    def plot(self, weights: ArrayLike | None = None, axes: Axes | None = None) -> Figure:
+        """Draw the sum of the shapes with weights (N,), such as strokes [m], into axes in m or new ones.
+
+        Without weights it is the shape of the actuator in the middle.
+        """
+        from fem_plate.picture import draw_shapes  # here, because matplotlib is loaded for pictures only
+        from plotting.drawing import plotted
+
+        chosen = None if weights is None else self._one_each(weights, "plot")
+        return plotted(lambda axes: draw_shapes(self, chosen, axes), axes)
+
+    def _repr_html_(self) -> str:
+        from plotting.drawing import html
+
+        return html(self)
+
+    def _one_each(self, weights: ArrayLike, where: str) -> FloatArray:
+        found = np.asarray(weights, dtype=float)
+        if found.shape != (len(self.points),):
+            raise ValueError(
+                f"Input weights of {where} must be one an actuator, {len(self.points)}; got shape {found.shape}"
+            )
+        return found
 
 
 class InfluenceShapes(Shapes, Estimated):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +22,10 @@ from fem_plate.section import PlateSection
 from fem_plate.supports import by_boundary
 from fem_plate.vibration import Modes
 from meshes import PlateMesh
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FloatArray = NDArray[np.float64]
 Answer = TypeVar("Answer", bound=Estimated)
@@ -149,6 +153,23 @@ class Plate:
             raise ValueError(f"Input count of modes must be a whole number from 1 to {most - 1}; got {count!r}")
         inertia = density * self.section.thickness * self.mesh.size**4
         return vibration.modes(model, points, count, self.section.rigidity / inertia)
+
+    def __repr__(self) -> str:
+        width, height = np.ptp(self.mesh.outline.box, axis=0)
+        rims = ", ".join(f"{name} {support}" for name, support in self.supports.items())
+        return f"Plate of {width:.4g} m x {height:.4g} m, {self.section.thickness:.4g} m thick; {rims}"
+
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Draw the rim by its supports and the mesh, into axes in m or new ones."""
+        from fem_plate.picture import draw_cells  # here, because matplotlib is loaded for pictures only
+        from plotting.drawing import plotted
+
+        return plotted(lambda axes: draw_cells(self, axes), axes)
+
+    def _repr_html_(self) -> str:
+        from plotting.drawing import html
+
+        return html(self)
 
     def _patched(self, points: FloatArray, springs: FloatArray, truncation: float, tell: Tell) -> PatchedShapes:
         pitch, rigidity = spacing(points), self.section.rigidity

@@ -6,12 +6,16 @@ import enum
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from particle import record
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FloatArray = NDArray[np.float64]
 
@@ -115,7 +119,7 @@ class Energy:
         return float(np.abs(gap).max()) / max(largest, LEAST_ENERGY * self.scale)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Trajectory:
     """The path of a part: a row at every event and every step of the integrator.
 
@@ -125,17 +129,17 @@ class Trajectory:
     time: FloatArray  # (n,) s
     position: FloatArray  # (n, 2) m
     velocity: FloatArray  # (n, 2) m/s
-    vertical_velocity: FloatArray = field(repr=False)  # (n,) m/s
-    height: FloatArray = field(repr=False)  # (n,) m, that of the surface under it unless it flies
+    vertical_velocity: FloatArray  # (n,) m/s
+    height: FloatArray  # (n,) m, that of the surface under it unless it flies
     normal_force: FloatArray  # (n,) N, net, of the contact
     friction_force: FloatArray  # (n,) N, its magnitude
     state: NDArray[np.int64]  # (n,) State
-    events: list[Event] = field(repr=False)
+    events: list[Event]
     outcome: Outcome
     evaluations: int  # of the surface
-    energy: Energy = field(repr=False)
-    sampler: Callable[[FloatArray], FloatArray] = field(repr=False)  # rows at ascending times
-    future: Callable[[], bool | None] | None = field(default=None, repr=False)  # of a part that rests at the end
+    energy: Energy
+    sampler: Callable[[FloatArray], FloatArray]  # rows at ascending times
+    future: Callable[[], bool | None] | None = None  # of a part that rests at the end
 
     @cached_property
     def stays(self) -> bool | None:
@@ -186,6 +190,23 @@ class Trajectory:
         rows = np.empty((len(within), record.COLUMNS))
         rows[order] = self.sampler(within[order])
         return samples_of(rows)
+
+    def __repr__(self) -> str:
+        found = f"{len(self.time)} rows, {len(self.events)} events"
+        way = f"{self.distance:.4g} m from the start over a path of {self.path_length:.4g} m"
+        return f"Trajectory of {self.time[-1]:.4g} s: {self.outcome}, {way}; {found}"
+
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Draw the path and the speed over time; with axes only the path, into these. Axes are in SI units."""
+        from particle.picture import plot, plot_path  # here, because matplotlib is loaded for pictures only
+        from plotting.drawing import plotted
+
+        return plot(self) if axes is None else plotted(lambda axes: plot_path(self, axes), axes)
+
+    def _repr_html_(self) -> str:
+        from plotting.drawing import html
+
+        return html(self)
 
 
 def samples_of(rows: FloatArray) -> Samples:

@@ -16,12 +16,13 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from coupling.case import Case
-from coupling.path_picture import HALO, draw_path
+from coupling.path_picture import draw_path
 from coupling.plate_case import PlateCase
 from coupling.readable import Unit, plain_ticks, readable
 from coupling.rim import rim_curves
 from coupling.window import is_visible
 from particle import Trajectory
+from particle.picture import HALO
 from steering.aimed import Aimed
 from steering.found import Found
 from steering.planned import Planned

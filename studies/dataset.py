@@ -12,7 +12,11 @@ from typing import TYPE_CHECKING, Any, Final
 import h5netcdf
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
+from coupling.case import Case
+from coupling.plate_case import PlateCase
+from coupling.rim import rim_curves
 from studies.axis import Axis
 from studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from studies.slabs import slabs
@@ -23,6 +27,8 @@ if TYPE_CHECKING:
 
 SORT: Final = "active-surface sweep"
 ENGINE: Final = "h5netcdf"
+LOGARITHMIC: Final = "logarithmic"
+RIM_PIECES: Final = 200  # of the longer side of the plate's box: how fine the rim is
 AT_ONCE: Final = 65536  # points whose coordinates are written together
 ROOM: Final = 1_000_000  # bytes, for all that does not grow with the points
 
@@ -105,8 +111,19 @@ def _about(study: Study) -> dict[str, Any]:
         "case": study.case.source or study.case.model_dump_json(),
         "versions": json.dumps(versions()),
         "sampling": study.points.sampling,
+        "axes": " ".join(axis.name for axis in study.points.axes),
         "actuators": np.array([c for actuator in study.case.actuators for c in actuator.position], dtype=float),
+        "rim": _rim(study.case).ravel(),
     }
+
+
+def _rim(case: Case) -> NDArray[np.float64]:
+    """The curves of the plate's rim (n, 2) [m], with nan after each; empty: there is a platform."""
+    if not isinstance(case.plate, PlateCase):
+        return np.empty((0, 2))
+    outline = case.plate.coarse_mesh.outline
+    curves = rim_curves(outline, float(np.ptp(outline.box, axis=0).max()) / RIM_PIECES)
+    return np.concatenate([np.append(curve, [[np.nan, np.nan]], axis=0) for curve in curves])
 
 
 def _write_axes(file: h5netcdf.File, study: Study) -> None:
@@ -130,6 +147,8 @@ def _axis(file: h5netcdf.File, axis: Axis, dimension: str) -> h5netcdf.Variable:
     variable.attrs["field"] = axis.field.path
     if axis.field.unit:
         variable.attrs["units"] = axis.field.unit
+    if axis.logarithmic:
+        variable.attrs["spacing"] = LOGARITHMIC
     return variable
 
 

@@ -15,36 +15,41 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import ScalarFormatter
 from numpy.typing import NDArray
 
-from coupling.readable import plain_ticks, readable
+from coupling.readable import Unit, plain_ticks
+from plotting.drawing import put_below
 from studies.record import OUTCOMES
-from studies.shown import FloatArray, IntArray, Scale, Shown
+from studies.shown import FloatArray, IntArray, Scale, Shown, labelled
 from studies.threshold import BoolArray
 
-COLOURS = ("#40719c", "#e0c368", "#b8862d", "#c8371b", "#7a4b94", "#8a8a8a", "#dedede")
-"""Of the outcomes, by their number."""
+COLOURS = ("#40719c", "#e0c368", "#b8862d", "#7d1f0e", "#7a4b94", "#a8a8a8", "#dedede")
+"""Of the outcomes, by their number; they differ in grey, too."""
 OUTCOME = "what became of the part"
+NARROW = 5.0  # inches: a figure with one key a line
 MOST_NAMES = 12  # along an axis
 FEW_DIGITS = 1e-4, 1e7  # numbers between them are written out
 
 
-def draw_maps(figure: Figure, axes: list[Axes], shown: Shown) -> None:
-    """Draw the distance into the first axes and the outcome into the second."""
+def draw_value(figure: Figure, axes: Axes, shown: Shown) -> None:
+    """Draw a map of a column of the results."""
     across, up = shown.axes
-    draw_field(figure, axes[0], across, up, shown.mean_distance, "distance from the start")
-    draw_classes(axes[1], across, up, shown.usual_outcome, OUTCOMES, COLOURS)
-    axes[1].set_title(OUTCOME, fontsize=10)
-    for one in axes[:2]:
-        draw_outline(one, across, up, shown.holds)
+    draw_field(figure, axes, across, up, shown.mean_value, shown.said, shown.unit)
+    draw_outline(axes, across, up, shown.holds)
 
 
-def draw_field(figure: Figure, axes: Axes, across: Scale, up: Scale, lengths: FloatArray, said: str) -> None:
-    """Draw lengths (n, m) [m] over two scales, with their bar."""
+def draw_outcome(axes: Axes, shown: Shown) -> None:
+    """Draw a map of what became of the part."""
+    across, up = shown.axes
+    draw_classes(axes, across, up, shown.usual_outcome, OUTCOMES, COLOURS)
+    draw_outline(axes, across, up, shown.holds)
+
+
+def draw_field(figure: Figure, axes: Axes, across: Scale, up: Scale, values: FloatArray, said: str, unit: Unit) -> None:
+    """Draw values (n, m) in SI units over two scales, with their bar."""
     frame(axes, across, up)
-    axes.set_title(said, fontsize=10)
-    if np.isfinite(lengths).any():
-        unit = readable(lengths[np.isfinite(lengths)], "m")
-        mesh = axes.pcolormesh(edges(across), edges(up), np.ma.masked_invalid(lengths).T * unit.per_si, cmap="viridis")
-        figure.colorbar(mesh, ax=axes, label=f"[{unit.name}]")
+    if np.isfinite(values).any():
+        shades = np.ma.masked_invalid(values).T * unit.per_si
+        mesh = axes.pcolormesh(edges(across), edges(up), shades, cmap="viridis", rasterized=True)
+        figure.colorbar(mesh, ax=axes, label=labelled(said, unit))
 
 
 def draw_classes(
@@ -53,7 +58,7 @@ def draw_classes(
     """Draw classes (n, m), each in its colour, with a key of those that there are."""
     frame(axes, across, up)
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
-    axes.pcolormesh(edges(across), edges(up), numbers.T, cmap=ListedColormap(list(colours)), norm=norm)
+    axes.pcolormesh(edges(across), edges(up), numbers.T, cmap=ListedColormap(list(colours)), norm=norm, rasterized=True)
     add_key(axes, numbers, names, colours)
 
 
@@ -76,7 +81,9 @@ def add_key(axes: Axes, numbers: NDArray[np.int64], names: tuple[str, ...], colo
         Patch(facecolor=colours[k], edgecolor="#606060", linewidth=0.5, label=f"{names[k]}, {counts[k] * share:.3g} %")
         for k in np.flatnonzero(counts)
     ]
-    axes.legend(handles=patches, frameon=False, fontsize=9, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)
+    put_below(
+        axes, handles=patches, ncols=2 if len(patches) > 1 and axes.figure.bbox.width > NARROW * axes.figure.dpi else 1
+    )
 
 
 def frame(axes: Axes, across: Scale, up: Scale | None = None) -> None:

@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from studies.basins import draw_basins, is_over_starts
-from studies.curve import draw_curve
-from studies.heat import draw_maps
-from studies.scatter import draw_points
+from studies.findings import Findings
+from studies.panels import panels
 from studies.shown import Shown
 from studies.study import Study
-from studies.threshold_curve import draw_threshold
 
 if TYPE_CHECKING:
     import xarray
@@ -30,7 +27,7 @@ def draw_sweep(study: Study, dataset: xarray.Dataset, path: Path) -> Path:
     """
     figure = Figure()
     FigureCanvasAgg(figure)
-    compose(figure, study, dataset)
+    compose(figure, Findings.of(study.name, dataset, study.threshold))
     partial = path.with_suffix(f".{os.getpid()}.partial.png")
     try:
         figure.savefig(partial, dpi=110)
@@ -40,25 +37,23 @@ def draw_sweep(study: Study, dataset: xarray.Dataset, path: Path) -> Path:
     return path
 
 
-def compose(figure: Figure, study: Study, dataset: xarray.Dataset) -> None:
-    """Draws the results of a study into an empty figure."""
-    shown = Shown.of(study, dataset)
-    panels = 2 if shown.holds is None else 3
-    figure.set_size_inches(WIDTH * panels, HEIGHT)
+def compose(figure: Figure, findings: Findings) -> None:
+    """Draws the results of a sweep into an empty figure."""
+    shown = Shown.of(findings)
+    drawn = panels(shown)
+    figure.set_size_inches(WIDTH * len(drawn), HEIGHT)
     figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
-    axes = [figure.add_subplot(1, panels, k + 1) for k in range(panels)]
-    if shown.scattered:
-        draw_points(figure, axes, shown)
-    elif len(shown.axes) == 1:
-        draw_curve(axes, shown)
-    elif is_over_starts(shown):
-        draw_basins(figure, axes, shown)
-    else:
-        draw_maps(figure, axes, shown)
-    if shown.holds is not None and study.threshold:
-        draw_threshold(axes[2], shown, shown.holds, study.threshold.said)
-    said = ", ".join(f"{name} = {text}" for name, text in shown.fixed.items())
-    repeats = f", mean of {study.points.repeats} starts" if study.points.repeats > 1 else ""
-    drawn, of = shown.outcome.size, len(study.points)
-    paths = f"{of} paths" if drawn == of else f"{drawn} of {of} paths"
-    figure.suptitle(f"{study.name}: {paths}{repeats}" + (f", {said}" if said else ""))
+    places = [figure.add_subplot(1, len(drawn), k + 1) for k in range(len(drawn))]
+    for axes, panel in zip(places, drawn, strict=True):
+        panel.draw(figure, axes)
+        axes.set_title(panel.title, fontsize=10)
+    figure.suptitle(f"{findings.name}: {about(shown)}")
+
+
+def about(shown: Shown) -> str:
+    """What is shown, in words."""
+    of, drawn, repeats = shown.findings.dataset["outcome"].size, shown.outcome.size, shown.findings.repeats
+    said = [f"{of} paths" if drawn == of else f"{drawn} of {of} paths"]
+    if repeats > 1:
+        said.append(f"mean of {repeats} starts")
+    return ", ".join(said + [f"{name} = {text}" for name, text in shown.fixed.items()])

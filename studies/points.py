@@ -44,8 +44,7 @@ class Points:
     @property
     def longest(self) -> tuple[Axis, ...]:
         """The two axes with the most values, or the one, in their order."""
-        chosen = sorted(self.axes, key=lambda axis: -len(axis.values))[:2]
-        return tuple(axis for axis in self.axes if axis in chosen)
+        return longest(self.axes)
 
     def __len__(self) -> int:
         """How many paths there are."""
@@ -87,3 +86,9 @@ class Points:
             return sequence.fast_forward(first).random(last - first)
         # A first draw of other than a power of two points is warned about.
         return np.concatenate([sequence.random(1), sequence.random(last - 1)])
+
+
+def longest(axes: tuple[Axis, ...]) -> tuple[Axis, ...]:
+    """The two axes with the most values, or the one, in their order."""
+    chosen = sorted(axes, key=lambda axis: -len(axis.values))[:2]
+    return tuple(axis for axis in axes if axis in chosen)

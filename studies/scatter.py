@@ -9,33 +9,43 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
-from coupling.readable import readable
-from studies.heat import COLOURS, OUTCOME, add_key, frame
+from studies.heat import COLOURS, add_key, frame
 from studies.record import OUTCOMES
-from studies.shown import Shown
+from studies.shown import FloatArray, Shown
 
 LARGEST, SMALLEST = 40.0, 3.0  # square points, of a marker
+MOST_VECTORS = 2000  # markers that are not drawn as pixels in files of lines
 
 
-def draw_points(figure: Figure, axes: list[Axes], shown: Shown) -> None:
-    """Draw the distance into the first axes and the outcome into the second, over two axes or one."""
-    lengths, outcome = shown.mean_distance, shown.usual_outcome
-    known = np.isfinite(lengths)
-    unit = readable(lengths[known], "m") if known.any() else readable(np.zeros(1), "m")
-    across = shown.axes[0]
-    up = shown.axes[1] if len(shown.axes) > 1 else None
-    size = float(np.clip(2e4 / len(lengths), SMALLEST, LARGEST))
-    heights = up.drawn if up else lengths * unit.per_si
-    for one in axes:
-        frame(one, across, up)
-        if not up:
-            one.set_ylabel(f"distance from the start [{unit.name}]")
-    common: dict[str, Any] = {"s": size, "linewidths": 0}
-    marks = axes[0].scatter(
-        across.drawn[known], heights[known], c=lengths[known] * unit.per_si, cmap="viridis", **common
-    )
-    figure.colorbar(marks, ax=axes[0], label=f"distance from the start [{unit.name}]")
+def draw_points(figure: Figure, axes: Axes, shown: Shown) -> None:
+    """Draw a column of the results over two axes, or over one."""
+    values, (across, *_), unit = shown.mean_value, shown.axes, shown.unit
+    known = np.isfinite(values)
+    heights = _heights(axes, shown)
+    shades = values[known] * unit.per_si
+    marks = axes.scatter(across.drawn[known], heights[known], c=shades, cmap="viridis", **_look(len(values)))
+    figure.colorbar(marks, ax=axes, label=shown.label)
+
+
+def draw_outcomes(axes: Axes, shown: Shown) -> None:
+    """Draw what became of the part over two axes; over one, at the values of the column."""
+    outcome, heights = shown.usual_outcome, _heights(axes, shown)
     norm = BoundaryNorm(np.arange(len(OUTCOMES) + 1) - 0.5, len(OUTCOMES))
-    axes[1].scatter(across.drawn, heights, c=outcome, cmap=ListedColormap(list(COLOURS)), norm=norm, **common)
-    axes[1].set_title(OUTCOME, fontsize=10)
-    add_key(axes[1], outcome, OUTCOMES, COLOURS)
+    colours = ListedColormap(list(COLOURS))
+    axes.scatter(shown.axes[0].drawn, heights, c=outcome, cmap=colours, norm=norm, **_look(len(heights)))
+    add_key(axes, outcome, OUTCOMES, COLOURS)
+
+
+def _heights(axes: Axes, shown: Shown) -> FloatArray:
+    """How high points (n,) stand in axes, which are labelled."""
+    across, *others = shown.axes
+    frame(axes, across, *others)
+    if others:
+        return others[0].drawn
+    axes.set_ylabel(shown.label)
+    return shown.mean_value * shown.unit.per_si
+
+
+def _look(count: int) -> dict[str, Any]:
+    size = float(np.clip(2e4 / count, SMALLEST, LARGEST))
+    return {"s": size, "linewidths": 0, "rasterized": count > MOST_VECTORS}

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coupling.readable import Unit, readable
 from studies.axis import Axis
-from studies.record import OUTCOMES
-from studies.study import Study
+from studies.findings import Findings
+from studies.record import COLUMNS, OUTCOMES
 from studies.threshold import BoolArray
-
-if TYPE_CHECKING:
-    import xarray
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+DISTANCE = "distance"
 MOST_POINTS = 100_000  # of random ones
 NAMED = "m", "s", "N", "Hz", "m/s", "Pa"
 """Units that take a prefix."""
@@ -60,7 +60,7 @@ class Scale:
 
     @property
     def label(self) -> str:
-        return self.axis.name if self.unit.name in ("", "1") else f"{self.axis.name} [{self.unit.name}]"
+        return labelled(self.axis.name, self.unit)
 
     @property
     def drawn(self) -> FloatArray:
@@ -86,49 +86,79 @@ class Shown:
 
     Numbers along an axis of a grid ascend.
 
-    fixed: the values of axes that are not shown, in words.  holds: where the study's threshold holds, if it has one.
+    fixed: the values of axes that are not shown, in words.  holds: where the threshold holds, if there is one.
     """
 
-    study: Study
+    findings: Findings
     axes: tuple[Scale, ...]
+    column: str
+    value: FloatArray  # of the column in SI units, nan where refused
     distance: FloatArray  # m, nan where refused
     outcome: IntArray
     end: FloatArray  # (..., 2) m
     fixed: dict[str, str]
-    scattered: bool
     holds: BoolArray | None = None
 
     @classmethod
-    def of(cls, study: Study, dataset: xarray.Dataset) -> Shown:
-        points = study.points
-        scattered = points.sampling != "grid"
+    def of(cls, findings: Findings, x: str | None = None, y: str | None = None, column: str | None = None) -> Shown:
+        """What is shown over the axes named x and y, by default the longest, of a column of the results.
+
+        Raises ValueError for a name that there is not.
+        """
+        column = column or DISTANCE
+        _check("value", column, COLUMNS)
+        axes = _chosen(findings, x, y)
+        scattered = findings.scattered
         picked: dict[str, Any] = {"point": slice(0, MOST_POINTS)} if scattered else {}
-        axes = points.axes[:2] if scattered else points.longest
         fixed = {}
-        for axis in () if scattered else points.axes:
+        for axis in () if scattered else findings.axes:
             if axis in axes and axis.field.kind != "text":
                 picked[axis.name] = np.argsort(axis.values)
             elif axis not in axes:
                 order = np.argsort(axis.values) if axis.field.kind != "text" else np.arange(len(axis.values))
                 picked[axis.name] = int(order[len(order) // 2])
-                scale = Scale.of(axis, np.array([axis.values[picked[axis.name]]], axis.kind))
+                scale = Scale.of(axis, np.array([axis.values[picked[axis.name]]]))
                 number = scale.texts[0] if scale.texts else f"{scale.drawn[0]:.4g} {scale.unit.name}".rstrip("1 ")
                 fixed[axis.name] = number
-        part = dataset.isel(picked)
-        arrays = {name: part[name].values for name in ("distance", "outcome", "end_x", "end_y")}
-        if points.repeats == 1:
+        part = findings.dataset.isel(picked)
+        if not scattered:
+            part = part.transpose(*(axis.name for axis in axes), ...)
+        arrays = {name: part[name].values for name in (column, DISTANCE, "outcome", "end_x", "end_y")}
+        if findings.repeats == 1:
             arrays = {name: array[..., None] for name, array in arrays.items()}
         scales = tuple(Scale.of(axis, part[axis.name].values) for axis in axes)
         return cls(
-            study,
+            findings,
             scales if scattered else tuple(scale.in_cells() for scale in scales),
-            arrays["distance"],
+            column,
+            arrays[column].astype(float),
+            arrays[DISTANCE],
             arrays["outcome"].astype(np.int64),
             np.stack([arrays["end_x"], arrays["end_y"]], axis=-1),
             fixed,
-            scattered,
-            study.threshold and study.threshold.holds(part, points.repeats),
+            findings.threshold and findings.threshold.holds(part, findings.repeats),
         )
+
+    @property
+    def said(self) -> str:
+        """What the column is."""
+        return "distance from the start" if self.column == DISTANCE else COLUMNS[self.column].meaning
+
+    @property
+    def unit(self) -> Unit:
+        """The unit that its known values take."""
+        known = self.value[np.isfinite(self.value)]
+        return _unit(known if known.size else np.zeros(1), COLUMNS[self.column].unit)
+
+    @property
+    def label(self) -> str:
+        """What the column is, with the unit."""
+        return labelled(self.said, self.unit)
+
+    @property
+    def mean_value(self) -> FloatArray:
+        """The mean over repeats in SI units; nan where all were refused."""
+        return mean(self.value)
 
     @property
     def mean_distance(self) -> FloatArray:
@@ -147,3 +177,32 @@ def mean(values: FloatArray) -> FloatArray:
     known = np.isfinite(values)
     total, count = np.where(known, values, 0.0).sum(axis=-1), known.sum(axis=-1)
     return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+
+
+def labelled(said: str, unit: Unit) -> str:
+    """The label of an axis or bar."""
+    return said if unit.name in ("", "1") else f"{said} [{unit.name}]"
+
+
+def _chosen(findings: Findings, x: str | None, y: str | None) -> tuple[Axis, ...]:
+    """The axes named x and y; of those that are not named the longest."""
+    named = {axis.name: axis for axis in findings.axes}
+    for key, name in (("x", x), ("y", y)):
+        if name is not None:
+            _check(key, name, named)
+    if x is not None and x == y:
+        raise ValueError(f"Input y must be another axis than x; got {y} for both")
+    if x is None and y is None:
+        return findings.longest
+    others = sorted((axis for axis in findings.axes if axis.name not in (x, y)), key=lambda axis: -len(axis.values))
+    across, up = (named[name] if name else next(iter(others), None) for name in (x, y))
+    if across is None:
+        raise ValueError(f"Input y must not be given where there is but one axis; got {y}")
+    return (across,) if up is None else (across, up)
+
+
+def _check(key: str, name: str, known: Iterable[str]) -> None:
+    if name not in known:
+        near = difflib.get_close_matches(name, known, 1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise ValueError(f"Input {key} must be one of {', '.join(known)}; got {name}{hint}")

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from plotting.drawing import put_below
 from studies.heat import edges, frame
 from studies.shown import Shown
 from studies.threshold import BoolArray, lowest
@@ -22,7 +23,6 @@ def draw_threshold(axes: Axes, shown: Shown, holds: BoolArray, said: str) -> Non
     order = np.argsort(across.drawn)
     where = across.drawn[order]
     begins, before = (values[order] for values in lowest(up.drawn, holds))
-    axes.set_title(f"where {said} begins", fontsize=10)
     axes.fill_between(where, before, begins, color=BAND, linewidth=0, label=f"down to the next lower {up.axis.name}")
     axes.plot(where, begins, ".-", color=COLOUR, linewidth=1.0, label=f"lowest {up.axis.name} with {said}")
     from_first = np.isfinite(begins) & np.isnan(before)
@@ -36,4 +36,4 @@ def draw_threshold(axes: Axes, shown: Shown, holds: BoolArray, said: str) -> Non
     if np.isnan(begins).all():
         axes.text(0.5, 0.5, f"{said} nowhere", transform=axes.transAxes, ha="center")
     else:
-        axes.legend(frameon=False, fontsize=9, loc="upper center", bbox_to_anchor=(0.5, -0.14))
+        put_below(axes)

@@ -17,11 +17,12 @@ from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
-from coupling.path_picture import HALO, PATH_COLOUR, STICK_COLOUR
+from coupling.path_picture import PATH_COLOUR, STICK_COLOUR
 from coupling.platform_case import PlatformCase
 from coupling.readable import STEPS, readable
 from coupling.time_picture import SHADES, stretches
 from particle import State
+from particle.picture import HALO
 from views.frames import Frame
 from views.layout import BOTTOM, Layout, nice_length
 from views.pace import Pace

@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.mark.parametrize(
-    "name", ["meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "command_line"]
+    "name", ["plotting", "meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "command_line"]
 )
 def test_package_is_the_one_in_this_repository(name):
     assert Path(importlib.import_module(name).__file__).resolve() == ROOT / name / "__init__.py"
@@ -28,7 +28,7 @@ def test_particle_loads_neither_finite_elements_nor_file_formats_nor_our_other_p
     loaded = loaded_by("particle")
     assert {"particle", "numpy", "numba"} <= loaded
     assert not loaded & {"skfem", "meshio", "h5py", "pyvista", "vtkmodules", "matplotlib"}
-    assert not loaded & {"meshes", "fem_plate", "coupling"}
+    assert not loaded & {"plotting", "meshes", "fem_plate", "coupling"}
 
 
 def test_meshes_loads_none_of_our_other_packages():

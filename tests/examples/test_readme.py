@@ -1,4 +1,4 @@
-"""The README's Python runs as printed."""
+"""The Python of the README and of the page on Python runs, and prints what the page says."""
 
 import re
 from pathlib import Path
@@ -16,3 +16,17 @@ def test_python_of_the_readme_runs(block, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     exec(compile(block, "README.md", "exec"), {})
     assert "rests on the surface" in capsys.readouterr().out
+
+
+PAGE = (ROOT / "docs" / "python.md").read_text()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("number", range(PAGE.count("```python")))
+def test_python_of_the_page_on_python_runs(number, tmp_path, monkeypatch, capsys):
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    found = re.findall(r"```python\n(.*?)```(?:\n\nprints\n\n```\n(.*?)```)?", PAGE, flags=re.DOTALL)
+    exec(compile(found[number][0], "python.md", "exec"), {})
+    assert capsys.readouterr().out == found[number][1]
+    assert list(tmp_path.glob("*.p*"))

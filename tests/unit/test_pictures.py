@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 from coupling import plate_picture
 from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
 from coupling.drawn_plate import drawn_plate
-from coupling.pictures import compose, moment_of_most
-from coupling.plate_picture import BOTH_WAYS, FEW, UPWARDS, Scale, draw_plate, fine_field, marker_size
+from coupling.pictures import compose
+from coupling.plate_picture import BOTH_WAYS, FEW, UPWARDS, Scale, draw_plate, fine_field, marker_size, relief_of
 from coupling.plate_scene import lifting
+from coupling.portrait import moment_of_most, portrait_of
 from coupling.readable import readable
 from coupling.run import run_case
 from coupling.scene import Ground
@@ -112,7 +113,10 @@ def drawn(case, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         ground = result.scene.ground(result.trajectory)
-        compose(figure, case, result.scene, result.trajectory, ground, result.trajectory.time[-1] / 3)
+        compose(
+            figure,
+            portrait_of(case.name, result.scene, result.trajectory, ground, result.trajectory.time[-1] / 3),
+        )
         canvas.draw()
     return figure
 
@@ -184,22 +188,24 @@ def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():
     longest = np.hypot(*(xy[cells] - xy[np.roll(cells, 1, axis=1)]).reshape(-1, 2).T).max()
     assert longest < 5e-5 / 25 and xy.min() > -5e-5 and xy.max() < 1e-4
     figure = Figure()
-    axes, units = list(figure.subplots(1, 2)), [readable(shapes.outline.box, "m"), readable(window, "m")]
-    keys = draw_plate(figure, axes, shapes, ground, heights, units, window)
+    axes, relief, unit = list(figure.subplots(1, 2)), relief_of(shapes, ground, heights), readable(window, "m")
+    keys = draw_plate(figure, axes[0], relief, unit, relief.frame)
+    assert not draw_plate(figure, axes[1], relief, unit, window)  # both stand outside of the window
     FigureCanvasAgg(figure).draw()
     assert [key.get_label() for key in keys] == ["actuator"]
     assert np.transpose([axes[1].get_xlim(), axes[1].get_ylim()]) == pytest.approx(window * 1e6)
     assert 0 in figure.axes[2].get_yticks()
-    assert sum(line.get_xdata().size for line in axes[1].lines) == 0  # both stand outside of the window
+    assert sum(line.get_xdata().size for line in axes[1].lines) == 0
 
 
 def test_a_map_whose_lines_would_merge_is_shaded_and_its_bar_ends_where_the_heights_do(monkeypatch):
     shapes, ground = small_plate()
     monkeypatch.setattr(plate_picture, "FEW", 1)
-    monkeypatch.setattr(plate_picture, "LINES_APART", 500.0)  # the window's actuators would be further apart
-    window, figure = np.array([[0.0, 0.0], [5e-5, 5e-5]]), Figure()
-    axes, units = list(figure.subplots(1, 2)), [readable(shapes.outline.box, "m"), readable(window, "m")]
-    draw_plate(figure, axes, shapes, ground, np.array([2e-6, -1e-6]), units, window)
+    figure = Figure()
+    relief = relief_of(shapes, ground, np.array([2e-6, -1e-6]))
+    # So narrow that the lines would merge, as would the markers.
+    keys = draw_plate(figure, figure.subplots(), relief, readable(relief.box, "m"), relief.frame, width=1.0)
     FigureCanvasAgg(figure).draw()
-    low, high = figure.axes[2].get_ylim()
+    low, high = figure.axes[1].get_ylim()
     assert -1.3 < low <= -1 and 2 <= high < 2.5
+    assert [key.get_label() for key in keys] == ["2 actuators, too many to be marked"]

@@ -9,6 +9,7 @@ from sweeps import PLATE, PLATFORM, written
 
 from studies import read_study
 from studies.dataset import read_dataset, write_dataset
+from studies.findings import Findings
 from studies.heat import edges
 from studies.map import compose, draw_sweep
 from studies.record import OUTCOMES, new_records
@@ -42,7 +43,7 @@ def made(tmp_path, text, case=PLATE):
 def drawn(study, dataset):
     figure = Figure()
     FigureCanvasAgg(figure)
-    compose(figure, study, dataset)
+    compose(figure, Findings.of(study.name, dataset, study.threshold))
     figure.canvas.draw()
     return figure
 

@@ -11,6 +11,7 @@ from coupling.case import CaseError
 from studies import read_study, run_study
 from studies.dataset import read_dataset, write_dataset
 from studies.engine import Engine
+from studies.findings import Findings
 from studies.map import compose
 from studies.record import OUTCOMES, new_records
 from studies.threshold import Threshold, lowest, read_threshold
@@ -88,7 +89,8 @@ def drawn(tmp_path, threshold):
     records["outcome"] = 0
     figure = Figure()
     FigureCanvasAgg(figure)
-    compose(figure, study, read_dataset(write_dataset(study, [(0, records)], tmp_path / "found.nc")))
+    dataset = read_dataset(write_dataset(study, [(0, records)], tmp_path / "found.nc"))
+    compose(figure, Findings.of(study.name, dataset, study.threshold))
     figure.canvas.draw()
     return figure
 

@@ -1,0 +1,52 @@
+"""The command `plot`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from command_line.group import main, refusing
+
+
+@main.command()
+@click.argument("result", type=click.Path(path_type=Path), metavar="RESULT|SWEEP")
+@click.option(
+    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the pictures [the result's]."
+)
+@click.option(
+    "--format",
+    "formats",
+    type=click.Choice(["pdf", "svg", "png"]),
+    multiple=True,
+    default=["pdf"],
+    help="Kind of the files; may be given several times [pdf].",
+)
+@click.option("--width", type=float, default=85.0, metavar="MM", help="Width of each picture in mm [85].")
+@click.option("--x", metavar="AXIS", help="Of a sweep: the axis that is drawn along x [one of the two longest].")
+@click.option("--y", metavar="AXIS", help="Of a sweep: the axis that is drawn along y.")
+@click.option("--value", metavar="COLUMN", help="Of a sweep: the only column that is drawn [distance and outcome].")
+@click.option("--quiet", "-q", is_flag=True, help="Print no captions.")
+def plot(
+    result: Path,
+    output: Path | None,
+    formats: tuple[str, ...],
+    width: float,
+    x: str | None,
+    y: str | None,
+    value: str | None,
+    quiet: bool,
+) -> None:
+    """Draw a run or a sweep for print.
+
+    RESULT is either file of a run, or FOLDER/NAME; SWEEP is the netCDF file of a sweep. Each picture has a file of its
+    own, as wide as is asked for, with text as text; the captions are printed.
+    """
+    from coupling.results import check_folder
+    from views.plot import plot as draw
+
+    if output is not None:
+        refusing(check_folder, output)
+    for done in refusing(draw, result, output, formats, width, x, y, value):
+        if not quiet:
+            click.echo(f"{'wrote':<12}{', '.join(map(str, done.files))}\n{'':<12}{done.caption}")

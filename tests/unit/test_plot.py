@@ -1,0 +1,255 @@
+"""`active-surface plot`: files with text as text, labels with units, nothing blank, clipped or overlapping."""
+
+import re
+import warnings
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
+from sweeps import PLATE, PLATFORM, written
+
+from command_line.main import main
+from coupling import read_case, run_case
+from coupling.portrait import deflected_most, portrait_of
+from coupling.saved import read_run
+from studies import read_study, run_study
+from studies.findings import read_findings
+from studies.shown import Shown
+from views.plot import plot
+from views.run_pictures import MARKS, courses, run_pictures
+from views.saved_portrait import portrait_of_saved
+from views.sheet import MM, drawn
+from views.sweep_pictures import sweep_pictures
+
+STROKE = '[[axes]]\nfield = "actuators.*.stroke"\nname = "stroke"\nvalues = ["20 um", "40 um", "60 um"]\n'
+FREQUENCY = '[[axes]]\nfield = "actuators.0.frequency"\nname = "frequency"\nrange = ["200 Hz", "600 Hz"]\ncount = 4\n'
+MASS = '[[axes]]\nfield = "part.mass"\nname = "mass"\nvalues = ["1e-9 kg", "4e-9 kg"]\n'
+X = '[[axes]]\nfield = "part.position.0"\nname = "x"\nrange = ["-200 um", "200 um"]\ncount = 4\n'
+Y = X.replace("position.0", "position.1").replace('"x"', '"y"')
+STAYS = PLATE.replace("40 nN", "40 uN")
+COMES_OFF = PLATE.replace('"300 Hz"', '"3 kHz"').replace("model =", 'model = "coulomb"\ncoefficient = 0.2 #')
+COMES_OFF = re.sub(r'limit = ".*"', "", COMES_OFF)
+MANY = (
+    PLATE[: PLATE.index("[[actuators]]")]
+    + '[lattice]\nrows = 12\ncolumns = 12\npitch = "25 um"\nstroke = "5 um"\nfrequency = "400 Hz"\n\n'
+    + PLATE[PLATE.index("[part]") :]
+).replace('"disc"\nradius = "300 um"', '"rectangle"\nwidth = "600 um"\nheight = "400 um"')
+
+
+def ran(folder, text=PLATE, duration="5 ms"):
+    (folder / "case.toml").write_text(re.sub(r'duration = ".*"', f'duration = "{duration}"', text))
+    return run_case(read_case(folder / "case.toml"), folder)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The results of a run, and of sweeps over one axis, two, three, random points and starts."""
+    folder = tmp_path_factory.mktemp("results")
+    ran(folder)
+    studies = {
+        "one": FREQUENCY,
+        "two": FREQUENCY + STROKE + '[map]\nthreshold = "distance > 1 um"\n',
+        "three": FREQUENCY + STROKE + MASS,
+        "points": 'sampling = "random"\npoints = 8\n' + FREQUENCY.replace("count = 4\n", "") + STROKE,
+        "starts": X + Y,
+        "again": 'repeats = 3\njitter = "1 um"\n' + FREQUENCY,
+    }
+    for name, text in studies.items():
+        path = written(folder, text, PLATE.replace('"5 ms"', '"2 ms"'))
+        run_study(read_study(path.rename(folder / f"{name}.toml")), folder, threads=1).dataset.close()
+    return folder
+
+
+def findings_of(folder, name, *chosen):
+    with read_findings(folder / f"{name}.nc") as findings:
+        return findings, sweep_pictures(findings, *chosen)
+
+
+def seen(figure):
+    """The texts of a drawn figure with their boxes in pixels."""
+    canvas = FigureCanvasAgg(figure)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        canvas.draw()
+    found = []
+    for text in figure.findobj(lambda artist: isinstance(artist, Text) and artist.get_visible()):
+        # Ticks beyond the limits of an axis have texts that are not drawn.
+        if text.get_text().strip() and inside_its_axis(figure, text):
+            found.append((text.get_text(), text.get_window_extent(canvas.get_renderer())))
+    return found
+
+
+def inside_its_axis(figure, text):
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            for tick in axis.get_major_ticks() + axis.get_minor_ticks():
+                if text in (tick.label1, tick.label2):
+                    low, high = sorted(axis.get_view_interval())
+                    return low <= tick.get_loc() <= high and tick.label1.get_visible()
+    return True
+
+
+def check(figure, width):
+    """Nothing is blank or clipped, letters are not too small, and places, times and bars have units."""
+    assert figure.get_figwidth() == pytest.approx(width * MM)
+    texts = seen(figure)
+    for said, box in texts:
+        assert box.x0 >= 0 and box.y0 >= 0, said
+        assert box.x1 <= figure.bbox.x1 and box.y1 <= figure.bbox.y1, said
+    for axes in figure.axes:
+        for label in (axes.get_xlabel(), axes.get_ylabel()):
+            assert not label or re.search(r"\[(.+)\]$", label), label
+    labels = [axes.yaxis.label.get_window_extent() for axes in figure.axes if axes.get_ylabel()]
+    for one, other in pairwise(sorted(labels, key=lambda box: (round(box.x0, -1), box.y0))):
+        assert one.x1 <= other.x0 or one.y1 <= other.y0 + 1 or other.y1 <= one.y0 + 1
+    pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    assert 0.01 < (pixels.min(axis=-1) < 250).mean() < 0.95
+    for edge in (pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]):
+        assert (edge > 200).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("width", [60, 85, 180])
+@pytest.mark.parametrize(
+    "text", [PLATE, STAYS, PLATFORM, COMES_OFF, MANY], ids=["plate", "stays", "platform", "off", "many"]
+)
+def test_pictures_of_a_run_can_be_read(tmp_path, text, width):
+    result = ran(tmp_path, text, "2 ms")
+    pictures = run_pictures(portrait_of_saved(read_run(tmp_path / "case")))
+    assert [picture.name for picture in pictures if picture.name != "closeup"] == ["path", "time"]
+    assert result.summary.sentence in pictures[0].caption
+    for width in (60, 180):
+        for picture in pictures:
+            check(drawn(picture, width), width)
+
+
+@pytest.mark.compiled
+def test_a_saved_run_looks_as_the_run_itself(folder):
+    result = ran(folder)
+    saved = portrait_of_saved(read_run(folder / "case"))
+    ground = result.scene.ground(result.trajectory)
+    times = read_run(folder / "case").time
+    found = portrait_of("case", result.scene, result.trajectory, ground, deflected_most(result.scene, ground, times))
+    assert (saved.moment, saved.sentence, saved.events) == (found.moment, found.sentence, found.events)
+    assert saved.rows.state.tolist() == found.rows.state.tolist()
+    truth = result.trajectory.at(saved.samples.time)
+    largest = np.ptp(truth.position, axis=0).max()
+    assert np.abs(saved.samples.position - truth.position).max() < 1e-3 * largest
+    assert np.abs(saved.samples.height - truth.height).max() < 0.02 * truth.height.max()
+    frame = saved.relief.frame
+    points, triangles, w = saved.relief.within(frame)
+    exact = result.shapes.values(points * (1 - 1e-9), result.scene.lifts and heights(result, saved.moment))
+    assert len(triangles) > 10_000 and np.abs(w - exact[:, 0]).max() < 0.01 * exact.max()
+    for one, other in zip(courses(saved), courses(found), strict=True):
+        assert one.label == other.label and one.values.keys() == other.values.keys()
+
+
+def heights(result, moment):
+    return np.array([[drive.evaluate([moment])[0][0]] for drive in result.scene.lifts])
+
+
+@pytest.mark.compiled
+def test_events_are_marked_where_they_happen(folder):
+    run = read_run(folder / "case")
+    figure = drawn(run_pictures(portrait_of_saved(run))[-1])
+    marked = {line.get_marker(): sorted(line.get_xdata()) for line in figure.axes[0].get_lines()}
+    assert run.events
+    for kind, (marker, _, _) in MARKS.items():
+        times = sorted(event.time * 1e3 for event in run.events if event.kind is kind)
+        assert marked.get(marker, []) == pytest.approx(times)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("name", "chosen", "expected"),
+    [
+        ("one", (), ["distance", "outcome"]),
+        ("again", (), ["distance", "outcome"]),
+        ("two", (), ["distance", "outcome", "threshold"]),
+        ("two", (None, None, "largest_load"), ["largest_load"]),
+        ("two", ("stroke", "frequency", "outcome"), ["outcome"]),
+        ("three", ("mass",), ["distance", "outcome"]),
+        ("points", (), ["distance", "outcome"]),
+        ("starts", (), ["basins", "nearness"]),
+        ("starts", (None, None, "evaluations"), ["evaluations"]),
+    ],
+)
+def test_pictures_of_a_sweep_can_be_read(folder, name, chosen, expected):
+    _, pictures = findings_of(folder, name, *chosen)
+    assert [picture.name for picture in pictures] == expected
+    for width in (60, 180):
+        for picture in pictures:
+            figure = drawn(picture, width)
+            if not picture.name.startswith("eval"):
+                check(figure, width)
+
+
+@pytest.mark.compiled
+def test_axes_of_a_map_are_those_that_are_named(folder):
+    with read_findings(folder / "two.nc") as findings:
+        found, turned = Shown.of(findings), Shown.of(findings, "stroke")
+        assert [scale.axis.name for scale in found.axes] == ["frequency", "stroke"]
+        assert [scale.axis.name for scale in turned.axes] == ["stroke", "frequency"]
+        assert turned.mean_value.T.tolist() == found.mean_value.tolist()
+        assert turned.holds.T.tolist() == found.holds.tolist()
+    with read_findings(folder / "three.nc") as findings:
+        shown = Shown.of(findings, "mass", None, "path_length")
+        assert [scale.axis.name for scale in shown.axes] == ["mass", "frequency"] and shown.fixed == {"stroke": "40 µm"}
+        expected = findings.dataset["path_length"].sel(stroke=40e-6, method="nearest").transpose("mass", "frequency")
+        assert shown.mean_value.tolist() == expected.values.tolist()
+
+
+@pytest.mark.compiled
+def test_files_have_text_as_text_and_the_wanted_width(folder, tmp_path):
+    done = CliRunner().invoke(
+        main, ["plot", str(folder / "case"), "-o", str(tmp_path / "new"), "--format", "svg", "--format", "pdf"]
+    )
+    assert done.exit_code == 0, done.output
+    assert re.search(r"wrote +\S+case.path.svg, \S+case.path.pdf\n +The path over the plate at ", done.output)
+    said = (tmp_path / "new/case.path.svg").read_text()
+    assert all(
+        re.search(rf"<text[^>]*>{text}</text>", said) for text in (r"x \[µm\]", r"deflection \[µm\]", "actuator")
+    )
+    assert float(re.search(r'width="([\d.]+)pt"', said)[1]) == pytest.approx(85 * MM * 72, abs=0.1)
+    raw = (tmp_path / "new/case.path.pdf").read_bytes()
+    assert b"/TrueType" in raw or b"/CIDFontType2" in raw
+    assert b"/Type3" not in raw and b"/FontFile2" in raw
+    first = {file.name: file.read_bytes() for file in (tmp_path / "new").iterdir()}
+    plot(folder / "case.part.vtkhdf", tmp_path / "new", ("svg", "pdf"))
+    assert {file.name: file.read_bytes() for file in (tmp_path / "new").iterdir()} == first
+
+
+@pytest.mark.compiled
+def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
+    (tmp_path / "text.nc").write_text("mine")
+    (tmp_path / "text.vtkhdf").write_text("mine")
+    (tmp_path / "text.part.vtkhdf").write_text("mine")
+    wrong = {
+        tmp_path / "none": "which is no file",
+        tmp_path: "which is something else",
+        tmp_path / "text.nc": "which is something else",
+        tmp_path / "text.vtkhdf": "which is something else",
+        folder / "case.png": "which is something else",
+        folder / "one.toml": "which tells what to do; what one of these commands makes of it can be drawn",
+    }
+    for path, said in wrong.items():
+        done = CliRunner().invoke(main, ["plot", str(path), "-o", str(tmp_path / "new")])
+        wanted = "must be a file that `active-surface run` or `active-surface sweep` left"
+        assert done.exit_code == 2 and done.output == f"Input result of plot {wanted}; got {path}, {said}\n"
+    others = [
+        ([tmp_path / "text.part.vtkhdf"], "but there is no"),
+        ([folder / "case", "--value", "distance"], "value of plot must be given for a sweep only"),
+        ([folder / "two.nc", "--x", "strok"], "must be one of frequency, stroke; got strok; did you mean stroke?"),
+        ([folder / "two.nc", "--value", "distanc"], "did you mean distance?"),
+        ([folder / "two.nc", "--x", "stroke", "--y", "stroke"], "must be another axis than x; got stroke for both"),
+        ([folder / "one.nc", "--y", "frequency"], "must not be given where there is but one axis"),
+        ([folder / "case", "--width", "10"], "Input width must be from 50 to 500 mm; got 10"),
+        ([folder / "case", "--format", "gif"], "'gif' is not one of"),
+    ]
+    for arguments, said in others:
+        done = CliRunner().invoke(main, ["plot", *map(str, arguments), "-o", str(tmp_path / "new")])
+        assert done.exit_code == 2 and said in done.output, done.output
+    assert not (tmp_path / "new").exists()
