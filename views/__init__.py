@@ -1,0 +1,1 @@
+"""Views: animations, pictures and pages of results."""
