@@ -13,6 +13,8 @@ _HOMES = {
     "run_case": "coupling.run",
     "build_surface": "coupling.run",
     "write_csv": "coupling.csv_file",
+    "SavedRun": "coupling.saved",
+    "read_run": "coupling.saved",
     "surface_motion": "coupling.surface",
     "write_surface": "coupling.surface_file",
     "read_surface": "coupling.surface_file",

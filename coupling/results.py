@@ -6,11 +6,13 @@ import json
 import os
 from importlib.metadata import version
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
+from coupling.case_record import CaseRecord, record_of
 from coupling.csv_file import write_csv
 from coupling.drives import frame_times, stroke_heights
 from coupling.pictures import draw_run, moment_of_most
@@ -18,7 +20,7 @@ from coupling.progress import Tell, untold
 from coupling.scene import Scene
 from coupling.summary import Summary
 from coupling.vtkhdf import part_file, plate_file
-from particle import Trajectory
+from particle import Samples, Trajectory
 
 FloatArray = NDArray[np.float64]
 
@@ -49,12 +51,15 @@ def write_results(
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
     ground = scene.ground(trajectory)
+    record = record_of(case)
     heights = stroke_heights(scene.lifts, times)
-    metadata = {
-        "case": case.source or case.model_dump_json(),
+    metadata: dict[str, str | int] = {
+        "run": uuid4().hex,  # the same in both files, which so find each other
+        "case": case.source or record.text,
         "summary": json.dumps(summary.as_dict()),
         "units": json.dumps(UNITS | {"points": f"m, counted from {scene.origin}"}),
         "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")}),
+        "actuators": len(case.actuators),
     }
     samples = trajectory.at(times)
     place = scene.onto(samples.position)
@@ -63,6 +68,8 @@ def write_results(
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
         part_file(folder, case.name, metadata) as part,
     ):
+        for group, arrays in _arrays(record, trajectory).items():
+            part.add_arrays(group, arrays)
         for k, time in enumerate(times.tolist()):
             if k % AT_ONCE == 0:
                 tell(k, len(times))
@@ -83,6 +90,22 @@ def write_results(
     if csv:
         files.append(write_csv(trajectory, folder / f"{case.name}.csv", times))
     return tuple(files)
+
+
+def _arrays(record: CaseRecord, trajectory: Trajectory) -> dict[str, dict[str, NDArray]]:
+    """What the part's file holds beside its steps, by groups: the case and its files, all rows, all events."""
+    events = {
+        "kind": np.array([event.kind for event in trajectory.events], np.int64),
+        "position": np.array([event.position for event in trajectory.events], float).reshape(-1, 2),
+    }
+    for key in ("time", "speed", "load"):
+        events[key] = np.array([getattr(event, key) for event in trajectory.events], float)
+    return {
+        "case": {"json": np.frombuffer(record.text.encode(), np.uint8)},
+        "files": {name: np.frombuffer(content, np.uint8) for name, content in record.files.items()},
+        "rows": {key: getattr(trajectory, key) for key in Samples._fields},
+        "events": events,
+    }
 
 
 def check_folder(folder: Path) -> None:

@@ -8,7 +8,7 @@ that an exception leaves behind opens like any other and holds the steps so far;
         plate.append(0.0, deflection=deflection)
         plate.add_metadata({"summary": json.dumps(summary)})
 
-Metadata are attributes of the group `/active_surface`, which VTK ignores.
+Metadata are attributes, and further arrays datasets, of the group `/active_surface`, which VTK ignores.
 """
 
 import math
@@ -63,6 +63,13 @@ class _ResultFile:
         """Store texts and numbers as attributes of `/active_surface`; a key given before gets the new value."""
         for key, value in metadata.items():
             self._metadata.attrs[key] = value
+
+    def add_arrays(self, group: str, arrays: Mapping[str, ArrayLike]) -> None:
+        """Store arrays in the group `/active_surface/GROUP`, which has none of these names yet."""
+        made = self._metadata.require_group(group)
+        for name, array in arrays.items():
+            data = np.asarray(array)
+            made.create_dataset(name, data=data, **(_GZIP if data.size else {}))
 
     def flush(self) -> None:
         """Put all steps so far on disk, where they outlive this process."""

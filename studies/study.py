@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from coupling.case import Case
-from coupling.plate_case import MeshCase
-from coupling.platform_case import PlatformCase
+from coupling.case_record import files_of
 from studies.points import Points
 from studies.threshold import Threshold
 from studies.variants import lattice_of
@@ -41,7 +40,7 @@ class Study:
         """Hashes of what its results depend on: case, the files that it reads, points and versions."""
         return {
             "case": _hash([self.case.model_dump_json(exclude={"name", "source"}), lattice_of(self.case)]),
-            "files of the case": _hash([hashlib.sha256(file.read_bytes()).hexdigest() for file in _files(self.case)]),
+            "files of the case": _hash([hashlib.sha256(file.read_bytes()).hexdigest() for file in files_of(self.case)]),
             "points": _hash(repr(self._plain_points())),
             "versions": _hash(versions()),
         }
@@ -68,11 +67,3 @@ def _sources() -> str:
 
 def _hash(said: Any) -> str:
     return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
-
-
-def _files(case: Case) -> list[Path]:
-    """The files that a case reads when its scene is built."""
-    plate = case.plate
-    if isinstance(plate, MeshCase):
-        return [Path(plate.mesh)]
-    return [Path(plate.motion)] if isinstance(plate, PlatformCase) and isinstance(plate.motion, str) else []

@@ -1,0 +1,174 @@
+"""A run is read back from its files as it was, finished or not, and whatever else is there is refused."""
+
+import shutil
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from coupling import Case, read_case, read_run, run_case
+from coupling.case import CoulombCase, PartCase, RunCase
+from coupling.case_record import case_of, record_of
+from particle import Samples
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+FILES = [file for file in sorted(EXAMPLES.glob("*.toml")) if "100x100" not in file.name]
+MOTION = {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}, "z": {"stroke": 3e-6, "frequency": 500.0}}
+
+
+def shaken(duration=6e-4, name="run"):
+    return Case(
+        plate={"shape": "platform", "motion": MOTION},
+        part=PartCase(mass=2e-9, position=(1e-4, 0.0)),
+        friction=CoulombCase(coefficient=0.3),
+        run=RunCase(duration=duration, frames=11),
+        name=name,
+    )
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("ran")
+    return run_case(shaken(), folder), folder
+
+
+@pytest.fixture
+def folder(ran, tmp_path):
+    """A copy of the results."""
+    return Path(shutil.copytree(ran[1], tmp_path / "results"))
+
+
+@pytest.mark.parametrize("ending", ["", ".plate.vtkhdf", ".part.vtkhdf"])
+def test_a_run_comes_back(ran, ending):
+    result, folder = ran
+    saved, trajectory = read_run(folder / f"run{ending}"), result.trajectory
+    assert saved.name == "run" and saved.complete and saved.case == result.case
+    assert saved.summary == result.summary.as_dict() | {"motion_fits": [], "end_position": [*trajectory.position[-1]]}
+    assert saved.versions["active-surface"] and saved.units["velocity"] == "m/s"
+    samples = trajectory.at(saved.time)
+    assert len(saved.time) == 11 and saved.time[-1] == trajectory.time[-1]
+    np.testing.assert_array_equal(saved.position, np.column_stack([samples.position, samples.height]))
+    np.testing.assert_array_equal(saved.velocity, np.column_stack([samples.velocity, samples.vertical_velocity]))
+    for name in ("state", "normal_force", "friction_force"):
+        np.testing.assert_array_equal(getattr(saved, name), getattr(samples, name))
+    assert saved.events == trajectory.events and saved.events
+    for name in Samples._fields:
+        np.testing.assert_array_equal(getattr(saved.rows, name), getattr(trajectory, name))
+    ground = result.scene.ground(trajectory)
+    np.testing.assert_array_equal(saved.points, ground.points)
+    np.testing.assert_array_equal(saved.triangles, ground.triangles)
+    assert saved.actuators.shape == (0, 2)
+
+
+def test_a_field_of_the_plate_comes_at_the_steps_asked_for(ran):
+    saved = read_run(ran[1] / "run")
+    every = saved.plate_field("deflection")
+    assert every.shape == (11, 4) and np.ptp(every) > 1e-6
+    np.testing.assert_array_equal(saved.plate_field("deflection", slice(1, 9, 3)), every[1:9:3])
+    np.testing.assert_array_equal(saved.plate_field("deflection", [7, 0]), every[[7, 0]])
+    np.testing.assert_array_equal(saved.plate_field("deflection", -1), every[-1])
+    with pytest.raises(ValueError, match="must be one of deflection; got 'speed'"):
+        saved.plate_field("speed")
+    with pytest.raises(IndexError):
+        saved.plate_field("deflection", 11)
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+def test_the_record_of_a_case_is_the_case_without_its_files(file, tmp_path):
+    shutil.copytree(EXAMPLES, tmp_path / "examples")
+    case = read_case(tmp_path / "examples" / file.name)
+    record = record_of(case)
+    shutil.rmtree(tmp_path / "examples")
+    again = case_of(record, case.name, case.source)
+    for key in ("mesh", "motion"):
+        name = getattr(case.plate, key, None)
+        if isinstance(name, str):
+            kept = getattr(again.plate, key)
+            assert Path(kept).name == Path(name).name and record.files[Path(name).name] == Path(kept).read_bytes()
+            again = again.model_copy(update={"plate": again.plate.model_copy(update={key: name})})
+    assert again == case
+
+
+def unfinished(folder, kinds=("plate", "part")):
+    for kind in kinds:
+        (folder / f"run.{kind}.vtkhdf").rename(folder / f"run.partial.{kind}.vtkhdf")
+
+
+@pytest.mark.parametrize("name", ["run", "run.partial.plate.vtkhdf", "run.partial.part.vtkhdf"])
+def test_partial_files_have_the_steps_that_both_hold(folder, name):
+    unfinished(folder)
+    whole = read_run(folder / "run")
+    with h5py.File(folder / "run.partial.part.vtkhdf", "r+") as file:
+        file["VTKHDF/Steps"].attrs.modify("NSteps", 8)
+        file["VTKHDF/Steps/Values"].resize(8, axis=0)
+    saved = read_run(folder / name)
+    assert not saved.complete and saved.name == "run"
+    np.testing.assert_array_equal(saved.position, whole.position[:8])
+    assert len(saved.time) == len(saved.plate_field("deflection")) == 8
+
+
+def test_files_of_one_run_find_each_other_beside_those_of_another(folder):
+    """A kill between the two renamings leaves the new part with the old plate under their final names."""
+    unfinished(folder, ["plate"])
+    old = run_case(shaken(1e-3), folder.parent / "old").files[0]
+    shutil.copy(old, folder)
+    for name in ("run", "run.part.vtkhdf", "run.partial.plate.vtkhdf"):
+        assert read_run(folder / name).time[-1] == 6e-4 and not read_run(folder / name).complete
+    with pytest.raises(ValueError, match=r"run.plate.vtkhdf and \S+run.part.vtkhdf are of different runs"):
+        read_run(folder / "run.plate.vtkhdf")
+
+
+def refused(path):
+    with pytest.raises(ValueError) as error:
+        read_run(path)
+    said = str(error.value)
+    assert said.startswith("Input path of read_run must be a result of `active-surface run`; got ")
+    assert "\n" not in said
+    return said
+
+
+@pytest.mark.parametrize("name", ["none", "none.plate.vtkhdf", "none.partial.part.vtkhdf", "results", "run.png"])
+def test_a_missing_file_is_told(folder, name):
+    assert f"but there is no {folder / name}" in refused(folder / name)
+
+
+@pytest.mark.parametrize(("named", "lost"), [("plate", "part"), ("part", "plate")])
+def test_a_missing_other_file_is_told(folder, named, lost):
+    other = folder / f"run.{lost}.vtkhdf"
+    other.unlink()
+    assert f"but there is no {other}, the other file of this run" in refused(folder / f"run.{named}.vtkhdf")
+    assert f"but there is no {other}" in refused(folder / "run")
+
+
+def test_what_is_no_hdf5_is_told(folder):
+    (folder / "run.part.vtkhdf").write_text("text")
+    assert "run.part.vtkhdf, which is no HDF5 file" in refused(folder / "run")
+
+
+@pytest.mark.parametrize("group", ["other", "VTKHDF", "active_surface"])
+def test_hdf5_of_something_else_is_told(folder, group):
+    with h5py.File(folder / "run.plate.vtkhdf", "w") as file:
+        file[f"{group}/numbers"] = [1.0]
+    assert "run.plate.vtkhdf, which is HDF5 but holds something else" in refused(folder / "run")
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.1, 0.5, 0.99])
+def test_a_truncated_file_is_told(folder, kept):
+    path = folder / "run.part.vtkhdf"
+    content = path.read_bytes()
+    path.write_bytes(content[: int(kept * len(content))])
+    said = refused(folder / "run")
+    assert "run.part.vtkhdf, which is " + ("damaged" if kept else "no HDF5 file") in said
+
+
+def test_a_file_without_a_step_is_told(folder):
+    with h5py.File(folder / "run.plate.vtkhdf", "r+") as file:
+        file["VTKHDF/Steps"].attrs.modify("NSteps", 0)
+    assert "which no step was written" in refused(folder / "run")
+
+
+def test_a_file_that_lacks_something_is_told(folder):
+    with h5py.File(folder / "run.part.vtkhdf", "r+") as file:
+        del file["active_surface/events"]
+    assert "which is damaged: " in refused(folder / "run")
