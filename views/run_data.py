@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from coupling.plate_picture import Scale
 from coupling.readable import Unit, readable
 from coupling.saved import SavedRun
+from coupling.time_picture import stretches
 from particle import State
 from views.exaggeration import exaggeration
 from views.modes import modes_of
@@ -25,6 +26,7 @@ MOST_POINTS: Final = 6000  # of its surface; of more, those around the path
 MOST_ACTUATORS: Final = 400  # that are marked
 AT_ONCE: Final = 64  # steps read together
 LINES, PER_LINE = 16, 64  # drawn on the surface along each side, and points on each
+STRETCHES: Final = {"stuck": State.STICK, "flying": State.FLIGHT}
 COLOURS: Final = 11  # stops of the colour scale
 
 
@@ -75,6 +77,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "state": packed(run.state[steps], "u1"),
         },
         "trail": _trail(place, triangles, position[:, :2], length),
+        "stretches": {name: packed(_stretches(run, state) * clock.per_si, "f4") for name, state in STRETCHES.items()},
         "curves": _curves(run, steps, along),
     }
 
@@ -138,6 +141,13 @@ def _trail(points: FloatArray, triangles: IntArray, path: FloatArray, length: fl
 
 def _spots(spots: Spots) -> dict[str, Any]:
     return {"corners": packed(spots.corners, "u2"), "weights": packed(spots.weights[:, 1:], "f4")}
+
+
+def _stretches(run: SavedRun, state: State) -> FloatArray:
+    """When each stretch of a state begins and ends (s, 2) [s], as the integrator found it."""
+    rows = stretches(run.rows.state == state)
+    found = run.rows.time[np.array(rows, dtype=np.int64).reshape(-1, 2)]
+    return np.asarray(found[found[:, 0] < run.time[-1]].clip(max=run.time[-1]))
 
 
 def _curves(run: SavedRun, steps: IntArray, along: Unit) -> list[dict[str, Any]]:

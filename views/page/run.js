@@ -176,20 +176,20 @@ function proportions() {
   };
 }
 
+// Bands behind the curves while the part is stuck or in flight.
 function stateShades() {
-  const looks = [
-    { name: "stuck", fillcolor: "rgba(27,79,156,0.22)" },
-    null,
-    { name: "in flight", fillcolor: "rgba(0,0,0,0)", fillpattern: { shape: "/", fgcolor: "#6a6a6a", size: 6, solidity: 0.35 } },
-  ];
-  return looks.flatMap((look, state) => {
-    const x = [], y = [];
-    for (let k = 0; k < last; k++) {
-      if (part.state[k] !== state || !look) continue;
-      x.push(time[k], time[k], time[k + 1], time[k + 1]);
+  const looks = {
+    stuck: { fillcolor: "rgba(27,79,156,0.16)" },
+    flying: { fillcolor: "rgba(0,0,0,0)", fillpattern: { shape: "/", fgcolor: "#6a6a6a", size: 6, solidity: 0.35 } },
+  };
+  return Object.entries(pageData.stretches).flatMap(([name, packed]) => {
+    const x = [], y = [], ends = unpack(packed);
+    for (let k = 0; k < ends.length; k += 2) {
+      x.push(ends[k], ends[k], ends[k + 1], ends[k + 1]);
       y.push(0, 1, 1, 0);
     }
-    return x.length ? [{ ...look, x, y, yaxis: "y", fill: "tozeroy", mode: "none", hoverinfo: "skip", showlegend: false }] : [];
+    const band = { x, y, yaxis: "y", fill: "tozeroy", mode: "none", hoverinfo: "skip", showlegend: false };
+    return x.length ? [{ ...looks[name], ...band }] : [];
   });
 }
 
@@ -200,7 +200,7 @@ function drawCurves() {
     font: FONT, margin: { l: 64, r: 12, t: 22, b: 44 }, paper_bgcolor: "#ffffff", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "x",
     showlegend: false, dragmode: "zoom",
     xaxis: { title: { text: `time [${units.time}]` }, range: [time[0], time[last] > time[0] ? time[last] : time[0] + 1],
-      anchor: `y${panels.length + 1}`, gridcolor: "#e6eaee", zeroline: false, showline: true, linecolor: "#8a96a1" },
+      anchor: `y${panels.length + 1}`, showgrid: false, zeroline: false, showline: true, linecolor: "#8a96a1" },
     yaxis: { range: [0, 1], domain: [0, 1], visible: false, fixedrange: true },
     shapes: [{ type: "line", xref: "x", yref: "paper", x0: time[shown], x1: time[shown], y0: 0, y1: 1, line: { color: INK, width: 2 } }],
     annotations,
