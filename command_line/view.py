@@ -33,10 +33,12 @@ def view(result: Path, output: Path | None, paths: int | None, opened: bool, qui
     page.parent.mkdir(parents=True, exist_ok=True)
     if found.is_sweep:
         from coupling.progress import CountBar, untold
+        from studies.read import read_study
         from studies.saved import read_sweep
         from views.study_page import write_study_page
 
-        study, dataset = refusing(read_sweep, found.path)
+        given = None if found.study is None else refusing(read_study, found.study)
+        study, dataset = refusing(read_sweep, found.path, given)
         with dataset, nullcontext(untold) if quiet else CountBar("paths") as tell:
             refusing(write_study_page, study, dataset, page, paths, tell)
     else:

@@ -96,6 +96,7 @@ class Shown:
     end: FloatArray  # (..., 2) m
     fixed: dict[str, str]
     scattered: bool
+    numbers: IntArray  # of the paths
     holds: BoolArray | None = None
 
     @classmethod
@@ -116,6 +117,8 @@ class Shown:
                 fixed[axis.name] = number
         part = dataset.isel(picked)
         arrays = {name: part[name].values for name in ("distance", "outcome", "end_x", "end_y")}
+        numbers = np.arange(len(points)).reshape(tuple(points.dimensions.values()))
+        arrays["number"] = numbers[np.ix_(*_rows(picked, points.dimensions))].reshape(arrays["distance"].shape)
         if points.repeats == 1:
             arrays = {name: array[..., None] for name, array in arrays.items()}
         scales = tuple(Scale.of(axis, part[axis.name].values) for axis in axes)
@@ -127,6 +130,7 @@ class Shown:
             np.stack([arrays["end_x"], arrays["end_y"]], axis=-1),
             fixed,
             scattered,
+            arrays["number"],
             study.threshold and study.threshold.holds(part, points.repeats),
         )
 
@@ -140,6 +144,11 @@ class Shown:
         """The most frequent outcome of the repeats, of two that are as frequent that with the lower number."""
         counts = np.stack([(self.outcome == k).sum(axis=-1) for k in range(len(OUTCOMES))])
         return np.argmax(counts, axis=0)
+
+
+def _rows(picked: dict[str, Any], sizes: dict[str, int]) -> list[IntArray]:
+    """The rows along each dimension that are picked."""
+    return [np.atleast_1d(np.arange(size)[picked.get(name, slice(None))]) for name, size in sizes.items()]
 
 
 def mean(values: FloatArray) -> FloatArray:
