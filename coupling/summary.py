@@ -85,7 +85,9 @@ class PlateSummary(PlateFigures, Summary):
 
 def summary_of(figures: Mapping[str, Any]) -> Summary:
     """The summary whose `as_dict`, written as JSON and read again, gave these figures."""
-    plain = {name: tuple(value) if isinstance(value, list) else value for name, value in figures.items()}
+    plain: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in figures.items()
+    }
     plain["motion_fits"] = tuple(MotionFit(**fit) for fit in plain["motion_fits"])
     if plain["plate_unknowns"] is not None:
         return PlateSummary(**plain)

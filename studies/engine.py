@@ -97,14 +97,20 @@ class Engine:
         return self._found(k, k + 1)[1].get(0, [])
 
     def follow(self, numbers: Iterable[int], seen: Seen) -> None:
-        """Find the paths of these ascending numbers once more; seen: gets each number, but of refused ones, and path."""
+        """Find the paths of these ascending numbers once more; seen: gets each but the refused, with its number."""
         together: list[int] = []
-        for k in (*numbers, -1):
+        for k in numbers:
             if together and (k != together[-1] + 1 or len(together) == TOGETHER):
-                first = together[0]
-                self._found(first, together[-1] + 1, lambda row, path, first=first: seen(first + row, path))
+                self._show(together, seen)
                 together = []
             together.append(k)
+        if together:
+            self._show(together, seen)
+
+    def _show(self, together: list[int], seen: Seen) -> None:
+        """The same for numbers that follow each other."""
+        first = together[0]
+        self._found(first, together[-1] + 1, lambda row, path: seen(first + row, path))
 
     def _found(self, start: int, stop: int, seen: Seen | None = None) -> tuple[Records, dict[int, list[str]]]:
         """The records, and by row what is wrong with those that were refused."""

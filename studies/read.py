@@ -49,9 +49,7 @@ def read_study(path: str | os.PathLike[str], case: Case | None = None) -> Study:
     return replace(study, threshold=threshold)
 
 
-def _study(
-    path: Path, text: str, data: Mapping[str, Any], case: Case | None
-) -> tuple[Study | None, list[Mistake]]:
+def _study(path: Path, text: str, data: Mapping[str, Any], case: Case | None) -> tuple[Study | None, list[Mistake]]:
     """The study, None where it is not known, and what is wrong with it beyond each table by itself."""
     table = data.get("study")
     given = StudyTable.values_of(table if isinstance(table, dict) else {}, UNITS_REQUIRED)

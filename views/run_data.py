@@ -27,6 +27,7 @@ MOST_ACTUATORS: Final = 400  # that are marked
 AT_ONCE: Final = 64  # steps read together
 LINES, PER_LINE = 16, 64  # drawn on the surface along each side, and points on each
 STRETCHES: Final = {"stuck": State.STICK, "flying": State.FLIGHT}
+PLATE: Final = "the plate"
 COLOURS: Final = 11  # stops of the colour scale
 
 
@@ -52,6 +53,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
         "time": packed(run.time[steps] * clock.per_si, "f4"),
         "units": {"time": clock.name, "length": along.name, "height": scale.unit.name},
         "steps": {"shown": len(steps), "stored": len(run.time)},
+        "counted": _counted(run),
         "exaggeration": exaggeration(highest - lowest, length),
         "perLength": scale.unit.per_si / along.per_si,
         "surface": {
@@ -75,6 +77,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "y": packed(position[:, 1] * along.per_si, "f4"),
             "z": packed(drawn * scale.unit.per_si, "f4"),
             "state": packed(run.state[steps], "u1"),
+            "below": _spots(spots),
         },
         "trail": _trail(place, triangles, position[:, :2], length),
         "stretches": {name: packed(_stretches(run, state) * clock.per_si, "f4") for name, state in STRETCHES.items()},
@@ -150,11 +153,17 @@ def _stretches(run: SavedRun, state: State) -> FloatArray:
     return np.asarray(found[found[:, 0] < run.time[-1]].clip(max=run.time[-1]))
 
 
+def _counted(run: SavedRun) -> str:
+    """What positions are counted from, if it is not the plate."""
+    origin = run.summary.get("origin", PLATE)
+    return "" if origin == PLATE else f" on {origin}"
+
+
 def _curves(run: SavedRun, steps: IntArray, along: Unit) -> list[dict[str, Any]]:
     """What is drawn over time, one pair of axes each."""
     velocity = run.velocity[steps]
     panels = [
-        ("Position", "m", {"x": run.position[steps, 0], "y": run.position[steps, 1]}),
+        (f"Position{_counted(run)}", "m", {"x": run.position[steps, 0], "y": run.position[steps, 1]}),
         ("Velocity", "m/s", {"along x": velocity[:, 0], "along y": velocity[:, 1]}),
         ("Force", "N", {"normal load": run.normal_force[steps], "friction": run.friction_force[steps]}),
     ]

@@ -13,7 +13,7 @@ from coupling.case import Case
 from coupling.plate_case import PlateCase
 from coupling.readable import Unit, readable
 from coupling.rim import rim_curves
-from studies.heat import COLOURS, edges
+from studies.heat import COLOURS, edges, outline
 from studies.record import OUTCOMES, SENTENCES
 from studies.shown import Scale, Shown
 from views.packed import packed, packed_rows
@@ -41,6 +41,9 @@ def study_data(shown: Shown, starts: FloatArray, paths: Paths) -> dict[str, Any]
     return {
         "kind": "points" if shown.scattered else "map" if len(shown.axes) == 2 else "curve",
         "axes": [_axis(scale, not shown.scattered) for scale in shown.axes],
+        "others": [_axis(scale, False) for scale in _others(shown)],
+        "outline": outline(*shown.axes, shown.holds) if shown.holds is not None and len(shown.axes) == 2 else [],
+        "threshold": shown.study.threshold.said if shown.study.threshold else "",
         "units": {"length": along.name, "distance": unit.name},
         "distance": packed(lengths.ravel() * unit.per_si, "f4"),
         "outcome": packed(shown.usual_outcome.ravel(), "u1"),
@@ -57,6 +60,15 @@ def study_data(shown: Shown, starts: FloatArray, paths: Paths) -> dict[str, Any]
         },
         "drawing": _drawing(shown, along),
     }
+
+
+def _others(shown: Shown) -> list[Scale]:
+    """The axes of points that are not drawn."""
+    if not shown.scattered:
+        return []
+    axes = shown.study.points.axes
+    columns = shown.study.points.columns(0, len(shown.distance))
+    return [Scale.of(axis, column) for axis, column in list(zip(axes, columns, strict=True))[len(shown.axes) :]]
 
 
 def _axis(scale: Scale, in_cells: bool) -> dict[str, Any]:
@@ -80,7 +92,9 @@ def _drawing(shown: Shown, along: Unit) -> dict[str, Any]:
         outline = case.plate.coarse_mesh.outline
         step = float(np.ptp(outline.box, axis=0).max()) / 200
         rim = [packed(curve * along.per_si, "f4") for curve in rim_curves(outline, step)]
-    stay = not any(location[0] == "lattice" or "position" in location[1:] and location[0] == "actuators" for location in moved)
+    stay = not any(
+        location[0] == "lattice" or "position" in location[1:] for location in moved if location[0] != "part"
+    )
     places = [actuator.position for actuator in case.actuators]
     drawn = places if stay and len(places) <= MOST_ACTUATORS else []
     return {"rim": rim, "actuators": packed(np.array(drawn).reshape(-1, 2) * along.per_si, "f4")}

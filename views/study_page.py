@@ -16,7 +16,7 @@ from studies.shown import Shown
 from studies.study import Study
 from views.page_file import notes_of, rows_of, write_page
 from views.study_data import study_data
-from views.sweep_paths import find_paths, spread, usual_count
+from views.sweep_paths import Paths, find_paths, spread, usual_count
 
 if TYPE_CHECKING:
     import xarray
@@ -37,24 +37,33 @@ def write_study_page(
     found = find_paths(engine, numbers[chosen], ends[chosen], tell)
     starts = np.stack([dataset[f"start_{c}"].values.ravel()[numbers] for c in "xy"], axis=-1)
     sweep = Sweep(study, dataset)
-    warnings = sweep.warnings
-    if found.strangers:
-        said = f"{found.strangers} of the {len(found.lines)} paths, found anew for this page, end elsewhere than in the sweep"
-        warnings.append(f"{said}: it was made by other versions.")
-    fixed = [("shown at", ", ".join(f"{name} = {text}" for name, text in shown.fixed.items()))] if shown.fixed else []
-    said = f"{numbers.size} points" + (f", each with {study.points.repeats} starts" if study.points.repeats > 1 else "")
-    with_path = np.isin(numbers, list(found.lines))
-    known = np.isfinite(ends).all(axis=-1)
-    if with_path[known].all():
-        has = "A click on a point shows its path."
-    else:
-        has = f"A click on a point shows its path if this page has it: {len(found.lines)} of {int(known.sum())} are here."
+    fixed = ", ".join(f"{name} = {text}" for name, text in shown.fixed.items())
     texts = {
         "name": escape(study.name),
-        "sentence": escape(f"{said}. {has}"),
-        "warnings": notes_of(warnings),
-        "rows": rows_of([*lines(sweep), *fixed]),
+        "sentence": escape(_sentence(shown, found)),
+        "warnings": notes_of([*sweep.warnings, *_warnings(found)]),
+        "rows": rows_of([*lines(sweep), *([("shown at", fixed)] if fixed else [])]),
         "study": escape(study.source),
         "case": escape(study.case.source or study.case.model_dump_json(indent=2)),
     }
     return write_page(path, study.name, "study.html", texts, study_data(shown, starts, found), ["study.js"])
+
+
+def _sentence(shown: Shown, found: Paths) -> str:
+    """What there is to be seen."""
+    repeats = shown.study.points.repeats
+    said = f"{shown.numbers[..., 0].size} points" + (f", each with {repeats} starts" if repeats > 1 else "")
+    known = int(np.isfinite(shown.end[..., 0, 0]).sum())
+    if len(found.lines) == known:
+        return f"{said}. A click on a point shows its path."
+    return (
+        f"{said}. A click on a point shows its path, if it is one of the {len(found.lines)}, of {known}, in this page."
+    )
+
+
+def _warnings(found: Paths) -> list[str]:
+    """What is to be known of the paths."""
+    if not found.strangers:
+        return []
+    which = f"{found.strangers} of the {len(found.lines)} paths, found once more for this page,"
+    return [f"{which} end elsewhere than in the sweep: other versions made it, or the paths are chaotic."]

@@ -1,11 +1,12 @@
 // The page of a run: a slider over its steps, the surface with the part on it, and curves over time.
 
 const surface = unpackSurface(pageData.surface);
-const part = Object.fromEntries(Object.entries(pageData.part).map(([name, array]) => [name, unpack(array)]));
+const part = Object.fromEntries(["x", "y", "z", "state"].map((name) => [name, unpack(pageData.part[name])]));
 const trail = unpackSpots(pageData.trail);
 trail.step = unpack(pageData.trail.step);
+const below = unpackSpots(pageData.part.below); // the part, at every step
 const time = unpack(pageData.time), last = time.length - 1, units = pageData.units;
-const STATES = ["stuck", "slipping", "in flight"];
+const STATES = ["stuck", "slipping", "in flight"], FLYING = 2;
 // Of the surface's length, by which what lies on it is lifted so that it is seen: the part is a ball that big.
 const LIFTS = { lines: 0.002, rim: 0.002, actuators: 0.012, trail: 0.006, part: 0.028 };
 const EYES = {
@@ -87,7 +88,7 @@ function extent(values) {
 // The trail up to a step and the way from there on, on the surface as it is now.
 function trailAt(step, z) {
   const passed = { x: [], y: [], z: [] }, ahead = { x: [], y: [], z: [] }, over = lift("trail");
-  const here = { x: part.x[step], y: part.y[step], z: part.z[step] + over };
+  const here = { x: part.x[step], y: part.y[step], z: valueAt(below, step, z) + over };
   const put = (line, point) => { for (const axis of "xyz") line[axis].push(point[axis]); };
   for (let k = 0; k < trail.step.length; k++) {
     const point = { x: valueAt(trail, k, surface.x), y: valueAt(trail, k, surface.y), z: valueAt(trail, k, z) + over };
@@ -96,6 +97,9 @@ function trailAt(step, z) {
     put(ahead, point);
   }
   put(passed, here);
+  if (part.state[step] === FLYING) { // a line down to the surface shows where the part is
+    for (const point of [{ x: null, y: null, z: null }, here, { ...here, z: part.z[step] }]) put(ahead, point);
+  }
   return { passed, ahead };
 }
 
@@ -128,6 +132,7 @@ function drawSurface() {
       lighting: { ambient: 0.62, diffuse: 0.6, specular: 0.08, roughness: 0.9, fresnel: 0.05 },
       lightposition: { x: -2000, y: -4000, z: 6000 },
       hovertemplate: `x %{x:.4g} ${units.length}<br>y %{y:.4g} ${units.length}<br>height %{z:.4g} ${units.height}<extra></extra>`,
+      showscale: high > low,
       colorbar: { title: { text: `height [${units.height}]`, side: "right" }, thickness: 14, len: 0.7, x: 1.0, outlinewidth: 0.5 },
     },
     { ...quiet, mode: "lines", x: still.x[LINES], y: still.y[LINES], z: now.z[LINES],
@@ -163,7 +168,7 @@ function camera(name) {
 
 // The heights that the axis shows: never nothing.
 function heightRange() {
-  const [low, high] = surface.extent, least = 0.02 * lengthOf() * pageData.perLength / exaggeration;
+  const [low, high] = surface.extent, least = 0.05 * lengthOf() * pageData.perLength / exaggeration;
   const room = Math.max(0.06 * (high - low), least);
   return [low - room, high + room];
 }
@@ -180,7 +185,7 @@ function proportions() {
 function stateShades() {
   const looks = {
     stuck: { fillcolor: "rgba(27,79,156,0.16)" },
-    flying: { fillcolor: "rgba(0,0,0,0)", fillpattern: { shape: "/", fgcolor: "#6a6a6a", size: 6, solidity: 0.35 } },
+    flying: { fillcolor: "rgba(0,0,0,0)", fillpattern: { shape: "/", fgcolor: "#b5b5b5", size: 9, solidity: 0.14 } },
   };
   return Object.entries(pageData.stretches).flatMap(([name, packed]) => {
     const x = [], y = [], ends = unpack(packed);
@@ -231,7 +236,7 @@ function readOut(step) {
   const places = largest(part.x, part.y);
   describe(element("readout"), [
     ["state", state],
-    ["position x, y", `${beside(part.x[step], places)}, ${beside(part.y[step], places)} ${units.length}`],
+    [`position x, y${pageData.counted}`, `${beside(part.x[step], places)}, ${beside(part.y[step], places)} ${units.length}`],
     ["height", `${beside(part.z[step], largest(part.z))} ${units.height}`],
     ["speed", `${beside(Math.hypot(along[step], across[step]), largest(along, across))} ${velocity}`],
     ["normal load", `${beside(load[step], largest(load, friction))} ${force}`],
@@ -283,7 +288,8 @@ function play() {
 }
 
 function caption() {
-  const factor = exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${said(exaggeration)} times larger than lengths.`;
+  const [low, high] = surface.range;
+  const factor = high === low ? "The surface stays flat." : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${said(exaggeration)} times larger than lengths.`;
   const lines = [factor];
   if (!surface.whole) lines.push("Only the surface around the path is shown.");
   if (surface.unmarked) lines.push(`${surface.unmarked} actuators, too many to be marked.`);

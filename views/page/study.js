@@ -1,6 +1,7 @@
 // The page of a sweep: a map, curve or points over its axes, and the path of the chosen one.
 
-const axes = pageData.axes.map((axis) => ({ ...axis, values: unpack(axis.values), edges: unpack(axis.edges) }));
+const unpackAxis = (axis) => ({ ...axis, values: unpack(axis.values), edges: unpack(axis.edges) });
+const axes = pageData.axes.map(unpackAxis), others = pageData.others.map(unpackAxis);
 const distance = unpack(pageData.distance), outcome = unpack(pageData.outcome), units = pageData.units;
 const starts = unpack(pageData.starts), ends = unpack(pageData.ends), repeats = pageData.repeats;
 const paths = unpackPaths(pageData.paths);
@@ -35,6 +36,10 @@ function valueSaid(axis, k) {
 
 function axisLayout(axis) {
   const layout = { ...AXIS, title: { text: plain(axis.label) }, type: axis.logarithmic ? "log" : "linear" };
+  if (axis.edges.length) {
+    const ends = [axis.edges[0], axis.edges[axis.edges.length - 1]];
+    layout.range = axis.logarithmic ? ends.map(Math.log10) : ends;
+  }
   if (!axis.texts.length) return layout;
   const every = Math.ceil(axis.texts.length / 12), shown = axis.texts.filter((_, k) => k % every === 0);
   return { ...layout, tickvals: shown.map((_, k) => k * every), ticktext: shown.map(plain) };
@@ -98,9 +103,34 @@ function drawMap() {
     line: { color: PATH, width: 3 }, marker: { symbol: "circle-open", size: 16, color: PATH, line: { width: 3 } } };
   const upwards = isMap || (pageData.kind === "points" && axes.length > 1) ? axisLayout(axes[1])
     : { ...AXIS, title: { text: `distance from the start [${units.distance}]` }, rangemode: "tozero" };
-  const layout = { font: FONT, margin: { l: 62, r: 10, t: 10, b: 48 }, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff", showlegend: false,
+  const layout = { font: FONT, margin: { l: 62, r: 10, t: 34, b: 48 }, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff", showlegend: false,
     xaxis: axisLayout(axes[0]), yaxis: upwards, hovermode: "closest", dragmode: "zoom", uirevision: "kept" };
-  return Plotly.react("map", [mainTrace(), mark], layout, CONFIG);
+  return Plotly.react("map", [mainTrace(), mark, ...overMap()], layout, CONFIG);
+}
+
+// What lies over the map: the outline of the study's threshold, and dots where there is a path if not everywhere.
+function overMap() {
+  const traces = [], quiet = { type: "scatter", hoverinfo: "skip", showlegend: false };
+  if (pageData.outline.length) {
+    const along = (n) => pageData.outline.flatMap(([begin, end]) => [begin[n], end[n], null]);
+    for (const line of [{ color: "#000000", width: 3.5 }, { color: "#ffffff", width: 1.5 }]) {
+      traces.push({ ...quiet, x: along(0), y: along(1), mode: "lines", line });
+    }
+  }
+  if (pageData.kind === "map" && paths.size < distance.filter(Number.isFinite).length) {
+    const places = [...paths.keys()].map(placeOf), along = (n) => places.map((place) => axes[n].values[place[n]]);
+    traces.push({ ...quiet, x: along(0), y: along(1), mode: "markers",
+      marker: { size: 5, color: "#ffffff", line: { color: "#000000", width: 1 } } });
+  }
+  return traces;
+}
+
+// What the map shows beside its colours, in words.
+function mapCaption() {
+  const known = distance.filter(Number.isFinite).length, lines = [];
+  if (pageData.outline.length) lines.push(`The line: where ${pageData.threshold} begins to hold.`);
+  if (pageData.kind === "map" && paths.size < known) lines.push("Dots: points whose path this page has.");
+  element("map-caption").textContent = lines.join(" ");
 }
 
 function outcomeKey() {
@@ -141,18 +171,28 @@ function pathTraces(cell) {
   return traces;
 }
 
+// The range of an axis that shows all of these numbers, with some room.
+function padded(numbers) {
+  const known = numbers.filter(Number.isFinite), low = Math.min(...known), high = Math.max(...known);
+  if (!known.length) return [-1, 1];
+  const room = 0.06 * (high - low) || 1;
+  return [low - room, high + room];
+}
+
 function drawPath(cell) {
-  const axis = { ...AXIS, constrain: "domain" };
-  const layout = { font: FONT, margin: { l: 62, r: 10, t: 10, b: 48 }, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff",
-    xaxis: { ...axis, title: { text: `x [${units.length}]` } },
-    yaxis: { ...axis, title: { text: `y [${units.length}]` }, scaleanchor: "x" },
+  const traces = pathTraces(cell);
+  const axis = { ...AXIS, constrain: "domain" }, of = (name) => padded(traces.flatMap((trace) => Array.from(trace[name])));
+  const layout = { font: FONT, margin: { l: 62, r: 10, t: 60, b: 48 }, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff",
+    xaxis: { ...axis, range: of("x"), title: { text: `x [${units.length}]` } },
+    yaxis: { ...axis, range: of("y"), title: { text: `y [${units.length}]` }, scaleanchor: "x" },
     legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" }, showlegend: true };
-  return Plotly.react("path", pathTraces(cell), layout, CONFIG);
+  return Plotly.react("path", traces, layout, CONFIG);
 }
 
 function tell(cell) {
   const place = placeOf(cell), [name, sentence] = pageData.outcomes[outcome[cell]];
   const terms = axes.map((axis, n) => [axis.name, valueSaid(axis, place[n])]);
+  terms.push(...others.map((axis) => [axis.name, valueSaid(axis, cell)]));
   terms.push([repeats > 1 ? "usual outcome" : "outcome", name]);
   if (Number.isFinite(distance[cell])) terms.push([repeats > 1 ? "mean distance" : "distance", `${said(distance[cell])} ${units.distance}`]);
   describe(element("readout"), terms);
@@ -208,6 +248,7 @@ function first() {
 
 addPickers();
 outcomeKey();
+mapCaption();
 chosen = first();
 drawMap().then((map) => {
   map.on("plotly_click", (event) => {
