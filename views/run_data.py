@@ -12,6 +12,7 @@ from coupling.plate_picture import Scale
 from coupling.readable import Unit, readable
 from coupling.saved import SavedRun
 from coupling.time_picture import stretches
+from coupling.window import extent, path_window
 from particle import State
 from views.exaggeration import exaggeration
 from views.modes import modes_of
@@ -23,7 +24,7 @@ IntArray = NDArray[np.int64]
 
 MOST_STEPS: Final = 1000  # of a page; of more, as many evenly spread
 MOST_POINTS: Final = 6000  # of its surface; of more, those around the path
-MOST_ACTUATORS: Final = 400  # that are marked
+MOST_ACTUATORS: Final = 1000  # that are marked
 AT_ONCE: Final = 64  # steps read together
 LINES, PER_LINE = 16, 64  # drawn on the surface along each side, and points on each
 STRETCHES: Final = {"stuck": State.STICK, "flying": State.FLIGHT}
@@ -47,6 +48,8 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     highest = max(float(drawn.max()), float(heights.max()))
     lowest = min(float(drawn.min()), float(heights.min()))
     modes = modes_of(heights)
+    box = np.stack([place.min(axis=0), place.max(axis=0)])
+    window = path_window(run.rows.position, box, run.actuators)
     clock = readable(run.time, "s")
     marked = np.flatnonzero(points < len(run.actuators))
     return {
@@ -54,7 +57,8 @@ def run_data(run: SavedRun) -> dict[str, Any]:
         "units": {"time": clock.name, "length": along.name, "height": scale.unit.name},
         "steps": {"shown": len(steps), "stored": len(run.time)},
         "counted": _counted(run),
-        "exaggeration": exaggeration(highest - lowest, length),
+        "exaggeration": [exaggeration(highest - lowest, length), _closer(position[:, 2], window)],
+        "window": None if window is None else (window * along.per_si).tolist(),
         "perLength": scale.unit.per_si / along.per_si,
         "surface": {
             "x": packed(place[:, 0] * along.per_si, "f4"),
@@ -67,7 +71,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "extent": [lowest * scale.unit.per_si, highest * scale.unit.per_si],
             "error": modes.error * scale.unit.per_si,
             "rim": packed(outer_edges(triangles), "u2"),
-            "lines": _lines(place, triangles),
+            "lines": [_lines(place, triangles, box) for box in ([box] if window is None else [box, window])],
             "actuators": packed(marked if len(marked) <= MOST_ACTUATORS else [], "u2"),
             "unmarked": len(marked) if len(marked) > MOST_ACTUATORS else 0,
             "whole": len(points) == len(run.points),
@@ -92,6 +96,11 @@ def _colours(scale: Scale, low: float, high: float) -> list[list[Any]]:
     return [[stop, to_hex(scale.colours(norm(low + stop * (high - low))))] for stop in stops.tolist()]
 
 
+def _closer(heights: FloatArray, window: FloatArray | None) -> float:
+    """How many times heights [m] along a path are drawn larger in a window (2, 2) [m]."""
+    return 1.0 if window is None else exaggeration(float(np.ptp(heights)), extent(window))
+
+
 def _around(points: FloatArray, triangles: IntArray, path: FloatArray) -> tuple[IntArray, IntArray]:
     """The points that are drawn, by their numbers, and the triangles of these: all, or a square around the path."""
     used = np.unique(triangles)
@@ -113,9 +122,9 @@ def _heights(run: SavedRun, steps: IntArray, points: IntArray) -> FloatArray:
     return heights
 
 
-def _lines(points: FloatArray, triangles: IntArray) -> dict[str, Any]:
-    """Lines along x and y on the surface, which show its form without colours."""
-    low, high = points.min(axis=0), points.max(axis=0)
+def _lines(points: FloatArray, triangles: IntArray, box: FloatArray) -> dict[str, Any]:
+    """Lines along x and y on the surface in a box (2, 2) [m], which show its form without colours."""
+    low, high = box
     apart = float((high - low).max()) / LINES
     pieces: list[FloatArray] = []
     for axis in (0, 1):
@@ -127,7 +136,7 @@ def _lines(points: FloatArray, triangles: IntArray) -> dict[str, Any]:
             breaks = np.flatnonzero(np.diff(on.astype(int))) + 1
             pieces += [piece for piece, o in zip(np.split(line, breaks), np.split(on, breaks), strict=True) if o[0]]
     ends = np.cumsum([len(piece) for piece in pieces])
-    return _spots(spots_of(points, triangles, np.concatenate(pieces))) | {"ends": packed(ends, "u4")}
+    return _spots(spots_of(points, triangles, np.concatenate([points[:0], *pieces]))) | {"ends": packed(ends, "u4")}
 
 
 def _trail(points: FloatArray, triangles: IntArray, path: FloatArray, length: float) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.progress import Tell, untold
+from coupling.window import extent
 from particle import Trajectory
 from studies.engine import AT_ONCE, Engine
 from views.thinned import thinned
@@ -18,8 +19,9 @@ IntArray = NDArray[np.int64]
 MOST_PATHS: Final = 2500  # of a page, if no other number is asked for,
 PATIENCE: Final = 60.0  # and about as many as are found in so many seconds
 SAMPLES: Final = 400  # of a path
-SEEN: Final = 1 / 400  # of the extent of all ends: less is not seen
-SAME: Final = 1e-6  # of that extent, by which ends may differ that were found twice
+SEEN: Final = 1 / 400  # of the extent of a path: less is not seen
+SAME: Final = 1e-6  # of that, by which ends may differ that were found twice,
+LEAST: Final = 1e-9  # m, but not of less
 
 
 class Paths(NamedTuple):
@@ -51,15 +53,15 @@ def find_paths(engine: Engine, numbers: IntArray, ends: FloatArray, tell: Tell =
     wanted = np.isfinite(ends).all(axis=1)
     order = np.argsort(numbers[wanted])
     known = dict(zip(numbers[wanted].tolist(), ends[wanted], strict=True))
-    size = float(np.ptp(ends[wanted], axis=0).max(initial=0.0)) or 1.0
     lines: dict[int, FloatArray] = {}
     strangers = 0
 
     def keep(number: int, path: Trajectory) -> None:
         nonlocal strangers
         samples = path.at(np.linspace(0, path.time[-1], SAMPLES)).position
+        size = extent(samples)
         lines[number] = thinned(samples, SEEN * size)
-        strangers += float(np.abs(samples[-1] - known[number]).max()) > SAME * size
+        strangers += float(np.abs(samples[-1] - known[number]).max()) > SAME * max(size, LEAST)
         tell(len(lines), len(known))
 
     engine.follow(numbers[wanted][order].tolist(), keep)

@@ -8,7 +8,8 @@ const below = unpackSpots(pageData.part.below); // the part, at every step
 const time = unpack(pageData.time), last = time.length - 1, units = pageData.units;
 const STATES = ["stuck", "slipping", "in flight"], FLYING = 2;
 // Of the surface's length, by which what lies on it is lifted so that it is seen: the part is a ball that big.
-const LIFTS = { lines: 0.002, rim: 0.002, actuators: 0.012, trail: 0.006, part: 0.028 };
+const LIFTS = { lines: 0.002, rim: 0.002, actuators: 0.012, trail: 0.006, part: 0.035 };
+const SPACE = 1.55; // the longest diagonal that the cameras take in
 const EYES = {
   slanted: { eye: { x: 0.75, y: -1.15, z: 0.72 }, up: { x: 0, y: 0, z: 1 } },
   above: { eye: { x: 0, y: 0, z: 1.5 }, up: { x: 0, y: 1, z: 0 } },
@@ -17,14 +18,14 @@ const EYES = {
 const MESH = 0, LINES = 1, RIM = 2, ACTUATORS = 3, AHEAD = 4, TRAIL = 5, PART = 6;
 const curves = pageData.curves.map((panel) => panel.lines.map((line) => unpack(line.values)));
 const slider = element("step");
-let exaggeration = pageData.exaggeration, shown = 0, playing = false, looking = false, drawing = null, wanted = null;
+let closeBy = false, exaggeration = pageData.exaggeration[0], shown = 0, playing = false, looking = false, drawing = null, wanted = null;
 
 function unpackSpots(spots) {
   return { corners: unpack(spots.corners), weights: unpack(spots.weights) };
 }
 
 function unpackSurface(packed) {
-  const lines = { ...unpackSpots(packed.lines), ends: unpack(packed.lines.ends) };
+  const lines = packed.lines.map((some) => ({ ...unpackSpots(some), ends: unpack(some.ends) }));
   return {
     ...packed, lines, x: unpack(packed.x), y: unpack(packed.y), triangles: unpack(packed.triangles), rim: unpack(packed.rim),
     actuators: unpack(packed.actuators), shapes: unpackRows(packed.shapes), amplitudes: unpack(packed.amplitudes),
@@ -49,10 +50,10 @@ function valueAt(spots, k, values) {
 
 // Points of lines on the surface, one after the other with gaps between.
 function alongLines(values) {
-  const found = [];
+  const found = [], lines = surface.lines[closeBy ? 1 : 0];
   let next = 0;
-  for (const end of surface.lines.ends) {
-    for (; next < end; next++) found.push(valueAt(surface.lines, next, values));
+  for (const end of lines.ends) {
+    for (; next < end; next++) found.push(valueAt(lines, next, values));
     found.push(null);
   }
   return found;
@@ -71,18 +72,24 @@ function lift(what) {
   return LIFTS[what] * lengthOf() * pageData.perLength / exaggeration;
 }
 
-function lengthOf() {
-  return Math.max(extent(surface.x), extent(surface.y));
+// The corners of what is shown of the surface, and the longer side of that.
+function frame() {
+  if (closeBy) return pageData.window;
+  return [[...bounds(surface.x)], [...bounds(surface.y)]].reduce(([lows, highs], [low, high]) => [[...lows, low], [...highs, high]], [[], []]);
 }
+
+function sidesOf([low, high]) { return high.map((value, k) => value - low[k]); }
+
+function lengthOf() { return Math.max(...sidesOf(frame())); }
 
 function largest(...arrays) {
   return Math.max(...arrays.map((array) => array.reduce((size, value) => Math.max(size, Math.abs(value)), 0)));
 }
 
-function extent(values) {
+function bounds(values) {
   let low = Infinity, high = -Infinity;
   for (const value of values) { low = Math.min(low, value); high = Math.max(high, value); }
-  return high - low;
+  return [low, high];
 }
 
 // The trail up to a step and the way from there on, on the surface as it is now.
@@ -105,7 +112,7 @@ function trailAt(step, z) {
 
 // The places of traces that move only up and down.
 const still = Object.fromEntries(["x", "y"].map((axis) => [
-  axis, [surface[axis], alongLines(surface[axis]), alongRim(surface[axis]), atActuators(surface[axis])],
+  axis, [alongRim(surface[axis]), atActuators(surface[axis])],
 ]));
 
 // What the traces of the surface show at a step.
@@ -113,8 +120,8 @@ function changingAt(step) {
   const z = heightsAt(step), { passed, ahead } = trailAt(step, z);
   const raised = (values, what) => values.map((value) => value === null ? null : value + lift(what));
   return {
-    x: [...still.x, ahead.x, passed.x, [part.x[step]]],
-    y: [...still.y, ahead.y, passed.y, [part.y[step]]],
+    x: [surface.x, alongLines(surface.x), ...still.x, ahead.x, passed.x, [part.x[step]]],
+    y: [surface.y, alongLines(surface.y), ...still.y, ahead.y, passed.y, [part.y[step]]],
     z: [z, raised(alongLines(z), "lines"), raised(alongRim(z), "rim"), raised(atActuators(z), "actuators"),
       ahead.z, passed.z, raised([part.z[step]], "part")],
     intensity: [z, ...Array(PART).fill(undefined)],
@@ -127,7 +134,7 @@ function drawSurface() {
   const quiet = { type: "scatter3d", hoverinfo: "skip", showlegend: false };
   const traces = [
     {
-      type: "mesh3d", x: still.x[MESH], y: still.y[MESH], z: now.z[MESH], i: thirds[0], j: thirds[1], k: thirds[2],
+      type: "mesh3d", x: now.x[MESH], y: now.y[MESH], z: now.z[MESH], i: thirds[0], j: thirds[1], k: thirds[2],
       intensity: now.z[MESH], cmin: low, cmax: high > low ? high : low + 1, colorscale: surface.colours, flatshading: false,
       lighting: { ambient: 0.62, diffuse: 0.6, specular: 0.08, roughness: 0.9, fresnel: 0.05 },
       lightposition: { x: -2000, y: -4000, z: 6000 },
@@ -135,12 +142,12 @@ function drawSurface() {
       showscale: high > low,
       colorbar: { title: { text: `height [${units.height}]`, side: "right" }, thickness: 14, len: 0.7, x: 1.0, outlinewidth: 0.5 },
     },
-    { ...quiet, mode: "lines", x: still.x[LINES], y: still.y[LINES], z: now.z[LINES],
+    { ...quiet, mode: "lines", x: now.x[LINES], y: now.y[LINES], z: now.z[LINES],
       line: { color: "rgba(29,39,51,0.28)", width: 1 } },
-    { ...quiet, mode: "lines", x: still.x[RIM], y: still.y[RIM], z: now.z[RIM], line: { color: INK, width: 4 } },
-    { ...quiet, mode: "markers", x: still.x[ACTUATORS], y: still.y[ACTUATORS], z: now.z[ACTUATORS], name: "actuators",
+    { ...quiet, mode: "lines", x: now.x[RIM], y: now.y[RIM], z: now.z[RIM], line: { color: INK, width: 4 } },
+    { ...quiet, mode: "markers", x: now.x[ACTUATORS], y: now.y[ACTUATORS], z: now.z[ACTUATORS], name: "actuators",
       showlegend: surface.actuators.length > 0,
-      marker: { symbol: "diamond", size: surface.actuators.length > 30 ? 3 : 5, color: "#ffffff", line: { color: INK, width: 1.5 } } },
+      marker: { symbol: "diamond", size: surface.actuators.length > 100 ? 2.5 : surface.actuators.length > 30 ? 3.5 : 5, color: "#ffffff", line: { color: INK, width: 1.5 } } },
     { ...quiet, mode: "lines", x: now.x[AHEAD], y: now.y[AHEAD], z: now.z[AHEAD], name: "way ahead", showlegend: true,
       line: { color: SOFT, width: 2 } },
     { ...quiet, mode: "lines", x: now.x[TRAIL], y: now.y[TRAIL], z: now.z[TRAIL], name: "trail", showlegend: true,
@@ -174,11 +181,10 @@ function heightRange() {
 }
 
 function proportions() {
-  const length = lengthOf(), [low, high] = heightRange();
-  return {
-    x: extent(surface.x) / length, y: extent(surface.y) / length,
-    z: (high - low) / pageData.perLength / length * exaggeration,
-  };
+  const length = lengthOf(), [low, high] = heightRange(), [x, y] = sidesOf(frame());
+  const z = (high - low) / pageData.perLength * exaggeration;
+  const scale = Math.min(1 / length, SPACE / Math.hypot(x, y, z));
+  return { x: x * scale, y: y * scale, z: z * scale };
 }
 
 // Bands behind the curves while the part is stuck or in flight.
@@ -291,7 +297,7 @@ function caption() {
   const [low, high] = surface.range;
   const factor = high === low ? "The surface stays flat." : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${said(exaggeration)} times larger than lengths.`;
   const lines = [factor];
-  if (!surface.whole) lines.push("Only the surface around the path is shown.");
+  if (!surface.whole && !closeBy) lines.push("Only the surface around the path is shown.");
   if (surface.unmarked) lines.push(`${surface.unmarked} actuators, too many to be marked.`);
   if (pageData.steps.shown < pageData.steps.stored) lines.push(`${pageData.steps.shown} of ${pageData.steps.stored} steps are shown.`);
   element("surface-caption").textContent = lines.join(" ");
@@ -313,7 +319,23 @@ function exaggerate() {
   if (!(factor > 0)) return;
   exaggeration = factor;
   caption();
-  Plotly.relayout("surface", { "scene.aspectratio": proportions(), "scene.zaxis.range": heightRange() }).then(() => show(shown));
+  reframe();
+}
+
+function reframe() {
+  const [low, high] = frame();
+  return Plotly.relayout("surface", {
+    "scene.aspectratio": proportions(), "scene.zaxis.range": heightRange(),
+    "scene.xaxis.range": [low[0], high[0]], "scene.yaxis.range": [low[1], high[1]],
+  }).then(() => show(shown));
+}
+
+// Show the surroundings of a short path, or all of the surface.
+function come(close) {
+  closeBy = close;
+  element("close-by").setAttribute("aria-pressed", close);
+  element("exaggeration").value = pageData.exaggeration[close ? 1 : 0];
+  exaggerate();
 }
 
 slider.max = last;
@@ -324,6 +346,8 @@ caption();
 element("pace").addEventListener("change", () => { if (playing) { play(); play(); } });
 slider.addEventListener("input", () => { if (playing) play(); show(Number(slider.value)); });
 element("play").addEventListener("click", play);
+element("close-by").hidden = !pageData.window;
+element("close-by").addEventListener("click", () => come(!closeBy));
 element("exaggeration").addEventListener("change", exaggerate);
 for (const button of document.querySelectorAll("[data-eye]")) button.addEventListener("click", () => look(button.dataset.eye));
 Promise.all([drawSurface(), drawCurves()]).then(([scene, panels]) => {
