@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from motion_pictures import draw_motion_error
+from page_pictures import draw_pages
 from tolerance_pictures import draw_tolerance
 
 from coupling import read_case, run_case
@@ -168,3 +169,4 @@ if __name__ == "__main__":
     draw_contact()
     draw_motion_error()
     draw_tolerance()
+    draw_pages()

@@ -172,7 +172,7 @@ def _curves(run: SavedRun, steps: IntArray, along: Unit) -> list[dict[str, Any]]
     """What is drawn over time, one pair of axes each."""
     velocity = run.velocity[steps]
     panels = [
-        (f"Position{_counted(run)}", "m", {"x": run.position[steps, 0], "y": run.position[steps, 1]}),
+        ("Position", "m", {f"{axis}{_counted(run)}": run.position[steps, k] for k, axis in enumerate("xy")}),
         ("Velocity", "m/s", {"along x": velocity[:, 0], "along y": velocity[:, 1]}),
         ("Force", "N", {"normal load": run.normal_force[steps], "friction": run.friction_force[steps]}),
     ]

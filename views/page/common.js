@@ -5,7 +5,8 @@ const pageData = JSON.parse(document.getElementById("data").textContent);
 const ARRAYS = { f4: Float32Array, u1: Uint8Array, u2: Uint16Array, i2: Int16Array, u4: Uint32Array };
 const INK = "#1d2733", SOFT = "#56636f", PATH = "#c8371b";
 const FONT = { family: 'system-ui, "Segoe UI", Roboto, sans-serif', size: 13, color: INK };
-const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "resetCameraLastSave3d"] };
+const NARROW = window.innerWidth < 700;
+const CONFIG = { responsive: true, displaylogo: false, displayModeBar: !NARROW, modeBarButtonsToRemove: ["select2d", "lasso2d", "resetCameraLastSave3d"] };
 
 window.addEventListener("error", (event) => tellTrouble(event.message));
 

@@ -140,7 +140,8 @@ function drawSurface() {
       lightposition: { x: -2000, y: -4000, z: 6000 },
       hovertemplate: `x %{x:.4g} ${units.length}<br>y %{y:.4g} ${units.length}<br>height %{z:.4g} ${units.height}<extra></extra>`,
       showscale: high > low,
-      colorbar: { title: { text: `height [${units.height}]`, side: "right" }, thickness: 14, len: 0.7, x: 1.0, outlinewidth: 0.5 },
+      colorbar: { title: { text: `height [${units.height}]`, side: NARROW ? "top" : "right" }, outlinewidth: 0.5,
+        ...(NARROW ? { orientation: "h", thickness: 10, len: 0.8, y: -0.02 } : { thickness: 14, len: 0.7, x: 1.0 }) },
     },
     { ...quiet, mode: "lines", x: now.x[LINES], y: now.y[LINES], z: now.z[LINES],
       line: { color: "rgba(29,39,51,0.28)", width: 1 } },
@@ -170,7 +171,8 @@ function drawSurface() {
 }
 
 function camera(name) {
-  return { ...EYES[name], center: { x: 0, y: 0, z: name === "slanted" ? -0.08 : 0 }, projection: { type: "perspective" } };
+  const { eye, up } = EYES[name], away = NARROW ? 1.3 : 1; // a narrow window sees less to its sides
+  return { eye: { x: away * eye.x, y: away * eye.y, z: away * eye.z }, up, center: { x: 0, y: 0, z: name === "slanted" ? -0.08 : 0 }, projection: { type: "perspective" } };
 }
 
 // The heights that the axis shows: never nothing.
@@ -295,7 +297,7 @@ function play() {
 
 function caption() {
   const [low, high] = surface.range;
-  const factor = high === low ? "The surface stays flat." : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${said(exaggeration)} times larger than lengths.`;
+  const factor = high === low ? "The surface stays flat." : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${Number(exaggeration.toPrecision(4))} times larger than lengths.`;
   const lines = [factor];
   if (!surface.whole && !closeBy) lines.push("Only the surface around the path is shown.");
   if (surface.unmarked) lines.push(`${surface.unmarked} actuators, too many to be marked.`);
@@ -338,10 +340,20 @@ function come(close) {
   exaggerate();
 }
 
+// The step nearest to a time.
+function stepAt(moment) {
+  let best = 0;
+  for (let k = 1; k <= last; k++) if (Math.abs(time[k] - moment) < Math.abs(time[best] - moment)) best = k;
+  return best;
+}
+
 slider.max = last;
 element("exaggeration").value = exaggeration;
 element("play").disabled = last === 0;
-readOut(0);
+const asked = location.hash.match(/^#t=([0-9.e-]+)$/); // page.html#t=12.5 opens at that time
+shown = asked ? stepAt(Number(asked[1])) : 0;
+slider.value = shown;
+readOut(shown);
 caption();
 element("pace").addEventListener("change", () => { if (playing) { play(); play(); } });
 slider.addEventListener("input", () => { if (playing) play(); show(Number(slider.value)); });
@@ -353,11 +365,10 @@ for (const button of document.querySelectorAll("[data-eye]")) button.addEventLis
 Promise.all([drawSurface(), drawCurves()]).then(([scene, panels]) => {
   scene.on("plotly_relayout", (change) => { if ("scene.camera" in change && !looking) press(null); });
   panels.on("plotly_click", (event) => {
-    const at = event.points[0].x;
-    let best = 0;
-    for (let k = 1; k <= last; k++) if (Math.abs(time[k] - at) < Math.abs(time[best] - at)) best = k;
     if (playing) play();
-    show(best);
+    show(stepAt(event.points[0].x));
   });
+  return shown ? show(shown) : null;
+}).then(() => {
   document.body.dataset.ready = "true";
 }).catch((error) => tellTrouble(error.message));
