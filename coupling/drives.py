@@ -39,12 +39,12 @@ def build_drive(drive: DriveCase) -> AnyDrive:
     return Drive(amplitude(drive), drive.frequency or 0.0, drive.cycle, drive.cycles, drive.delay, drive.dwell)
 
 
-def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray) -> FloatArray:
-    """The heights h_i(t) [m] of the drives at times (k,) [s]: (k, N)."""
+def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray, derivative: int = 0) -> FloatArray:
+    """The heights h_i(t) [m] of the drives, or a derivative [m/s, m/s^2], at times (k,) [s]: (k, N)."""
     known: dict[AnyDrive, FloatArray] = {}
     for drive in drives:
         if drive not in known:  # many of a lattice are equal
-            known[drive] = drive.evaluate(times)[0]
+            known[drive] = drive.evaluate(times)[derivative]
     return np.stack([known[drive] for drive in drives], axis=1)
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -23,7 +25,7 @@ from coupling.readable import Unit
 from coupling.rim import onto_plate
 from coupling.scene import Ground
 from coupling.summary import PlateFigures
-from coupling.surface import surface_motion
+from coupling.surface import FLOOR, surface_motion
 from fem_plate import PatchedShapes, Plate, PlateSection, PlateShapes
 from fem_plate.plate import TRUNCATION
 from particle import AnyDrive, SurfaceMotion, Trajectory
@@ -36,6 +38,7 @@ PLATE_TOLERANCE = 1e-8
 # Actuators whose shapes are found on the whole plate: with 625 a run took longer than with 10 000 on patches.
 MOST_WHOLE = 250
 DRAWN = 1e-7  # of a stroke: less is not drawn
+WRITTEN = 1e-5  # of the curvature at an actuator: less is not written
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +55,7 @@ class PlateScene:
 
     def ground(self, trajectory: Trajectory) -> Ground:
         points, triangles = drawn_plate(self.plate.mesh, self.shapes.points)
-        return Ground(points, triangles, lifting(self.shapes, points))
+        return Ground(points, triangles, lifting(self.shapes, points), bending(self.shapes, points))
 
     def onto(self, xy: FloatArray) -> FloatArray:
         return onto_plate(self.shapes.outline, xy)
@@ -77,6 +80,22 @@ def lifting(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], F
     """The deflections (k, n) [m] at points (n, 2) [m] as a function of the actuators' heights (k, N) [m]."""
     values = shapes.matrix(points, DRAWN) if isinstance(shapes, PatchedShapes) else shapes.values(points)
     return lambda heights: np.asarray((values @ heights.T).T)
+
+
+def bending(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Likewise the Laplacians (k, n) [1/m], bounded at actuators as the part's surface is.
+
+    They are found when first asked for.
+    """
+
+    @cache
+    def bends() -> Any:
+        floor = FLOOR * shapes.size
+        if isinstance(shapes, PatchedShapes):
+            return shapes.laplacians(points, floor, WRITTEN)
+        return shapes.laplacians(points, floor)
+
+    return lambda heights: np.asarray((bends() @ heights.T).T)
 
 
 def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:

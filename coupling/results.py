@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-from importlib.metadata import version
 from pathlib import Path
 from uuid import uuid4
 
@@ -17,8 +16,9 @@ from coupling.csv_file import write_csv
 from coupling.drives import frame_times, stroke_heights
 from coupling.pictures import draw_run, moment_of_most
 from coupling.progress import Tell, untold
-from coupling.scene import Scene
+from coupling.scene import Ground, Scene
 from coupling.summary import Summary
+from coupling.versions import versions
 from coupling.vtkhdf import part_file, plate_file
 from particle import Samples, Trajectory
 
@@ -29,6 +29,9 @@ UNITS = {
     "time": "s",
     "deflection": "m",
     "velocity": "m/s",
+    "curvature": "1/m, the Laplacian of the deflection, positive where the plate is bent like a bowl; at an actuator, "
+    "where it has no bound, that at a millionth of the plate's half length from it",
+    "drive": "m (N where a force drives) at actuators, 0 elsewhere",
     "normal_force": "N",
     "friction_force": "N",
     "state": "0: stuck, 1: slipping, 2: flying",
@@ -52,13 +55,13 @@ def write_results(
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
     ground = scene.ground(trajectory)
     record = record_of(case)
-    heights = stroke_heights(scene.lifts, times)
+    heights, speeds = stroke_heights(scene.lifts, times), stroke_heights(scene.lifts, times, 1)
     metadata: dict[str, str | int] = {
         "run": uuid4().hex,  # the same in both files, which so find each other
         "case": case.source or record.text,
         "summary": json.dumps(summary.as_dict()),
         "units": json.dumps(UNITS | {"points": f"m, counted from {scene.origin}"}),
-        "versions": json.dumps({name: version(name) for name in ("active-surface", "numpy", "scipy", "numba")}),
+        "versions": json.dumps(versions()),
         "actuators": len(case.actuators),
     }
     samples = trajectory.at(times)
@@ -73,9 +76,9 @@ def write_results(
         for k, time in enumerate(times.tolist()):
             if k % AT_ONCE == 0:
                 tell(k, len(times))
-                deflections = ground.lifted(heights[k : k + AT_ONCE]).astype(np.float32)
-                spread.extend(np.square(deflections, dtype=np.float64).mean(axis=1))
-            plate.append(time, deflection=deflections[k % AT_ONCE])
+                fields = _fields(ground, heights[k : k + AT_ONCE], speeds[k : k + AT_ONCE])
+                spread.extend(np.square(fields["deflection"], dtype=np.float64).mean(axis=1))
+            plate.append(time, **{name: values[k % AT_ONCE] for name, values in fields.items()})
             part.append(
                 time,
                 (*place[k], samples.height[k]),
@@ -90,6 +93,17 @@ def write_results(
     if csv:
         files.append(write_csv(trajectory, folder / f"{case.name}.csv", times))
     return tuple(files)
+
+
+def _fields(ground: Ground, heights: FloatArray, speeds: FloatArray) -> dict[str, NDArray[np.float32]]:
+    """The fields (k, n) of the surface as drawn under heights [m] and speeds [m/s] (k, N) of its drives."""
+    single = np.float32
+    found = {"deflection": ground.lifted(heights).astype(single), "velocity": ground.lifted(speeds).astype(single)}
+    if ground.bent is not None:
+        found["curvature"] = ground.bent(heights).astype(single)
+        found["drive"] = np.zeros_like(found["curvature"])
+        found["drive"][:, : heights.shape[1]] = heights  # the actuators are the first of the points
+    return found
 
 
 def _arrays(record: CaseRecord, trajectory: Trajectory) -> dict[str, dict[str, NDArray]]:

@@ -27,6 +27,7 @@ class Ground(NamedTuple):
     points: FloatArray  # (n, 2) m
     triangles: NDArray[np.int64]  # (m, 3)
     lifted: Callable[[FloatArray], FloatArray]  # from heights (k, N) [m] of the drives to deflections (k, n) [m]
+    bent: Callable[[FloatArray], FloatArray] | None = None  # likewise to curvatures [1/m]; None: it is always flat
 
 
 class Scene(Protocol):

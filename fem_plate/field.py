@@ -10,7 +10,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate.singular import point_load, point_value, pressure_derivatives
+from fem_plate.singular import point_laplacian, point_load, point_value, pressure_derivatives
 from fem_plate.space import PlateSpace
 
 FloatArray = NDArray[np.float64]
@@ -50,6 +50,14 @@ class Field:
         if np.any(self.pressure):
             value += np.outer(pressure_derivatives(x - self.space.middle)[0][0], self.pressure)
         return value + point_value(x, self.sources) @ self.forces
+
+    def laplacians(self, x: FloatArray, floor: float) -> FloatArray:
+        """The functions' Laplacians, (n, k), bounded within the floor of each source."""
+        bend = self.space.laplacians(x, self.unknowns) + point_laplacian(x, self.sources, floor) @ self.forces
+        if np.any(self.pressure):
+            second = pressure_derivatives(x - self.space.middle)[2]
+            bend += np.outer(second[0] + second[2], self.pressure)
+        return bend
 
     def smooth(self, x: FloatArray) -> Fields:
         """All but the forces' part at points (n, 2): value (n, k), gradient (n, k, 2), Hessian (n, k, 2, 2)."""

@@ -119,6 +119,13 @@ class InfluenceShapes(Shapes, Estimated):
         field = self.field if weights is None else self.field.weighted(weights)
         return field.values(np.asarray(xy, dtype=float) / self.size)
 
+    def laplacians(self, xy: ArrayLike, floor: float) -> FloatArray:
+        """The shapes' Laplacians at points (n, 2) [m], (n, N) [1/m^2].
+
+        floor: m, the radius around an actuator within which it grows no more (a point load bends without bound).
+        """
+        return self.field.laplacians(np.asarray(xy, dtype=float) / self.size, floor / self.size) / self.size**2
+
     def nearby(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
         return np.arange(len(self.points)), self.field.values(xy / self.size)
 

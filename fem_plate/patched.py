@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import cached_property
+from collections.abc import Callable, Iterator
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.sparse import coo_matrix, csr_matrix
 
 from fem_plate.field import Field, Fields
 from fem_plate.influence import MOST_DENSE, InfluenceShapes, Shapes
-from fem_plate.patches import Array, Tell, Tile
+from fem_plate.patches import Array, Patch, Tell, Tile
 from fem_plate.vibration import modes
 from meshes import Outline
 
@@ -102,11 +102,22 @@ class PatchedShapes(Shapes):
     def matrix(self, xy: ArrayLike, least: float = 0.0) -> csr_matrix:
         """The shapes at points (n, 2) [m] as a sparse matrix (n, N).
 
-        least: entries below this, relative to a shape's height at its own actuator, are left out.
+        least: entries below this, relative to what a shape has at its own actuator, are left out.
         Where patches are alike and points lie alike on them, as those of a grid in step with the array, one answer
         serves all.
         """
-        xy, heights = np.asarray(xy, dtype=float), self.own_heights()
+        return self._sparse(xy, lambda patch, x: patch.field.values(x), least)
+
+    def laplacians(self, xy: ArrayLike, floor: float, least: float = 0.0) -> csr_matrix:
+        """The shapes' Laplacians at points (n, 2) [m] as a sparse matrix (n, N) [1/m^2].
+
+        floor: m, as in `InfluenceShapes.laplacians`.  least: as in `matrix`.
+        """
+        return self._sparse(xy, lambda patch, x: patch.field.laplacians(x, floor / patch.size) / patch.size**2, least)
+
+    def _sparse(self, xy: ArrayLike, of: Callable[[Patch, FloatArray], FloatArray], least: float) -> csr_matrix:
+        """What a patch's shapes give at points (n, 2) of it, dimensionless, as a matrix (n, N) for points [m]."""
+        xy = np.asarray(xy, dtype=float)
         known: dict[tuple[int, bytes], tuple[IntArray, IntArray, FloatArray]] = {}
         found = []
         for tile in self.tiles:
@@ -114,7 +125,7 @@ class PatchedShapes(Shapes):
             local, near = self._within(tile, xy)
             key = id(patch), np.round(local[near], SAME).tobytes()
             if key not in known:
-                known[key] = _entries(patch.field, local[near], least * heights[core])
+                known[key] = _entries(partial(of, patch), local[near], least * _at_own(of, patch))
             row, column, value = known[key]
             found.append((value, near[row].astype(np.int32), core[column].astype(np.int32)))
         flat = [np.concatenate(parts) for parts in zip(*found, strict=True)]
@@ -173,9 +184,7 @@ class PatchedShapes(Shapes):
     def own_heights(self) -> FloatArray:
         heights = np.empty(len(self.points))
         for tile in self.tiles:
-            patch = tile.patch
-            own = patch.field.values(patch.actuators[patch.core] / patch.size)
-            heights[tile.rows[patch.core]] = np.abs(np.diag(own))
+            heights[tile.rows[tile.patch.core]] = _at_own(lambda patch, x: patch.field.values(x), tile.patch)
         return heights
 
     def _within(self, tile: Tile, xy: FloatArray) -> tuple[FloatArray, IntArray]:
@@ -189,11 +198,18 @@ class PatchedShapes(Shapes):
 PlateShapes = InfluenceShapes | PatchedShapes
 
 
-def _entries(field: Field, x: FloatArray, least: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
-    """Rows, columns and values of a field's functions (k,) at points (n, 2) that are larger than the least (k,)."""
+def _at_own(of: Callable[[Patch, FloatArray], FloatArray], patch: Patch) -> FloatArray:
+    """What a patch's shapes (c,) give at their own actuators, without its sign."""
+    return np.abs(np.diag(of(patch, patch.actuators[patch.core] / patch.size)))
+
+
+def _entries(
+    of: Callable[[FloatArray], FloatArray], x: FloatArray, least: FloatArray
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Rows, columns and values of functions (k,) at points (n, 2) that are larger than the least (k,)."""
     found = [(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))]
     for start in range(0, len(x), AT_ONCE):
-        values = field.values(x[start : start + AT_ONCE])
+        values = of(x[start : start + AT_ONCE])
         row, column = np.nonzero(np.abs(values) > least)
         found.append((row + start, column, values[row, column]))
     row, column, value = (np.concatenate(parts) for parts in zip(*found, strict=True))

@@ -41,6 +41,13 @@ def point_value(xy: FloatArray, sources: FloatArray) -> FloatArray:
     return UNIT_STRENGTH * 0.5 * square * np.log(np.where(square == 0, 1.0, square))
 
 
+def point_laplacian(xy: FloatArray, sources: FloatArray, floor: float) -> FloatArray:
+    """The Laplacian of F, (n, N), that of a parabola in r^2 within the floor: there F goes on with two derivatives."""
+    square = (xy[:, :1] - sources[:, 0]) ** 2 + (xy[:, 1:] - sources[:, 1]) ** 2
+    bounded = np.maximum(square, floor**2)
+    return UNIT_STRENGTH * (2 * np.log(bounded) + 4 * square / bounded)
+
+
 def point_derivatives(xy: FloatArray, source: FloatArray) -> list[FloatArray]:
     """F around one source (2,) at points (k, n, 2) off it: its derivatives of orders 0 to 3, each (d, k, n)."""
     x, y = np.moveaxis(xy - source, -1, 0)

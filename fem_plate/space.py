@@ -143,6 +143,18 @@ class PlateSpace:
                     into[(part, slice(None), *place)] = values[sum(place)][:, 0]
         return fields
 
+    def laplacians(self, xy: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """The Laplacians (n, k) of functions given by their unknowns (unknowns, k) at points (n, 2), as `evaluate`."""
+        found = np.empty((len(xy), unknowns.shape[1]))
+        unknowns = self.all_unknowns(unknowns)
+        step = max(1, CHUNK // found.shape[1])
+        for start in range(0, len(xy), step):
+            part = slice(start, start + step)
+            triangle = self._locate(xy[part])
+            xx, _, yy = self.triangles.derivatives(xy[part, None], triangle, 2)
+            found[part] = ((xx + yy) @ unknowns[self.dofs[triangle]])[:, 0]
+        return found
+
     def linear(self) -> FloatArray:
         """The unknowns of 1, x and y, (unknowns, 3)."""
         functions = np.zeros((self._first[-1], 3))

@@ -5,19 +5,17 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass
-from functools import cache
-from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 from coupling.case import Case
 from coupling.case_record import files_of
+from coupling.versions import PACKAGES as SHARED
+from coupling.versions import versions as versions_of
 from studies.points import Points
 from studies.threshold import Threshold
 from studies.variants import lattice_of
 
-VERSIONS = ("active-surface", "numpy", "scipy", "numba")
-PACKAGES = ("meshes", "fem_plate", "particle", "coupling", "studies")
+PACKAGES = (*SHARED, "studies")
 
 
 @dataclass(frozen=True)
@@ -52,17 +50,8 @@ class Study:
 
 
 def versions() -> dict[str, str]:
-    """The versions of what a path is found by; that of active-surface has a hash of its sources."""
-    found = {name: version(name) for name in VERSIONS}
-    return found | {VERSIONS[0]: f"{found[VERSIONS[0]]}+{_sources()}"}
-
-
-@cache
-def _sources() -> str:
-    root, digest = Path(__file__).parents[1], hashlib.sha256()
-    for file in sorted(file for package in PACKAGES for file in (root / package).rglob("*.py")):
-        digest.update(f"{file.relative_to(root).as_posix()}\n".encode() + file.read_bytes())
-    return digest.hexdigest()[:12]
+    """The versions of what a sweep's paths are found by."""
+    return versions_of(PACKAGES)
 
 
 def _hash(said: Any) -> str:

@@ -68,7 +68,7 @@ def test_a_field_of_the_plate_comes_at_the_steps_asked_for(ran):
     np.testing.assert_array_equal(saved.plate_field("deflection", slice(1, 9, 3)), every[1:9:3])
     np.testing.assert_array_equal(saved.plate_field("deflection", [7, 0]), every[[7, 0]])
     np.testing.assert_array_equal(saved.plate_field("deflection", -1), every[-1])
-    with pytest.raises(ValueError, match="must be one of deflection; got 'speed'"):
+    with pytest.raises(ValueError, match="must be one of deflection, velocity; got 'speed'"):
         saved.plate_field("speed")
     with pytest.raises(IndexError):
         saved.plate_field("deflection", 11)

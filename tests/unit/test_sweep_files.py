@@ -14,8 +14,9 @@ from click.testing import CliRunner
 from sweeps import PLATFORM, written
 
 from command_line.main import main
+from coupling import versions
 from coupling.progress import CountBar
-from studies import dataset, read_study, run_study, study
+from studies import dataset, read_study, run_study
 from studies.chunk_store import ChunkStore
 from studies.engine import Engine
 from studies.lock import alone_in
@@ -63,7 +64,7 @@ def test_chunks_of_another_length_are_not_taken_for_others(tmp_path, monkeypatch
 def test_results_of_other_sources_are_not_taken_for_those_of_these(tmp_path, monkeypatch):
     path = written(tmp_path, MASS, PLATFORM)
     keys = {read_study(path).key}
-    monkeypatch.setattr(study, "_sources", lambda: "0" * 12)
+    monkeypatch.setattr(versions, "_sources", lambda packages: "0" * 12)
     assert read_study(path).key not in keys
 
 
@@ -73,8 +74,8 @@ def test_the_sources_are_hashed_with_their_places(tmp_path, monkeypatch):
         shutil.rmtree(tmp_path / "particle", ignore_errors=True)
         (tmp_path / "particle").mkdir()
         (tmp_path / "particle" / f"{name}.py").write_text(content)
-        monkeypatch.setattr(study, "__file__", str(tmp_path / "studies" / "study.py"))
-        found.add(study._sources.__wrapped__())
+        monkeypatch.setattr(versions, "__file__", str(tmp_path / "coupling" / "versions.py"))
+        found.add(versions._sources.__wrapped__(("particle",)))
     assert len(found) == 3
 
 

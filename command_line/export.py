@@ -1,0 +1,47 @@
+"""The command `export`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from command_line.group import main, refusing
+
+OUTPUT = Path("export")
+
+
+@main.command()
+@click.argument("result", type=click.Path(path_type=Path))
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["pvd", "xdmf", "vtkhdf"]),
+    required=True,
+    help="pvd: with a VTU file a step; xdmf: with one HDF5 file; vtkhdf: anew, as of a run that was finished.",
+)
+@click.option(
+    "--output",
+    "-o",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=OUTPUT,
+    help="Folder for the files [export].",
+)
+def export(result: Path, form: str, output: Path) -> None:
+    """Write RESULT in another format, for older readers.
+
+    RESULT is either file of a run, or FOLDER/NAME.
+    """
+    from coupling.export import export_run
+    from coupling.progress import StageBar
+    from coupling.results import check_folder
+    from coupling.saved import read_run
+
+    saved = refusing(read_run, result)
+    refusing(check_folder, output)
+    with StageBar(1) as bar, bar("Writing the files") as tell:
+        files = refusing(export_run, saved, output, form, tell)
+    if not saved.complete:
+        click.echo(f"{'partial':<12}The run was not written to the end: these are its first {len(saved.time)} steps.")
+    for file in files:
+        click.echo(f"{'wrote':<12}{file}")

@@ -1,0 +1,141 @@
+"""A saved run is repeated from its files alone, and says whether it came to the same end."""
+
+import json
+import shutil
+from pathlib import Path
+
+import h5py
+import meshio
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import meshes
+from command_line.main import main
+from coupling import read_case, read_run, run_case, versions
+
+POINTS = "load [uN], limit [nN]\n-1, 4\n0, 18.7\n2.2, 35\n5, 52\n"
+
+
+def rerun(path, *options):
+    return CliRunner().invoke(main, ["rerun", str(path), *options])
+
+
+@pytest.fixture
+def moved(tmp_path):
+    """The result of a case with files, moved away from them."""
+
+    def move(text, **files):
+        home = tmp_path / "home"
+        home.mkdir()
+        for name, content in files.items():
+            (home / name.replace("_", ".")).write_bytes(content)
+        (home / "some.toml").write_text(text)
+        run_case(read_case(home / "some.toml"), home / "out")
+        away = shutil.move(home / "out", tmp_path / "away")
+        shutil.rmtree(home)
+        return Path(away) / "some"
+
+    return move
+
+
+PLATFORM = """\
+[plate]
+shape = "platform"
+motion = "motion.csv"
+
+[part]
+mass = "2e-9 kg"
+position = ["0 um", "0 um"]
+
+[friction]
+model = "table"
+file = "friction.csv"
+
+[run]
+duration = "6 ms"
+frames = 5
+"""
+MOTION = "time [ms], x [um]\n" + "".join(f"{k}, {(-1) ** k * k * 10}\n" for k in range(8))
+
+
+def test_a_moved_result_with_a_measured_motion_and_friction_reruns_to_the_same_bits(moved, tmp_path):
+    result = moved(PLATFORM, motion_csv=MOTION.encode(), friction_csv=POINTS.encode())
+    done = rerun(result, "--output", str(tmp_path / "again"))
+    assert done.exit_code == 0, done.output
+    assert "the same, bit for bit" in done.output and "versions    the same" in done.output
+    before, after = read_run(result), read_run(tmp_path / "again" / "some")
+    assert before.summary == after.summary and before.summary["slips"] > 0
+    assert before.rows.position.tobytes() == after.rows.position.tobytes()
+    twice = rerun(tmp_path / "again" / "some.part.vtkhdf", "--output", str(tmp_path / "twice"), "--json")
+    assert json.loads(twice.stdout)["same_end"] and after.case.source == before.case.source == PLATFORM
+
+
+PLATE = """\
+[plate]
+mesh = "plate.xdmf"
+supports = { "7" = "clamped" }
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+
+[[actuators]]
+position = ["10 um", "0 um"]
+stroke = "5 um"
+frequency = "300 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["30 um", "20 um"]
+
+[friction]
+model = "constant"
+limit = "1e-12 N"
+
+[run]
+duration = "0.4 ms"
+frames = 3
+tolerance = 1e-5
+"""
+
+
+def test_a_moved_result_with_a_mesh_reruns_to_the_same_bits(moved, tmp_path):
+    """An XDMF file has its numbers in a file beside it."""
+    mesh = meshes.rectangle(400e-6, 300e-6, 100e-6)
+    edges = np.concatenate(list(mesh.boundaries.values()))
+    cells = [("triangle", mesh.triangles), ("line", edges)]
+    numbers = [np.zeros(len(mesh.triangles), int), np.full(len(edges), 7)]
+    meshio.Mesh(mesh.points, cells, cell_data={"boundary": numbers}).write(tmp_path / "plate.xdmf")
+    files = {f"plate_{end}": (tmp_path / f"plate.{end}").read_bytes() for end in ("xdmf", "h5")}
+    result = moved(PLATE, **files)
+    (tmp_path / "plate.h5").unlink()
+    done = rerun(result, "--output", str(tmp_path / "again"))
+    assert done.exit_code == 0 and "the same, bit for bit" in done.output, done.output
+    before, after = read_run(result), read_run(tmp_path / "again" / "some")
+    assert np.ptp(before.position[:, 0]) > 0
+    np.testing.assert_array_equal(before.rows.position, after.rows.position)
+    np.testing.assert_array_equal(before.plate_field("curvature"), after.plate_field("curvature"))
+
+
+def test_another_end_and_other_versions_are_told(moved, tmp_path, monkeypatch):
+    result = moved(PLATFORM, motion_csv=MOTION.encode(), friction_csv=POINTS.encode())
+    with h5py.File(f"{result}.part.vtkhdf", "r+") as file:
+        ours = file["active_surface"].attrs
+        summary = json.loads(ours["summary"])
+        summary["end_position"][0] += 3e-6
+        ours["summary"] = json.dumps(summary)
+        ours["versions"] = json.dumps(json.loads(ours["versions"]) | {"numpy": "1.0", "lost": "2.0"})
+    done = rerun(result, "--output", str(tmp_path / "again"))
+    assert done.exit_code == 1 and ": 3 um from that of the result" in done.output
+    now = versions.versions()["numpy"]
+    assert f"numpy {now} in place of 1.0; lost none in place of 2.0" in done.output
+
+
+def test_a_partial_result_reruns_and_says_so_but_not_onto_itself(moved, tmp_path):
+    result = moved(PLATFORM, motion_csv=MOTION.encode(), friction_csv=POINTS.encode())
+    for kind in ("plate", "part"):
+        Path(f"{result}.{kind}.vtkhdf").rename(f"{result}.partial.{kind}.vtkhdf")
+    done = rerun(result, "--output", str(result.parent))
+    assert done.exit_code == 2 and "must be another folder than that of the result" in done.output
+    done = rerun(result, "--output", str(tmp_path / "again"))
+    assert done.exit_code == 0 and "not written to the end" in done.output and "bit for bit" in done.output
