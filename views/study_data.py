@@ -23,6 +23,7 @@ FloatArray = NDArray[np.float64]
 
 MOST_ENDS = 100_000  # of all starts; of more only the first of each point
 MOST_ACTUATORS = 400  # that are drawn
+RIM_STAYS = ("supports", "youngs_modulus", "poisson_ratio", "thickness", "density", "cell_size")  # keys of a plate
 STOPS = 9  # of the colour scale
 
 
@@ -88,7 +89,9 @@ def _drawing(shown: Shown, along: Unit) -> dict[str, Any]:
     case: Case = shown.study.case
     moved = [location for axis in shown.study.points.axes for location in axis.field.locations]
     rim: list[Any] = []
-    if isinstance(case.plate, PlateCase) and not any(location[0] == "plate" for location in moved):
+    if isinstance(case.plate, PlateCase) and not any(
+        location[0] == "plate" and location[1] not in RIM_STAYS for location in moved
+    ):
         outline = case.plate.coarse_mesh.outline
         step = float(np.ptp(outline.box, axis=0).max()) / 200
         rim = [packed(curve * along.per_si, "f4") for curve in rim_curves(outline, step)]

@@ -40,6 +40,7 @@ function axisLayout(axis) {
     const ends = [axis.edges[0], axis.edges[axis.edges.length - 1]];
     layout.range = axis.logarithmic ? ends.map(Math.log10) : ends;
   }
+  if (axis.logarithmic) layout.dtick = "D2"; // ticks at 1, 2 and 5
   if (!axis.texts.length) return layout;
   const every = Math.ceil(axis.texts.length / 12), shown = axis.texts.filter((_, k) => k % every === 0);
   return { ...layout, tickvals: shown.map((_, k) => k * every), ticktext: shown.map(plain) };
