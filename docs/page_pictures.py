@@ -12,7 +12,7 @@ from views.run_page import write_run_page
 from views.study_page import write_study_page
 
 ROOT = Path(__file__).parent.parent
-SIZE = "1360,830"
+SIZE = "1360,860"
 FLAGS = ("headless=new", "no-sandbox", "hide-scrollbars", "use-gl=angle", "use-angle=swiftshader")
 
 

@@ -66,7 +66,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "triangles": packed(triangles, "u2"),
             "shapes": packed_rows(modes.shapes),
             "amplitudes": packed(modes.amplitudes * scale.unit.per_si, "f4"),
-            "range": (spread := [heights.min() * scale.unit.per_si, heights.max() * scale.unit.per_si]),
+            "range": (spread := [float(w) * scale.unit.per_si for w in (heights.min(), heights.max())]),
             "colours": _colours(scale, *spread),
             "extent": [lowest * scale.unit.per_si, highest * scale.unit.per_si],
             "error": modes.error * scale.unit.per_si,

@@ -159,6 +159,78 @@ def test_of_many_steps_as_many_are_shown_as_fit(run, monkeypatch):
     assert numbers(data["time"])[[0, -1]] == pytest.approx(run.time[[0, -1]] * 1e3)
 
 
+PLATFORM = """\
+[plate]
+shape = "platform"
+
+[plate.motion.x]
+stroke = "40 um"
+frequency = "100 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["0 um", "0 um"]
+
+[friction]
+model = "constant"
+limit = "10 nN"
+
+[run]
+duration = "10 ms"
+frames = 21
+"""
+
+
+def test_a_platform_is_flat_and_positions_are_counted_from_it(tmp_path):
+    (tmp_path / "shaken.toml").write_text(PLATFORM)
+    run_case(read_case(tmp_path / "shaken.toml"), tmp_path)
+    data = run_data(read_run(tmp_path / "shaken"))
+    low, high = data["surface"]["range"]
+    assert low == high == 0 and data["exaggeration"][0] == 1
+    assert data["counted"] == " on the platform"
+    assert len(numbers(data["surface"]["lines"][0]["ends"])) > 10
+    assert len(numbers(data["trail"]["step"])) > 5
+
+
+def test_a_part_in_flight_is_above_the_surface(tmp_path):
+    text = CASE.replace(
+        'model = "constant"\nlimit = "41.8 nN"', 'model = "coulomb"\ncoefficient = 0.3\nadhesion = "0.05 uN"'
+    )
+    (tmp_path / "flies.toml").write_text(text.replace("[run]", '[run]\nafter_detachment = "fly"'))
+    run_case(read_case(tmp_path / "flies.toml"), tmp_path)
+    run = read_run(tmp_path / "flies")
+    assert (run.state == 2).sum() > 3
+    data = run_data(run)
+    assert numbers(data["part"]["z"]) == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
+    near = np.hypot(*(run.points - run.position[-1, :2]).T).argmin()
+    assert numbers(data["part"]["z"])[-1] > run.plate_field("deflection")[-1, near] * 1e6 + 5
+    begin, end = numbers(data["stretches"]["flying"])
+    assert 0 < begin < end == pytest.approx(2.0)
+
+
+def test_a_part_that_stays_has_no_trail(tmp_path):
+    (tmp_path / "stays.toml").write_text(CASE.replace("41.8 nN", "9 N"))
+    run_case(read_case(tmp_path / "stays.toml"), tmp_path)
+    data = run_data(read_run(tmp_path / "stays"))
+    assert len(numbers(data["trail"]["step"])) == 0
+    assert numbers(data["stretches"]["stuck"]) == pytest.approx([0.0, 2.0])
+
+
+def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
+    for kind in ("plate", "part"):
+        (tmp_path / f"cut.partial.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())
+    said = CliRunner().invoke(main, ["view", str(tmp_path / "cut.partial.part.vtkhdf")])
+    assert said.exit_code == 0
+    assert "not written to their end" in (tmp_path / "cut.html").read_text(encoding="utf-8")
+
+
+def test_open_opens_the_page(folder, result, monkeypatch):
+    opened = []
+    monkeypatch.setattr("click.launch", opened.append)
+    assert CliRunner().invoke(main, ["view", str(folder / NAME), "--open", "-q"]).exit_code == 0
+    assert opened == [(folder / f"{NAME}.html").as_uri()]
+
+
 @pytest.mark.parametrize("ending", ["", ".plate.vtkhdf", ".part.vtkhdf"])
 def test_view_writes_beside_the_result_or_where_it_is_told(folder, result, ending, tmp_path):
     said = CliRunner().invoke(main, ["view", str(folder / f"{NAME}{ending}")])
