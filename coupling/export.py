@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from coupling.progress import Tell, untold
 from coupling.saved import SavedRun
-from coupling.vtkhdf import part_file, plate_file
+from coupling.vtkhdf import GZIP, part_file, plate_file
 
 FORMATS = ("pvd", "xdmf", "vtkhdf")
 OF_PART = ("velocity", "state", "normal_force", "friction_force")
@@ -53,7 +53,7 @@ def export_run(saved: SavedRun, folder: str | Path, form: str, tell: Tell = unto
     frames = _told(_plate_frames(saved), tell, len(saved.time))
     if form == "vtkhdf":
         return _plate_anew(saved, folder, frames), _part_anew(saved, folder)
-    write = _write_pvd if form == "pvd" else _write_xdmf
+    write = write_pvd if form == "pvd" else write_xdmf
     return (
         write(folder, f"{saved.name}.plate", "triangle", saved.triangles, frames),
         write(folder, f"{saved.name}.part", "vertex", VERTEX, _part_frames(saved)),
@@ -77,7 +77,8 @@ def _told(frames: Iterator[Frame], tell: Tell, count: int) -> Iterator[Frame]:
         yield frame
 
 
-def _write_pvd(folder: Path, name: str, kind: str, cells: NDArray[np.int64], frames: Iterator[Frame]) -> Path:
+def write_pvd(folder: Path, name: str, kind: str, cells: NDArray[np.int64], frames: Iterator[Frame]) -> Path:
+    """NAME.pvd and a VTU file for each frame; cells of one kind, "triangle" or "vertex", as meshio calls them."""
     import meshio  # slow to load
 
     (folder / name).mkdir(exist_ok=True)
@@ -90,7 +91,8 @@ def _write_pvd(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
     return _write_xml(root, folder / f"{name}.pvd")
 
 
-def _write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], frames: Iterator[Frame]) -> Path:
+def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], frames: Iterator[Frame]) -> Path:
+    """Likewise NAME.xdmf, and NAME.h5 with the numbers."""
     root = ET.Element("Xdmf", Version="3.0")
     steps = ET.SubElement(
         ET.SubElement(root, "Domain"), "Grid", Name=name, GridType="Collection", CollectionType="Temporal"
@@ -100,7 +102,7 @@ def _write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fr
         def item(grid: ET.Element, element: str, what: dict[str, str], place: str, array: NDArray) -> None:
             """An element of the grid whose numbers are an array, which is written unless its place has one."""
             if place not in file:
-                file.create_dataset(place, data=array, compression="gzip" if array.size > 1 else None)
+                file.create_dataset(place, data=array, **({"chunks": array.shape, **GZIP} if array.size > 1 else {}))
             size = " ".join(map(str, array.shape))
             told = {"Format": "HDF", "DataType": XDMF_TYPES[array.dtype.kind], "Precision": str(array.dtype.itemsize)}
             data = ET.SubElement(ET.SubElement(grid, element, what), "DataItem", told, Dimensions=size)

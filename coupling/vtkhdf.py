@@ -16,7 +16,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import h5py  # type: ignore[import-untyped]
 import numpy as np
@@ -25,7 +25,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 Metadata = Mapping[str, str | float | int]
 
 FLUSH_EVERY = 8  # steps, and so what a kill of the process can lose
-_GZIP = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
+Filters = Mapping[str, Any]
+GZIP: Filters = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
 
 
 class _ResultFile:
@@ -35,8 +36,11 @@ class _ResultFile:
     of cells for this `data_type`, (k,) if it keeps k.
     """
 
-    def __init__(self, file: h5py.File, data_type: str, shape: tuple[int, ...], topologies: tuple[int, ...]) -> None:
+    def __init__(
+        self, file: h5py.File, data_type: str, shape: tuple[int, ...], topologies: tuple[int, ...], filters: Filters
+    ) -> None:
         self._file = file
+        self._filters = filters
         self._shape = shape
         self._n_points = math.prod(shape)
         self._times: list[float] = []
@@ -69,7 +73,7 @@ class _ResultFile:
         made = self._metadata.require_group(group)
         for name, array in arrays.items():
             data = np.asarray(array)
-            made.create_dataset(name, data=data, **(_GZIP if data.size else {}))
+            made.create_dataset(name, data=data, **(self._filters if data.size else {}))
 
     def flush(self) -> None:
         """Put all steps so far on disk, where they outlive this process."""
@@ -123,19 +127,21 @@ class _ResultFile:
     def _create_field(self, name: str, array: NDArray[np.generic]) -> h5py.Dataset:
         dtype = array.dtype if array.dtype == np.float32 else np.float64 if array.dtype.kind == "f" else np.int64
         _growing(self._steps, f"PointDataOffsets/{name}", np.int64)
-        return _growing(self._root, f"PointData/{name}", dtype, array.shape[1:], rows_per_step=self._n_points)
+        return _growing(self._root, f"PointData/{name}", dtype, array.shape[1:], self._n_points, self._filters)
 
 
 class PlateFile(_ResultFile):
     """The open result file of the plate; `plate_file` makes it."""
 
-    def __init__(self, file: h5py.File, points: NDArray[np.float64], triangles: NDArray[np.int64]) -> None:
-        super().__init__(file, "UnstructuredGrid", shape=(len(points),), topologies=())
+    def __init__(
+        self, file: h5py.File, points: NDArray[np.float64], triangles: NDArray[np.int64], filters: Filters
+    ) -> None:
+        super().__init__(file, "UnstructuredGrid", shape=(len(points),), topologies=(), filters=filters)
         offsets = np.arange(0, triangles.size + 1, 3)
         types = np.full(len(triangles), 5, np.uint8)  # VTK_TRIANGLE
         mesh = {"Points": points, "Connectivity": triangles.ravel(), "Offsets": offsets, "Types": types}
         for name, data in mesh.items():
-            self._root.create_dataset(name, data=data, **_GZIP)
+            self._root.create_dataset(name, data=data, **filters)
         self._root["NumberOfCells"] = [len(triangles)]
         self._root["NumberOfConnectivityIds"] = [triangles.size]
 
@@ -154,8 +160,8 @@ class PlateFile(_ResultFile):
 class PartFile(_ResultFile):
     """The open result file of the part; `part_file` makes it."""
 
-    def __init__(self, file: h5py.File) -> None:
-        super().__init__(file, "PolyData", shape=(), topologies=(4,))
+    def __init__(self, file: h5py.File, filters: Filters) -> None:
+        super().__init__(file, "PolyData", shape=(), topologies=(4,), filters=filters)
         _growing(self._root, "Points", np.float64, (3,))
         for name, n_cells in {"Vertices": 1, "Lines": 0, "Polygons": 0, "Strips": 0}.items():  # VTK wants all four
             cells = self._root.create_group(name)
@@ -177,11 +183,17 @@ class PartFile(_ResultFile):
 
 
 def plate_file(
-    directory: str | Path, name: str, points: ArrayLike, triangles: ArrayLike, metadata: Metadata | None = None
+    directory: str | Path,
+    name: str,
+    points: ArrayLike,
+    triangles: ArrayLike,
+    metadata: Metadata | None = None,
+    compress: bool = True,
 ) -> AbstractContextManager[PlateFile]:
     """Write `NAME.plate.vtkhdf` in the existing `directory`, replacing it when the `with` block ends well.
 
     `points` (n, 2) or (n, 3) [m] are at rest, with z = 0 if not given; `triangles` (m, 3) are their numbers from 0.
+    compress: whether by gzip, which loses nothing.
 
     Raises ValueError for points or triangles of another shape or without meaning, and at the end if no step was
     appended; OSError if the file cannot be written.
@@ -195,15 +207,19 @@ def plate_file(
         raise ValueError(f"triangles of shape {cells.shape}, {cells.dtype}, are refused: they must be integers (m, 3)")
     if cells.min() < 0 or cells.max() >= len(corners):
         raise ValueError(f"triangles name points {cells.min()} to {cells.max()}; there are {len(corners)} points")
-    return _written(lambda file: PlateFile(file, corners, cells.astype(np.int64)), directory, name, "plate", metadata)
+    filters, numbers = GZIP if compress else {}, cells.astype(np.int64)
+    return _written(lambda file: PlateFile(file, corners, numbers, filters), directory, name, "plate", metadata)
 
 
-def part_file(directory: str | Path, name: str, metadata: Metadata | None = None) -> AbstractContextManager[PartFile]:
+def part_file(
+    directory: str | Path, name: str, metadata: Metadata | None = None, compress: bool = True
+) -> AbstractContextManager[PartFile]:
     """Write `NAME.part.vtkhdf` in the existing `directory`, replacing it when the `with` block ends well.
 
     Raises ValueError at the end if no step was appended; OSError if the file cannot be written.
     """
-    return _written(PartFile, directory, name, "part", metadata)
+    filters = GZIP if compress else {}
+    return _written(lambda file: PartFile(file, filters), directory, name, "part", metadata)
 
 
 _File = TypeVar("_File", bound=_ResultFile)
@@ -228,13 +244,18 @@ def _written(
 
 
 def _growing(
-    group: h5py.Group, name: str, dtype: DTypeLike, columns: tuple[int, ...] = (), rows_per_step: int = 1
+    group: h5py.Group,
+    name: str,
+    dtype: DTypeLike,
+    columns: tuple[int, ...] = (),
+    rows_per_step: int = 1,
+    filters: Filters = GZIP,
 ) -> h5py.Dataset:
-    """A dataset without rows yet. Large steps make a compressed chunk each, and so are written once.
+    """A dataset without rows yet. Large steps make a chunk each, which the filters compress, and so are written once.
 
     Single rows share chunks that are rewritten with each row. They stay uncompressed, lest the chunks move about.
     """
-    chunk, filters = (256, {}) if rows_per_step == 1 else (rows_per_step, _GZIP)
+    chunk, filters = (256, {}) if rows_per_step == 1 else (rows_per_step, filters)
     shape, limits, chunks = ((rows, *columns) for rows in (0, None, chunk))
     return group.create_dataset(name, shape, dtype, maxshape=limits, chunks=chunks, **filters)
 

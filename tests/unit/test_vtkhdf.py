@@ -44,14 +44,14 @@ def part_fields(step: int) -> dict[str, ArrayLike]:
     return {"velocity": (0.1 * step, -0.2, 0.01 * step**2), "state": step % 3, "normal_force": 1e-6 / (step + 1)}
 
 
-def write_plate(directory: Path, steps: int = N_STEPS, first: int = 0) -> None:
-    with vtkhdf.plate_file(directory, "run", POINTS, TRIANGLES) as plate:
+def write_plate(directory: Path, steps: int = N_STEPS, first: int = 0, compress: bool = True) -> None:
+    with vtkhdf.plate_file(directory, "run", POINTS, TRIANGLES, compress=compress) as plate:
         for k in range(first, first + steps):
             plate.append(TIMES[k], deflection=bump(k), gradient=gradient(k))
 
 
-def write_part(directory: Path, steps: int = N_STEPS) -> None:
-    with vtkhdf.part_file(directory, "run") as part:
+def write_part(directory: Path, steps: int = N_STEPS, compress: bool = True) -> None:
+    with vtkhdf.part_file(directory, "run", compress=compress) as part:
         for k in range(steps):
             part.append(TIMES[k], position(k), **part_fields(k))
 
@@ -92,8 +92,9 @@ def names(directory: Path) -> list[str]:
     return sorted(path.name for path in directory.iterdir())
 
 
-def test_vtk_reads_every_step_of_the_plate(tmp_path: Path) -> None:
-    write_plate(tmp_path)
+@pytest.mark.parametrize("compress", [True, False])
+def test_vtk_reads_every_step_of_the_plate(tmp_path: Path, compress: bool) -> None:
+    write_plate(tmp_path, compress=compress)
     path = tmp_path / "run.plate.vtkhdf"
     assert names(tmp_path) == [path.name]
     assert times_in_vtk(path) == TIMES
@@ -101,8 +102,9 @@ def test_vtk_reads_every_step_of_the_plate(tmp_path: Path) -> None:
         assert_plate_step(path, step)
 
 
-def test_vtk_reads_every_step_of_the_part(tmp_path: Path) -> None:
-    write_part(tmp_path)
+@pytest.mark.parametrize("compress", [True, False])
+def test_vtk_reads_every_step_of_the_part(tmp_path: Path, compress: bool) -> None:
+    write_part(tmp_path, compress=compress)
     path = tmp_path / "run.part.vtkhdf"
     assert names(tmp_path) == [path.name]
     assert times_in_vtk(path) == TIMES
