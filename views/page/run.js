@@ -18,7 +18,7 @@ const EYES = {
 const MESH = 0, LINES = 1, RIM = 2, ACTUATORS = 3, AHEAD = 4, TRAIL = 5, PART = 6;
 const curves = pageData.curves.map((panel) => panel.lines.map((line) => unpack(line.values)));
 const slider = element("step");
-let closeBy = false, exaggeration = pageData.exaggeration[0], shown = 0, playing = false, looking = false, drawing = null, wanted = null;
+let closeBy = false, exaggeration = pageData.exaggeration[0], shown = 0, playing = false, turn = 0, looking = false, drawing = null, wanted = null;
 
 function unpackSpots(spots) {
   return { corners: unpack(spots.corners), weights: unpack(spots.weights) };
@@ -284,13 +284,13 @@ function play() {
   element("play-sign").textContent = playing ? "❚❚" : "▶";
   element("play-word").textContent = playing ? "Pause" : "Play";
   if (!playing) return;
-  const from = shown < last ? shown : 0, began = performance.now();
+  const from = shown < last ? shown : 0, began = performance.now(), mine = ++turn;
   const next = async (now) => {
-    if (!playing) return;
+    if (!playing || mine !== turn) return; // paused, or played anew meanwhile
     const seconds = Number(element("pace").value);
     const step = Math.min(last, from + Math.floor((now - began) / 1000 / seconds * last));
     if (step !== shown || step === from) await show(step);
-    if (step >= last) { if (playing) play(); } else requestAnimationFrame(next);
+    if (step >= last) { if (playing && mine === turn) play(); } else requestAnimationFrame(next);
   };
   requestAnimationFrame(next);
 }
