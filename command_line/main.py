@@ -12,6 +12,7 @@ from command_line import (
     schema,
     sweep,
     verify,
+    view,
 )
 from command_line.group import main
 
@@ -28,4 +29,5 @@ __all__ = [
     "schema",
     "sweep",
     "verify",
+    "view",
 ]

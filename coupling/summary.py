@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -81,6 +81,17 @@ class PlateFigures:
 @dataclass(frozen=True)
 class PlateSummary(PlateFigures, Summary):
     """A run on a plate in numbers."""
+
+
+def summary_of(figures: Mapping[str, Any]) -> Summary:
+    """The summary whose `as_dict`, written as JSON and read again, gave these figures."""
+    plain: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in figures.items()
+    }
+    plain["motion_fits"] = tuple(MotionFit(**fit) for fit in plain["motion_fits"])
+    if plain["plate_unknowns"] is not None:
+        return PlateSummary(**plain)
+    return Summary(**{field.name: plain[field.name] for field in fields(Summary)})
 
 
 def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory, friction: Contact) -> Summary:

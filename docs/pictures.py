@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 from motion_pictures import draw_motion_error
+from page_pictures import draw_pages
 from paraview_pictures import draw_paraview
 from tolerance_pictures import draw_tolerance
 
@@ -189,3 +190,4 @@ if __name__ == "__main__":
     draw_motion_error()
     draw_tolerance()
     draw_paraview()
+    draw_pages()

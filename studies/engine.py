@@ -7,7 +7,7 @@ threads nor on which chunks came before.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -20,7 +20,7 @@ from coupling.platform_case import PlatformCase
 from coupling.platform_scene import platform_scene
 from coupling.progress import silent
 from coupling.run import build_scene
-from particle import Micropart, SurfaceMotion, simulate_many
+from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact
 from studies.points import Points
 from studies.record import Records, new_records, put
@@ -33,6 +33,7 @@ A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about, that a path takes, and each cycle of i
 A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about, that these take
 SURFACES: Final = 16  # kept at most: each takes some 5 MB
 HELD: Final = 256  # trajectories in memory at a time: each takes 0.13 MB, however short
+TOGETHER: Final = 64  # paths found side by side when some are asked for
 FAILURES: Final = (ValueError, ArithmeticError, RuntimeError)
 
 
@@ -45,6 +46,7 @@ class _Path(NamedTuple):
     friction: Contact
 
 
+Seen = Callable[[int, Trajectory], object]  # gets the number of a path among those found together, and the path
 _Group = tuple[list[_Path], SurfaceMotion, RunCase]
 
 
@@ -94,7 +96,23 @@ class Engine:
         """Why path k was refused, which is found out anew; nothing: it was not."""
         return self._found(k, k + 1)[1].get(0, [])
 
-    def _found(self, start: int, stop: int) -> tuple[Records, dict[int, list[str]]]:
+    def follow(self, numbers: Iterable[int], seen: Seen) -> None:
+        """Find the paths of these ascending numbers once more; seen: gets each but the refused, with its number."""
+        together: list[int] = []
+        for k in numbers:
+            if together and (k != together[-1] + 1 or len(together) == TOGETHER):
+                self._show(together, seen)
+                together = []
+            together.append(k)
+        if together:
+            self._show(together, seen)
+
+    def _show(self, together: list[int], seen: Seen) -> None:
+        """The same for numbers that follow each other."""
+        first = together[0]
+        self._found(first, together[-1] + 1, lambda row, path: seen(first + row, path))
+
+    def _found(self, start: int, stop: int, seen: Seen | None = None) -> tuple[Records, dict[int, list[str]]]:
         """The records, and by row what is wrong with those that were refused."""
         records = new_records(stop - start)
         wrong: dict[int, list[str]] = {}
@@ -102,7 +120,7 @@ class Engine:
         with threadpool_limits(limits=1, user_api="blas"):
             for paths, surface, run in self._groups(start, stop, records, wrong):
                 for first in range(0, len(paths), HELD):
-                    self._follow(records, wrong, paths[first : first + HELD], surface, run)
+                    self._follow(records, wrong, paths[first : first + HELD], surface, run, seen)
         for row, said in wrong.items():
             records["mistakes"][row] = len(said)
         return records, wrong
@@ -144,6 +162,7 @@ class Engine:
         paths: Sequence[_Path],
         surface: SurfaceMotion,
         run: RunCase,
+        seen: Seen | None,
     ) -> None:
         try:
             found = simulate_many(
@@ -162,10 +181,12 @@ class Engine:
                 wrong[paths[0].row] = [f"its path cannot be found: {error}"]
             else:
                 for path in paths:
-                    self._follow(records, wrong, [path], surface, run)
+                    self._follow(records, wrong, [path], surface, run, seen)
         else:
             for path, trajectory in zip(paths, found, strict=True):
                 put(records, path.row, path.part.position, trajectory)
+                if seen is not None:
+                    seen(path.row, trajectory)
 
     def _surface(self, base: Base) -> SurfaceMotion | str:
         """The moving surface, or why there is none.

@@ -62,13 +62,18 @@ def draw_classes(
     add_key(axes, numbers, names, colours)
 
 
+def outline(across: Scale, up: Scale, holds: BoolArray) -> list[list[tuple[float, float]]]:
+    """The straight pieces between the fields (n, m) of a map where a condition holds and the others."""
+    x, y = edges(across).tolist(), edges(up).tolist()
+    lines = [[(x[i + 1], y[j]), (x[i + 1], y[j + 1])] for i, j in np.argwhere(holds[1:] != holds[:-1])]
+    return lines + [[(x[i], y[j + 1]), (x[i + 1], y[j + 1])] for i, j in np.argwhere(holds[:, 1:] != holds[:, :-1])]
+
+
 def draw_outline(axes: Axes, across: Scale, up: Scale, holds: BoolArray | None) -> None:
     """Draw a line between the fields (n, m) of a map where a condition holds and the others; None: there is none."""
     if holds is None:
         return
-    x, y = edges(across), edges(up)
-    lines = [[(x[i + 1], y[j]), (x[i + 1], y[j + 1])] for i, j in np.argwhere(holds[1:] != holds[:-1])]
-    lines += [[(x[i], y[j + 1]), (x[i + 1], y[j + 1])] for i, j in np.argwhere(holds[:, 1:] != holds[:, :-1])]
+    lines = outline(across, up, holds)
     black = [withStroke(linewidth=3.0, foreground="black")]
     axes.add_collection(LineCollection(lines, colors="white", linewidths=1.4, path_effects=black), autolim=False)
 

@@ -23,8 +23,11 @@ from studies.tables import MOST_PATHS, TABLES, AxisTable, StudyTable, StudyTable
 Mistake = tuple[Location, str]
 
 
-def read_study(path: str | os.PathLike[str]) -> Study:
-    """Read the study file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read."""
+def read_study(path: str | os.PathLike[str], case: Case | None = None) -> Study:
+    """Read the study file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read.
+
+    case: its base case; None: that of the file that it names.
+    """
     text, data = load(path)
     errors: list[Any] = []
     threshold = None
@@ -32,7 +35,7 @@ def read_study(path: str | os.PathLike[str]) -> Study:
         threshold = StudyTables.model_validate(data, context=UNITS_REQUIRED).map.threshold
     except ValidationError as error:
         errors += error.errors()
-    study, mistakes = _study(Path(path), text, data)
+    study, mistakes = _study(Path(path), text, data, case)
     if study and threshold and (message := _undrawn(study.points)):
         mistakes.append((("map", "threshold"), message))
     if study and not errors and not mistakes and (message := all_refused(study)):
@@ -46,11 +49,13 @@ def read_study(path: str | os.PathLike[str]) -> Study:
     return replace(study, threshold=threshold)
 
 
-def _study(path: Path, text: str, data: Mapping[str, Any]) -> tuple[Study | None, list[Mistake]]:
+def _study(path: Path, text: str, data: Mapping[str, Any], case: Case | None) -> tuple[Study | None, list[Mistake]]:
     """The study, None where it is not known, and what is wrong with it beyond each table by itself."""
     table = data.get("study")
     given = StudyTable.values_of(table if isinstance(table, dict) else {}, UNITS_REQUIRED)
-    case, mistakes = _case(path, given["case"])
+    mistakes: list[Mistake] = []
+    if case is None:
+        case, mistakes = _case(path, given["case"])
     written = data.get("axes")
     tables = [table for table in written if isinstance(table, dict)] if isinstance(written, list) else []
     axes = Axes(case, [AxisTable.values_of(table, UNITS_REQUIRED) for table in tables], given["sampling"])

@@ -97,6 +97,7 @@ class Shown:
     outcome: IntArray
     end: FloatArray  # (..., 2) m
     fixed: dict[str, str]
+    numbers: IntArray  # of the paths
     holds: BoolArray | None = None
 
     @classmethod
@@ -120,10 +121,12 @@ class Shown:
                 scale = Scale.of(axis, np.array([axis.values[picked[axis.name]]]))
                 number = scale.texts[0] if scale.texts else f"{scale.drawn[0]:.4g} {scale.unit.name}".rstrip("1 ")
                 fixed[axis.name] = number
-        part = findings.dataset.isel(picked)
+        outcome = findings.dataset["outcome"]
+        numbers = outcome.copy(data=np.arange(outcome.size).reshape(outcome.shape))
+        part = findings.dataset.assign(number=numbers).isel(picked)
         if not scattered:
             part = part.transpose(*(axis.name for axis in axes), ...)
-        arrays = {name: part[name].values for name in (column, DISTANCE, "outcome", "end_x", "end_y")}
+        arrays = {name: part[name].values for name in (column, DISTANCE, "outcome", "end_x", "end_y", "number")}
         if findings.repeats == 1:
             arrays = {name: array[..., None] for name, array in arrays.items()}
         scales = tuple(Scale.of(axis, part[axis.name].values) for axis in axes)
@@ -136,6 +139,7 @@ class Shown:
             arrays["outcome"].astype(np.int64),
             np.stack([arrays["end_x"], arrays["end_y"]], axis=-1),
             fixed,
+            arrays["number"],
             findings.threshold and findings.threshold.holds(part, findings.repeats),
         )
 

@@ -65,13 +65,21 @@ def of(kind: type) -> list[Row]:
 def _own(kind: type) -> list[Row]:
     body, comments = _parsed(kind)
     found = []
-    for line in body:
+    for line, below in zip(body, [*body[1:], None], strict=True):
         if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name) and line.target.id[0] != HIDDEN:
             text, unit = _without_units(_kind(line.annotation))
             if not text.startswith("ClassVar"):
-                comment = comments.get(line.end_lineno or 0, unit)
+                said = comments.get(line.end_lineno or 0, unit), _text(below)
+                comment = ": ".join(filter(None, said))
                 found.append(Row(line.target.id, text, _default(line.value), comment))
     return found
+
+
+def _text(line: ast.stmt | None) -> str:
+    """A text that stands alone, as below a field."""
+    if isinstance(line, ast.Expr) and isinstance(line.value, ast.Constant):
+        return " ".join(str(line.value.value).split())
+    return ""
 
 
 def _members(kind: type[Enum]) -> list[Row]:

@@ -1,0 +1,54 @@
+"""The command `view`."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from pathlib import Path
+
+import click
+
+from command_line.group import DEFAULT_OUTPUT, main, refusing
+
+
+@main.command()
+@click.argument("result", type=click.Path(path_type=Path))
+@click.option(
+    "--output", "-o", type=click.Path(path_type=Path, dir_okay=False), help="The page [NAME.html beside the result]."
+)
+@click.option("--paths", type=click.IntRange(min=0), help="Paths of a sweep to have in the page [about a minute's].")
+@click.option("--open", "opened", is_flag=True, help="Open the page in the browser.")
+@click.option("--quiet", "-q", is_flag=True, help="Say nothing, show no progress.")
+def view(result: Path, output: Path | None, paths: int | None, opened: bool, quiet: bool) -> None:
+    """Write RESULT as one HTML page that works offline.
+
+    RESULT is one of the two files of a run, finished or partial, or the netCDF file of a sweep. A case or study file
+    stands for its results in `results/` or beside it.
+    """
+    from coupling.results import check_folder
+    from views.found import result_of
+
+    found = refusing(result_of, result, DEFAULT_OUTPUT)
+    page = output or found.page
+    refusing(check_folder, page.parent)
+    page.parent.mkdir(parents=True, exist_ok=True)
+    if found.is_sweep:
+        from coupling.progress import CountBar, untold
+        from studies.read import read_study
+        from studies.saved import read_sweep
+        from views.study_page import write_study_page
+
+        given = None if found.study is None else refusing(read_study, found.study)
+        study, dataset = refusing(read_sweep, found.path, given)
+        with dataset, nullcontext(untold) if quiet else CountBar("paths") as tell:
+            refusing(write_study_page, study, dataset, page, paths, tell)
+    else:
+        if paths is not None:
+            raise click.UsageError(f"--paths must not be given for a run; got {result}")
+        from coupling.saved import read_run
+        from views.run_page import write_run_page
+
+        refusing(write_run_page, refusing(read_run, found.path), page)
+    if not quiet:
+        click.echo(f"{'wrote':<12}{page} ({page.stat().st_size / 1e6:.1f} MB)")
+    if opened:
+        click.launch(page.absolute().as_uri())

@@ -1,0 +1,41 @@
+"""Screenshots of the pages that `active-surface view` writes, by a headless Chromium."""
+
+import shutil
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from coupling import read_case, run_case
+from coupling.saved import read_run
+from studies import read_study, run_study
+from views.run_page import write_run_page
+from views.study_page import write_study_page
+
+ROOT = Path(__file__).parent.parent
+SIZE = "1360,860"
+FLAGS = ("headless=new", "no-sandbox", "hide-scrollbars", "use-gl=angle", "use-angle=swiftshader")
+
+
+def draw_pages() -> None:
+    """Draw docs/page.png and docs/page_sweep.png, where there is a Chromium."""
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        print("there is no chromium: docs/page.png and docs/page_sweep.png stay as they are")
+        return
+    with TemporaryDirectory() as folder:
+        run_case(read_case(ROOT / "examples/two_actuators.toml"), output=folder)
+        page = write_run_page(read_run(Path(folder, "two_actuators")), Path(folder, "run.html"))
+        _shoot(chromium, f"{page.as_uri()}#t=3.4", ROOT / "docs/page.png")
+        study = read_study(ROOT / "examples/studies/frequency_stroke.toml")
+        sweep = write_study_page(study, run_study(study).dataset, Path(folder, "sweep.html"))
+        _shoot(chromium, sweep.as_uri(), ROOT / "docs/page_sweep.png")
+
+
+def _shoot(chromium: str, address: str, picture: Path) -> None:
+    flags = [*FLAGS, "enable-unsafe-swiftshader", f"window-size={SIZE}", f"screenshot={picture}"]
+    flags.append("virtual-time-budget=60000")
+    subprocess.run([chromium, *(f"--{flag}" for flag in flags), address], check=True, capture_output=True)
+
+
+if __name__ == "__main__":
+    draw_pages()

@@ -1,0 +1,155 @@
+"""What pages are made of: modes, spots on triangles, thinned lines, packed numbers, and what a file stands for."""
+
+import base64
+
+import numpy as np
+import pytest
+
+from views.exaggeration import exaggeration
+from views.found import result_of
+from views.modes import SEEN, modes_of
+from views.packed import packed, packed_rows
+from views.page_file import notes_of, rows_of, write_page
+from views.sweep_paths import spread
+from views.thinned import thinned
+from views.triangles import inside, outer_edges, spots_of
+
+SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+HALVES = np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def numbers(array):
+    return np.frombuffer(base64.b64decode(array["bytes"]), "<" + array["kind"])
+
+
+@pytest.mark.parametrize("shape", [(1, 7), (7, 1), (40, 9), (9, 40)])
+def test_modes_give_the_field_and_are_few_where_it_has_few(shape):
+    rng = np.random.default_rng(3)
+    field = rng.normal(size=(shape[0], 2)) @ rng.normal(size=(2, shape[1]))
+    modes = modes_of(field)
+    assert len(modes.shapes) <= min(2, *shape)
+    largest = np.abs(field).max()
+    assert np.abs(modes.amplitudes @ modes.shapes - field).max() == pytest.approx(modes.error, abs=1e-12)
+    assert modes.error <= SEEN * largest
+
+
+def test_modes_follow_a_field_that_has_many():
+    field = np.random.default_rng(4).normal(size=(30, 30))
+    modes = modes_of(field)
+    assert np.abs(modes.amplitudes @ modes.shapes - field).max() <= SEEN * np.abs(field).max() * (1 + 1e-9)
+
+
+def test_modes_of_a_plate_at_rest():
+    modes = modes_of(np.zeros((5, 8), np.float32))
+    assert modes.error == 0 and not (modes.amplitudes @ modes.shapes).any()
+
+
+def test_spots_are_where_they_were_and_outside_at_the_nearest_corner():
+    places = np.array([[0.25, 0.5], [0.9, 0.2], [0.0, 0.0], [1.0, 1.0]])
+    spots = spots_of(SQUARE, HALVES, places)
+    back = (SQUARE[spots.corners] * spots.weights[..., None]).sum(axis=1)
+    assert back == pytest.approx(places, abs=1e-12)
+    z = np.tile(3 * SQUARE[:, 0] - SQUARE[:, 1] + 2, (4, 1))
+    assert spots.heights(z) == pytest.approx(3 * places[:, 0] - places[:, 1] + 2)
+    outside = spots_of(SQUARE, HALVES, np.array([[7.0, 8.0]]))
+    assert outside.heights(z[:1]) == pytest.approx(4.0)
+    assert inside(SQUARE, HALVES, np.array([[0.5, 0.4], [2.0, 0.5]])).tolist() == [True, False]
+
+
+def test_no_spots_are_no_spots():
+    assert spots_of(SQUARE, HALVES, np.empty((0, 2))).corners.shape == (0, 3)
+
+
+def test_outer_edges_are_those_of_one_triangle():
+    assert outer_edges(HALVES).tolist() == [[0, 1], [0, 3], [1, 2], [2, 3]]
+
+
+def test_a_thinned_line_passes_all_points_and_keeps_its_ends():
+    angle = np.linspace(0, 2 * np.pi, 400)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    few = thinned(circle, 0.01)
+    assert 10 < len(few) < 60
+    assert few[0].tolist() == circle[0].tolist() and few[-1].tolist() == circle[-1].tolist()
+    assert np.abs(1 - np.hypot(*((few[1:] + few[:-1]) / 2).T)).max() <= 0.0101
+
+
+def test_a_line_that_stays_is_two_points():
+    assert len(thinned(np.zeros((50, 2)), 1e-9)) == 2
+    assert len(thinned(np.zeros((1, 2)), 1e-9)) == 1
+
+
+def test_packed_numbers_are_unpacked_the_same():
+    assert numbers(packed([1, 70000], "u4")).tolist() == [1, 70000]
+    rows = np.array([[1e-7, -3e-7, 2e-7], [0.0, 0.0, 0.0], [5.0, 0.001, -5.0]])
+    found = packed_rows(rows)
+    back = numbers(found["rows"]).reshape(3, 3) * np.array(found["scales"])[:, None]
+    assert np.abs(back - rows).max(axis=1) == pytest.approx([0, 0, 0], abs=1.6e-5 * 5)
+    assert np.abs(back - rows)[0].max() <= 1.6e-5 * 3e-7
+
+
+@pytest.mark.parametrize(
+    ("height", "length", "factor"), [(0.0, 1.0, 1), (0.5, 1.0, 1), (0.1, 1.0, 1), (0.05, 1.0, 2), (1e-4, 1.0, 2000)]
+)
+def test_low_heights_are_drawn_larger_by_a_round_factor(height, length, factor):
+    assert exaggeration(height, length) == factor
+
+
+@pytest.mark.parametrize(("shape", "count"), [((41, 41), 500), ((7,), 3), ((5, 5), 100), ((100, 2), 9), ((3, 3), 1)])
+def test_chosen_cells_are_spread_and_no_more_than_asked(shape, count):
+    chosen = spread(shape, count)
+    assert 0 < chosen.sum() <= count
+    assert chosen.all() == (count >= chosen.size)
+
+
+def test_no_cells_are_chosen_where_none_are_wanted():
+    assert not spread((4, 4), 0).any()
+
+
+def test_texts_are_escaped():
+    assert "<script" not in rows_of([("<script>", "a & <b>")]) + notes_of(["<script>x</script>"])
+    assert notes_of([]) == ""
+
+
+def test_a_page_is_whole_or_not_there(tmp_path, monkeypatch):
+    with pytest.raises(KeyError):  # a text is missing
+        write_page(tmp_path / "page.html", "t", "run.html", {}, {}, ["run.js"])
+    with pytest.raises(ValueError, match="JSON"):
+        texts = dict.fromkeys(("name", "sentence", "warnings", "rows", "case"), "")
+        write_page(tmp_path / "page.html", "t", "run.html", texts, {"x": float("nan")}, ["run.js"])
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("given", "page"),
+    [
+        ("r/one.plate.vtkhdf", "r/one.html"),
+        ("r/one.part.vtkhdf", "r/one.html"),
+        ("r/one.partial.part.vtkhdf", "r/one.html"),
+        ("r/one.partial.plate.vtkhdf", "r/one.html"),
+        ("r/one", "r/one.html"),
+        ("r/1.5 mm", "r/1.5 mm.html"),
+        ("r/one.nc", "r/one.sweep.html"),
+    ],
+)
+def test_a_result_stands_for_itself(tmp_path, given, page):
+    found = result_of(tmp_path / given, tmp_path)
+    assert (found.path, found.page) == (tmp_path / given, tmp_path / page)
+
+
+def test_a_case_or_study_file_stands_for_its_result(tmp_path):
+    results = tmp_path / "results"
+    results.mkdir()
+    (tmp_path / "one.toml").write_text('[plate]\nshape = "disc"\n')
+    (tmp_path / "many.toml").write_text('[study]\ncase = "one.toml"\n')
+    with pytest.raises(ValueError, match=r"got .*one.toml.*`active-surface run .*one.toml` makes it"):
+        result_of(tmp_path / "one.toml", results)
+    with pytest.raises(ValueError, match=r"many.nc is there: `active-surface sweep"):
+        result_of(tmp_path / "many.toml", results)
+    (results / "one.partial.part.vtkhdf").touch()
+    (tmp_path / "many.nc").touch()
+    assert result_of(tmp_path / "one.toml", results).page == results / "one.html"
+    assert result_of(tmp_path / "many.toml", results)[:3] == (
+        tmp_path / "many.nc",
+        tmp_path / "many.sweep.html",
+        True,
+    )

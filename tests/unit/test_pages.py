@@ -1,0 +1,325 @@
+"""Pages of runs and sweeps as files: what is in them, and what the command says."""
+
+import base64
+import json
+import re
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from command_line.main import main
+from coupling import read_case, report, run_case
+from coupling.saved import read_run
+from coupling.summary import summary_of
+from studies import read_study, run_study
+from studies.engine import Engine
+from studies.saved import read_sweep
+from views.run_data import MOST_POINTS, run_data
+from views.run_page import write_run_page
+from views.study_page import write_study_page
+
+NAME = "a<script>alert(1)<b>&"
+CASE = """\
+# </script><script>alert(2)</script>
+[plate]
+shape = "disc"
+radius = "300 um"
+supports = "clamped"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+cell_size = "100 um"
+
+[[actuators]]
+position = ["0 um", "0 um"]
+stroke = "150 um"
+frequency = "300 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["100 um", "100 um"]
+
+[friction]
+model = "constant"
+limit = "41.8 nN"
+
+[run]
+duration = "2 ms"
+frames = 11
+"""
+STUDY = """\
+[study]
+case = "base.toml"
+
+[[axes]]
+field = "actuators.0.frequency"
+name = "frequency"
+values = ["250 Hz", "300 Hz", "350 Hz"]
+
+[[axes]]
+field = "part.position.0"
+name = "x"
+values = ["60 um", "100 um", "400 um"]
+
+[map]
+threshold = "distance > 1 um"
+"""
+
+
+def data_of(page):
+    text = page.read_text(encoding="utf-8")
+    found = re.search(r'<script id="data" type="application/json">(.*?)</script>', text, re.DOTALL)
+    return json.loads(found.group(1))
+
+
+def numbers(array):
+    return np.frombuffer(base64.b64decode(array["bytes"]), "<" + array["kind"])
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("pages")
+
+
+@pytest.fixture(scope="module")
+def result(folder):
+    (folder / f"{NAME}.toml").write_text(CASE)
+    return run_case(read_case(folder / f"{NAME}.toml"), folder)
+
+
+@pytest.fixture(scope="module")
+def run(folder, result):
+    return read_run(folder / NAME)
+
+
+@pytest.fixture(scope="module")
+def sweep(folder):
+    (folder / "base.toml").write_text(CASE)
+    (folder / "many.toml").write_text(STUDY)
+    with run_study(read_study(folder / "many.toml"), folder).dataset as dataset:
+        yield dataset.load()
+
+
+def test_the_summary_of_a_file_is_that_of_the_run(run, result):
+    assert report.lines(summary_of(run.summary)) == report.lines(result.summary)
+    assert report.warnings(summary_of(run.summary)) == report.warnings(result.summary)
+
+
+def test_a_page_has_the_steps_of_its_run(run):
+    data = run_data(run)
+    surface = data["surface"]
+    rank = len(surface["shapes"]["scales"])
+    shapes = numbers(surface["shapes"]["rows"]).reshape(rank, -1) * np.array(surface["shapes"]["scales"])[:, None]
+    heights = numbers(surface["amplitudes"]).reshape(-1, rank) @ shapes
+    wanted = run.plate_field("deflection") * 1e6
+    assert data["units"] == {"time": "ms", "length": "µm", "height": "µm"}
+    assert rank == 1  # there is one actuator
+    assert np.abs(heights - wanted).max() <= 2e-3 * np.abs(wanted).max()
+    assert numbers(data["time"]) == pytest.approx(run.time * 1e3, rel=1e-6)
+    assert numbers(data["part"]["x"]) == pytest.approx(run.position[:, 0] * 1e6, rel=1e-5)
+    assert numbers(data["part"]["z"]) == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
+    assert numbers(data["part"]["state"]).tolist() == run.state.tolist()
+    assert numbers(surface["actuators"]).tolist() == [0]
+
+
+def test_stretches_of_rest_are_those_of_the_integrator(run, result):
+    events = [event.time * 1e3 for event in result.trajectory.events]
+    ends = numbers(run_data(run)["stretches"]["stuck"])
+    assert ends[0] == 0 and ends[1] == pytest.approx(events[0], rel=1e-6)
+
+
+def test_the_page_of_a_run_is_safe_small_and_alone(folder, run):
+    page = write_run_page(run, folder / "safe.html")
+    text = page.read_text(encoding="utf-8")
+    assert page.stat().st_size < 6e6
+    ours = text.replace(re.search(r"<script>\n/\*\*\n\* plotly.*?</script>", text, re.DOTALL).group(0), "")
+    assert "<script>alert" not in ours and "&lt;script&gt;alert(1)&lt;b&gt;&amp;" in ours
+    assert not re.search(r"https?://|<link(?! rel=\"icon\" href=\"data:)|@import|\bsrc=", ours)
+    assert "default-src 'none'" in ours
+    assert ours.count("<script") == ours.count("</script>")
+
+
+def test_of_a_large_surface_that_around_the_path_is_shown(run, monkeypatch):
+    monkeypatch.setattr("views.run_data.MOST_POINTS", 200)
+    data = run_data(run)
+    assert not data["surface"]["whole"]
+    assert 100 < len(numbers(data["surface"]["x"])) < 260
+    middle = run.position[:, :2].mean(axis=0) * 1e6
+    for axis, centre in zip("xy", middle, strict=True):
+        values = numbers(data["surface"][axis])
+        assert values.min() < centre < values.max()
+    assert MOST_POINTS < 65536  # numbers of points are packed as 16 bits
+
+
+def test_of_many_steps_as_many_are_shown_as_fit(run, monkeypatch):
+    monkeypatch.setattr("views.run_data.MOST_STEPS", 5)
+    data = run_data(run)
+    assert data["steps"] == {"shown": 5, "stored": 11}
+    assert numbers(data["time"])[[0, -1]] == pytest.approx(run.time[[0, -1]] * 1e3)
+
+
+PLATFORM = """\
+[plate]
+shape = "platform"
+
+[plate.motion.x]
+stroke = "40 um"
+frequency = "100 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["0 um", "0 um"]
+
+[friction]
+model = "constant"
+limit = "10 nN"
+
+[run]
+duration = "10 ms"
+frames = 21
+"""
+
+
+def test_a_platform_is_flat_and_positions_are_counted_from_it(tmp_path):
+    (tmp_path / "shaken.toml").write_text(PLATFORM)
+    run_case(read_case(tmp_path / "shaken.toml"), tmp_path)
+    data = run_data(read_run(tmp_path / "shaken"))
+    low, high = data["surface"]["range"]
+    assert low == high == 0 and data["exaggeration"][0] == 1
+    assert data["counted"] == " on the platform"
+    assert len(numbers(data["surface"]["lines"][0]["ends"])) > 10
+    assert len(numbers(data["trail"]["step"])) > 5
+
+
+def test_a_part_in_flight_is_above_the_surface(tmp_path):
+    text = CASE.replace(
+        'model = "constant"\nlimit = "41.8 nN"', 'model = "coulomb"\ncoefficient = 0.3\nadhesion = "0.05 uN"'
+    )
+    (tmp_path / "flies.toml").write_text(text.replace("[run]", '[run]\nafter_detachment = "fly"'))
+    run_case(read_case(tmp_path / "flies.toml"), tmp_path)
+    run = read_run(tmp_path / "flies")
+    assert (run.state == 2).sum() > 3
+    data = run_data(run)
+    assert numbers(data["part"]["z"]) == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
+    near = np.hypot(*(run.points - run.position[-1, :2]).T).argmin()
+    assert numbers(data["part"]["z"])[-1] > run.plate_field("deflection")[-1, near] * 1e6 + 5
+    begin, end = numbers(data["stretches"]["flying"])
+    assert 0 < begin < end == pytest.approx(2.0)
+
+
+def test_a_part_that_stays_has_no_trail(tmp_path):
+    (tmp_path / "stays.toml").write_text(CASE.replace("41.8 nN", "9 N"))
+    run_case(read_case(tmp_path / "stays.toml"), tmp_path)
+    data = run_data(read_run(tmp_path / "stays"))
+    assert len(numbers(data["trail"]["step"])) == 0
+    assert numbers(data["stretches"]["stuck"]) == pytest.approx([0.0, 2.0])
+
+
+def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
+    for kind in ("plate", "part"):
+        (tmp_path / f"cut.partial.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())
+    said = CliRunner().invoke(main, ["view", str(tmp_path / "cut.partial.part.vtkhdf")])
+    assert said.exit_code == 0
+    assert "not written to their end" in (tmp_path / "cut.html").read_text(encoding="utf-8")
+
+
+def test_open_opens_the_page(folder, result, monkeypatch):
+    opened = []
+    monkeypatch.setattr("click.launch", opened.append)
+    assert CliRunner().invoke(main, ["view", str(folder / NAME), "--open", "-q"]).exit_code == 0
+    assert opened == [(folder / f"{NAME}.html").as_uri()]
+
+
+@pytest.mark.parametrize("ending", ["", ".plate.vtkhdf", ".part.vtkhdf"])
+def test_view_writes_beside_the_result_or_where_it_is_told(folder, result, ending, tmp_path):
+    said = CliRunner().invoke(main, ["view", str(folder / f"{NAME}{ending}")])
+    assert said.exit_code == 0 and f"{NAME}.html" in said.output
+    assert (folder / f"{NAME}.html").is_file()
+    said = CliRunner().invoke(main, ["view", str(folder / NAME), "-q", "-o", str(tmp_path / "new" / "x.html")])
+    assert (said.exit_code, said.output) == (0, "")
+    assert [file.name for file in (tmp_path / "new").iterdir()] == ["x.html"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("gone", None, "there is no"),
+        ("gone.nc", None, "there is no such file"),
+        ("text.nc", "no netCDF", "which is something else"),
+        ("text.plate.vtkhdf", "no HDF5", "no"),
+        ("broken.toml", "[plate", "broken.toml"),
+        ("case.toml", "[plate]\n", "active-surface run"),
+        ("study.toml", "[study]\n", "active-surface sweep"),
+    ],
+)
+def test_what_is_no_result_is_refused(tmp_path, name, text, said):
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    answer = CliRunner().invoke(main, ["view", str(tmp_path / name)])
+    assert answer.exit_code == 2 and said in answer.output and "Traceback" not in answer.output
+    assert not list(tmp_path.glob("*.html"))
+
+
+def test_paths_are_of_sweeps_only(folder, result):
+    answer = CliRunner().invoke(main, ["view", str(folder / NAME), "--paths", "3"])
+    assert answer.exit_code == 2 and "--paths" in answer.output
+
+
+def test_a_sweep_is_read_back_from_its_results(folder, sweep):
+    study, dataset = read_sweep(folder / "many.nc")
+    with dataset:
+        assert study.traits == read_study(folder / "many.toml").traits
+        assert study.case.actuators == read_case(folder / "base.toml").actuators
+        assert study.name == "many" and study.threshold is not None
+
+
+def test_a_study_whose_results_are_others_is_refused(folder, sweep, tmp_path):
+    (tmp_path / "base.toml").write_text(CASE)
+    (tmp_path / "many.toml").write_text(STUDY.replace("350 Hz", "360 Hz"))
+    with pytest.raises(ValueError, match="of other points"):
+        read_sweep(folder / "many.nc", read_study(tmp_path / "many.toml"))
+
+
+def test_followed_paths_are_those_of_the_sweep(folder, sweep):
+    study = read_study(folder / "many.toml")
+    ends = {}
+    Engine(study).follow([0, 1, 2, 4, 7], lambda number, path: ends.update({number: path.position[-1].tolist()}))
+    assert sorted(ends) == [0, 1, 4, 7]  # 2 starts beyond the rim
+    for number, end in ends.items():
+        assert end == [sweep[f"end_{c}"].values.ravel()[number] for c in "xy"]
+
+
+def test_the_page_of_a_sweep_has_its_map_and_its_paths(folder, sweep):
+    study = read_study(folder / "many.toml")
+    data = data_of(write_study_page(study, sweep, folder / "map.html"))
+    assert data["kind"] == "map" and [axis["name"] for axis in data["axes"]] == ["frequency", "x"]
+    distance = numbers(data["distance"]).reshape(3, 3)
+    scale = {"m": 1, "mm": 1e3, "µm": 1e6, "nm": 1e9}[data["units"]["distance"]]
+    assert distance == pytest.approx(sweep["distance"].values * scale, rel=1e-6, nan_ok=True)
+    cells = numbers(data["paths"]["cells"]).tolist()
+    assert cells == [0, 1, 3, 4, 6, 7]
+    stops, rows = numbers(data["paths"]["stops"]), data["paths"]["points"]
+    x = numbers(rows["rows"]).reshape(2, -1)[0] * rows["scales"][0]
+    ends = numbers(data["ends"]).reshape(9, 2)[:, 0]
+    assert x[stops - 1] == pytest.approx(ends[cells], abs=1e-2)
+    assert data["outline"] and data["threshold"]
+
+
+@pytest.mark.parametrize(("count", "cells"), [(0, []), (4, [0, 1, 3, 4, 6, 7]), (1, [4])])
+def test_a_page_has_no_more_paths_than_asked(folder, sweep, count, cells):
+    found = data_of(write_study_page(read_study(folder / "many.toml"), sweep, folder / "few.html", count))
+    kept = numbers(found["paths"]["cells"]).tolist()
+    assert len(kept) <= count and set(kept) <= set(cells)
+
+
+def test_paths_that_end_elsewhere_are_told_of(folder, sweep):
+    other = sweep.copy(deep=True)
+    other["end_x"][0, 0] += 5e-6
+    page = write_study_page(read_study(folder / "many.toml"), other, folder / "other.html")
+    assert "1 of the 6 paths, found once more for this page, end elsewhere" in page.read_text(encoding="utf-8")
+
+
+def test_view_of_a_study_file_finds_its_results(folder, sweep):
+    said = CliRunner().invoke(main, ["view", str(folder / "many.toml"), "--paths", "2"])
+    assert said.exit_code == 0 and "many.sweep.html" in said.output

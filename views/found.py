@@ -1,0 +1,58 @@
+"""What a file that a user names stands for: the result of a run or of a sweep."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from coupling.case_lines import load
+
+RUN_ENDINGS = (".plate.vtkhdf", ".part.vtkhdf", ".partial.plate.vtkhdf", ".partial.part.vtkhdf")
+SWEEP_ENDING = ".nc"
+
+
+class Found(NamedTuple):
+    """A result: what its reader wants, and where its page goes."""
+
+    path: Path  # of a run FOLDER/NAME or one of its files
+    page: Path
+    is_sweep: bool
+    study: Path | None = None  # the study file that was named
+
+
+def result_of(path: Path, folder: Path) -> Found:
+    """The result that a path stands for; that of a case or study file is in the folder or beside it.
+
+    Raises ValueError when there is none.
+    """
+    if path.suffix == ".toml":
+        return _of_file(path, folder)
+    if path.suffix == SWEEP_ENDING:
+        return Found(path, path.with_suffix(".sweep.html"), True)
+    return Found(path, path.with_name(f"{_name(path)}.html"), False)
+
+
+def _of_file(path: Path, folder: Path) -> Found:
+    _, tables = load(path)
+    is_sweep = "study" in tables
+    endings = (SWEEP_ENDING,) if is_sweep else RUN_ENDINGS
+    for place in (folder, path.parent):
+        for ending in endings:
+            file = place / f"{path.stem}{ending}"
+            if file.is_file():
+                page = place / f"{path.stem}{'.sweep' if is_sweep else ''}.html"
+                return Found(file, page, is_sweep, path if is_sweep else None)
+    command = "sweep" if is_sweep else "run"
+    wanted = f"a result, or a file whose result is in {folder} or beside it"
+    raise ValueError(
+        f"Input RESULT must be {wanted}; got {path}, and no {path.stem}{endings[0]} is there: "
+        f"`active-surface {command} {path}` makes it"
+    )
+
+
+def _name(path: Path) -> str:
+    """The name of a run, from one of its files or from FOLDER/NAME."""
+    for ending in sorted(RUN_ENDINGS, key=len, reverse=True):
+        if path.name.endswith(ending):
+            return path.name.removesuffix(ending)
+    return path.name

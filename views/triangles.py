@@ -1,0 +1,52 @@
+"""Triangles of a drawn surface: where points lie in them, and their outer edges."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.tri import Triangulation
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+class Spots(NamedTuple):
+    """Points on a surface of triangles, each a mean of three corners."""
+
+    corners: IntArray  # (q, 3)
+    weights: FloatArray  # (q, 3), which add up to 1
+
+    def heights(self, z: FloatArray) -> FloatArray:
+        """Their heights, each at its own of q steps: z (q, n)."""
+        return np.asarray((np.take_along_axis(z, self.corners, axis=1) * self.weights).sum(axis=1))
+
+
+def spots_of(points: FloatArray, triangles: IntArray, places: FloatArray) -> Spots:
+    """Places (q, 2) [m] on triangles (m, 3) of points (n, 2) [m]; one outside is put at the nearest corner."""
+    mesh = Triangulation(*points.T, triangles)
+    found = mesh.get_trifinder()(*places.T)
+    used = np.unique(triangles)
+    nearest = used[cKDTree(points[used]).query(places)[1]]
+    corners = np.where(found[:, None] >= 0, triangles[found], nearest[:, None])
+    a, b, c = np.moveaxis(points[corners], 1, 0)
+    u, v, w = b - a, c - a, places - a
+    area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    area = np.where(area == 0, 1.0, area)
+    second = (w[:, 0] * v[:, 1] - w[:, 1] * v[:, 0]) / area
+    third = (u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]) / area
+    return Spots(corners, np.stack([1 - second - third, second, third], axis=1))
+
+
+def inside(points: FloatArray, triangles: IntArray, places: FloatArray) -> NDArray[np.bool_]:
+    """Which places (q, 2) [m] lie in the triangles."""
+    return np.asarray(Triangulation(*points.T, triangles).get_trifinder()(*places.T) >= 0)
+
+
+def outer_edges(triangles: IntArray) -> IntArray:
+    """The edges (e, 2) that only one triangle has."""
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    unique, count = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    return np.asarray(unique[count == 1])
