@@ -43,7 +43,7 @@ def plot(
     own, as wide as is asked for, with text as text; the captions are printed.
     """
     from coupling.results import check_folder
-    from views.plot import plot as draw
+    from views.plots import plot as draw
 
     if output is not None:
         refusing(check_folder, output)

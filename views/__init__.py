@@ -9,7 +9,7 @@ _HOMES = {
     "Animation": "views.animation",
     "animate": "views.animation",
     "still": "views.animation",
-    "plot": "views.plot",
+    "plot": "views.plots",
     "write_run_page": "views.run_page",
     "write_study_page": "views.study_page",
 }

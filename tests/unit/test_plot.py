@@ -18,7 +18,7 @@ from coupling.saved import read_run
 from studies import read_study, run_study
 from studies.findings import read_findings
 from studies.shown import Shown
-from views.plot import plot
+from views.plots import plot
 from views.run_pictures import MARKS, courses, run_pictures
 from views.saved_portrait import portrait_of_saved
 from views.sheet import MM, drawn
