@@ -80,12 +80,18 @@ def net(smooth: Smooth, frame: FloatArray, width: float, longest: float) -> Line
 
 
 def path_points(path: FloatArray, time: FloatArray, longest: float) -> tuple[FloatArray, FloatArray]:
-    """Points (r, 2) along a path (k, 2) [m] that are so near to each other [m], and when the part was there."""
+    """Points (r, 2) along a path (k, 2) [m], about so near to each other [m], and when the part was there.
+
+    None is nearer than half of that to the one before: of shorter pieces OpenGL draws hardly anything.
+    """
     length = np.hypot(*np.diff(path, axis=0).T)
     parts = np.ceil(length / longest).astype(int)
     moved = np.repeat(np.arange(len(length)), parts)
     share = (np.arange(len(moved)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[moved]
-    xy = path[moved] + share[:, None] * (path[moved + 1] - path[moved])
-    return np.concatenate([xy, path[-1:]]), np.concatenate(
-        [time[moved] + share * (time[moved + 1] - time[moved]), time[-1:]]
-    )
+    xy = np.concatenate([path[moved] + share[:, None] * (path[moved + 1] - path[moved]), path[-1:]])
+    then = np.concatenate([time[moved] + share * (time[moved + 1] - time[moved]), time[-1:]])
+    kept = [0]
+    for k in range(1, len(xy)):
+        if np.hypot(*(xy[k] - xy[kept[-1]])) >= longest / 2:
+            kept.append(k)
+    return xy[kept], then[kept]

@@ -8,6 +8,7 @@ from particle import State
 from views.camera import CAMERAS, Camera, camera_of
 from views.frames import frames_of
 from views.layout import BOTTOM, LEFT, RIGHT, TOP, layout_of, nice_length, size_of
+from views.lines import path_points
 from views.pace import FEWEST, MOST_FRAMES, pace_of, warnings_of
 from views.smooth import Smooth
 from views.stage import stage_of
@@ -221,3 +222,13 @@ def test_crowded_actuators_are_not_marked():
     crowded, stage.CROWDED = stage.CROWDED, 0.1
     assert marks(100) == 0
     stage.CROWDED = crowded
+
+
+def test_a_slow_part_leaves_no_pieces_of_trail_that_are_too_short_to_be_drawn():
+    time = np.linspace(0.0, 1.0, 2001)
+    path = np.column_stack([1e-4 * time**4, 5e-5 * time**4])
+    xy, then = path_points(path, time, 1e-6)
+    pieces = np.hypot(*np.diff(xy, axis=0).T)
+    assert pieces.min() >= 0.5e-6 and pieces.max() <= 1.5e-6
+    assert np.hypot(*(path[-1] - xy[-1])) < 0.5e-6 and (xy[0] == path[0]).all()
+    assert xy[:, 0] == pytest.approx(1e-4 * then**4, abs=1e-9) and (np.diff(then) > 0).all()
