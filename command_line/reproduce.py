@@ -21,8 +21,8 @@ from command_line.group import DEFAULT_OUTPUT, main, refusing
 def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: bool, as_json: bool) -> None:
     """Reproduce figures of the paper, such as fig17, or all.
 
-    Each in three models: the paper's scheme on its closed-form surface, our equations on that surface, and our equations
-    on a plate of finite elements. Writes a picture and the data of each; of all a page with the verdicts as well.
+    Each in three models: the paper's scheme on its closed-form surface, our equations on that surface, and our
+    equations on a plate of finite elements. Writes a picture and the data of each; of all a page as well.
     """
     from coupling.progress import StageBar
     from coupling.results import check_folder

@@ -64,7 +64,8 @@ def find(bench: Bench, effort: Effort) -> Found:
     data: dict[str, Any] = {"frequencies": FREQUENCIES.tolist(), "states": [list(map(list, state)) for state in STATES]}
     data |= {model: np.where(np.isnan(rows), -1.0, rows).tolist() for model, rows in away.items()}
     return Found("fig22", "Accuracy of placement", _verdicts(bench, away), data, draw, (11.5, 4.6),
-                 "Where parts lie after 30 cycles, 240 to 320 Hz, five states with displaced starts; grey: the paper's 5 µm; "
+                 "Where parts lie after 30 cycles, 240 to 320 Hz, five states with displaced starts; grey: the "
+                 "paper's 5 µm; "
                  "-1 in the data: the part is gone.")  # fmt: skip
 
 
@@ -82,17 +83,22 @@ def _verdicts(bench: Bench, away: dict[str, FloatArray]) -> tuple[Verdict, Verdi
             f"percentile_90_{model}": most, f"named_{model}": named, f"parts_{model}": rows.size,
         }  # fmt: skip
         bands[model] = of_share(
-            f"{percent(share)} of {rows.size} within 5 um; median {MICRO * median:.1f}, 90 % within {MICRO * most:.1f} um",
+            f"{percent(share)} of {rows.size} within 5 um; median {MICRO * median:.1f}, 90 % within "
+            f"{MICRO * most:.1f} um",
             share,
         )
         met = float(np.mean([value <= FINE for value in named]))
         fines[model] = Answer(" and ".join(f"{MICRO * value:.1f}" for value in named) + " um", met)
     return (
         Verdict("22", "Parts come to lie within 5 um of the actuator, for 240 to 320 Hz and a set of states.", bands,
-                f"The paper names two states; here five, displaced by up to 1 um, {bench.parameters.cycles} cycles. Parts stop "
-                "anywhere within the zone around the actuator where friction holds them, whose size depends on frequency.",
+                f"The paper names two states; here five, displaced by up to 1 um, {bench.parameters.cycles} "
+                f"cycles. Parts stop "
+                "anywhere within the zone around the actuator where friction holds them, whose size depends on "
+                "frequency.",
                 numbers),
-        Verdict("22 (two cases)", "Less than 1 um from (80, 80) um at 250 Hz, and from (100, 100) um with (0.01, 0.01) m/s at "
-                "300 Hz.", fines, "Where in that zone a single part stops is chance to the last micrometre of its start.",
+        Verdict("22 (two cases)", "Less than 1 um from (80, 80) um at 250 Hz, and from (100, 100) um with "
+        "(0.01, 0.01) m/s at "
+                "300 Hz.", fines, "Where in that zone a single part stops is chance to the last micrometre of "
+                "its start.",
                 numbers),
     )  # fmt: skip

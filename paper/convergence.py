@@ -41,7 +41,7 @@ def find(bench: Bench, effort: Effort) -> Found:
                 axes[0, k].plot(MILLI * rows[:, 0], MICRO * np.hypot(rows[:, 1], rows[:, 2]), **look(model))
                 axes[1, k].plot(MICRO * rows[:, 1], MICRO * rows[:, 2], **look(model))
             finish(
-                axes[0, k], "time [ms]", "distance from the actuator [µm]", f"figure {name}: {frequency:g} Hz", k == 0
+                axes[0, k], "time [ms]", "distance from the actuator [µm]", f"figure {name}: {frequency:g} Hz", False
             )
         for rows in several:
             axes[0, 2].plot(MILLI * rows[:, 0], MICRO * np.hypot(rows[:, 1], rows[:, 2]), linewidth=0.8)
@@ -53,11 +53,14 @@ def find(bench: Bench, effort: Effort) -> Found:
             one.plot(0, 0, "^", color="white", markeredgecolor="black", markersize=8)
             one.set_aspect("equal", "datalim")
             finish(one, "x [µm]", "y [µm]", legend=False)
+        handles, names = axes[0, 0].get_legend_handles_labels()
+        figure.legend(handles, names, loc="outside lower center", ncols=len(names), frameon=False, fontsize=9)
 
     data: dict[str, Any] = {f"{f}_{m}": rows.tolist() for f, both in drawn.items() for m, rows in both.items()}
     data |= {"19_closed": [rows.tolist() for rows in several]}
     return Found("fig17-19", "Convergence to one actuator", verdicts, data, draw, (13.0, 7.4),
-                 "Continuous cycles of 150 µm: the paper's start (paths of all three models), and other states.")  # fmt: skip
+                 "Continuous cycles of 150 µm: the paper's start (paths of all three models), and other "
+                 "states.")  # fmt: skip
 
 
 def states(seed: int, count: int) -> tuple[FloatArray, FloatArray]:
@@ -76,16 +79,27 @@ def _share(paths: list[Path], period: float, near: float) -> float:
     return float(np.mean([path.converged(period, near) for path in paths]))
 
 
+def _to_and_fro(paths: list[Path], share: float, far: float) -> float:
+    """The share of parts that neither converge nor are lost."""
+    return float(np.mean([not path.lost(far) for path in paths])) - share
+
+
 def _converges(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
     p = bench.parameters
-    answers, numbers = {}, {}
+    answers: dict[str, Answer] = {}
+    numbers: dict[str, Any] = {}
     for model, paths in found.items():
         share = _share(paths, 1 / LOW, p.near)
-        numbers[f"share_{model}"], numbers[f"starts_{model}"] = share, len(paths)
-        answers[model] = of_share(f"{percent(share)} of {len(paths)} starts converge", share)
+        to_and_fro = _to_and_fro(paths, share, p.far)
+        numbers |= {f"share_{model}": share, f"to_and_fro_{model}": to_and_fro, f"starts_{model}": len(paths)}
+        text = (
+            f"{percent(share)} of {len(paths)} starts converge, {percent(to_and_fro)} go to and fro over the actuator"
+        )
+        answers[model] = of_share(text, share)
     return Verdict(
         "17a", "From rest at (100, 100) um the part converges to the actuator at 300 Hz.", answers,
-        f"Converged: on the surface after {p.cycles} cycles, within {MICRO * p.near:g} um of the actuator for the last five. "
+        f"Converged: on the surface after {p.cycles} cycles, within {MICRO * p.near:g} um of the actuator for "
+        f"the last five. "
         "Starts are displaced by up to 1 um. Paths are chaotic next to the threshold.", numbers,
     )  # fmt: skip
 
@@ -112,19 +126,26 @@ def _leaves(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
         answers[model] = Answer(text, (whole + part) / 2)
     return Verdict(
         "17b", "From the same start at 600 Hz it leaves the actuator's region in two strokes.", answers,
-        f"It has left once it is {MICRO * p.far:g} um away or over the rim; strokes are taken as cycles. A part that comes off "
+        f"It has left once it is {MICRO * p.far:g} um away or over the rim; strokes are taken as cycles. A part "
+        f"that comes off "
         "the surface before is lost, too, but has not left.", numbers,
     )  # fmt: skip
 
 
 def _all_converge(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
     p = bench.parameters
-    answers, numbers = {}, {}
+    answers: dict[str, Answer] = {}
+    numbers: dict[str, Any] = {}
     for model, paths in found.items():
         share = _share(paths, 1 / ANY, p.near)
-        numbers[f"share_{model}"], numbers[f"starts_{model}"] = share, len(paths)
-        answers[model] = of_share(f"{percent(share)} of {len(paths)} states converge", share)
+        to_and_fro = _to_and_fro(paths, share, p.far)
+        numbers |= {f"share_{model}": share, f"to_and_fro_{model}": to_and_fro, f"starts_{model}": len(paths)}
+        text = (
+            f"{percent(share)} of {len(paths)} states converge, {percent(to_and_fro)} go to and fro over the actuator"
+        )
+        answers[model] = of_share(text, share)
     return Verdict(
         "19", "At 250 Hz parts converge from various places and velocities.", answers,
-        f"The states are not listed; here places within {MICRO * REACH:g} um and velocities up to {FASTEST} m/s.", numbers,
+        f"The states are not listed; here places within {MICRO * REACH:g} um and velocities up to {FASTEST} "
+        f"m/s.", numbers,
     )  # fmt: skip

@@ -1,9 +1,9 @@
 """Beyond the paper: dead zones of an array with and without an active surface, over the pitch of its actuators.
 
-Without: actuators move what they touch. A square part as large as the paper's contact, lying anywhere on a square lattice, is
-in a dead zone where it touches none, or only one and so cannot be handed on.
-With: the plate carries on. A point part anywhere among four of nine actuators reaches its nearest actuator if one of
-a few drives of that actuator, the others held, brings it within NEAR.
+Without: actuators move what they touch. A square part as large as the paper's contact, lying anywhere on a square
+lattice, is in a dead zone where it touches none, or only one and so cannot be handed on.
+With: a part anywhere around the middle one of nine actuators, nearer to that than to the others, is served if one of
+a few drives of the middle one, the others held, brings it within NEAR.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from particle import Drive, Micropart, SurfaceMotion, simulate_many
 
 NAMES = ("deadzones",)
 PART: Final = 100e-6  # m, side of the part: the paper's contact area is 100 um x 100 um
-PITCHES: Final = 75e-6, 675e-6  # m
+PITCHES: Final = 75e-6, 2.4e-3  # m
 FREQUENCIES: Final = 150.0, 900.0  # Hz
 STROKES: Final = (50e-6, 100e-6, 150e-6)  # m
 NEAR: Final = 10e-6  # m
-FEWER: Final = 2  # times fewer starts than elsewhere
+FEWER: Final = 3  # times fewer starts than elsewhere
 CELLS: Final = 3.0  # of the mesh in a pitch
 PLATE_TOLERANCE: Final = 1e-6
 TOLERANCE: Final = 1e-6  # of paths
@@ -36,7 +36,7 @@ TOLERANCE: Final = 1e-6  # of paths
 
 def find(bench: Bench, effort: Effort) -> Found:
     """The shares of starts that are served, over the pitch."""
-    pitches = np.linspace(*PITCHES, effort.pitches) if effort.pitches > 1 else np.array([150e-6])
+    pitches = np.geomspace(*PITCHES, effort.pitches) if effort.pitches > 1 else np.array([150e-6])
     count = max(effort.starts // FEWER, 1)
     random = np.random.default_rng(bench.parameters.seed)
     places = random.random((count, 2)) - 0.5  # in pitches, around the middle actuator: the nearest one
@@ -52,16 +52,22 @@ def find(bench: Bench, effort: Effort) -> Found:
         axes.plot(MICRO * pitches, 100 * touching[:, 0], "--", color="#c8371b", label="without: touches an actuator")
         axes.plot(MICRO * pitches, 100 * touching[:, 1], ":", color="#c8371b", label="without: touches two or more")
         axes.set_ylim(0, 105)
+        axes.set_xscale("log")
+        axes.set_xticks(MICRO * pitches, [f"{MICRO * pitch:.0f}" for pitch in pitches])
+        axes.minorticks_off()
         finish(axes, "pitch [µm]", "share of the starts [%]", f"part of {MICRO * PART:g} µm")
 
     data: dict[str, Any] = {"pitch": pitches.tolist(), "reached": reached.tolist(), "touching": touching.tolist()}
-    return Found("deadzones", "Dead zones (beyond the paper)", (_verdict(pitches, reached, touching),), data, draw, (7.5, 4.6),
-                 "Share of starts from which the part is brought to its nearest actuator, and of places where a part would "
+    return Found("deadzones", "Dead zones (beyond the "
+    "paper)", (_verdict(pitches, reached, touching),), data, draw, (7.5, 4.6),
+                 "Share of starts from which the part is brought to its nearest actuator, and of places where a "
+                 "part would "
                  "touch actuators; bars: one standard deviation of so many starts.")  # fmt: skip
 
 
 def touched(pitch: float, side: float) -> tuple[float, float]:
-    """The shares of places where a square part, parallel to a square lattice of points, touches one or more, two or more."""
+    """The shares of places where a square part, parallel to a square lattice of points, touches one or more, "
+    "two or more."""
     whole, rest = divmod(side / pitch, 1.0)
     counts = {int(whole): 1 - rest, int(whole) + 1: rest}  # of columns, and likewise of rows
     none_or_one = [0.0, 0.0]
@@ -69,7 +75,7 @@ def touched(pitch: float, side: float) -> tuple[float, float]:
         for rows, other in counts.items():
             if columns * rows <= 1:
                 none_or_one[columns * rows] += share * other
-    return 1 - none_or_one[0], 1 - sum(none_or_one)
+    return max(1 - none_or_one[0], 0.0), max(1 - sum(none_or_one), 0.0)
 
 
 def nine(bench: Bench, pitch: float) -> SurfaceMotion:
@@ -103,15 +109,19 @@ def _verdict(pitches: FloatArray, reached: FloatArray, touching: FloatArray) -> 
     wide = pitches > PART
     wide = wide if wide.any() else np.full(len(pitches), True)
     served, without = float(reached[wide].mean()), float(touching[wide, 1].mean())
-    text = f"{percent(served)} of the starts against {percent(without)} that touch two actuators, {percent(float(touching[wide, 0].mean()))} one"
+    text = f"{percent(served)} of the starts against {percent(without)} that touch two actuators, "
+    f"{percent(float(touching[wide, 0].mean()))} one"
     numbers = {
         "pitch": pitches.tolist(), "reached": reached.mean(axis=1).tolist(),
         "touches_one": touching[:, 0].tolist(), "touches_two": touching[:, 1].tolist(),
     }  # fmt: skip
     return Verdict(
-        "beyond: dead zones", "An active surface moves parts smaller than the spacing of the actuators; discrete actuators do not.",
+        "beyond: dead zones", "An active surface moves parts smaller than the spacing of the actuators; "
+        "discrete actuators do not.",
         {"plate": of_share(text, served)},
-        f"Pitches above {MICRO * PART:g} um; drives of the nearest actuator alone, within {MICRO * NEAR:g} um of which the part "
-        f"must end: strokes of {', '.join(f'{MICRO * s:g}' for s in STROKES)} um, {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g} Hz.",
+        f"Pitches above {MICRO * PART:g} um; drives of the nearest actuator alone, within {MICRO * NEAR:g} um "
+        f"of which the part "
+        f"must end: strokes of {', '.join(f'{MICRO * s:g}' for s in STROKES)} um, {FREQUENCIES[0]:g} to "
+        f"{FREQUENCIES[1]:g} Hz.",
         numbers,
     )  # fmt: skip

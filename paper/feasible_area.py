@@ -22,7 +22,8 @@ GREYS = ("#1b4f9c", "#c8371b", "#3d8a4e", "#8a6d3b")
 
 
 def find(bench: Bench, effort: Effort) -> Found:
-    """Both figures: at rest the paper's conditions and ours are the same, so two surfaces are all there is to compare."""
+    """Both figures: at rest the paper's conditions and ours are the same, so two surfaces are all there is to "
+    "compare."""
     p = bench.parameters
     found: dict[str, dict[float, Feasible]] = {}
     for model in (CLOSED, PLATE):
@@ -71,7 +72,8 @@ def find(bench: Bench, effort: Effort) -> Found:
         axes[0].set_ylim(0, 1.35 * axes[0].get_ylim()[1])
 
     return Found("fig5-6", "Feasible area", _verdicts(found), data, draw, (11.5, 4.6),
-                 "Largest feasible area over a cycle, and its time integral. Places where the part comes off at some moment "
+                 "Largest feasible area over a cycle, and its time integral. Places where the part comes off at "
+                 "some moment "
                  "of the cycle do not count; dashed: they do, at moments when it is attached.")  # fmt: skip
 
 
@@ -93,10 +95,12 @@ def _verdicts(found: dict[str, dict[float, Feasible]]) -> tuple[Verdict, Verdict
     strokes = _list([1e6 * stroke for stroke in found[CLOSED]])
     return (
         Verdict(
-            "5", "Below about 200 Hz nothing moves, for three strokes alike; the area grows with frequency, peaks, and falls "
+            "5", "Below about 200 Hz nothing moves, for three strokes alike; the area grows with frequency, "
+            "peaks, and falls "
             "because the part comes off.", _ordered(five),
             f"Strokes are not stated; here {strokes} um. The least acceleration that slips goes with stroke times "
-            "frequency squared, so that one threshold for all strokes cannot be. The area falls only if places where the "
+            "frequency squared, so that one threshold for all strokes cannot be. The area falls only if places "
+            "where the "
             "part comes off at another moment of the cycle do not count.", numbers,
         ),
         Verdict(

@@ -63,7 +63,8 @@ def _logic(bench: Bench, ramps: dict[str, tuple[FloatArray, FloatArray]]) -> Ver
         numbers[f"largest_difference_{model}"] = wrong
         answers[model] = of_checks(f"it does, to {wrong:.0e} of the limit", [wrong < 1e-2])
     return Verdict(
-        "3", "Friction equals the load along the surface until the limit, and stays at the limit while the part slides.",
+        "3", "Friction equals the load along the surface until the limit, and stays at the limit while the part "
+        "slides.",
         answers, "No plate is in it: a part on a platform whose acceleration grows steadily.", numbers,
     )  # fmt: skip
 
@@ -78,7 +79,8 @@ def _swinging(swings: dict[str, Trajectory]) -> Verdict:
         answers[model] = of_checks(f"slips {slip:.3f} s, sticks {stick:.3f} s", checks)
     return Verdict(
         "4", "Slip begins at 2.41 s; relative velocity vanishes again at 2.87 s, where the platform turns.",
-        answers, "The platform's motion and friction are not stated. Of x = t sin(3.2 t) and 23.524 m/s^2 the second was "
+        answers, "The platform's motion and friction are not stated. Of x = t sin(3.2 t) and 23.524 m/s^2 the "
+        "second was "
         "chosen for 2.41 s; the second time is then a result.", numbers,
     )  # fmt: skip
 

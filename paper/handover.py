@@ -14,6 +14,7 @@ from paper.parameters import Effort, Place
 from paper.verdict import Answer, Verdict, of_share
 
 NAMES = ("fig20", "fig21")
+SHOWN: Final = 40.0  # ms
 
 
 class Handover(NamedTuple):
@@ -27,10 +28,13 @@ class Handover(NamedTuple):
 
 
 HANDOVERS: Final = (
-    Handover("20", (300.0, 450.0), (100e-6, 0.0), "From (100, 0) um the part leaves the 450 Hz actuator and converges to the "
-             "300 Hz one, 150 um away, on the line through both.", "Which of the two stands at (0, 0) is not stated: the start "
+    Handover("20", (300.0, 450.0), (100e-6, 0.0), "From (100, 0) um the part leaves the 450 Hz actuator and "
+    "converges to the "
+             "300 Hz one, 150 um away, on the line through both.", "Which of the two stands at (0, 0) is not "
+             "stated: the start "
              "is to lie in the region of the faster one, so that this one is at (150, 0)."),
-    Handover("21", (400.0, 300.0), (-50e-6, 15e-6), "From (-50, 15) um the part leaves the 400 Hz actuator and converges to "
+    Handover("21", (400.0, 300.0), (-50e-6, 15e-6), "From (-50, 15) um the part leaves the 400 Hz actuator and "
+    "converges to "
              "the 300 Hz one at (150, 0) um.", ""),
 )  # fmt: skip
 
@@ -45,7 +49,7 @@ def find(bench: Bench, effort: Effort) -> Found:
     drawn = {figure: {name: rows[0].drawn(800) for name, rows in both.items()} for figure, both in paths.items()}
 
     def draw(figure: Figure) -> None:
-        axes = figure.subplots(2, 2, width_ratios=(1.3, 1))
+        axes = figure.subplots(2, 2)
         for (over_time, plane), (name, rows) in zip(axes, drawn.items(), strict=True):
             for key, row in rows.items():
                 model, surface = SURFACES[key]
@@ -53,9 +57,12 @@ def find(bench: Bench, effort: Effort) -> Found:
                 over_time.plot(MILLI * row[:, 0], MICRO * row[:, 1], **style, label=key)
             for place in (0.0, p.pitch):
                 over_time.axhline(MICRO * place, color="#8a8a8a", linewidth=0.7)
-            finish(over_time, "time [ms]", "x [µm]", f"figure {name}", legend=name == "20")
+            finish(over_time, "time [ms]", "x [µm]", f"figure {name}", legend=False)
+            over_time.set_xlim(0, SHOWN)
             draw_plane(plane, rows, p.pitch)
             finish(plane, "x [µm]", "y [µm]", legend=False)
+        handles, names = axes[0, 0].get_legend_handles_labels()
+        figure.legend(handles, names, loc="outside lower center", ncols=len(names), frameon=False, fontsize=9)
 
     data: dict[str, Any] = {
         f"{figure}: {name}": rows.tolist() for figure, both in drawn.items() for name, rows in both.items()

@@ -170,6 +170,10 @@ class Path:
         late = self.time >= self.time[-1] - LAST_CYCLES * period
         return self.attached and bool((self.away(actuator)[late] <= near).all())
 
+    def lost(self, far: float) -> bool:
+        """Whether it leaves actuator 1, as below, or comes off."""
+        return not self.attached or self.leaves_at(far) < np.inf
+
     def leaves_at(self, far: float) -> float:
         """When [s] it first gets farther than `far` [m] from actuator 1, or over the rim; inf: never."""
         beyond = np.flatnonzero(self.away() > far)

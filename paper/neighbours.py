@@ -38,8 +38,9 @@ def find(bench: Bench, effort: Effort) -> Found:
 
     data: dict[str, Any] = {"frequencies": list(FREQUENCIES), "start": list(START)}
     data |= {f"{f:g} Hz, {name}": rows.tolist() for f, both in drawn.items() for name, rows in both.items()}
-    return Found("fig16", "Two actuators at one frequency", (_verdict(paths, p.pitch),), data, draw, (14.0, 4.0),
-                 f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycles; crosses: their ends.")  # fmt: skip
+    return Found("fig16", "Two actuators at one frequency", (_verdict(paths, p.pitch),), data, draw, (14.0, 3.6),
+                 f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycles; crosses: "
+                 f"their ends.")  # fmt: skip
 
 
 def goes_over(path: Path, pitch: float) -> bool:
@@ -58,8 +59,10 @@ def _verdict(paths: dict[float, dict[str, list[Path]]], pitch: float) -> Verdict
         answers[name] = Answer(f"{percent(low)} at 250, {', '.join(map(percent, high))}", float(np.mean(met)))
     numbers["frequencies"] = list(FREQUENCIES)
     return Verdict(
-        "16", "At 250 Hz the part stays with the first actuator, crosses it and returns; at higher frequencies up to 650 Hz "
+        "16", "At 250 Hz the part stays with the first actuator, crosses it and returns; at higher frequencies "
+        "up to 650 Hz "
         "it goes to the neighbour.", joined(answers),
-        f"Share of starts that ever come nearer to the neighbour, at {', '.join(f'{f:g}' for f in FREQUENCIES)} Hz. {JUMPS}"
+        f"Share of starts that ever come nearer to the neighbour, at {', '.join(f'{f:g}' for f in FREQUENCIES)} "
+        f"Hz. {JUMPS}"
         "The start is not stated; taken as in figure 21.", numbers,
     )  # fmt: skip

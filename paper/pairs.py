@@ -24,7 +24,8 @@ SURFACES: Final[dict[str, tuple[str, str]]] = {
 }
 """Models and how the closed forms are put together; the nearest one's alone jumps half-way between the actuators."""
 JUMPS = (
-    "Over nearest-actuator profiles the surface jumps half-way between the actuators; superposed ones and the plate are "
+    "Over nearest-actuator profiles the surface jumps half-way between the actuators; superposed ones and the "
+    "plate are "
     "smooth. "
 )
 WIDTHS: Final = {NEAREST: 1.6, SUPERPOSED: 0.9}
@@ -70,4 +71,6 @@ def mark_actuators(axes: Axes, pitch: float) -> None:
     """The two actuators, and the line half-way between them."""
     axes.plot([0, MICRO * pitch], [0, 0], "^", color="white", markeredgecolor="black", markersize=8, zorder=5)
     axes.axvline(MICRO * pitch / 2, color="#b0b0b0", linewidth=0.7)
-    axes.set_aspect("equal", "datalim")
+    axes.set_aspect("equal")
+    axes.set_xlim(-310, MICRO * pitch + 310)
+    axes.set_ylim(-310, 310)

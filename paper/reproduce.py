@@ -89,13 +89,13 @@ def write(found: Found, folder: Path) -> list[Path]:
 
 
 def rounded(value: Any) -> Any:
-    """The same with numbers of nine digits, and None for what is none, as JSON knows no nan."""
+    """The same with numbers of seven digits, and None for what is none, as JSON knows no nan."""
     if isinstance(value, dict):
         return {str(key): rounded(own) for key, own in value.items()}
     if isinstance(value, (list, tuple)):
         return [rounded(own) for own in value]
     if isinstance(value, float):
-        return float(f"{value:.9g}") if math.isfinite(value) else None
+        return float(f"{value:.7g}") if math.isfinite(value) else None
     return value
 
 

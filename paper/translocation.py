@@ -15,7 +15,7 @@ from paper.verdict import Answer, Verdict, of_checks
 from particle import Drive
 
 NAMES = ("fig15",)
-LOWEST, HIGHEST, FINER = 100.0, 1600.0, 2  # Hz, and times as many frequencies as in figures 5 and 6
+LOWEST, HIGHEST = 100.0, 1600.0  # Hz
 MOVED: Final = 0.1e-6  # m
 DURATION: Final = 20e-3  # s, after which every part has come to rest
 STRAIGHT: Final = 0.9  # of the neighbouring frequencies between which the distance grows: "with the frequency"
@@ -25,7 +25,7 @@ STYLES: Final = {PAPER: "--", CLOSED: "-", PLATE: ":"}
 def find(bench: Bench, effort: Effort) -> Found:
     """Distances in every model."""
     p = bench.parameters
-    frequencies = np.geomspace(LOWEST, HIGHEST, FINER * effort.frequencies)
+    frequencies = np.geomspace(LOWEST, HIGHEST, effort.frequencies)
     strokes = np.linspace(p.strokes[0], p.strokes[-1], effort.strokes)
     distance = {model: np.full((len(strokes), len(frequencies)), np.nan) for model in MODELS}
     outcome = {model: np.full((len(strokes), len(frequencies)), "", dtype=object) for model in MODELS}
@@ -51,8 +51,10 @@ def find(bench: Bench, effort: Effort) -> Found:
 
     data: dict[str, Any] = {"frequencies": frequencies.tolist(), "strokes": strokes.tolist()}
     data |= {model: np.where(np.isnan(rows), -1.0, rows).tolist() for model, rows in distance.items()}
-    return Found("fig15", "Distance over frequency and stroke", (_verdict(frequencies, distance, outcome, p.start),), data, draw,
-                 (8.5, 4.8), "Distance from the start after one cycle, from the frequency at which the part first moves to that "
+    return Found("fig15", "Distance over frequency and "
+    "stroke", (_verdict(frequencies, distance, outcome, p.start),), data, draw,
+                 (8.5, 4.8), "Distance from the start after one cycle, from the frequency at which the part "
+                 "first moves to that "
                  "at which it comes off; -1 in the data: it came off or left.")  # fmt: skip
 
 
@@ -83,14 +85,17 @@ def _verdict(
         numbers[f"beyond_the_last_{model}"] = beyond
         text = (
             f"moves from {first[0]:.0f} (least stroke) and {first[-1]:.0f} Hz (largest) to {last[0]:.0f} and "
-            f"{last[-1]:.0f} Hz, beyond which it comes off with {off} of {len(rows)} strokes, else goes over the rim; grows "
+            f"{last[-1]:.0f} Hz, beyond which it comes off with {off} of {len(rows)} strokes, else goes over "
+            f"the rim; grows "
             f"between {100 * grows:.0f} % of neighbouring frequencies"
         )
         answers[model] = of_checks(text, [all(np.isfinite(first)), off == len(rows), grows >= STRAIGHT])
     return Verdict(
-        "15", "For each stroke the part moves between a lowest frequency, where friction holds it, and a highest, where it "
+        "15", "For each stroke the part moves between a lowest frequency, where friction holds it, and a "
+        "highest, where it "
         "comes off; the distance grows in between.", answers,
-        f"Start ({MICRO * start[0]:g}, {MICRO * start[1]:g}) um and one cycle: neither is stated. The picture's shape is all "
+        f"Start ({MICRO * start[0]:g}, {MICRO * start[1]:g}) um and one cycle: neither is stated. The picture's "
+        f"shape is all "
         "that can be compared.", numbers,
     )  # fmt: skip
 
