@@ -91,10 +91,9 @@ def _verdicts(bench: Bench, away: dict[str, FloatArray]) -> tuple[Verdict, Verdi
         fines[model] = Answer(" and ".join(f"{MICRO * value:.1f}" for value in named) + " um", met)
     return (
         Verdict("22", "Parts come to lie within 5 um of the actuator, for 240 to 320 Hz and a set of states.", bands,
-                f"The paper names two states; here five, displaced by up to 1 um, {bench.parameters.cycles} "
-                f"cycles. Parts stop "
-                "anywhere within the zone around the actuator where friction holds them, whose size depends on "
-                "frequency.",
+                f"The paper names two states; here five, displaced by up to 1 um, {bench.parameters.cycles} cycles. "
+                "Parts stop anywhere within the zone around the actuator where friction holds them, whose size "
+                "depends on frequency.",
                 numbers),
         Verdict("22 (two cases)", "Less than 1 um from (80, 80) um at 250 Hz, and from (100, 100) um with "
         "(0.01, 0.01) m/s at "

@@ -19,7 +19,7 @@ from meshes import rectangle
 from paper.found import MICRO, Found, finish, percent
 from paper.models import Bench, FloatArray
 from paper.parameters import Effort
-from paper.verdict import Verdict, of_share
+from paper.verdict import FEW, MOST, Verdict, of_checks
 from particle import Drive, Micropart, SurfaceMotion, simulate_many
 
 NAMES = ("deadzones",)
@@ -106,22 +106,22 @@ def _reached(bench: Bench, effort: Effort, pitch: float, starts: FloatArray) -> 
 
 
 def _verdict(pitches: FloatArray, reached: FloatArray, touching: FloatArray) -> Verdict:
-    wide = pitches > PART
-    wide = wide if wide.any() else np.full(len(pitches), True)
-    served, without = float(reached[wide].mean()), float(touching[wide, 1].mean())
-    text = f"{percent(served)} of the starts against {percent(without)} that touch two actuators, "
-    f"{percent(float(touching[wide, 0].mean()))} one"
+    served, beyond = reached.mean(axis=1) >= MOST, touching[:, 1] < FEW
+    widest = float(pitches[served].max(initial=0.0))
+    first = float(pitches[beyond].min(initial=np.inf))
+    share = float(reached[pitches <= widest].mean()) if served.any() else 0.0
+    text = f"pitches up to {MICRO * widest:.0f} um are served ({percent(share)} of the starts); touching two actuators "
+    text += f"ends below {MICRO * first:.0f} um"
     numbers = {
         "pitch": pitches.tolist(), "reached": reached.mean(axis=1).tolist(),
-        "touches_one": touching[:, 0].tolist(), "touches_two": touching[:, 1].tolist(),
+        "touches_one": touching[:, 0].tolist(), "touches_two": touching[:, 1].tolist(), "widest_served": widest,
     }  # fmt: skip
     return Verdict(
-        "beyond: dead zones", "An active surface moves parts smaller than the spacing of the actuators; "
-        "discrete actuators do not.",
-        {"plate": of_share(text, served)},
-        f"Pitches above {MICRO * PART:g} um; drives of the nearest actuator alone, within {MICRO * NEAR:g} um "
-        f"of which the part "
-        f"must end: strokes of {', '.join(f'{MICRO * s:g}' for s in STROKES)} um, {FREQUENCIES[0]:g} to "
-        f"{FREQUENCIES[1]:g} Hz.",
+        "beyond: dead zones", "An active surface moves parts smaller than the spacing of its actuators, where discrete "
+        "actuators leave dead zones.",
+        {"plate": of_checks(text, [widest > PART])},
+        f"A part of {MICRO * PART:g} um; served: at least {100 * MOST:.0f} %. Drives of the nearest actuator alone, "
+        f"within {MICRO * NEAR:g} um of which the part must end: strokes of "
+        f"{', '.join(f'{MICRO * s:g}' for s in STROKES)} um, {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g} Hz.",
         numbers,
     )  # fmt: skip

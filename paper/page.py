@@ -22,9 +22,9 @@ def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, fold
         '"Micropart Motion on a Surface Due to Controlled Surface Excitation": what it states, and what this '
         "program finds.\n",
         f"Written by `active-surface reproduce all{' --full' if effort.name == 'full' else ''} --output docs`. Of "
-        f"{len(verdicts)} statements {counts[REPRODUCED]} are reproduced, {counts[PARTLY]} partly, "
-        f"{counts[NOT]} not. What the "
-        "paper leaves open, and how much each figure depends on it: [open points](paper-open-points.md).\n",
+        f"{len(verdicts)} statements {counts[REPRODUCED]} are reproduced, {counts[PARTLY]} partly, {counts[NOT]} "
+        "not. What the paper leaves open, and how much each figure depends on it: [open "
+        "points](paper-open-points.md).\n",
         _how(effort, parameters),
         "## Verdicts\n",
         _table(verdicts),
@@ -33,7 +33,7 @@ def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, fold
     for one in found:
         parts.append(f"### {one.title}\n")
         parts.append(f"![{one.title}]({folder}/{one.name}.png)\n")
-        parts.append(one.caption.rstrip(".").replace("um", "µm") + f". [Data]({folder}/{one.name}.json)\n")
+        parts.append(one.caption.rstrip(".").replace(" um", " µm") + f". [Data]({folder}/{one.name}.json)\n")
         for verdict in one.verdicts:
             parts.append(f"- **{verdict.figure}**: {verdict.why}".replace(" um", " µm"))
         parts.append("")
@@ -43,31 +43,25 @@ def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, fold
 def _how(effort: Effort, p: Parameters) -> str:
     return "\n".join([
         "## How it was compared\n",
-        "One set of parameters for all figures (`paper/parameters.py`): "
-        f"a = {MICRO * p.radius:g} µm, actuators {MICRO * p.pitch:g} µm apart, stroke {MICRO * p.stroke:g} µm "
-        f"up and down in 1/f, "
-        f"mass {1e9 * p.mass:g} µg, gravity {p.gravity} m/s², friction by the preset `paper`. a, the drive and "
-        f"the preset were "
-        "chosen with these figures in view, so where they agree that is in part a fit; nothing is chosen for "
-        "one figure, but the "
-        "platform's friction of figure 4.\n",
+        f"One set of parameters for all figures (`paper/parameters.py`): a = {MICRO * p.radius:g} µm, actuators "
+        f"{MICRO * p.pitch:g} µm apart, stroke {MICRO * p.stroke:g} µm up and down in 1/f, mass {1e9 * p.mass:g} µg, "
+        f"gravity {p.gravity} m/s², friction by the preset `paper`. a, the drive and the preset were chosen with "
+        "these figures in view, so where they agree that is in part a fit; nothing is chosen for one figure, but "
+        "the platform's friction of figure 4.\n",
         "Three models:\n",
-        f"- **{MODELS[PAPER]}**: fixed steps of {MICRO * p.time_step:g} µs by its equations (6) to (12), on "
-        f"equation (2);",
-        "- **our equations, closed form**: the same surface, the full equations of motion, every slip and stop located "
-        "([motion](motion.md));",
-        f"- **{MODELS[PLATE]}**: the same on one clamped plate of finite elements that all actuators are "
-        f"attached to.\n",
-        "With two actuators the closed form is put together in two ways: the profiles of both are added, or "
-        "that of the nearest "
-        "actuator counts alone. A plate does neither: on it an actuator that holds its point shapes the other's "
-        "deflection.\n",
-        f"Where paths are chaotic each model is asked from many starts, displaced by up to {MICRO * p.jitter:g} "
-        f"µm along x and y, "
-        f"as the paper states places in µm: {effort.starts} ({effort.starts_by_steps} with the paper's scheme). "
-        f"A statement is met when "
-        f"at least {100 * MOST:.0f} % of them do what it says, and not met when at most {100 * FEW:.0f} % do. A "
-        f"verdict is "
+        f"- **{MODELS[PAPER]}**: fixed steps of {MICRO * p.time_step:g} µs by its equations (6) to (12), on equation "
+        "(2);",
+        "- **our equations, closed form**: the same surface, the full equations of motion, every slip and stop "
+        "located ([motion](motion.md));",
+        f"- **{MODELS[PLATE]}**: the same on one clamped plate of finite elements that all actuators are attached "
+        "to.\n",
+        "With two actuators the closed form is put together in two ways: the profiles of both are added, or that of "
+        "the nearest actuator counts alone. A plate does neither: on it an actuator that holds its point shapes the "
+        "other's deflection.\n",
+        f"Where paths are chaotic each model is asked from many starts, displaced by up to {MICRO * p.jitter:g} µm "
+        f"along x and y, as the paper states places in µm: {effort.starts} ({effort.starts_by_steps} with the "
+        f"paper's scheme). A statement is met when at least {100 * MOST:.0f} % of them do what it says, and not met "
+        f"when at most {100 * FEW:.0f} % do. A verdict is "
         '"reproduced" when every model meets all of a statement, "not" when none meets any of it, else "partly".\n',
     ])  # fmt: skip
 

@@ -24,9 +24,8 @@ SURFACES: Final[dict[str, tuple[str, str]]] = {
 }
 """Models and how the closed forms are put together; the nearest one's alone jumps half-way between the actuators."""
 JUMPS = (
-    "Over nearest-actuator profiles the surface jumps half-way between the actuators; superposed ones and the "
-    "plate are "
-    "smooth. "
+    "Over nearest-actuator profiles the surface jumps half-way between the actuators; superposed ones and the plate "
+    "are smooth. "
 )
 WIDTHS: Final = {NEAREST: 1.6, SUPERPOSED: 0.9}
 

@@ -107,8 +107,8 @@ def _verdict(strokes: FloatArray, thresholds: dict[str, FloatArray], fits: dict[
         answers[model] = of_checks(text, [abs(middle - STATED) <= WITHIN, falls])
     return Verdict(
         "18", "The threshold is 320 Hz at 150 um, and a quadratic function of the stroke from 100 to 200 um.", answers,
-        "The lowest frequency at which a part leaves, as in figure 17b, or comes off. Median over starts, with 10 and "
-        f"90 %; frequencies are {step:g} Hz apart. A quadratic has one free number more than the power law. Near the threshold single starts converge at one frequency, not at the next, and again "
-        "beyond it.",
+        "The lowest frequency at which a part leaves, as in figure 17b, or comes off. Median over starts, with 10 "
+        f"and 90 %; frequencies are {step:g} Hz apart. A quadratic has one free number more than the power law. Near "
+        "the threshold single starts converge at one frequency, not at the next, and again beyond it.",
         numbers,
     )  # fmt: skip

@@ -85,9 +85,8 @@ def _verdict(
         numbers[f"beyond_the_last_{model}"] = beyond
         text = (
             f"moves from {first[0]:.0f} (least stroke) and {first[-1]:.0f} Hz (largest) to {last[0]:.0f} and "
-            f"{last[-1]:.0f} Hz, beyond which it comes off with {off} of {len(rows)} strokes, else goes over "
-            f"the rim; grows "
-            f"between {100 * grows:.0f} % of neighbouring frequencies"
+            f"{last[-1]:.0f} Hz, beyond which it comes off with {off} of {len(rows)} strokes, else goes over the "
+            f"rim; grows between {100 * grows:.0f} % of neighbouring frequencies"
         )
         answers[model] = of_checks(text, [all(np.isfinite(first)), off == len(rows), grows >= STRAIGHT])
     return Verdict(
@@ -95,7 +94,7 @@ def _verdict(
         "highest, where it "
         "comes off; the distance grows in between.", answers,
         f"Start ({MICRO * start[0]:g}, {MICRO * start[1]:g}) um and one cycle: neither is stated. The picture's "
-        f"shape is all "
+        "shape is all "
         "that can be compared.", numbers,
     )  # fmt: skip
 

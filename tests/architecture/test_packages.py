@@ -10,7 +10,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize("name", ["meshes", "fem_plate", "particle", "coupling", "studies", "steering", "paper", "command_line"])
+@pytest.mark.parametrize(
+    "name", ["meshes", "fem_plate", "particle", "coupling", "studies", "steering", "paper", "command_line"]
+)
 def test_package_is_the_one_in_this_repository(name):
     assert Path(importlib.import_module(name).__file__).resolve() == ROOT / name / "__init__.py"
 
