@@ -36,10 +36,9 @@ def percent(share: float) -> str:
 
 
 def said(row: Row) -> list[str]:
-    none = "does not move"
     return [
         f"{row.limit:.4g}", f"{row.pull_off:.4g}", "never" if row.moves_from is None else f"{row.moves_from:.0f}",
-        none if row.deceleration is None else f"{row.deceleration:.2f}", percent(row.converge), percent(row.leave),
+        "-" if row.deceleration is None else f"{row.deceleration:.2f}", percent(row.converge), percent(row.leave),
         percent(row.come_off), "above "
         "760" if row.threshold > 760 else f"{row.threshold:.0f}", percent(row.all_converge),
         percent(row.in_band),

@@ -25,6 +25,7 @@ def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, fold
         f"{len(verdicts)} statements {counts[REPRODUCED]} are reproduced, {counts[PARTLY]} partly, {counts[NOT]} "
         "not. What the paper leaves open, and how much each figure depends on it: [open "
         "points](paper-open-points.md).\n",
+        "Figures 1, 2 and 7 to 10 are drawings of concepts; there is nothing in them to be found again.\n",
         _how(effort, parameters),
         "## Verdicts\n",
         _table(verdicts),

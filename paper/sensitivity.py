@@ -33,7 +33,7 @@ class Row(NamedTuple):
     limit: float  # m/s^2, friction limit at zero load over the mass
     pull_off: float  # m/s^2, over the mass
     moves_from: float | None  # Hz, lowest at which a stroke of 150 um moves a part: figure 5
-    deceleration: float | None  # m/s^2: figure 13
+    deceleration: float | None  # m/s^2: figure 13; none after the cycle if it rests then or has come off
     converge: float  # share: figure 17a
     leave: float  # share: figure 17b
     come_off: float  # share: figure 17b
@@ -77,12 +77,12 @@ def row_of(p: Parameters, starts: int = STARTS) -> Row:
     around, velocities = states(p.seed, starts)
     many = bench.paths(CLOSED, [bench.drive(ANY)], around, p.cycles / ANY / p.period_share, velocities)
     (slowing,) = bench.paths(CLOSED, [one_cycle(p.stroke)], [START], DURATION)
-    slowed = later(slowing, p.mass)[0] if slowing.attached and slowing.trajectory.path_length > 0 else None
+    slowed = later(slowing, p.mass)[0] if slowing.attached else float("nan")
     return Row(
         limit=float(p.friction.friction_limit(0.0)) / p.mass,
         pull_off=p.friction.pull_off / p.mass,
         moves_from=moves_from(bench),
-        deceleration=slowed,
+        deceleration=slowed if np.isfinite(slowed) else None,
         converge=_share([path.converged(1 / LOW / p.period_share, p.near) for path in low]),
         leave=_share([path.leaves_at(p.far) < np.inf for path in high]),
         come_off=_share([path.outcome == "detached" for path in high]),

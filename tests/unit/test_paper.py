@@ -56,7 +56,7 @@ def test_command_prints_verdicts_and_refuses_other_figures(tmp_path):
     assert done.exit_code == 0, done.output
     assert [verdict["figure"] for verdict in json.loads(done.stdout)["verdicts"]] == ["13", "14"]
     wrong = CliRunner().invoke(main, ["reproduce", "fig71", "figure 2", "--output", str(tmp_path / "new")])
-    assert wrong.exit_code == 2 and '"fig71" (did you mean "fig17"?)' in wrong.output and '"figure 2"' in wrong.output
+    assert wrong.exit_code == 2 and '"fig71" (did you mean "fig21"?)' in wrong.output and '"figure 2"' in wrong.output
     assert not (tmp_path / "new").exists()
 
 
