@@ -29,16 +29,15 @@ def find(bench: Bench, effort: Effort) -> Found:
     drawn = {f: {name: rows[0].drawn(300) for name, rows in both.items()} for f, both in paths.items()}
 
     def draw(figure: Figure) -> None:
-        axes = figure.subplots(1, len(FREQUENCIES), sharey=True)
+        axes = [figure.add_subplot(2, 3, k + 1) for k in range(len(FREQUENCIES))]
         for one, (frequency, rows) in zip(axes, drawn.items(), strict=True):
             draw_plane(one, rows, p.pitch)
-            finish(one, "x [µm]", "y [µm]" if frequency == FREQUENCIES[0] else "", f"{frequency:g} Hz", legend=False)
-        handles, names = axes[0].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside lower center", ncols=len(names), frameon=False, fontsize=9)
+            finish(one, "x [µm]", "y [µm]", f"{frequency:g} Hz", legend=False)
+        figure.legend(*axes[0].get_legend_handles_labels(), loc=(0.75, 0.2), frameon=False)
 
     data: dict[str, Any] = {"frequencies": list(FREQUENCIES), "start": list(START)}
     data |= {f"{f:g} Hz, {name}": rows.tolist() for f, both in drawn.items() for name, rows in both.items()}
-    return Found("fig16", "Two actuators at one frequency", (_verdict(paths, p.pitch),), data, draw, (14.0, 3.6),
+    return Found("fig16", "Two actuators at one frequency", (_verdict(paths, p.pitch),), data, draw, (12.5, 6.6),
                  f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycles; crosses: "
                  f"their ends.")  # fmt: skip
 

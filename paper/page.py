@@ -56,6 +56,8 @@ def _how(effort: Effort, p: Parameters) -> str:
         "located ([motion](motion.md));",
         f"- **{MODELS[PLATE]}**: the same on one clamped plate of finite elements that all actuators are attached "
         "to.\n",
+        "One actuator in the middle of a clamped disc bends it by equation (2), so that there the second and the "
+        "third model must agree; they differ where paths are chaotic.\n",
         "With two actuators the closed form is put together in two ways: the profiles of both are added, or that of "
         "the nearest actuator counts alone. A plate does neither: on it an actuator that holds its point shapes the "
         "other's deflection.\n",
