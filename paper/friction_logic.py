@@ -5,7 +5,7 @@ There is no plate. Both schemes are asked; the third model is the second one her
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from paper.found import LOOK, Found, finish
 from paper.models import CLOSED, PAPER, Bench, FloatArray
 from paper.parameters import Effort
-from paper.verdict import Verdict, of_checks
+from paper.verdict import Answer, Verdict, of_checks
 from particle import EventKind, HermiteDrive, Micropart, Trajectory, platform_surface, simulate
 
 NAMES = ("fig3", "fig4")
@@ -70,18 +70,25 @@ def _logic(bench: Bench, ramps: dict[str, tuple[FloatArray, FloatArray]]) -> Ver
 
 
 def _swinging(swings: dict[str, Trajectory]) -> Verdict:
-    answers, numbers = {}, {}
+    answers: dict[str, Answer] = {}
+    numbers: dict[str, Any] = {}
     for model, swing in swings.items():
-        slip = next((e.time for e in swing.events if e.kind is EventKind.SLIPS), np.nan)
-        stick = next((e.time for e in swing.events if e.kind in (EventKind.STOPS, EventKind.REVERSES)), np.nan)
-        numbers[f"slip_{model}"], numbers[f"stick_{model}"] = slip, stick
-        checks = [abs(slip - SLIP) < WITHIN, abs(stick - STICK) < WITHIN]
-        answers[model] = of_checks(f"slips {slip:.3f} s, sticks {stick:.3f} s", checks)
+        slips = [event.time for event in swing.events if event.kind is EventKind.SLIPS]
+        stops = [e.time for e in swing.events if e.kind in (EventKind.STOPS, EventKind.REVERSES)]
+        slip, again = [*slips, np.nan, np.nan][:2]
+        stick = [*stops, np.nan][0]
+        before, after = (float(swing.at([time]).velocity[0, 0]) for time in ((slip + stick) / 2, END))
+        numbers |= {f"slip_{model}": slip, f"stick_{model}": stick, f"slips_again_{model}": again}
+        near = [abs(slip - SLIP) < WITHIN, abs(stick - STICK) < WITHIN]
+        answers[model] = of_checks(
+            f"slips {slip:.3f} s, sticks {stick:.3f} s, for {again - stick:.2f} s, then the other way",
+            [*near, again - stick < WITHIN, before * after < 0],
+        )
     return Verdict(
-        "4", "Slip begins at 2.41 s; relative velocity vanishes again at 2.87 s, where the platform turns.",
-        answers, "The platform's motion and friction are not stated. Of x = t sin(3.2 t) and 23.524 m/s^2 the "
-        "second was "
-        "chosen for 2.41 s; the second time is then a result.", numbers,
+        "4", "The part slips from 2.41 s; at 2.87 s it sticks for a moment, and then slides the other way.", answers,
+        "The platform's motion and friction are not stated. Of x = t sin(3.2 t) and 23.524 m/s^2 the second was chosen "
+        "for 2.41 s; the second time is then a result. The part stays at rest on the platform while that turns, where the "
+        "paper's slides on at once.", numbers,
     )  # fmt: skip
 
 

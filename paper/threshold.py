@@ -98,13 +98,14 @@ def _verdict(strokes: FloatArray, thresholds: dict[str, FloatArray], fits: dict[
         low, middle, high = np.percentile(rows[row], PERCENTILES).tolist()
         falls = bool((np.diff(np.median(rows, axis=1)) <= 0).all())
         exponent, _, misfit = fits[model]["power_law"]
+        quadratic = fits[model]["quadratic"][-1]
         numbers |= {f"threshold_{model}": [low, middle, high], f"fit_{model}": fits[model]}
         numbers[f"medians_{model}"] = np.median(rows, axis=1).tolist()
         text = (
             f"{middle:.0f} Hz ({low:.0f} to {high:.0f}) at 150 um; as stroke^{exponent:.2f}, off by {misfit:.0f} Hz, "
-            f"quadratic by {fits[model]['quadratic'][-1]:.0f} Hz"
+            f"quadratic by {quadratic:.0f} Hz"
         )
-        answers[model] = of_checks(text, [abs(middle - STATED) <= WITHIN, falls])
+        answers[model] = of_checks(text, [abs(middle - STATED) <= WITHIN, falls, quadratic <= step])
     return Verdict(
         "18", "The threshold is 320 Hz at 150 um, and a quadratic function of the stroke from 100 to 200 um.", answers,
         "The lowest frequency at which a part leaves, as in figure 17b, or comes off. Median over starts, with 10 "
