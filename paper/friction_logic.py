@@ -5,6 +5,7 @@ There is no plate. Both schemes are asked; the third model is the second one her
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
@@ -20,6 +21,7 @@ NAMES = ("fig3", "fig4")
 SCHEMES: Final = {PAPER: "paper", CLOSED: "events"}
 SLIP, STICK, WITHIN = 2.41, 2.87, 0.02  # s, the paper's times, and how near counts
 END, PIECES = 4.0, 400  # s, and of the platform's motion
+SWING_STEP: Final = 1e-4  # s, of the paper's scheme, as the platform swings for seconds
 RAMP_END = 1e-2  # s
 RAMP: Final = 3.0  # times the limit that the load along the surface rises to
 
@@ -87,8 +89,8 @@ def _swinging(swings: dict[str, Trajectory]) -> Verdict:
     return Verdict(
         "4", "The part slips from 2.41 s; at 2.87 s it sticks for a moment, and then slides the other way.", answers,
         "The platform's motion and friction are not stated. Of x = t sin(3.2 t) and 23.524 m/s^2 the second was chosen "
-        "for 2.41 s; the second time is then a result. The part stays at rest on the platform while that turns, where the "
-        "paper's slides on at once.", numbers,
+        "for 2.41 s; the second time is then a result. The part stays at rest on the platform while that turns, where "
+        "the paper's slides on at once.", numbers,
     )  # fmt: skip
 
 
@@ -104,14 +106,16 @@ def _ramp(bench: Bench, scheme: str) -> tuple[FloatArray, FloatArray]:
     drive = HermiteDrive.of(motion, RAMP_END, 20)
     size = float(motion(np.array([RAMP_END]))[0][0])
     surface = platform_surface(x=drive, size=size)
-    steps = {"time_step": p.time_step} if scheme == "paper" else {}
+    step = p.time_step if scheme == "paper" else None
     part = Micropart(p.mass, (0.0, 0.0))
     times = np.linspace(0, RAMP_END, 201)[1:-1]
-    path = simulate(surface, part, p.friction, RAMP_END, p.gravity, scheme=scheme, **steps)  # type: ignore[arg-type]
+    path = simulate(surface, part, p.friction, RAMP_END, p.gravity, scheme=scheme, time_step=step)
     return p.mass * rate * times, path.at(times).friction_force
 
 
-def _motion(rate: float):  # type: ignore[no-untyped-def]
+def _motion(rate: float) -> Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]:
+    """x = t sin(rate t) [m] with two derivatives."""
+
     def motion(t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         s, c = np.sin(rate * t), np.cos(rate * t)
         return t * s, s + rate * t * c, 2 * rate * c - rate**2 * t * s
@@ -123,6 +127,6 @@ def _swing(bench: Bench, scheme: str) -> Trajectory:
     """The part on a platform that swings with a growing amplitude."""
     p = bench.parameters
     surface = platform_surface(x=HermiteDrive.of(_motion(p.platform_rate), END, PIECES), size=END)
-    steps = {"time_step": 1e-4} if scheme == "paper" else {}
+    step = SWING_STEP if scheme == "paper" else None
     part = Micropart(p.mass, (0.0, 0.0))
-    return simulate(surface, part, p.platform_friction, END, p.gravity, scheme=scheme, **steps)  # type: ignore[arg-type]
+    return simulate(surface, part, p.platform_friction, END, p.gravity, scheme=scheme, time_step=step)

@@ -39,6 +39,7 @@ def radial(frequency, law):
     return areas.max(), areas.mean() / frequency, lost @ ring
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("frequency", [250.0, 1000.0])
 def test_areas_are_those_of_the_radial_integral(frequency):
     law = KogutEtsion.paper()
@@ -51,6 +52,7 @@ def test_areas_are_those_of_the_radial_integral(frequency):
     assert (found.lost_area[0] > 0) == (frequency == 1000.0)
 
 
+@pytest.mark.compiled
 def test_a_factor_is_a_drive_that_runs_so_much_faster():
     law = KogutEtsion.paper()
     both = []
@@ -65,7 +67,7 @@ def test_a_factor_is_a_drive_that_runs_so_much_faster():
 def test_nothing_is_lost_without_pull_off_and_nothing_moves_where_friction_holds():
     surface = surface_motion(SHAPES, [Drive(STROKE, 2000.0)])
     loose, held = (
-        find_feasible(surface, SHAPES.outline, PART, ConstantFriction(limit), 5e-4, np.ones(1), GRAVITY, 30)
+        find_feasible(surface, SHAPES.outline, PART, ConstantFriction(limit), 5e-4, np.ones(1), GRAVITY, 10)
         for limit in (1e-12, 1.0)
     )
     assert not loose.lost.any() and loose.feasible.peak[0] > 0
@@ -76,7 +78,7 @@ def test_a_tilt_alone_makes_a_part_slip():
     surface = surface_motion(SHAPES, [Drive(0.0, 100.0)])
     for tilt, moves in ((6.0, True), (4.0, False)):
         found = find_feasible(
-            surface, SHAPES.outline, PART, ConstantFriction(5 * MASS), 1e-2, np.ones(1), (tilt, 0.0, -8.0), 20
+            surface, SHAPES.outline, PART, ConstantFriction(5 * MASS), 1e-2, np.ones(1), (tilt, 0.0, -8.0), 8
         )
         assert found.shares.all() == found.shares.any() == moves
 
@@ -87,6 +89,7 @@ def test_places_fill_the_plate():
     assert (np.hypot(*points.T) < RADIUS).all()
 
 
+@pytest.mark.compiled
 def test_command_writes_map_and_labelled_data(tmp_path):
     import xarray
 
