@@ -65,8 +65,7 @@ def find(bench: Bench, effort: Effort) -> Found:
     data |= {model: np.where(np.isnan(rows), -1.0, rows).tolist() for model, rows in away.items()}
     return Found("fig22", "Accuracy of placement", _verdicts(bench, away), data, draw, (11.5, 4.6),
                  "Where parts lie after 30 cycles, 240 to 320 Hz, five states with displaced starts; grey: the "
-                 "paper's 5 µm; "
-                 "-1 in the data: the part is gone.")  # fmt: skip
+                 "paper's 5 µm; -1 in the data: the part is gone.")  # fmt: skip
 
 
 def _verdicts(bench: Bench, away: dict[str, FloatArray]) -> tuple[Verdict, Verdict]:
@@ -95,9 +94,7 @@ def _verdicts(bench: Bench, away: dict[str, FloatArray]) -> tuple[Verdict, Verdi
                 "Parts stop anywhere within the zone around the actuator where friction holds them, whose size "
                 "depends on frequency.",
                 numbers),
-        Verdict("22 (two cases)", "Less than 1 um from (80, 80) um at 250 Hz, and from (100, 100) um with "
-        "(0.01, 0.01) m/s at "
-                "300 Hz.", fines, "Where in that zone a single part stops is chance to the last micrometre of "
-                "its start.",
-                numbers),
+        Verdict("22 (two cases)",
+                "Less than 1 um from (80, 80) um at 250 Hz, and from (100, 100) um with (0.01, 0.01) m/s at 300 Hz.",
+                fines, "Where in that zone a single part stops is chance to the last micrometre of its start.", numbers),
     )  # fmt: skip

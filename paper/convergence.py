@@ -99,8 +99,7 @@ def _converges(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
     return Verdict(
         "17a", "From rest at (100, 100) um the part converges to the actuator at 300 Hz.", answers,
         f"Converged: on the surface after {p.cycles} cycles, within {MICRO * p.near:g} um of the actuator for the "
-        "last five. "
-        "Starts are displaced by up to 1 um. Paths are chaotic next to the threshold.", numbers,
+        "last five. Starts are displaced by up to 1 um. Paths are chaotic next to the threshold.", numbers,
     )  # fmt: skip
 
 
@@ -127,8 +126,7 @@ def _leaves(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
     return Verdict(
         "17b", "From the same start at 600 Hz it leaves the actuator's region in two strokes.", answers,
         f"It has left once it is {MICRO * p.far:g} um away or over the rim; strokes are taken as cycles. A part that "
-        "comes off "
-        "the surface before is lost, too, but has not left.", numbers,
+        "comes off the surface before is lost, too, but has not left.", numbers,
     )  # fmt: skip
 
 

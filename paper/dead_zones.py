@@ -59,10 +59,9 @@ def find(bench: Bench, effort: Effort) -> Found:
 
     data: dict[str, Any] = {"pitch": pitches.tolist(), "reached": reached.tolist(), "touching": touching.tolist()}
     return Found("deadzones", "Dead zones (beyond the "
-    "paper)", (_verdict(pitches, reached, touching),), data, draw, (7.5, 4.6),
-                 "Share of starts from which the part is brought to its nearest actuator, and of places where a "
-                 "part would "
-                 "touch actuators; bars: one standard deviation of so many starts.")  # fmt: skip
+    "paper)", (_verdict(pitches, reached, touching, bench.parameters.cycles),), data, draw, (7.5, 4.6),
+                 "Share of starts from which the part is brought to its nearest actuator, and of places where a part "
+                 "would touch actuators; bars: one standard deviation of so many starts.")  # fmt: skip
 
 
 def touched(pitch: float, side: float) -> tuple[float, float]:
@@ -105,7 +104,7 @@ def _reached(bench: Bench, effort: Effort, pitch: float, starts: FloatArray) -> 
     return reached
 
 
-def _verdict(pitches: FloatArray, reached: FloatArray, touching: FloatArray) -> Verdict:
+def _verdict(pitches: FloatArray, reached: FloatArray, touching: FloatArray, cycles: int) -> Verdict:
     served, beyond = reached.mean(axis=1) >= MOST, touching[:, 1] < FEW
     widest = float(pitches[served].max(initial=0.0))
     first = float(pitches[beyond].min(initial=np.inf))
@@ -122,6 +121,7 @@ def _verdict(pitches: FloatArray, reached: FloatArray, touching: FloatArray) -> 
         {"plate": of_checks(text, [widest > PART])},
         f"A part of {MICRO * PART:g} um; served: at least {100 * MOST:.0f} %. Drives of the nearest actuator alone, "
         f"within {MICRO * NEAR:g} um of which the part must end: strokes of "
-        f"{', '.join(f'{MICRO * s:g}' for s in STROKES)} um, {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g} Hz.",
+        f"{', '.join(f'{MICRO * s:g}' for s in STROKES)} um, {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g} Hz, "
+        f"{cycles} cycles.",
         numbers,
     )  # fmt: skip

@@ -50,8 +50,8 @@ def find(bench: Bench, effort: Effort) -> Found:
             figure, "After the stroke the velocity falls along a straight line, by 20.9 m/s^2, the value of "
             "equations (3) to (5).",
             answers, f"The preset was chosen to give {preset:.2f} m/s^2 at zero load; Table 1 gives {table:.0f} "
-            "m/s^2, with which the part does not move at all. One value for both figures needs a flat surface, "
-            "hence the stroke's return; where it is held up, gravity and curvature make "
+            "m/s^2, with which the part does not move at all. One value for both figures needs a flat surface, hence "
+            "the stroke's return; where it is held up, gravity and curvature make "
             f"{numbers['deceleration_surface_held_up_closed']:.1f} m/s^2 of it.",
             numbers,
         ))  # fmt: skip

@@ -72,9 +72,8 @@ def find(bench: Bench, effort: Effort) -> Found:
         axes[0].set_ylim(0, 1.35 * axes[0].get_ylim()[1])
 
     return Found("fig5-6", "Feasible area", _verdicts(found), data, draw, (11.5, 4.6),
-                 "Largest feasible area over a cycle, and its time integral. Places where the part comes off at "
-                 "some moment "
-                 "of the cycle do not count; dashed: they do, at moments when it is attached.")  # fmt: skip
+                 "Largest feasible area over a cycle, and its time integral. Places where the part comes off at some "
+                 "moment of the cycle do not count; dashed: they do, at moments when it is attached.")  # fmt: skip
 
 
 def _verdicts(found: dict[str, dict[float, Feasible]]) -> tuple[Verdict, Verdict]:
@@ -96,12 +95,10 @@ def _verdicts(found: dict[str, dict[float, Feasible]]) -> tuple[Verdict, Verdict
     return (
         Verdict(
             "5", "Below about 200 Hz nothing moves, for three strokes alike; the area grows with frequency, "
-            "peaks, and falls "
-            "because the part comes off.", _ordered(five),
+            "peaks, and falls because the part comes off.", _ordered(five),
             f"Strokes are not stated; here {strokes} um. The least acceleration that slips goes with stroke times "
-            "frequency squared, so that one threshold for all strokes cannot be. The area falls only if places "
-            "where the "
-            "part comes off at another moment of the cycle do not count.", numbers,
+            "frequency squared, so that one threshold for all strokes cannot be. The area falls only if places where "
+            "the part comes off at another moment of the cycle do not count.", numbers,
         ),
         Verdict(
             "6", "The time integral is largest at 300 to 400 Hz, for all strokes.", _ordered(six),

@@ -28,15 +28,23 @@ class Handover(NamedTuple):
 
 
 HANDOVERS: Final = (
-    Handover("20", (300.0, 450.0), (100e-6, 0.0), "From (100, 0) um the part leaves the 450 Hz actuator and "
-    "converges to the "
-             "300 Hz one, 150 um away, on the line through both.", "Which of the two stands at (0, 0) is not "
-             "stated: the start "
-             "is to lie in the region of the faster one, so that this one is at (150, 0)."),
-    Handover("21", (400.0, 300.0), (-50e-6, 15e-6), "From (-50, 15) um the part leaves the 400 Hz actuator and "
-    "converges to "
-             "the 300 Hz one at (150, 0) um.", ""),
-)  # fmt: skip
+    Handover(
+        "20",
+        (300.0, 450.0),
+        (100e-6, 0.0),
+        "From (100, 0) um the part leaves the 450 Hz actuator and converges to the 300 Hz one, 150 um away, on the "
+        "line through both.",
+        "Which of the two stands at (0, 0) is not stated: the start is to lie in the region of the faster one, so that "
+        "this one is at (150, 0). Read the other way some starts arrive: see the open points.",
+    ),
+    Handover(
+        "21",
+        (400.0, 300.0),
+        (-50e-6, 15e-6),
+        "From (-50, 15) um the part leaves the 400 Hz actuator and converges to the 300 Hz one at (150, 0) um.",
+        "",
+    ),
+)
 
 
 def find(bench: Bench, effort: Effort) -> Found:

@@ -59,9 +59,7 @@ def _verdict(paths: dict[float, dict[str, list[Path]]], pitch: float) -> Verdict
     numbers["frequencies"] = list(FREQUENCIES)
     return Verdict(
         "16", "At 250 Hz the part stays with the first actuator, crosses it and returns; at higher frequencies "
-        "up to 650 Hz "
-        "it goes to the neighbour.", joined(answers),
+        "up to 650 Hz it goes to the neighbour.", joined(answers),
         f"Share of starts that ever come nearer to the neighbour, at {', '.join(f'{f:g}' for f in FREQUENCIES)} Hz. "
-        f"{JUMPS}"
-        "The start is not stated; taken as in figure 21.", numbers,
+        f"{JUMPS}The start is not stated; taken as in figure 21.", numbers,
     )  # fmt: skip

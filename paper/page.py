@@ -22,9 +22,8 @@ def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, fold
         '"Micropart Motion on a Surface Due to Controlled Surface Excitation": what it states, and what this '
         "program finds.\n",
         f"Written by `active-surface reproduce all{' --full' if effort.name == 'full' else ''} --output docs`. Of "
-        f"{len(verdicts)} statements {counts[REPRODUCED]} are reproduced, {counts[PARTLY]} partly, {counts[NOT]} "
-        "not. What the paper leaves open, and how much each figure depends on it: [open "
-        "points](paper-open-points.md).\n",
+        f"{len(verdicts)} statements {counts[REPRODUCED]} are reproduced, {counts[PARTLY]} partly, {counts[NOT]} not. "
+        "What the paper leaves open, and how much each figure depends on it: [open points](paper-open-points.md).\n",
         "Figures 1, 2 and 7 to 10 are drawings of concepts; there is nothing in them to be found again.\n",
         _how(effort, parameters),
         "## Verdicts\n",
@@ -47,8 +46,8 @@ def _how(effort: Effort, p: Parameters) -> str:
         f"One set of parameters for all figures (`paper/parameters.py`): a = {MICRO * p.radius:g} µm, actuators "
         f"{MICRO * p.pitch:g} µm apart, stroke {MICRO * p.stroke:g} µm up and down in 1/f, mass {1e9 * p.mass:g} µg, "
         f"gravity {p.gravity} m/s², friction by the preset `paper`. a, the drive and the preset were chosen with "
-        "these figures in view, so where they agree that is in part a fit; nothing is chosen for one figure, but "
-        "the platform's friction of figure 4.\n",
+        "these figures in view, so where they agree that is in part a fit; nothing is chosen for one figure, but the "
+        "platform's friction of figure 4.\n",
         "Three models:\n",
         f"- **{MODELS[PAPER]}**: fixed steps of {MICRO * p.time_step:g} µs by its equations (6) to (12), on equation "
         "(2);",
@@ -62,9 +61,9 @@ def _how(effort: Effort, p: Parameters) -> str:
         "the nearest actuator counts alone. A plate does neither: on it an actuator that holds its point shapes the "
         "other's deflection.\n",
         f"Where paths are chaotic each model is asked from many starts, displaced by up to {MICRO * p.jitter:g} µm "
-        f"along x and y, as the paper states places in µm: {effort.starts} ({effort.starts_by_steps} with the "
-        f"paper's scheme). A statement is met when at least {100 * MOST:.0f} % of them do what it says, and not met "
-        f"when at most {100 * FEW:.0f} % do. A verdict is "
+        f"along x and y, as the paper states places in µm: {effort.starts} ({effort.starts_by_steps} with the paper's "
+        f"scheme). A statement is met when at least {100 * MOST:.0f} % of them do what it says, and not met when at "
+        f"most {100 * FEW:.0f} % do. A verdict is "
         '"reproduced" when every model meets all of a statement, "not" when none meets any of it, else "partly".\n',
     ])  # fmt: skip
 

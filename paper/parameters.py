@@ -63,6 +63,6 @@ class Effort(NamedTuple):
     candidates: int  # frequencies tried there
 
 
-QUICK = Effort("quick", 60, 16, 40, 20.0, 5, 50, 6, 6)
+QUICK = Effort("quick", 60, 16, 40, 20.0, 5, 50, 11, 6)
 FULL = Effort("full", 400, 100, 80, 10.0, 9, 120, 11, 12)
 TINY = Effort("tiny", 2, 1, 3, 200.0, 2, 12, 1, 1)  # for tests: shows that it runs, and nothing else

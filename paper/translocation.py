@@ -54,8 +54,7 @@ def find(bench: Bench, effort: Effort) -> Found:
     return Found("fig15", "Distance over frequency and "
     "stroke", (_verdict(frequencies, distance, outcome, p.start),), data, draw,
                  (8.5, 4.8), "Distance from the start after one cycle, from the frequency at which the part "
-                 "first moves to that "
-                 "at which it comes off; -1 in the data: it came off or left.")  # fmt: skip
+                 "first moves to that at which it comes off; -1 in the data: it came off or left.")  # fmt: skip
 
 
 COLOURS = (*GREYS, "#7a4b94", "#404040")
@@ -85,17 +84,15 @@ def _verdict(
         numbers[f"beyond_the_last_{model}"] = beyond
         text = (
             f"moves from {first[0]:.0f} (least stroke) and {first[-1]:.0f} Hz (largest) to {last[0]:.0f} and "
-            f"{last[-1]:.0f} Hz, beyond which it comes off with {off} of {len(rows)} strokes, else goes over the "
-            f"rim; grows between {100 * grows:.0f} % of neighbouring frequencies"
+            f"{last[-1]:.0f} Hz, beyond which it comes off with {off} of {len(rows)} strokes, else goes over the rim; "
+            f"grows between {100 * grows:.0f} % of neighbouring frequencies"
         )
         answers[model] = of_checks(text, [all(np.isfinite(first)), off == len(rows), grows >= STRAIGHT])
     return Verdict(
         "15", "For each stroke the part moves between a lowest frequency, where friction holds it, and a "
-        "highest, where it "
-        "comes off; the distance grows in between.", answers,
-        f"Start ({MICRO * start[0]:g}, {MICRO * start[1]:g}) um and one cycle: neither is stated. The picture's "
-        "shape is all "
-        "that can be compared.", numbers,
+        "highest, where it comes off; the distance grows in between.", answers,
+        f"Start ({MICRO * start[0]:g}, {MICRO * start[1]:g}) um and one cycle: neither is stated. The picture's shape "
+        "is all that can be compared.", numbers,
     )  # fmt: skip
 
 

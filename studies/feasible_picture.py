@@ -15,6 +15,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from coupling.plate_picture import marker_size
 from coupling.readable import readable
@@ -107,8 +108,8 @@ def _draw_curves(peak: Axes, integral: Axes, feasibility: Feasibility) -> None:
         axes.grid(alpha=0.3, which="both")
         axes.set_ylim(bottom=0)
         axes.set_xlim(across[0], across[-1])
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter("{x:g}")
-        axes.xaxis.set_minor_formatter("{x:g}")
-        axes.tick_params(axis="x", which="minor", labelsize=7)
+        axes.xaxis.set_minor_formatter(NullFormatter())
     peak.set_ylim(top=1.25 * max(peak.get_ylim()[1], 1e-9))
     peak.legend(frameon=False, fontsize=8, ncols=2)
