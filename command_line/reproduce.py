@@ -12,7 +12,7 @@ from command_line.group import DEFAULT_OUTPUT, main, refusing
 
 @main.command()
 @click.argument("figures", nargs=-1, metavar="[FIGURE]...")
-@click.option("--full", is_flag=True, help="Many starts and fine steps: an hour in place of minutes.")
+@click.option("--full", is_flag=True, help="Many more starts, and finer steps: takes long.")
 @click.option(
     "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
 )

@@ -96,5 +96,6 @@ def _verdicts(bench: Bench, away: dict[str, FloatArray]) -> tuple[Verdict, Verdi
                 numbers),
         Verdict("22 (two cases)",
                 "Less than 1 um from (80, 80) um at 250 Hz, and from (100, 100) um with (0.01, 0.01) m/s at 300 Hz.",
-                fines, "Where in that zone a single part stops is chance to the last micrometre of its start.", numbers),
+                fines, "Where in that zone a single part stops is chance to the last micrometre of its start.",
+                numbers),
     )  # fmt: skip

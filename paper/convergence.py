@@ -144,6 +144,6 @@ def _all_converge(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
         answers[model] = of_share(text, share)
     return Verdict(
         "19", "At 250 Hz parts converge from various places and velocities.", answers,
-        f"The states are not listed; here places within {MICRO * REACH:g} um and velocities up to {FASTEST} "
-        f"m/s.", numbers,
+        f"The states are not listed; here places within {MICRO * REACH:g} um and velocities up to "
+        f"{FASTEST} m/s.", numbers,
     )  # fmt: skip

@@ -58,15 +58,14 @@ def find(bench: Bench, effort: Effort) -> Found:
         finish(axes, "pitch [µm]", "share of the starts [%]", f"part of {MICRO * PART:g} µm")
 
     data: dict[str, Any] = {"pitch": pitches.tolist(), "reached": reached.tolist(), "touching": touching.tolist()}
-    return Found("deadzones", "Dead zones (beyond the "
-    "paper)", (_verdict(pitches, reached, touching, bench.parameters.cycles),), data, draw, (7.5, 4.6),
+    verdict = _verdict(pitches, reached, touching, bench.parameters.cycles)
+    return Found("deadzones", "Dead zones (beyond the paper)", (verdict,), data, draw, (7.5, 4.6),
                  "Share of starts from which the part is brought to its nearest actuator, and of places where a part "
                  "would touch actuators; bars: one standard deviation of so many starts.")  # fmt: skip
 
 
 def touched(pitch: float, side: float) -> tuple[float, float]:
-    """The shares of places where a square part, parallel to a square lattice of points, touches one or more, "
-    "two or more."""
+    """The shares of places where a square part touches one or more, two or more points of a lattice parallel to it."""
     whole, rest = divmod(side / pitch, 1.0)
     counts = {int(whole): 1 - rest, int(whole) + 1: rest}  # of columns, and likewise of rows
     none_or_one = [0.0, 0.0]

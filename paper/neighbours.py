@@ -38,8 +38,8 @@ def find(bench: Bench, effort: Effort) -> Found:
     data: dict[str, Any] = {"frequencies": list(FREQUENCIES), "start": list(START)}
     data |= {f"{f:g} Hz, {name}": rows.tolist() for f, both in drawn.items() for name, rows in both.items()}
     return Found("fig16", "Two actuators at one frequency", (_verdict(paths, p.pitch),), data, draw, (12.5, 6.6),
-                 f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycles; crosses: "
-                 f"their ends.")  # fmt: skip
+                 f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycles; "
+                 "crosses: their ends.")  # fmt: skip
 
 
 def goes_over(path: Path, pitch: float) -> bool:

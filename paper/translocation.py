@@ -51,9 +51,9 @@ def find(bench: Bench, effort: Effort) -> Found:
 
     data: dict[str, Any] = {"frequencies": frequencies.tolist(), "strokes": strokes.tolist()}
     data |= {model: np.where(np.isnan(rows), -1.0, rows).tolist() for model, rows in distance.items()}
-    return Found("fig15", "Distance over frequency and "
-    "stroke", (_verdict(frequencies, distance, outcome, p.start),), data, draw,
-                 (8.5, 4.8), "Distance from the start after one cycle, from the frequency at which the part "
+    verdict = _verdict(frequencies, distance, outcome, p.start)
+    return Found("fig15", "Distance over frequency and stroke", (verdict,), data, draw, (8.5, 4.8),
+                 "Distance from the start after one cycle, from the frequency at which the part "
                  "first moves to that at which it comes off; -1 in the data: it came off or left.")  # fmt: skip
 
 
