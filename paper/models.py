@@ -110,7 +110,11 @@ class Bench:
         if model == PAPER:
             one = partial(_by_steps, surface, law, duration, pull, p.time_step)
             with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-                found = list(pool.map(one, parts))
+                try:
+                    found = list(pool.map(one, parts))
+                except BaseException:  # Ctrl-C: each path takes a fraction of a second, all together long
+                    pool.shutdown(wait=True, cancel_futures=True)
+                    raise
         else:
             found = simulate_many(surface, parts, law, duration, pull, tolerance or p.tolerance)
         return [Path(trajectory, ground.offset) for trajectory in found]

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from coupling.progress import Progress, interruptible, silent
+from coupling.progress import Progress, silent
 from paper.catalogue import MODULES, finder, modules_of
 from paper.found import Found
 from paper.models import Bench
@@ -55,7 +55,7 @@ def reproduce(
     files: list[Path] = []
     for module in modules:
         with progress(f"Reproducing {', '.join(MODULES[module])}"):
-            one = interruptible(finder(module), bench, effort)
+            one = finder(module)(bench, effort)
         found.append(one)
         if output is not None:
             files += write(one, Path(output) / FOLDER)
