@@ -7,7 +7,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests run on all processors, those of a file on one, as they share what is made for them.
 SIDE_BY_SIDE := -n auto --dist loadfile
 
-.PHONY: demo test lint docs site benchmark clean
+.PHONY: demo test lint docs site paper benchmark clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/two_actuators.toml
@@ -39,6 +39,11 @@ docs: .venv/developer
 site: .venv/site
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/site
 	@echo "wrote       build/site/index.html"
+
+# The pages about the paper, in minutes.
+paper: .venv/installed
+	$(BIN)/active-surface reproduce all --output docs
+	$(BIN)/python docs/paper_sensitivity.py
 
 .venv/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed; try make PYTHON=python3.12"; exit 2; }

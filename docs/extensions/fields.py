@@ -15,7 +15,7 @@ from pydantic import BaseModel
 import coupling.units
 
 HIDDEN = "_"
-PACKAGES = {"meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering"}
+PACKAGES = {"meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "paper"}
 PLAIN = {"StrictInt": "int", "StrictFloat": "float", "StrictStr": "str", "Count": "int", "Repeats": "int | str"}
 SHAPES = {
     "Point": ("tuple[float, float]", "m"),

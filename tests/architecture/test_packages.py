@@ -11,7 +11,19 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.mark.parametrize(
-    "name", ["plotting", "meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "command_line"]
+    "name",
+    [
+        "plotting",
+        "meshes",
+        "fem_plate",
+        "particle",
+        "coupling",
+        "studies",
+        "views",
+        "steering",
+        "paper",
+        "command_line",
+    ],
 )
 def test_package_is_the_one_in_this_repository(name):
     assert Path(importlib.import_module(name).__file__).resolve() == ROOT / name / "__init__.py"

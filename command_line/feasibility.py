@@ -1,0 +1,66 @@
+"""The command `feasibility`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from command_line.group import DEFAULT_OUTPUT, main, read, refusing
+
+STAGES = 3
+
+
+@main.command()
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option("--lowest", metavar="F", help='Lowest frequency of the fastest drive, such as "100 Hz".')
+@click.option("--highest", metavar="F", help="Highest frequency of the fastest drive.")
+@click.option("--across", default=120, show_default=True, help="Places along the plate's longer side.")
+@click.option(
+    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
+)
+@click.option("--quiet", "-q", is_flag=True, help="Print no summary.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
+def feasibility(
+    case: Path,
+    lowest: str | None,
+    highest: str | None,
+    across: int,
+    output: Path | None,
+    quiet: bool,
+    as_json: bool,
+) -> None:
+    """Show where the array of CASE moves its part without losing it.
+
+    Writes a map of the plate, and the area where slip starts while the part stays attached over the drives' frequency:
+    its largest value and its time integral. All drives keep their ratios.
+    """
+    wanted = read(case)
+    from coupling.progress import StageBar
+    from coupling.results import check_folder
+    from studies.feasibility import feasibility as find
+    from studies.feasible_report import lines
+
+    ends = [refusing(_frequency, text, name) for text, name in ((lowest, "--lowest"), (highest, "--highest"))]
+    folder = output or DEFAULT_OUTPUT
+    refusing(check_folder, folder)
+    with StageBar(STAGES) as bar:
+        found = refusing(find, wanted, *ends, across, bar)
+        files = refusing(found.write, folder)
+    if as_json:
+        click.echo(json.dumps(found.figures() | {"files": [str(file) for file in files]}, indent=2))
+    elif not quiet:
+        for label, text in [*lines(found.figures()), *(("wrote", str(file)) for file in files)]:
+            click.echo(f"{label:<12}{text}")
+
+
+def _frequency(text: str | None, option: str) -> float | None:
+    from coupling.units import Quantity
+
+    if text is None:
+        return None
+    try:
+        return Quantity("Hz", "300 Hz").parse(text)
+    except ValueError as error:
+        raise ValueError(f"{option} {error}") from None

@@ -1,0 +1,194 @@
+"""The models side by side, and the bench on which paths are found in each of them.
+
+"paper": the paper's scheme of fixed steps on the surface of equation (2).  "closed": our equations with located events
+on the same surface.  "plate": the same on a plate of finite elements, which all actuators are attached to.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from threadpoolctl import threadpool_limits
+
+from coupling import surface_motion
+from fem_plate import Plate, PlateSection, Shapes
+from fem_plate.analytic import DiscShapes
+from meshes import Outline, disc
+from paper.parameters import PARAMETERS, Effort, Parameters
+from paper.profiles import NEAREST, SUPERPOSED, profile_outline, profile_surface
+from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate, simulate_many
+from particle.friction import Contact
+
+FloatArray = NDArray[np.float64]
+
+PAPER, CLOSED, PLATE = "paper", "closed", "plate"
+MODELS: Final = {
+    PAPER: "paper's scheme, closed form",
+    CLOSED: "our equations, closed form",
+    PLATE: "our equations, finite elements",
+}
+PLATE_TOLERANCE: Final = 1e-8
+RINGS: Final = 12  # of cells, from which the plate is refined
+LAST_CYCLES: Final = 5  # in which a part must stay near the actuator to have converged
+
+
+class Ground(NamedTuple):
+    """What a part moves over: one actuator at (0, 0), or two, the other one at (pitch, 0)."""
+
+    surface: SurfaceMotion
+    outline: Outline
+    offset: FloatArray  # (2,) m, of the surface's own origin from actuator 1
+
+
+@dataclass(eq=False)
+class Bench:
+    """Finds paths in every model; surfaces are made once."""
+
+    parameters: Parameters = PARAMETERS
+    told: Callable[[str], object] = lambda _: None
+    _grounds: dict[tuple[str, str], Ground] = field(default_factory=dict)
+
+    def ground(self, model: str, actuators: str = "one") -> Ground:
+        """The ground of a model; actuators: "one", or for two "superposed" or "nearest", which a plate knows not."""
+        key = ("plate" if model == PLATE else "profiles", "two" if model == PLATE and actuators != "one" else actuators)
+        if key not in self._grounds:
+            with threadpool_limits(limits=1, user_api="blas"):
+                self._grounds[key] = self._make(*key)
+        return self._grounds[key]
+
+    def _make(self, kind: str, actuators: str) -> Ground:
+        p = self.parameters
+        still = Drive(p.stroke, 1.0)
+        if kind == "plate":
+            points = np.array([[0.0, 0.0]] if actuators == "one" else [[0.0, 0.0], [p.pitch, 0.0]])
+            offset = points.mean(axis=0)
+            section = PlateSection(p.youngs_modulus, p.poisson_ratio, p.thickness, 2330.0)
+            plate = Plate(disc(p.radius, p.radius / RINGS), section, tolerance=PLATE_TOLERANCE)
+            shapes: Shapes = plate.influence(points - offset)  # type: ignore[assignment]
+            return Ground(surface_motion(shapes, [still] * len(points)), shapes.outline, -offset)
+        if actuators == "one":
+            shapes = DiscShapes([[0.0, 0.0]], p.radius)
+            return Ground(surface_motion(shapes, [still]), shapes.outline, np.zeros(2))
+        surface = profile_surface(actuators, p.pitch, p.radius, [still, still])
+        return Ground(surface, profile_outline(p.pitch, p.radius), np.zeros(2))
+
+    def drive(self, frequency: float, stroke: float | None = None) -> Drive:
+        """A continuous drive."""
+        p = self.parameters
+        return Drive(p.stroke if stroke is None else stroke, frequency * p.period_share)
+
+    def paths(
+        self,
+        model: str,
+        drives: Sequence[Drive],
+        starts: ArrayLike,
+        duration: float,
+        velocities: ArrayLike = (0.0, 0.0),
+        actuators: str = "one",
+        friction: Contact | None = None,
+        gravity: float | None = None,
+        tolerance: float | None = None,
+    ) -> list[Path]:
+        """One path from each start (n, 2) [m], with velocities (n, 2) or (2,) [m/s]; places count from actuator 1."""
+        p, ground = self.parameters, self.ground(model, actuators)
+        surface = ground.surface.driven_by(drives)
+        places = np.atleast_2d(np.asarray(starts, dtype=float))
+        speeds = np.broadcast_to(np.asarray(velocities, dtype=float), places.shape)
+        parts = [
+            Micropart(p.mass, (float(x), float(y)), (float(u), float(v)))
+            for (x, y), (u, v) in zip(places + ground.offset, speeds, strict=True)
+        ]
+        law = p.friction if friction is None else friction
+        pull = p.gravity if gravity is None else gravity
+        if model == PAPER:
+            one = partial(_by_steps, surface, law, duration, pull, p.time_step)
+            with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+                try:
+                    found = list(pool.map(one, parts))
+                except BaseException:  # Ctrl-C: each path takes a fraction of a second, all together long
+                    pool.shutdown(wait=True, cancel_futures=True)
+                    raise
+        else:
+            found = simulate_many(surface, parts, law, duration, pull, tolerance or p.tolerance)
+        return [Path(trajectory, ground.offset) for trajectory in found]
+
+    def starts(self, place: tuple[float, float], count: int) -> FloatArray:
+        """The place itself and others around it, (count, 2) m; the same ones for every model."""
+        jitter = self.parameters.jitter
+        random = np.random.default_rng(self.parameters.seed)
+        moved = np.asarray(place) + jitter * random.uniform(-1, 1, (count, 2))
+        moved[0] = place
+        return moved
+
+    def starts_of(self, model: str, effort: Effort) -> int:
+        """How many starts there are for a model."""
+        return effort.starts_by_steps if model == PAPER else effort.starts
+
+
+def _by_steps(
+    surface: SurfaceMotion, law: Contact, duration: float, gravity: float, step: float, part: Micropart
+) -> Trajectory:
+    return simulate(surface, part, law, duration, gravity, scheme="paper", time_step=step)
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """A trajectory with places counted from actuator 1."""
+
+    trajectory: Trajectory
+    offset: FloatArray
+
+    @property
+    def time(self) -> FloatArray:
+        """(n,) s."""
+        return self.trajectory.time
+
+    @property
+    def place(self) -> FloatArray:
+        """(n, 2) m."""
+        return self.trajectory.position - self.offset
+
+    @property
+    def outcome(self) -> str:
+        """How it ended, as of `particle.Outcome`."""
+        return self.trajectory.outcome.value
+
+    @property
+    def attached(self) -> bool:
+        """Whether the part is on the surface at the end."""
+        return self.outcome in ("stuck", "moving")
+
+    def away(self, actuator: ArrayLike = (0.0, 0.0)) -> FloatArray:
+        """Distances (n,) [m] from an actuator."""
+        return np.asarray(np.hypot(*(self.place - np.asarray(actuator)).T))
+
+    def converged(self, period: float, near: float, actuator: ArrayLike = (0.0, 0.0)) -> bool:
+        """Whether it spends the last five periods [s] within `near` [m] of an actuator."""
+        late = self.time >= self.time[-1] - LAST_CYCLES * period
+        return self.attached and bool((self.away(actuator)[late] <= near).all())
+
+    def lost(self, far: float) -> bool:
+        """Whether it leaves actuator 1, as below, or comes off."""
+        return not self.attached or self.leaves_at(far) < np.inf
+
+    def leaves_at(self, far: float) -> float:
+        """When [s] it first gets farther than `far` [m] from actuator 1, or over the rim; inf: never."""
+        beyond = np.flatnonzero(self.away() > far)
+        if len(beyond):
+            return float(self.time[beyond[0]])
+        return float(self.time[-1]) if self.outcome == "left the plate" else np.inf
+
+    def drawn(self, count: int = 400) -> FloatArray:
+        """Times and places (count, 3) [s, m, m] for a picture."""
+        times = np.linspace(0, self.time[-1], count)
+        return np.column_stack([times, self.trajectory.at(times).position - self.offset])
+
+
+__all__ = ["CLOSED", "MODELS", "NEAREST", "PAPER", "PLATE", "SUPERPOSED", "Bench", "Ground", "Path"]

@@ -1,0 +1,68 @@
+"""Parameters: the one set with which every figure is reproduced, and how much work that may be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from particle import ConstantFriction, KogutEtsion
+from particle.friction import Contact
+
+Place = tuple[float, float]  # m
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """What the paper states, and what it leaves open (docs/paper-open-points.md); nothing is set for one figure alone.
+
+    Two that belong to one figure each are not in the paper at all: the platform's friction and the later start.
+    """
+
+    radius: float = 300e-6  # m, a of equation (2); left open
+    pitch: float = 150e-6  # m, between two actuators
+    stroke: float = 150e-6  # m
+    strokes: tuple[float, ...] = (100e-6, 150e-6, 200e-6)  # m, where several are compared
+    mass: float = 2e-9  # kg
+    gravity: float = 9.80665  # m/s^2; left open
+    friction: Contact = field(default_factory=KogutEtsion.paper)
+    start: Place = (100e-6, 100e-6)  # figure 17, and wherever none is given
+    period_share: float = 1.0  # periods of an up-down drive in 1/frequency; 0.5: each of its strokes takes 1/frequency
+    cycles: int = 30  # how long continuous drives run
+    time_step: float = 1e-6  # s, of the paper's scheme; left open
+    tolerance: float = 1e-8  # of the located events
+    jitter: float = 1e-6  # m, by which starts are displaced at most along x and along y: places are given in um
+    near: float = 30e-6  # m: a part has converged that spends the last five cycles so close to the actuator
+    far: float = 200e-6  # m: it has left the actuator's region when it gets farther than that, or over the rim
+    youngs_modulus: float = 169e9  # Pa; with rigid actuators and a clamped rim neither it nor the thickness counts
+    poisson_ratio: float = 0.3
+    thickness: float = 5e-6  # m
+    platform_limit: float = 23.524  # m/s^2, friction on the platform of figure 4, from its 2.41 s
+    platform_rate: float = 3.2  # rad/s of its motion x = t sin(rate t), in m; left open
+    seed: int = 4
+
+    @property
+    def platform_friction(self) -> Contact:
+        """The platform's constant friction."""
+        return ConstantFriction(self.platform_limit * self.mass)
+
+
+PARAMETERS = Parameters()
+
+
+class Effort(NamedTuple):
+    """How many starts, frequencies and places are looked at."""
+
+    name: str
+    starts: int  # jittered starts with located events
+    starts_by_steps: int  # with the paper's scheme, whose paths take a hundred times longer
+    frequencies: int  # of figures 5, 6 and 15
+    step: float  # Hz, between frequencies of figure 18
+    strokes: int  # of figures 15 and 18
+    across: int  # places along the plate, figures 5 and 6
+    pitches: int  # of the dead zones
+    candidates: int  # frequencies tried there
+
+
+QUICK = Effort("quick", 60, 16, 40, 20.0, 5, 50, 11, 6)
+FULL = Effort("full", 400, 100, 80, 10.0, 9, 120, 11, 12)
+TINY = Effort("tiny", 2, 1, 3, 200.0, 2, 12, 1, 1)  # for tests: shows that it runs, and nothing else

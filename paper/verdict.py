@@ -1,0 +1,56 @@
+"""Verdict: what the paper says of a figure, what we find in three models, and whether that agrees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+REPRODUCED, PARTLY, NOT = "reproduced", "partly", "not"
+MOST, FEW = 0.9, 0.1  # shares of starts: what so many do is what the model says; what so few do is not
+
+
+class Answer(NamedTuple):
+    """What one model says: in words, and which share of the paper's statement it meets."""
+
+    text: str
+    met: float  # 0 to 1
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The verdict follows from the answers: all met in every model, nothing in any, or else partly."""
+
+    figure: str
+    statement: str  # the paper's, in our words
+    answers: dict[str, Answer]  # by model
+    why: str  # what makes the difference, or what the agreement rests on
+    numbers: dict[str, Any] = field(default_factory=dict)  # what was measured, by name, in SI units
+
+    @property
+    def verdict(self) -> str:
+        met = [answer.met for answer in self.answers.values()]
+        if min(met) >= 1:
+            return REPRODUCED
+        return NOT if max(met) <= 0 else PARTLY
+
+    def as_dict(self) -> dict[str, Any]:
+        """For a JSON file."""
+        return {
+            "figure": self.figure,
+            "statement": self.statement,
+            "answers": {key: answer._asdict() for key, answer in self.answers.items()},
+            "verdict": self.verdict,
+            "why": self.why,
+            "numbers": self.numbers,
+        }
+
+
+def of_checks(text: str, checks: Sequence[bool]) -> Answer:
+    """An answer that meets as much of the statement as it passes checks."""
+    return Answer(text, sum(map(bool, checks)) / len(checks))
+
+
+def of_share(text: str, share: float) -> Answer:
+    """An answer of a share of starts that do what the paper says: nearly all, nearly none, or some."""
+    return Answer(text, 1.0 if share >= MOST else 0.0 if share <= FEW else 0.5)

@@ -1,0 +1,149 @@
+"""Feasibility: where, and at which frequencies, the array of a case moves its part without losing it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from coupling.case import Case
+from coupling.progress import Progress, interruptible, silent
+from coupling.run import build_friction, build_scene
+from meshes import Outline
+from particle import Micropart
+from particle.drive import drive_table
+from particle.stay import horizon
+from studies.feasible import ACROSS, Curves, Feasible, find_feasible
+
+if TYPE_CHECKING:
+    import xarray
+
+FloatArray = NDArray[np.float64]
+
+SPAN: Final = 0.25, 8.0  # times the case's own frequency
+COUNT: Final = 31  # frequencies
+
+
+@dataclass(frozen=True, eq=False)
+class Feasibility:
+    """The feasible areas of a case, over frequencies (F,) [Hz] of its fastest drive; the others keep their ratios."""
+
+    case: Case
+    found: Feasible
+    frequency: float  # Hz, of the fastest drive in the case
+    outline: Outline
+    actuators: FloatArray  # (N, 2) m
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Hz, of the fastest drive: (F,)."""
+        return self.found.factors * self.frequency
+
+    def figures(self) -> dict[str, Any]:
+        """The figures by name, in SI units; None: there is no such frequency."""
+        found, one = self.found, self.found.at_one
+        moves = np.flatnonzero(found.slipping.peak > 0)
+        loses = np.flatnonzero(found.lost_area > 0)
+        return {
+            "frequency": self.frequency,
+            "frequencies": self.frequencies[[0, -1]].tolist(),
+            "window": found.window,
+            "peak_area": float(found.feasible.peak[one]),
+            "time_integral": float(found.feasible.integral[one]),
+            "area_where_it_comes_off": float(found.lost_area[one]),
+            "frequency_of_largest_peak_area": _top(self.frequencies, found.feasible.peak),
+            "largest_peak_area": float(found.feasible.peak.max()),
+            "frequency_of_largest_time_integral": _top(self.frequencies, found.feasible.integral),
+            "largest_time_integral": float(found.feasible.integral.max()),
+            "lowest_frequency_that_moves_it": float(self.frequencies[moves[0]]) if len(moves) else None,
+            "lowest_frequency_that_loses_it": float(self.frequencies[loses[0]]) if len(loses) else None,
+        }
+
+    def dataset(self) -> xarray.Dataset:
+        """All of it with labels."""
+        import xarray
+
+        found = self.found
+        slipping: Curves = found.slipping
+        return xarray.Dataset(
+            {
+                "peak_area": ("frequency", found.feasible.peak, {"units": "m^2"}),
+                "time_integral": ("frequency", found.feasible.integral, {"units": "m^2 s"}),
+                "slipping_peak_area": ("frequency", slipping.peak, {"units": "m^2"}),
+                "slipping_time_integral": ("frequency", slipping.integral, {"units": "m^2 s"}),
+                "lost_area": ("frequency", found.lost_area, {"units": "m^2"}),
+                "area": ("time", found.over_time, {"units": "m^2"}),
+                "share": ("place", found.shares, {"units": "1", "long_name": "share of the window in which it slips"}),
+                "lost": ("place", found.lost.astype(np.int8), {"long_name": "whether the part comes off at some time"}),
+                "x": ("place", found.points[:, 0], {"units": "m"}),
+                "y": ("place", found.points[:, 1], {"units": "m"}),
+            },
+            {
+                "frequency": ("frequency", self.frequencies, {"units": "Hz", "long_name": "of the fastest drive"}),
+                "time": ("time", found.moments, {"units": "s"}),
+            },
+            {"case": self.case.source or "", "window": found.window, "spacing": found.spacing},
+        )
+
+    def write(self, folder: Path) -> tuple[Path, ...]:
+        """Writes NAME.feasibility.nc and NAME.feasibility.png into a folder; returns them."""
+        from studies.feasible_picture import draw_feasibility
+
+        folder.mkdir(parents=True, exist_ok=True)
+        data = folder / f"{self.case.name}.feasibility.nc"
+        partial = data.with_suffix(".partial.nc")
+        self.dataset().to_netcdf(partial, engine="h5netcdf")
+        partial.replace(data)
+        return data, draw_feasibility(self, folder / f"{self.case.name}.feasibility.png")
+
+
+def _top(frequencies: FloatArray, values: FloatArray) -> float | None:
+    return float(frequencies[np.argmax(values)]) if values.max() > 0 else None
+
+
+def feasibility(
+    case: Case,
+    lowest: float | None = None,
+    highest: float | None = None,
+    across: int = ACROSS,
+    progress: Progress = silent,
+) -> Feasibility:
+    """The feasible areas of a case.
+
+    lowest, highest: Hz, the frequencies of its fastest drive that are looked at, by default a quarter of its own and
+    eight times that; delays and dwells shrink with the cycles.  across: places along the plate's longer side.
+    The window is what the drives do until they repeat themselves, at most the run's duration.
+    Raises ValueError for a platform, drives without a frequency, and numbers that make no sense.
+    """
+    drives_of = [actuator.frequency for actuator in case.actuators]
+    wrong = []
+    if not case.actuators:
+        wrong.append("Input case of feasibility must have a plate on actuators; got a platform")
+    frequency = max((own or 0.0 for own in drives_of), default=0.0)
+    if case.actuators and not frequency:
+        wrong.append("Input case of feasibility must have a drive with a frequency; got none")
+    low = SPAN[0] * frequency if lowest is None else lowest
+    high = SPAN[1] * frequency if highest is None else highest
+    if not wrong and not 0 < low < high:
+        wrong.append(f"Input lowest of feasibility must be positive and below the highest, {high:g} Hz; got {low:g} Hz")
+    if not 10 <= across <= 1000:
+        wrong.append(f"Input across of feasibility must be in [10, 1000]; got {across}")
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    with threadpool_limits(limits=1, user_api="blas"):
+        scene = build_scene(case, progress)
+        assert scene.shapes
+        until = horizon(drive_table(scene.lifts), 0.0)
+        window = case.run.duration if until is None else min(until, case.run.duration)
+        part = Micropart(case.part.mass, case.part.position, squeeze=case.part.squeeze)
+        factors = np.geomspace(low, high, COUNT) / frequency
+        with progress("Looking where the part slips"):
+            found = interruptible(
+                find_feasible, scene.surface, scene.shapes.outline, part, build_friction(case), window, factors,
+                case.run.gravity, across,
+            )  # fmt: skip
+    return Feasibility(case, found, frequency, scene.shapes.outline, scene.shapes.points)

@@ -1,0 +1,125 @@
+"""Feasible areas: against the radial integral of a disc, and drives that really run faster."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from command_line.main import main
+from coupling import read_case, surface_motion
+from fem_plate.analytic import DiscShapes
+from particle import ConstantFriction, Drive, KogutEtsion, Micropart
+from studies.feasibility import feasibility
+from studies.feasible import find_feasible, places
+
+RADIUS, STROKE, MASS, GRAVITY = 300e-6, 150e-6, 2e-9, 9.80665
+SHAPES = DiscShapes([[0.0, 0.0]], RADIUS)
+CASE = "examples/one_actuator.toml"
+PART = Micropart(MASS, (0.0, 0.0))
+
+
+def radial(frequency, law):
+    """The feasible area of an up-down drive by rings: peak [m^2], integral [m^2 s] and the area that is lost."""
+    r = (np.arange(3000) + 0.5) / 3000
+    ring = 2 * np.pi * r * RADIUS**2 / 3000
+    phi, slope = 1 - r**2 + 2 * r**2 * np.log(r), 4 * r * np.log(r) / RADIUS
+    half = 0.5 / frequency
+    s = (np.arange(400) + 0.5) / 400
+    rise, pull = 10 * s**3 - 15 * s**4 + 6 * s**5, 60 * s - 180 * s**2 + 120 * s**3
+    h = STROKE * np.concatenate([rise, 1 - rise])[:, None]
+    a = STROKE / half**2 * np.concatenate([pull, -pull])[:, None]
+    b, g = GRAVITY + a * phi, h * slope
+    load = MASS * b / np.sqrt(1 + g**2)
+    held = (load >= -law.pull_off) & (load <= law.largest_load)
+    limit = law.friction_limit(np.clip(load, -law.pull_off, law.largest_load))
+    slips = held & (MASS * np.abs(b * g) / np.sqrt(1 + g**2) > limit)
+    lost = ~held.all(axis=0)
+    areas = (slips & ~lost) @ ring
+    return areas.max(), areas.mean() / frequency, lost @ ring
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("frequency", [250.0, 1000.0])
+def test_areas_are_those_of_the_radial_integral(frequency):
+    law = KogutEtsion.paper()
+    surface = surface_motion(SHAPES, [Drive(STROKE, frequency)])
+    found = find_feasible(surface, SHAPES.outline, PART, law, 1 / frequency, np.ones(1), GRAVITY)
+    peak, integral, lost = radial(frequency, law)
+    assert found.feasible.peak[0] == pytest.approx(peak, rel=0.01)
+    assert found.feasible.integral[0] == pytest.approx(integral, rel=0.01)
+    assert found.lost_area[0] == pytest.approx(lost, rel=0.02, abs=1e-12)
+    assert (found.lost_area[0] > 0) == (frequency == 1000.0)
+
+
+@pytest.mark.compiled
+def test_a_factor_is_a_drive_that_runs_so_much_faster():
+    law = KogutEtsion.paper()
+    both = []
+    for frequency, factor in ((300.0, 2.5), (750.0, 1.0)):
+        surface = surface_motion(SHAPES, [Drive(STROKE, frequency)])
+        found = find_feasible(surface, SHAPES.outline, PART, law, 1 / frequency, np.array([factor]), GRAVITY, 40)
+        row = int(np.argmin(np.abs(found.factors - factor)))
+        both.append([found.feasible.peak[row], found.feasible.integral[row], found.slipping.peak[row]])
+    assert both[0] == pytest.approx(both[1], rel=1e-9)
+
+
+def test_nothing_is_lost_without_pull_off_and_nothing_moves_where_friction_holds():
+    surface = surface_motion(SHAPES, [Drive(STROKE, 2000.0)])
+    loose, held = (
+        find_feasible(surface, SHAPES.outline, PART, ConstantFriction(limit), 5e-4, np.ones(1), GRAVITY, 10)
+        for limit in (1e-12, 1.0)
+    )
+    assert not loose.lost.any() and loose.feasible.peak[0] > 0
+    assert held.slipping.peak[0] == held.feasible.integral[0] == held.shares.max() == 0
+
+
+def test_a_tilt_alone_makes_a_part_slip():
+    surface = surface_motion(SHAPES, [Drive(0.0, 100.0)])
+    for tilt, moves in ((6.0, True), (4.0, False)):
+        found = find_feasible(
+            surface, SHAPES.outline, PART, ConstantFriction(5 * MASS), 1e-2, np.ones(1), (tilt, 0.0, -8.0), 8
+        )
+        assert found.shares.all() == found.shares.any() == moves
+
+
+def test_places_fill_the_plate():
+    points, side = places(SHAPES.outline, 100)
+    assert len(points) * side**2 == pytest.approx(np.pi * RADIUS**2, rel=0.01)
+    assert (np.hypot(*points.T) < RADIUS).all()
+
+
+@pytest.mark.compiled
+def test_command_writes_map_and_labelled_data(tmp_path):
+    import xarray
+
+    options = ["--across", "24", "--lowest", "100 Hz", "--highest", "2 kHz", "--json", "--output", str(tmp_path)]
+    done = CliRunner().invoke(main, ["feasibility", CASE, *options])
+    assert done.exit_code == 0, done.output
+    figures = json.loads(done.stdout)
+    assert 100 < figures["lowest_frequency_that_moves_it"] < 300 < figures["lowest_frequency_that_loses_it"] < 2000
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "one_actuator.feasibility.nc", "one_actuator.feasibility.png",
+    ]  # fmt: skip
+    with xarray.open_dataset(tmp_path / "one_actuator.feasibility.nc", engine="h5netcdf") as data:
+        assert data["peak_area"].dims == ("frequency",) and data["peak_area"].attrs["units"] == "m^2"
+        assert float(data["peak_area"].max()) == pytest.approx(figures["largest_peak_area"])
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--lowest", "5 um"], "--lowest must be a frequency"),
+        (["--lowest", "5 kHz", "--highest", "1 kHz"], "below the highest"),
+        (["--across", "3"], "across"),
+    ],
+)
+def test_command_refuses_what_makes_no_sense(tmp_path, options, said):
+    done = CliRunner().invoke(main, ["feasibility", CASE, *options, "-o", str(tmp_path / "new")])
+    assert done.exit_code == 2 and said in done.output
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_platform_is_refused():
+    with pytest.raises(ValueError, match="platform"):
+        feasibility(read_case("examples/shaker.toml"))

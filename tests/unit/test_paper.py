@@ -1,0 +1,78 @@
+"""The figures of the paper: each runs in a tiny mode and has its verdict."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+from matplotlib.figure import Figure
+
+from command_line.main import main
+from paper.catalogue import MODULES, finder, modules_of
+from paper.dead_zones import touched
+from paper.models import Bench
+from paper.page import page_of
+from paper.parameters import PARAMETERS, TINY
+from paper.reproduce import reproduce, rounded
+from paper.verdict import NOT, PARTLY, REPRODUCED, Answer, Verdict, of_checks, of_share
+
+pytestmark = pytest.mark.compiled
+
+
+@pytest.fixture(scope="module")
+def bench():
+    return Bench()
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_figure_runs_and_has_its_verdict(module, bench):
+    found = finder(module)(bench, TINY)
+    assert found.verdicts and found.caption and found.title
+    for verdict in found.verdicts:
+        assert verdict.verdict in (REPRODUCED, PARTLY, NOT)
+        assert verdict.statement and verdict.why and verdict.numbers
+        assert set(verdict.answers) <= {"paper", "closed", "plate"}
+        assert all(answer.text and 0 <= answer.met <= 1 for answer in verdict.answers.values())
+    figure = Figure()
+    found.draw(figure)
+    assert all(axes.get_xlabel() and axes.has_data() for axes in figure.axes)
+    json.dumps(rounded([found.data, [verdict.as_dict() for verdict in found.verdicts]]), allow_nan=False)
+    assert found.name in page_of([found], TINY, PARAMETERS, "paper")
+
+
+def test_some_figures_are_written_and_a_page_of_all_only(tmp_path):
+    done = reproduce(["fig12", "FIG4"], tmp_path, TINY)
+    assert [path.name for path in done.files] == ["fig3-4.png", "fig3-4.json", "fig11-12.png", "fig11-12.json"]
+    assert all(path.exists() for path in done.files) and not (tmp_path / "paper.md").exists()
+    assert {verdict.figure for verdict in done.verdicts} == {"3", "4", "11", "12"}
+
+
+def test_names_of_figures():
+    assert modules_of([]) == modules_of(["all"]) == list(MODULES)
+    assert modules_of(["fig6", "fig5", "fig22"]) == ["feasible_area", "accuracy"]
+
+
+def test_command_prints_verdicts_and_refuses_other_figures(tmp_path):
+    done = CliRunner().invoke(main, ["reproduce", "fig13", "--json", "--output", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    assert [verdict["figure"] for verdict in json.loads(done.stdout)["verdicts"]] == ["13", "14"]
+    wrong = CliRunner().invoke(main, ["reproduce", "fig71", "figure 2", "--output", str(tmp_path / "new")])
+    assert wrong.exit_code == 2 and '"fig71" (did you mean "fig21"?)' in wrong.output and '"figure 2"' in wrong.output
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize(("met", "said"), [((1, 1), REPRODUCED), ((1, 0.5), PARTLY), ((0.5, 0), PARTLY), ((0, 0), NOT)])
+def test_a_verdict_follows_from_the_answers(met, said):
+    answers = {str(k): Answer("", share) for k, share in enumerate(met)}
+    assert Verdict("1", "", answers, "").verdict == said
+
+
+def test_shares_and_checks():
+    assert [of_share("", share).met for share in (1.0, 0.9, 0.5, 0.1, 0.0)] == [1, 1, 0.5, 0, 0]
+    assert of_checks("", [True, False]).met == 0.5
+
+
+@pytest.mark.parametrize(
+    ("pitch", "one", "two"), [(100e-6, 1.0, 0.0), (200e-6, 0.25, 0.0), (50e-6, 1.0, 1.0), (80e-6, 1.0, 0.4375)]
+)
+def test_a_square_part_touches_so_many_actuators(pitch, one, two):
+    assert touched(pitch, 100e-6) == pytest.approx((one, two), abs=1e-9)
