@@ -28,8 +28,8 @@ def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: 
     from coupling.results import check_folder
     from paper.catalogue import modules_of
     from paper.parameters import FULL, QUICK
-    from paper.reproduce import reproduce as run
-    from paper.reproduce import rounded
+    from paper.reproduction import reproduce as run
+    from paper.reproduction import rounded
 
     modules = refusing(modules_of, figures)
     folder = output or DEFAULT_OUTPUT

@@ -11,7 +11,7 @@ _HOMES = {
     "QUICK": "paper.parameters",
     "FULL": "paper.parameters",
     "Verdict": "paper.verdict",
-    "reproduce": "paper.reproduce",
+    "reproduce": "paper.reproduction",
 }
 
 __all__ = list(_HOMES)  # noqa: PLE0605

@@ -12,7 +12,7 @@ from paper.dead_zones import touched
 from paper.models import Bench
 from paper.page import page_of
 from paper.parameters import PARAMETERS, TINY
-from paper.reproduce import reproduce, rounded
+from paper.reproduction import reproduce, rounded
 from paper.verdict import NOT, PARTLY, REPRODUCED, Answer, Verdict, of_checks, of_share
 
 pytestmark = pytest.mark.compiled
