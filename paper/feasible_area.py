@@ -96,9 +96,10 @@ def _verdicts(found: dict[str, dict[float, Feasible]]) -> tuple[Verdict, Verdict
         Verdict(
             "5", "Below about 200 Hz nothing moves, for three strokes alike; the area grows with frequency, "
             "peaks, and falls because the part comes off.", _ordered(five),
-            f"Strokes are not stated; here {strokes} um. The least acceleration that slips goes with stroke times "
-            "frequency squared, so that one threshold for all strokes cannot be. The area falls only if places where "
-            "the part comes off at another moment of the cycle do not count.", numbers,
+            f"Strokes are not stated; here {strokes} um. Slip begins where slope times acceleration is enough; one "
+            "goes with the stroke, the other with that times frequency squared: one threshold for all strokes cannot "
+            "be. The area falls only if places where the part comes off at another moment of the cycle do not count.",
+            numbers,
         ),
         Verdict(
             "6", "The time integral is largest at 300 to 400 Hz, for all strokes.", _ordered(six),
