@@ -26,5 +26,5 @@ def draw_path(axes: Axes, rows: Rows, line: FloatArray, unit: Unit, visible: boo
 def _staying(length: float) -> str:
     """What is said of a part whose path is no more than a point."""
     unit = readable(np.array([length]), "m")
-    moved = f"within {length * unit.per_si:.2g} {unit.name}" if unit.name != "m" else "where it is"
+    moved = f"within {float(f'{length * unit.per_si:.2g}'):g} {unit.name}" if unit.name != "m" else "where it is"
     return f"the part, which stays {moved}"

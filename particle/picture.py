@@ -21,7 +21,7 @@ HALO = [withStroke(linewidth=2.6, foreground="white")]
 RING: dict[str, Any] = {"marker": "o", "markerfacecolor": "none", "markersize": 8, "markeredgewidth": 1.4}
 CROSS: dict[str, Any] = {"marker": "x", "markersize": 7, "markeredgewidth": 1.6}
 PLACE: dict[str, Any] = {"color": "black", "linestyle": "", "path_effects": HALO, "zorder": 5}
-REST: dict[str, Any] = {"color": STICK_COLOUR, "markeredgecolor": "white", "markeredgewidth": 0.6, "markersize": 4.5}
+REST: dict[str, Any] = {"color": STICK_COLOUR, "markeredgewidth": 0, "markersize": 4.5}
 SHADES = {State.STICK: (STICK_COLOUR, "stuck"), State.FLIGHT: ("#606060", "in flight")}
 SAMPLES = 2000
 ROOM = 0.6  # of a path's extent, from its middle to the frame
@@ -53,7 +53,7 @@ def draw_line(axes: Axes, rows: Rows, line: FloatArray, per_metre: float = 1.0) 
     )
     rests = np.unique(points[rows.state == State.STICK], axis=0)
     if rests.size:
-        keys += axes.plot(*rests.T, "o", **REST, zorder=4, label="rests here")
+        keys += axes.plot(*rests.T, "o", **REST, zorder=2.9, label="rests here")  # many must not hide the line
     keys += axes.plot(*points[:1].T, **RING, **PLACE, label="start")
     keys += axes.plot(*points[-1:].T, **CROSS, **PLACE, label="end")
     return keys
