@@ -23,6 +23,8 @@ Answer = TypeVar("Answer")
 DEFAULT_OUTPUT = Path("results")
 INTERRUPTED = 130  # 128 and the number of the signal
 JSON = "--json"
+KINDS = {"study": ("study", "sweep"), "aim": ("aim", "aim"), "case": ("plate", "run")}
+"""Kinds of files: the table that only they have, and the command that takes them."""
 
 
 class Command(click.Command):
@@ -84,9 +86,24 @@ def main() -> None:
 
 
 def read(path: Path) -> Case:
+    """The case in a file."""
     from coupling.case import read_case
 
+    check_kind(path, "case")
     return refusing(read_case, path)
+
+
+def check_kind(path: Path, wanted: str) -> None:
+    """Refuse a file of another of the KINDS, in which nearly all would be a mistake."""
+    from coupling.case_lines import load
+
+    _, tables = refusing(load, path)
+    kind = next((kind for kind, (table, _) in KINDS.items() if table in tables), wanted)
+    if kind != wanted:
+        table, command = KINDS[kind]
+        said = f"must be a {wanted}; got {path}, whose table [{table}] is for `active-surface {command}`"
+        context = click.get_current_context()
+        raise refusal(context.command_path, [(wanted.upper(), said)], bool(context.params.get("as_json")))
 
 
 def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:

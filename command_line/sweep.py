@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from command_line import options
-from command_line.group import DEFAULT_OUTPUT, INTERRUPTED, main, refusing
+from command_line.group import DEFAULT_OUTPUT, INTERRUPTED, check_kind, main, refusing
 
 
 @main.command()
@@ -43,6 +43,7 @@ def sweep(
     from studies.report import figures, lines
     from studies.run import run_study
 
+    check_kind(study, "study")
     read = refusing(read_study, study)
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)

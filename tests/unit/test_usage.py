@@ -146,3 +146,18 @@ def test_ctrl_c_that_python_drops_ends_a_command_all_the_same(after, monkeypatch
     signal.signal(signal.SIGINT, before)
     assert (done.exit_code, done.stderr) == (130, "interrupted\n")
     assert after == 0 or time.monotonic() < begun + after
+
+
+@pytest.mark.parametrize(
+    ("command", "file", "said"),
+    [
+        ("run", "studies/frequency_stroke.toml", "CASE must be a case; got {}, whose table [study] is for"),
+        ("run", "aims/around_the_corner.toml", "CASE must be a case; got {}, whose table [aim] is for"),
+        ("sweep", "one_actuator.toml", "STUDY must be a study; got {}, whose table [plate] is for"),
+    ],
+)
+def test_a_file_for_another_command_is_told_in_one_line(tmp_path, command, file, said):
+    path = Path(__file__).parents[2] / "examples" / file
+    done = CliRunner().invoke(main, [command, str(path), "-o", str(tmp_path / "out")])
+    assert done.exit_code == 2 and not (tmp_path / "out").exists()
+    assert said.format(path) in done.output and len(done.output.splitlines()) == 2
