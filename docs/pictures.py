@@ -26,6 +26,7 @@ from fem_plate import InfluenceShapes, Plate, PlateSection
 from meshes import PlateMesh, annulus, read, rectangle
 from steering import aim, plan, read_route, read_task
 from studies import read_study, run_study
+from views import animate
 
 ROOT = Path(__file__).parent.parent
 SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6, density=2330)
@@ -65,6 +66,9 @@ def draw_aims() -> None:
         plan(read_route(ROOT / "examples/aims/around_the_corner.toml", CORNER), folder)
         copy(Path(folder) / "to_target_aim.png", ROOT / "docs/aim.png")
         copy(Path(folder) / "around_the_corner_plan.png", ROOT / "docs/plan.png")
+        run_case(read_case(Path(folder) / "around_the_corner_planned.toml"), folder)
+        film = ROOT / "docs/plan.gif"
+        animate(Path(folder) / "around_the_corner_planned", film, size="640x400", fps=12, slow_motion=120)
 
 
 def draw_plates() -> None:
