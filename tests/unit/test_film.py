@@ -95,6 +95,19 @@ def test_one_step_is_one_frame_and_a_short_film_has_two():
     assert pace_of(np.array([0.0, 1e-6]), 30.0, 1.0).times.tolist() == [0.0, 1e-6]
 
 
+@pytest.mark.parametrize(("duration", "slower"), [(0.05, 1.0), (0.049, 10.0), (1.0, 0.37), (0.1, 3.0)])
+def test_a_film_is_as_fast_as_it_says_up_to_the_frame_of_the_end(duration, slower):
+    times = pace_of(np.array([0.0, duration]), 30.0, slower).times
+    assert np.diff(times)[:-1] * slower == pytest.approx(1 / 30) and times[-1] == duration
+    assert 0 < np.diff(times)[-1] * slower <= (1 + 1e-6) / 30
+
+
+def test_a_run_that_is_shorter_than_a_frame_is_said_to_be():
+    time = np.array([0.0, 1e-6])
+    assert "shorter than a frame" in warnings_of(pace_of(time, 30.0, 1.0), time, None)[0]
+    assert not any("shorter" in said for said in warnings_of(pace_of(time, 30.0, None), time, None))
+
+
 def test_films_of_too_many_frames_are_refused():
     with pytest.raises(ValueError, match=f"at most {MOST_FRAMES} frames"):
         pace_of(np.array([0.0, 1.0]), 30.0, 1e9)
