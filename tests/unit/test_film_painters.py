@@ -38,9 +38,9 @@ def hilly(height=2e-4, **more):
     return made_run(PATH, lambda points: hill(points, height), **more)
 
 
-def painted(run, renderer, camera="iso", time=2e-3):
+def painted(run, renderer, camera="iso", time=2e-3, times=1.0):
     stage = stage_of(run)
-    look = Look(stage, layout_of(stage, CAMERAS[camera], SIZE, 1.0), stage.scale)
+    look = Look(stage, layout_of(stage, CAMERAS[camera], SIZE, times), stage.scale)
     (frame,) = frames_of(stage, np.array([time]))
     with painter(renderer, look) as painter_of_it:
         return look, frame, painter_of_it.paint(frame)
@@ -83,6 +83,16 @@ def test_both_painters_draw_the_same_picture(refused):
         images = [painted(hilly(), who, camera)[2].astype(float) for who in ("matplotlib", "pyvista")]
         apart = np.abs(images[0] - images[1]).mean(axis=2)
         assert apart.mean() < 6 and (apart > 60).mean() < 0.05
+
+
+def test_both_painters_draw_heights_far_before_and_behind(refused):
+    if refused is not None:
+        pytest.skip(f"pyvista cannot draw here: {refused}")
+    for camera, exaggeration in (("top", 50.0), ("top", -50.0), ("iso", 50.0)):
+        run = hilly(2e-4 * np.sign(exaggeration))
+        images = [painted(run, who, camera, times=abs(exaggeration))[2] for who in ("matplotlib", "pyvista")]
+        bare = [(image == 255).all(axis=2) for image in images]
+        assert (bare[0] != bare[1]).mean() < 0.02
 
 
 def test_the_words_of_a_film_are_there_and_follow_it(renderer):
