@@ -78,7 +78,7 @@ def animate(
     "pyvista", "matplotlib", or "auto", pyvista where it can draw.  tell: gets how many frames are done, and of how
     many.
 
-    Between stored steps heights and places are interpolated linearly. An older film of that name is replaced.
+    Between stored steps heights are interpolated linearly. An older film of that name is replaced.
     Raises ValueError when the result cannot be read or an input is refused, OSError when the film cannot be written.
     """
     tries = _Tries()

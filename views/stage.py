@@ -66,6 +66,11 @@ class Stage:
         return self.run.points[outer_edges(self.run.points, self.run.triangles)]
 
     @cached_property
+    def path(self) -> tuple[FloatArray, FloatArray]:
+        """The places (r, 2) [m] of the part that the integrator found, up to the last stored step, and when [s]."""
+        return path_of(self.run)
+
+    @cached_property
     def matrices(self) -> dict[str, csr_matrix]:
         """From the heights at the run's points to those of each thing that lies on the surface."""
         things = {
@@ -118,8 +123,8 @@ class Stage:
 
 def stage_of(run: SavedRun) -> Stage:
     """The stage of a run: all of its surface, or a window around a path that is short beside it."""
-    path = run.position[:, :2]
-    frame, window = _frame(run)
+    path, then = path_of(run)
+    frame, window = _frame(run, path)
     used, kept = _near(run, frame)
     smooth = Smooth(run.points[used], kept)
     surface, triangles = _grid(smooth, frame) if window else _finer(run)
@@ -128,9 +133,7 @@ def stage_of(run: SavedRun) -> Stage:
     rim = clipped(divided(clipped(Lines(run.points, outer), frame), FINE * size), frame)
     cut = Lines(surface, outer_edges(surface, triangles)) if window else Lines(surface[:0], outer[:0])
     width = net_width(size)
-    trail, trail_time = (
-        path_points(path, run.time, FINE * size) if is_visible(path, frame) else (path[:0], run.time[:0])
-    )
+    trail, trail_time = path_points(path, then, FINE * size) if is_visible(path, frame) else (path[:0], then[:0])
     return Stage(
         run,
         used,
@@ -149,14 +152,23 @@ def stage_of(run: SavedRun) -> Stage:
     )
 
 
-def _frame(run: SavedRun) -> tuple[FloatArray, bool]:
+def path_of(run: SavedRun) -> tuple[FloatArray, FloatArray]:
+    """The places (r, 2) [m] of the part that the integrator found, up to the last stored step, and their times (r,)."""
+    known = run.rows.time <= run.time[-1]
+    return (
+        np.concatenate([run.rows.position[known], run.position[-1:, :2]]),
+        np.append(run.rows.time[known], run.time[-1]),
+    )
+
+
+def _frame(run: SavedRun, path: FloatArray) -> tuple[FloatArray, bool]:
     """The frame (2, 2) [m], and whether it is a window around a path that is short beside the plate.
 
     Its sides are a few lengths of the path, two pitches, and some times what the part goes up and down with the plate,
     whichever is most.
     """
     box = np.stack([run.points.min(axis=0), run.points.max(axis=0)])
-    window = path_window(run.position[:, :2], box, run.actuators)
+    window = path_window(path, box, run.actuators)
     if window is None:
         return box, False
     heights = run.position[run.state != State.FLIGHT, 2]

@@ -1,5 +1,7 @@
 """What a film shows: smooth heights, where from, how fast, when, how large, and what lies on the present surface."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_runs import SIDE, grid, hill, made_run
@@ -161,6 +163,19 @@ def test_one_stored_step_is_a_frame():
     stage = stage_of(made_run([[0.0, 0.0]], lambda points: hill(points, 1e-5)))
     (frame,) = frames_of(stage, pace_of(stage.run.time, 30.0, None).times)
     assert frame.under == pytest.approx(1e-5) and len(frame.trail) == 0
+
+
+def test_the_part_and_its_trail_are_where_the_integrator_found_it_between_stored_steps():
+    run = made_run(LONG[[0, 4]], lambda points: hill(points, 1e-5), time=[0.0, 4e-3], state=1)
+    bent = LONG + np.array([[0, 0], [0, 1e-4], [0, 2e-4], [0, 1e-4], [0, 0]])
+    state = np.array([0, 1, 2, 1, 0])
+    rows = run.rows._replace(time=1e-3 * np.arange(5), position=bent, state=state)
+    stage = stage_of(replace(run, rows=rows))
+    assert stage.trail[:, 1].max() == pytest.approx(2e-4, rel=0.02)
+    (frame,) = frames_of(stage, np.array([2.5e-3]))
+    assert frame.part[:2] == pytest.approx([1e-4, 1.5e-4]) and frame.state is State.FLIGHT
+    half = stage_of(replace(run, rows=rows, time=np.array([0.0, 2e-3])))
+    assert half.trail_time.max() <= 2e-3
 
 
 def test_flight_is_counted_from_the_surface():

@@ -1,8 +1,11 @@
 """Both painters draw the same: what is seen, what is hidden, and the words on it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_runs import hill, made_run
+from matplotlib.collections import PolyCollection
 from PIL import Image
 
 from particle import State
@@ -112,6 +115,20 @@ def test_the_words_of_a_film_are_there_and_follow_it(renderer):
     for one, other in zip(seen, seen[1:], strict=False):
         assert (one != other).any()
     assert (seen[0][SIZE[1] // 2, : SIZE[0] // 2] == 255).all()
+
+
+def test_the_time_line_has_the_stretches_that_the_integrator_found():
+    run = hilly(state=1)
+    rows = run.rows._replace(
+        time=np.array([0.0, 1.2e-3, 1.3e-3, 2.5e-3, 2.6e-3, 9e-3]),
+        position=np.zeros((6, 2)),
+        state=np.array([1, 2, 1, 0, 1, 2]),
+    )
+    stage = stage_of(replace(run, rows=rows))
+    captions = Captions(stage, layout_of(stage, CAMERAS["iso"], SIZE, 1.0), None)
+    drawn = [patch for patch in captions._figure.findobj(PolyCollection) if len(patch.get_paths()) == 1]
+    spans = sorted(tuple(patch.get_paths()[0].vertices[[0, 2], 0].round(6)) for patch in drawn)
+    assert spans == [(1.2, 1.3), (2.5, 2.6)]
 
 
 @pytest.mark.parametrize("size", [(320, 240), (1280, 720), (330, 900), (1000, 320)])
