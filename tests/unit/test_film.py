@@ -1,5 +1,6 @@
 """What a film shows: smooth heights, where from, how fast, when, how large, and what lies on the present surface."""
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -52,6 +53,19 @@ def test_a_place_off_the_plate_is_known_to_be_and_has_the_nearest_of_the_rim():
     assert inside.tolist() == [True, False, False]
     place = (smooth.points[smooth.triangles[triangle]] * shares[..., None]).sum(axis=1)
     assert place[1, 0] == pytest.approx(SIDE / 2) and abs(place[1, 1] - 1e-5) < SIDE / 20
+
+
+def test_many_points_are_located_in_blocks_that_take_little_memory():
+    smooth = Smooth(*grid())
+    xy = SIDE * (np.random.default_rng(3).random((20_000, 2)) - 0.5)
+    smooth.locate(xy[:1])
+    tracemalloc.start()
+    found = smooth.locate(xy)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 60e6 and [len(part) for part in found] == 3 * [20_000]
+    for some, all_of_them in zip(smooth.locate(xy[4090:4100]), found, strict=True):
+        assert (some == all_of_them[4090:4100]).all()
 
 
 def test_two_triangles_have_flat_heights():
