@@ -251,6 +251,13 @@ def test_a_result_that_is_none_is_refused(tmp_path):
     assert answer.exit_code == 2 and "Input path of read_run must be" in answer.output
 
 
+@pytest.mark.parametrize(("name", "said"), [("x.toml", "name the result, such as results/x"), ("x.nc", "of a sweep")])
+def test_a_file_that_is_no_result_of_a_run_is_told_what_it_is(tmp_path, name, said):
+    (tmp_path / name).write_text("")
+    answer = called(tmp_path / name)
+    assert answer.exit_code == 2 and said in " ".join(answer.output.split()) and "vtkhdf" not in answer.output
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_ctrl_c_leaves_no_half_film(ran, tmp_path):
     command = [sys.executable, "-m", "command_line", "animate", str(ran / "run"), "-o", str(tmp_path / "film.mp4")]
