@@ -88,7 +88,7 @@ class Captions:
         bar = self._figure.colorbar(ScalarMappable(scale.norm, scale.colours), cax=axes)
         axes.set_ylim(low * unit.per_si, high * unit.per_si)
         bar.set_ticks(MaxNLocator(6, steps=STEPS))
-        bar.ax.yaxis.set_major_formatter(StrMethodFormatter("{x:.6g}"))
+        bar.ax.yaxis.set_major_formatter(StrMethodFormatter("{x:.7g}"))
         axes.tick_params(labelsize=self._letter, pad=2, length=3)
         axes.set_title(f"height [{unit.name}]", fontsize=self._letter, pad=self._letter)
 

@@ -30,7 +30,7 @@ MOST_OF_PLATE = 0.6  # of the plate's longer side: a wider window shows all of i
 FINE = 1 / 200  # of the longer side: the length of a piece of a line
 RISE = 0.2  # of the longer side: about so high are heights drawn without a wish
 ALMOST_TRUE = 1.5  # a smaller exaggeration is none
-FLAT = 1e-12  # m: a smaller range of heights is none
+FLAT, ROUNDING = 1e-11, 1e-5  # m, and of the largest height: a smaller range of heights is none
 AROUND = 0.5  # of the longer side: points further from the frame do not shape what is in it
 AT_ONCE = 16  # steps that are read together
 CROWDED = 1 / 60  # of the longer side: actuators nearer to each other are not marked
@@ -110,7 +110,8 @@ class Stage:
     def flat(self) -> bool:
         """Whether all heights are the same."""
         low, high = self.reach
-        return float(high.max() - low.min()) < FLAT
+        largest = max(abs(float(high.max())), abs(float(low.min())))
+        return float(high.max() - low.min()) < max(FLAT, ROUNDING * largest)
 
     @property
     def exaggeration(self) -> float:

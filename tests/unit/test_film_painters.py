@@ -131,6 +131,22 @@ def test_the_time_line_has_the_stretches_that_the_integrator_found():
     assert spans == [(1.2, 1.3), (2.5, 2.6)]
 
 
+@pytest.mark.parametrize(("height", "level"), [(0.0, 0.0), (2e-12, 0.0), (-2e-12, 0.0), (5e-12, 1e-6), (1e-9, 1e-3)])
+def test_a_flat_surface_has_no_bar_of_heights(height, level):
+    stage = stage_of(made_run(PATH, lambda points: hill(points, height) + level))
+    captions = Captions(stage, layout_of(stage, CAMERAS["iso"], SIZE, stage.exaggeration), None)
+    assert stage.flat and not any("height" in axes.get_title() for axes in captions._figure.axes)
+
+
+@pytest.mark.parametrize(("height", "level"), [(2e-11, 0.0), (2e-11, 1e-6), (1e-4, 0.0)])
+def test_ticks_of_the_bar_can_be_told_apart(height, level):
+    stage = stage_of(made_run(PATH, lambda points: hill(points, height) + level))
+    captions = Captions(stage, layout_of(stage, CAMERAS["iso"], SIZE, stage.exaggeration), None)
+    (bar,) = (axes for axes in captions._figure.axes if "height" in axes.get_title())
+    words = [label.get_text() for label in bar.get_yticklabels()]
+    assert len(words) > 2 and len(set(words)) == len(words)
+
+
 @pytest.mark.parametrize("size", [(320, 240), (1280, 720), (330, 900), (1000, 320)])
 @pytest.mark.parametrize("state", [0, 2])
 def test_no_word_is_clipped(size, state):
