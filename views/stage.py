@@ -67,7 +67,7 @@ class Stage:
 
     @cached_property
     def path(self) -> tuple[FloatArray, FloatArray]:
-        """The places (r, 2) [m] of the part that the integrator found, up to the last stored step, and when [s]."""
+        """All known places (r, 2) [m] of the part, and when it was there (r,) [s]."""
         return path_of(self.run)
 
     @cached_property
@@ -154,12 +154,10 @@ def stage_of(run: SavedRun) -> Stage:
 
 
 def path_of(run: SavedRun) -> tuple[FloatArray, FloatArray]:
-    """The places (r, 2) [m] of the part that the integrator found, up to the last stored step, and their times (r,)."""
+    """The places (r, 2) [m] of the part and their times (r,): all stored ones, and all rows until the last of these."""
     known = run.rows.time <= run.time[-1]
-    return (
-        np.concatenate([run.rows.position[known], run.position[-1:, :2]]),
-        np.append(run.rows.time[known], run.time[-1]),
-    )
+    then, first = np.unique(np.concatenate([run.time, run.rows.time[known]]), return_index=True)
+    return np.concatenate([run.position[:, :2], run.rows.position[known]])[first], then
 
 
 def _frame(run: SavedRun, path: FloatArray) -> tuple[FloatArray, bool]:

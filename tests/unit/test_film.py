@@ -192,6 +192,13 @@ def test_the_part_and_its_trail_are_where_the_integrator_found_it_between_stored
     assert half.trail_time.max() <= 2e-3
 
 
+def test_the_path_has_the_stored_steps_where_rows_are_far_apart():
+    run = made_run(LONG + np.array([[0, 0], [0, 1e-4], [0, 2e-4], [0, 1e-4], [0, 0]]), lambda p: hill(p, 1e-5))
+    few = run.rows._replace(**{name: getattr(run.rows, name)[[0, 4]] for name in ("time", "position", "state")})
+    path, then = stage_of(replace(run, rows=few)).path
+    assert (path == run.position[:, :2]).all() and (then == run.time).all()
+
+
 def test_flight_is_counted_from_the_surface():
     stage = stage_of(made_run(LONG, lambda points: np.full(len(points), 1e-6), state=2, above=5e-6))
     (frame,) = frames_of(stage, np.array([1e-3]))
