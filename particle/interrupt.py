@@ -28,16 +28,24 @@ def wait(ended: Callable[[float], bool]) -> None:
 
 @contextmanager
 def unbroken() -> Iterator[None]:
-    """Lets no Ctrl-C into its block, so that what was found is not lost; does nothing on a thread that gets none."""
-    with _handled(signal.SIG_IGN):
+    """Lets no Ctrl-C into its block, so that what was found is not lost; one that came is raised after it.
+
+    Does nothing on a thread that gets none, and where none is heard anyway.
+    """
+    noted = threading.Event()
+    # A handler, not SIG_IGN: Ctrl-C that somebody sends once more, as it was dropped, does nothing while that is set.
+    with _handled(lambda *_: noted.set()):
         yield
+    if noted.is_set():
+        signal.raise_signal(signal.SIGINT)
 
 
 @contextmanager
-def _handled(handler: Callable[..., object] | signal.Handlers, instead_of: object = None) -> Iterator[None]:
-    """Has Ctrl-C handled so, on the main thread, in place of the handler given, or of any."""
+def _handled(handler: Callable[..., object], instead_of: object = None) -> Iterator[None]:
+    """Has Ctrl-C handled so, on the main thread, in place of the handler given, or of any that Python can put back."""
     before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or (instead_of and before is not instead_of):
+    ours = before is instead_of if instead_of else before not in (None, signal.SIG_IGN)
+    if threading.current_thread() is not threading.main_thread() or not ours:
         yield
         return
     signal.signal(signal.SIGINT, handler)

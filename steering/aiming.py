@@ -54,26 +54,32 @@ def aim_over(
 ) -> Aimed:
     """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
     approach, interrupted = Approach(surface, task, threads, tell), False
-    with ExitStack() as shield:
-        try:
-            approach.run()
-        except KeyboardInterrupt:
-            shield.enter_context(unbroken())
-            interrupted = True
-        else:
-            shield.enter_context(unbroken())
-        case, path = approach.close()
-        case = case.model_copy(update={"name": f"{task.name}_aimed"})
-        found = Aimed(
-            task=task,
-            case=case,
-            trajectory=path,
-            legs=approach.legs,
-            paths=approach.paths,
-            interrupted=interrupted,
-        )
-        if file is not None:
-            x, y = (shown_length(place) for place in task.target)
-            said = f"The drives bring the part to ({x}, {y}), but for {shown_length(found.distance)}."
-            found = replace(found, files=(write_case(case, file, said),))
+    found: Aimed | None = None
+    try:
+        with ExitStack() as shield:
+            try:
+                approach.run()
+            except KeyboardInterrupt:
+                shield.enter_context(unbroken())
+                interrupted = True
+            else:
+                shield.enter_context(unbroken())
+            case, path = approach.close()
+            case = case.model_copy(update={"name": f"{task.name}_aimed"})
+            found = Aimed(
+                task=task,
+                case=case,
+                trajectory=path,
+                legs=approach.legs,
+                paths=approach.paths,
+                interrupted=interrupted,
+            )
+            if file is not None:
+                x, y = (shown_length(place) for place in task.target)
+                said = f"The drives bring the part to ({x}, {y}), but for {shown_length(found.distance)}."
+                found = replace(found, files=(write_case(case, file, said),))
+    except KeyboardInterrupt:  # what was found before it stays
+        if found is None:
+            raise
+        return replace(found, interrupted=True)
     return with_scatter(found, Paths(case, surface, threads), task.target, task.settings)

@@ -57,20 +57,26 @@ def plan_over(
 ) -> Planned:
     """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
     work, interrupted = _Work(surface, route, threads, tell), False
-    with ExitStack() as shield:
-        try:
-            work.run()
-        except KeyboardInterrupt:
-            shield.enter_context(unbroken())
-            interrupted = True
-        else:
-            shield.enter_context(unbroken())
-        found = replace(work.close(), interrupted=interrupted)
-        if file is not None:
-            through = route.through[: len(found.arrivals)]
-            places = ", ".join(f"({shown_length(x)}, {shown_length(y)})" for x, y in through)
-            said = f"The drives carry the part over {places}." if through else found.failure
-            found = replace(found, files=(write_case(found.case, file, said),))
+    found: Planned | None = None
+    try:
+        with ExitStack() as shield:
+            try:
+                work.run()
+            except KeyboardInterrupt:
+                shield.enter_context(unbroken())
+                interrupted = True
+            else:
+                shield.enter_context(unbroken())
+            found = replace(work.close(), interrupted=interrupted)
+            if file is not None:
+                through = route.through[: len(found.arrivals)]
+                places = ", ".join(f"({shown_length(x)}, {shown_length(y)})" for x, y in through)
+                said = f"The drives carry the part over {places}." if through else found.failure
+                found = replace(found, files=(write_case(found.case, file, said),))
+    except KeyboardInterrupt:  # what was found before it stays
+        if found is None:
+            raise
+        return replace(found, interrupted=True)
     target = route.through[max(len(found.arrivals) - 1, 0)]
     return with_scatter(found, Paths(found.case, surface, threads), target, route.settings)
 

@@ -35,6 +35,10 @@ Image = NDArray[np.uint8]
 FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
 SIZE = {"mp4": (1280, 720), "gif": (800, 450), "png": (1280, 720)}
 
+OTHERS = {
+    ".toml": "a case or study file: name the result, such as results/{name} after `active-surface run`",
+    ".nc": "which is of a sweep: `active-surface view` and `active-surface plot` show it",
+}
 HELP = "It needs OpenGL; Debian has it in libegl1 and libgl1-mesa-dri."
 
 
@@ -78,7 +82,7 @@ def animate(
     "pyvista", "matplotlib", or "auto", pyvista where it can draw.  tell: gets how many frames are done, and of how
     many.
 
-    Between stored steps heights and places are interpolated linearly. An older film of that name is replaced.
+    Between stored steps heights are interpolated linearly. An older film of that name is replaced.
     Raises ValueError when the result cannot be read or an input is refused, OSError when the film cannot be written.
     """
     tries = _Tries()
@@ -178,7 +182,16 @@ class _Tries:
 
 
 def _run_of(result: str | Path | SavedRun) -> SavedRun:
-    return result if isinstance(result, SavedRun) else read_run(result)
+    if isinstance(result, SavedRun):
+        return result
+    try:
+        return read_run(result)
+    except ValueError:
+        path = Path(result)
+        if path.suffix not in OTHERS:
+            raise
+        wanted = f"Input RESULT must be that of a run: one of its files, or FOLDER/NAME; got {path}"
+        raise ValueError(f"{wanted}, {OTHERS[path.suffix].format(name=path.stem)}") from None
 
 
 def _check_positive(name: str, value: float | None) -> None:

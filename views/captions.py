@@ -88,7 +88,7 @@ class Captions:
         bar = self._figure.colorbar(ScalarMappable(scale.norm, scale.colours), cax=axes)
         axes.set_ylim(low * unit.per_si, high * unit.per_si)
         bar.set_ticks(MaxNLocator(6, steps=STEPS))
-        bar.ax.yaxis.set_major_formatter(StrMethodFormatter("{x:.6g}"))
+        bar.ax.yaxis.set_major_formatter(StrMethodFormatter("{x:.7g}"))
         axes.tick_params(labelsize=self._letter, pad=2, length=3)
         axes.set_title(f"height [{unit.name}]", fontsize=self._letter, pad=self._letter)
 
@@ -147,7 +147,7 @@ class Captions:
         if len(stage.trail):
             keys.append(Line2D([], [], color=PATH_COLOUR, linewidth=letter * 0.2, label="trail"))
         for state, (colour, name) in SHADES.items():
-            if (stage.run.state == state).any():
+            if (self._rows[1] == state).any():
                 keys.append(Patch(color=colour, alpha=0.25, linewidth=0, label=name))
         if keys:
             place: dict[str, Any] = {
@@ -163,6 +163,14 @@ class Captions:
         wide = text.get_window_extent(self._canvas.get_renderer()).width / self._layout.width
         text.set_fontsize(float(text.get_fontsize()) * min(1.0, share / wide))
 
+    @property
+    def _rows(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """When (r,), in the clock's unit, the part came to its states (r,), as far as the run is stored."""
+        run = self._stage.run
+        known = run.rows.time <= run.time[-1]
+        state = run.rows.state[known]
+        return np.append(run.rows.time[known], run.time[-1]) * self._time_unit.per_si, np.append(state, state[-1:])
+
     def _draw_clock(self) -> tuple[Text, Text]:
         last, frames = self._stage.run.time[-1] * self._time_unit.per_si, 250
         self._digits = int(np.clip(np.ceil(np.log10(frames / last)), 0, 6)) if last > 0 else 0
@@ -176,9 +184,10 @@ class Captions:
         run, unit, letter = self._stage.run, self._time_unit, self._letter
         axes = self._figure.add_axes((0.045, 0.09, 0.8, 0.024), facecolor="none")
         edges = run.time * unit.per_si
+        rows, known = self._rows
         for state, (colour, _) in SHADES.items():
-            for begin, end in stretches(run.state == state):
-                axes.axvspan(edges[begin], edges[end], color=colour, alpha=0.25, linewidth=0)
+            parts = [(rows[begin], rows[end] - rows[begin]) for begin, end in stretches(known == state)]
+            axes.broken_barh(parts, (0, 1), color=colour, alpha=0.25, linewidth=0)
         axes.set_yticks([])
         axes.set_ylim(0, 1)
         if len(edges) > 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from collections.abc import Callable, Iterator
@@ -18,7 +19,7 @@ from PIL import Image as Pictures
 Image = NDArray[np.uint8]
 
 FORMATS = ("mp4", "gif", "png")
-PARTIAL = ".partial"
+PARTIAL, OLDER = ".partial", ".older"
 # Settings of ffmpeg: H.264 as every viewer plays it, with no loss that is seen; a GIF whose 256 colours are chosen for
 # the whole film.
 H264 = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-preset", "medium", "-movflags", "+faststart"]
@@ -81,7 +82,8 @@ def film_file(path: Path, kind: str, size: tuple[int, int], fps: float) -> Itera
 
     Raises RuntimeError when there is no ffmpeg, OSError when the film cannot be written.
     """
-    partial = path.with_name(f"{path.stem}{PARTIAL}{path.suffix.lower()}")
+    place = path.resolve()
+    partial = place.with_name(f"{place.stem}.{os.getpid()}{PARTIAL}{place.suffix.lower()}")
     _remove(partial)
     writers: dict[str, Callable[[Path, tuple[int, int], float], Writer]]
     writers = {"mp4": _Film, "gif": _Film, "png": _Folder}
@@ -89,23 +91,39 @@ def film_file(path: Path, kind: str, size: tuple[int, int], fps: float) -> Itera
     try:
         yield writer
         writer.end()
+        if kind == "png" and place.exists():
+            _replace_folder(place, partial)
+        else:
+            partial.replace(place)
     except BaseException:
         writer.drop()
         _remove(partial)
         raise
-    if kind == "png" and path.exists():
-        shutil.rmtree(path)
-    partial.replace(path)
+
+
+def _replace_folder(path: Path, partial: Path) -> None:
+    """Put a folder of frames in place of an older one; raises OSError where that has got something else meanwhile."""
+    older = path.with_name(f"{path.name}.{os.getpid()}{OLDER}")
+    path.rename(older)
+    if not _ours(older):
+        older.rename(path)
+        raise OSError(f"{path} has got something else than frames while the film was made; it stays as it is")
+    try:
+        partial.replace(path)
+    except BaseException:
+        older.rename(path)
+        raise
+    shutil.rmtree(older)
 
 
 class _Film:
-    """A film by ffmpeg."""
+    """A film by ffmpeg; its path is absolute, as ffmpeg would take others for options or protocols."""
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
         from imageio_ffmpeg import get_ffmpeg_exe
 
         frames = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps!r}", "-i", "-"]
-        command = [get_ffmpeg_exe(), "-y", "-v", "error", *frames, *ENCODERS[path.suffix], str(path)]
+        command = [get_ffmpeg_exe(), "-y", "-v", "error", *frames, *ENCODERS[path.suffix], f"file:{path}"]
         self._said = TemporaryFile()  # noqa: SIM115
         # In a session of its own: Ctrl-C is for us, who then end it.
         self._ffmpeg = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=self._said, start_new_session=True)

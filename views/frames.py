@@ -1,4 +1,7 @@
-"""Frames: what a film shows at each of its times, interpolated linearly between the run's stored steps."""
+"""Frames: what a film shows at each of its times, interpolated linearly between the run's stored steps.
+
+Where the part is, and its state, is known at more times, those of the integrator's rows.
+"""
 
 from __future__ import annotations
 
@@ -51,8 +54,10 @@ def _frame(stage: Stage, time: float, step: int, known: FloatArray) -> Frame:
     whole = run.time[later] - run.time[step]
     share = float(np.clip((time - run.time[step]) / whole, 0, 1)) if whole else 0.0
     deflection = (1 - share) * known[0] + share * known[-1]
-    part = (1 - share) * run.position[step] + share * run.position[later]
-    state = State(int(run.state[later if share == 1 else step]))
+    height = (1 - share) * run.position[step, 2] + share * run.position[later, 2]
+    path, then = stage.path
+    part = np.array([*(np.interp(time, then, column) for column in path.T), height])
+    state = State(int(run.rows.state[np.searchsorted(run.rows.time, time, side="right") - 1]))
     under = float((stage.smooth.at(part[None, :2]) @ deflection)[0])
     heights = {name: matrix @ deflection for name, matrix in stage.matrices.items()}
     passed = stage.trail_time <= time

@@ -31,6 +31,7 @@ class Layout:
     size: float  # m of the run, which the scene has as 1
     focus: FloatArray  # (2,) of the scene, right and up, seen in the middle of the picture
     scale: float  # pixels of a length 1 of the scene
+    depth: float = 0.0  # of the scene: so far before or behind its origin is what is seen
 
     def scene(self, xy: FloatArray, z: FloatArray) -> FloatArray:
         """Places (k, 3) in the scene of points (k, 2) [m] at heights (k,) [m]."""
@@ -54,7 +55,10 @@ def layout_of(stage: Stage, camera: Camera, size: tuple[int, int], exaggeration:
     room = np.array([(RIGHT - LEFT) * width, (TOP - BOTTOM) * height])
     scale = float((room / np.maximum(high - low, 1e-3)).min())
     offset = np.array([(LEFT + RIGHT - 1) * width, (BOTTOM + TOP - 1) * height]) / 2
-    return Layout(width, height, camera, exaggeration, bare.middle, bare.size, (low + high) / 2 - offset / scale, scale)
+    focus = (low + high) / 2 - offset / scale
+    places.append(bare.scene(part[:, :2], part[:, 2]))
+    depth = float(np.abs(np.concatenate(places) @ camera.towards).max())
+    return Layout(width, height, camera, exaggeration, bare.middle, bare.size, focus, scale, depth)
 
 
 def size_of(wanted: str | tuple[int, int]) -> tuple[int, int]:

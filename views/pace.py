@@ -14,6 +14,7 @@ LASTS = 8.0  # s, about, of a film without a wish
 ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 MOST_FRAMES = 20_000
 EACH_STORED = 4.0  # frames to a stored step, from which on most of a film is interpolated
+WHOLE = 1e-6  # of a frame: a shorter rest has none of its own
 FEWEST = 6.0  # frames to a cycle, below which it is not seen as one
 
 
@@ -43,6 +44,7 @@ class Pace:
 def pace_of(time: FloatArray, fps: float, slow_motion: float | None) -> Pace:
     """The pace of a film of stored steps at times (k,) [s]; without a wish it lasts about 8 s.
 
+    Its frames are equally far apart, but for the last, which is the run's end.
     fps, slow_motion: above 0.  Raises ValueError when they ask for too many frames.
     """
     begin, end = float(time[0]), float(time[-1])
@@ -53,8 +55,8 @@ def pace_of(time: FloatArray, fps: float, slow_motion: float | None) -> Pace:
             f"Input slow-motion must make a film of at most {MOST_FRAMES} frames; got {slower:.6g}, which makes "
             f"{wanted:.6g} at {fps:g} frames a second of a run of {end - begin:.6g} s"
         )
-    count = max(round(wanted) + 1, 2) if end > begin else 1
-    return Pace(fps, slower, np.linspace(begin, end, count))
+    before_end = math.ceil(wanted - WHOLE) if end > begin else 0
+    return Pace(fps, slower, np.append(begin + np.arange(before_end) / (fps * slower), end))
 
 
 def nearest_round(value: float) -> float:
@@ -67,13 +69,15 @@ def warnings_of(pace: Pace, time: FloatArray, cycle: float | None) -> list[str]:
     """What a film of stored steps at times (k,) [s] does not show; cycle: the time [s] of the fastest drive's."""
     said = []
     frames, steps = len(pace.times) - 1, len(time) - 1
+    if steps and (time[-1] - time[0]) * pace.fps * pace.slow_motion < 1 - WHOLE:
+        said.append("The run is shorter than a frame: only its ends are shown; a larger --slow-motion shows more.")
     if steps and frames > EACH_STORED * steps:
         said.append(
             f"The film has {frames / steps:.3g} frames to each stored step; what is between stored steps is "
             "interpolated linearly. A larger run.frames stores more."
         )
     if frames and cycle:
-        shown = cycle * frames / float(time[-1] - time[0])
+        shown = cycle * pace.fps * pace.slow_motion
         if shown < FEWEST:
             said.append(
                 f"The film has {shown:.2g} frames to a cycle of the fastest drive: what moves fast looks slow, jumpy "

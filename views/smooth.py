@@ -18,6 +18,7 @@ IntArray = NDArray[np.int64]
 
 AROUND = 12  # points that a slope is fitted to, by a quadratic
 NEAREST = 24  # triangles among which that of a point is sought
+AT_ONCE = 4096  # points that are sought together
 OUTSIDE = 1e-6  # of a triangle's height: a point further out is not on the mesh
 
 
@@ -33,6 +34,12 @@ class Smooth:
 
         A point that is in none has a place near it, on the rim.
         """
+        blocks = [self._locate(xy[first : first + AT_ONCE]) for first in range(0, max(len(xy), 1), AT_ONCE)]
+        triangle, shares, inside = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+        return triangle, shares, inside
+
+    def _locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
+        """The same for so few points that memory does not matter."""
         near = self._tree.query(xy, k=min(NEAREST, len(self.triangles)))[1].reshape(len(xy), -1)
         corners = self.points[self.triangles[near]]  # (k, NEAREST, 3, 2)
         a, b, c = np.moveaxis(corners, 2, 0)
@@ -89,13 +96,19 @@ class Smooth:
         n = len(self.points)
         if n <= AROUND:
             return csr_matrix((n, n)), csr_matrix((n, n))
-        distance, near = cKDTree(self.points).query(self.points, k=AROUND + 1)
-        near, reach = near[:, 1:], distance[:, -1:]
-        x, y = np.moveaxis((self.points[near] - self.points[:, None]) / reach[..., None], -1, 0)
-        weight = 1 / (0.1 + x**2 + y**2)
-        terms = np.stack([x, y, x * x, x * y, y * y], axis=-1) * weight[..., None]
-        fit = np.linalg.pinv(terms, rcond=1e-6)[:, :2] * weight[:, None, :] / reach[..., None]  # (n, 2, AROUND)
+        tree = cKDTree(self.points)
+        blocks = [self._fit(tree, self.points[first : first + AT_ONCE]) for first in range(0, n, AT_ONCE)]
+        near, fit = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         rows = np.repeat(np.arange(n), AROUND)
         slopes = [csr_matrix((part.ravel(), (rows, near.ravel())), (n, n)) for part in np.moveaxis(fit, 1, 0)]
         along_x, along_y = (s - diags(np.asarray(s.sum(axis=1)).ravel()) for s in slopes)
         return csr_matrix(along_x), csr_matrix(along_y)
+
+    def _fit(self, tree: cKDTree, points: FloatArray) -> tuple[IntArray, FloatArray]:
+        """The points (k, AROUND) around some, and the weights (k, 2, AROUND) of their heights in the slopes there."""
+        distance, near = tree.query(points, k=AROUND + 1)
+        near, reach = near[:, 1:], distance[:, -1:]
+        x, y = np.moveaxis((self.points[near] - points[:, None]) / reach[..., None], -1, 0)
+        weight = 1 / (0.1 + x**2 + y**2)
+        terms = np.stack([x, y, x * x, x * y, y * y], axis=-1) * weight[..., None]
+        return near, np.linalg.pinv(terms, rcond=1e-6)[:, :2] * weight[:, None, :] / reach[..., None]

@@ -30,7 +30,7 @@ MOST_OF_PLATE = 0.6  # of the plate's longer side: a wider window shows all of i
 FINE = 1 / 200  # of the longer side: the length of a piece of a line
 RISE = 0.2  # of the longer side: about so high are heights drawn without a wish
 ALMOST_TRUE = 1.5  # a smaller exaggeration is none
-FLAT = 1e-12  # m: a smaller range of heights is none
+FLAT, ROUNDING = 1e-11, 1e-5  # m, and of the largest height: a smaller range of heights is none
 AROUND = 0.5  # of the longer side: points further from the frame do not shape what is in it
 AT_ONCE = 16  # steps that are read together
 CROWDED = 1 / 60  # of the longer side: actuators nearer to each other are not marked
@@ -64,6 +64,11 @@ class Stage:
     def outer(self) -> FloatArray:
         """The pieces (s, 2, 2) [m] of the plate's whole rim."""
         return self.run.points[outer_edges(self.run.points, self.run.triangles)]
+
+    @cached_property
+    def path(self) -> tuple[FloatArray, FloatArray]:
+        """All known places (r, 2) [m] of the part, and when it was there (r,) [s]."""
+        return path_of(self.run)
 
     @cached_property
     def matrices(self) -> dict[str, csr_matrix]:
@@ -105,7 +110,8 @@ class Stage:
     def flat(self) -> bool:
         """Whether all heights are the same."""
         low, high = self.reach
-        return float(high.max() - low.min()) < FLAT
+        largest = max(abs(float(high.max())), abs(float(low.min())))
+        return float(high.max() - low.min()) < max(FLAT, ROUNDING * largest)
 
     @property
     def exaggeration(self) -> float:
@@ -118,8 +124,8 @@ class Stage:
 
 def stage_of(run: SavedRun) -> Stage:
     """The stage of a run: all of its surface, or a window around a path that is short beside it."""
-    path = run.position[:, :2]
-    frame, window = _frame(run)
+    path, then = path_of(run)
+    frame, window = _frame(run, path)
     used, kept = _near(run, frame)
     smooth = Smooth(run.points[used], kept)
     surface, triangles = _grid(smooth, frame) if window else _finer(run)
@@ -128,9 +134,7 @@ def stage_of(run: SavedRun) -> Stage:
     rim = clipped(divided(clipped(Lines(run.points, outer), frame), FINE * size), frame)
     cut = Lines(surface, outer_edges(surface, triangles)) if window else Lines(surface[:0], outer[:0])
     width = net_width(size)
-    trail, trail_time = (
-        path_points(path, run.time, FINE * size) if is_visible(path, frame) else (path[:0], run.time[:0])
-    )
+    trail, trail_time = path_points(path, then, FINE * size) if is_visible(path, frame) else (path[:0], then[:0])
     return Stage(
         run,
         used,
@@ -149,14 +153,21 @@ def stage_of(run: SavedRun) -> Stage:
     )
 
 
-def _frame(run: SavedRun) -> tuple[FloatArray, bool]:
+def path_of(run: SavedRun) -> tuple[FloatArray, FloatArray]:
+    """The places (r, 2) [m] of the part and their times (r,): all stored ones, and all rows until the last of these."""
+    known = run.rows.time <= run.time[-1]
+    then, first = np.unique(np.concatenate([run.time, run.rows.time[known]]), return_index=True)
+    return np.concatenate([run.position[:, :2], run.rows.position[known]])[first], then
+
+
+def _frame(run: SavedRun, path: FloatArray) -> tuple[FloatArray, bool]:
     """The frame (2, 2) [m], and whether it is a window around a path that is short beside the plate.
 
     Its sides are a few lengths of the path, two pitches, and some times what the part goes up and down with the plate,
     whichever is most.
     """
     box = np.stack([run.points.min(axis=0), run.points.max(axis=0)])
-    window = path_window(run.position[:, :2], box, run.actuators)
+    window = path_window(path, box, run.actuators)
     if window is None:
         return box, False
     heights = run.position[run.state != State.FLIGHT, 2]

@@ -14,7 +14,7 @@ IntArray = NDArray[np.int64]
 Image = NDArray[np.uint8]
 Colour = tuple[float, float, float]
 
-FAR = 10.0  # lengths of the scene from it is the camera
+AROUND = 1.0  # length of the scene: room for the sizes of marks and ball
 
 
 class VtkPainter:
@@ -32,12 +32,13 @@ class VtkPainter:
         plotter.add_light(light)
         camera = layout.camera
         focus = layout.focus @ np.stack([camera.right, camera.up])
-        plotter.camera.position = tuple(focus + FAR * camera.towards)
+        reach = layout.depth + AROUND
+        plotter.camera.position = tuple(focus + 2 * reach * camera.towards)
         plotter.camera.focal_point = tuple(focus)
         plotter.camera.up = tuple(camera.up)
         plotter.camera.parallel_projection = True
         plotter.camera.parallel_scale = layout.height / 2 / layout.scale
-        plotter.camera.clipping_range = (FAR - 5, FAR + 5)
+        plotter.camera.clipping_range = (reach, 3 * reach)
 
         self._meshes: dict[str, pv.PolyData] = {}
         cells = look.stage.triangles

@@ -65,20 +65,22 @@ def made_run(path, heights, time=None, state=1, above=0.0, holes=(), actuators=1
     if callable(heights):
         heights = np.stack([heights(points)] * k)
     position = np.column_stack([path, np.broadcast_to(above, k)])
-    rows = Samples(*[np.empty(0)] * len(Samples._fields))
+    time = 1e-3 * np.arange(k) if time is None else np.asarray(time, dtype=float)
+    state = np.broadcast_to(state, k).astype(int)
+    rows = Samples(time, path, *[np.empty(0)] * (len(Samples._fields) - 3), state)
     return MadeRun(
         name="made",
         complete=True,
         summary={},
         versions={},
         units={},
-        time=1e-3 * np.arange(k) if time is None else np.asarray(time, dtype=float),
+        time=time,
         points=points,
         triangles=triangles,
         actuators=points[:actuators],
         position=position,
         velocity=np.zeros((k, 3)),
-        state=np.broadcast_to(state, k).astype(int),
+        state=state,
         normal_force=np.zeros(k),
         friction_force=np.zeros(k),
         events=[],

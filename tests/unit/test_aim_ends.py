@@ -94,6 +94,20 @@ def test_a_second_interruption_does_not_undo_the_first(tmp_path, monkeypatch):
     assert aimed.interrupted and len(written) == 1 and signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.parametrize("over", [aim_over, plan_over])
+def test_an_interruption_while_the_file_is_written_is_heard_after_it(tmp_path, monkeypatch, over):
+    def write(case, file, said):
+        signal.raise_signal(signal.SIGINT)
+        return file
+
+    for module in ("aiming", "planning"):
+        monkeypatch.setattr(f"steering.{module}.write_case", write)
+    case, settings = case_of(tmp_path), Settings(paths=2, scatter=5)
+    task = Task(case, TARGET, settings) if over is aim_over else Route(case, (TARGET,), settings)
+    found = over(build_surface(case), task, file=tmp_path / "a.toml")
+    assert found.interrupted and found.files == (tmp_path / "a.toml",) and found.scatter is None
+
+
 def test_a_folder_in_place_of_a_result_is_refused_before_the_search(tmp_path):
     (tmp_path / "base_aim.png").mkdir()
     with pytest.raises(ValueError, match="free for base_aim.png; got .* where that is a folder"):

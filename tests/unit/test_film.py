@@ -1,5 +1,8 @@
 """What a film shows: smooth heights, where from, how fast, when, how large, and what lies on the present surface."""
 
+import tracemalloc
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_runs import SIDE, grid, hill, made_run
@@ -52,6 +55,19 @@ def test_a_place_off_the_plate_is_known_to_be_and_has_the_nearest_of_the_rim():
     assert place[1, 0] == pytest.approx(SIDE / 2) and abs(place[1, 1] - 1e-5) < SIDE / 20
 
 
+def test_many_points_are_located_in_blocks_that_take_little_memory():
+    smooth = Smooth(*grid())
+    xy = SIDE * (np.random.default_rng(3).random((20_000, 2)) - 0.5)
+    smooth.locate(xy[:1])
+    tracemalloc.start()
+    found = smooth.locate(xy)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 60e6 and [len(part) for part in found] == 3 * [20_000]
+    for some, all_of_them in zip(smooth.locate(xy[4090:4100]), found, strict=True):
+        assert (some == all_of_them[4090:4100]).all()
+
+
 def test_two_triangles_have_flat_heights():
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     smooth = Smooth(corners, np.array([[0, 1, 2], [0, 2, 3]]))
@@ -93,6 +109,19 @@ def test_the_pace_is_said_in_words():
 def test_one_step_is_one_frame_and_a_short_film_has_two():
     assert pace_of(np.array([0.2]), 30.0, None).times.tolist() == [0.2]
     assert pace_of(np.array([0.0, 1e-6]), 30.0, 1.0).times.tolist() == [0.0, 1e-6]
+
+
+@pytest.mark.parametrize(("duration", "slower"), [(0.05, 1.0), (0.049, 10.0), (1.0, 0.37), (0.1, 3.0)])
+def test_a_film_is_as_fast_as_it_says_up_to_the_frame_of_the_end(duration, slower):
+    times = pace_of(np.array([0.0, duration]), 30.0, slower).times
+    assert np.diff(times)[:-1] * slower == pytest.approx(1 / 30) and times[-1] == duration
+    assert 0 < np.diff(times)[-1] * slower <= (1 + 1e-6) / 30
+
+
+def test_a_run_that_is_shorter_than_a_frame_is_said_to_be():
+    time = np.array([0.0, 1e-6])
+    assert "shorter than a frame" in warnings_of(pace_of(time, 30.0, 1.0), time, None)[0]
+    assert not any("shorter" in said for said in warnings_of(pace_of(time, 30.0, None), time, None))
 
 
 def test_films_of_too_many_frames_are_refused():
@@ -148,6 +177,26 @@ def test_one_stored_step_is_a_frame():
     stage = stage_of(made_run([[0.0, 0.0]], lambda points: hill(points, 1e-5)))
     (frame,) = frames_of(stage, pace_of(stage.run.time, 30.0, None).times)
     assert frame.under == pytest.approx(1e-5) and len(frame.trail) == 0
+
+
+def test_the_part_and_its_trail_are_where_the_integrator_found_it_between_stored_steps():
+    run = made_run(LONG[[0, 4]], lambda points: hill(points, 1e-5), time=[0.0, 4e-3], state=1)
+    bent = LONG + np.array([[0, 0], [0, 1e-4], [0, 2e-4], [0, 1e-4], [0, 0]])
+    state = np.array([0, 1, 2, 1, 0])
+    rows = run.rows._replace(time=1e-3 * np.arange(5), position=bent, state=state)
+    stage = stage_of(replace(run, rows=rows))
+    assert stage.trail[:, 1].max() == pytest.approx(2e-4, rel=0.02)
+    (frame,) = frames_of(stage, np.array([2.5e-3]))
+    assert frame.part[:2] == pytest.approx([1e-4, 1.5e-4]) and frame.state is State.FLIGHT
+    half = stage_of(replace(run, rows=rows, time=np.array([0.0, 2e-3])))
+    assert half.trail_time.max() <= 2e-3
+
+
+def test_the_path_has_the_stored_steps_where_rows_are_far_apart():
+    run = made_run(LONG + np.array([[0, 0], [0, 1e-4], [0, 2e-4], [0, 1e-4], [0, 0]]), lambda p: hill(p, 1e-5))
+    few = run.rows._replace(**{name: getattr(run.rows, name)[[0, 4]] for name in ("time", "position", "state")})
+    path, then = stage_of(replace(run, rows=few)).path
+    assert (path == run.position[:, :2]).all() and (then == run.time).all()
 
 
 def test_flight_is_counted_from_the_surface():

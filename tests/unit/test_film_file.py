@@ -86,6 +86,49 @@ def test_a_film_that_is_broken_off_leaves_nothing_and_an_older_one_as_it_was(tmp
         assert sorted((file.name, file.stat().st_mtime_ns) for file in tmp_path.iterdir()) == before
 
 
+@pytest.mark.parametrize("kind", ["mp4", "png"])
+def test_a_film_by_way_of_a_link_is_where_that_leads(tmp_path, kind):
+    link, path = (tmp_path / (name + ("" if kind == "png" else f".{kind}")) for name in ("link", "real"))
+    with film_file(path, kind, SIZE, 10.0) as film:
+        film.add(shade(5))
+    link.symlink_to(path)
+    before = path.stat().st_ino
+    with film_file(link, kind, SIZE, 10.0) as film:
+        film.add(shade(9))
+    assert link.is_symlink() and path.exists() and path.stat().st_ino != before
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted([link.name, path.name])
+
+
+def test_what_is_put_into_a_folder_of_frames_meanwhile_stays(tmp_path):
+    path = tmp_path / "frames"
+    with film_file(path, "png", SIZE, 10.0) as film:
+        film.add(shade(5))
+    with pytest.raises(OSError, match="something else than frames"), film_file(path, "png", SIZE, 10.0) as film:
+        film.add(shade(9))
+        (path / "thesis.tex").write_text("precious")
+    assert sorted(file.name for file in path.iterdir()) == ["00001.png", "thesis.tex"]
+    assert [file.name for file in tmp_path.iterdir()] == ["frames"]
+
+
+@pytest.mark.parametrize("name", ["a:b.mp4", "-x.mp4", "100%d.gif"])
+def test_names_that_ffmpeg_would_take_for_something_else(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    with film_file(Path(name), name[-3:], SIZE, 10.0) as film:
+        film.add(shade(5))
+    assert [file.name for file in tmp_path.iterdir()] == [name]
+
+
+def test_two_processes_that_make_a_film_of_one_name_leave_each_other_alone(tmp_path, monkeypatch):
+    path = tmp_path / "film.mp4"
+    with film_file(path, "mp4", SIZE, 10.0) as film:
+        film.add(shade(5))
+        with monkeypatch.context() as other:
+            other.setattr(os, "getpid", lambda: 1)
+            with film_file(path, "mp4", SIZE, 10.0) as second:
+                second.add(shade(9))
+    assert [file.name for file in tmp_path.iterdir()] == ["film.mp4"]
+
+
 def test_a_film_that_ffmpeg_cannot_write_is_an_error_and_leaves_nothing(tmp_path, monkeypatch):
     monkeypatch.setitem(ENCODERS, ".mp4", ["-c:v", "no-such-codec"])
     wrong = pytest.raises(OSError, match="ffmpeg cannot write the film: .*no-such-codec")
@@ -206,6 +249,13 @@ def test_all_bad_options_are_said_at_once(ran):
 def test_a_result_that_is_none_is_refused(tmp_path):
     answer = called(tmp_path / "none")
     assert answer.exit_code == 2 and "Input path of read_run must be" in answer.output
+
+
+@pytest.mark.parametrize(("name", "said"), [("x.toml", "name the result, such as results/x"), ("x.nc", "of a sweep")])
+def test_a_file_that_is_no_result_of_a_run_is_told_what_it_is(tmp_path, name, said):
+    (tmp_path / name).write_text("")
+    answer = called(tmp_path / name)
+    assert answer.exit_code == 2 and said in " ".join(answer.output.split()) and "vtkhdf" not in answer.output
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")

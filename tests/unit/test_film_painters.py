@@ -1,8 +1,11 @@
 """Both painters draw the same: what is seen, what is hidden, and the words on it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_runs import hill, made_run
+from matplotlib.collections import PolyCollection
 from PIL import Image
 
 from particle import State
@@ -38,9 +41,9 @@ def hilly(height=2e-4, **more):
     return made_run(PATH, lambda points: hill(points, height), **more)
 
 
-def painted(run, renderer, camera="iso", time=2e-3):
+def painted(run, renderer, camera="iso", time=2e-3, times=1.0):
     stage = stage_of(run)
-    look = Look(stage, layout_of(stage, CAMERAS[camera], SIZE, 1.0), stage.scale)
+    look = Look(stage, layout_of(stage, CAMERAS[camera], SIZE, times), stage.scale)
     (frame,) = frames_of(stage, np.array([time]))
     with painter(renderer, look) as painter_of_it:
         return look, frame, painter_of_it.paint(frame)
@@ -85,6 +88,16 @@ def test_both_painters_draw_the_same_picture(refused):
         assert apart.mean() < 6 and (apart > 60).mean() < 0.05
 
 
+def test_both_painters_draw_heights_far_before_and_behind(refused):
+    if refused is not None:
+        pytest.skip(f"pyvista cannot draw here: {refused}")
+    for camera, exaggeration in (("top", 50.0), ("top", -50.0), ("iso", 50.0)):
+        run = hilly(2e-4 * np.sign(exaggeration))
+        images = [painted(run, who, camera, times=abs(exaggeration))[2] for who in ("matplotlib", "pyvista")]
+        bare = [(image == 255).all(axis=2) for image in images]
+        assert (bare[0] != bare[1]).mean() < 0.02
+
+
 def test_the_words_of_a_film_are_there_and_follow_it(renderer):
     stage = stage_of(hilly(state=[0, 0, 1, 1, 2]))
     layout = layout_of(stage, CAMERAS["iso"], SIZE, 3.0)
@@ -102,6 +115,36 @@ def test_the_words_of_a_film_are_there_and_follow_it(renderer):
     for one, other in zip(seen, seen[1:], strict=False):
         assert (one != other).any()
     assert (seen[0][SIZE[1] // 2, : SIZE[0] // 2] == 255).all()
+
+
+def test_the_time_line_has_the_stretches_that_the_integrator_found():
+    run = hilly(state=1)
+    rows = run.rows._replace(
+        time=np.array([0.0, 1.2e-3, 1.3e-3, 2.5e-3, 2.6e-3, 9e-3]),
+        position=np.zeros((6, 2)),
+        state=np.array([1, 2, 1, 0, 1, 2]),
+    )
+    stage = stage_of(replace(run, rows=rows))
+    captions = Captions(stage, layout_of(stage, CAMERAS["iso"], SIZE, 1.0), None)
+    drawn = [patch for patch in captions._figure.findobj(PolyCollection) if len(patch.get_paths()) == 1]
+    spans = sorted(tuple(patch.get_paths()[0].vertices[[0, 2], 0].round(6)) for patch in drawn)
+    assert spans == [(1.2, 1.3), (2.5, 2.6)]
+
+
+@pytest.mark.parametrize(("height", "level"), [(0.0, 0.0), (2e-12, 0.0), (-2e-12, 0.0), (5e-12, 1e-6), (1e-9, 1e-3)])
+def test_a_flat_surface_has_no_bar_of_heights(height, level):
+    stage = stage_of(made_run(PATH, lambda points: hill(points, height) + level))
+    captions = Captions(stage, layout_of(stage, CAMERAS["iso"], SIZE, stage.exaggeration), None)
+    assert stage.flat and not any("height" in axes.get_title() for axes in captions._figure.axes)
+
+
+@pytest.mark.parametrize(("height", "level"), [(2e-11, 0.0), (2e-11, 1e-6), (1e-4, 0.0)])
+def test_ticks_of_the_bar_can_be_told_apart(height, level):
+    stage = stage_of(made_run(PATH, lambda points: hill(points, height) + level))
+    captions = Captions(stage, layout_of(stage, CAMERAS["iso"], SIZE, stage.exaggeration), None)
+    (bar,) = (axes for axes in captions._figure.axes if "height" in axes.get_title())
+    words = [label.get_text() for label in bar.get_yticklabels()]
+    assert len(words) > 2 and len(set(words)) == len(words)
 
 
 @pytest.mark.parametrize("size", [(320, 240), (1280, 720), (330, 900), (1000, 320)])

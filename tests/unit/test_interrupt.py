@@ -6,6 +6,7 @@ import time
 
 import pytest
 
+from command_line.ctrl_c import SOON, heard_again
 from coupling.progress import interruptible
 from particle.interrupt import unbroken, wait
 
@@ -70,18 +71,43 @@ def test_a_wait_on_another_thread_leaves_the_signal_alone():
     assert interruptible(interruptible, divmod, 7, 2) == (3, 1)
 
 
-def test_nothing_is_heard_where_nothing_must_be_broken_off():
-    over = threading.Event()
+def test_what_comes_where_nothing_must_be_broken_off_is_heard_after_it():
+    over, done = threading.Event(), []
 
     def press(seconds):
         signal.raise_signal(signal.SIGINT)
         over.set()
         return True
 
-    with unbroken():
+    with pytest.raises(KeyboardInterrupt), unbroken():
         signal.raise_signal(signal.SIGINT)
         wait(press)
-    assert over.is_set()
+        done.append(1)
+    assert over.is_set() and done == [1]
+
+
+def test_one_that_was_dropped_and_comes_again_where_nothing_must_be_broken_off_is_not_lost():
+    victims, done = [Dropper()], []
+    with pytest.raises(KeyboardInterrupt), heard_again():
+        victims.clear()
+        with unbroken():
+            time.sleep(4 * SOON)
+            done.append(1)
+        done.append(2)
+    assert done == [1]
+
+
+def test_where_ctrl_c_is_not_heard_it_stays_so():
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with unbroken():
+        signal.raise_signal(signal.SIGINT)
+    assert signal.signal(signal.SIGINT, signal.default_int_handler) is signal.SIG_IGN
+
+
+def test_a_handler_that_python_does_not_know_is_left_in_place(monkeypatch):
+    monkeypatch.setattr(signal, "getsignal", lambda number: None)
+    with unbroken():
+        wait(lambda seconds: True)
 
 
 def test_a_handler_of_somebody_else_is_left_in_place():
