@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
-from coupling.case_record import CaseRecord, record_of
+from coupling.case_record import CaseRecord
 from coupling.csv_file import write_csv
 from coupling.drives import frame_times, stroke_heights
 from coupling.pictures import draw_run, moment_of_most
@@ -40,6 +40,7 @@ UNITS = {
 
 def write_results(
     case: Case,
+    record: CaseRecord,
     scene: Scene,
     trajectory: Trajectory,
     summary: Summary,
@@ -49,12 +50,12 @@ def write_results(
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
 
-    csv: whether to write NAME.csv as well.  tell: gets how many time steps are written, and of how many.
+    record: of the case, taken before the work: later its files may be others.  csv: whether to write NAME.csv as well.
+    tell: gets how many time steps are written, and of how many.
     """
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
     ground = scene.ground(trajectory)
-    record = record_of(case)
     heights, speeds = stroke_heights(scene.lifts, times), stroke_heights(scene.lifts, times, 1)
     metadata: dict[str, str | int] = {
         "run": uuid4().hex,  # the same in both files, which so find each other

@@ -13,6 +13,7 @@ from click.testing import CliRunner
 import meshes
 from command_line.main import main
 from coupling import read_case, read_run, run_case, versions
+from coupling.progress import silent
 
 POINTS = "load [uN], limit [nN]\n-1, 4\n0, 18.7\n2.2, 35\n5, 52\n"
 
@@ -69,6 +70,22 @@ def test_a_moved_result_with_a_measured_motion_and_friction_reruns_to_the_same_b
     assert before.rows.position.tobytes() == after.rows.position.tobytes()
     twice = rerun(tmp_path / "again" / "some.part.vtkhdf", "--output", str(tmp_path / "twice"), "--json")
     assert json.loads(twice.stdout)["same_end"] and after.case.source == before.case.source == PLATFORM
+
+
+@pytest.mark.parametrize("later", [None, MOTION.replace("30", "3")], ids=["gone", "another"])
+def test_a_result_keeps_the_files_as_they_were_when_its_run_began(tmp_path, later):
+    (tmp_path / "motion.csv").write_text(MOTION)
+    (tmp_path / "friction.csv").write_text(POINTS)
+    (tmp_path / "some.toml").write_text(PLATFORM)
+
+    def meanwhile(stage):
+        if stage.startswith("Following"):
+            (tmp_path / "motion.csv").unlink() if later is None else (tmp_path / "motion.csv").write_text(later)
+        return silent(stage)
+
+    run_case(read_case(tmp_path / "some.toml"), tmp_path / "out", meanwhile)
+    assert Path(read_run(tmp_path / "out" / "some").case.plate.motion).read_text() == MOTION
+    assert rerun(tmp_path / "out" / "some", "--output", str(tmp_path / "again")).exit_code == 0
 
 
 PLATE = """\
