@@ -113,6 +113,11 @@ def test_axes_beyond_the_longest_two_stay_at_their_middle_value(tmp_path):
     assert figure.axes[0].get_xlabel() == "stroke [µm]"
 
 
+def test_a_value_that_is_not_shown_keeps_its_digits(tmp_path):
+    ratios = axis("plate.poisson_ratio", "[0.1]", "ratio")
+    assert drawn(*made(tmp_path, STROKE + LIMIT + ratios)).get_suptitle().endswith(", ratio = 0.1")
+
+
 def test_a_curve_shows_the_mean_and_the_spread_of_repeats(tmp_path):
     figure = drawn(*made(tmp_path, 'repeats = 4\njitter = "1 um"\n' + STROKE))
     curve = figure.axes[0].get_lines()[0]
