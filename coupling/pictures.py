@@ -38,8 +38,11 @@ def draw_run(case: Case, scene: Scene, trajectory: Trajectory, ground: Ground, m
     FigureCanvasAgg(figure)
     compose(figure, portrait_of(case.name, scene, trajectory, ground, moment))
     partial = path.with_suffix(".partial.png")
-    figure.savefig(partial, dpi=110)
-    partial.replace(path)
+    try:
+        figure.savefig(partial, dpi=110)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def plot_run(case: Case, scene: Scene, trajectory: Trajectory, axes: Axes | None = None) -> Figure:
@@ -91,7 +94,7 @@ def compose(figure: Figure, portrait: Portrait) -> None:
         panel.tick_params(labelbottom=k == len(curves) - 1)
     panel.set_xlabel(f"time [{time_unit.name}]")
     keys += shade_keys(rows)
-    figure.suptitle(f"{portrait.name}: {portrait.sentence}")
+    figure.suptitle(f"{portrait.name}: {portrait.sentence}", parse_math=False)
     keys = list({key.get_label(): key for key in reversed(keys)}.values())[::-1]
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
 

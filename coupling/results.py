@@ -6,6 +6,7 @@ import json
 import os
 from pathlib import Path
 from uuid import uuid4
+from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +51,8 @@ def write_results(
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
 
+    A picture that cannot be drawn is left out, with a RuntimeWarning.
+
     record: of the case, taken before the work: later its files may be others.  csv: whether to write NAME.csv as well.
     tell: gets how many time steps are written, and of how many.
     """
@@ -89,8 +92,13 @@ def write_results(
                 friction_force=samples.friction_force[k],
             )
     picture = folder / f"{case.name}.png"
-    draw_run(case, scene, trajectory, ground, float(times[moment_of_most(np.array(spread))]), picture)
-    files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf", picture]
+    files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
+    picture.unlink(missing_ok=True)
+    try:
+        draw_run(case, scene, trajectory, ground, float(times[moment_of_most(np.array(spread))]), picture)
+        files.append(picture)
+    except Exception as error:  # the run is finished, whatever becomes of its picture
+        warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
     if csv:
         files.append(write_csv(trajectory, folder / f"{case.name}.csv", times))
     return tuple(files)

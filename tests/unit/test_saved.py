@@ -39,6 +39,24 @@ def folder(ran, tmp_path):
     return Path(shutil.copytree(ran[1], tmp_path / "results"))
 
 
+@pytest.mark.parametrize("name", ["q$_$s", "a$b$", "10$^"])
+def test_a_name_is_no_formula(tmp_path, name):
+    files = run_case(shaken(name=name), tmp_path).files
+    assert [file.name for file in files] == [f"{name}.plate.vtkhdf", f"{name}.part.vtkhdf", f"{name}.png"]
+
+
+def test_a_run_is_finished_though_its_picture_cannot_be_drawn(tmp_path, monkeypatch):
+    def fails(*_):
+        raise RuntimeError("no ink")
+
+    (tmp_path / "run.png").write_text("of another run")
+    monkeypatch.setattr("coupling.results.draw_run", fails)
+    with pytest.warns(RuntimeWarning, match=r"run.png could not be drawn: no ink"):
+        result = run_case(shaken(), tmp_path, csv=True)
+    assert [file.name for file in result.files] == ["run.plate.vtkhdf", "run.part.vtkhdf", "run.csv"]
+    assert not list(tmp_path.glob("*.png")) and read_run(tmp_path / "run").complete
+
+
 @pytest.mark.parametrize("ending", ["", ".plate.vtkhdf", ".part.vtkhdf"])
 def test_a_run_comes_back(ran, ending):
     result, folder = ran
