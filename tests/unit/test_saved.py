@@ -1,5 +1,6 @@
 """A run is read back from its files as it was, finished or not, and whatever else is there is refused."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -184,6 +185,19 @@ def test_a_file_without_a_step_is_told(folder):
     with h5py.File(folder / "run.plate.vtkhdf", "r+") as file:
         file["VTKHDF/Steps"].attrs.modify("NSteps", 0)
     assert "which no step was written" in refused(folder / "run")
+
+
+@pytest.mark.parametrize(("key", "value"), [("mass", -1.0), ("weight", 1.0)])
+def test_a_record_that_is_no_case_is_told(folder, key, value):
+    with h5py.File(folder / "run.part.vtkhdf", "r+") as file:
+        ours = file["active_surface/case"]
+        tables = json.loads(ours["json"][()].tobytes())
+        tables["part"][key] = value
+        del ours["json"]
+        ours["json"] = np.frombuffer(json.dumps(tables).encode(), np.uint8)
+    with pytest.raises(ValueError, match=r"got \S+run.part.vtkhdf, whose case is damaged: part") as error:
+        read_run(folder / "run").case  # noqa: B018
+    assert "pydantic" not in str(error.value) and "\n" not in str(error.value)
 
 
 def test_a_file_that_lacks_something_is_told(folder):
