@@ -79,7 +79,7 @@ def compose(figure: Figure, portrait: Portrait) -> None:
     for one, unit in zip(axes, units, strict=True):
         label_places(one, portrait, unit)
     if relief:
-        axes[0].set_title(f"The plate at {portrait.when}, when it is deflected most", fontsize=10)
+        axes[0].set_title(f"The plate at {portrait.when}, {portrait.most}", fontsize=10)
     keys = draw_surface(figure, axes[0], portrait, units[0], side="right" if window is None else "left")
     if relief and window is not None:  # nothing between map and window
         axes[1].set_title(f"Around the path, also at {portrait.when}", fontsize=10)
