@@ -13,6 +13,7 @@ from click.testing import CliRunner
 import meshes
 from command_line.main import main
 from coupling import read_case, read_run, run_case, versions
+from coupling.case_record import case_of, record_of
 from coupling.progress import silent
 
 POINTS = "load [uN], limit [nN]\n-1, 4\n0, 18.7\n2.2, 35\n5, 52\n"
@@ -114,6 +115,26 @@ duration = "0.4 ms"
 frames = 3
 tolerance = 1e-5
 """
+
+
+@pytest.mark.parametrize("place", ["./plate.h5", "sub/plate.h5", "../plate.h5"])
+def test_a_record_has_what_a_mesh_names_wherever_it_is(tmp_path, place):
+    (tmp_path / "home" / "sub").mkdir(parents=True)
+    mesh = meshes.rectangle(400e-6, 300e-6, 100e-6)
+    edges = np.concatenate(list(mesh.boundaries.values()))
+    cells = [("triangle", mesh.triangles), ("line", edges)]
+    numbers = [np.zeros(len(mesh.triangles), int), np.full(len(edges), 7)]
+    file = tmp_path / "home" / "plate.xdmf"
+    meshio.Mesh(mesh.points, cells, cell_data={"boundary": numbers}).write(file)
+    file.write_text(file.read_text().replace("plate.h5:", f"{place}:"))
+    (tmp_path / "home" / "plate.h5").rename(tmp_path / "home" / place)
+    (tmp_path / "home" / "some.toml").write_text(PLATE)
+    case = read_case(tmp_path / "home" / "some.toml")
+    again = case_of(record_of(case), "some")
+    (tmp_path / "home" / place).unlink()
+    np.testing.assert_array_equal(again.plate.build_mesh().points, mesh.points)
+    with pytest.raises(FileNotFoundError, match=r"plate.h5"):
+        record_of(case)
 
 
 def test_a_moved_result_with_a_mesh_reruns_to_the_same_bits(moved, tmp_path):
