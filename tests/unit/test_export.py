@@ -1,6 +1,7 @@
 """Every step and field of a run is read back by VTK from each format that it is exported to."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -77,6 +78,27 @@ def test_every_step_and_field_comes_back(folder, tmp_path, form):
     files = export_run(saved, tmp_path, form)
     assert [file.name for file in files] == [f"one.plate.{form}", f"one.part.{form}"]
     assert_same(saved, tmp_path, form)
+
+
+@pytest.mark.parametrize("form", ["pvd", "xdmf"])
+def test_an_export_that_fails_leaves_nothing_that_mixes_runs(folder, tmp_path, form):
+    saved = read_run(folder / "one")
+    files = export_run(saved, tmp_path, form)
+    before = {file: file.read_bytes() for file in files}
+    short = replace(saved, time=saved.time[:4])
+    export_run(short, tmp_path, form)
+    assert_same(short, tmp_path, form)
+    if form == "pvd":
+        assert [len(list((tmp_path / f"one.{kind}").iterdir())) for kind in ("plate", "part")] == [4, 4]
+
+    def fails(done, of):
+        if done == 2:
+            raise OSError("full")
+
+    export_run(saved, tmp_path, form)
+    with pytest.raises(OSError, match="full"):
+        export_run(short, tmp_path, form, fails)
+    assert not files[0].exists() if form == "pvd" else files[0].read_bytes() == before[files[0]]
 
 
 def test_an_interrupted_run_becomes_a_finished_one_with_the_steps_that_it_has(folder, tmp_path):
