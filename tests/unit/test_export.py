@@ -1,5 +1,6 @@
 """Every step and field of a run is read back by VTK from each format that it is exported to."""
 
+import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -115,6 +116,15 @@ def test_an_interrupted_run_becomes_a_finished_one_with_the_steps_that_it_has(fo
     assert_same(partial, tmp_path / "out", "vtkhdf")
     assert whole.case == read_run(folder / "one").case and whole.events == partial.events
     assert (whole.summary, whole.versions, whole.units) == (partial.summary, partial.versions, partial.units)
+
+
+def test_an_export_is_told_as_json_or_not_at_all(folder, tmp_path):
+    command = ["export", str(folder / "one"), "--format", "xdmf", "--output", str(tmp_path)]
+    told = json.loads(CliRunner().invoke(main, [*command, "--json"]).stdout)
+    files = [str(tmp_path / f"one.{kind}.xdmf") for kind in ("plate", "part")]
+    assert told == {"complete": True, "steps": 9, "files": files}
+    done = CliRunner().invoke(main, [*command, "--quiet"])
+    assert done.exit_code == 0 and not done.output
 
 
 def test_a_run_is_not_written_over_itself(folder):

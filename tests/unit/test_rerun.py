@@ -164,6 +164,8 @@ def test_another_end_and_other_versions_are_told(moved, tmp_path, monkeypatch):
         ours["summary"] = json.dumps(summary)
         ours["versions"] = json.dumps(json.loads(ours["versions"]) | {"numpy": "1.0", "lost": "2.0"})
     done = rerun(result, "--output", str(tmp_path / "again"))
+    quiet = rerun(result, "--output", str(tmp_path / "again"), "--quiet")
+    assert quiet.exit_code == 1 and not quiet.output
     assert done.exit_code == 1 and ": 3 um from that of the result" in done.output
     now = versions.versions()["numpy"]
     assert f"numpy {now} in place of 1.0; lost none in place of 2.0" in done.output
