@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 
 import click
 
+from command_line import options
 from command_line.group import main, refusing
 
 OUTPUT = Path("export")
@@ -27,21 +29,23 @@ OUTPUT = Path("export")
     default=OUTPUT,
     help="Folder for the files [export].",
 )
-def export(result: Path, form: str, output: Path) -> None:
+@options.quiet
+@options.as_json
+def export(result: Path, form: str, output: Path, quiet: bool, as_json: bool) -> None:
     """Write RESULT in another format, for older readers.
 
     RESULT is either file of a run, or FOLDER/NAME.
     """
     from coupling.export import export_run
-    from coupling.progress import StageBar
+    from coupling.progress import StageBar, silent
     from coupling.results import check_folder
     from coupling.saved import read_run
 
     saved = refusing(read_run, result)
     refusing(check_folder, output)
-    with StageBar(1) as bar, bar("Writing the files") as tell:
+    with nullcontext(silent) if quiet else StageBar(1) as bar, bar("Writing the files") as tell:
         files = refusing(export_run, saved, output, form, tell)
-    if not saved.complete:
-        click.echo(f"{'partial':<12}The run was not written to the end: these are its first {len(saved.time)} steps.")
-    for file in files:
-        click.echo(f"{'wrote':<12}{file}")
+    steps = len(saved.time)
+    told = f"The run was not written to the end: these are its first {steps} steps."
+    figures = {"complete": saved.complete, "steps": steps, "files": [str(file) for file in files]}
+    options.tell(figures, [] if saved.complete else [("partial", told)], quiet, as_json, files=files)

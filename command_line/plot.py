@@ -6,7 +6,10 @@ from pathlib import Path
 
 import click
 
+from command_line import options
 from command_line.group import main, refusing
+
+PARTIAL = "The files were not written to the end: the surface is drawn from the steps that they have."
 
 
 @main.command()
@@ -27,6 +30,7 @@ from command_line.group import main, refusing
 @click.option("--y", metavar="AXIS", help="Of a sweep: the axis that is drawn along y.")
 @click.option("--value", metavar="COLUMN", help="Of a sweep: the only column that is drawn [distance and outcome].")
 @click.option("--quiet", "-q", is_flag=True, help="Print no captions.")
+@click.option("--json", "as_json", is_flag=True, help="Print files and captions, or what is wrong, as JSON.")
 def plot(
     result: Path,
     output: Path | None,
@@ -36,6 +40,7 @@ def plot(
     y: str | None,
     value: str | None,
     quiet: bool,
+    as_json: bool,
 ) -> None:
     """Draw a run or a sweep for print.
 
@@ -47,6 +52,13 @@ def plot(
 
     if output is not None:
         refusing(check_folder, output)
-    for done in refusing(draw, result, output, formats, width, x, y, value):
-        if not quiet:
-            click.echo(f"{'wrote':<12}{', '.join(map(str, done.files))}\n{'':<12}{done.caption}")
+    plotted = refusing(draw, result, output, formats, width, x, y, value)
+    complete = all(done.complete for done in plotted)
+    figures = {
+        "complete": complete,
+        "pictures": [{"files": list(map(str, p.files)), "caption": p.caption} for p in plotted],
+    }
+    lines = [] if complete else [("partial", PARTIAL)]
+    for done in plotted:
+        lines += [("wrote", ", ".join(map(str, done.files))), ("", done.caption)]
+    options.tell(figures, lines, quiet, as_json)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from command_line import options
 from command_line.group import main, refusing
 from command_line.run import STAGES
 
@@ -27,25 +29,26 @@ OUTPUT = Path("rerun")
     default=OUTPUT,
     help="Folder for the new results [rerun].",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print what was found as JSON.")
-def rerun(result: Path, output: Path, as_json: bool) -> None:
+@options.quiet
+@options.as_json
+def rerun(result: Path, output: Path, quiet: bool, as_json: bool) -> None:
     """Run the case that RESULT keeps again, and compare.
 
     RESULT is either file of a run, or FOLDER/NAME. Exits with 1 when the part ends elsewhere.
     """
-    from coupling.progress import StageBar
+    from coupling.progress import StageBar, silent
     from coupling.rerun import rerun
     from coupling.results import check_folder
     from coupling.saved import read_run
 
     saved = refusing(read_run, result)
     refusing(check_folder, output)
-    with StageBar(STAGES) as bar:
+    with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
         done = refusing(rerun, saved, output, bar)
     if as_json:
         said = {"same_end": done.same_end, "moved": done.moved, "versions": done.changed, "complete": saved.complete}
         click.echo(json.dumps(said | {"files": [str(file) for file in done.result.files]}, indent=2))
-    else:
+    elif not quiet:
         _tell(done)
     sys.exit(0 if done.same_end else 1)
 

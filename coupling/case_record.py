@@ -15,7 +15,7 @@ from coupling.plate_case import MeshCase
 from coupling.platform_case import PlatformCase
 
 PATHS = ("mesh", "motion")  # keys of a plate that may name a file
-_HEAVY = re.compile(r">\s*([^<>:/\\]+):/")  # what an XDMF file names as holding its numbers
+_HEAVY = re.compile(r"(<DataItem\b[^>]*>\s*)([^<>:]+)(?=:)")  # what an XDMF file names as holding its numbers
 
 
 class CaseRecord(NamedTuple):
@@ -26,12 +26,15 @@ class CaseRecord(NamedTuple):
 
 
 def record_of(case: Case) -> CaseRecord:
-    """The record of a case; raises OSError when a file that it reads is gone."""
+    """The record of a case; raises OSError when a file that it reads is gone.
+
+    An XDMF file names those beside it, wherever they are, without a folder.
+    """
     tables = case.model_dump(mode="json", exclude_none=True, exclude={"name", "source"})
     for key in PATHS:
         if isinstance(tables["plate"].get(key), str):
             tables["plate"][key] = Path(tables["plate"][key]).name
-    return CaseRecord(json.dumps(tables), {file.name: file.read_bytes() for file in files_of(case)})
+    return CaseRecord(json.dumps(tables), files_of(case))
 
 
 def case_of(record: CaseRecord, name: str, source: str | None = None) -> Case:
@@ -50,21 +53,32 @@ def case_of(record: CaseRecord, name: str, source: str | None = None) -> Case:
     return Case.model_validate(tables | {"name": name, "source": source})
 
 
-def files_of(case: Case) -> list[Path]:
-    """The files that a case reads when its scene is built."""
+def files_of(case: Case) -> dict[str, bytes]:
+    """The contents of the files that a case reads when its scene is built, by their names without a folder."""
     plate = case.plate
     if isinstance(plate, MeshCase):
         path = Path(plate.mesh)
-        return [path, *_beside(path)]
-    return [Path(plate.motion)] if isinstance(plate, PlatformCase) and isinstance(plate.motion, str) else []
+        return _with_heavy(path) if path.suffix.lower() == ".xdmf" else {path.name: path.read_bytes()}
+    if isinstance(plate, PlatformCase) and isinstance(plate.motion, str):
+        return {Path(plate.motion).name: Path(plate.motion).read_bytes()}
+    return {}
 
 
-def _beside(path: Path) -> list[Path]:
-    """The files beside an XDMF file that hold its numbers."""
-    if path.suffix.lower() != ".xdmf":
-        return []
-    names = dict.fromkeys(match.strip() for match in _HEAVY.findall(path.read_text(encoding="utf-8", errors="replace")))
-    return [path.with_name(name) for name in names if path.with_name(name).is_file()]
+def _with_heavy(path: Path) -> dict[str, bytes]:
+    """An XDMF file and those that hold its numbers, which it names by the names that they get."""
+    kept: dict[Path, str] = {}
+    contents: dict[str, bytes] = {path.name: b""}
+
+    def renamed(found: re.Match[str]) -> str:
+        file = path.resolve().parent / found[2].strip()  # as meshio finds it
+        if file not in kept:
+            name = file.name if file.name not in contents else f"{len(kept)}.{file.name}"
+            kept[file], contents[name] = name, file.read_bytes()
+        return found[1] + kept[file]
+
+    said = _HEAVY.sub(renamed, path.read_bytes().decode("utf-8", "surrogateescape"))
+    contents[path.name] = said.encode("utf-8", "surrogateescape")
+    return contents
 
 
 def _kept_folder() -> str:

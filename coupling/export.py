@@ -82,12 +82,16 @@ def write_pvd(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fram
     import meshio  # slow to load
 
     (folder / name).mkdir(exist_ok=True)
+    (folder / f"{name}.pvd").unlink(missing_ok=True)  # until all files are those of this run
     root = ET.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
     steps = ET.SubElement(root, "Collection")
     for k, frame in enumerate(frames):
         file = Path(name, f"{k:05}.vtu")
         meshio.Mesh(frame.points, [(kind, cells)], frame.fields).write(folder / file, "vtu")
         ET.SubElement(steps, "DataSet", timestep=repr(frame.time), part="0", file=file.as_posix())
+    for file in (folder / name).glob("*.vtu"):
+        if file.stem.isdigit() and int(file.stem) >= len(steps):  # of a longer run
+            file.unlink()
     return _write_xml(root, folder / f"{name}.pvd")
 
 
@@ -97,7 +101,8 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
     steps = ET.SubElement(
         ET.SubElement(root, "Domain"), "Grid", Name=name, GridType="Collection", CollectionType="Temporal"
     )
-    with h5py.File(folder / f"{name}.h5", "w") as file:
+    partial = folder / f"{name}.partial.h5"
+    with h5py.File(partial, "w") as file:
 
         def item(grid: ET.Element, element: str, what: dict[str, str], place: str, array: NDArray) -> None:
             """An element of the grid whose numbers are an array, which is written unless its place has one."""
@@ -120,13 +125,16 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
                 form = "Scalar" if array.ndim == 1 else "Vector"
                 what = {"Name": key, "AttributeType": form, "Center": "Node"}
                 item(grid, "Attribute", what, f"{k}/{key}", array)
+    (folder / f"{name}.xdmf").unlink(missing_ok=True)  # it is of the old numbers
+    partial.replace(folder / f"{name}.h5")
     return _write_xml(root, folder / f"{name}.xdmf")
 
 
 def _write_xml(root: ET.Element, path: Path) -> Path:
     ET.indent(root)
-    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
-    return path
+    partial = path.with_name(f"{path.stem}.partial{path.suffix}")
+    ET.ElementTree(root).write(partial, encoding="utf-8", xml_declaration=True)
+    return partial.replace(path)
 
 
 def _plate_anew(saved: SavedRun, folder: Path, frames: Iterator[Frame]) -> Path:

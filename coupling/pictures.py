@@ -38,8 +38,11 @@ def draw_run(case: Case, scene: Scene, trajectory: Trajectory, ground: Ground, m
     FigureCanvasAgg(figure)
     compose(figure, portrait_of(case.name, scene, trajectory, ground, moment))
     partial = path.with_suffix(".partial.png")
-    figure.savefig(partial, dpi=110)
-    partial.replace(path)
+    try:
+        figure.savefig(partial, dpi=110)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def plot_run(case: Case, scene: Scene, trajectory: Trajectory, axes: Axes | None = None) -> Figure:
@@ -76,7 +79,7 @@ def compose(figure: Figure, portrait: Portrait) -> None:
     for one, unit in zip(axes, units, strict=True):
         label_places(one, portrait, unit)
     if relief:
-        axes[0].set_title(f"The plate at {portrait.when}, when it is deflected most", fontsize=10)
+        axes[0].set_title(f"The plate at {portrait.when}, {portrait.most}", fontsize=10)
     keys = draw_surface(figure, axes[0], portrait, units[0], side="right" if window is None else "left")
     if relief and window is not None:  # nothing between map and window
         axes[1].set_title(f"Around the path, also at {portrait.when}", fontsize=10)
@@ -91,7 +94,7 @@ def compose(figure: Figure, portrait: Portrait) -> None:
         panel.tick_params(labelbottom=k == len(curves) - 1)
     panel.set_xlabel(f"time [{time_unit.name}]")
     keys += shade_keys(rows)
-    figure.suptitle(f"{portrait.name}: {portrait.sentence}")
+    figure.suptitle(f"{portrait.name}: {portrait.sentence}", parse_math=False)
     keys = list({key.get_label(): key for key in reversed(keys)}.values())[::-1]
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
 

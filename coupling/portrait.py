@@ -39,12 +39,18 @@ class Portrait:
     relief: Relief | None  # of the plate at the moment; None: there is a platform
     moment: float  # s
     base: Sequence[AnyDrive]  # of a platform, along x and y; none: the surface stays in its plane
+    complete: bool = True  # whether the surface is known to the end of the run
 
     @property
     def when(self) -> str:
         """The moment, in words."""
         unit = readable(np.array([self.samples.time[-1]]), "s")
         return f"{self.moment * unit.per_si:.4g} {unit.name}"
+
+    @property
+    def most(self) -> str:
+        """What is special about the moment, in words."""
+        return "when it is deflected most" + ("" if self.complete else " of the steps that were written")
 
 
 def portrait_of(name: str, scene: Scene, trajectory: Trajectory, ground: Ground, moment: float) -> Portrait:

@@ -6,12 +6,13 @@ import json
 import os
 from pathlib import Path
 from uuid import uuid4
+from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
-from coupling.case_record import CaseRecord, record_of
+from coupling.case_record import CaseRecord
 from coupling.csv_file import write_csv
 from coupling.drives import frame_times, stroke_heights
 from coupling.pictures import draw_run, moment_of_most
@@ -40,6 +41,7 @@ UNITS = {
 
 def write_results(
     case: Case,
+    record: CaseRecord,
     scene: Scene,
     trajectory: Trajectory,
     summary: Summary,
@@ -49,12 +51,14 @@ def write_results(
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
 
-    csv: whether to write NAME.csv as well.  tell: gets how many time steps are written, and of how many.
+    A picture that cannot be drawn is left out, with a RuntimeWarning.
+
+    record: of the case, taken before the work: later its files may be others.  csv: whether to write NAME.csv as well.
+    tell: gets how many time steps are written, and of how many.
     """
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
     ground = scene.ground(trajectory)
-    record = record_of(case)
     heights, speeds = stroke_heights(scene.lifts, times), stroke_heights(scene.lifts, times, 1)
     metadata: dict[str, str | int] = {
         "run": uuid4().hex,  # the same in both files, which so find each other
@@ -88,8 +92,13 @@ def write_results(
                 friction_force=samples.friction_force[k],
             )
     picture = folder / f"{case.name}.png"
-    draw_run(case, scene, trajectory, ground, float(times[moment_of_most(np.array(spread))]), picture)
-    files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf", picture]
+    files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
+    picture.unlink(missing_ok=True)
+    try:
+        draw_run(case, scene, trajectory, ground, float(times[moment_of_most(np.array(spread))]), picture)
+        files.append(picture)
+    except Exception as error:  # the run is finished, whatever becomes of its picture
+        warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
     if csv:
         files.append(write_csv(trajectory, folder / f"{case.name}.csv", times))
     return tuple(files)

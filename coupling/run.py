@@ -14,6 +14,7 @@ from threadpoolctl import threadpool_limits
 
 import particle
 from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, TableCase
+from coupling.case_record import record_of
 from coupling.csv_file import check_csv
 from coupling.drives import build_drives as build_drives
 from coupling.plate_scene import plate_scene
@@ -88,7 +89,8 @@ def run_case(
 
     csv: whether to write the trajectory to NAME.csv as well.  save_surface: whether to write the moving surface, with
     the cells that the part came to, to NAME.surface.h5 (`read_surface`).
-    Raises ValueError when the case cannot be run, and before any work when NAME.csv is a file of something else.
+    Raises ValueError when the case cannot be run, and before any work when NAME.csv is a file of something else;
+    OSError when a file that the case reads is gone.
     """
     if output is not None and csv:
         check_csv(Path(output) / f"{case.name}.csv")
@@ -98,6 +100,7 @@ def run_case(
 
 
 def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_surface: bool) -> Result:
+    record = None if output is None else record_of(case)  # its files may be others when the path is found
     scene = build_scene(case, progress)
     with progress("Following the part (the first run compiles: half a minute)"):
         friction = build_friction(case)
@@ -105,10 +108,10 @@ def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_su
         tighter = interruptible(follow_part, case, scene.surface, friction, True)
     with progress("Checking the model's validity"):
         summary = summarise(case, scene, trajectory, tighter, friction)
-    if output is None:
+    if output is None or record is None:
         return Result(case, scene, trajectory, summary)
     with progress("Writing the results") as tell:
-        files = write_results(case, scene, trajectory, summary, output, csv, tell)
+        files = write_results(case, record, scene, trajectory, summary, output, csv, tell)
         if save_surface:
             files += (write_surface(scene.surface, output / f"{case.name}.surface.h5"),)
     return Result(case, scene, trajectory, summary, files)

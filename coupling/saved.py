@@ -15,6 +15,7 @@ from typing import Any
 import h5py
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from coupling.case import Case
 from coupling.case_record import CaseRecord, case_of
@@ -54,12 +55,18 @@ class SavedRun:
 
     @cached_property
     def case(self) -> Case:
-        """The case that was run, to the last bit; the files that it reads are in a temporary folder."""
+        """The case that was run, to the last bit; the files that it reads are in a temporary folder.
+
+        Raises ValueError when the file holds no valid case.
+        """
         with h5py.File(self.part_path, "r") as file:
             ours = file["active_surface"]
             files = {name: data[()].tobytes() for name, data in ours["files"].items()}
             text, source = ours["case"]["json"][()].tobytes().decode(), ours.attrs["case"]
-            return case_of(CaseRecord(text, files), self.name, None if source == text else source)
+            try:
+                return case_of(CaseRecord(text, files), self.name, None if source == text else source)
+            except ValueError as error:
+                raise ValueError(f"{WANTED}; got {self.part_path}, whose case is damaged: {_told(error)}") from error
 
     def plate_field(self, name: str, steps: int | slice | Sequence[int] | NDArray[np.int64] = slice(None)) -> NDArray:
         """A field of the plate at steps: (k', n) or, of a vector, (k', n, 3); at a single step without the first axis.
@@ -136,6 +143,13 @@ def _pair(path: Path) -> dict[str, Path]:
         if _run(plate) == _run(part):
             return {"plate": plate, "part": part}
     raise ValueError(f"{WANTED}; got {path}, but {found['plate'][0]} and {found['part'][0]} are of different runs")
+
+
+def _told(error: ValueError) -> str:
+    """What is wrong, on one line."""
+    if isinstance(error, ValidationError):
+        return ", ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
+    return str(error)
 
 
 def _split(path: Path) -> tuple[str, str | None, bool]:

@@ -78,4 +78,5 @@ def put_below(axes: Axes, **legend: Any) -> None:
     """Put a legend below axes and their label."""
     down = ScaledTranslation(0, -BELOW * rcParams["font.size"] / 72, axes.figure.dpi_scale_trans)
     place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": axes.transAxes + down}
-    axes.legend(frameon=False, fontsize="small", **place, **legend)
+    for text in axes.legend(frameon=False, fontsize="small", **place, **legend).get_texts():
+        text.set_parse_math(False)

@@ -78,7 +78,7 @@ def _draw(found: Found, said: str, targets: Sequence[Place], path: Path) -> Path
     axes = [figure.add_subplot(1, 2, k + 1) for k in range(2)]
     keys = _draw_plate(axes[0], case, trajectory, targets)
     keys += _draw_ends(axes[1], trajectory, targets[-1], scatter)
-    figure.suptitle(said)
+    figure.suptitle(said, parse_math=False)
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
     partial = path.with_suffix(".partial.png")
     try:

@@ -10,7 +10,7 @@ from coupling.case import Case
 from coupling.case_lines import Location
 from coupling.keyed_table import WRONG
 from coupling.units import shown
-from studies.axis import Axis, spaced
+from studies.axis import Axis, counted, spaced
 from studies.field import Field, Value, find_field
 from studies.variants import is_deep, lattice_of
 
@@ -74,10 +74,7 @@ class Axes:
         if key == "values":
             doubled = next((value for value, count in Counter(values).items() if count > 1), None)
             if doubled is not None and self._sampling == "grid":
-                yield (
-                    "values",
-                    f"must differ from each other; got {shown(doubled)} {field.unit}".rstrip("1 ") + " twice",
-                )
+                yield "values", f"must differ from each other; got {counted(shown(doubled), field.unit)} twice"
             return
         if field.kind != "number":
             yield "range", f"must not be given for {field.path}, which has no values in between; list its values"

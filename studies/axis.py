@@ -42,3 +42,8 @@ def spaced(low: float, high: float, count: int, logarithmic: bool) -> tuple[floa
     """So many values from one to another, both among them."""
     space = np.geomspace if logarithmic else np.linspace
     return tuple(space(low, high, count).tolist())
+
+
+def counted(number: str, unit: str) -> str:
+    """A number with its unit, if it has one."""
+    return number if unit in ("", "1") else f"{number} {unit}"

@@ -40,7 +40,7 @@ def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
     said = (
         f"{feasibility.case.name}: fastest drive {feasibility.frequency:g} Hz, {1e3 * feasibility.found.window:.4g} ms"
     )
-    figure.suptitle(said)
+    figure.suptitle(said, parse_math=False)
     partial = path.with_suffix(f".{os.getpid()}.partial.png")
     try:
         figure.savefig(partial, dpi=110)

@@ -49,7 +49,7 @@ def draw_field(figure: Figure, axes: Axes, across: Scale, up: Scale, values: Flo
     if np.isfinite(values).any():
         shades = np.ma.masked_invalid(values).T * unit.per_si
         mesh = axes.pcolormesh(edges(across), edges(up), shades, cmap="viridis", rasterized=True)
-        figure.colorbar(mesh, ax=axes, label=labelled(said, unit))
+        figure.colorbar(mesh, ax=axes).set_label(labelled(said, unit), parse_math=False)
 
 
 def draw_classes(
@@ -94,12 +94,12 @@ def add_key(axes: Axes, numbers: NDArray[np.int64], names: tuple[str, ...], colo
 def frame(axes: Axes, across: Scale, up: Scale | None = None) -> None:
     """Label the axes and set their scales."""
     plain_ticks(axes)
-    axes.set_xlabel(across.label)
+    axes.set_xlabel(across.label, parse_math=False)
     if across.logarithmic:
         axes.set_xscale("log")
     _name_ticks(axes.xaxis, across)
     if up:
-        axes.set_ylabel(up.label)
+        axes.set_ylabel(up.label, parse_math=False)
         if up.logarithmic:
             axes.set_yscale("log")
         _name_ticks(axes.yaxis, up)
@@ -110,7 +110,7 @@ def _name_ticks(axis: Axis, scale: Scale) -> None:
     formatter = axis.get_major_formatter()
     if scale.texts:
         places = range(0, len(scale.texts), -(-len(scale.texts) // MOST_NAMES))
-        axis.set_ticks(list(places), list(scale.texts[:: places.step]))
+        axis.set_ticks(list(places), list(scale.texts[:: places.step]), parse_math=False)
     elif isinstance(formatter, ScalarFormatter) and not FEW_DIGITS[0] <= np.abs(scale.drawn).max() < FEW_DIGITS[1]:
         formatter.set_scientific(True)
 

@@ -46,8 +46,8 @@ def compose(figure: Figure, findings: Findings) -> None:
     places = [figure.add_subplot(1, len(drawn), k + 1) for k in range(len(drawn))]
     for axes, panel in zip(places, drawn, strict=True):
         panel.draw(figure, axes)
-        axes.set_title(panel.title, fontsize=10)
-    figure.suptitle(f"{findings.name}: {about(shown)}")
+        axes.set_title(panel.title, fontsize=10, parse_math=False)
+    figure.suptitle(f"{findings.name}: {about(shown)}", parse_math=False)
 
 
 def about(shown: Shown) -> str:

@@ -24,7 +24,7 @@ def draw_points(figure: Figure, axes: Axes, shown: Shown) -> None:
     heights = _heights(axes, shown)
     shades = values[known] * unit.per_si
     marks = axes.scatter(across.drawn[known], heights[known], c=shades, cmap="viridis", **_look(len(values)))
-    figure.colorbar(marks, ax=axes, label=shown.label)
+    figure.colorbar(marks, ax=axes).set_label(shown.label, parse_math=False)
 
 
 def draw_outcomes(axes: Axes, shown: Shown) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.readable import Unit, readable
-from studies.axis import Axis
+from studies.axis import Axis, counted
 from studies.findings import Findings
 from studies.record import COLUMNS, OUTCOMES
 from studies.threshold import BoolArray
@@ -119,8 +119,7 @@ class Shown:
                 order = np.argsort(axis.values) if axis.field.kind != "text" else np.arange(len(axis.values))
                 picked[axis.name] = int(order[len(order) // 2])
                 scale = Scale.of(axis, np.array([axis.values[picked[axis.name]]]))
-                number = scale.texts[0] if scale.texts else f"{scale.drawn[0]:.4g} {scale.unit.name}".rstrip("1 ")
-                fixed[axis.name] = number
+                fixed[axis.name] = scale.texts[0] if scale.texts else counted(f"{scale.drawn[0]:.4g}", scale.unit.name)
         outcome = findings.dataset["outcome"]
         numbers = outcome.copy(data=np.arange(outcome.size).reshape(outcome.shape))
         part = findings.dataset.assign(number=numbers).isel(picked)

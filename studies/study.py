@@ -38,7 +38,7 @@ class Study:
         """Hashes of what its results depend on: case, the files that it reads, points and versions."""
         return {
             "case": _hash([self.case.model_dump_json(exclude={"name", "source"}), lattice_of(self.case)]),
-            "files of the case": _hash([hashlib.sha256(file.read_bytes()).hexdigest() for file in files_of(self.case)]),
+            "files of the case": _hash([hashlib.sha256(file).hexdigest() for file in files_of(self.case).values()]),
             "points": _hash(repr(self._plain_points())),
             "versions": _hash(versions()),
         }

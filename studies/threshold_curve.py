@@ -34,6 +34,6 @@ def draw_threshold(axes: Axes, shown: Shown, holds: BoolArray, said: str) -> Non
     axes.set_ylim(limits[1].min(), limits[1].max())
     axes.grid(alpha=0.3)
     if np.isnan(begins).all():
-        axes.text(0.5, 0.5, f"{said} nowhere", transform=axes.transAxes, ha="center")
+        axes.text(0.5, 0.5, f"{said} nowhere", transform=axes.transAxes, ha="center", parse_math=False)
     else:
         put_below(axes)

@@ -139,7 +139,7 @@ class Captions:
             said.append("seen from the platform")
         grey: dict[str, Any] = {"fontsize": letter, "color": "#404040"}
         self._fit(self._figure.text(0.5, 0.012, "   ·   ".join(said), ha="center", va="bottom", **grey), 0.97)
-        self._fit(self._figure.text(0.975, 0.972, stage.run.name, ha="right", va="top", **grey), 0.6)
+        self._fit(self._figure.text(0.975, 0.972, stage.run.name, ha="right", va="top", parse_math=False, **grey), 0.6)
         keys: list[Artist] = []
         look: dict[str, Any] = {"color": "none", "marker": "o", "markeredgecolor": "black", "markersize": letter * 0.6}
         if len(stage.actuators):

@@ -21,6 +21,7 @@ class Plotted(NamedTuple):
 
     caption: str
     files: tuple[Path, ...]
+    complete: bool = True  # whether the result is that of a whole run
 
 
 def plot(
@@ -42,30 +43,30 @@ def plot(
     unknown = [kind for kind in formats if kind not in FORMATS]
     if unknown:
         raise ValueError(f"Input formats must be of {', '.join(FORMATS)}; got {', '.join(unknown)}")
-    name, pictures = _pictures(Path(path), x, y, value)
+    name, pictures, complete = _pictures(Path(path), x, y, value)
     figures = [drawn(picture, width) for picture in pictures]  # all of them, before a file is written
     folder = Path(path).parent if output is None else Path(output)
     folder.mkdir(parents=True, exist_ok=True)
     return [
-        Plotted(picture.caption, tuple(save(figure, folder / f"{name}.{picture.name}", formats)))
+        Plotted(picture.caption, tuple(save(figure, folder / f"{name}.{picture.name}", formats)), complete)
         for picture, figure in zip(pictures, figures, strict=True)
     ]
 
 
-def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tuple[str, list[Picture]]:
-    """The name of a result and its pictures."""
+def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tuple[str, list[Picture], bool]:
+    """The name of a result, its pictures, and whether it was written to the end."""
     if _is_run(path):
         given = [key for key, name in (("x", x), ("y", y), ("value", value)) if name is not None]
         if given:
             raise ValueError(f"Input {' and '.join(given)} of plot must be given for a sweep only; {path} is of a run")
         run = read_run(path)
-        return run.name, run_pictures(portrait_of_saved(run))
+        return run.name, run_pictures(portrait_of_saved(run)), run.complete
     file = path if path.is_file() else path.with_name(path.name + ENDING)
     if key_of(file) is None:
         wanted = "must be a file that `active-surface run` or `active-surface sweep` left"
         raise ValueError(f"Input result of plot {wanted}; got {path}, {_instead(path)}")
     with read_findings(file) as findings:
-        return findings.name, sweep_pictures(findings, x, y, value)
+        return findings.name, sweep_pictures(findings, x, y, value), True
 
 
 def _is_run(path: Path) -> bool:

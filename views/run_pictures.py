@@ -42,7 +42,7 @@ def run_pictures(portrait: Portrait) -> list[Picture]:
     """The pictures that tell of a run; that around its path only where the path is short beside the plate."""
     line, relief = portrait.samples.position, portrait.relief
     window = path_window(line, portrait.box, relief.actuators) if relief else None
-    surface = f"the plate at {portrait.when}, when it is deflected most" if relief else portrait.origin
+    surface = f"the plate at {portrait.when}, {portrait.most}" if relief else portrait.origin
     found = [
         Picture(
             "path", f"The path over {surface}. {portrait.sentence}", lambda figure: _draw_all(figure, portrait, window)

@@ -19,7 +19,7 @@ from particle import Samples
 FloatArray = NDArray[np.float64]
 
 AT_ONCE = 64  # steps whose deflections are read together
-SCALARS = ("vertical_velocity", "height", "normal_force", "friction_force")
+JUMP = ("vertical_velocity", "normal_force", "friction_force")  # with velocities, where the state changes
 BETWEEN = 4  # pieces of a line from one moment to the next
 
 
@@ -38,6 +38,7 @@ def portrait_of_saved(run: SavedRun) -> Portrait:
         _relief(run, plate, step) if isinstance(plate, PlateCase) else None,
         float(run.time[step]),
         () if isinstance(plate, PlateCase) else platform_scene(plate, silent).base,
+        run.complete,
     )
 
 
@@ -59,9 +60,19 @@ def samples_of(run: SavedRun) -> Samples:
     before = places.astype(np.int64)
     time = np.interp(places, np.arange(len(known.time)), known.time)
     line = CubicHermiteSpline(known.time, known.position, known.velocity) if len(known.time) > 1 else None
+    changes = np.append(known.state[1:] != known.state[:-1], False)[before]
+    last = changes & (places % 1 == (BETWEEN - 1) / BETWEEN)
+    time[last] = np.nextafter(known.time[before[last] + 1], -np.inf)  # what jumps does so at once
+
+    def between(values: FloatArray) -> FloatArray:
+        """Values (k,) at the times in between; before the state changes they are held."""
+        column = np.interp(time, known.time, values)
+        return np.where(changes, values[before], column)
+
     columns = {
-        "velocity": np.stack([np.interp(time, known.time, values) for values in known.velocity.T], axis=1),
-        **{name: np.interp(time, known.time, getattr(known, name)) for name in SCALARS},
+        "velocity": np.stack([between(values) for values in known.velocity.T], axis=1),
+        "height": np.interp(time, known.time, known.height),
+        **{name: between(getattr(known, name)) for name in JUMP},
     }
     return Samples(time, line(time) if line else known.position, state=known.state[before], **columns)
 

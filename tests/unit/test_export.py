@@ -1,6 +1,8 @@
 """Every step and field of a run is read back by VTK from each format that it is exported to."""
 
+import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -79,6 +81,27 @@ def test_every_step_and_field_comes_back(folder, tmp_path, form):
     assert_same(saved, tmp_path, form)
 
 
+@pytest.mark.parametrize("form", ["pvd", "xdmf"])
+def test_an_export_that_fails_leaves_nothing_that_mixes_runs(folder, tmp_path, form):
+    saved = read_run(folder / "one")
+    files = export_run(saved, tmp_path, form)
+    before = {file: file.read_bytes() for file in files}
+    short = replace(saved, time=saved.time[:4])
+    export_run(short, tmp_path, form)
+    assert_same(short, tmp_path, form)
+    if form == "pvd":
+        assert [len(list((tmp_path / f"one.{kind}").iterdir())) for kind in ("plate", "part")] == [4, 4]
+
+    def fails(done, of):
+        if done == 2:
+            raise OSError("full")
+
+    export_run(saved, tmp_path, form)
+    with pytest.raises(OSError, match="full"):
+        export_run(short, tmp_path, form, fails)
+    assert not files[0].exists() if form == "pvd" else files[0].read_bytes() == before[files[0]]
+
+
 def test_an_interrupted_run_becomes_a_finished_one_with_the_steps_that_it_has(folder, tmp_path):
     for kind in ("plate", "part"):
         shutil.copy(folder / f"one.{kind}.vtkhdf", tmp_path / f"one.partial.{kind}.vtkhdf")
@@ -93,6 +116,15 @@ def test_an_interrupted_run_becomes_a_finished_one_with_the_steps_that_it_has(fo
     assert_same(partial, tmp_path / "out", "vtkhdf")
     assert whole.case == read_run(folder / "one").case and whole.events == partial.events
     assert (whole.summary, whole.versions, whole.units) == (partial.summary, partial.versions, partial.units)
+
+
+def test_an_export_is_told_as_json_or_not_at_all(folder, tmp_path):
+    command = ["export", str(folder / "one"), "--format", "xdmf", "--output", str(tmp_path)]
+    told = json.loads(CliRunner().invoke(main, [*command, "--json"]).stdout)
+    files = [str(tmp_path / f"one.{kind}.xdmf") for kind in ("plate", "part")]
+    assert told == {"complete": True, "steps": 9, "files": files}
+    done = CliRunner().invoke(main, [*command, "--quiet"])
+    assert done.exit_code == 0 and not done.output
 
 
 def test_a_run_is_not_written_over_itself(folder):

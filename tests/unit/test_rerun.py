@@ -13,6 +13,8 @@ from click.testing import CliRunner
 import meshes
 from command_line.main import main
 from coupling import read_case, read_run, run_case, versions
+from coupling.case_record import case_of, record_of
+from coupling.progress import silent
 
 POINTS = "load [uN], limit [nN]\n-1, 4\n0, 18.7\n2.2, 35\n5, 52\n"
 
@@ -71,6 +73,22 @@ def test_a_moved_result_with_a_measured_motion_and_friction_reruns_to_the_same_b
     assert json.loads(twice.stdout)["same_end"] and after.case.source == before.case.source == PLATFORM
 
 
+@pytest.mark.parametrize("later", [None, MOTION.replace("30", "3")], ids=["gone", "another"])
+def test_a_result_keeps_the_files_as_they_were_when_its_run_began(tmp_path, later):
+    (tmp_path / "motion.csv").write_text(MOTION)
+    (tmp_path / "friction.csv").write_text(POINTS)
+    (tmp_path / "some.toml").write_text(PLATFORM)
+
+    def meanwhile(stage):
+        if stage.startswith("Following"):
+            (tmp_path / "motion.csv").unlink() if later is None else (tmp_path / "motion.csv").write_text(later)
+        return silent(stage)
+
+    run_case(read_case(tmp_path / "some.toml"), tmp_path / "out", meanwhile)
+    assert Path(read_run(tmp_path / "out" / "some").case.plate.motion).read_text() == MOTION
+    assert rerun(tmp_path / "out" / "some", "--output", str(tmp_path / "again")).exit_code == 0
+
+
 PLATE = """\
 [plate]
 mesh = "plate.xdmf"
@@ -97,6 +115,26 @@ duration = "0.4 ms"
 frames = 3
 tolerance = 1e-5
 """
+
+
+@pytest.mark.parametrize("place", ["./plate.h5", "sub/plate.h5", "../plate.h5"])
+def test_a_record_has_what_a_mesh_names_wherever_it_is(tmp_path, place):
+    (tmp_path / "home" / "sub").mkdir(parents=True)
+    mesh = meshes.rectangle(400e-6, 300e-6, 100e-6)
+    edges = np.concatenate(list(mesh.boundaries.values()))
+    cells = [("triangle", mesh.triangles), ("line", edges)]
+    numbers = [np.zeros(len(mesh.triangles), int), np.full(len(edges), 7)]
+    file = tmp_path / "home" / "plate.xdmf"
+    meshio.Mesh(mesh.points, cells, cell_data={"boundary": numbers}).write(file)
+    file.write_text(file.read_text().replace("plate.h5:", f"{place}:"))
+    (tmp_path / "home" / "plate.h5").rename(tmp_path / "home" / place)
+    (tmp_path / "home" / "some.toml").write_text(PLATE)
+    case = read_case(tmp_path / "home" / "some.toml")
+    again = case_of(record_of(case), "some")
+    (tmp_path / "home" / place).unlink()
+    np.testing.assert_array_equal(again.plate.build_mesh().points, mesh.points)
+    with pytest.raises(FileNotFoundError, match=r"plate.h5"):
+        record_of(case)
 
 
 def test_a_moved_result_with_a_mesh_reruns_to_the_same_bits(moved, tmp_path):
@@ -126,6 +164,8 @@ def test_another_end_and_other_versions_are_told(moved, tmp_path, monkeypatch):
         ours["summary"] = json.dumps(summary)
         ours["versions"] = json.dumps(json.loads(ours["versions"]) | {"numpy": "1.0", "lost": "2.0"})
     done = rerun(result, "--output", str(tmp_path / "again"))
+    quiet = rerun(result, "--output", str(tmp_path / "again"), "--quiet")
+    assert quiet.exit_code == 1 and not quiet.output
     assert done.exit_code == 1 and ": 3 um from that of the result" in done.output
     now = versions.versions()["numpy"]
     assert f"numpy {now} in place of 1.0; lost none in place of 2.0" in done.output

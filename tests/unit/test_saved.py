@@ -1,5 +1,6 @@
 """A run is read back from its files as it was, finished or not, and whatever else is there is refused."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -37,6 +38,24 @@ def ran(tmp_path_factory):
 def folder(ran, tmp_path):
     """A copy of the results."""
     return Path(shutil.copytree(ran[1], tmp_path / "results"))
+
+
+@pytest.mark.parametrize("name", ["q$_$s", "a$b$", "10$^"])
+def test_a_name_is_no_formula(tmp_path, name):
+    files = run_case(shaken(name=name), tmp_path).files
+    assert [file.name for file in files] == [f"{name}.plate.vtkhdf", f"{name}.part.vtkhdf", f"{name}.png"]
+
+
+def test_a_run_is_finished_though_its_picture_cannot_be_drawn(tmp_path, monkeypatch):
+    def fails(*_):
+        raise RuntimeError("no ink")
+
+    (tmp_path / "run.png").write_text("of another run")
+    monkeypatch.setattr("coupling.results.draw_run", fails)
+    with pytest.warns(RuntimeWarning, match=r"run.png could not be drawn: no ink"):
+        result = run_case(shaken(), tmp_path, csv=True)
+    assert [file.name for file in result.files] == ["run.plate.vtkhdf", "run.part.vtkhdf", "run.csv"]
+    assert not list(tmp_path.glob("*.png")) and read_run(tmp_path / "run").complete
 
 
 @pytest.mark.parametrize("ending", ["", ".plate.vtkhdf", ".part.vtkhdf"])
@@ -166,6 +185,19 @@ def test_a_file_without_a_step_is_told(folder):
     with h5py.File(folder / "run.plate.vtkhdf", "r+") as file:
         file["VTKHDF/Steps"].attrs.modify("NSteps", 0)
     assert "which no step was written" in refused(folder / "run")
+
+
+@pytest.mark.parametrize(("key", "value"), [("mass", -1.0), ("weight", 1.0)])
+def test_a_record_that_is_no_case_is_told(folder, key, value):
+    with h5py.File(folder / "run.part.vtkhdf", "r+") as file:
+        ours = file["active_surface/case"]
+        tables = json.loads(ours["json"][()].tobytes())
+        tables["part"][key] = value
+        del ours["json"]
+        ours["json"] = np.frombuffer(json.dumps(tables).encode(), np.uint8)
+    with pytest.raises(ValueError, match=r"got \S+run.part.vtkhdf, whose case is damaged: part") as error:
+        read_run(folder / "run").case  # noqa: B018
+    assert "pydantic" not in str(error.value) and "\n" not in str(error.value)
 
 
 def test_a_file_that_lacks_something_is_told(folder):

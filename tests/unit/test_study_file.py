@@ -96,6 +96,11 @@ def test_values_that_do_not_fit_are_told(tmp_path, keys, message):
     assert told.endswith(message)
 
 
+def test_a_value_without_a_unit_keeps_its_digits(tmp_path):
+    (told,) = mistakes(tmp_path, '[[axes]]\nfield = "plate.poisson_ratio"\nvalues = [0.1, 0.1]\n')
+    assert told.endswith("must differ from each other; got 0.1 twice")
+
+
 @pytest.mark.parametrize(
     ("study", "message"),
     [

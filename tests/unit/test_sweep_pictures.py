@@ -1,5 +1,7 @@
 """Pictures of sweeps: a map, a curve, points or basins, each with what it must show."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -111,6 +113,17 @@ def test_axes_beyond_the_longest_two_stay_at_their_middle_value(tmp_path):
     figure = drawn(*made(tmp_path, STROKE + LIMIT + axis("part.mass", '["1e-9 kg", "2e-9 kg", "3e-9 kg"]', "mass")))
     assert "9 of 18 paths, limit = 2 nN" in figure.get_suptitle()
     assert figure.axes[0].get_xlabel() == "stroke [µm]"
+
+
+def test_a_value_that_is_not_shown_keeps_its_digits(tmp_path):
+    ratios = axis("plate.poisson_ratio", "[0.1]", "ratio")
+    assert drawn(*made(tmp_path, STROKE + LIMIT + ratios)).get_suptitle().endswith(", ratio = 0.1")
+
+
+def test_the_name_of_a_study_is_no_formula(tmp_path):
+    study, dataset = made(tmp_path, LIMIT + STROKE)
+    figure = drawn(replace(study, name="q$_$s"), dataset)
+    assert figure.get_suptitle() == "q$_$s: 6 paths"
 
 
 def test_a_curve_shows_the_mean_and_the_spread_of_repeats(tmp_path):
