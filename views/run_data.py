@@ -17,14 +17,15 @@ from particle import State
 from views.exaggeration import exaggeration
 from views.modes import modes_of
 from views.packed import packed, packed_rows
-from views.triangles import Spots, inside, outer_edges, spots_of
+from views.triangles import Spots, coarse, inside, outer_edges, spots_of
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 MOST_STEPS: Final = 1000  # of a page; of more, as many evenly spread
-MOST_POINTS: Final = 6000  # of its surface; of more, those around the path
+MOST_POINTS: Final = 6000  # of its surface; of more, those around the path, or fewer of these
 MOST_ACTUATORS: Final = 1000  # that are marked
+MARGIN: Final = 0.1  # of the path's extent, of thinned surfaces around it
 AT_ONCE: Final = 64  # steps read together
 LINES, PER_LINE = 16, 64  # drawn on the surface along each side, and points on each
 STRETCHES: Final = {"stuck": State.STICK, "flying": State.FLIGHT}
@@ -52,6 +53,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     window = path_window(run.rows.position, box, run.actuators)
     clock = readable(run.time, "s")
     marked = np.flatnonzero(points < len(run.actuators))
+    shown = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
     return {
         "time": packed(run.time[steps] * clock.per_si, "f4"),
         "units": {"time": clock.name, "length": along.name, "height": scale.unit.name},
@@ -72,9 +74,9 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "error": modes.error * scale.unit.per_si,
             "rim": packed(outer_edges(triangles), "u2"),
             "lines": [_lines(place, triangles, box) for box in ([box] if window is None else [box, window])],
-            "actuators": packed(marked if len(marked) <= MOST_ACTUATORS else [], "u2"),
-            "unmarked": len(marked) if len(marked) > MOST_ACTUATORS else 0,
-            "whole": len(points) == len(run.points),
+            "actuators": packed(marked if shown <= MOST_ACTUATORS else [], "u2"),
+            "unmarked": shown if shown > MOST_ACTUATORS else 0,
+            "whole": len(np.unique(run.triangles)) == len(points),
         },
         "part": {
             "x": packed(position[:, 0] * along.per_si, "f4"),
@@ -102,13 +104,22 @@ def _closer(heights: FloatArray, window: FloatArray | None) -> float:
 
 
 def _around(points: FloatArray, triangles: IntArray, path: FloatArray) -> tuple[IntArray, IntArray]:
-    """The points that are drawn, by their numbers, and the triangles of these: all, or a square around the path."""
+    """The points that are drawn, by their numbers, and the triangles of these: all, or those around a path (k, 2) [m].
+
+    All of the path is on them: where that takes too many, they are thinned.
+    """
     used = np.unique(triangles)
     if len(used) > MOST_POINTS:
-        middle = (path.min(axis=0) + path.max(axis=0)) / 2
-        away = np.abs(points[used] - middle).max(axis=1)
-        used = used[away <= np.partition(away, MOST_POINTS)[MOST_POINTS]]
-        triangles = triangles[np.isin(triangles, used).all(axis=1)]
+        corners = points[triangles]
+        apart = np.maximum(corners.min(axis=1) - path.max(axis=0), path.min(axis=0) - corners.max(axis=1))
+        away = apart.max(axis=1).clip(0.0)  # of each triangle from the box of the path
+        first = np.full(len(points), np.inf)
+        np.minimum.at(first, triangles.ravel(), np.repeat(away, 3))
+        limit = np.partition(first[used], MOST_POINTS)[MOST_POINTS]
+        if limit > 0:
+            triangles = triangles[away < limit]
+        else:
+            triangles = coarse(points, triangles[away <= MARGIN * extent(path)], MOST_POINTS)
         used = np.unique(triangles)
     return used, np.searchsorted(used, triangles)
 

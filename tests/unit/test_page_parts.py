@@ -4,15 +4,17 @@ import base64
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
 from views.exaggeration import exaggeration
 from views.found import result_of
 from views.modes import SEEN, modes_of
 from views.packed import packed, packed_rows
 from views.page_file import notes_of, rows_of, write_page
+from views.run_data import _around
 from views.sweep_paths import spread
 from views.thinned import thinned
-from views.triangles import inside, outer_edges, spots_of
+from views.triangles import coarse, inside, outer_edges, spots_of
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 HALVES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -44,7 +46,7 @@ def test_modes_of_a_plate_at_rest():
     assert modes.error == 0 and not (modes.amplitudes @ modes.shapes).any()
 
 
-def test_spots_are_where_they_were_and_outside_at_the_nearest_corner():
+def test_spots_are_where_they_were_also_outside():
     places = np.array([[0.25, 0.5], [0.9, 0.2], [0.0, 0.0], [1.0, 1.0]])
     spots = spots_of(SQUARE, HALVES, places)
     back = (SQUARE[spots.corners] * spots.weights[..., None]).sum(axis=1)
@@ -52,12 +54,38 @@ def test_spots_are_where_they_were_and_outside_at_the_nearest_corner():
     z = np.tile(3 * SQUARE[:, 0] - SQUARE[:, 1] + 2, (4, 1))
     assert spots.heights(z) == pytest.approx(3 * places[:, 0] - places[:, 1] + 2)
     outside = spots_of(SQUARE, HALVES, np.array([[7.0, 8.0]]))
-    assert outside.heights(z[:1]) == pytest.approx(4.0)
+    assert outside.heights(z[:1]) == pytest.approx(15.0)
+    assert (SQUARE[outside.corners] * outside.weights[..., None]).sum(axis=1)[0] == pytest.approx([7.0, 8.0])
     assert inside(SQUARE, HALVES, np.array([[0.5, 0.4], [2.0, 0.5]])).tolist() == [True, False]
 
 
 def test_no_spots_are_no_spots():
     assert spots_of(SQUARE, HALVES, np.empty((0, 2))).corners.shape == (0, 3)
+
+
+@pytest.mark.parametrize("hole", [0.0, 0.3])
+def test_a_coarse_surface_covers_the_same_with_fewer_points(hole):
+    x, y = np.meshgrid(np.linspace(-1, 1, 60), np.linspace(-1, 1, 60))
+    points = np.stack([x.ravel(), y.ravel()], axis=1)
+    triangles = Delaunay(points).simplices.astype(np.int64)
+    triangles = triangles[np.hypot(*points[triangles].mean(axis=1).T) > hole]
+    few = coarse(points, triangles, 400)
+    assert 200 < len(np.unique(few)) <= 400
+    places = np.random.default_rng(5).uniform(-1, 1, (500, 2))
+    far = np.abs(np.hypot(*places.T) - hole) > 0.12
+    assert (inside(points, few, places) == inside(points, triangles, places))[far].mean() > 0.99
+
+
+@pytest.mark.parametrize("ends", [[(-0.9, -0.8), (0.9, 0.8)], [(0.5, 0.5), (0.52, 0.5)], [(0.999, -0.9), (0.999, 0.9)]])
+def test_a_large_surface_is_shown_around_the_whole_path(monkeypatch, ends):
+    monkeypatch.setattr("views.run_data.MOST_POINTS", 300)
+    x, y = np.meshgrid(np.linspace(-1, 1, 60), np.linspace(-1, 1, 60))
+    points = np.stack([x.ravel(), y.ravel()], axis=1)
+    triangles = Delaunay(points).simplices.astype(np.int64)
+    path = np.linspace(*ends, 50)
+    used, drawn = _around(points, triangles, path)
+    assert 100 < len(used) <= 300
+    assert inside(points[used], drawn, path).all()
 
 
 def test_outer_edges_are_those_of_one_triangle():
