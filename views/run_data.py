@@ -48,9 +48,9 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     scale = Scale.of(np.array([heights.min(), heights.max()]))
     highest = max(float(drawn.max()), float(heights.max()))
     lowest = min(float(drawn.min()), float(heights.min()))
-    modes = modes_of(heights)
     box = np.stack([place.min(axis=0), place.max(axis=0)])
     window = path_window(run.rows.position, box, run.actuators)
+    modes = modes_of(heights, None if window is None else _close(place, triangles, window))
     clock = readable(run.time, "s")
     marked = np.flatnonzero(points < len(run.actuators))
     shown = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
@@ -66,7 +66,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "x": packed(place[:, 0] * along.per_si, "f4"),
             "y": packed(place[:, 1] * along.per_si, "f4"),
             "triangles": packed(triangles, "u2"),
-            "shapes": packed_rows(modes.shapes),
+            "shapes": packed_rows(modes.shapes, exact=window is not None),
             "amplitudes": packed(modes.amplitudes * scale.unit.per_si, "f4"),
             "range": (spread := [float(w) * scale.unit.per_si for w in (heights.min(), heights.max())]),
             "colours": _colours(scale, *spread),
@@ -82,6 +82,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "x": packed(position[:, 0] * along.per_si, "f4"),
             "y": packed(position[:, 1] * along.per_si, "f4"),
             "z": packed(drawn * scale.unit.per_si, "f4"),
+            "height": packed(position[:, 2] * scale.unit.per_si, "f4"),
             "state": packed(run.state[steps], "u1"),
             "below": _spots(spots),
         },
@@ -96,6 +97,13 @@ def _colours(scale: Scale, low: float, high: float) -> list[list[Any]]:
     stops = np.linspace(0, 1, COLOURS)
     norm = scale.norm if scale.highest > scale.lowest else Normalize(0, 1)
     return [[stop, to_hex(scale.colours(norm(low + stop * (high - low))))] for stop in stops.tolist()]
+
+
+def _close(points: FloatArray, triangles: IntArray, window: FloatArray) -> NDArray[np.bool_]:
+    """Which points (n, 2) [m] have a triangle that reaches into a window (2, 2) [m]."""
+    corners = points[triangles]
+    reach = ((corners.max(axis=1) >= window[0]) & (corners.min(axis=1) <= window[1])).all(axis=1)
+    return np.isin(np.arange(len(points)), triangles[reach])
 
 
 def _closer(heights: FloatArray, window: FloatArray | None) -> float:

@@ -41,6 +41,20 @@ def test_modes_follow_a_field_that_has_many():
     assert np.abs(modes.amplitudes @ modes.shapes - field).max() <= SEEN * np.abs(field).max() * (1 + 1e-9)
 
 
+def test_modes_follow_small_heights_that_are_looked_at_closely():
+    rng = np.random.default_rng(6)
+    field = rng.normal(size=(30, 1)) @ rng.normal(size=(1, 50))
+    field[:, 20:30] *= 1e-5
+    field[:, 20:30] += 1e-5 * rng.normal(size=(30, 2)) @ rng.normal(size=(2, 10))
+    close = np.isin(np.arange(50), np.arange(20, 30))
+    modes = modes_of(field, close)
+    shapes = packed_rows(modes.shapes, exact=True)
+    found = modes.amplitudes @ numbers(shapes["rows"]).reshape(-1, 50)
+    assert len(modes.shapes) <= 3
+    assert np.abs(found - field).max() <= SEEN * np.abs(field).max()
+    assert np.abs(found - field)[:, close].max() <= SEEN * np.abs(field[:, close]).max()
+
+
 def test_modes_of_a_plate_at_rest():
     modes = modes_of(np.zeros((5, 8), np.float32))
     assert modes.error == 0 and not (modes.amplitudes @ modes.shapes).any()

@@ -118,6 +118,7 @@ def test_a_page_has_the_steps_of_its_run(run):
     assert np.abs(heights - wanted).max() <= 2e-3 * np.abs(wanted).max()
     assert numbers(data["time"]) == pytest.approx(run.time * 1e3, rel=1e-6)
     assert numbers(data["part"]["x"]) == pytest.approx(run.position[:, 0] * 1e6, rel=1e-5)
+    assert numbers(data["part"]["height"]) == pytest.approx(run.position[:, 2] * 1e6, rel=1e-6)
     assert numbers(data["part"]["z"]) == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
     assert numbers(data["part"]["state"]).tolist() == run.state.tolist()
     assert numbers(surface["actuators"]).tolist() == [0]
@@ -201,6 +202,7 @@ def test_a_part_in_flight_is_above_the_surface(tmp_path):
     run = read_run(tmp_path / "flies")
     assert (run.state == 2).sum() > 3
     data = run_data(run)
+    assert numbers(data["part"]["height"]) == pytest.approx(run.position[:, 2] * 1e6, rel=1e-6)
     assert numbers(data["part"]["z"]) == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
     near = np.hypot(*(run.points - run.position[-1, :2]).T).argmin()
     assert numbers(data["part"]["z"])[-1] > run.plate_field("deflection")[-1, near] * 1e6 + 5

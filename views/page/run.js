@@ -1,7 +1,7 @@
 // The page of a run: a slider over its steps, the surface with the part on it, and curves over time.
 
 const surface = unpackSurface(pageData.surface);
-const part = Object.fromEntries(["x", "y", "z", "state"].map((name) => [name, unpack(pageData.part[name])]));
+const part = Object.fromEntries(["x", "y", "z", "height", "state"].map((name) => [name, unpack(pageData.part[name])]));
 const trail = unpackSpots(pageData.trail);
 trail.step = unpack(pageData.trail.step);
 const below = unpackSpots(pageData.part.below); // the part, at every step
@@ -245,7 +245,7 @@ function readOut(step) {
   describe(element("readout"), [
     ["state", state],
     [`position x, y${pageData.counted}`, `${beside(part.x[step], places)}, ${beside(part.y[step], places)} ${units.length}`],
-    ["height", `${beside(part.z[step], largest(part.z))} ${units.height}`],
+    ["height", `${beside(part.height[step], largest(part.height))} ${units.height}`],
     ["speed", `${beside(Math.hypot(along[step], across[step]), largest(along, across))} ${velocity}`],
     ["normal load", `${beside(load[step], largest(load, friction))} ${force}`],
     ["friction", `${beside(friction[step], largest(load, friction))} ${force}`],
