@@ -27,6 +27,8 @@ def view(result: Path, output: Path | None, paths: int | None, opened: bool, qui
     from coupling.results import check_folder
     from views.found import result_of
 
+    if output is not None and output.suffix.lower() != ".html":
+        raise click.BadParameter(f"must end in .html; got {output}", param_hint="--output")
     found = refusing(result_of, result, DEFAULT_OUTPUT)
     page = output or found.page
     refusing(check_folder, page.parent)

@@ -41,7 +41,7 @@ def _of_file(path: Path, folder: Path) -> Found:
             file = place / f"{path.stem}{ending}"
             if file.is_file():
                 page = place / f"{path.stem}{'.sweep' if is_sweep else ''}.html"
-                return Found(file, page, is_sweep, path if is_sweep else None)
+                return Found(file if is_sweep else place / path.stem, page, is_sweep, path if is_sweep else None)
     command = "sweep" if is_sweep else "run"
     wanted = f"a result, or a file whose result is in {folder} or beside it"
     raise ValueError(

@@ -4,8 +4,10 @@ import base64
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy.spatial import Delaunay
 
+from command_line.main import main
 from views.exaggeration import exaggeration
 from views.found import result_of
 from views.modes import SEEN, modes_of
@@ -189,9 +191,18 @@ def test_a_case_or_study_file_stands_for_its_result(tmp_path):
         result_of(tmp_path / "many.toml", results)
     (results / "one.partial.part.vtkhdf").touch()
     (tmp_path / "many.nc").touch()
-    assert result_of(tmp_path / "one.toml", results).page == results / "one.html"
+    found = result_of(tmp_path / "one.toml", results)
+    assert (found.path, found.page) == (results / "one", results / "one.html")  # of which either file may be partial
     assert result_of(tmp_path / "many.toml", results)[:3] == (
         tmp_path / "many.nc",
         tmp_path / "many.sweep.html",
         True,
     )
+
+
+@pytest.mark.parametrize("name", ["x.part.vtkhdf", "x.nc", "x"])
+def test_a_page_replaces_no_other_kind_of_file(tmp_path, name):
+    (tmp_path / name).write_text("kept")
+    said = CliRunner().invoke(main, ["view", str(tmp_path / "one"), "-o", str(tmp_path / name)])
+    assert said.exit_code == 2 and "must end in .html" in said.output
+    assert (tmp_path / name).read_text() == "kept"
