@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import NamedTuple
 
+from coupling.case import read_case
 from coupling.case_lines import load
+from coupling.case_record import record_of
+from coupling.saved import SavedRun
 
 RUN_ENDINGS = (".plate.vtkhdf", ".part.vtkhdf", ".partial.plate.vtkhdf", ".partial.part.vtkhdf")
 SWEEP_ENDING = ".nc"
@@ -30,6 +34,12 @@ def result_of(path: Path, folder: Path) -> Found:
     if path.suffix == SWEEP_ENDING:
         return Found(path, path.with_suffix(".sweep.html"), True)
     return Found(path, path.with_name(f"{_name(path)}.html"), False)
+
+
+def is_of(run: SavedRun, path: Path) -> bool:
+    """Whether a run is of the case that a case file states now; raises ValueError or OSError where that is no case."""
+    now, then = record_of(read_case(path)), record_of(run.case)
+    return json.loads(now.text) == json.loads(then.text) and dict(now.files) == dict(then.files)
 
 
 def _of_file(path: Path, folder: Path) -> Found:

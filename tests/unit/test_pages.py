@@ -222,8 +222,18 @@ def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
     for kind in ("plate", "part"):
         (tmp_path / f"cut.partial.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())
     said = CliRunner().invoke(main, ["view", str(tmp_path / "cut.partial.part.vtkhdf")])
-    assert said.exit_code == 0
+    assert said.exit_code == 0 and "partial" in said.output
     assert "not written to their end" in (tmp_path / "cut.html").read_text(encoding="utf-8")
+
+
+def test_a_case_that_is_not_that_of_its_result_is_told_of(folder, result, tmp_path):
+    for kind in ("plate", "part"):
+        (tmp_path / f"one.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())
+    for text, told in ((CASE, False), (CASE.replace("300 Hz", "310 Hz"), True)):
+        (tmp_path / "one.toml").write_text(text)
+        said = CliRunner().invoke(main, ["view", str(tmp_path / "one.toml")])
+        assert said.exit_code == 0
+        assert ("of another case" in said.output) == told
 
 
 def test_open_opens_the_page(folder, result, monkeypatch):
