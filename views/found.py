@@ -18,7 +18,7 @@ SWEEP_ENDING = ".nc"
 class Found(NamedTuple):
     """A result: what its reader wants, and where its page goes."""
 
-    path: Path  # of a run FOLDER/NAME or one of its files
+    path: Path  # of a run FOLDER/NAME or one of its files, of a sweep its file
     page: Path
     is_sweep: bool
     study: Path | None = None  # the study file that was named
@@ -33,6 +33,9 @@ def result_of(path: Path, folder: Path) -> Found:
         return _of_file(path, folder)
     if path.suffix == SWEEP_ENDING:
         return Found(path, path.with_suffix(".sweep.html"), True)
+    sweep = path.with_name(path.name + SWEEP_ENDING)
+    if sweep.is_file() and not any(path.with_name(path.name + end).is_file() for end in ("", *RUN_ENDINGS)):
+        return Found(sweep, sweep.with_suffix(".sweep.html"), True)
     return Found(path, path.with_name(f"{_name(path)}.html"), False)
 
 

@@ -180,6 +180,13 @@ def test_a_result_stands_for_itself(tmp_path, given, page):
     assert (found.path, found.page) == (tmp_path / given, tmp_path / page)
 
 
+def test_the_name_of_a_sweep_stands_for_its_file(tmp_path):
+    (tmp_path / "many.nc").touch()
+    assert result_of(tmp_path / "many", tmp_path)[:3] == (tmp_path / "many.nc", tmp_path / "many.sweep.html", True)
+    (tmp_path / "many.part.vtkhdf").touch()
+    assert not result_of(tmp_path / "many", tmp_path).is_sweep
+
+
 def test_a_case_or_study_file_stands_for_its_result(tmp_path):
     results = tmp_path / "results"
     results.mkdir()

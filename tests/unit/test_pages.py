@@ -223,7 +223,8 @@ def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
         (tmp_path / f"cut.partial.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())
     said = CliRunner().invoke(main, ["view", str(tmp_path / "cut.partial.part.vtkhdf")])
     assert said.exit_code == 0 and "partial" in said.output
-    assert "not written to their end" in (tmp_path / "cut.html").read_text(encoding="utf-8")
+    text = (tmp_path / "cut.html").read_text(encoding="utf-8")
+    assert "not written to their end" in text and "This run is unfinished" in text
 
 
 def test_a_case_that_is_not_that_of_its_result_is_told_of(folder, result, tmp_path):

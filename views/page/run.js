@@ -297,7 +297,7 @@ function play() {
 
 function caption() {
   const [low, high] = surface.range;
-  const factor = high === low ? "The surface stays flat." : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${Number(exaggeration.toPrecision(4))} times larger than lengths.`;
+  const factor = high === low ? (last ? "The surface stays flat." : "The surface is flat at this step.") : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${Number(exaggeration.toPrecision(4))} times larger than lengths.`;
   const lines = [factor];
   if (!surface.whole && !closeBy) lines.push("Of the surface, only that around the path is shown, with fewer points where that is large.");
   if (surface.unmarked) lines.push(`${surface.unmarked} actuators, too many to be marked.`);
