@@ -27,10 +27,13 @@ def view(result: Path, output: Path | None, paths: int | None, opened: bool, qui
     from coupling.results import check_folder
     from views.found import result_of
 
+    if output is not None and output.suffix.lower() != ".html":
+        raise click.BadParameter(f"must end in .html; got {output}", param_hint="--output")
     found = refusing(result_of, result, DEFAULT_OUTPUT)
     page = output or found.page
     refusing(check_folder, page.parent)
     page.parent.mkdir(parents=True, exist_ok=True)
+    warnings: list[str] = []
     if found.is_sweep:
         from coupling.progress import CountBar, untold
         from studies.read import read_study
@@ -45,10 +48,18 @@ def view(result: Path, output: Path | None, paths: int | None, opened: bool, qui
         if paths is not None:
             raise click.UsageError(f"--paths must not be given for a run; got {result}")
         from coupling.saved import read_run
+        from views.found import is_of
         from views.run_page import write_run_page
 
-        refusing(write_run_page, refusing(read_run, found.path), page)
+        run = refusing(read_run, found.path)
+        if result.suffix == ".toml" and not refusing(is_of, run, result):
+            warnings.append(f"{found.path} is of another case than {result} is now: `active-surface run {result}`")
+        if not run.complete:
+            warnings.append("The run is partial: its results were not written to their end.")
+        refusing(write_run_page, run, page)
     if not quiet:
+        for warning in warnings:
+            click.secho(f"{'warning':<12}{warning}", fg="yellow")
         click.echo(f"{'wrote':<12}{page} ({page.stat().st_size / 1e6:.1f} MB)")
     if opened:
         click.launch(page.absolute().as_uri())

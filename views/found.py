@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import NamedTuple
 
+from coupling.case import read_case
 from coupling.case_lines import load
+from coupling.case_record import record_of
+from coupling.saved import SavedRun
 
 RUN_ENDINGS = (".plate.vtkhdf", ".part.vtkhdf", ".partial.plate.vtkhdf", ".partial.part.vtkhdf")
 SWEEP_ENDING = ".nc"
@@ -14,7 +18,7 @@ SWEEP_ENDING = ".nc"
 class Found(NamedTuple):
     """A result: what its reader wants, and where its page goes."""
 
-    path: Path  # of a run FOLDER/NAME or one of its files
+    path: Path  # of a run FOLDER/NAME or one of its files, of a sweep its file
     page: Path
     is_sweep: bool
     study: Path | None = None  # the study file that was named
@@ -29,7 +33,16 @@ def result_of(path: Path, folder: Path) -> Found:
         return _of_file(path, folder)
     if path.suffix == SWEEP_ENDING:
         return Found(path, path.with_suffix(".sweep.html"), True)
+    sweep = path.with_name(path.name + SWEEP_ENDING)
+    if sweep.is_file() and not any(path.with_name(path.name + end).is_file() for end in ("", *RUN_ENDINGS)):
+        return Found(sweep, sweep.with_suffix(".sweep.html"), True)
     return Found(path, path.with_name(f"{_name(path)}.html"), False)
+
+
+def is_of(run: SavedRun, path: Path) -> bool:
+    """Whether a run is of the case that a case file states now; raises ValueError or OSError where that is no case."""
+    now, then = record_of(read_case(path)), record_of(run.case)
+    return json.loads(now.text) == json.loads(then.text) and dict(now.files) == dict(then.files)
 
 
 def _of_file(path: Path, folder: Path) -> Found:
@@ -41,7 +54,7 @@ def _of_file(path: Path, folder: Path) -> Found:
             file = place / f"{path.stem}{ending}"
             if file.is_file():
                 page = place / f"{path.stem}{'.sweep' if is_sweep else ''}.html"
-                return Found(file, page, is_sweep, path if is_sweep else None)
+                return Found(file if is_sweep else place / path.stem, page, is_sweep, path if is_sweep else None)
     command = "sweep" if is_sweep else "run"
     wanted = f"a result, or a file whose result is in {folder} or beside it"
     raise ValueError(

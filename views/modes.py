@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
-SEEN = 1e-3  # of the largest height: less is not seen
+SEEN = 1e-3  # of the largest height in view: less is not seen
 
 
 class Modes(NamedTuple):
@@ -20,23 +20,29 @@ class Modes(NamedTuple):
     error: float  # the largest, in the field's unit
 
 
-def modes_of(field: NDArray) -> Modes:
+def modes_of(field: NDArray, close: NDArray[np.bool_] | None = None) -> Modes:
     """As few modes as give a field (k, n) to `SEEN` of its largest number, at least one.
+
+    close: which of the n are looked at closely (n,), and so are good to `SEEN` of the largest number of these.
 
     The plate is the sum of its actuators' shapes, and drives of one frequency and form differ by their delays: so even
     thousands of actuators make a few tens of modes.
     """
-    heights = field.astype(np.float64)
+    sizes = np.full(field.shape[1], np.abs(field).max(), np.float64)
+    if close is not None and close.any():
+        sizes[close] = np.abs(field[:, close]).max()
+    sizes[sizes == 0] = 1.0
+    heights = field / sizes  # so that all are wanted to the same error
     turned = len(heights) > heights.shape[1]
     rows = heights.T if turned else heights
     found, vectors = np.linalg.eigh(rows @ rows.T)
     vectors = vectors[:, np.argsort(-found)]
-    rest, allowed, rank = rows.copy(), SEEN * float(np.abs(rows).max()), 0
-    while rank == 0 or (rank < len(rows) and float(np.abs(rest).max()) > allowed):
+    rest, rank = rows.copy(), 0
+    while rank == 0 or (rank < len(rows) and float(np.abs(rest).max()) > SEEN):
         vector = vectors[:, rank]
         rest -= np.outer(vector, vector @ rows)
         rank += 1
     left = vectors[:, :rank]
     right = left.T @ rows
-    error = float(np.abs(rest).max())
-    return Modes(left.T, right.T, error) if turned else Modes(right, left, error)
+    shapes, amplitudes, errors = (left.T, right.T, rest.T) if turned else (right, left, rest)
+    return Modes(shapes * sizes, amplitudes, float(np.abs(errors * sizes).max()))

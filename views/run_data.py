@@ -17,14 +17,15 @@ from particle import State
 from views.exaggeration import exaggeration
 from views.modes import modes_of
 from views.packed import packed, packed_rows
-from views.triangles import Spots, inside, outer_edges, spots_of
+from views.triangles import Spots, coarse, inside, outer_edges, spots_of
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 MOST_STEPS: Final = 1000  # of a page; of more, as many evenly spread
-MOST_POINTS: Final = 6000  # of its surface; of more, those around the path
+MOST_POINTS: Final = 6000  # of its surface; of more, those around the path, or fewer of these
 MOST_ACTUATORS: Final = 1000  # that are marked
+MARGIN: Final = 0.1  # of the path's extent, of thinned surfaces around it
 AT_ONCE: Final = 64  # steps read together
 LINES, PER_LINE = 16, 64  # drawn on the surface along each side, and points on each
 STRETCHES: Final = {"stuck": State.STICK, "flying": State.FLIGHT}
@@ -47,11 +48,12 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     scale = Scale.of(np.array([heights.min(), heights.max()]))
     highest = max(float(drawn.max()), float(heights.max()))
     lowest = min(float(drawn.min()), float(heights.min()))
-    modes = modes_of(heights)
     box = np.stack([place.min(axis=0), place.max(axis=0)])
     window = path_window(run.rows.position, box, run.actuators)
+    modes = modes_of(heights, None if window is None else _close(place, triangles, window))
     clock = readable(run.time, "s")
     marked = np.flatnonzero(points < len(run.actuators))
+    shown = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
     return {
         "time": packed(run.time[steps] * clock.per_si, "f4"),
         "units": {"time": clock.name, "length": along.name, "height": scale.unit.name},
@@ -64,7 +66,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "x": packed(place[:, 0] * along.per_si, "f4"),
             "y": packed(place[:, 1] * along.per_si, "f4"),
             "triangles": packed(triangles, "u2"),
-            "shapes": packed_rows(modes.shapes),
+            "shapes": packed_rows(modes.shapes, exact=window is not None),
             "amplitudes": packed(modes.amplitudes * scale.unit.per_si, "f4"),
             "range": (spread := [float(w) * scale.unit.per_si for w in (heights.min(), heights.max())]),
             "colours": _colours(scale, *spread),
@@ -72,14 +74,15 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "error": modes.error * scale.unit.per_si,
             "rim": packed(outer_edges(triangles), "u2"),
             "lines": [_lines(place, triangles, box) for box in ([box] if window is None else [box, window])],
-            "actuators": packed(marked if len(marked) <= MOST_ACTUATORS else [], "u2"),
-            "unmarked": len(marked) if len(marked) > MOST_ACTUATORS else 0,
-            "whole": len(points) == len(run.points),
+            "actuators": packed(marked if shown <= MOST_ACTUATORS else [], "u2"),
+            "unmarked": shown if shown > MOST_ACTUATORS else 0,
+            "whole": len(np.unique(run.triangles)) == len(points),
         },
         "part": {
             "x": packed(position[:, 0] * along.per_si, "f4"),
             "y": packed(position[:, 1] * along.per_si, "f4"),
             "z": packed(drawn * scale.unit.per_si, "f4"),
+            "height": packed(position[:, 2] * scale.unit.per_si, "f4"),
             "state": packed(run.state[steps], "u1"),
             "below": _spots(spots),
         },
@@ -96,19 +99,35 @@ def _colours(scale: Scale, low: float, high: float) -> list[list[Any]]:
     return [[stop, to_hex(scale.colours(norm(low + stop * (high - low))))] for stop in stops.tolist()]
 
 
+def _close(points: FloatArray, triangles: IntArray, window: FloatArray) -> NDArray[np.bool_]:
+    """Which points (n, 2) [m] have a triangle that reaches into a window (2, 2) [m]."""
+    corners = points[triangles]
+    reach = ((corners.max(axis=1) >= window[0]) & (corners.min(axis=1) <= window[1])).all(axis=1)
+    return np.isin(np.arange(len(points)), triangles[reach])
+
+
 def _closer(heights: FloatArray, window: FloatArray | None) -> float:
     """How many times heights [m] along a path are drawn larger in a window (2, 2) [m]."""
     return 1.0 if window is None else exaggeration(float(np.ptp(heights)), extent(window))
 
 
 def _around(points: FloatArray, triangles: IntArray, path: FloatArray) -> tuple[IntArray, IntArray]:
-    """The points that are drawn, by their numbers, and the triangles of these: all, or a square around the path."""
+    """The points that are drawn, by their numbers, and the triangles of these: all, or those around a path (k, 2) [m].
+
+    All of the path is on them: where that takes too many, they are thinned.
+    """
     used = np.unique(triangles)
     if len(used) > MOST_POINTS:
-        middle = (path.min(axis=0) + path.max(axis=0)) / 2
-        away = np.abs(points[used] - middle).max(axis=1)
-        used = used[away <= np.partition(away, MOST_POINTS)[MOST_POINTS]]
-        triangles = triangles[np.isin(triangles, used).all(axis=1)]
+        corners = points[triangles]
+        apart = np.maximum(corners.min(axis=1) - path.max(axis=0), path.min(axis=0) - corners.max(axis=1))
+        away = apart.max(axis=1).clip(0.0)  # of each triangle from the box of the path
+        first = np.full(len(points), np.inf)
+        np.minimum.at(first, triangles.ravel(), np.repeat(away, 3))
+        limit = np.partition(first[used], MOST_POINTS)[MOST_POINTS]
+        if limit > 0:
+            triangles = triangles[away < limit]
+        else:
+            triangles = coarse(points, triangles[away <= MARGIN * extent(path)], MOST_POINTS)
         used = np.unique(triangles)
     return used, np.searchsorted(used, triangles)
 

@@ -13,6 +13,8 @@ from views.run_data import run_data
 
 PARTIAL = "The results were not written to their end: this page shows the steps that were."
 
+UNFINISHED = "This run is unfinished: where the part ends is not known."
+
 
 def write_run_page(run: SavedRun, path: Path) -> Path:
     """Writes the page of a run to an HTML file, as a whole or not at all; returns its path."""
@@ -21,7 +23,7 @@ def write_run_page(run: SavedRun, path: Path) -> Path:
     versions = ", ".join(f"{name} {version}" for name, version in run.versions.items())
     texts = {
         "name": escape(run.name),
-        "sentence": escape(summary.sentence),
+        "sentence": escape(summary.sentence if run.complete else UNFINISHED),
         "warnings": notes_of(warnings),
         "rows": rows_of([*report.lines(summary), ("versions", versions)]),
         "case": escape(run.case.source or run.case.model_dump_json(indent=2)),

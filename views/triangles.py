@@ -7,10 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
+from scipy.spatial import Delaunay, cKDTree
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+SLIVER = 0.01  # of a cell's area: smaller triangles of a thinned surface are none
 
 
 class Spots(NamedTuple):
@@ -25,12 +27,11 @@ class Spots(NamedTuple):
 
 
 def spots_of(points: FloatArray, triangles: IntArray, places: FloatArray) -> Spots:
-    """Places (q, 2) [m] on triangles (m, 3) of points (n, 2) [m]; one outside is put at the nearest corner."""
+    """Places (q, 2) [m] on triangles (m, 3) of points (n, 2) [m]; one outside is on the plane of the one near it."""
     mesh = Triangulation(*points.T, triangles)
     found = mesh.get_trifinder()(*places.T)
-    used = np.unique(triangles)
-    nearest = used[cKDTree(points[used]).query(places)[1]]
-    corners = np.where(found[:, None] >= 0, triangles[found], nearest[:, None])
+    nearest = cKDTree(points[triangles].mean(axis=1)).query(places)[1]
+    corners = triangles[np.where(found >= 0, found, nearest)]
     a, b, c = np.moveaxis(points[corners], 1, 0)
     u, v, w = b - a, c - a, places - a
     area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
@@ -43,6 +44,25 @@ def spots_of(points: FloatArray, triangles: IntArray, places: FloatArray) -> Spo
 def inside(points: FloatArray, triangles: IntArray, places: FloatArray) -> NDArray[np.bool_]:
     """Which places (q, 2) [m] lie in the triangles."""
     return np.asarray(Triangulation(*points.T, triangles).get_trifinder()(*places.T) >= 0)
+
+
+def coarse(points: FloatArray, triangles: IntArray, most: int) -> IntArray:
+    """Triangles (m', 3) that cover about the same with at most so many of the points, spread, those at edges first."""
+    used = np.unique(triangles)
+    low, high = points[used].min(axis=0), points[used].max(axis=0)
+    inner = ~np.isin(used, outer_edges(triangles))
+    side = float(np.sqrt(np.prod(high - low) / most))
+    while True:
+        cells = np.floor((points[used] - low) / side).astype(np.int64)
+        order = np.lexsort((inner, cells[:, 1], cells[:, 0]))
+        chosen = used[order[np.unique(cells[order], axis=0, return_index=True)[1]]]
+        if len(chosen) <= most:
+            break
+        side *= 1.05
+    found = chosen[Delaunay(points[chosen]).simplices]
+    u, v = points[found[:, 1]] - points[found[:, 0]], points[found[:, 2]] - points[found[:, 0]]
+    wide = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) > SLIVER * side**2
+    return np.asarray(found[wide & inside(points, triangles, points[found].mean(axis=1))])
 
 
 def outer_edges(triangles: IntArray) -> IntArray:

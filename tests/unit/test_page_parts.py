@@ -4,15 +4,19 @@ import base64
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
+from scipy.spatial import Delaunay
 
+from command_line.main import main
 from views.exaggeration import exaggeration
 from views.found import result_of
 from views.modes import SEEN, modes_of
 from views.packed import packed, packed_rows
 from views.page_file import notes_of, rows_of, write_page
+from views.run_data import _around
 from views.sweep_paths import spread
 from views.thinned import thinned
-from views.triangles import inside, outer_edges, spots_of
+from views.triangles import coarse, inside, outer_edges, spots_of
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 HALVES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -39,12 +43,26 @@ def test_modes_follow_a_field_that_has_many():
     assert np.abs(modes.amplitudes @ modes.shapes - field).max() <= SEEN * np.abs(field).max() * (1 + 1e-9)
 
 
+def test_modes_follow_small_heights_that_are_looked_at_closely():
+    rng = np.random.default_rng(6)
+    field = rng.normal(size=(30, 1)) @ rng.normal(size=(1, 50))
+    field[:, 20:30] *= 1e-5
+    field[:, 20:30] += 1e-5 * rng.normal(size=(30, 2)) @ rng.normal(size=(2, 10))
+    close = np.isin(np.arange(50), np.arange(20, 30))
+    modes = modes_of(field, close)
+    shapes = packed_rows(modes.shapes, exact=True)
+    found = modes.amplitudes @ numbers(shapes["rows"]).reshape(-1, 50)
+    assert len(modes.shapes) <= 3
+    assert np.abs(found - field).max() <= SEEN * np.abs(field).max()
+    assert np.abs(found - field)[:, close].max() <= SEEN * np.abs(field[:, close]).max()
+
+
 def test_modes_of_a_plate_at_rest():
     modes = modes_of(np.zeros((5, 8), np.float32))
     assert modes.error == 0 and not (modes.amplitudes @ modes.shapes).any()
 
 
-def test_spots_are_where_they_were_and_outside_at_the_nearest_corner():
+def test_spots_are_where_they_were_also_outside():
     places = np.array([[0.25, 0.5], [0.9, 0.2], [0.0, 0.0], [1.0, 1.0]])
     spots = spots_of(SQUARE, HALVES, places)
     back = (SQUARE[spots.corners] * spots.weights[..., None]).sum(axis=1)
@@ -52,12 +70,38 @@ def test_spots_are_where_they_were_and_outside_at_the_nearest_corner():
     z = np.tile(3 * SQUARE[:, 0] - SQUARE[:, 1] + 2, (4, 1))
     assert spots.heights(z) == pytest.approx(3 * places[:, 0] - places[:, 1] + 2)
     outside = spots_of(SQUARE, HALVES, np.array([[7.0, 8.0]]))
-    assert outside.heights(z[:1]) == pytest.approx(4.0)
+    assert outside.heights(z[:1]) == pytest.approx(15.0)
+    assert (SQUARE[outside.corners] * outside.weights[..., None]).sum(axis=1)[0] == pytest.approx([7.0, 8.0])
     assert inside(SQUARE, HALVES, np.array([[0.5, 0.4], [2.0, 0.5]])).tolist() == [True, False]
 
 
 def test_no_spots_are_no_spots():
     assert spots_of(SQUARE, HALVES, np.empty((0, 2))).corners.shape == (0, 3)
+
+
+@pytest.mark.parametrize("hole", [0.0, 0.3])
+def test_a_coarse_surface_covers_the_same_with_fewer_points(hole):
+    x, y = np.meshgrid(np.linspace(-1, 1, 60), np.linspace(-1, 1, 60))
+    points = np.stack([x.ravel(), y.ravel()], axis=1)
+    triangles = Delaunay(points).simplices.astype(np.int64)
+    triangles = triangles[np.hypot(*points[triangles].mean(axis=1).T) > hole]
+    few = coarse(points, triangles, 400)
+    assert 200 < len(np.unique(few)) <= 400
+    places = np.random.default_rng(5).uniform(-1, 1, (500, 2))
+    far = np.abs(np.hypot(*places.T) - hole) > 0.12
+    assert (inside(points, few, places) == inside(points, triangles, places))[far].mean() > 0.99
+
+
+@pytest.mark.parametrize("ends", [[(-0.9, -0.8), (0.9, 0.8)], [(0.5, 0.5), (0.52, 0.5)], [(0.999, -0.9), (0.999, 0.9)]])
+def test_a_large_surface_is_shown_around_the_whole_path(monkeypatch, ends):
+    monkeypatch.setattr("views.run_data.MOST_POINTS", 300)
+    x, y = np.meshgrid(np.linspace(-1, 1, 60), np.linspace(-1, 1, 60))
+    points = np.stack([x.ravel(), y.ravel()], axis=1)
+    triangles = Delaunay(points).simplices.astype(np.int64)
+    path = np.linspace(*ends, 50)
+    used, drawn = _around(points, triangles, path)
+    assert 100 < len(used) <= 300
+    assert inside(points[used], drawn, path).all()
 
 
 def test_outer_edges_are_those_of_one_triangle():
@@ -136,6 +180,13 @@ def test_a_result_stands_for_itself(tmp_path, given, page):
     assert (found.path, found.page) == (tmp_path / given, tmp_path / page)
 
 
+def test_the_name_of_a_sweep_stands_for_its_file(tmp_path):
+    (tmp_path / "many.nc").touch()
+    assert result_of(tmp_path / "many", tmp_path)[:3] == (tmp_path / "many.nc", tmp_path / "many.sweep.html", True)
+    (tmp_path / "many.part.vtkhdf").touch()
+    assert not result_of(tmp_path / "many", tmp_path).is_sweep
+
+
 def test_a_case_or_study_file_stands_for_its_result(tmp_path):
     results = tmp_path / "results"
     results.mkdir()
@@ -147,9 +198,18 @@ def test_a_case_or_study_file_stands_for_its_result(tmp_path):
         result_of(tmp_path / "many.toml", results)
     (results / "one.partial.part.vtkhdf").touch()
     (tmp_path / "many.nc").touch()
-    assert result_of(tmp_path / "one.toml", results).page == results / "one.html"
+    found = result_of(tmp_path / "one.toml", results)
+    assert (found.path, found.page) == (results / "one", results / "one.html")  # of which either file may be partial
     assert result_of(tmp_path / "many.toml", results)[:3] == (
         tmp_path / "many.nc",
         tmp_path / "many.sweep.html",
         True,
     )
+
+
+@pytest.mark.parametrize("name", ["x.part.vtkhdf", "x.nc", "x"])
+def test_a_page_replaces_no_other_kind_of_file(tmp_path, name):
+    (tmp_path / name).write_text("kept")
+    said = CliRunner().invoke(main, ["view", str(tmp_path / "one"), "-o", str(tmp_path / name)])
+    assert said.exit_code == 2 and "must end in .html" in said.output
+    assert (tmp_path / name).read_text() == "kept"

@@ -118,6 +118,7 @@ def test_a_page_has_the_steps_of_its_run(run):
     assert np.abs(heights - wanted).max() <= 2e-3 * np.abs(wanted).max()
     assert numbers(data["time"]) == pytest.approx(run.time * 1e3, rel=1e-6)
     assert numbers(data["part"]["x"]) == pytest.approx(run.position[:, 0] * 1e6, rel=1e-5)
+    assert numbers(data["part"]["height"]) == pytest.approx(run.position[:, 2] * 1e6, rel=1e-6)
     assert numbers(data["part"]["z"]) == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
     assert numbers(data["part"]["state"]).tolist() == run.state.tolist()
     assert numbers(surface["actuators"]).tolist() == [0]
@@ -201,6 +202,7 @@ def test_a_part_in_flight_is_above_the_surface(tmp_path):
     run = read_run(tmp_path / "flies")
     assert (run.state == 2).sum() > 3
     data = run_data(run)
+    assert numbers(data["part"]["height"]) == pytest.approx(run.position[:, 2] * 1e6, rel=1e-6)
     assert numbers(data["part"]["z"]) == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
     near = np.hypot(*(run.points - run.position[-1, :2]).T).argmin()
     assert numbers(data["part"]["z"])[-1] > run.plate_field("deflection")[-1, near] * 1e6 + 5
@@ -220,8 +222,19 @@ def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
     for kind in ("plate", "part"):
         (tmp_path / f"cut.partial.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())
     said = CliRunner().invoke(main, ["view", str(tmp_path / "cut.partial.part.vtkhdf")])
-    assert said.exit_code == 0
-    assert "not written to their end" in (tmp_path / "cut.html").read_text(encoding="utf-8")
+    assert said.exit_code == 0 and "partial" in said.output
+    text = (tmp_path / "cut.html").read_text(encoding="utf-8")
+    assert "not written to their end" in text and "This run is unfinished" in text
+
+
+def test_a_case_that_is_not_that_of_its_result_is_told_of(folder, result, tmp_path):
+    for kind in ("plate", "part"):
+        (tmp_path / f"one.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())
+    for text, told in ((CASE, False), (CASE.replace("300 Hz", "310 Hz"), True)):
+        (tmp_path / "one.toml").write_text(text)
+        said = CliRunner().invoke(main, ["view", str(tmp_path / "one.toml")])
+        assert said.exit_code == 0
+        assert ("of another case" in said.output) == told
 
 
 def test_open_opens_the_page(folder, result, monkeypatch):

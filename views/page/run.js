@@ -1,7 +1,7 @@
 // The page of a run: a slider over its steps, the surface with the part on it, and curves over time.
 
 const surface = unpackSurface(pageData.surface);
-const part = Object.fromEntries(["x", "y", "z", "state"].map((name) => [name, unpack(pageData.part[name])]));
+const part = Object.fromEntries(["x", "y", "z", "height", "state"].map((name) => [name, unpack(pageData.part[name])]));
 const trail = unpackSpots(pageData.trail);
 trail.step = unpack(pageData.trail.step);
 const below = unpackSpots(pageData.part.below); // the part, at every step
@@ -245,7 +245,7 @@ function readOut(step) {
   describe(element("readout"), [
     ["state", state],
     [`position x, y${pageData.counted}`, `${beside(part.x[step], places)}, ${beside(part.y[step], places)} ${units.length}`],
-    ["height", `${beside(part.z[step], largest(part.z))} ${units.height}`],
+    ["height", `${beside(part.height[step], largest(part.height))} ${units.height}`],
     ["speed", `${beside(Math.hypot(along[step], across[step]), largest(along, across))} ${velocity}`],
     ["normal load", `${beside(load[step], largest(load, friction))} ${force}`],
     ["friction", `${beside(friction[step], largest(load, friction))} ${force}`],
@@ -297,9 +297,9 @@ function play() {
 
 function caption() {
   const [low, high] = surface.range;
-  const factor = high === low ? "The surface stays flat." : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${Number(exaggeration.toPrecision(4))} times larger than lengths.`;
+  const factor = high === low ? (last ? "The surface stays flat." : "The surface is flat at this step.") : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${Number(exaggeration.toPrecision(4))} times larger than lengths.`;
   const lines = [factor];
-  if (!surface.whole && !closeBy) lines.push("Only the surface around the path is shown.");
+  if (!surface.whole && !closeBy) lines.push("Of the surface, only that around the path is shown, with fewer points where that is large.");
   if (surface.unmarked) lines.push(`${surface.unmarked} actuators, too many to be marked.`);
   if (pageData.steps.shown < pageData.steps.stored) lines.push(`${pageData.steps.shown} of ${pageData.steps.stored} steps are shown.`);
   element("surface-caption").textContent = lines.join(" ");
