@@ -54,7 +54,8 @@ def study_data(study: Study, shown: Shown, starts: FloatArray, paths: Paths) -> 
         "scale": [[k / STOPS, to_hex(colormaps["viridis"](k / STOPS))] for k in range(STOPS + 1)],
         "starts": packed(starts.reshape(-1, 2) * along.per_si, "f4"),
         "ends": packed(ends * along.per_si, "f4"),
-        "repeats": ends.shape[-2],
+        "repeats": shown.end.shape[-2],
+        "kept": ends.shape[-2],
         "paths": {
             "cells": packed([cell for cell, _ in lines], "u4"),
             "stops": packed(np.cumsum([len(line) for _, line in lines]), "u4"),

@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,10 +15,14 @@ from coupling.saved import read_run
 from coupling.summary import summary_of
 from studies import read_study, run_study
 from studies.engine import Engine
+from studies.findings import Findings
 from studies.saved import read_sweep
+from studies.shown import Shown
 from views.run_data import MOST_POINTS, run_data
 from views.run_page import write_run_page
+from views.study_data import study_data
 from views.study_page import write_study_page
+from views.sweep_paths import Paths
 
 NAME = "a<script>alert(1)<b>&"
 CASE = """\
@@ -324,6 +329,16 @@ def test_a_page_has_no_more_paths_than_asked(folder, sweep, count, cells):
     found = data_of(write_study_page(read_study(folder / "many.toml"), sweep, folder / "few.html", count))
     kept = numbers(found["paths"]["cells"]).tolist()
     assert len(kept) <= count and set(kept) <= set(cells)
+
+
+def test_of_many_ends_the_first_are_kept_and_the_repeats_stated(folder, sweep, monkeypatch):
+    study = read_study(folder / "many.toml")
+    shown = Shown.of(Findings.of(study.name, sweep, study.threshold))
+    shown = replace(shown, end=np.repeat(shown.end, 3, axis=-2))
+    for most, kept in ((27, 3), (26, 1)):
+        monkeypatch.setattr("views.study_data.MOST_ENDS", most)
+        data = study_data(study, shown, np.zeros((3, 3, 2)), Paths({}, 0))
+        assert (data["repeats"], data["kept"], len(numbers(data["ends"]))) == (3, kept, 18 * kept)
 
 
 def test_paths_that_end_elsewhere_are_told_of(folder, sweep):

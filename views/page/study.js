@@ -3,7 +3,7 @@
 const unpackAxis = (axis) => ({ ...axis, values: unpack(axis.values), edges: unpack(axis.edges) });
 const axes = pageData.axes.map(unpackAxis), others = pageData.others.map(unpackAxis);
 const distance = unpack(pageData.distance), outcome = unpack(pageData.outcome), units = pageData.units;
-const starts = unpack(pageData.starts), ends = unpack(pageData.ends), repeats = pageData.repeats;
+const starts = unpack(pageData.starts), ends = unpack(pageData.ends), repeats = pageData.repeats, kept = pageData.kept; // ends of a cell
 const paths = unpackPaths(pageData.paths);
 const MARK = 1; // the number of the trace that marks the chosen cell
 const AXIS = { gridcolor: "#e6eaee", zeroline: false, showline: true, linecolor: "#8a96a1", automargin: true };
@@ -159,12 +159,12 @@ function pathTraces(cell) {
     traces.push({ x: even(places), y: odd(places), mode: "markers", name: "actuator",
       marker: { symbol: "triangle-up", size: 10, color: "#ffffff", line: { color: INK, width: 1.5 } } });
   }
-  const start = { x: [starts[2 * cell]], y: [starts[2 * cell + 1]] }, of = ends.subarray(2 * repeats * cell, 2 * repeats * (cell + 1));
+  const start = { x: [starts[2 * cell]], y: [starts[2 * cell + 1]] }, of = ends.subarray(2 * kept * cell, 2 * kept * (cell + 1));
   if (!Number.isFinite(of[0])) return traces;
   const path = paths.get(cell), straight = { x: [start.x[0], of[0]], y: [start.y[0], of[1]] };
   traces.push({ ...(path || straight), mode: "lines", name: path ? "path" : "from start to end",
     line: { color: PATH, width: path ? 2.5 : 1.5, dash: path ? "solid" : "dot" } });
-  if (repeats > 1) {
+  if (kept > 1) {
     traces.push({ x: even(of), y: odd(of), mode: "markers", name: `ends of ${repeats} starts`, marker: { size: 5, color: "#1b4f9c", opacity: 0.6 } });
   }
   traces.push({ ...start, mode: "markers", name: "start", marker: { symbol: "circle-open", size: 11, color: "#000000", line: { width: 2 } } });
@@ -198,7 +198,7 @@ function tell(cell) {
   if (Number.isFinite(distance[cell])) terms.push([repeats > 1 ? "mean distance" : "distance", `${said(distance[cell])} ${units.distance}`]);
   describe(element("readout"), terms);
   const which = repeats > 1 ? " The path is that of the first start." : "";
-  const has = paths.has(cell) ? which : Number.isFinite(ends[2 * repeats * cell]) ? " This page has no path of this point: only where it starts and ends." : "";
+  const has = paths.has(cell) ? which : Number.isFinite(ends[2 * kept * cell]) ? " This page has no path of this point: only where it starts and ends." : "";
   element("path-caption").textContent = sentence + has;
 }
 
