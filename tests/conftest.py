@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+
 import numba
 import numpy as np
 import pytest
@@ -10,6 +12,10 @@ from fem_plate import PlateSection
 from fem_plate.analytic import DiscShapes
 
 RADIUS = 300e-6  # m
+
+# A shell starts what runs in the background deaf to Ctrl-C, and so would be the commands that tests interrupt.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -277,7 +277,7 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
         ([folder / "two.nc", "--x", "stroke", "--y", "stroke"], "must be another axis than x; got stroke for both"),
         ([folder / "one.nc", "--y", "frequency"], "must not be given where there is but one axis"),
         ([folder / "case", "--width", "10"], "Input width must be from 50 to 500 mm; got 10"),
-        ([folder / "case", "--format", "gif"], "'gif' is not one of"),
+        ([folder / "case", "--format", "gif"], '--format must be pdf, svg or png; got "gif"'),
     ]
     for arguments, said in others:
         done = CliRunner().invoke(main, ["plot", *map(str, arguments), "-o", str(tmp_path / "new")])
