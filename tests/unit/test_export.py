@@ -1,148 +1,88 @@
-"""Every step and field of a run is read back by VTK from each format that it is exported to."""
+"""Influence functions as arrays: what a file holds, and how much of a stroke the nearest neighbour feels."""
 
-import json
-import shutil
-from dataclasses import replace
-from pathlib import Path
-
-import h5py
 import numpy as np
 import pytest
-import pyvista as pv
-from click.testing import CliRunner
-from vtkmodules.vtkIOHDF import vtkHDFReader
 
-from command_line.main import main
-from coupling import Case, read_run, run_case
-from coupling.case import ConstantCase, PartCase, RunCase
-from coupling.export import OF_PART, export_run
+from fem_plate import Plate, neighbour_coupling, save_influence
+from meshes import annulus, disc, rectangle
 
-PLATE = {"shape": "disc", "radius": 300e-6, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6}
+FOUR = np.array([[90e-6, 40e-6], [-60e-6, 120e-6], [-100e-6, -80e-6], [70e-6, -150e-6]])
+NEAREST = [1, 0, 3, 2]
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    case = Case(
-        plate=PLATE | {"cell_size": 100e-6},
-        actuators=({"position": (0.0, 30e-6), "stroke": 4e-6, "frequency": 300.0},),
-        part=PartCase(mass=2e-9, position=(10e-6, 20e-6)),
-        friction=ConstantCase(limit=1e-12),
-        run=RunCase(duration=4e-4, frames=9, tolerance=1e-5),
-        name="one",
-    )
-    folder = tmp_path_factory.mktemp("ran")
-    run_case(case, folder)
-    return folder
+def plate(section, radius):
+    return Plate(disc(radius, radius / 8), section)
 
 
-def steps(path: Path) -> list[tuple[float, pv.DataSet]]:
-    """What VTK reads at each time."""
-    reader = pv.get_reader(path)
-    if path.suffix == ".vtkhdf":
-        plain = vtkHDFReader()
-        plain.SetFileName(str(path))
-        found = []
-        with h5py.File(path) as file:
-            times = file["VTKHDF/Steps/Values"][()].tolist()
-        for k, time in enumerate(times):
-            reader.reader.SetStep(k)
-            found.append((time, reader.read()))
-        return found
-    found = []
-    for time in reader.time_values:
-        reader.set_active_time_value(time)
-        data = reader.read()
-        found.append((time, data[0] if isinstance(data, pv.MultiBlock) else data))
-    return found
+def saved(path, shapes, **options):
+    save_influence(path, shapes, **options)
+    with np.load(path) as file:
+        return dict(file)
 
 
-def assert_same(saved, folder, form):
-    plate, part = (steps(folder / f"one.{kind}.{form}") for kind in ("plate", "part"))
-    times = [time for time, _ in plate]
-    assert times == [time for time, _ in part] and times == saved.time.tolist()
-    for k, ((_, surface), (_, point)) in enumerate(zip(plate, part, strict=True)):
-        np.testing.assert_array_equal(surface.points, np.pad(saved.points, ((0, 0), (0, 1))))
-        np.testing.assert_array_equal(surface.cells_dict[pv.CellType.TRIANGLE], saved.triangles)
-        assert set(surface.point_data) == set(saved.plate_fields) == {"deflection", "velocity", "curvature", "drive"}
-        for name in saved.plate_fields:
-            np.testing.assert_array_equal(surface[name], saved.plate_field(name, k))
-        np.testing.assert_array_equal(point.points, saved.position[k : k + 1])
-        assert point.n_cells == 1 and set(point.point_data) == set(OF_PART)
-        for name in OF_PART:
-            np.testing.assert_array_equal(point[name], getattr(saved, name)[k : k + 1])
+def test_a_file_holds_every_shape_on_a_grid_and_nan_off_the_plate(tmp_path, section, radius):
+    plate = Plate(annulus(radius / 10, radius, radius / 6), section)
+    shapes = plate.influence(FOUR)
+    arrays = saved(tmp_path / "shapes.npz", shapes, across=21)
+    assert arrays["x"] == pytest.approx(np.linspace(-radius, radius, 21))
+    assert arrays["y"] == pytest.approx(np.linspace(-radius, radius, 21))
+    assert arrays["shapes"].shape == (4, 21, 21)
+    grid = np.stack(np.meshgrid(arrays["x"], arrays["y"], indexing="ij"), axis=-1)
+    on = plate.mesh.outline.gap(grid) >= 0
+    assert 0 < on.sum() < on.size and not on[10, 10]
+    assert (np.isfinite(arrays["shapes"]) == on).all()
+    assert np.abs(arrays["shapes"][:, on] - shapes.evaluate(grid[on])[0].T).max() < 1e-12
+    assert (arrays["points"] == FOUR).all() and (arrays["stiffness"] == shapes.stiffness).all()
+    assert (arrays["coupling"] == neighbour_coupling(shapes)).all()
+    distance = np.linalg.norm(FOUR - FOUR[NEAREST], axis=1)
+    assert arrays["pitch"] == pytest.approx(np.median(distance))
 
 
-@pytest.mark.parametrize("form", ["pvd", "xdmf", "vtkhdf"])
-def test_every_step_and_field_comes_back(folder, tmp_path, form):
-    saved = read_run(folder / "one")
-    assert np.ptp(saved.position[:, 0]) > 0 and len(saved.time) == 9
-    files = export_run(saved, tmp_path, form)
-    assert [file.name for file in files] == [f"one.plate.{form}", f"one.part.{form}"]
-    assert_same(saved, tmp_path, form)
+def test_the_grids_step_is_the_same_along_both_sides(tmp_path, section):
+    shapes = Plate(rectangle(600e-6, 300e-6, 150e-6), section).influence(FOUR / 2)
+    arrays = saved(tmp_path / "shapes.npz", shapes, across=21)
+    assert arrays["shapes"].shape == (4, 21, 11)
+    assert np.diff(arrays["x"]) == pytest.approx(30e-6) and np.diff(arrays["y"]) == pytest.approx(30e-6)
 
 
-@pytest.mark.parametrize("form", ["pvd", "xdmf"])
-def test_an_export_that_fails_leaves_nothing_that_mixes_runs(folder, tmp_path, form):
-    saved = read_run(folder / "one")
-    files = export_run(saved, tmp_path, form)
-    before = {file: file.read_bytes() for file in files}
-    short = replace(saved, time=saved.time[:4])
-    export_run(short, tmp_path, form)
-    assert_same(short, tmp_path, form)
-    if form == "pvd":
-        assert [len(list((tmp_path / f"one.{kind}").iterdir())) for kind in ("plate", "part")] == [4, 4]
-
-    def fails(done, of):
-        if done == 2:
-            raise OSError("full")
-
-    export_run(saved, tmp_path, form)
-    with pytest.raises(OSError, match="full"):
-        export_run(short, tmp_path, form, fails)
-    assert not files[0].exists() if form == "pvd" else files[0].read_bytes() == before[files[0]]
+def test_patched_shapes_are_saved_alike(tmp_path, plate):
+    dense, patched = plate.influence(FOUR), plate.influence(FOUR, truncation=1e-4)
+    one, other = (saved(tmp_path / "shapes.npz", shapes, across=15) for shapes in (dense, patched))
+    assert set(one) == set(other) and other["stiffness"].shape == (4, 4)
+    assert other["stiffness"] == pytest.approx(one["stiffness"], rel=1e-4)
+    on = np.isfinite(one["shapes"])
+    assert np.abs(one["shapes"] - other["shapes"])[on].max() < 1e-4
 
 
-def test_an_interrupted_run_becomes_a_finished_one_with_the_steps_that_it_has(folder, tmp_path):
-    for kind in ("plate", "part"):
-        shutil.copy(folder / f"one.{kind}.vtkhdf", tmp_path / f"one.partial.{kind}.vtkhdf")
-    with h5py.File(tmp_path / "one.partial.plate.vtkhdf", "r+") as file:
-        file["VTKHDF/Steps"].attrs.modify("NSteps", 4)
-        file["VTKHDF/Steps/Values"].resize(4, axis=0)
-    command = ["export", str(tmp_path / "one"), "--format", "vtkhdf", "--output", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, command)
-    assert done.exit_code == 0 and "these are its first 4 steps" in done.output
-    partial, whole = read_run(tmp_path / "one"), read_run(tmp_path / "out" / "one")
-    assert whole.complete and len(whole.time) == 4
-    assert_same(partial, tmp_path / "out", "vtkhdf")
-    assert whole.case == read_run(folder / "one").case and whole.events == partial.events
-    assert (whole.summary, whole.versions, whole.units) == (partial.summary, partial.versions, partial.units)
+def test_one_actuator_has_no_neighbour(tmp_path, plate):
+    shapes = plate.influence(FOUR[:1])
+    arrays = saved(tmp_path / "shapes.npz", shapes, across=5)
+    assert arrays["shapes"].shape == (1, 5, 5) and np.isnan(arrays["pitch"]) and arrays["coupling"] == [0]
+    with pytest.raises(
+        ValueError, match="^Input shapes of neighbour_coupling must have at least two actuators; got one"
+    ):
+        neighbour_coupling(shapes)
 
 
-def test_an_export_is_told_as_json_or_not_at_all(folder, tmp_path):
-    command = ["export", str(folder / "one"), "--format", "xdmf", "--output", str(tmp_path)]
-    told = json.loads(CliRunner().invoke(main, [*command, "--json"]).stdout)
-    files = [str(tmp_path / f"one.{kind}.xdmf") for kind in ("plate", "part")]
-    assert told == {"complete": True, "steps": 9, "files": files}
-    done = CliRunner().invoke(main, [*command, "--quiet"])
-    assert done.exit_code == 0 and not done.output
+def test_a_grid_of_one_point_is_refused(tmp_path, plate):
+    with pytest.raises(ValueError, match="^Input across of save_influence must be at least 2; got 1$"):
+        save_influence(tmp_path / "shapes.npz", plate.influence(FOUR), across=1)
 
 
-def test_a_run_is_not_written_over_itself(folder):
-    before = {file: file.read_bytes() for file in folder.iterdir()}
-    command = ["export", str(folder / "one"), "--format", "vtkhdf", "--output", f"{folder}/../{folder.name}"]
-    done = CliRunner().invoke(main, command)
-    assert done.exit_code == 2 and "must be another than that of the run's own files" in done.output
-    assert {file: file.read_bytes() for file in folder.iterdir()} == before
+def test_rigid_actuators_are_not_coupled(plate):
+    assert np.abs(neighbour_coupling(plate.influence(FOUR))).max() < 1e-7
 
 
-@pytest.mark.parametrize("command", [["export", "--format", "pvd"], ["rerun"]])
-def test_what_is_no_result_is_told(tmp_path, command):
-    (tmp_path / "case.toml").write_text("[plate]\n")
-    output = tmp_path / "out"
-    done = CliRunner().invoke(main, [*command, str(tmp_path / "case.toml"), "--output", str(output)])
-    assert done.exit_code == 2 and not output.exists()
-    title, line = done.output.splitlines()
-    assert title.endswith(f" {command[0]}: 1 mistake")
-    assert line.startswith("  Input path of read_run must be a result of `active-surface run`; got ")
-    with pytest.raises(ValueError, match="must be one of pvd, xdmf, vtkhdf; got 'csv'"):
-        export_run(None, output, "csv")
+def test_yielding_actuators_are_coupled_in_part(plate):
+    soft, stiff = (neighbour_coupling(plate.influence(FOUR, k)) for k in (20.0, 2000.0))
+    assert (soft > 0).all() and (soft < 1).all()
+    assert np.abs(stiff).max() < soft.min()
+    heights = plate.influence(FOUR, 20.0).evaluate(FOUR)[0]
+    assert soft == pytest.approx(heights[NEAREST, range(4)] / np.diagonal(heights), rel=1e-9)
+
+
+def test_floating_actuators_are_coupled_by_the_compliance(plate):
+    shapes = plate.influence(FOUR, 0.0)
+    c = shapes.compliance
+    assert neighbour_coupling(shapes) == pytest.approx(c[NEAREST, range(4)] / np.diagonal(c), rel=1e-6)
