@@ -1,7 +1,7 @@
 """The integrator and its moving surface against other ways to find the same path, at equal error of the end point.
 
     .venv/bin/python benchmarks/paths.py                    writes tables and a picture for docs/benchmarks.md
-    .venv/bin/python benchmarks/paths.py --counts 1 25      other numbers of actuators, up to 1 000; writes nothing
+    .venv/bin/python benchmarks/paths.py --counts 1 25      other numbers of actuators, up to 10 000; writes nothing
     .venv/bin/python benchmarks/paths.py --many             1 000 paths of 20 ms over 25 actuators
 
 All methods must first agree on the path; then they are timed in turns, at errors of 1e-3, 1e-6 and 1e-9 of its length.

@@ -18,7 +18,9 @@ FloatArray = NDArray[np.float64]
 
 RADIUS, MASS, GRAVITY = 300e-6, 2e-9, 9.80665
 OUT_TO = 0.8  # of the radius, the outermost actuator
-COUNTS, MOST = (1, 2, 9, 25, 100), 1000  # actuators by default, and at most
+COUNTS, MOST = (1, 2, 9, 25, 100), 10_000  # actuators by default, and at most
+FEWEST_IN_WAVES = 5000  # actuators: the forces of that many drives, each with its kinks, would not fit in memory
+DELAYS, WAVE = 100, 0.06  # delays that differ in a wave; its stroke, over the radius
 QUINTIC = np.array([0.0, 0.0, 0.0, 10.0, -15.0, 6.0])  # a stroke from 0 to 1
 CONSTANT = ConstantFriction(20.9 * MASS)
 
@@ -86,22 +88,31 @@ STARTS = {
     25: (-7e-6, 94e-6),
     100: (143e-6, -46e-6),
     1000: (90e-6, -47e-6),
+    10_000: (73e-6, 49e-6),
 }
 ROUGH_START = (145e-6, -18e-6)
 CYCLES = 3.0  # of the slowest drive
 
 
 def problem(count: int, start: tuple[float, float], duration: float | None = None, rough: bool = False) -> PathProblem:
-    """`count` actuators. Strokes shrink with the pitch; frequencies grow, so that the part is always about to slip."""
+    """`count` actuators. Strokes shrink with the pitch; frequencies grow, so that the part is always about to slip.
+
+    Very many have one frequency, and delays that grow along x: a wave.
+    """
     rng = np.random.default_rng([5, count])
+    points = sunflower(count)
     stroke = min(0.2, 0.28 / math.sqrt(count)) * RADIUS
     slowest = 400.0 * count**0.25
+    frequencies, delays = rng.uniform(1.0, 1.5, count) * slowest, rng.uniform(0.0, 0.5 / slowest, count)
+    if count >= FEWEST_IN_WAVES:
+        stroke, frequencies = WAVE * RADIUS, np.full(count, slowest)
+        delays = np.floor((points[:, 0] / RADIUS + 1) / 2 * DELAYS) / DELAYS * 2 / slowest
     return PathProblem(
         name=f"{count}, rough" if rough else str(count),
-        points=sunflower(count),
+        points=points,
         stroke=stroke,
-        frequencies=rng.uniform(1.0, 1.5, count) * slowest,
-        delays=rng.uniform(0.0, 0.5 / slowest, count),
+        frequencies=frequencies,
+        delays=delays,
         start=start,
         duration=CYCLES / slowest if duration is None else duration,
         friction=KogutEtsion.paper() if rough else CONSTANT,

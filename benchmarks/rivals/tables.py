@@ -46,7 +46,9 @@ def work_table(rows: Sequence[Row]) -> list[str]:
     for target in TARGETS:
         for method, label in ((OURS, "evaluations, ours"), (SCIPY, "evaluations, scipy"), (COMPILED, "fixed steps")):
             found = {row.problem: row.work for row in rows if (row.target, row.method) == (target, method)}
-            lines.append(f"| {target:.0e} | {label} | " + " | ".join(_count(found[name]) for name in names) + " |")
+            if found:
+                cells = [_count(found[name]) if name in found else "-" for name in names]
+                lines.append(f"| {target:.0e} | {label} | " + " | ".join(cells) + " |")
     return lines
 
 
