@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
 import click
 
+from command_line import options
 from command_line.group import main, refusing
 
 
@@ -28,8 +28,8 @@ from command_line.group import main, refusing
 @click.option("--fps", type=float, help="Frames a second [30, of a GIF 20].")
 @click.option("--size", metavar="WxH", help="Pixels [1280x720, of a GIF 800x450].")
 @click.option("--renderer", type=click.Choice(["auto", "pyvista", "matplotlib"]), default="auto", show_default=True)
-@click.option("--quiet", "-q", is_flag=True, help="Print nothing but warnings, show no progress.")
-@click.option("--json", "as_json", is_flag=True, help="Print what was made as JSON.")
+@options.quiet
+@options.as_json
 def animate(
     result: Path,
     output: Path | None,
@@ -67,14 +67,9 @@ def animate(
                 tell=tell,
             )
         )
-    if as_json:
-        click.echo(json.dumps(made.as_dict(), indent=2))
-        return
-    if not quiet:
-        lasts = f"{made.frames} frames at {made.fps:g} a second, {made.frames / made.fps:.3g} s"
-        click.echo(f"{'film':<12}{lasts}, {made.slow_motion:.6g} s for each second of the run")
-        click.echo(f"{'heights':<12}drawn {made.exaggeration:.6g} times as large as lengths, by {made.renderer}")
-    for warning in made.warnings:
-        click.secho(f"{'warning':<12}{warning}", fg="yellow", err=quiet)
-    if not quiet:
-        click.echo(f"{'wrote':<12}{made.file}")
+    lasts = f"{made.frames} frames at {made.fps:g} a second, {made.frames / made.fps:.3g} s"
+    lines = [
+        ("film", f"{lasts}, {made.slow_motion:.6g} s for each second of the run"),
+        ("heights", f"drawn {made.exaggeration:.6g} times as large as lengths, by {made.renderer}"),
+    ]
+    options.tell(made.as_dict(), lines, quiet, as_json, made.warnings, [made.file])

@@ -22,13 +22,7 @@ OUTPUT = Path("export")
     required=True,
     help="pvd: with a VTU file a step; xdmf: with one HDF5 file; vtkhdf: anew, as of a run that was finished.",
 )
-@click.option(
-    "--output",
-    "-o",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=OUTPUT,
-    help="Folder for the files [export].",
-)
+@options.output_folder("export", "files", OUTPUT)
 @options.quiet
 @options.as_json
 def export(result: Path, form: str, output: Path, quiet: bool, as_json: bool) -> None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import json
+from contextlib import nullcontext
 from pathlib import Path
 
 import click
 
+from command_line import options
 from command_line.group import DEFAULT_OUTPUT, main, read, refusing
 
 STAGES = 3
@@ -17,11 +18,9 @@ STAGES = 3
 @click.option("--lowest", metavar="F", help='Lowest frequency of the fastest drive, such as "100 Hz".')
 @click.option("--highest", metavar="F", help="Highest frequency of the fastest drive.")
 @click.option("--across", default=120, show_default=True, help="Places along the plate's longer side.")
-@click.option(
-    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
-)
-@click.option("--quiet", "-q", is_flag=True, help="Print no summary.")
-@click.option("--json", "as_json", is_flag=True, help="Print the summary as JSON.")
+@options.folder
+@options.quiet
+@options.as_json
 def feasibility(
     case: Path,
     lowest: str | None,
@@ -37,22 +36,21 @@ def feasibility(
     its largest value and its time integral. All drives keep their ratios.
     """
     wanted = read(case)
-    from coupling.progress import StageBar
+    from coupling.progress import StageBar, silent
     from coupling.results import check_folder
     from studies.feasibility import feasibility as find
-    from studies.feasible_report import lines
+    from studies.feasible_report import lines, warnings
 
     ends = [refusing(_frequency, text, name) for text, name in ((lowest, "--lowest"), (highest, "--highest"))]
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with StageBar(STAGES) as bar:
+    with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
         found = refusing(find, wanted, *ends, across, bar)
         files = refusing(found.write, folder)
-    if as_json:
-        click.echo(json.dumps(found.figures() | {"files": [str(file) for file in files]}, indent=2))
-    elif not quiet:
-        for label, text in [*lines(found.figures()), *(("wrote", str(file)) for file in files)]:
-            click.echo(f"{label:<12}{text}")
+    figures = found.figures()
+    warned = warnings(figures)
+    told = figures | {"warnings": warned, "files": list(map(str, files))}
+    options.tell(told, lines(figures), quiet, as_json, warned, files)
 
 
 def _frequency(text: str | None, option: str) -> float | None:

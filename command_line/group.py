@@ -42,6 +42,8 @@ class Command(click.Command):
 
         try:
             return super().make_context(info_name, args, parent, **extra)
+        except click.exceptions.NoArgsIsHelpError:
+            raise  # which shows the help
         except click.UsageError as error:
             command = " ".join([*([parent.command_path] if parent else []), info_name or ""])
             raise refusal(command, mistakes_in(error, again), JSON in given) from None

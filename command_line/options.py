@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 
 WIDTH = 12  # of labels
+Command = TypeVar("Command", bound=Callable[..., Any])
 
-folder = click.option(
-    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
-)
 quiet = click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress.")
 as_json = click.option("--json", "as_json", is_flag=True, help="Print the summary, or what is wrong, as JSON.")
 threads = click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one a processor].")
+
+
+def output_folder(usual: str, what: str = "results", default: Path | None = None) -> Callable[[Command], Command]:
+    """The option of a folder for what a command makes."""
+    kind = click.Path(path_type=Path, file_okay=False)
+    return click.option("--output", "-o", type=kind, default=default, help=f"Folder for the {what} [{usual}].")
+
+
+folder = output_folder("results")
 
 
 def tell(
@@ -33,7 +40,12 @@ def tell(
     elif not quiet:
         for label, text in lines:
             click.echo(f"{label:<{WIDTH}}{text}")
-        for warning in warnings:
-            click.secho(f"{'warning':<{WIDTH}}{warning}", fg="yellow")
+        warn(warnings)
         for file in files:
             click.echo(f"{'wrote':<{WIDTH}}{file}")
+
+
+def warn(warnings: Iterable[str]) -> None:
+    """Prints warnings in yellow."""
+    for warning in warnings:
+        click.secho(f"{'warning':<{WIDTH}}{warning}", fg="yellow")

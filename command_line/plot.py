@@ -14,9 +14,7 @@ PARTIAL = "The files were not written to the end: the surface is drawn from the 
 
 @main.command()
 @click.argument("result", type=click.Path(path_type=Path), metavar="RESULT|SWEEP")
-@click.option(
-    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the pictures [the result's]."
-)
+@options.output_folder("the result's", "pictures")
 @click.option(
     "--format",
     "formats",
@@ -29,8 +27,8 @@ PARTIAL = "The files were not written to the end: the surface is drawn from the 
 @click.option("--x", metavar="AXIS", help="Of a sweep: the axis that is drawn along x [one of the two longest].")
 @click.option("--y", metavar="AXIS", help="Of a sweep: the axis that is drawn along y.")
 @click.option("--value", metavar="COLUMN", help="Of a sweep: the only column that is drawn [distance and outcome].")
-@click.option("--quiet", "-q", is_flag=True, help="Print no captions.")
-@click.option("--json", "as_json", is_flag=True, help="Print files and captions, or what is wrong, as JSON.")
+@options.quiet
+@options.as_json
 def plot(
     result: Path,
     output: Path | None,

@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-import json
+from contextlib import nullcontext
 from pathlib import Path
 
 import click
 
+from command_line import options
 from command_line.group import DEFAULT_OUTPUT, main, refusing
 
 
 @main.command()
 @click.argument("figures", nargs=-1, metavar="[FIGURE]...")
 @click.option("--full", is_flag=True, help="Many more starts, and finer steps: takes long.")
-@click.option(
-    "--output", "-o", type=click.Path(path_type=Path, file_okay=False), help="Folder for the results [results]."
-)
-@click.option("--quiet", "-q", is_flag=True, help="Print no table.")
-@click.option("--json", "as_json", is_flag=True, help="Print the verdicts as JSON.")
+@options.folder
+@options.quiet
+@options.as_json
 def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: bool, as_json: bool) -> None:
     """Reproduce figures of the paper, such as fig17, or all.
 
     Each in three models: the paper's scheme on its closed-form surface, our equations on that surface, and our
     equations on a plate of finite elements. Writes a picture and the data of each; of all a page as well.
     """
-    from coupling.progress import StageBar
+    from coupling.progress import StageBar, silent
     from coupling.results import check_folder
     from paper.catalogue import modules_of
     from paper.parameters import FULL, QUICK
@@ -34,17 +33,13 @@ def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: 
     modules = refusing(modules_of, figures)
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with StageBar(len(modules)) as bar:
+    with nullcontext(silent) if quiet else StageBar(len(modules)) as bar:
         done = refusing(lambda: run(figures, folder, FULL if full else QUICK, progress=bar))
-    if as_json:
-        said = {"verdicts": [verdict.as_dict() for verdict in done.verdicts], "seconds": done.seconds}
-        click.echo(json.dumps(rounded(said | {"files": [str(file) for file in done.files]}), indent=2))
-    elif not quiet:
-        for verdict in done.verdicts:
-            click.echo(f"figure {verdict.figure}: {verdict.verdict}")
-            click.echo(f"  {'the paper':<10}{verdict.statement}")
-            for model, answer in verdict.answers.items():
-                click.echo(f"  {model:<10}{answer.text}")
-        for file in done.files:
-            click.echo(f"{'wrote':<12}{file}")
-        click.echo(f"{'time':<12}{done.seconds:.0f} s")
+    verdicts = [verdict.as_dict() for verdict in done.verdicts]
+    said = {"verdicts": verdicts, "seconds": done.seconds, "files": list(map(str, done.files))}
+    lines: list[tuple[str, str]] = []
+    for verdict in done.verdicts:
+        lines += [(f"figure {verdict.figure}", verdict.verdict), ("  the paper", verdict.statement)]
+        lines += [(f"  {model}", answer.text) for model, answer in verdict.answers.items()]
+    lines.append(("time", f"{done.seconds:.0f} s"))
+    options.tell(rounded(said), lines, quiet, as_json, files=done.files)

@@ -29,6 +29,7 @@ def verify(quiet: bool, file: Path | None) -> None:
     """
     from coupling import verification
     from coupling.results import check_folder
+    from coupling.whole_file import whole_file
 
     if file is not None:
         refusing(check_folder, file.parent)
@@ -38,9 +39,8 @@ def verify(quiet: bool, file: Path | None) -> None:
             _tell(done)
     if file is not None:
         file.parent.mkdir(parents=True, exist_ok=True)
-        partial = file.with_name(file.name + ".partial")
-        partial.write_text(json.dumps([done.as_dict() for done in checks], indent=2) + "\n")
-        partial.replace(file)
+        with whole_file(file) as partial:
+            partial.write_text(json.dumps([done.as_dict() for done in checks], indent=2) + "\n")
     sys.exit(0 if all(done.passed for done in checks) else 1)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from command_line import options
 from command_line.group import DEFAULT_OUTPUT, main, refusing
 
 
@@ -17,8 +18,9 @@ from command_line.group import DEFAULT_OUTPUT, main, refusing
 )
 @click.option("--paths", type=click.IntRange(min=0), help="Paths of a sweep to have in the page [about a minute's].")
 @click.option("--open", "opened", is_flag=True, help="Open the page in the browser.")
-@click.option("--quiet", "-q", is_flag=True, help="Say nothing, show no progress.")
-def view(result: Path, output: Path | None, paths: int | None, opened: bool, quiet: bool) -> None:
+@options.quiet
+@options.as_json
+def view(result: Path, output: Path | None, paths: int | None, opened: bool, quiet: bool, as_json: bool) -> None:
     """Write RESULT as one HTML page that works offline.
 
     RESULT is one of the two files of a run, finished or partial, or the netCDF file of a sweep. A case or study file
@@ -49,17 +51,16 @@ def view(result: Path, output: Path | None, paths: int | None, opened: bool, qui
             raise click.UsageError(f"--paths must not be given for a run; got {result}")
         from coupling.saved import read_run
         from views.found import is_of
-        from views.run_page import write_run_page
+        from views.run_page import PARTIAL, write_run_page
 
         run = refusing(read_run, found.path)
         if result.suffix == ".toml" and not refusing(is_of, run, result):
             warnings.append(f"{found.path} is of another case than {result} is now: `active-surface run {result}`")
         if not run.complete:
-            warnings.append("The run is partial: its results were not written to their end.")
+            warnings.append(PARTIAL)
         refusing(write_run_page, run, page)
-    if not quiet:
-        for warning in warnings:
-            click.secho(f"{'warning':<12}{warning}", fg="yellow")
-        click.echo(f"{'wrote':<12}{page} ({page.stat().st_size / 1e6:.1f} MB)")
+    size = page.stat().st_size
+    figures = {"warnings": warnings, "files": [str(page)], "bytes": size}
+    options.tell(figures, [("page", f"{size / 1e6:.1f} MB, works offline")], quiet, as_json, warnings, [page])
     if opened:
         click.launch(page.absolute().as_uri())

@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 from coupling.annotations import of_kind, quantity_of
 from coupling.case import Case
 from coupling.table import Table
+from coupling.whole_file import whole_file
 
 PREFIXED: Final = {"m": ("um", 6), "s": ("ms", 3)}
 """What is written in place of an SI unit, and how many powers of ten smaller it is."""
@@ -28,13 +29,9 @@ def write_case(case: Case, path: Path, said: str = "") -> Path:
     said: a comment to begin with.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(path.name + ".partial")
     comment = "".join(f"# {line}\n" for line in said.splitlines())
-    try:
+    with whole_file(path) as partial:
         partial.write_text(comment + ("\n" if said else "") + case_text(case, path.parent), encoding="utf-8")
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from coupling.whole_file import whole_file
 from particle import Samples, State, Trajectory
 
 COLUMNS = (
@@ -33,9 +34,8 @@ def write_csv(trajectory: Trajectory, path: str | os.PathLike[str], times: Array
         raise ValueError(f"Input times of write_csv must be finite times in s; got {wanted[~np.isfinite(wanted)][0]}")
     wanted = np.concatenate([wanted, [event.time for event in trajectory.events]])
     samples = trajectory.at(np.unique(np.clip(wanted, trajectory.time[0], trajectory.time[-1])))
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text("\n".join([HEADER, *_rows(samples), ""]), encoding="utf-8")
-    os.replace(partial, path)
+    with whole_file(path) as partial:
+        partial.write_text("\n".join([HEADER, *_rows(samples), ""]), encoding="utf-8")
     return path
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coupling.progress import Tell, untold
 from coupling.saved import SavedRun
 from coupling.vtkhdf import GZIP, part_file, plate_file
+from coupling.whole_file import whole_file
 
 FORMATS = ("pvd", "xdmf", "vtkhdf")
 OF_PART = ("velocity", "state", "normal_force", "friction_force")
@@ -132,9 +133,9 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
 
 def _write_xml(root: ET.Element, path: Path) -> Path:
     ET.indent(root)
-    partial = path.with_name(f"{path.stem}.partial{path.suffix}")
-    ET.ElementTree(root).write(partial, encoding="utf-8", xml_declaration=True)
-    return partial.replace(path)
+    with whole_file(path) as partial:
+        ET.ElementTree(root).write(partial, encoding="utf-8", xml_declaration=True)
+    return path
 
 
 def _plate_anew(saved: SavedRun, folder: Path, frames: Iterator[Frame]) -> Path:

@@ -23,6 +23,7 @@ from coupling.portrait import moment_of_most as moment_of_most
 from coupling.readable import Unit, plain_ticks, readable
 from coupling.scene import Ground, Scene
 from coupling.time_picture import curves_of, draw_over_time
+from coupling.whole_file import whole_file
 from coupling.window import is_visible, path_window
 from particle import Trajectory
 from particle.picture import shade_keys
@@ -37,12 +38,8 @@ def draw_run(case: Case, scene: Scene, trajectory: Trajectory, ground: Ground, m
     figure = Figure()
     FigureCanvasAgg(figure)
     compose(figure, portrait_of(case.name, scene, trajectory, ground, moment))
-    partial = path.with_suffix(".partial.png")
-    try:
+    with whole_file(path) as partial:
         figure.savefig(partial, dpi=110)
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 def plot_run(case: Case, scene: Scene, trajectory: Trajectory, axes: Axes | None = None) -> Figure:

@@ -39,6 +39,7 @@ _IfValid = Annotated[_T | None, WrapValidator(_none_if_wrong)]
 
 class _Plate(BaseModel, from_attributes=True):
     supports: _IfValid[Supports] = "clamped"
+    written_supports: Any = Field(default=None, validation_alias="supports")
     cell_size: _IfValid[Annotated[Length, Field(gt=0)]] = None
     written: Any = Field(default=None, validation_alias="cell_size")
 
@@ -100,7 +101,7 @@ class Places(BaseModel, from_attributes=True):
                 got = shown(given.written) if isinstance(given.written, str) else shown_length(given.written)
                 yield ("plate", "cell_size"), f"must not exceed {limit}; got {got}"
         names = list(mesh.boundaries)
-        supports = given.supports if isinstance(given.supports, dict) else {}
+        supports = given.written_supports if isinstance(given.written_supports, dict) else {}
         for name in (name for name in supports if name not in names):
             meant = near(name, names)
             hint = f"did you mean {meant}? " if meant else ""

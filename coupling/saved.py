@@ -25,8 +25,9 @@ FloatArray = NDArray[np.float64]
 
 KINDS = ("plate", "part")
 SUFFIX, PARTIAL = ".vtkhdf", ".partial"
+ENDINGS = tuple(f"{part}.{kind}{SUFFIX}" for part in ("", PARTIAL) for kind in KINDS)
 EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
-WANTED = "Input path of read_run must be a result of `active-surface run`"
+WANTED = "Input path must be a result of `active-surface run`"
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +151,18 @@ def _told(error: ValueError) -> str:
     if isinstance(error, ValidationError):
         return ", ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
     return str(error)
+
+
+def name_of(path: Path) -> str:
+    """The NAME of a run, from one of its files or from FOLDER/NAME."""
+    return _split(path)[0]
+
+
+def is_run(path: Path) -> bool:
+    """Whether a path is that of a run's file, or FOLDER/NAME of such files, even of one that is damaged."""
+    if _split(path)[1] is not None:
+        return path.is_file()
+    return any(path.with_name(path.name + ending).is_file() for ending in ENDINGS)
 
 
 def _split(path: Path) -> tuple[str, str | None, bool]:

@@ -9,6 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from coupling.whole_file import whole_file
 from particle import SurfaceMotion
 from particle.cells import BuiltCells, Cells
 from particle.drive import DriveTable
@@ -25,8 +26,7 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
     path = Path(path)
     if path.exists() and not _is_ours(path):
         raise ValueError(f"Input path of write_surface must be free or a surface; got {path}, which is neither")
-    partial = path.with_name(path.name + ".partial")
-    with h5py.File(partial, "w") as file:
+    with whole_file(path) as partial, h5py.File(partial, "w") as file:
         file.attrs.update(kind=KIND, version=VERSION, error=surface.error, moving_base=surface.moving_base)
         file.attrs.update(size=surface.size, floor=surface.floor, overhang=surface.overhang)
         for name in ("sources", "conics", "edges"):
@@ -34,7 +34,6 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
         for group, table in (("drives", surface.drives), ("cells", surface.store.cells)):
             for name, value in table._asdict().items():
                 file[f"{group}/{name}"] = value
-    os.replace(partial, path)
     return path
 
 

@@ -20,6 +20,7 @@ from coupling.path_picture import draw_path
 from coupling.plate_case import PlateCase
 from coupling.readable import Unit, plain_ticks, readable
 from coupling.rim import rim_curves
+from coupling.whole_file import whole_file
 from coupling.window import is_visible
 from particle import Trajectory
 from particle.picture import HALO
@@ -80,12 +81,8 @@ def _draw(found: Found, said: str, targets: Sequence[Place], path: Path) -> Path
     keys += _draw_ends(axes[1], trajectory, targets[-1], scatter)
     figure.suptitle(said, parse_math=False)
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
-    partial = path.with_suffix(".partial.png")
-    try:
+    with whole_file(path) as partial:
         figure.savefig(partial, dpi=110)
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 

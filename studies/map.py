@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from coupling.whole_file import whole_file
 from studies.findings import Findings
 from studies.panels import panels
 from studies.shown import Shown
@@ -28,12 +28,8 @@ def draw_sweep(study: Study, dataset: xarray.Dataset, path: Path) -> Path:
     figure = Figure()
     FigureCanvasAgg(figure)
     compose(figure, Findings.of(study.name, dataset, study.threshold))
-    partial = path.with_suffix(f".{os.getpid()}.partial.png")
-    try:
+    with whole_file(path) as partial:
         figure.savefig(partial, dpi=110)
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 

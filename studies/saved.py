@@ -14,7 +14,7 @@ from studies.study import Study
 if TYPE_CHECKING:
     import xarray
 
-WANTED = "Input path of read_sweep must be a result of `active-surface sweep`"
+WANTED = "Input path must be a result of `active-surface sweep`"
 VERSIONS = "versions"  # the trait that may differ
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coupling.near import near
 from coupling.readable import Unit, readable
 from studies.axis import Axis, counted
 from studies.findings import Findings
@@ -104,10 +103,10 @@ class Shown:
     def of(cls, findings: Findings, x: str | None = None, y: str | None = None, column: str | None = None) -> Shown:
         """What is shown over the axes named x and y, by default the longest, of a column of the results.
 
-        Raises ValueError for a name that there is not.
+        Raises ValueError, naming all of them, for names that there are not.
         """
         column = column or DISTANCE
-        _check("value", column, COLUMNS)
+        _check_names(findings, x, y, column)
         axes = _chosen(findings, x, y)
         scattered = findings.scattered
         picked: dict[str, Any] = {"point": slice(0, MOST_POINTS)} if scattered else {}
@@ -190,9 +189,6 @@ def labelled(said: str, unit: Unit) -> str:
 def _chosen(findings: Findings, x: str | None, y: str | None) -> tuple[Axis, ...]:
     """The axes named x and y; of those that are not named the longest."""
     named = {axis.name: axis for axis in findings.axes}
-    for key, name in (("x", x), ("y", y)):
-        if name is not None:
-            _check(key, name, named)
     if x is not None and x == y:
         raise ValueError(f"Input y must be another axis than x; got {y} for both")
     if x is None and y is None:
@@ -204,8 +200,13 @@ def _chosen(findings: Findings, x: str | None, y: str | None) -> tuple[Axis, ...
     return (across,) if up is None else (across, up)
 
 
-def _check(key: str, name: str, known: Iterable[str]) -> None:
-    if name not in known:
-        near = difflib.get_close_matches(name, known, 1)
-        hint = f"; did you mean {near[0]}?" if near else ""
-        raise ValueError(f"Input {key} must be one of {', '.join(known)}; got {name}{hint}")
+def _check_names(findings: Findings, x: str | None, y: str | None, column: str) -> None:
+    axes: list[str] = [axis.name for axis in findings.axes]
+    mistakes = []
+    for key, name, known in (("x", x, axes), ("y", y, axes), ("value", column, list(COLUMNS))):
+        if name is not None and name not in known:
+            meant = near(name, known)
+            hint = f"; did you mean {meant}?" if meant else ""
+            mistakes.append(f"Input {key} must be one of {', '.join(known)}; got {name}{hint}")
+    if mistakes:
+        raise ValueError("\n".join(mistakes))

@@ -48,7 +48,7 @@ class Animation:
 
     file: Path  # of PNG pictures their folder
     frames: int
-    fps: float
+    fps: float  # frames a second
     slow_motion: float  # seconds of film for each second of the run
     exaggeration: float  # of heights
     renderer: str

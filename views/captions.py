@@ -24,8 +24,9 @@ from coupling.time_picture import SHADES, stretches
 from particle import State
 from particle.picture import HALO
 from views.frames import Frame
-from views.layout import BOTTOM, Layout, nice_length
+from views.layout import BOTTOM, Layout
 from views.pace import Pace
+from views.rounding import round_below
 from views.stage import Stage
 
 Image = NDArray[np.uint8]
@@ -102,7 +103,7 @@ class Captions:
         for up, per_metre in ((False, layout.scale / layout.size), (True, layout.scale / layout.size * rise)):
             if per_metre * layout.size < 0.05 * layout.scale or (up and self._stage.flat):
                 continue
-            length = nice_length(whole / per_metre)
+            length = round_below(whole / per_metre)
             pixels = length * per_metre
             unit = readable(np.array([length]), "m")
             ends = ([left, left], [bottom, bottom + pixels]) if up else ([left, left + pixels], [bottom, bottom])

@@ -9,10 +9,8 @@ from typing import NamedTuple
 from coupling.case import read_case
 from coupling.case_lines import load
 from coupling.case_record import record_of
-from coupling.saved import SavedRun
-
-RUN_ENDINGS = (".plate.vtkhdf", ".part.vtkhdf", ".partial.plate.vtkhdf", ".partial.part.vtkhdf")
-SWEEP_ENDING = ".nc"
+from coupling.saved import ENDINGS, SavedRun, is_run, name_of
+from studies.run import ENDING
 
 
 class Found(NamedTuple):
@@ -31,12 +29,12 @@ def result_of(path: Path, folder: Path) -> Found:
     """
     if path.suffix == ".toml":
         return _of_file(path, folder)
-    if path.suffix == SWEEP_ENDING:
+    if path.suffix == ENDING:
         return Found(path, path.with_suffix(".sweep.html"), True)
-    sweep = path.with_name(path.name + SWEEP_ENDING)
-    if sweep.is_file() and not any(path.with_name(path.name + end).is_file() for end in ("", *RUN_ENDINGS)):
+    sweep = path.with_name(path.name + ENDING)
+    if sweep.is_file() and not (path.is_file() or is_run(path)):
         return Found(sweep, sweep.with_suffix(".sweep.html"), True)
-    return Found(path, path.with_name(f"{_name(path)}.html"), False)
+    return Found(path, path.with_name(f"{name_of(path)}.html"), False)
 
 
 def is_of(run: SavedRun, path: Path) -> bool:
@@ -48,7 +46,7 @@ def is_of(run: SavedRun, path: Path) -> bool:
 def _of_file(path: Path, folder: Path) -> Found:
     _, tables = load(path)
     is_sweep = "study" in tables
-    endings = (SWEEP_ENDING,) if is_sweep else RUN_ENDINGS
+    endings = (ENDING,) if is_sweep else ENDINGS
     for place in (folder, path.parent):
         for ending in endings:
             file = place / f"{path.stem}{ending}"
@@ -61,11 +59,3 @@ def _of_file(path: Path, folder: Path) -> Found:
         f"Input RESULT must be {wanted}; got {path}, and no {path.stem}{endings[0]} is there: "
         f"`active-surface {command} {path}` makes it"
     )
-
-
-def _name(path: Path) -> str:
-    """The name of a run, from one of its files or from FOLDER/NAME."""
-    for ending in sorted(RUN_ENDINGS, key=len, reverse=True):
-        if path.name.endswith(ending):
-            return path.name.removesuffix(ending)
-    return path.name

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import dataclass
 
@@ -76,9 +75,3 @@ def size_of(wanted: str | tuple[int, int]) -> tuple[int, int]:
             f"Input size must be from {LEAST[0]}x{LEAST[1]} to {MOST}x{MOST} pixels; got {wanted[0]}x{wanted[1]}"
         )
     return wanted
-
-
-def nice_length(most: float) -> float:
-    """The largest 1, 2 or 5 with a power of ten that is not above a positive number."""
-    power = 10.0 ** math.floor(math.log10(most))
-    return max(digits * power for digits in (1, 2, 5) if digits * power <= most * (1 + 1e-9))

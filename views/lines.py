@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.window import extent
-from meshes.refine import edge_numbers
+from views.rounding import round_above
 from views.smooth import Smooth
 
 FloatArray = NDArray[np.float64]
@@ -24,13 +24,6 @@ class Lines:
 
     xy: FloatArray
     pieces: IntArray
-
-
-def outer_edges(points: FloatArray, triangles: IntArray) -> IntArray:
-    """The edges (s, 2) that only one triangle has."""
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    _, first, counts = np.unique(edge_numbers(edges, len(points)), return_index=True, return_counts=True)
-    return edges[first[counts == 1]]
 
 
 def divided(lines: Lines, longest: float) -> Lines:
@@ -54,10 +47,8 @@ def clipped(lines: Lines, frame: FloatArray) -> Lines:
 
 
 def net_width(size: float) -> float:
-    """The distance of the net's lines on a surface of a size [m]: 1, 2 or 5 with a power of ten."""
-    wanted = size / SQUARES
-    power = 10.0 ** math.floor(math.log10(wanted))
-    return next(digits * power for digits in (1, 2, 5, 10) if digits * power >= wanted * (1 - 1e-9))
+    """The distance of the net's lines on a surface of a size [m]."""
+    return round_above(size / SQUARES)
 
 
 def net(smooth: Smooth, frame: FloatArray, width: float, longest: float) -> Lines:
@@ -79,6 +70,12 @@ def net(smooth: Smooth, frame: FloatArray, width: float, longest: float) -> Line
     return Lines(xy, pieces[inside[pieces].all(axis=1)])
 
 
+def cut_in(parts: IntArray) -> tuple[IntArray, FloatArray]:
+    """Pieces of a line that are cut in so many parts each: of every part's beginning its piece, and how far along."""
+    piece = np.repeat(np.arange(len(parts)), parts)
+    return piece, (np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[piece]
+
+
 def path_points(path: FloatArray, time: FloatArray, longest: float) -> tuple[FloatArray, FloatArray]:
     """Points (r, 2) along a path (k, 2) [m], about so near to each other [m], and when the part was there.
 
@@ -86,8 +83,7 @@ def path_points(path: FloatArray, time: FloatArray, longest: float) -> tuple[Flo
     """
     length = np.hypot(*np.diff(path, axis=0).T)
     parts = np.ceil(length / longest).astype(int)
-    moved = np.repeat(np.arange(len(length)), parts)
-    share = (np.arange(len(moved)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[moved]
+    moved, share = cut_in(parts)
     xy = np.concatenate([path[moved] + share[:, None] * (path[moved + 1] - path[moved]), path[-1:]])
     then = np.concatenate([time[moved] + share * (time[moved + 1] - time[moved]), time[-1:]])
     kept = [0]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from string import Template
 from typing import Any
+
+from coupling.whole_file import whole_file
 
 PARTS = Path(__file__).parent / "page"
 
@@ -29,12 +30,8 @@ def write_page(path: Path, title: str, body: str, texts: Mapping[str, str], data
         library=get_plotlyjs(),
         programs="\n".join(_part(name) for name in ("common.js", *programs)),
     )
-    partial = path.with_name(f"{path.stem}.{os.getpid()}.partial{path.suffix}")
-    try:
+    with whole_file(path) as partial:
         partial.write_text(text, encoding="utf-8")
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from coupling.saved import KINDS, PARTIAL, SUFFIX, read_run
+from coupling.saved import is_run, read_run
 from studies.dataset import key_of
 from studies.findings import read_findings
 from studies.run import ENDING
@@ -55,7 +55,7 @@ def plot(
 
 def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tuple[str, list[Picture], bool]:
     """The name of a result, its pictures, and whether it was written to the end."""
-    if _is_run(path):
+    if is_run(path):
         given = [key for key, name in (("x", x), ("y", y), ("value", value)) if name is not None]
         if given:
             raise ValueError(f"Input {' and '.join(given)} of plot must be given for a sweep only; {path} is of a run")
@@ -67,14 +67,6 @@ def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tu
         raise ValueError(f"Input result of plot {wanted}; got {path}, {_instead(path)}")
     with read_findings(file) as findings:
         return findings.name, sweep_pictures(findings, x, y, value), True
-
-
-def _is_run(path: Path) -> bool:
-    """Whether a path is of a run's two files, or of FOLDER/NAME that has them."""
-    ends = [f"{partial}.{KINDS[0]}{SUFFIX}" for partial in ("", PARTIAL)]
-    if any(path.with_name(path.name + end).is_file() for end in ends):
-        return True
-    return path.name.endswith(tuple(f".{kind}{SUFFIX}" for kind in KINDS)) and path.is_file()
 
 
 def _instead(path: Path) -> str:

@@ -14,9 +14,10 @@ from coupling.saved import SavedRun
 from coupling.time_picture import stretches
 from coupling.window import extent, path_window
 from particle import State
-from views.exaggeration import exaggeration
+from views.lines import cut_in
 from views.modes import modes_of
 from views.packed import packed, packed_rows
+from views.rounding import exaggeration
 from views.triangles import Spots, coarse, inside, outer_edges, spots_of
 
 FloatArray = NDArray[np.float64]
@@ -34,7 +35,7 @@ COLOURS: Final = 11  # stops of the colour scale
 
 
 def run_data(run: SavedRun) -> dict[str, Any]:
-    """What the program of the page, `page/run.js`, reads."""
+    """What the programs of the page read."""
     steps = np.unique(np.linspace(0, len(run.time) - 1, min(len(run.time), MOST_STEPS)).astype(np.int64))
     points, triangles = _around(run.points, run.triangles, run.position[:, :2])
     heights = _heights(run, steps, points)
@@ -163,8 +164,7 @@ def _trail(points: FloatArray, triangles: IntArray, path: FloatArray, length: fl
     cell = length / np.sqrt(len(triangles)) if len(triangles) > 2 else length
     steps = np.hypot(*np.diff(path, axis=0).T)
     counts = np.where(steps > 0, np.ceil(2 * steps / cell), 0).astype(np.int64)
-    number = np.repeat(np.arange(len(counts)), counts)
-    share = (np.arange(len(number)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[number]
+    number, share = cut_in(counts)
     places = path[number] * (1 - share)[:, None] + path[number + 1] * share[:, None]
     spots = spots_of(points, triangles, places.reshape(-1, 2))
     return _spots(spots) | {"step": packed(number, "u2")}

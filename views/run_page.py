@@ -11,8 +11,8 @@ from coupling.summary import summary_of
 from views.page_file import notes_of, rows_of, write_page
 from views.run_data import run_data
 
-PARTIAL = "The results were not written to their end: this page shows the steps that were."
-
+PROGRAMS = "surface.js", "curves.js", "run.js"
+PARTIAL = "The results are partial, as they were not written to their end: this page shows the steps that were."
 UNFINISHED = "This run is unfinished: where the part ends is not known."
 
 
@@ -28,4 +28,4 @@ def write_run_page(run: SavedRun, path: Path) -> Path:
         "rows": rows_of([*report.lines(summary), ("versions", versions)]),
         "case": escape(run.case.source or run.case.model_dump_json(indent=2)),
     }
-    return write_page(path, run.name, "run.html", texts, run_data(run), ["run.js"])
+    return write_page(path, run.name, "run.html", texts, run_data(run), PROGRAMS)

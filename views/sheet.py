@@ -15,6 +15,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from coupling.whole_file import whole_file
+
 FORMATS: Final = ("pdf", "svg", "png")
 WIDTH: Final = 85.0  # mm, of a column of many journals
 NARROWEST, WIDEST = 50.0, 500.0  # mm
@@ -94,13 +96,8 @@ def save(figure: Figure, stem: Path, formats: Sequence[str] = FORMATS[:1]) -> li
     files = []
     for kind in formats:
         path = stem.with_name(f"{stem.name}.{kind}")
-        partial = stem.with_name(f"{stem.name}.partial.{kind}")
-        try:
-            with _styled():
-                figure.savefig(partial, format=kind, dpi=DOTS, metadata=UNDATED[kind])
-            partial.replace(path)
-        finally:
-            partial.unlink(missing_ok=True)
+        with _styled(), whole_file(path) as partial:
+            figure.savefig(partial, format=kind, dpi=DOTS, metadata=UNDATED[kind])
         files.append(path)
     return files
 

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 from scipy.spatial import cKDTree
 
+from views.triangles import barycentric
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
@@ -42,13 +44,7 @@ class Smooth:
         """The same for so few points that memory does not matter."""
         near = self._tree.query(xy, k=min(NEAREST, len(self.triangles)))[1].reshape(len(xy), -1)
         corners = self.points[self.triangles[near]]  # (k, NEAREST, 3, 2)
-        a, b, c = np.moveaxis(corners, 2, 0)
-        p = xy[:, None, :] - a
-        u, v = b - a, c - a
-        area = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
-        second = (p[..., 0] * v[..., 1] - p[..., 1] * v[..., 0]) / area
-        third = (u[..., 0] * p[..., 1] - u[..., 1] * p[..., 0]) / area
-        shares = np.stack([1 - second - third, second, third], axis=-1)
+        shares = barycentric(corners, xy[:, None, :])
         kept = np.clip(shares, 0, None)
         kept /= kept.sum(axis=-1, keepdims=True)
         away = np.square((corners * kept[..., None]).sum(axis=2) - xy[:, None]).sum(axis=-1)

@@ -16,9 +16,10 @@ from coupling.plate_picture import Scale
 from coupling.saved import SavedRun
 from coupling.window import PITCHES, extent, is_visible, path_window, pitch
 from particle import State
-from views.lines import Lines, clipped, divided, net, net_width, outer_edges, path_points
-from views.pace import nearest_round
+from views.lines import Lines, clipped, divided, net, net_width, path_points
+from views.rounding import exaggeration
 from views.smooth import Smooth
+from views.triangles import outer_edges
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -28,8 +29,6 @@ ACROSS = 120  # cells along a window
 WIDER = 3.0  # times what the part goes up and down is the least width of a window
 MOST_OF_PLATE = 0.6  # of the plate's longer side: a wider window shows all of it
 FINE = 1 / 200  # of the longer side: the length of a piece of a line
-RISE = 0.2  # of the longer side: about so high are heights drawn without a wish
-ALMOST_TRUE = 1.5  # a smaller exaggeration is none
 FLAT, ROUNDING = 1e-11, 1e-5  # m, and of the largest height: a smaller range of heights is none
 AROUND = 0.5  # of the longer side: points further from the frame do not shape what is in it
 AT_ONCE = 16  # steps that are read together
@@ -63,7 +62,7 @@ class Stage:
     @property
     def outer(self) -> FloatArray:
         """The pieces (s, 2, 2) [m] of the plate's whole rim."""
-        return self.run.points[outer_edges(self.run.points, self.run.triangles)]
+        return self.run.points[outer_edges(self.run.triangles)]
 
     @cached_property
     def path(self) -> tuple[FloatArray, FloatArray]:
@@ -117,9 +116,7 @@ class Stage:
     def exaggeration(self) -> float:
         """By how much heights are drawn larger without a wish."""
         low, high = self.reach
-        rise = float(high.max() - low.min())
-        wanted = 1.0 if self.flat else RISE * self.size / rise
-        return nearest_round(wanted) if wanted >= ALMOST_TRUE else 1.0
+        return 1.0 if self.flat else exaggeration(float(high.max() - low.min()), self.size)
 
 
 def stage_of(run: SavedRun) -> Stage:
@@ -130,9 +127,9 @@ def stage_of(run: SavedRun) -> Stage:
     smooth = Smooth(run.points[used], kept)
     surface, triangles = _grid(smooth, frame) if window else _finer(run)
     size = extent(frame)
-    outer = outer_edges(run.points, run.triangles)
+    outer = outer_edges(run.triangles)
     rim = clipped(divided(clipped(Lines(run.points, outer), frame), FINE * size), frame)
-    cut = Lines(surface, outer_edges(surface, triangles)) if window else Lines(surface[:0], outer[:0])
+    cut = Lines(surface, outer_edges(triangles)) if window else Lines(surface[:0], outer[:0])
     width = net_width(size)
     trail, trail_time = path_points(path, then, FINE * size) if is_visible(path, frame) else (path[:0], then[:0])
     return Stage(

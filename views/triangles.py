@@ -32,13 +32,20 @@ def spots_of(points: FloatArray, triangles: IntArray, places: FloatArray) -> Spo
     found = mesh.get_trifinder()(*places.T)
     nearest = cKDTree(points[triangles].mean(axis=1)).query(places)[1]
     corners = triangles[np.where(found >= 0, found, nearest)]
-    a, b, c = np.moveaxis(points[corners], 1, 0)
+    return Spots(corners, barycentric(points[corners], places))
+
+
+def barycentric(corners: FloatArray, places: FloatArray) -> FloatArray:
+    """The coordinates (..., 3) of places (..., 2) in triangles with corners (..., 3, 2); of slivers those of the first.
+
+    They add up to 1, and none is negative inside.
+    """
+    a, b, c = np.moveaxis(corners, -2, 0)
     u, v, w = b - a, c - a, places - a
-    area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    area = _cross(u, v)
     area = np.where(area == 0, 1.0, area)
-    second = (w[:, 0] * v[:, 1] - w[:, 1] * v[:, 0]) / area
-    third = (u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]) / area
-    return Spots(corners, np.stack([1 - second - third, second, third], axis=1))
+    second, third = _cross(w, v) / area, _cross(u, w) / area
+    return np.stack([1 - second - third, second, third], axis=-1)
 
 
 def inside(points: FloatArray, triangles: IntArray, places: FloatArray) -> NDArray[np.bool_]:
@@ -61,7 +68,7 @@ def coarse(points: FloatArray, triangles: IntArray, most: int) -> IntArray:
         side *= 1.05
     found = chosen[Delaunay(points[chosen]).simplices]
     u, v = points[found[:, 1]] - points[found[:, 0]], points[found[:, 2]] - points[found[:, 0]]
-    wide = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) > SLIVER * side**2
+    wide = np.abs(_cross(u, v)) > SLIVER * side**2
     return np.asarray(found[wide & inside(points, triangles, points[found].mean(axis=1))])
 
 
@@ -70,3 +77,7 @@ def outer_edges(triangles: IntArray) -> IntArray:
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     unique, count = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     return np.asarray(unique[count == 1])
+
+
+def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
+    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])

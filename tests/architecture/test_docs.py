@@ -72,7 +72,10 @@ def fields(monkeypatch):
     return importlib.import_module("fields")
 
 
-@pytest.mark.parametrize("package", ["meshes", "fem_plate", "particle", "coupling", "studies", "steering"])
+PACKAGES = ["meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "paper"]
+
+
+@pytest.mark.parametrize("package", PACKAGES)
 def test_public_fields_with_numbers_state_units_or_meaning(package, fields):
     """What the reference says of a field is the comment behind it, or the docstring of its class."""
     module = importlib.import_module(package)

@@ -147,6 +147,10 @@ WRONG = [
         {"shape": SHAPES["rectangle"], "plate": 'supports = { lft = "clamped" }'},
         "plate.supports.lft is no boundary of the plate; did you mean left? It has ",
     ),
+    (
+        {"shape": SHAPES["rectangle"], "plate": 'supports = { left = "clampd", lft = "free" }'},
+        "plate.supports.lft is no boundary of the plate; did you mean left? It has ",
+    ),
     ({"shape": SHAPES["rectangle"], "plate": "supports = 3"}, 'plate.supports must be "clamped", "simply-supported"'),
     (
         {"shape": SHAPES["disc"], "plate": 'supports = "free"'},
@@ -242,6 +246,7 @@ def test_mistakes_in_the_outline_and_elsewhere_come_together(tmp_path):
     )
     assert [line.split()[0] for line in problems(tmp_path, content)] == [
         "plate.supports.outer",
+        "plate.supports.iner",
         "plate.density",
         "plate.cell_size",
         "actuators[1].position",

@@ -10,7 +10,7 @@ from made_runs import SIDE, grid, hill, made_run
 from particle import State
 from views.camera import CAMERAS, Camera, camera_of
 from views.frames import frames_of
-from views.layout import BOTTOM, LEFT, RIGHT, TOP, layout_of, nice_length, size_of
+from views.layout import BOTTOM, LEFT, RIGHT, TOP, layout_of, size_of
 from views.lines import path_points
 from views.pace import FEWEST, MOST_FRAMES, pace_of, warnings_of
 from views.smooth import Smooth
@@ -225,11 +225,6 @@ def test_a_size_is_two_numbers_of_pixels():
             size_of(text)
     with pytest.raises(ValueError, match="got 10x20"):
         size_of((10, 20))
-
-
-@pytest.mark.parametrize(("most", "found"), [(1.0, 1.0), (1.9, 1.0), (4.99, 2.0), (5.0, 5.0), (0.073, 0.05)])
-def test_lengths_are_round(most, found):
-    assert nice_length(most) == pytest.approx(found)
 
 
 def test_heights_are_drawn_larger_by_a_round_number_only_where_they_are_small():

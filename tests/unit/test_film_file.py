@@ -248,7 +248,7 @@ def test_all_bad_options_are_said_at_once(ran):
 
 def test_a_result_that_is_none_is_refused(tmp_path):
     answer = called(tmp_path / "none")
-    assert answer.exit_code == 2 and "Input path of read_run must be" in answer.output
+    assert answer.exit_code == 2 and "Input path must be" in answer.output
 
 
 @pytest.mark.parametrize(("name", "said"), [("x.toml", "name the result, such as results/x"), ("x.nc", "of a sweep")])

@@ -8,11 +8,11 @@ from click.testing import CliRunner
 from scipy.spatial import Delaunay
 
 from command_line.main import main
-from views.exaggeration import exaggeration
 from views.found import result_of
 from views.modes import SEEN, modes_of
 from views.packed import packed, packed_rows
 from views.page_file import notes_of, rows_of, write_page
+from views.rounding import exaggeration, round_above, round_below
 from views.run_data import _around
 from views.sweep_paths import spread
 from views.thinned import thinned
@@ -132,7 +132,25 @@ def test_packed_numbers_are_unpacked_the_same():
 
 
 @pytest.mark.parametrize(
-    ("height", "length", "factor"), [(0.0, 1.0, 1), (0.5, 1.0, 1), (0.1, 1.0, 1), (0.05, 1.0, 2), (1e-4, 1.0, 2000)]
+    ("value", "below", "above"),
+    [
+        (1.0, 1, 1),
+        (1.9, 1, 2),
+        (4.99, 2, 5),
+        (5.0, 5, 5),
+        (0.073, 0.05, 0.1),
+        (3 * 0.1 / 0.6, 0.5, 0.5),
+        (7e3, 5e3, 1e4),
+    ],
+)
+def test_numbers_are_made_round(value, below, above):
+    assert round_below(value) == pytest.approx(below)
+    assert round_above(value) == pytest.approx(above)
+
+
+@pytest.mark.parametrize(
+    ("height", "length", "factor"),
+    [(0.0, 1.0, 1), (0.5, 1.0, 1), (0.14, 1.0, 1), (0.1, 1.0, 2), (0.05, 1.0, 5), (1.01e-4, 1.0, 2000)],
 )
 def test_low_heights_are_drawn_larger_by_a_round_factor(height, length, factor):
     assert exaggeration(height, length) == factor

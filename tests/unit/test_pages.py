@@ -256,7 +256,10 @@ def test_view_writes_beside_the_result_or_where_it_is_told(folder, result, endin
     assert (folder / f"{NAME}.html").is_file()
     said = CliRunner().invoke(main, ["view", str(folder / NAME), "-q", "-o", str(tmp_path / "new" / "x.html")])
     assert (said.exit_code, said.output) == (0, "")
-    assert [file.name for file in (tmp_path / "new").iterdir()] == ["x.html"]
+    page = tmp_path / "new" / "x.html"
+    assert list(page.parent.iterdir()) == [page]
+    said = CliRunner().invoke(main, ["view", str(folder / NAME), "--json", "-o", str(page)])
+    assert json.loads(said.output) == {"warnings": [], "files": [str(page)], "bytes": page.stat().st_size}
 
 
 @pytest.mark.parametrize(

@@ -274,6 +274,7 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
         ([folder / "case", "--value", "distance"], "value of plot must be given for a sweep only"),
         ([folder / "two.nc", "--x", "strok"], "must be one of frequency, stroke; got strok; did you mean stroke?"),
         ([folder / "two.nc", "--value", "distanc"], "did you mean distance?"),
+        ([folder / "two.nc", "--x", "strok", "--value", "distanc"], "plot: 2 mistakes"),
         ([folder / "two.nc", "--x", "stroke", "--y", "stroke"], "must be another axis than x; got stroke for both"),
         ([folder / "one.nc", "--y", "frequency"], "must not be given where there is but one axis"),
         ([folder / "case", "--width", "10"], "Input width must be from 50 to 500 mm; got 10"),

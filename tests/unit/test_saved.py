@@ -142,7 +142,7 @@ def refused(path):
     with pytest.raises(ValueError) as error:
         read_run(path)
     said = str(error.value)
-    assert said.startswith("Input path of read_run must be a result of `active-surface run`; got ")
+    assert said.startswith("Input path must be a result of `active-surface run`; got ")
     assert "\n" not in said
     return said
 

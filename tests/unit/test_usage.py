@@ -71,6 +71,12 @@ def test_refusals_are_json_where_that_is_waited_for(words):
     assert mistakes and all(set(mistake) == {"file", "line", "field", "message"} for mistake in mistakes)
 
 
+def test_the_bare_command_shows_its_help():
+    done = CliRunner().invoke(main, [])
+    assert done.exit_code == 2
+    assert done.output.startswith("Usage: ") and "1 mistake" not in done.output and "animate" in done.output
+
+
 def test_quiet_says_nothing_of_what_is_fine():
     done = CliRunner().invoke(main, ["check", str(ROOT / "examples/one_actuator.toml"), "--quiet"])
     assert (done.exit_code, done.output) == (0, "")

@@ -45,6 +45,10 @@ function beside(number, largest) {
   return Number(text) === 0 ? (0).toFixed(decimals) : text.replace("-", "−");
 }
 
+function largest(...arrays) {
+  return Math.max(...arrays.map((array) => array.reduce((size, value) => Math.max(size, Math.abs(value)), 0)));
+}
+
 // Plotly reads markup in labels; a text of the user's has none.
 function plain(text) {
   return String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
