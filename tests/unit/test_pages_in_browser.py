@@ -225,6 +225,16 @@ def test_it_plays_to_the_end_and_pauses(open_page):
     wait(lambda: slider.get_attribute("value") == "40" and "Play" in button.text)
 
 
+def test_it_plays_where_the_clock_of_frames_lies_before_the_click(open_page):
+    browser = open_page("run")
+    browser.execute_script(
+        "const next = requestAnimationFrame; window.requestAnimationFrame = (f) => next((now) => f(now - 500))"
+    )
+    browser.find_element(By.ID, "play").click()
+    slider = browser.find_element(By.ID, "step")
+    wait(lambda: int(slider.get_attribute("value")) >= 2)
+
+
 def test_a_click_on_the_curves_puts_the_clock_there(open_page):
     browser = open_page("run")
     x, y = browser.execute_script(

@@ -1,240 +1,8 @@
-// The page of a run: a slider over its steps, the surface with the part on it, and curves over time.
+// The page of a run: a slider over its steps, with the surface and the curves of surface.js and curves.js.
 
-const surface = unpackSurface(pageData.surface);
-const part = Object.fromEntries(["x", "y", "z", "height", "state"].map((name) => [name, unpack(pageData.part[name])]));
-const trail = unpackSpots(pageData.trail);
-trail.step = unpack(pageData.trail.step);
-const below = unpackSpots(pageData.part.below); // the part, at every step
-const time = unpack(pageData.time), last = time.length - 1, units = pageData.units;
-const STATES = ["stuck", "slipping", "in flight"], FLYING = 2;
-// Of the surface's length, by which what lies on it is lifted so that it is seen: the part is a ball that big.
-const LIFTS = { lines: 0.002, rim: 0.002, actuators: 0.012, trail: 0.006, part: 0.035 };
-const SPACE = 1.55; // the longest diagonal that the cameras take in
-const EYES = {
-  slanted: { eye: { x: 0.75, y: -1.15, z: 0.72 }, up: { x: 0, y: 0, z: 1 } },
-  above: { eye: { x: 0, y: 0, z: 1.5 }, up: { x: 0, y: 1, z: 0 } },
-  side: { eye: { x: 0, y: -1.5, z: 0.1 }, up: { x: 0, y: 0, z: 1 } },
-};
-const MESH = 0, LINES = 1, RIM = 2, ACTUATORS = 3, AHEAD = 4, TRAIL = 5, PART = 6;
-const curves = pageData.curves.map((panel) => panel.lines.map((line) => unpack(line.values)));
+const STATES = ["stuck", "slipping", "in flight"];
 const slider = element("step");
-let closeBy = false, exaggeration = pageData.exaggeration[0], shown = 0, playing = false, turn = 0, looking = false, drawing = null, wanted = null;
-
-function unpackSpots(spots) {
-  return { corners: unpack(spots.corners), weights: unpack(spots.weights) };
-}
-
-function unpackSurface(packed) {
-  const lines = packed.lines.map((some) => ({ ...unpackSpots(some), ends: unpack(some.ends) }));
-  return {
-    ...packed, lines, x: unpack(packed.x), y: unpack(packed.y), triangles: unpack(packed.triangles), rim: unpack(packed.rim),
-    actuators: unpack(packed.actuators), shapes: unpackRows(packed.shapes), amplitudes: unpack(packed.amplitudes),
-  };
-}
-
-// The heights of the surface's points at a step.
-function heightsAt(step) {
-  const z = new Float32Array(surface.x.length), rank = surface.shapes.length;
-  for (let mode = 0; mode < rank; mode++) {
-    const amplitude = surface.amplitudes[step * rank + mode], shape = surface.shapes[mode];
-    for (let n = 0; n < z.length; n++) z[n] += amplitude * shape[n];
-  }
-  return z;
-}
-
-// Values at a spot, from those at the points of the surface.
-function valueAt(spots, k, values) {
-  const { corners, weights } = spots, second = weights[2 * k], third = weights[2 * k + 1];
-  return (1 - second - third) * values[corners[3 * k]] + second * values[corners[3 * k + 1]] + third * values[corners[3 * k + 2]];
-}
-
-// Points of lines on the surface, one after the other with gaps between.
-function alongLines(values) {
-  const found = [], lines = surface.lines[closeBy ? 1 : 0];
-  let next = 0;
-  for (const end of lines.ends) {
-    for (; next < end; next++) found.push(valueAt(lines, next, values));
-    found.push(null);
-  }
-  return found;
-}
-
-function alongRim(values) {
-  const found = [];
-  for (let k = 0; k < surface.rim.length; k += 2) found.push(values[surface.rim[k]], values[surface.rim[k + 1]], null);
-  return found;
-}
-
-function atActuators(values) { return Array.from(surface.actuators, (n) => values[n]); }
-
-// By how much something is lifted, in the unit of heights.
-function lift(what) {
-  return LIFTS[what] * lengthOf() * pageData.perLength / exaggeration;
-}
-
-// The corners of what is shown of the surface, and the longer side of that.
-function frame() {
-  if (closeBy) return pageData.window;
-  return [[...bounds(surface.x)], [...bounds(surface.y)]].reduce(([lows, highs], [low, high]) => [[...lows, low], [...highs, high]], [[], []]);
-}
-
-function sidesOf([low, high]) { return high.map((value, k) => value - low[k]); }
-
-function lengthOf() { return Math.max(...sidesOf(frame())); }
-
-function largest(...arrays) {
-  return Math.max(...arrays.map((array) => array.reduce((size, value) => Math.max(size, Math.abs(value)), 0)));
-}
-
-function bounds(values) {
-  let low = Infinity, high = -Infinity;
-  for (const value of values) { low = Math.min(low, value); high = Math.max(high, value); }
-  return [low, high];
-}
-
-// The trail up to a step and the way from there on, on the surface as it is now.
-function trailAt(step, z) {
-  const passed = { x: [], y: [], z: [] }, ahead = { x: [], y: [], z: [] }, over = lift("trail");
-  const here = { x: part.x[step], y: part.y[step], z: valueAt(below, step, z) + over };
-  const put = (line, point) => { for (const axis of "xyz") line[axis].push(point[axis]); };
-  for (let k = 0; k < trail.step.length; k++) {
-    const point = { x: valueAt(trail, k, surface.x), y: valueAt(trail, k, surface.y), z: valueAt(trail, k, z) + over };
-    if (trail.step[k] < step) { put(passed, point); continue; }
-    if (!ahead.x.length) put(ahead, here);
-    put(ahead, point);
-  }
-  put(passed, here);
-  if (part.state[step] === FLYING) { // a line down to the surface shows where the part is
-    for (const point of [{ x: null, y: null, z: null }, here, { ...here, z: part.z[step] }]) put(ahead, point);
-  }
-  return { passed, ahead };
-}
-
-// The places of traces that move only up and down.
-const still = Object.fromEntries(["x", "y"].map((axis) => [
-  axis, [alongRim(surface[axis]), atActuators(surface[axis])],
-]));
-
-// What the traces of the surface show at a step.
-function changingAt(step) {
-  const z = heightsAt(step), { passed, ahead } = trailAt(step, z);
-  const raised = (values, what) => values.map((value) => value === null ? null : value + lift(what));
-  return {
-    x: [surface.x, alongLines(surface.x), ...still.x, ahead.x, passed.x, [part.x[step]]],
-    y: [surface.y, alongLines(surface.y), ...still.y, ahead.y, passed.y, [part.y[step]]],
-    z: [z, raised(alongLines(z), "lines"), raised(alongRim(z), "rim"), raised(atActuators(z), "actuators"),
-      ahead.z, passed.z, raised([part.z[step]], "part")],
-    intensity: [z, ...Array(PART).fill(undefined)],
-  };
-}
-
-function drawSurface() {
-  const [low, high] = surface.range, now = changingAt(shown), thirds = [[], [], []];
-  surface.triangles.forEach((corner, k) => thirds[k % 3].push(corner));
-  const quiet = { type: "scatter3d", hoverinfo: "skip", showlegend: false };
-  const traces = [
-    {
-      type: "mesh3d", x: now.x[MESH], y: now.y[MESH], z: now.z[MESH], i: thirds[0], j: thirds[1], k: thirds[2],
-      intensity: now.z[MESH], cmin: low, cmax: high > low ? high : low + 1, colorscale: surface.colours, flatshading: false,
-      lighting: { ambient: 0.62, diffuse: 0.6, specular: 0.08, roughness: 0.9, fresnel: 0.05 },
-      lightposition: { x: -2000, y: -4000, z: 6000 },
-      hovertemplate: `x %{x:.4g} ${units.length}<br>y %{y:.4g} ${units.length}<br>height %{z:.4g} ${units.height}<extra></extra>`,
-      showscale: high > low,
-      colorbar: { title: { text: `height [${units.height}]`, side: NARROW ? "top" : "right" }, outlinewidth: 0.5,
-        ...(NARROW ? { orientation: "h", thickness: 10, len: 0.8, y: -0.02 } : { thickness: 14, len: 0.7, x: 1.0 }) },
-    },
-    { ...quiet, mode: "lines", x: now.x[LINES], y: now.y[LINES], z: now.z[LINES],
-      line: { color: "rgba(29,39,51,0.28)", width: 1 } },
-    { ...quiet, mode: "lines", x: now.x[RIM], y: now.y[RIM], z: now.z[RIM], line: { color: INK, width: 4 } },
-    { ...quiet, mode: "markers", x: now.x[ACTUATORS], y: now.y[ACTUATORS], z: now.z[ACTUATORS], name: "actuators",
-      showlegend: surface.actuators.length > 0,
-      marker: { symbol: "diamond", size: surface.actuators.length > 100 ? 2.5 : surface.actuators.length > 30 ? 3.5 : 5, color: "#ffffff", line: { color: INK, width: 1.5 } } },
-    { ...quiet, mode: "lines", x: now.x[AHEAD], y: now.y[AHEAD], z: now.z[AHEAD], name: "way ahead", showlegend: true,
-      line: { color: SOFT, width: 2 } },
-    { ...quiet, mode: "lines", x: now.x[TRAIL], y: now.y[TRAIL], z: now.z[TRAIL], name: "trail", showlegend: true,
-      line: { color: PATH, width: 6 } },
-    { ...quiet, mode: "markers", x: now.x[PART], y: now.y[PART], z: now.z[PART], name: "part", showlegend: true,
-      marker: { size: 8, color: "#ffcc33", line: { color: "#000000", width: 2 } } },
-  ];
-  const axis = { showbackground: false, gridcolor: "#dfe5ea", zeroline: false, showspikes: false, nticks: 6, tickfont: { size: 11 } };
-  const layout = {
-    font: FONT, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#f7f9fb", uirevision: "kept",
-    legend: { orientation: "h", x: 0, y: 1, bgcolor: "rgba(0,0,0,0)", itemclick: false, itemdoubleclick: false },
-    scene: {
-      xaxis: { ...axis, title: { text: `x [${units.length}]` } },
-      yaxis: { ...axis, title: { text: `y [${units.length}]` } },
-      zaxis: { ...axis, title: { text: `height [${units.height}]` }, nticks: 4, range: heightRange() },
-      bgcolor: "#f7f9fb", aspectmode: "manual", aspectratio: proportions(), camera: camera("slanted"), dragmode: "orbit",
-    },
-  };
-  return Plotly.newPlot("surface", traces, layout, CONFIG);
-}
-
-function camera(name) {
-  const { eye, up } = EYES[name], away = NARROW ? 1.3 : 1; // a narrow window sees less to its sides
-  return { eye: { x: away * eye.x, y: away * eye.y, z: away * eye.z }, up, center: { x: 0, y: 0, z: name === "slanted" ? -0.08 : 0 }, projection: { type: "perspective" } };
-}
-
-// The heights that the axis shows: never nothing.
-function heightRange() {
-  const [low, high] = surface.extent, least = 0.05 * lengthOf() * pageData.perLength / exaggeration;
-  const room = Math.max(0.06 * (high - low), least);
-  return [low - room, high + room];
-}
-
-function proportions() {
-  const length = lengthOf(), [low, high] = heightRange(), [x, y] = sidesOf(frame());
-  const z = (high - low) / pageData.perLength * exaggeration;
-  const scale = Math.min(1 / length, SPACE / Math.hypot(x, y, z));
-  return { x: x * scale, y: y * scale, z: z * scale };
-}
-
-// Bands behind the curves while the part is stuck or in flight.
-function stateShades() {
-  const looks = {
-    stuck: { fillcolor: "rgba(27,79,156,0.16)" },
-    flying: { fillcolor: "rgba(0,0,0,0)", fillpattern: { shape: "/", fgcolor: "#b5b5b5", size: 9, solidity: 0.14 } },
-  };
-  return Object.entries(pageData.stretches).flatMap(([name, packed]) => {
-    const x = [], y = [], ends = unpack(packed);
-    for (let k = 0; k < ends.length; k += 2) {
-      x.push(ends[k], ends[k], ends[k + 1], ends[k + 1]);
-      y.push(0, 1, 1, 0);
-    }
-    const band = { x, y, yaxis: "y", fill: "tozeroy", mode: "none", hoverinfo: "skip", showlegend: false };
-    return x.length ? [{ ...looks[name], ...band }] : [];
-  });
-}
-
-function drawCurves() {
-  const panels = pageData.curves, gap = 0.075, height = (1 - gap * (panels.length - 1)) / panels.length;
-  const traces = stateShades(), annotations = [];
-  const layout = {
-    font: FONT, margin: { l: 64, r: 12, t: 22, b: 44 }, paper_bgcolor: "#ffffff", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "x",
-    showlegend: false, dragmode: "zoom",
-    xaxis: { title: { text: `time [${units.time}]` }, range: [time[0], time[last] > time[0] ? time[last] : time[0] + 1],
-      anchor: `y${panels.length + 1}`, showgrid: false, zeroline: false, showline: true, linecolor: "#8a96a1" },
-    yaxis: { range: [0, 1], domain: [0, 1], visible: false, fixedrange: true },
-    shapes: [{ type: "line", xref: "x", yref: "paper", x0: time[shown], x1: time[shown], y0: 0, y1: 1, line: { color: INK, width: 2 } }],
-    annotations,
-  };
-  panels.forEach((panel, k) => {
-    const top = 1 - k * (height + gap);
-    layout[`yaxis${k + 2}`] = {
-      title: { text: `${panel.label} [${panel.unit}]`, standoff: 6 }, domain: [top - height, top], gridcolor: "#e6eaee",
-      zerolinecolor: "#aab4bd", nticks: 6, showline: true, linecolor: "#8a96a1", anchor: "x",
-    };
-    panel.lines.forEach((line, n) => traces.push({
-      x: time, y: curves[k][n], yaxis: `y${k + 2}`, mode: time.length > 1 ? "lines" : "markers", name: line.name,
-      line: n ? { color: PATH, width: 1.6, dash: "dash" } : { color: INK, width: 1.8 }, marker: { color: n ? PATH : INK },
-      hovertemplate: `${line.name} %{y:.4g} ${panel.unit}<extra></extra>`,
-    }));
-    const names = panel.lines.map((line, n) => n ? `<span style="color:${PATH}">╍╍ ${line.name}</span>` : `━ ${line.name}`);
-    annotations.push({ text: names.join("   "), xref: "paper", yref: "paper", x: 0, y: top, xanchor: "left", yanchor: "bottom",
-      showarrow: false, font: { size: 12 } });
-  });
-  return Plotly.newPlot("curves", traces, layout, CONFIG);
-}
+let playing = false, turn = 0, looking = false, drawing = null, wanted = null;
 
 function readOut(step) {
   const clock = time[step].toFixed(decimals()), state = STATES[part.state[step]];
@@ -284,9 +52,11 @@ function play() {
   element("play-sign").textContent = playing ? "❚❚" : "▶";
   element("play-word").textContent = playing ? "Pause" : "Play";
   if (!playing) return;
-  const from = shown < last ? shown : 0, began = performance.now(), mine = ++turn;
+  const from = shown < last ? shown : 0, mine = ++turn;
+  let began = null; // by the clock of frames, which may lie before the click
   const next = async (now) => {
     if (!playing || mine !== turn) return; // paused, or played anew meanwhile
+    began ??= now;
     const seconds = Number(element("pace").value);
     const step = Math.min(last, from + Math.floor((now - began) / 1000 / seconds * last));
     if (step !== shown || step === from) await show(step);
@@ -350,6 +120,7 @@ function stepAt(moment) {
 slider.max = last;
 element("exaggeration").value = exaggeration;
 element("play").disabled = last === 0;
+element("flights").hidden = !unpack(pageData.stretches.flying).length;
 const asked = location.hash.match(/^#t=([0-9.e-]+)$/); // page.html#t=12.5 opens at that time
 shown = asked ? stepAt(Number(asked[1])) : 0;
 slider.value = shown;
