@@ -3,68 +3,76 @@
 Takes some minutes.
 """
 
+import math
 import re
 from pathlib import Path
 
+from paper.coming_off import PLACES, SPEED, bending_pull, length
 from paper.pairs import SURFACES
-from paper.parameters import QUICK
-from paper.sensitivity import (
-    LOW_AND_HIGH,
-    Row,
-    beginnings,
-    readings,
-    row_of,
-    steps_of_the_scheme,
-    variants,
-)
+from paper.parameters import PARAMETERS, QUICK
+from paper.sensitivity import LOW_AND_HIGH, Row, beginnings, readings, row_of, steps_of_the_scheme, variants
+from paper.share import percents
+from paper.split import Split
 
 PAGE = Path(__file__).parent / "paper-open-points.md"
-EFFORT = QUICK._replace(starts=20, starts_by_steps=6)
+EFFORT = QUICK._replace(starts=20, starts_by_steps=12)
 HEAD = (
     "changed", "Q(0)/m, m/s²", "pull-off/m, m/s²", "5: moves from, Hz", "13: m/s²", "17a: converge", "17b: leave",
-    "17b: come off", "18: threshold, Hz", "19: converge", "22: within 5 µm",
+    "17b: come off", "18: threshold, Hz (tells)", "19: converge", "22: within 5 µm",
 )  # fmt: skip
 
 
 def table(head, rows) -> str:
     lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(str(cell).replace(" um", " µm") for cell in row) + " |" for row in lines)
+    return "\n".join(
+        "| " + " | ".join(str(cell).replace(" um", " µm").replace("m/s^2", "m/s²") for cell in row) + " |"
+        for row in lines
+    )
 
 
-def percent(share: float) -> str:
-    return f"{100 * share:.0f} %"
+def told(split: Split) -> str:
+    return "none" if math.isnan(split.frequency) else f"{split.frequency:.0f} ({100 * split.told:.0f} %)"
 
 
-def said(row: Row) -> list[str]:
+def number(value: float, form: str, none: str) -> str:
+    return none if math.isnan(value) else format(value, form)
+
+
+def said(row: Row) -> list[object]:
     return [
-        f"{row.limit:.4g}", f"{row.pull_off:.4g}", "never" if row.moves_from is None else f"{row.moves_from:.0f}",
-        "-" if row.deceleration is None else f"{row.deceleration:.2f}", percent(row.converge), percent(row.leave),
-        percent(row.come_off), "above "
-        "760" if row.threshold > 760 else f"{row.threshold:.0f}", percent(row.all_converge),
-        percent(row.in_band),
+        f"{row.limit:.4g}", f"{row.pull_off:.4g}", number(row.moves_from, ".0f", "never"),
+        number(row.deceleration, ".2f", "-"), row.converge, row.leave, row.come_off, told(row.threshold),
+        row.all_converge, row.in_band,
     ]  # fmt: skip
 
 
 def sections() -> dict[str, str]:
+    pulls = zip(PLACES, bending_pull(PARAMETERS, PLACES).tolist(), strict=True)
+    bending = table(
+        (f"distance from the actuator, at {SPEED:g} m/s and full stroke", "v.H v, m/s²"),
+        [[length(away), f"{pull:.0f}"] for away, pull in pulls],
+    )
     parameters = table(HEAD, [[name, *said(row_of(p))] for name, p in variants().items()])
     steps = steps_of_the_scheme(EFFORT.starts_by_steps)
     scheme = table(
-        ("step", "17a: converge", "18: threshold, Hz"),
-        [[f"{1e6 * step:g} µs", percent(share), f"{hertz:.0f}"] for step, (share, hertz) in steps.items()],
+        ("step", "17a: converge", "18: threshold, Hz (tells)"),
+        [[f"{1e6 * step:g} µs", share, told(split)] for step, (share, split) in steps.items()],
     )
     handover = table(
         ("reading of figure 20", *SURFACES),
-        [[name, *map(percent, shares.values())] for name, shares in readings(EFFORT).items()],
+        [[name, *shares.values()] for name, shares in readings(EFFORT).items()],
     )
     low, high = LOW_AND_HIGH
     neighbours = table(
-        (f"start of figure 16: go over at {low:g} and {high:g} Hz", *SURFACES),
+        (f"start of figure 16, at {low:g} and {high:g} Hz", *SURFACES),
         [
-            [f"({1e6 * x:g}, {1e6 * y:g}) µm", *(f"{percent(a)}, {percent(b)}" for a, b in shares.values())]
-            for (x, y), shares in beginnings(EFFORT).items()
+            [name, *(f"{percents(one.reach)}; {percents(one.off)}" for one in trends.values())]
+            for name, trends in beginnings(EFFORT).items()
         ],
     )
-    return {"parameters": parameters, "scheme": scheme, "figure 20": handover, "figure 16": neighbours}
+    return {
+        "bending": bending, "parameters": parameters, "scheme": scheme, "figure 20": handover, "figure 16": neighbours,
+    }  # fmt: skip
 
 
 def main() -> None:

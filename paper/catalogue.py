@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
+import re
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Final
 
+from coupling.near import near
 from paper.found import Found
 from paper.models import Bench
 from paper.parameters import Effort
@@ -26,6 +27,7 @@ MODULES: Final[dict[str, tuple[str, ...]]] = {
 }
 """Names of figures by module, in the order of the page; kept here so that the command's help needs no solver."""
 ALL: Final = "all"
+DRAWINGS: Final = (1, 2, 7, 8, 9, 10)
 
 Finder = Callable[[Bench, Effort], Found]
 
@@ -33,14 +35,21 @@ Finder = Callable[[Bench, Effort], Found]
 def modules_of(names: Sequence[str]) -> list[str]:
     """The modules of figures by name, each once, in the order of the catalogue; "all" or nothing: every one.
 
-    Raises ValueError, naming every name that there is no figure of.
+    "fig17", "17", "17a" and "figure 17" are the same.
+    Raises ValueError, naming every name that there is no figure of, as it was given.
     """
     known = [name for own in MODULES.values() for name in own]
-    wanted = {name.lower() for name in names} or {ALL}
-    wrong = []
-    for name in sorted(wanted - {*known, ALL}):
-        near = difflib.get_close_matches(name, known, 1)
-        wrong.append(f'"{name}"' + (f' (did you mean "{near[0]}"?)' if near else ""))
+    wanted, wrong = set(), []
+    for given in names or [ALL]:
+        number = re.fullmatch(r"(?:fig\.?|figure)?\s*(\d+)[ab]?", given.strip().lower())
+        name = f"fig{int(number[1])}" if number else given.strip().lower()
+        meant = near(name, known)
+        if name in (*known, ALL):
+            wanted.add(name)
+        elif number and int(number[1]) in DRAWINGS:
+            wrong.append(f'"{given}" (figures 1, 2 and 7 to 10 are drawings)')
+        else:
+            wrong.append(f'"{given}"' + (f' (did you mean "{meant}"?)' if meant else ""))
     if wrong:
         raise ValueError(f"Figures must be among {', '.join(known)} or all; got {', '.join(wrong)}")
     return [module for module, own in MODULES.items() if ALL in wanted or wanted & set(own)]

@@ -18,6 +18,8 @@ LOOK: dict[str, dict[str, Any]] = {
     PLATE: {"color": "#5b8fc7", "linestyle": ":", "linewidth": 2.0},
 }
 """Lines of the models, which differ in grey as well."""
+COLOURS = ("#1b4f9c", "#c8371b", "#3d8a4e", "#8a6d3b", "#7a4b94", "#404040")
+"""Lines of different strokes."""
 MICRO, MILLI = 1e6, 1e3
 
 
@@ -50,5 +52,5 @@ def finish(axes: Axes, across: str, up: str, title: str = "", legend: bool = Tru
 
 
 def percent(share: float) -> str:
-    """A share in words."""
-    return f"{100 * share:.0f} %"
+    """A share in words; nan: of nothing."""
+    return "- %" if share != share else f"{100 * share:.0f} %"

@@ -7,53 +7,49 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from paper.found import LOOK, MICRO, MILLI, Found, finish, percent
-from paper.models import Bench, Path
-from paper.pairs import JUMPS, SURFACES, WIDTHS, draw_plane, joined, paths_of
+from paper.coming_off import end_said, off_numbers, off_said
+from paper.found import LOOK, MICRO, MILLI, Found, finish
+from paper.models import Bench
+from paper.pairs import JUMPS, SURFACES, WIDTHS, Paths, draw_plane, joined, paths_of, reaches
 from paper.parameters import Effort, Place
-from paper.verdict import Answer, Verdict, of_share
+from paper.path import Path
+from paper.share import share_of
+from paper.verdict import Answer, Verdict
 
-NAMES = ("fig20", "fig21")
 SHOWN: Final = 40.0  # ms
+OSCILLATIONS, WITHIN = 5.0, 1.0  # of the fast actuator, after which figure 20's part is with the slow one
 
 
 class Handover(NamedTuple):
-    """One figure: which actuator has which frequency, and where the part begins."""
+    """Which actuator has which frequency, and where the part begins."""
 
-    figure: str
     frequencies: tuple[float, float]  # Hz, at (0, 0) and at (pitch, 0)
     start: Place  # m
-    statement: str
-    left_open: str
+
+    def target(self, pitch: float) -> Place:
+        """Where [m] the slow actuator is."""
+        return int(np.argmin(self.frequencies)) * pitch, 0.0
 
 
-HANDOVERS: Final = (
-    Handover(
-        "20",
-        (300.0, 450.0),
-        (100e-6, 0.0),
-        "From (100, 0) um the part leaves the 450 Hz actuator and converges to the 300 Hz one, 150 um away, on the "
-        "line through both.",
-        "Which of the two stands at (0, 0) is not stated: the start is to lie in the region of the faster one, so that "
-        "this one is at (150, 0). Read the other way some starts arrive: see the open points.",
-    ),
-    Handover(
-        "21",
-        (400.0, 300.0),
-        (-50e-6, 15e-6),
-        "From (-50, 15) um the part leaves the 400 Hz actuator and converges to the 300 Hz one at (150, 0) um.",
-        "",
-    ),
+HANDOVERS: Final = {
+    "20": Handover((300.0, 450.0), (100e-6, 0.0)),
+    "21": Handover((400.0, 300.0), (-50e-6, 15e-6)),
+}
+STATEMENTS: Final = {
+    "20": "From (100, 0) um the part leaves the 450 Hz actuator and converges to the 300 Hz one, 150 um away, on the "
+    "line through both.",
+    "21": "From (-50, 15) um the part leaves the 400 Hz actuator and converges to the 300 Hz one at (150, 0) um.",
+}
+LEFT_OPEN: Final = (
+    "Which of the two stands at (0, 0) is not stated: the start is to lie in the region of the faster one, so that "
+    "this one is at (150, 0). Read the other way some starts arrive: see the open points."
 )
 
 
 def find(bench: Bench, effort: Effort) -> Found:
     """Both figures."""
     p = bench.parameters
-    paths: dict[str, dict[str, list[Path]]] = {}
-    for one in HANDOVERS:
-        drives = [bench.drive(frequency) for frequency in one.frequencies]
-        paths[one.figure] = paths_of(bench, effort, drives, one.start, p.cycles / min(one.frequencies))
+    paths = {figure: paths_of(bench, effort, *one, p.cycles) for figure, one in HANDOVERS.items()}
     drawn = {figure: {name: rows[0].drawn(800) for name, rows in both.items()} for figure, both in paths.items()}
 
     def draw(figure: Figure) -> None:
@@ -75,26 +71,59 @@ def find(bench: Bench, effort: Effort) -> Found:
     data: dict[str, Any] = {
         f"{figure}: {name}": rows.tolist() for figure, both in drawn.items() for name, rows in both.items()
     }
-    verdicts = tuple(_verdict(bench, one, paths[one.figure]) for one in HANDOVERS)
-    return Found("fig20-21", "From a high to a low frequency", verdicts, data, draw, (12.5, 8.0),
+    verdicts = [_arrives(bench, figure, paths[figure]) for figure in HANDOVERS]
+    verdicts.insert(1, _in_five(bench, paths["20"]))
+    return Found("fig20-21", "From a high to a low frequency", tuple(verdicts), data, draw, (12.5, 8.0),
                  "The paths from the stated starts; crosses: their ends.")  # fmt: skip
 
 
-def _verdict(bench: Bench, one: Handover, paths: dict[str, list[Path]]) -> Verdict:
+def arrives(bench: Bench, one: Handover, path: Path) -> bool:
+    """Whether a part converges to the slow actuator."""
     p = bench.parameters
-    slow = int(np.argmin(one.frequencies))
-    target = (slow * p.pitch, 0.0)
+    return path.converged(1 / min(one.frequencies) / p.period_share, p.near, one.target(p.pitch))
+
+
+def _arrives(bench: Bench, figure: str, paths: Paths) -> Verdict:
+    p, one = bench.parameters, HANDOVERS[figure]
+    places = [(0.0, 0.0), (p.pitch, 0.0)]
     answers: dict[str, Answer] = {}
     numbers: dict[str, Any] = {}
     for name, rows in paths.items():
-        arrives = [path.converged(1 / min(one.frequencies), p.near, target) for path in rows]
-        share = float(np.mean(arrives))
-        gone = float(np.mean([not path.attached for path in rows]))
-        numbers |= {f"share, {name}": share, f"gone, {name}": gone, f"starts, {name}": len(rows)}
-        numbers[f"stated start arrives, {name}"] = bool(arrives[0])
-        first = "it does" if arrives[0] else "it does not"
-        answers[name] = of_share(
-            f"{percent(share)} arrive, {percent(gone)} are gone; from the stated start {first}", share
+        does = [arrives(bench, one, path) for path in rows]
+        share, rim = share_of(does), share_of(path.over_rim for path in rows)
+        numbers |= {
+            f"share, {name}": share.value, f"over_the_rim, {name}": rim.value, f"starts, {name}": len(rows),
+            f"unknown, {name}": share_of(path.unknown for path in rows).value,
+            f"coming_off, {name}": off_numbers(rows, places), f"stated_start_arrives, {name}": does[0],
+        }  # fmt: skip
+        stated = "arrives" if does[0] else end_said(rows[0], places)
+        answers[name] = Answer(
+            f"{share} arrive, {rim} go over the rim, {off_said(rows, places)}; the stated start {stated}", share.met
         )
-    why = f"Converged as in figure 17. Gone: over the rim or off the surface. {JUMPS}{one.left_open}".strip()
-    return Verdict(one.figure, one.statement, joined(answers), why, numbers)
+    why = f"Converged as in figure 17. {JUMPS}{LEFT_OPEN if figure == '20' else ''}".strip()
+    return Verdict(figure, STATEMENTS[figure], joined(answers), why, numbers)
+
+
+def cycles_until_there(bench: Bench, one: Handover, path: Path) -> float:
+    """How many cycles the fast actuator has made when the part comes into the slow one's region; inf: it never does."""
+    p = bench.parameters
+    return reaches(path, one.target(p.pitch), p.pitch) * max(one.frequencies) * p.period_share
+
+
+def _in_five(bench: Bench, paths: Paths) -> Verdict:
+    answers: dict[str, Answer] = {}
+    numbers: dict[str, Any] = {}
+    for name, rows in paths.items():
+        cycles = np.array([cycles_until_there(bench, HANDOVERS["20"], path) for path in rows])
+        come, soon = share_of(np.isfinite(cycles)), share_of(np.abs(cycles - OSCILLATIONS) <= WITHIN)
+        text = f"{come} get there"
+        if come.hits:
+            text += f", half of these within {np.median(cycles[np.isfinite(cycles)]):.1f} cycles; {soon} after five"
+        numbers |= {f"share, {name}": soon.value, f"get_there, {name}": come.value}
+        numbers[f"cycles_of_the_stated_start, {name}"] = float(cycles[0])
+        answers[name] = Answer(text, soon.met)
+    return Verdict(
+        "20 (five cycles)", "After five oscillations of the fast actuator the part is in the slow one's region.",
+        joined(answers), f"When it is first nearer than half a pitch to the slow actuator; {OSCILLATIONS:g} cycles, "
+        f"give or take {WITHIN:g}. It may leave again.", numbers,
+    )  # fmt: skip

@@ -7,26 +7,25 @@ on the same surface.  "plate": the same on a plate of finite elements, which all
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
 from coupling import surface_motion
 from fem_plate import Plate, PlateSection, Shapes
 from fem_plate.analytic import DiscShapes
 from meshes import Outline, disc
-from paper.parameters import PARAMETERS, Effort, Parameters
-from paper.profiles import NEAREST, SUPERPOSED, profile_outline, profile_surface
+from paper.parameters import PARAMETERS, Effort, Parameters, Place
+from paper.path import FloatArray, Path
+from paper.profiles import profile_outline, profile_surface
 from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate, simulate_many
 from particle.friction import Contact
-
-FloatArray = NDArray[np.float64]
 
 PAPER, CLOSED, PLATE = "paper", "closed", "plate"
 MODELS: Final = {
@@ -36,7 +35,6 @@ MODELS: Final = {
 }
 PLATE_TOLERANCE: Final = 1e-8
 RINGS: Final = 12  # of cells, from which the plate is refined
-LAST_CYCLES: Final = 5  # in which a part must stay near the actuator to have converged
 
 
 class Ground(NamedTuple):
@@ -52,7 +50,6 @@ class Bench:
     """Finds paths in every model; surfaces are made once."""
 
     parameters: Parameters = PARAMETERS
-    told: Callable[[str], object] = lambda _: None
     _grounds: dict[tuple[str, str], Ground] = field(default_factory=dict)
 
     def ground(self, model: str, actuators: str = "one") -> Ground:
@@ -79,10 +76,14 @@ class Bench:
         surface = profile_surface(actuators, p.pitch, p.radius, [still, still])
         return Ground(surface, profile_outline(p.pitch, p.radius), np.zeros(2))
 
-    def drive(self, frequency: float, stroke: float | None = None) -> Drive:
-        """A continuous drive."""
+    def drive(self, frequency: float, stroke: float | None = None, cycles: int | None = None) -> Drive:
+        """An up-down drive, continuous or of so many cycles."""
         p = self.parameters
-        return Drive(p.stroke if stroke is None else stroke, frequency * p.period_share)
+        return Drive(p.stroke if stroke is None else stroke, frequency * p.period_share, cycles=cycles)
+
+    def duration(self, *drives: Drive) -> float:
+        """How long [s] continuous drives run: so many cycles of the slowest."""
+        return self.parameters.cycles / min(drive.frequency for drive in drives)
 
     def paths(
         self,
@@ -93,7 +94,6 @@ class Bench:
         velocities: ArrayLike = (0.0, 0.0),
         actuators: str = "one",
         friction: Contact | None = None,
-        gravity: float | None = None,
         tolerance: float | None = None,
     ) -> list[Path]:
         """One path from each start (n, 2) [m], with velocities (n, 2) or (2,) [m/s]; places count from actuator 1."""
@@ -106,9 +106,8 @@ class Bench:
             for (x, y), (u, v) in zip(places + ground.offset, speeds, strict=True)
         ]
         law = p.friction if friction is None else friction
-        pull = p.gravity if gravity is None else gravity
         if model == PAPER:
-            one = partial(_by_steps, surface, law, duration, pull, p.time_step)
+            one = partial(_by_steps, surface, law, duration, p.gravity, p.time_step)
             with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
                 try:
                     found = list(pool.map(one, parts))
@@ -116,10 +115,10 @@ class Bench:
                     pool.shutdown(wait=True, cancel_futures=True)
                     raise
         else:
-            found = simulate_many(surface, parts, law, duration, pull, tolerance or p.tolerance)
+            found = simulate_many(surface, parts, law, duration, p.gravity, tolerance or p.tolerance)
         return [Path(trajectory, ground.offset) for trajectory in found]
 
-    def starts(self, place: tuple[float, float], count: int) -> FloatArray:
+    def starts(self, place: Place, count: int) -> FloatArray:
         """The place itself and others around it, (count, 2) m; the same ones for every model."""
         jitter = self.parameters.jitter
         random = np.random.default_rng(self.parameters.seed)
@@ -136,59 +135,3 @@ def _by_steps(
     surface: SurfaceMotion, law: Contact, duration: float, gravity: float, step: float, part: Micropart
 ) -> Trajectory:
     return simulate(surface, part, law, duration, gravity, scheme="paper", time_step=step)
-
-
-@dataclass(frozen=True, eq=False)
-class Path:
-    """A trajectory with places counted from actuator 1."""
-
-    trajectory: Trajectory
-    offset: FloatArray
-
-    @property
-    def time(self) -> FloatArray:
-        """(n,) s."""
-        return self.trajectory.time
-
-    @property
-    def place(self) -> FloatArray:
-        """(n, 2) m."""
-        return self.trajectory.position - self.offset
-
-    @property
-    def outcome(self) -> str:
-        """How it ended, as of `particle.Outcome`."""
-        return self.trajectory.outcome.value
-
-    @property
-    def attached(self) -> bool:
-        """Whether the part is on the surface at the end."""
-        return self.outcome in ("stuck", "moving")
-
-    def away(self, actuator: ArrayLike = (0.0, 0.0)) -> FloatArray:
-        """Distances (n,) [m] from an actuator."""
-        return np.asarray(np.hypot(*(self.place - np.asarray(actuator)).T))
-
-    def converged(self, period: float, near: float, actuator: ArrayLike = (0.0, 0.0)) -> bool:
-        """Whether it spends the last five periods [s] within `near` [m] of an actuator."""
-        late = self.time >= self.time[-1] - LAST_CYCLES * period
-        return self.attached and bool((self.away(actuator)[late] <= near).all())
-
-    def lost(self, far: float) -> bool:
-        """Whether it leaves actuator 1, as below, or comes off."""
-        return not self.attached or self.leaves_at(far) < np.inf
-
-    def leaves_at(self, far: float) -> float:
-        """When [s] it first gets farther than `far` [m] from actuator 1, or over the rim; inf: never."""
-        beyond = np.flatnonzero(self.away() > far)
-        if len(beyond):
-            return float(self.time[beyond[0]])
-        return float(self.time[-1]) if self.outcome == "left the plate" else np.inf
-
-    def drawn(self, count: int = 400) -> FloatArray:
-        """Times and places (count, 3) [s, m, m] for a picture."""
-        times = np.linspace(0, self.time[-1], count)
-        return np.column_stack([times, self.trajectory.at(times).position - self.offset])
-
-
-__all__ = ["CLOSED", "MODELS", "NEAREST", "PAPER", "PLATE", "SUPERPOSED", "Bench", "Ground", "Path"]

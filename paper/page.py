@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from paper.coming_off import paragraph
 from paper.found import Found
 from paper.models import MODELS, PAPER, PLATE
 from paper.parameters import Effort, Parameters
-from paper.verdict import FEW, MOST, NOT, PARTLY, REPRODUCED, Verdict
+from paper.share import FEW, MOST
+from paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Verdict
 
 MICRO = 1e6
-SAID = {REPRODUCED: "**reproduced**", PARTLY: "partly", NOT: "**not**"}
+SAID = {REPRODUCED: "**reproduced**", PARTLY: "partly", NOT: "**not**", BEYOND: "-"}
 
 
 def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, folder: str) -> str:
@@ -22,7 +24,8 @@ def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, fold
         '"Micropart Motion on a Surface Due to Controlled Surface Excitation": what it states, and what this '
         "program finds.\n",
         f"Written by `active-surface reproduce all{' --full' if effort.name == 'full' else ''} --output docs`. Of "
-        f"{len(verdicts)} statements {counts[REPRODUCED]} are reproduced, {counts[PARTLY]} partly, {counts[NOT]} not. "
+        f"{sum(counts.values())} statements {counts[REPRODUCED]} are reproduced, {counts[PARTLY]} partly, "
+        f"{counts[NOT]} not. "
         "What the paper leaves open, and how much each figure depends on it: [open points](paper-open-points.md).\n",
         "Figures 1, 2 and 7 to 10 are drawings of concepts; there is nothing in them to be found again.\n",
         _how(effort, parameters),
@@ -46,8 +49,9 @@ def _how(effort: Effort, p: Parameters) -> str:
         f"One set of parameters for all figures (`paper/parameters.py`): a = {MICRO * p.radius:g} µm, actuators "
         f"{MICRO * p.pitch:g} µm apart, stroke {MICRO * p.stroke:g} µm up and down in 1/f, mass {1e9 * p.mass:g} µg, "
         f"gravity {p.gravity} m/s², friction by the preset `paper`. a, the drive and the preset were chosen with "
-        "these figures in view, so where they agree that is in part a fit; nothing is chosen for one figure, but the "
-        "platform's friction of figure 4.\n",
+        "these figures in view, so where they agree that is in part a fit. What single figures need and the paper does "
+        "not state was chosen for them: the platform's motion and friction (4), the strokes (5, 6, 15), the second "
+        "start (14), the start (15, 16) and the states (19, 22).\n",
         "Three models:\n",
         f"- **{MODELS[PAPER]}**: fixed steps of {MICRO * p.time_step:g} µs by its equations (6) to (12), on equation "
         "(2);",
@@ -55,15 +59,20 @@ def _how(effort: Effort, p: Parameters) -> str:
         "located ([motion](motion.md));",
         f"- **{MODELS[PLATE]}**: the same on one clamped plate of finite elements that all actuators are attached "
         "to.\n",
+        paragraph(p),
         "One actuator in the middle of a clamped disc bends it by equation (2), so that there the second and the "
         "third model must agree; they differ where paths are chaotic.\n",
         "With two actuators the closed form is put together in two ways: the profiles of both are added, or that of "
         "the nearest actuator counts alone. A plate does neither: on it an actuator that holds its point shapes the "
-        "other's deflection.\n",
+        "other's deflection. Nor is its rim the same: each closed form is a disc of radius a around its actuator, "
+        f"together from {-MICRO * p.radius:g} to {MICRO * (p.pitch + p.radius):g} µm along x, the plate is one such "
+        f"disc with its centre half-way between them, from {MICRO * (p.pitch / 2 - p.radius):g} to "
+        f"{MICRO * (p.pitch / 2 + p.radius):g} µm. Parts that go over the rim cannot be compared.\n",
         f"Where paths are chaotic each model is asked from many starts, displaced by up to {MICRO * p.jitter:g} µm "
         f"along x and y, as the paper states places in µm: {effort.starts} ({effort.starts_by_steps} with the paper's "
-        f"scheme). A statement is met when at least {100 * MOST:.0f} % of them do what it says, and not met when at "
-        f"most {100 * FEW:.0f} % do. A verdict is "
+        'scheme). "87 % (76-93)" has Wilson\'s interval of 95 %. A statement is met when that interval lies above '
+        f"{100 * MOST:.0f} %, and not met when it lies below {100 * FEW:.0f} %; else it is undecided, and counts "
+        "half. A verdict is "
         '"reproduced" when every model meets all of a statement, "not" when none meets any of it, else "partly".\n',
     ])  # fmt: skip
 

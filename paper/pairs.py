@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from paper.found import LOOK, MICRO
-from paper.models import CLOSED, MODELS, PAPER, PLATE, Bench, FloatArray, Path
+from paper.models import CLOSED, MODELS, PAPER, PLATE, Bench
 from paper.parameters import Effort, Place
+from paper.path import FloatArray, Path
 from paper.profiles import NEAREST, SUPERPOSED
 from paper.verdict import Answer
-from particle import Drive
 
 SURFACES: Final[dict[str, tuple[str, str]]] = {
     "paper, nearest": (PAPER, NEAREST),
@@ -25,21 +25,31 @@ SURFACES: Final[dict[str, tuple[str, str]]] = {
 """Models and how the closed forms are put together; the nearest one's alone jumps half-way between the actuators."""
 JUMPS = (
     "Over nearest-actuator profiles the surface jumps half-way between the actuators; superposed ones and the plate "
-    "are smooth. "
+    "are smooth. The rim of the plate is not that of the closed forms: see above. "
 )
+Paths = dict[str, list[Path]]  # by name of SURFACES
 WIDTHS: Final = {NEAREST: 1.6, SUPERPOSED: 0.9}
 
 
-def paths_of(
-    bench: Bench, effort: Effort, drives: Sequence[Drive], start: Place, duration: float
-) -> dict[str, list[Path]]:
-    """Paths from jittered starts, of every model and surface."""
+def paths_of(bench: Bench, effort: Effort, frequencies: Sequence[float], start: Place, cycles: int) -> Paths:
+    """Paths from jittered starts, so many cycles of the slower one long, by model and surface.
+
+    frequencies: Hz, of the actuators at (0, 0) and (pitch, 0).
+    """
+    drives = [bench.drive(frequency) for frequency in frequencies]
+    duration = cycles / min(drive.frequency for drive in drives)
     return {
         name: bench.paths(
             model, drives, bench.starts(start, bench.starts_of(model, effort)), duration, actuators=surface
         )
         for name, (model, surface) in SURFACES.items()
     }
+
+
+def reaches(path: Path, actuator: Place, pitch: float) -> float:
+    """When [s] a part is first nearer than half a pitch [m] to an actuator; inf: never."""
+    near = np.flatnonzero(path.away(actuator) < pitch / 2)
+    return float(path.time[near[0]]) if len(near) else np.inf
 
 
 def joined(found: dict[str, Answer]) -> dict[str, Answer]:

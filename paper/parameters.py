@@ -13,9 +13,9 @@ Place = tuple[float, float]  # m
 
 @dataclass(frozen=True)
 class Parameters:
-    """What the paper states, and what it leaves open (docs/paper-open-points.md); nothing is set for one figure alone.
+    """What the paper states, and what it leaves open (docs/paper-open-points.md): one set for all figures.
 
-    Two that belong to one figure each are not in the paper at all: the platform's friction and the later start.
+    What one figure alone needs and the paper does not state stands in its module; of the platform of figure 4 here.
     """
 
     radius: float = 300e-6  # m, a of equation (2); left open
@@ -34,8 +34,9 @@ class Parameters:
     near: float = 30e-6  # m: a part has converged that spends the last five cycles so close to the actuator
     far: float = 200e-6  # m: it has left the actuator's region when it gets farther than that, or over the rim
     youngs_modulus: float = 169e9  # Pa; with rigid actuators and a clamped rim neither it nor the thickness counts
-    poisson_ratio: float = 0.3
+    poisson_ratio: float = 0.3  # of the plate
     thickness: float = 5e-6  # m
+    contact_side: float = 100e-6  # m, of the part's square contact
     platform_limit: float = 23.524  # m/s^2, friction on the platform of figure 4, from its 2.41 s
     platform_rate: float = 3.2  # rad/s of its motion x = t sin(rate t), in m; left open
     seed: int = 4
@@ -63,6 +64,6 @@ class Effort(NamedTuple):
     candidates: int  # frequencies tried there
 
 
-QUICK = Effort("quick", 60, 16, 40, 20.0, 5, 50, 11, 6)
+QUICK = Effort("quick", 60, 40, 40, 20.0, 5, 50, 11, 6)
 FULL = Effort("full", 400, 100, 80, 10.0, 9, 120, 11, 12)
 TINY = Effort("tiny", 2, 1, 3, 200.0, 2, 12, 1, 1)  # for tests: shows that it runs, and nothing else

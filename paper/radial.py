@@ -8,14 +8,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from paper.found import MICRO, MILLI, Found, finish, look
-from paper.models import MODELS, Bench, FloatArray, Path
-from paper.parameters import Effort
+from paper.models import MODELS, Bench
+from paper.parameters import Effort, Place
+from paper.path import FloatArray, Path
 from paper.verdict import Verdict, of_checks
 from particle import Drive
 
-NAMES = ("fig11", "fig12")
-START: Final = (170.08e-6, 170.08e-6)  # m
-OFF_DIAGONAL: Final = (200e-6, 100e-6)  # m, where x and y are not each other's mirror
+START: Final[Place] = (170.08e-6, 170.08e-6)  # m
+OFF_DIAGONAL: Final[Place] = (200e-6, 100e-6)  # m, where x and y are not each other's mirror
 FREQUENCY, DURATION = 1600.0, 3e-3  # Hz, s
 WITHIN: Final = 1e-9
 TOLERANCE: Final = 1e-12
@@ -24,8 +24,7 @@ SLOW: Final = 1e-3  # of the largest speed, below which no ratio is taken
 
 def find(bench: Bench, effort: Effort) -> Found:
     """Both figures, and the same from a start that is not on the diagonal."""
-    p = bench.parameters
-    drive = one_cycle(p.stroke)
+    drive = one_cycle(bench)
     paths: dict[str, Path] = {}
     numbers: dict[str, Any] = {}
     ratios, lines = {}, {}
@@ -66,28 +65,28 @@ def find(bench: Bench, effort: Effort) -> Found:
                  "One cycle of 150 µm at 1.6 kHz: velocities and path.")  # fmt: skip
 
 
-def one_cycle(stroke: float) -> Drive:
-    """Up and down once, in the 0.625 ms after which the paper's actuator is at rest; then the surface is flat."""
-    return Drive(stroke, FREQUENCY, cycles=1)
+def one_cycle(bench: Bench) -> Drive:
+    """Up and down once, by default in the 0.625 ms after which the paper's actuator rests; then the surface is flat."""
+    return bench.drive(FREQUENCY, cycles=1)
 
 
 def _velocities(path: Path, times: FloatArray) -> FloatArray:
     return path.trajectory.at(times).velocity
 
 
-def _ratio(path: Path, start: tuple[float, float]) -> float:
+def _ratio(path: Path, start: Place) -> float:
     """By how much the ratio of the velocities differs from that of the start's coordinates, relative."""
     v = path.trajectory.velocity
     fast = np.hypot(*v.T) > SLOW * np.hypot(*v.T).max()
     return float(np.abs(v[fast, 1] / v[fast, 0] / (start[1] / start[0]) - 1).max())
 
 
-def _bend(path: Path, start: tuple[float, float]) -> float:
+def _bend(path: Path, start: Place) -> float:
     """The largest distance from the line through start and actuator, over the way gone."""
     x, y = path.place.T
     away = np.abs(x * start[1] - y * start[0]) / np.hypot(*start)
     return float(away.max() / path.trajectory.path_length)
 
 
-def _said(place: tuple[float, float]) -> str:
+def _said(place: Place) -> str:
     return f"({MICRO * place[0]:g}, {MICRO * place[1]:g})"

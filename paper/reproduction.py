@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter
@@ -14,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from coupling.progress import Progress, silent
+from coupling.whole_file import whole_file
 from paper.catalogue import MODULES, finder, modules_of
 from paper.found import Found
 from paper.models import Bench
@@ -75,12 +75,8 @@ def write(found: Found, folder: Path) -> list[Path]:
     FigureCanvasAgg(figure)
     figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
     found.draw(figure)
-    partial = picture.with_suffix(f".{os.getpid()}.partial.png")
-    try:
+    with whole_file(picture) as partial:
         figure.savefig(partial, dpi=90)
-        partial.replace(picture)
-    finally:
-        partial.unlink(missing_ok=True)
     data = folder / f"{found.name}.json"
     verdicts = [verdict.as_dict() for verdict in found.verdicts]
     whole = {"title": found.title, "verdicts": verdicts, "data": found.data}
@@ -101,6 +97,5 @@ def rounded(value: Any) -> Any:
 
 def _replace(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f"{path.name}.{os.getpid()}.partial")
-    partial.write_text(text)
-    partial.replace(path)
+    with whole_file(path) as partial:
+        partial.write_text(text)

@@ -1,4 +1,4 @@
-"""Figure 18, and beyond it: the frequency from which on parts leave, over the stroke, with its scatter."""
+"""Figure 18, and beyond it: below which frequency parts converge and above which they leave, over the stroke."""
 
 from __future__ import annotations
 
@@ -6,110 +6,169 @@ from typing import Any, Final
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike
 
-from paper.found import MICRO, Found, finish, look
-from paper.models import MODELS, PAPER, Bench, FloatArray
+from paper.found import MICRO, Found, finish, percent
+from paper.models import MODELS, Bench
 from paper.parameters import Effort
+from paper.path import FloatArray
+from paper.share import MOST
+from paper.split import BoolArray, Ends, Fits, Split, Thresholds, best_split, first_loss, fits_of
+from paper.threshold_picture import draw_ends, draw_thresholds
 from paper.verdict import Answer, Verdict, of_checks
 
-NAMES = ("fig18",)
 LOWEST, HIGHEST = 160.0, 760.0  # Hz
 STATED, STATED_STROKE, WITHIN = 320.0, 150e-6, 20.0  # Hz, m, Hz: what counts as the same
+FIT_WITHIN: Final = 10.0  # Hz, by which a curve may be off
 NANOMETRES: Final = 9  # digits of strokes in m
 FEWER_STARTS: Final = 3  # times fewer starts than elsewhere, as each is followed at every frequency
-PERCENTILES: Final = (10, 50, 90)
+PERCENTILES: Final = (10, 90)
 
 
 def find(bench: Bench, effort: Effort) -> Found:
-    """Thresholds of every start, at every stroke, in every model."""
+    """Ends of every start at every frequency and stroke, and the thresholds that follow."""
     p = bench.parameters
     frequencies = np.arange(LOWEST, HIGHEST + 1, effort.step)
     strokes = np.linspace(p.strokes[0], p.strokes[-1], effort.strokes)
     strokes = np.unique(np.round(np.append(strokes, STATED_STROKE), NANOMETRES))
-    thresholds = {model: _thresholds(bench, model, effort, strokes, frequencies) for model in MODELS}
-    fits = {model: fits_of(strokes, np.median(rows, axis=1)) for model, rows in thresholds.items()}
+    row = int(np.argmin(np.abs(strokes - STATED_STROKE)))
+    found = {}
+    for model in MODELS:
+        count = max(bench.starts_of(model, effort) // FEWER_STARTS, 1)
+        found[model] = thresholds(strokes, frequencies, ends_of(bench, model, strokes, frequencies, count))
 
     def draw(figure: Figure) -> None:
-        axes = figure.add_subplot()
-        for model, rows in thresholds.items():
-            low, middle, high = np.percentile(rows, PERCENTILES, axis=1)
-            style = look(model)
-            axes.fill_between(MICRO * strokes, low, high, color=style["color"], alpha=0.13, linewidth=0)
-            axes.plot(MICRO * strokes, middle, **style, marker="o", markersize=4)
-        fine = np.linspace(strokes[0], strokes[-1], 100)
-        exponent, level = fits[PAPER]["power_law"][:2]
-        axes.plot(MICRO * fine, level * (fine / STATED_STROKE) ** exponent, color="#c8371b", linewidth=0.6)
-        axes.plot(MICRO * STATED_STROKE, STATED, "*", color="#b8862d", markersize=13, label="the paper's 320 Hz")
-        finish(axes, "stroke [µm]", "threshold frequency [Hz]", "figure 18: median, and 10 to 90 % of the starts")
+        left, right = figure.subplots(1, 2, width_ratios=(1.1, 1))
+        draw_thresholds(left, strokes, frequencies, found)
+        draw_ends(right, frequencies, {model: [ends[row] for ends in one.ends] for model, one in found.items()})
+        left.plot(MICRO * STATED_STROKE, STATED, "*", color="#b8862d", markersize=13, label="the paper's 320 Hz")
+        finish(left, "stroke [µm]", "threshold frequency [Hz]", "figure 18")
+        right.axvline(STATED, color="#b8862d", linewidth=0.9)
+        finish(right, "frequency [Hz]", "share of the starts [%]", f"stroke {MICRO * STATED_STROKE:g} µm")
 
-    data: dict[str, Any] = {"strokes": strokes.tolist(), "frequencies": frequencies.tolist(), "fits": fits}
-    data |= {f"thresholds_{model}": rows.tolist() for model, rows in thresholds.items()}
-    verdict = _verdict(strokes, thresholds, fits, effort.step)
-    return Found("fig18", "Threshold of convergence", (verdict,), data, draw, (8.0, 5.0),
-                 "For each start the lowest frequency at which the part is lost; the thin line is the power law "
-                 "through the paper's scheme.")  # fmt: skip
+    data: dict[str, Any] = {"strokes": strokes.tolist(), "frequencies": frequencies.tolist()}
+    for model, one in found.items():
+        data[f"converge_{model}"], data[f"lost_{model}"] = (ends.mean(axis=2).tolist() for ends in one.ends)
+    verdicts = _verdicts(strokes, frequencies, found, row)
+    return Found("fig18", "Threshold of convergence", verdicts, data, draw, (13.0, 5.2),
+                 "Left: the frequency that tells best between converging below and being lost above, with 10 and 90 % "
+                 "of what single starts give; dots: our equations on the closed form, frequencies above it at which "
+                 "some starts converge all the same, circles: below it, and some are lost, the larger the more. "
+                 "Right: what becomes of the starts.")  # fmt: skip
 
 
-def _thresholds(bench: Bench, model: str, effort: Effort, strokes: FloatArray, frequencies: FloatArray) -> FloatArray:
-    """The lowest frequency [Hz] at which the part is lost, (strokes, starts); one step beyond the last: none."""
+def ends_of(bench: Bench, model: str, strokes: FloatArray, frequencies: FloatArray, count: int) -> Ends:
+    """Follows `count` starts at every frequency (F,) [Hz] and stroke (S,) [m]."""
     p = bench.parameters
-    count = max(bench.starts_of(model, effort) // FEWER_STARTS, 1)
     starts = bench.starts(p.start, count)
-    found = np.full((len(strokes), count), frequencies[-1] + effort.step)
+    ends = Ends(*np.zeros((2, len(strokes), len(frequencies), count), dtype=np.bool_))
     for i, stroke in enumerate(strokes.tolist()):
-        for frequency in frequencies.tolist():
-            open_ = np.flatnonzero(found[i] > frequencies[-1])
-            if not len(open_):
-                break
+        for k, frequency in enumerate(frequencies.tolist()):
             drive = bench.drive(frequency, stroke)
-            paths = bench.paths(model, [drive], starts[open_], p.cycles / frequency)
-            lost = [path.lost(p.far) for path in paths]
-            found[i, open_[lost]] = frequency
-    return found
+            paths = bench.paths(model, [drive], starts, bench.duration(drive))
+            ends.converges[i, k] = [path.converged(1 / drive.frequency, p.near) for path in paths]
+            ends.lost[i, k] = [path.lost(p.far) for path in paths]
+    return Ends(ends.converges & ~ends.lost, ends.lost)
 
 
-def fits_of(strokes: FloatArray, thresholds: FloatArray) -> dict[str, list[float]]:
-    """A power law (exponent, Hz at 150 um, misfit) and a quadratic through the origin's axis (three "
-    "coefficients, misfit).
-
-    Misfits are the root of the mean squared distance, Hz.
-    """
-    x = strokes / STATED_STROKE
-    exponent, level = np.polyfit(np.log(x), np.log(thresholds), 1)
-    law = np.exp(level) * x**exponent
-    quadratic = np.polyfit(x, thresholds, min(2, len(x) - 1))
-    square = np.polyval(quadratic, x)
-    return {
-        "power_law": [float(exponent), float(np.exp(level)), _misfit(law, thresholds)],
-        "quadratic": [*map(float, quadratic), _misfit(square, thresholds)],
-    }
-
-
-def _misfit(fitted: ArrayLike, values: FloatArray) -> float:
-    return float(np.sqrt(((np.asarray(fitted) - values) ** 2).mean()))
+def thresholds(strokes: FloatArray, frequencies: FloatArray, ends: Ends) -> Thresholds:
+    """Thresholds at every stroke, their scatter over the starts, and curves through them."""
+    split, scatter = [], []
+    others: dict[str, list[float]] = {"losses alone": [], "convergence alone": [], "the median first loss": []}
+    for converges, lost in zip(*ends, strict=True):
+        split.append(best_split(frequencies, converges, lost))
+        starts = converges.shape[1]
+        alone = [best_split(frequencies, converges[:, [n]], lost[:, [n]]).frequency for n in range(starts)]
+        known = np.array(alone)[np.isfinite(alone)]
+        low, high = np.percentile(known, PERCENTILES) if len(known) else (np.nan, np.nan)
+        scatter.append((float(low), float(high)))
+        both = best_split(frequencies, ~lost, lost).frequency, best_split(frequencies, converges, ~converges).frequency
+        for row, frequency in zip(others.values(), (*both, first_loss(frequencies, lost)), strict=True):
+            row.append(frequency)
+    levels = np.array([one.frequency for one in split])
+    found = {name: np.array(row) for name, row in others.items()}
+    return Thresholds(ends, split, scatter, fits_of(strokes, levels, STATED_STROKE), found)
 
 
-def _verdict(strokes: FloatArray, thresholds: dict[str, FloatArray], fits: dict[str, Any], step: float) -> Verdict:
-    row = int(np.argmin(np.abs(strokes - STATED_STROKE)))
-    answers: dict[str, Answer] = {}
-    numbers: dict[str, Any] = {}
-    for model, rows in thresholds.items():
-        low, middle, high = np.percentile(rows[row], PERCENTILES).tolist()
-        falls = bool((np.diff(np.median(rows, axis=1)) <= 0).all())
-        exponent, _, misfit = fits[model]["power_law"]
-        quadratic = fits[model]["quadratic"][-1]
-        numbers |= {f"threshold_{model}": [low, middle, high], f"fit_{model}": fits[model]}
-        numbers[f"medians_{model}"] = np.median(rows, axis=1).tolist()
-        text = (
-            f"{middle:.0f} Hz ({low:.0f} to {high:.0f}) at 150 um; as stroke^{exponent:.2f}, off by {misfit:.0f} Hz, "
-            f"quadratic by {quadratic:.0f} Hz"
-        )
-        answers[model] = of_checks(text, [abs(middle - STATED) <= WITHIN, falls, quadratic <= step])
-    return Verdict(
-        "18", "The threshold is 320 Hz at 150 um, and a quadratic function of the stroke from 100 to 200 um.", answers,
-        "The lowest frequency at which a part leaves, as in figure 17b, or comes off. Median over starts, with 10 "
-        f"and 90 %; frequencies are {step:g} Hz apart. A quadratic has one free number more than the power law. Near "
-        "the threshold single starts converge at one frequency, not at the next, and again beyond it.",
-        numbers,
+def mixed(frequencies: FloatArray, converges: BoolArray, lost: BoolArray) -> tuple[float, float] | None:
+    """From the lowest frequency [Hz] at which a start is lost to the highest at which one converges; None: no such."""
+    first, last = (np.flatnonzero(ends.any(axis=1)) for ends in (lost, converges))
+    if not (len(first) and len(last)) or last[-1] < first[0]:
+        return None
+    return float(frequencies[first[0]]), float(frequencies[last[-1]])
+
+
+def exceptions(frequencies: FloatArray, ends: Ends, split: Split) -> tuple[list[float], list[float]]:
+    """Frequencies [Hz] below a threshold at which most of the starts are lost, and above it at which most converge."""
+    early = (frequencies < split.frequency) & (ends.lost.mean(axis=1) > 0.5)
+    again = (frequencies > split.frequency) & (ends.converges.mean(axis=1) > 0.5)
+    return frequencies[early].tolist(), frequencies[again].tolist()
+
+
+def _verdicts(
+    strokes: FloatArray, frequencies: FloatArray, found: dict[str, Thresholds], row: int
+) -> tuple[Verdict, Verdict]:
+    at_stated: dict[str, Answer] = {}
+    curves: dict[str, Answer] = {}
+    numbers: dict[str, Any] = {"strokes": strokes.tolist()}
+    for model, one in found.items():
+        ends = Ends(*(every[row] for every in one.ends))
+        split, both = one.split[row], mixed(frequencies, *ends)
+        early, again = exceptions(frequencies, ends, split)
+        fits = {name: fits_of(strokes, levels, STATED_STROKE) for name, levels in one.others.items()}
+        numbers |= {
+            f"threshold_{model}": split._asdict(), f"scatter_{model}": list(one.scatter[row]), f"mixed_{model}": both,
+            f"lost_below_{model}": early, f"converge_above_{model}": again, f"starts_{model}": ends.lost.shape[1],
+            f"thresholds_{model}": [other.frequency for other in one.split],
+            f"told_{model}": [other.told for other in one.split],
+            f"others_{model}": {name: levels.tolist() for name, levels in one.others.items()},
+            f"fits_{model}": {name: fit and fit._asdict() for name, fit in ({"": one.fits} | fits).items()},
+        }  # fmt: skip
+        by = {name: float(levels[row]) for name, levels in one.others.items()}
+        at_stated[model] = _at_stated(split, one.scatter[row], ends.lost.shape[1], both, (early, again), by)
+        curves[model] = _curve(one.fits, fits)
+    step = frequencies[1] - frequencies[0]
+    return (
+        Verdict(
+            "18", "At 150 um parts converge below 320 Hz, and leave above.", at_stated,
+            f"The threshold is the frequency that tells best: the share of (frequency, start) pairs from {LOWEST:g} to "
+            f"{HIGHEST:g} Hz, {step:g} Hz apart, that converge below it or are lost above. Lost: gone as in figure "
+            "17b, or off the surface. Some are neither: they do not move, or go to and fro. By losses alone: "
+            "lost or not; by convergence alone: converged or not; the median first loss: the lowest frequency at which "
+            "a start is lost, whatever it does above. Met: within "
+            f"{WITHIN:g} Hz, {percent(MOST)} converge below, {percent(MOST)} are lost above.", numbers,
+        ),
+        Verdict(
+            "18 (curve)", "The threshold is a quadratic function of the stroke from 100 to 200 um.", curves,
+            f"Met: a quadratic is off by no more than {FIT_WITHIN:g} Hz, and by less than a power law. The misfit is "
+            "the root of the summed squares over the numbers left free; thresholds lie half-way between frequencies "
+            f"{step:g} Hz apart.", numbers,
+        ),
     )  # fmt: skip
+
+
+def _at_stated(
+    split: Split,
+    scatter: tuple[float, float],
+    starts: int,
+    both: tuple[float, float] | None,
+    wrong: tuple[list[float], list[float]],
+    others: dict[str, float],
+) -> Answer:
+    if not np.isfinite(split.frequency):
+        return Answer(f"none of {starts} starts converges or is lost at any frequency", 0.0)
+    text = (
+        f"{split.frequency:.0f} Hz ({scatter[0]:.0f} to {scatter[1]:.0f} by single ones of {starts} starts): it tells "
+        f"{percent(split.told)}; below {percent(split.below)} converge, above {percent(split.above)} are lost"
+    )
+    text += f"; both happen from {both[0]:.0f} to {both[1]:.0f} Hz" if both else "; nowhere do both happen"
+    for frequencies, what in zip(wrong, ("are lost already", "converge again"), strict=True):
+        text += f"; most {what} at {', '.join(f'{f:.0f}' for f in frequencies)} Hz" if frequencies else ""
+    text += "; by " + ", by ".join(f"{name} {frequency:.0f} Hz" for name, frequency in others.items())
+    return of_checks(text, [abs(split.frequency - STATED) <= WITHIN, split.below >= MOST, split.above >= MOST])
+
+
+def _curve(fits: Fits | None, others: dict[str, Fits | None]) -> Answer:
+    if fits is None:
+        return Answer("too few thresholds for a curve", 0.0)
+    text = "; ".join([str(fits), *(f"by {name} {fit}" for name, fit in others.items() if fit)])
+    return of_checks(text, [fits.quadratic_misfit <= FIT_WITHIN, fits.quadratic_misfit < fits.law_misfit])

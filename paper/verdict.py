@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-REPRODUCED, PARTLY, NOT = "reproduced", "partly", "not"
-MOST, FEW = 0.9, 0.1  # shares of starts: what so many do is what the model says; what so few do is not
+REPRODUCED, PARTLY, NOT, BEYOND = "reproduced", "partly", "not", "beyond the paper"
 
 
 class Answer(NamedTuple):
@@ -26,9 +25,12 @@ class Verdict:
     answers: dict[str, Answer]  # by model
     why: str  # what makes the difference, or what the agreement rests on
     numbers: dict[str, Any] = field(default_factory=dict)  # what was measured, by name, in SI units
+    beyond: bool = False  # no statement of the paper: nothing to judge
 
     @property
     def verdict(self) -> str:
+        if self.beyond:
+            return BEYOND
         met = [answer.met for answer in self.answers.values()]
         if min(met) >= 1:
             return REPRODUCED
@@ -49,8 +51,3 @@ class Verdict:
 def of_checks(text: str, checks: Sequence[bool]) -> Answer:
     """An answer that meets as much of the statement as it passes checks."""
     return Answer(text, sum(map(bool, checks)) / len(checks))
-
-
-def of_share(text: str, share: float) -> Answer:
-    """An answer of a share of starts that do what the paper says: nearly all, nearly none, or some."""
-    return Answer(text, 1.0 if share >= MOST else 0.0 if share <= FEW else 0.5)

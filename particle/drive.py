@@ -12,6 +12,7 @@ from particle.drive_table import ORDER as ORDER
 from particle.drive_table import AnyDrive as AnyDrive
 from particle.drive_table import DriveTable as DriveTable
 from particle.drive_table import Evaluated, FloatArray, Segments
+from particle.drive_table import accelerations as accelerations
 from particle.drive_table import drive_kink as drive_kink
 from particle.drive_table import drive_piece as drive_piece
 from particle.drive_table import drive_table as drive_table

@@ -84,6 +84,15 @@ class Evaluated:
         return values[0].reshape(time.shape), values[1].reshape(time.shape), values[2].reshape(time.shape)
 
 
+def accelerations(table: DriveTable, time: float) -> FloatArray:
+    """d^2 h/dt^2 [m/s^2] of all drives (N,) at one time [s]."""
+    found, piece = np.empty(len(table.delay)), np.empty(ORDER)
+    for i in range(len(found)):
+        drive_piece(table, i, float(time), 1.0, piece)
+        found[i] = 2.0 * piece[2]
+    return found
+
+
 def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
     """The drives as kernels read them."""
     parts = [drive.segments() for drive in drives]

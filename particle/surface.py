@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from particle.cells import NOWHERE, Cells, CellStore, OneCell
-from particle.drive import ORDER, AnyDrive, DriveTable, drive_table, monomial_table
+from particle.drive import ORDER, AnyDrive, DriveTable, accelerations, drive_table, monomial_table
 from particle.fields import evaluate_points
 
 FloatArray = NDArray[np.float64]
@@ -136,6 +136,12 @@ class SurfaceMotion:
         w, w_t, w_tt, x, y, xt, yt, xx, xy_, yy = rows.T
         hessian = np.stack([np.stack([xx, xy_], axis=-1), np.stack([xy_, yy], axis=-1)], axis=-2)
         return SurfaceState(w, w_t, w_tt, np.stack([x, y], axis=-1), np.stack([xt, yt], axis=-1), hessian)
+
+    def base_acceleration(self, time: float) -> FloatArray:
+        """The acceleration (2,) [m/s^2] of its base along x and y at a time [s]; zero where it does not move."""
+        if not self.moving_base:
+            return np.zeros(2)
+        return accelerations(self.drives, time)[self.shape_count :]
 
 
 def polynomial_surface(

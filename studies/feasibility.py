@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 from coupling.case import Case
 from coupling.progress import Progress, interruptible, silent
 from coupling.run import build_friction, build_scene
+from coupling.whole_file import whole_file
 from meshes import Outline
 from particle import Micropart
 from particle.drive import drive_table
@@ -35,6 +36,7 @@ class Feasibility:
     case: Case
     found: Feasible
     frequency: float  # Hz, of the fastest drive in the case
+    whole_window: float  # s, what the drives do until they repeat themselves, at most the run's duration
     outline: Outline
     actuators: FloatArray  # (N, 2) m
 
@@ -45,29 +47,28 @@ class Feasibility:
 
     def figures(self) -> dict[str, Any]:
         """The figures by name, in SI units; None: there is no such frequency."""
-        found, one = self.found, self.found.at_one
-        moves = np.flatnonzero(found.slipping.peak > 0)
-        loses = np.flatnonzero(found.lost_area > 0)
+        found = self.found
         return {
             "frequency": self.frequency,
             "frequencies": self.frequencies[[0, -1]].tolist(),
             "window": found.window,
-            "peak_area": float(found.feasible.peak[one]),
-            "time_integral": float(found.feasible.integral[one]),
-            "area_where_it_comes_off": float(found.lost_area[one]),
+            "whole_window": self.whole_window,
+            "peak_area": found.own.peak,
+            "time_integral": found.own.integral,
+            "area_where_it_comes_off": found.own.lost_area,
             "frequency_of_largest_peak_area": _top(self.frequencies, found.feasible.peak),
             "largest_peak_area": float(found.feasible.peak.max()),
             "frequency_of_largest_time_integral": _top(self.frequencies, found.feasible.integral),
             "largest_time_integral": float(found.feasible.integral.max()),
-            "lowest_frequency_that_moves_it": float(self.frequencies[moves[0]]) if len(moves) else None,
-            "lowest_frequency_that_loses_it": float(self.frequencies[loses[0]]) if len(loses) else None,
+            "moves_it_from_between": _begins(self.frequencies, found.slipping.peak > 0),
+            "loses_it_from_between": _begins(self.frequencies, found.lost_area > 0),
         }
 
     def dataset(self) -> xarray.Dataset:
         """All of it with labels."""
         import xarray
 
-        found = self.found
+        found, own = self.found, self.found.own
         slipping: Curves = found.slipping
         return xarray.Dataset(
             {
@@ -76,9 +77,9 @@ class Feasibility:
                 "slipping_peak_area": ("frequency", slipping.peak, {"units": "m^2"}),
                 "slipping_time_integral": ("frequency", slipping.integral, {"units": "m^2 s"}),
                 "lost_area": ("frequency", found.lost_area, {"units": "m^2"}),
-                "area": ("time", found.over_time, {"units": "m^2"}),
-                "share": ("place", found.shares, {"units": "1", "long_name": "share of the window in which it slips"}),
-                "lost": ("place", found.lost.astype(np.int8), {"long_name": "whether the part comes off at some time"}),
+                "area": ("time", own.over_time, {"units": "m^2"}),
+                "share": ("place", own.shares, {"units": "1", "long_name": "share of the window in which it slips"}),
+                "lost": ("place", own.lost.astype(np.int8), {"long_name": "whether the part comes off at some time"}),
                 "x": ("place", found.points[:, 0], {"units": "m"}),
                 "y": ("place", found.points[:, 1], {"units": "m"}),
             },
@@ -95,14 +96,24 @@ class Feasibility:
 
         folder.mkdir(parents=True, exist_ok=True)
         data = folder / f"{self.case.name}.feasibility.nc"
-        partial = data.with_suffix(".partial.nc")
-        self.dataset().to_netcdf(partial, engine="h5netcdf")
-        partial.replace(data)
+        with whole_file(data) as partial:
+            self.dataset().to_netcdf(partial, engine="h5netcdf")
         return data, draw_feasibility(self, folder / f"{self.case.name}.feasibility.png")
 
 
 def _top(frequencies: FloatArray, values: FloatArray) -> float | None:
     return float(frequencies[np.argmax(values)]) if values.max() > 0 else None
+
+
+def _begins(frequencies: FloatArray, holds: NDArray[np.bool_]) -> list[float | None] | None:
+    """The neighbouring frequencies [Hz] between which something begins; the first is None if it holds at the lowest.
+
+    None: it holds at none.
+    """
+    first = np.flatnonzero(holds)
+    if not len(first):
+        return None
+    return [float(frequencies[first[0] - 1]) if first[0] else None, float(frequencies[first[0]])]
 
 
 def feasibility(
@@ -116,7 +127,8 @@ def feasibility(
 
     lowest, highest: Hz, the frequencies of its fastest drive that are looked at, by default a quarter of its own and
     eight times that; delays and dwells shrink with the cycles.  across: places along the plate's longer side.
-    The window is what the drives do until they repeat themselves, at most the run's duration.
+    The window is what the drives do until they repeat themselves, at most the run's duration, and of that no more than
+    `studies.feasible` looks at.
     Raises ValueError for a platform, drives without a frequency, and numbers that make no sense.
     """
     drives_of = [actuator.frequency for actuator in case.actuators]
@@ -129,7 +141,7 @@ def feasibility(
     low = SPAN[0] * frequency if lowest is None else lowest
     high = SPAN[1] * frequency if highest is None else highest
     if not wrong and not 0 < low < high:
-        wrong.append(f"Input lowest of feasibility must be positive and below the highest, {high:g} Hz; got {low:g} Hz")
+        wrong.append(_ends_fault(lowest, highest, low, high))
     if not 10 <= across <= 1000:
         wrong.append(f"Input across of feasibility must be in [10, 1000]; got {across}")
     if wrong:
@@ -138,12 +150,25 @@ def feasibility(
         scene = build_scene(case, progress)
         assert scene.shapes
         until = horizon(drive_table(scene.lifts), 0.0)
-        window = case.run.duration if until is None else min(until, case.run.duration)
+        whole = case.run.duration if until is None else min(until, case.run.duration)
         part = Micropart(case.part.mass, case.part.position, squeeze=case.part.squeeze)
         factors = np.geomspace(low, high, COUNT) / frequency
         with progress("Looking where the part slips"):
             found = interruptible(
-                find_feasible, scene.surface, scene.shapes.outline, part, build_friction(case), window, factors,
+                find_feasible, scene.surface, scene.shapes.outline, part, build_friction(case), whole, factors,
                 case.run.gravity, across,
             )  # fmt: skip
-    return Feasibility(case, found, frequency, scene.shapes.outline, scene.shapes.points)
+    return Feasibility(case, found, frequency, whole, scene.shapes.outline, scene.shapes.points)
+
+
+def _ends_fault(lowest: float | None, highest: float | None, low: float, high: float) -> str:
+    """What is wrong with the ends of the frequencies, in the words of those that were given."""
+    if lowest is None:
+        return (
+            f"Input highest of feasibility must be above the lowest, by default a quarter of the case's, {low:g} Hz; "
+            f"got {high:g} Hz"
+        )
+    limit = f"below the highest, {high:g} Hz" if highest is not None else (
+        f"below the highest, by default eight times the case's, {high:g} Hz"
+    )  # fmt: skip
+    return f"Input lowest of feasibility must be positive and {limit}; got {low:g} Hz"

@@ -12,7 +12,7 @@ Drives that run `factor` times as fast leave shapes and slopes as they are and m
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
@@ -30,7 +30,8 @@ BoolArray = NDArray[np.bool_]
 
 ACROSS: Final = 120  # places along the longer side of the plate
 PER_STROKE: Final = 48  # moments in the shortest stroke
-MOST_MOMENTS: Final = 4096
+MOST_STROKES: Final = 85  # of the shortest, in a window
+KEPT: Final = 20_000_000  # numbers of the surface that are kept from the search for losses to that for slips
 
 
 class Curves(NamedTuple):
@@ -41,25 +42,30 @@ class Curves(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
+class Own:
+    """The same at the drives' own frequency, a factor of 1."""
+
+    peak: float  # m^2, feasible
+    integral: float  # m^2 s, feasible
+    lost_area: float  # m^2
+    shares: FloatArray = field(repr=False)  # (n,) of the window's time in which the part slips attached
+    lost: BoolArray = field(repr=False)  # (n,) whether it comes off at some moment
+    over_time: FloatArray = field(repr=False)  # (K,) m^2, the feasible area
+
+
+@dataclass(frozen=True, eq=False)
 class Feasible:
     """Where a part slips without coming off, over factors (F,) of frequency, moments (K,) and places (n,)."""
 
     factors: FloatArray  # (F,)
-    window: float  # s, at a factor of 1; it is shorter by the factor
+    window: float  # s, at a factor of 1, as looked at; it is shorter by the factor
     moments: FloatArray = field(repr=False)  # (K,) s, at a factor of 1
     points: FloatArray = field(repr=False)  # (n, 2) m, centres of squares
     spacing: float  # m, the squares' side
     feasible: Curves = field(repr=False)
     slipping: Curves = field(repr=False)
     lost_area: FloatArray = field(repr=False)  # (F,) m^2, where it comes off at some moment
-    shares: FloatArray = field(repr=False)  # (n,) of the window's time in which the part slips attached, at factor 1
-    lost: BoolArray = field(repr=False)  # (n,) whether it comes off at some moment, at factor 1
-    over_time: FloatArray = field(repr=False)  # (K,) m^2, the feasible area at factor 1
-
-    @property
-    def at_one(self) -> int:
-        """The row of the factor 1."""
-        return int(np.argmin(np.abs(self.factors - 1)))
+    own: Own
 
 
 def find_feasible(
@@ -74,34 +80,54 @@ def find_feasible(
 ) -> Feasible:
     """The feasible areas of a part at rest on a surface within an outline, over a window [s] from the start.
 
-    factors: (F,) what the drives' frequencies are multiplied with; 1 is added if it is not among them.
+    factors: (F,) what the drives' frequencies are multiplied with, the base's drives among them.
+    window: no more of it is looked at than MOST_STROKES of the drives' shortest strokes.
     gravity: as for `particle.simulate`.  across: places along the longer side.
     The part's place and velocity do not matter.
     """
-    factors = np.unique(np.append(np.asarray(factors, dtype=float), 1.0))
+    factors = np.sort(np.asarray(factors, dtype=float))
+    every = np.append(factors, 1.0)
     points, spacing = places(outline, across)
     stroke_time = float(surface.drives.stroke_time.min(initial=window))
-    count = int(np.clip(np.ceil(PER_STROKE * window / stroke_time), PER_STROKE, MOST_MOMENTS))
+    window = min(window, MOST_STROKES * stroke_time)
+    count = max(int(np.ceil(PER_STROKE * window / stroke_time)), PER_STROKE)
     moments = window * (np.arange(count) + 0.5) / count
     vector = np.array([0.0, 0.0, -gravity]) if isinstance(gravity, (int, float)) else np.array(gravity, dtype=float)
     resting = Part(part.mass, -float(vector[2]), float(vector[0]), float(vector[1]), part.squeeze, friction.law)
-    one = int(np.argmin(np.abs(factors - 1)))
-    lost = np.zeros((len(factors), len(points)), dtype=np.bool_)
-    for time in moments.tolist():
-        state = surface.evaluate(points, time)
-        find_lost(state.w_tt, state.gradient, resting, factors, lost)
-    counts = np.zeros((2, len(factors), count))
+    lost = np.zeros((len(every), len(points)), dtype=np.bool_)
+    states = _states(surface, points, moments)
+    for state in states():
+        find_lost(*state, resting, every, lost)
+    counts = np.zeros((2, len(every), count))
     slips = np.zeros(len(points))
-    for k, time in enumerate(moments.tolist()):
-        state = surface.evaluate(points, time)
-        count_slips(state.w_tt, state.gradient, resting, factors, lost, counts[:, :, k], slips, one)
+    for k, state in enumerate(states()):
+        count_slips(*state, resting, every, lost, counts[:, :, k], slips)
     areas = counts * spacing**2
     step = window / count
-    curves = [Curves(area.max(axis=1), area.sum(axis=1) * step / factors) for area in areas]
-    return Feasible(
-        factors, window, moments, points, spacing, curves[0], curves[1], lost.sum(axis=1) * spacing**2,
-        slips / count, lost[one], areas[0, one],
-    )  # fmt: skip
+    peaks, integrals = areas.max(axis=2), areas.sum(axis=2) * step / every
+    feasible, slipping = (Curves(peaks[k, :-1], integrals[k, :-1]) for k in (0, 1))
+    lost_area = lost.sum(axis=1) * spacing**2
+    own = Own(float(peaks[0, -1]), float(integrals[0, -1]), float(lost_area[-1]), slips / count, lost[-1], areas[0, -1])
+    return Feasible(factors, window, moments, points, spacing, feasible, slipping, lost_area[:-1], own)
+
+
+def _states(
+    surface: SurfaceMotion, points: FloatArray, moments: FloatArray
+) -> Callable[[], Iterable[tuple[FloatArray, FloatArray, FloatArray]]]:
+    """w_tt (n,), slopes (n, 2) and the base's acceleration (2,) at one moment after the other, as often as asked for.
+
+    They are kept where they take little memory, else found again.
+    """
+
+    def find() -> Iterator[tuple[FloatArray, FloatArray, FloatArray]]:
+        for time in moments.tolist():
+            state = surface.evaluate(points, time)
+            yield state.w_tt, state.gradient, surface.base_acceleration(time)
+
+    if 3 * len(points) * len(moments) > KEPT:
+        return find
+    kept = list(find())
+    return lambda: kept
 
 
 def places(outline: Outline, across: int) -> tuple[FloatArray, float]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -20,6 +19,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from coupling.plate_picture import marker_size
 from coupling.readable import readable
 from coupling.rim import rim_curves
+from coupling.whole_file import whole_file
 from studies.feasible import Feasible, FloatArray
 
 if TYPE_CHECKING:
@@ -41,24 +41,20 @@ def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
         f"{feasibility.case.name}: fastest drive {feasibility.frequency:g} Hz, {1e3 * feasibility.found.window:.4g} ms"
     )
     figure.suptitle(said, parse_math=False)
-    partial = path.with_suffix(f".{os.getpid()}.partial.png")
-    try:
+    with whole_file(path) as partial:
         figure.savefig(partial, dpi=110)
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 
 def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
     found, box = feasibility.found, feasibility.outline.box
     unit = readable(box, "m")
-    x, y, share = _grid(found, np.where(found.lost, np.nan, 100 * found.shares))
+    x, y, share = _grid(found, np.where(found.own.lost, np.nan, 100 * found.own.shares))
     half = found.spacing / 2
     edges = [np.append(side - half, side[-1] + half) * unit.per_si for side in (x, y)]
     held = np.ma.masked_where(~(share > 0), share)
     mesh = axes.pcolormesh(*edges, held.T, cmap="viridis", vmin=0)
-    lost = _grid(found, np.where(found.lost, 1.0, np.nan))[2]
+    lost = _grid(found, np.where(found.own.lost, 1.0, np.nan))[2]
     axes.pcolormesh(*edges, np.ma.masked_invalid(lost).T, cmap=ListedColormap([LOST]), vmin=0, vmax=1)
     if held.count():
         figure.colorbar(mesh, ax=axes, label="share of the time in which the part slips [%]", shrink=0.8)
@@ -66,7 +62,7 @@ def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
     axes.add_collection(LineCollection(curves, colors="black", linewidths=1.5))
     size = marker_size(feasibility.actuators, box)
     keys: list[Artist] = [Patch(facecolor="white", edgecolor="black", label="the part stays at rest")]
-    if found.lost.any():
+    if found.own.lost.any():
         keys.append(Patch(facecolor=LOST, label="it comes off at some moment"))
     if size:
         axes.plot(

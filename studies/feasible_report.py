@@ -25,10 +25,28 @@ def lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
             f"{_integral(figures['largest_time_integral'])} at "
             f"{figures['frequency_of_largest_time_integral']:.4g} Hz, in as many cycles",
         ),
-        ("moves", f"from {figures['lowest_frequency_that_moves_it']:.4g} Hz, of {looked_at}"),
     ]
-    loses = figures["lowest_frequency_that_loses_it"]
-    return [*rows, ("loses", f"at none of {looked_at}" if loses is None else f"from {loses:.4g} Hz")]
+    for said, between in (("moves", figures["moves_it_from_between"]), ("loses", figures["loses_it_from_between"])):
+        rows.append((said, f"{_from(between)} of {looked_at}"))
+    return rows
+
+
+def _from(between: list[float | None] | None) -> str:
+    if between is None:
+        return "at none"
+    before, first = between
+    return f"from {first:.4g} Hz, the lowest," if before is None else f"from between {before:.3g} and {first:.3g} Hz,"
+
+
+def warnings(figures: dict[str, Any]) -> list[str]:
+    """What the figures leave out, in sentences."""
+    part, whole = figures["window"], figures["whole_window"]
+    if part >= whole:
+        return []
+    return [
+        f"Only the first {1e3 * part:.4g} ms were looked at, of {1e3 * whole:.4g} ms until the drives repeat "
+        "themselves or the run ends; shorten the run, or give the drives frequencies with a short common period."
+    ]
 
 
 def _area(area: float) -> str:

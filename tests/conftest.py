@@ -19,6 +19,9 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    # Files with slow tests first, so that no process ends long after the others.
+    slow = {item.path for item in items if "slow" in item.keywords}
+    items.sort(key=lambda item: item.path not in slow)
     if numba.config.DISABLE_JIT:
         skip = pytest.mark.skip(reason="NUMBA_DISABLE_JIT is set: this march takes too long in plain Python")
         for item in items:

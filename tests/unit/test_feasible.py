@@ -9,9 +9,21 @@ from click.testing import CliRunner
 from command_line.main import main
 from coupling import read_case, surface_motion
 from fem_plate.analytic import DiscShapes
-from particle import ConstantFriction, Drive, KogutEtsion, Micropart
+from particle import (
+    ConstantFriction,
+    CoulombAdhesion,
+    Drive,
+    HermiteDrive,
+    KogutEtsion,
+    Micropart,
+    Outcome,
+    TableDrive,
+    polynomial_surface,
+    simulate,
+)
 from studies.feasibility import feasibility
 from studies.feasible import find_feasible, places
+from studies.feasible_report import warnings
 
 RADIUS, STROKE, MASS, GRAVITY = 300e-6, 150e-6, 2e-9, 9.80665
 SHAPES = DiscShapes([[0.0, 0.0]], RADIUS)
@@ -50,6 +62,7 @@ def test_areas_are_those_of_the_radial_integral(frequency):
     assert found.feasible.integral[0] == pytest.approx(integral, rel=0.01)
     assert found.lost_area[0] == pytest.approx(lost, rel=0.02, abs=1e-12)
     assert (found.lost_area[0] > 0) == (frequency == 1000.0)
+    assert [found.own.peak, found.own.integral] == [found.feasible.peak[0], found.feasible.integral[0]]
 
 
 @pytest.mark.compiled
@@ -59,8 +72,8 @@ def test_a_factor_is_a_drive_that_runs_so_much_faster():
     for frequency, factor in ((300.0, 2.5), (750.0, 1.0)):
         surface = surface_motion(SHAPES, [Drive(STROKE, frequency)])
         found = find_feasible(surface, SHAPES.outline, PART, law, 1 / frequency, np.array([factor]), GRAVITY, 40)
-        row = int(np.argmin(np.abs(found.factors - factor)))
-        both.append([found.feasible.peak[row], found.feasible.integral[row], found.slipping.peak[row]])
+        assert found.factors.tolist() == [factor]
+        both.append([found.feasible.peak[0], found.feasible.integral[0], found.slipping.peak[0]])
     assert both[0] == pytest.approx(both[1], rel=1e-9)
 
 
@@ -70,8 +83,8 @@ def test_nothing_is_lost_without_pull_off_and_nothing_moves_where_friction_holds
         find_feasible(surface, SHAPES.outline, PART, ConstantFriction(limit), 5e-4, np.ones(1), GRAVITY, 10)
         for limit in (1e-12, 1.0)
     )
-    assert not loose.lost.any() and loose.feasible.peak[0] > 0
-    assert held.slipping.peak[0] == held.feasible.integral[0] == held.shares.max() == 0
+    assert not loose.own.lost.any() and loose.feasible.peak[0] > 0
+    assert held.slipping.peak[0] == held.feasible.integral[0] == held.own.shares.max() == 0
 
 
 def test_a_tilt_alone_makes_a_part_slip():
@@ -80,7 +93,42 @@ def test_a_tilt_alone_makes_a_part_slip():
         found = find_feasible(
             surface, SHAPES.outline, PART, ConstantFriction(5 * MASS), 1e-2, np.ones(1), (tilt, 0.0, -8.0), 8
         )
-        assert found.shares.all() == found.shares.any() == moves
+        assert found.own.shares.all() == found.own.shares.any() == moves
+
+
+@pytest.mark.parametrize("moves", [True, False])
+def test_a_base_that_shakes_makes_a_part_slip_as_the_integrator_says(moves):
+    """Level ground that goes 1 mm to the side in 10 ms: friction bears its hardest acceleration or does not."""
+    base = TableDrive([0.0, 1e-2], [0.0, 1e-3]), TableDrive([0.0, 1e-2], [0.0, 0.0])
+    surface = polynomial_surface([[0.0]], base)
+    hardest = float(np.abs(base[0].evaluate(np.linspace(0, 1e-2, 1001))[2]).max())
+    law = ConstantFriction((0.9 if moves else 1.1) * hardest * MASS)
+    found = find_feasible(surface, SHAPES.outline, PART, law, 1e-2, np.array([0.5, 2.0]), GRAVITY, 10)
+    assert found.own.shares.all() == found.own.shares.any() == moves
+    assert (found.slipping.peak > 0).tolist() == [False, True]
+    assert (simulate(surface, PART, law, 1e-2).path_length > 0) == moves
+
+
+def test_a_base_that_shakes_a_slope_lifts_the_part():
+    """w = x: pushed towards +x the slope falls away from under the part, at b.grad(w) > g."""
+    for acceleration, lost in ((9.7, False), (9.9, True)):
+        base = HermiteDrive.of(lambda t, a=acceleration: (a * t**2 / 2, a * t, a + 0 * t), 1e-2, 4)
+        still = TableDrive([0.0, 1e-2], [0.0, 0.0])
+        surface = polynomial_surface([[0.0], [1.0]], (base, still))
+        law = CoulombAdhesion(0.5, 0.0)
+        found = find_feasible(surface, SHAPES.outline, PART, law, 1e-2, np.ones(1), GRAVITY, 10)
+        assert found.own.lost.all() == found.own.lost.any() == lost
+        outcome = simulate(surface, PART, law, 1e-2).outcome
+        assert (outcome is Outcome.DETACHED) == lost
+
+
+@pytest.mark.compiled
+def test_a_long_window_is_cut_and_the_rest_of_it_is_not_hidden():
+    surface = surface_motion(SHAPES, [Drive(STROKE, 400.0)])
+    found = find_feasible(surface, SHAPES.outline, PART, ConstantFriction(MASS), 1.0, np.ones(1), GRAVITY, 10)
+    assert found.window == pytest.approx(85 / 800) and len(found.moments) == 85 * 48
+    figures = {"window": found.window, "whole_window": 1.0}
+    assert "first 106.2 ms" in warnings(figures)[0] and warnings(figures | {"whole_window": found.window}) == []
 
 
 def test_places_fill_the_plate():
@@ -97,7 +145,9 @@ def test_command_writes_map_and_labelled_data(tmp_path):
     done = CliRunner().invoke(main, ["feasibility", CASE, *options])
     assert done.exit_code == 0, done.output
     figures = json.loads(done.stdout)
-    assert 100 < figures["lowest_frequency_that_moves_it"] < 300 < figures["lowest_frequency_that_loses_it"] < 2000
+    moves, loses = figures["moves_it_from_between"], figures["loses_it_from_between"]
+    assert 100 < moves[0] < moves[1] < 300 < loses[0] < loses[1] < 2000
+    assert figures["frequencies"] == pytest.approx([100, 2000]) and figures["warnings"] == []
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "one_actuator.feasibility.nc", "one_actuator.feasibility.png",
     ]  # fmt: skip
@@ -111,6 +161,8 @@ def test_command_writes_map_and_labelled_data(tmp_path):
     [
         (["--lowest", "5 um"], "--lowest must be a frequency"),
         (["--lowest", "5 kHz", "--highest", "1 kHz"], "below the highest"),
+        (["--highest", "10 Hz"], "Input highest of feasibility must be above the lowest, by default a quarter"),
+        (["--lowest", "90 kHz"], "below the highest, by default eight times the case's, 2400 Hz"),
         (["--across", "3"], "across"),
     ],
 )
@@ -118,6 +170,14 @@ def test_command_refuses_what_makes_no_sense(tmp_path, options, said):
     done = CliRunner().invoke(main, ["feasibility", CASE, *options, "-o", str(tmp_path / "new")])
     assert done.exit_code == 2 and said in done.output
     assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.compiled
+def test_only_the_frequencies_asked_for_are_in_the_curves():
+    found = feasibility(read_case(CASE), 1000.0, 2000.0, 12)
+    assert found.frequencies[[0, -1]] == pytest.approx([1000, 2000]) and len(found.frequencies) == 31
+    assert found.figures()["moves_it_from_between"] == [None, pytest.approx(1000)]
+    assert found.found.own.integral > 0
 
 
 def test_a_platform_is_refused():

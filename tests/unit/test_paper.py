@@ -9,11 +9,12 @@ from matplotlib.figure import Figure
 from command_line.main import main
 from paper.catalogue import MODULES, finder, modules_of
 from paper.dead_zones import touched
+from paper.found import Found
 from paper.models import Bench
 from paper.page import page_of
 from paper.parameters import PARAMETERS, TINY
 from paper.reproduction import reproduce, rounded
-from paper.verdict import NOT, PARTLY, REPRODUCED, Answer, Verdict, of_checks, of_share
+from paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Answer, Verdict, of_checks
 
 pytestmark = pytest.mark.compiled
 
@@ -24,11 +25,11 @@ def bench():
 
 
 @pytest.mark.parametrize("module", MODULES)
-def test_figure_runs_and_has_its_verdict(module, bench):
+def test_figure_runs_and_is_written(module, bench):
     found = finder(module)(bench, TINY)
     assert found.verdicts and found.caption and found.title
     for verdict in found.verdicts:
-        assert verdict.verdict in (REPRODUCED, PARTLY, NOT)
+        assert verdict.verdict in (REPRODUCED, PARTLY, NOT, BEYOND)
         assert verdict.statement and verdict.why and verdict.numbers
         assert set(verdict.answers) <= {"paper", "closed", "plate"}
         assert all(answer.text and 0 <= answer.met <= 1 for answer in verdict.answers.values())
@@ -43,18 +44,21 @@ def test_some_figures_are_written_and_a_page_of_all_only(tmp_path):
     done = reproduce(["fig12", "FIG4"], tmp_path, TINY)
     assert [path.name for path in done.files] == ["fig3-4.png", "fig3-4.json", "fig11-12.png", "fig11-12.json"]
     assert all(path.exists() for path in done.files) and not (tmp_path / "paper.md").exists()
-    assert {verdict.figure for verdict in done.verdicts} == {"3", "4", "11", "12"}
+    assert {verdict.figure for verdict in done.verdicts} == {"3", "4", "4 (reversals)", "11", "12"}
 
 
 def test_names_of_figures():
     assert modules_of([]) == modules_of(["all"]) == list(MODULES)
     assert modules_of(["fig6", "fig5", "fig22"]) == ["feasible_area", "accuracy"]
+    assert modules_of(["17", "17a", "Fig17b", "fig. 19", "figure 17"]) == ["convergence"]
+    with pytest.raises(ValueError, match=r'"Fig7" \(figures 1, 2 and 7 to 10 are drawings\), "170"'):
+        modules_of(["Fig7", "170", "17"])
 
 
 def test_command_prints_verdicts_and_refuses_other_figures(tmp_path):
     done = CliRunner().invoke(main, ["reproduce", "fig13", "--json", "--output", str(tmp_path)])
     assert done.exit_code == 0, done.output
-    assert [verdict["figure"] for verdict in json.loads(done.stdout)["verdicts"]] == ["13", "14"]
+    assert [verdict["figure"] for verdict in json.loads(done.stdout)["verdicts"]] == ["13, 14", "13, 14 (value)"]
     wrong = CliRunner().invoke(main, ["reproduce", "fig71", "figure 2", "--output", str(tmp_path / "new")])
     assert wrong.exit_code == 2 and '"fig71" (did you mean "fig21"?)' in wrong.output and '"figure 2"' in wrong.output
     assert not (tmp_path / "new").exists()
@@ -66,9 +70,16 @@ def test_a_verdict_follows_from_the_answers(met, said):
     assert Verdict("1", "", answers, "").verdict == said
 
 
-def test_shares_and_checks():
-    assert [of_share("", share).met for share in (1.0, 0.9, 0.5, 0.1, 0.0)] == [1, 1, 0.5, 0, 0]
+def test_checks_and_what_is_beyond_the_paper():
     assert of_checks("", [True, False]).met == 0.5
+    beyond = Verdict("1", "", {"plate": Answer("", 1.0)}, "", beyond=True)
+    assert beyond.verdict == BEYOND
+
+
+def test_what_is_beyond_the_paper_is_not_counted():
+    rows = [Verdict(str(k), "", {"plate": Answer("", 1.0)}, "", beyond=k == 0) for k in range(3)]
+    found = Found("x", "", tuple(rows), {}, lambda _: None)
+    assert "Of 2 statements 2 are reproduced, 0 partly" in page_of([found], TINY, PARAMETERS, "paper")
 
 
 @pytest.mark.parametrize(

@@ -165,13 +165,13 @@ def test_a_kink_of_many_drives_costs_few_evaluations(count, tolerance):
     assert path.evaluations < 8.5 * (len(many.kinks) - 1)
 
 
-@pytest.mark.parametrize("counts", [["0"], ["1", "1001"], ["-3"]])
+@pytest.mark.parametrize("counts", [["0"], ["1", "10001"], ["-3"]])
 def test_counts_that_make_no_sense_are_refused(counts, monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["paths.py", "--counts", *counts])
     with pytest.raises(SystemExit) as end:
         paths.main()
     assert end.value.code == 2
-    assert f"from 1 to 1000, up to which all forces fit in memory; got [{counts[-1]}]" in capsys.readouterr().err
+    assert f"from 1 to 10000, up to which all forces fit in memory; got [{counts[-1]}]" in capsys.readouterr().err
 
 
 @pytest.mark.compiled
