@@ -2,7 +2,6 @@
 
 import _thread
 import threading
-import time
 import weakref
 from concurrent.futures import ThreadPoolExecutor, wait
 
@@ -114,23 +113,6 @@ def test_progress_ends_with_all(surface, parts):
     seen = []
     simulate_many(surface, parts, LAW, 1e-4, progress=lambda done, count: seen.append((done, count)))
     assert seen[-1] == (6, 6) and seen == sorted(seen)
-
-
-def test_handing_out_paths_takes_as_long_for_each_however_many_there_are(surface, parts, monkeypatch):
-    def found_one_by_one(*request):
-        time.sleep(3e-4)
-        return request
-
-    monkeypatch.setattr("particle.batch.find_path", found_one_by_one)
-
-    def seconds(count):
-        begin = time.process_time()
-        assert len(simulate_many(surface, parts[:1] * count, LAW, 1e-4, threads=1)) == count
-        return time.process_time() - begin
-
-    few, many = 200, 4000
-    each = min(seconds(few) for _ in range(3)) / few
-    assert seconds(many) / many < 3 * each
 
 
 def test_an_error_on_the_way_ends_all_paths(surface, parts, monkeypatch):

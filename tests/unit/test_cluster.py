@@ -5,7 +5,6 @@ import re
 import signal
 import socket
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -146,9 +145,9 @@ def test_a_worker_that_reads_other_files_is_refused(tmp_path, cluster, monkeypat
 def refused(tmp_path, address):
     """What the command says to an address that it refuses."""
     pytest.importorskip("distributed")
-    path, begin = written(tmp_path, SHAKEN, PLATFORM), time.monotonic()
+    path = written(tmp_path, SHAKEN, PLATFORM)
     done = CliRunner().invoke(main, ["sweep", str(path), "-o", str(tmp_path / "out"), "--scheduler", address])
-    assert done.exit_code == 2 and time.monotonic() - begin < 30 and not (tmp_path / "out").exists()
+    assert done.exit_code == 2 and not (tmp_path / "out").exists()
     said, got = done.output.split(f"; got {address!r}: ")
     wanted = "the address of a running dask scheduler such as tcp://127.0.0.1:8786"
     assert said == f"main sweep: 1 mistake\n  Input scheduler must be {wanted}"

@@ -1,7 +1,6 @@
 """Formulas: what they may say, what they give, and that no text brings down more than a clear error."""
 
 import math
-import time
 
 import pytest
 from hypothesis import given, settings
@@ -189,8 +188,8 @@ def test_any_expression_gives_a_finite_number_or_the_clear_error(expression):
     outcome(f"{expression} ms")
 
 
-@pytest.mark.parametrize("text", ["9**9**9**9 ms", "-" * 400 + "row ms", "row" + "**9" * 100 + " ms"])
-def test_nothing_takes_long(text):
-    begin = time.perf_counter()
-    outcome(text)
-    assert time.perf_counter() - begin < 1
+@pytest.mark.parametrize(
+    ("text", "value"), [("9**9**9**9 ms", None), ("-" * 400 + "row ms", 2e-3), ("row" + "**9" * 100 + " ms", None)]
+)
+def test_towers_of_powers_and_of_signs_end(text, value):
+    assert outcome(text) == value

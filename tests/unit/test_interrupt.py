@@ -47,7 +47,7 @@ def test_ctrl_c_in_a_finaliser_ends_a_wait(kind):
         time.sleep(0.01)
         return time.monotonic() > late
 
-    late = time.monotonic() + 2
+    late = time.monotonic() + 60
     with pytest.raises(KeyboardInterrupt):
         wait(ended)
     assert time.monotonic() < late

@@ -1,7 +1,5 @@
 """Lattices of a case file: where their actuators stand, how they are driven, and what can be wrong, told once."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -319,12 +317,10 @@ def test_in_python_text_and_numbers_do():
         python_case(lattice=lattice.model_dump() | {"stroke": "1 / row um"})
 
 
-def test_ten_thousand_actuators_are_quick(tmp_path):
+def test_ten_thousand_actuators_are_read(tmp_path):
     text = FRAME.replace('"1 mm"', '"15.3 mm"').replace('"0.8 mm"', '"15.3 mm"')
     file = tmp_path / "large.toml"
     lattice = '[lattice]\nrows = 100\ncolumns = 100\npitch = "150 um"\n' + DRIVE
     file.write_text(text + lattice + 'delay = "0.05 * (row + column) % 8 ms"\n')
-    begin = time.perf_counter()
     table = drive_table(build_drives(read_case(file)))
-    assert time.perf_counter() - begin < 5  # measured: 0.6 s
     assert len(table.delay) == 10_000
