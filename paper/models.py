@@ -6,7 +6,6 @@ on the same surface.  "plate": the same on a plate of finite elements, which all
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -26,6 +25,7 @@ from paper.path import FloatArray, Path
 from paper.profiles import profile_outline, profile_surface
 from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate, simulate_many
 from particle.friction import Contact
+from particle.processors import processors
 
 PAPER, CLOSED, PLATE = "paper", "closed", "plate"
 MODELS: Final = {
@@ -108,7 +108,7 @@ class Bench:
         law = p.friction if friction is None else friction
         if model == PAPER:
             one = partial(_by_steps, surface, law, duration, p.gravity, p.time_step)
-            with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+            with ThreadPoolExecutor(processors()) as pool:
                 try:
                     found = list(pool.map(one, parts))
                 except BaseException:  # Ctrl-C: each path takes a fraction of a second, all together long

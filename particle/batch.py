@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
@@ -16,6 +15,7 @@ from particle.friction import Contact, FrictionLaw
 from particle.interrupt import wait
 from particle.micropart import Micropart
 from particle.path import find_path
+from particle.processors import processors
 from particle.rim import rim_gap
 from particle.simulate import faults, new_request
 from particle.surface import SurfaceMotion
@@ -75,7 +75,7 @@ def simulate_many(
         found[k] = find_path(driven, request, tolerance, stop)
 
     try:
-        with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as pool:
+        with ThreadPoolExecutor(threads or processors()) as pool:
             try:
                 ended: SimpleQueue[Future[None]] = SimpleQueue()
                 for k in range(len(parts)):

@@ -1,0 +1,64 @@
+"""Pages as files: a small run and a small sweep that they are made of, and the data in them."""
+
+import base64
+import json
+import re
+
+import numpy as np
+
+NAME = "a<script>alert(1)<b>&"
+CASE = """\
+# </script><script>alert(2)</script>
+[plate]
+shape = "disc"
+radius = "300 um"
+supports = "clamped"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+cell_size = "100 um"
+
+[[actuators]]
+position = ["0 um", "0 um"]
+stroke = "150 um"
+frequency = "300 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["100 um", "100 um"]
+
+[friction]
+model = "constant"
+limit = "41.8 nN"
+
+[run]
+duration = "2 ms"
+frames = 11
+"""
+STUDY = """\
+[study]
+case = "base.toml"
+
+[[axes]]
+field = "actuators.0.frequency"
+name = "frequency"
+values = ["250 Hz", "300 Hz", "350 Hz"]
+
+[[axes]]
+field = "part.position.0"
+name = "x"
+values = ["60 um", "100 um", "400 um"]
+
+[map]
+threshold = "distance > 1 um"
+"""
+
+
+def data_of(page):
+    text = page.read_text(encoding="utf-8")
+    found = re.search(r'<script id="data" type="application/json">(.*?)</script>', text, re.DOTALL)
+    return json.loads(found.group(1))
+
+
+def numbers(array):
+    return np.frombuffer(base64.b64decode(array["bytes"]), "<" + array["kind"])
