@@ -16,6 +16,7 @@ from particle.drive import drive_table, next_kink
 FloatArray = NDArray[np.float64]
 
 SAMPLES, KINKS = 201, 101  # moments at which extremes are sought
+MISSED, SEEN = 256, 0.99  # moments added for drives whose own extremes those miss, of which that share is enough
 GOLDEN = (5**0.5 - 1) / 2
 FRAMES_PER_CYCLE = 20
 FRAMES = (100, 1000)  # least and most without a wish in the case
@@ -57,19 +58,38 @@ def frame_times(wanted: int | None, drives: Sequence[AnyDrive], end: float) -> F
 
 
 def moments(drives: Sequence[AnyDrive], end: float) -> FloatArray:
-    """Moments (k,) from 0 to `end` [s] at which to look for extremes: first kinks, and some in step with no drive."""
+    """Moments (k,) from 0 to `end` [s] at which to look for extremes.
+
+    First kinks, some in step with no drive, and for drives that are higher or lower elsewhere the moment where.
+    """
     kinks, table = [0.0], drive_table(drives)
     while len(kinks) < KINKS and kinks[-1] < end:
         kinks.append(min(next_kink(table, kinks[-1]), end))
     scattered = end * (np.arange(SAMPLES) * GOLDEN % 1.0)
-    return np.unique(np.concatenate([kinks, scattered, [end]]))
+    looked_at = np.unique(np.concatenate([kinks, scattered, [end]]))
+    missed = []
+    for drive in dict.fromkeys(drives):  # many of a lattice are equal
+        seen = drive.evaluate(looked_at)[0]
+        times, heights = _marks(drive)
+        for signed, of_seen in ((heights, seen), (-heights, -seen)):
+            signed = np.where(times <= end, signed, -np.inf)
+            most = int(np.argmax(signed))
+            if SEEN * signed[most] > max(0.0, of_seen.max()):
+                missed.append((float(signed[most]), float(times[most])))
+    return np.union1d(looked_at, [time for _, time in sorted(missed, reverse=True)[:MISSED]])
+
+
+def _marks(drive: AnyDrive) -> tuple[FloatArray, FloatArray]:
+    """The times (k,) [s] of its pieces' starts, middles and ends in the first pass, and the heights (k,) [m] there."""
+    start, scale, rows, _ = drive.segments()
+    part = np.array([0.0, 0.5, 1.0])
+    times = drive.delay + (start[:, None] + scale[:, None] * part).ravel()
+    return times, (rows @ np.power.outer(part, np.arange(rows.shape[1])).T).ravel()
 
 
 def travel(drive: AnyDrive) -> float:
-    """The distance [m] between the lowest and the highest of its pieces' ends and middles."""
-    _, _, rows, _ = drive.segments()
-    heights = rows @ np.power.outer([0.0, 0.5, 1.0], np.arange(rows.shape[1])).T
-    return float(np.ptp(heights))
+    """The distance [m] between the lowest and the highest of its marks."""
+    return float(np.ptp(_marks(drive)[1]))
 
 
 def first_jump(drives: Sequence[AnyDrive], end: float) -> float | None:

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 
 from coupling.case import Case, KogutEtsionCase
-from coupling.drives import moments, stroke_heights
+from coupling.drives import moments, stroke_heights, travel
 from coupling.lattice_places import SAME_PLACE
-from coupling.steepest import steepest
+from coupling.steepest import around, steepest
 from coupling.summary import PlateFigures
 from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes
 from meshes import Outline
@@ -22,8 +22,9 @@ FloatArray = NDArray[np.float64]
 
 # The path error of small-deflection theory, measured on separate solvers: 8 % of the path at one thickness.
 LINEAR_ERROR = 0.08
-# The quasi-static model's error of w_tt, measured likewise, over the drive's frequency by the plate's first.
-QUASI_STATIC_ERROR = 3.3
+# The quasi-static model's error of w_tt, measured likewise, over one over a stroke's time by the plate's first
+# frequency: 3.3 f/f1 of strokes up and down at f. The jump of jerk at both ends of a stroke makes it ring so.
+QUASI_STATIC_ERROR = 1.65
 
 
 def plate_figures(
@@ -40,7 +41,9 @@ def plate_figures(
     over_thickness = deflection / thickness
     normal = trajectory.at(moments(drives, float(trajectory.time[-1]))).normal_force
     first = _first_frequency(plate, shapes)
-    ratio = None if first is None else max(drive.frequency for drive in drives) / first
+    moving = [drive for drive in drives if travel(drive) > 0] or drives
+    rings = bool((surface.drives.jump[: surface.shape_count, :2] > 0).any())
+    strokes = None if first is None else _range([1 / drive.stroke_time / first for drive in moving])
     return PlateFigures(
         plate_unknowns=shapes.unknowns,
         plate_error=shapes.error_estimate,
@@ -51,10 +54,11 @@ def plate_figures(
         largest_slope=slope,
         in_plane_motion=thickness / 2 * slope,
         first_frequency=first,
-        drive_over_first=ratio,
-        drives_over_first=None if first is None else _range([drive.frequency / first for drive in drives]),
-        strokes_over_first=None if first is None else _range([1 / drive.stroke_time / first for drive in drives]),
-        quasi_static_error=None if ratio is None else QUASI_STATIC_ERROR * ratio,
+        drive_over_first=None if first is None else max(drive.frequency for drive in moving) / first,
+        drives_over_first=None if first is None else _range([drive.frequency / first for drive in moving]),
+        strokes_over_first=strokes,
+        plate_rings=rings,
+        quasi_static_error=None if rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(normal)))),
     )
@@ -62,12 +66,12 @@ def plate_figures(
 
 def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:
     """The plate's first frequency [Hz] with its actuators held; of very many, that where they are sparsest."""
-    density, held = plate.section.density, shapes.points[shapes.springs > 0]
+    density, held = plate.section.density, shapes.springs > 0
     if density is None:
         return None
-    if isinstance(shapes, PatchedShapes) and len(held):
+    if isinstance(shapes, PatchedShapes) and held.any():
         return shapes.first_frequency(density * plate.section.thickness)
-    return float(plate.frequencies(1, held if len(held) else None)[0])
+    return float(plate.frequencies(1, shapes.points[held], shapes.springs[held])[0])
 
 
 def _range(values: list[float]) -> tuple[float, float]:
@@ -88,14 +92,15 @@ def _hold_residual(shapes: PlateShapes) -> float:
 
 
 def _extremes(shapes: PlateShapes, drives: Sequence[AnyDrive], end: float) -> tuple[float, float]:
-    """The largest slope and deflection [m] over the mesh's points and the time asked for, wherever the run ended.
+    """The largest slope and deflection [m] over the time asked for, wherever the run ended.
 
-    Of very many actuators, over the neighbourhood of those where they must be.
+    They are those at the mesh's points and on circles around the actuators, where the slope is largest. Of very many
+    actuators, over the neighbourhood of those where they must be.
     """
     heights = stroke_heights(drives, moments(drives, end))
     if not isinstance(shapes, InfluenceShapes):
         return steepest(shapes, heights)
-    value, gradient, _ = shapes.evaluate(shapes.model.mesh.points)
+    value, gradient, _ = shapes.evaluate(np.concatenate([shapes.model.mesh.points, around(shapes)]))
     slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
     return slope, float(np.abs(heights @ value.T).max())
 

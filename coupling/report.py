@@ -11,7 +11,7 @@ MICRO, MILLI = 1e6, 1e3
 
 # Where the model stops holding to about a per cent.
 MOST_THICKNESSES, STEEPEST, MOST_CURVED = 0.2, 0.2, 0.1
-FASTEST = 0.003  # of the plate's first frequency
+MOST_RINGING, FASTEST = 0.01, 0.003  # of the acceleration; of the first frequency, where strokes up and down reach that
 NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
 FEWEST_FRAMES = 8  # to a cycle
 GROWTH = 100  # of the error of one step, that is no sign of chaos
@@ -146,10 +146,15 @@ def _of_model(s: PlateSummary) -> list[str]:
         )
     if s.largest_slope > STEEPEST:
         said.append(f"The surface is as steep as {s.largest_slope:.2g}; small-slope theory holds to about {STEEPEST}.")
-    if s.drive_over_first is not None and s.drive_over_first > FASTEST:
+    if s.quasi_static_error is not None and s.quasi_static_error > MOST_RINGING:
         said.append(
             f"The drive is at {s.drive_over_first:.2g} of the plate's first frequency; the plate follows at once up to "
-            f"about {FASTEST}."
+            f"about {FASTEST}. Expect its acceleration to be off by {_percent(s.quasi_static_error)}."
+        )
+    if s.plate_rings:
+        said.append(
+            "A drive's velocity or acceleration jumps, as that of a sine or cosine does where it begins: a plate rings "
+            "from then on, by as much as its acceleration jumps, until damping ends it. The model leaves that out."
         )
     if s.part_curvature is not None and s.part_curvature > MOST_CURVED:
         said.append(
@@ -188,11 +193,13 @@ def _unit(s: Summary) -> tuple[str, float]:
 
 
 def _dynamics(s: PlateSummary) -> str:
-    if s.first_frequency is None or s.drive_over_first is None or s.quasi_static_error is None:
+    if s.first_frequency is None or s.drive_over_first is None:
         return "drive over the plate's first frequency not known: plate.density is not given"
+    error = None if s.quasi_static_error is None else _percent(s.quasi_static_error)
     return (
         f"drive {s.drive_over_first:.2g} of the plate's first frequency with the actuators held, "
-        f"{s.first_frequency / 1e3:.4g} kHz (quasi-static error of the acceleration {_percent(s.quasi_static_error)})"
+        f"{s.first_frequency / 1e3:.4g} kHz "
+        + (f"(quasi-static error of the acceleration {error})" if error else "(it rings where a drive jumps)")
     )
 
 

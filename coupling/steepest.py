@@ -1,10 +1,10 @@
-"""The steepest and the highest places of a plate with many actuators, found without looking everywhere."""
+"""The steepest and the highest places of a plate, of one with many actuators without looking everywhere."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import Delaunay
+from scipy.spatial import Delaunay, cKDTree
 
 from fem_plate import PlateShapes
 
@@ -34,17 +34,29 @@ def steepest(shapes: PlateShapes, heights: FloatArray) -> tuple[float, float]:
         mean = np.abs(height[pairs[:, 0]] - height[pairs[:, 1]]) / distance
         for side in (0, 1):
             np.maximum.at(row, pairs[:, side], mean)
-    angle = 2 * np.pi * np.arange(AROUND) / AROUND
-    star = np.multiply.outer(RADII, np.stack([np.cos(angle), np.sin(angle)], axis=1)).reshape(-1, 2)
     largest, highest = 0.0, float(np.abs(lifted).max())
     for measure in (slope, np.abs(lifted)):
         for moment in np.argsort(-measure.max(axis=1), kind="stable")[:MOMENTS]:
             centres = np.argsort(-measure[moment], kind="stable")[:ACTUATORS]
-            xy = (shapes.points[centres, None] + nearest[centres, None, None] * star).reshape(-1, 2)
-            value, gradient, _ = shapes.evaluate(xy[shapes.outline.gap(xy) >= 0], heights[moment])
+            xy = _circles(shapes, centres, nearest[centres])
+            value, gradient, _ = shapes.evaluate(xy, heights[moment])
             largest = max(largest, float(np.hypot(*gradient.T).max(initial=0.0)))
             highest = max(highest, float(np.abs(value).max(initial=0.0)))
     return largest, highest
+
+
+def around(shapes: PlateShapes) -> FloatArray:
+    """Points (n, 2) [m] on circles around all actuators, as small as the next actuator or the rim is near."""
+    others = cKDTree(shapes.points).query(shapes.points, k=[2])[0][:, 0]  # inf where there is none
+    return _circles(shapes, np.arange(len(shapes.points)), np.minimum(others, shapes.outline.gap(shapes.points)))
+
+
+def _circles(shapes: PlateShapes, centres: NDArray[np.int64], nearest: FloatArray) -> FloatArray:
+    """Points (n, 2) [m] of the plate around actuators in these rows, whose nearest neighbours are so far [m]."""
+    angle = 2 * np.pi * np.arange(AROUND) / AROUND
+    star = np.multiply.outer(RADII, np.stack([np.cos(angle), np.sin(angle)], axis=1)).reshape(-1, 2)
+    xy = (shapes.points[centres, None] + nearest[:, None, None] * star).reshape(-1, 2)
+    return np.asarray(xy[shapes.outline.gap(xy) >= 0])
 
 
 def _neighbours(points: FloatArray) -> NDArray[np.int64]:

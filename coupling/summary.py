@@ -69,11 +69,12 @@ class PlateFigures:
     linear_path_error: float  # relative, of small-deflection theory
     largest_slope: float
     in_plane_motion: float  # m, of the top face
-    first_frequency: float | None  # Hz, of the plate with its actuators held as if rigid; None: no density given
+    first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
     drive_over_first: float | None  # fastest drive over that frequency
     drives_over_first: tuple[float, float] | None  # the slowest and the fastest drive over it
     strokes_over_first: tuple[float, float] | None  # likewise one over the time of a stroke
-    quasi_static_error: float | None  # relative, of the surface's acceleration
+    plate_rings: bool  # whether a drive's velocity or acceleration jumps
+    quasi_static_error: float | None  # relative, of the surface's acceleration; None: no density given, or it rings
     part_curvature: float | None  # part size times largest curvature on its path; None: size not given
     part_sag: float  # m, the plate's deflection under the part's largest force
 

@@ -144,9 +144,9 @@ class PatchedShapes(Shapes):
         """
         cut, rows = self._array.sparsest()
         held = self.points[rows] - cut.origin
-        model = self._array.model(self._array.cutter, cut, held)
-        unit = self._array.rigidity / (inertia * model.mesh.size**4)
-        return float(modes(model, held, 1, unit).frequencies[0])
+        model, rigidity = self._array.model(self._array.cutter, cut, held), self._array.rigidity
+        give = rigidity / model.mesh.size**2 / self.springs[rows]
+        return float(modes(model, held, give, 1, rigidity / (inertia * model.mesh.size**4)).frequencies[0])
 
     def _width(self, x: FloatArray, weights: FloatArray | None) -> int:
         """How many functions are asked for; ValueError when they are too many for the points."""

@@ -128,16 +128,17 @@ class Plate:
         """The plate under a uniform pressure [Pa], positive up; raises as `deflection` does."""
         return self.deflection(np.empty((0, 2)), np.empty(0), load)
 
-    def frequencies(self, count: int, held: ArrayLike | None = None) -> FloatArray:
+    def frequencies(self, count: int, held: ArrayLike | None = None, stiffness: ArrayLike | None = None) -> FloatArray:
         """The lowest natural frequencies (count,) [Hz], ascending, repeated ones repeated; raises as `modes` does."""
-        return self.modes(count, held).frequencies
+        return self.modes(count, held, stiffness).frequencies
 
-    def modes(self, count: int, held: ArrayLike | None = None) -> Modes:
-        """The lowest `count` modes of vibration, rigid motions left out.
+    def modes(self, count: int, held: ArrayLike | None = None, stiffness: ArrayLike | None = None) -> Modes:
+        """The lowest `count` modes of vibration, motions left out in which nothing bends and no spring yields.
 
         held: points (N, 2) [m] that actuators hold still.
-        Raises ValueError when the section has no density, the count is not positive, or a held point is not inside the
-        rim or stands on another, and for more than 2 000 of them.
+        stiffness: (N,) N/m or one for all, of springs between those and the plate; inf is a rigid hold (the default).
+        Raises ValueError when the section has no density, the count or a stiffness is not positive, or a held point is
+        not inside the rim or stands on another, and for more than 2 000 of them.
         """
         density = self.section.density
         if density is None:
@@ -147,12 +148,22 @@ class Plate:
             raise ValueError(f"Input held of modes must be at most {MOST_DENSE} points; got {len(points)}")
         if points.size:
             check_points("modes", points, self.mesh.outline.gap(points), self.mesh.size)
+        springs = np.full(len(points), np.inf)
+        if stiffness is not None:
+            springs = _one_each(stiffness, points, "stiffness of modes")
+            if not np.all(springs > 0):
+                row = int(np.flatnonzero(~(springs > 0))[0])
+                raise ValueError(
+                    f"Input stiffness of modes must be positive; got {springs[row]} N/m for point {row + 1}"
+                )
         model = self.model(points)
         most = model.unknowns // 2
         if not (isinstance(count, int | np.integer) and 1 <= count < most):
             raise ValueError(f"Input count of modes must be a whole number from 1 to {most - 1}; got {count!r}")
         inertia = density * self.section.thickness * self.mesh.size**4
-        return vibration.modes(model, points, count, self.section.rigidity / inertia)
+        rigidity = self.section.rigidity
+        give = rigidity / self.mesh.size**2 / springs
+        return vibration.modes(model, points, give, count, rigidity / inertia)
 
     def __repr__(self) -> str:
         width, height = np.ptp(self.mesh.outline.box, axis=0)

@@ -1,9 +1,10 @@
-"""Natural frequencies and modes, also of a plate that actuators hold at points.
+"""Natural frequencies and modes, also of a plate that actuators hold at points, rigidly or through springs.
 
 At a held point a mode bends as under a point force, which polynomials follow badly. So trial functions are
-w = v + sum_j c_j psi_j with psi_j the static answer to a unit force at held point j, and w = 0 there makes
-c = -G^-1 v(x_j). In the energy, where a(v, psi_j) = v(x_j) and a(psi_i, psi_j) = G_ij, that leaves the stiffness
-K - B^T G^-1 B (B takes v at the held points): K with a few rows of correction, as is its inverse.
+w = v + sum_j c_j psi_j with psi_j the static answer to a unit force at held point j. A spring's force on it is
+c_j = -k_j w(x_j), which makes c = -(G + 1/k)^-1 v(x_j), with 1/k = 0 where the hold is rigid. In the energy, with that
+of the springs, where a(v, psi_j) = v(x_j) and a(psi_i, psi_j) = G_ij, this leaves the stiffness K - B^T (G + 1/k)^-1 B
+(B takes v at the held points): K with a few rows of correction, as is its inverse.
 """
 
 from __future__ import annotations
@@ -47,9 +48,10 @@ class Modes:
         return value, gradient / size, hessian / size**2
 
 
-def modes(model: PlateModel, held: FloatArray, count: int, unit: float) -> Modes:
+def modes(model: PlateModel, held: FloatArray, give: FloatArray, count: int, unit: float) -> Modes:
     """The lowest modes of a plate held at points (N, 2) [m].
 
+    give: (N,) dimensionless, of the springs there under a unit force; 0 where it is held rigidly.
     unit: 1/s^2, the squared angular frequency that makes eigenvalues dimensionless.
     """
     space, x = model.space, held / model.mesh.size
@@ -57,8 +59,8 @@ def modes(model: PlateModel, held: FloatArray, count: int, unit: float) -> Modes
     answers = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))
     take = space.point_values(x)  # B
     green = point_value(x, x) + take @ answers
-    green = (green + green.T) / 2
-    to_forces = -np.linalg.solve(green, take.toarray())  # v -> c, (N, unknowns)
+    yielding = (green + green.T) / 2 + np.diag(give)
+    to_forces = -np.linalg.solve(yielding, take.toarray())  # v -> c, (N, unknowns)
     cross, inner = _masses(model, x, answers, mass)
 
     def with_mass(v: FloatArray) -> FloatArray:
@@ -80,7 +82,7 @@ def modes(model: PlateModel, held: FloatArray, count: int, unit: float) -> Modes
     rows = np.concatenate([take.toarray(), sprung, moved.T])
     shares = np.concatenate([np.ones(len(sprung)), np.full(moved.shape[1], -1 / RIGID_SHIFT)])
     inverse_weights = np.zeros((len(rows), len(rows)))
-    inverse_weights[: len(x), : len(x)] = green
+    inverse_weights[: len(x), : len(x)] = yielding
     inverse_weights[len(x) :, len(x) :] = np.diag(shares)
     solved = model.solve(np.ascontiguousarray(rows.T))
     correction = np.linalg.inv(inverse_weights - rows @ solved)

@@ -82,7 +82,7 @@ def paragraph(p: Parameters) -> str:
         f"contact bears {p.friction.pull_off / p.mass:.0f} m/s². So in our equations parts come off next to "
         f"actuators, on lengths far below the {MICRO * p.contact_side:g} µm of the part. The paper's normal force has "
         "no v.H v, so that its scheme has nothing to lose them by there. Where that decides (figure 16 at 450 Hz, 17b, "
-        "20 over the nearest actuator's profile) it is a limit of the point model and says nothing about the paper; "
-        "answers give the distance at which it happens. Micrometres away the surface's own acceleration counts more: "
-        f"that of one actuator reaches {hardest(p, FAST):.0f} m/s² at {FAST:g} Hz.\n"
+        "20 over the nearest actuator's profile and on the plate) it is a limit of the point model and says nothing "
+        "about the paper; answers give the distance at which it happens. Micrometres away the surface's own "
+        f"acceleration counts more: that of one actuator reaches {hardest(p, FAST):.0f} m/s² at {FAST:g} Hz.\n"
     ).replace(" um", " µm")

@@ -28,6 +28,8 @@ FIGURES: Final = (
     "linear_path_error",
     "largest_slope",
     "drive_over_first",
+    "quasi_static_error",
+    "plate_rings",
     "part_curvature",
     "energy_balance",
 )

@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from coupling import report, run_case
 from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
+from fem_plate.analytic import DiscShapes
 
 PLATE = {
     "shape": "rectangle",
@@ -73,11 +74,75 @@ def quintic(s):
     return 10 * s**3 - 15 * s**4 + 6 * s**5
 
 
+DISC = {"shape": "disc", "radius": 300e-6, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6}
+
+
+def summary_with(*actuators, duration=1e-3):
+    case = Case(
+        plate=DISC | {"density": 2330},
+        actuators=actuators,
+        part=PartCase(mass=2e-9, position=(50e-6, 120e-6)),
+        friction=CoulombCase(coefficient=0.3, adhesion=1e-6),
+        run=RunCase(duration=duration),
+    )
+    return run_case(case).summary
+
+
+@pytest.mark.parametrize("hold", ["70.2 ms", "55.2 ms"])
+def test_a_late_stroke_beside_a_busy_drive_is_seen(hold):
+    late = [{"cycle": "hold", "dwell": hold}, {"stroke": 5e-6, "frequency": 4000.0}]
+    s = summary_with(
+        ActuatorCase(position=(-1e-4, 0.0), stroke=5e-8, frequency=1000),
+        ActuatorCase(position=(1e-4, 0.0), segments=late),
+        duration=0.1,
+    )
+    assert s.deflection_over_thickness == pytest.approx(1, rel=0.02)
+    assert any("times its thickness" in said for said in report.warnings(s))
+
+
+def test_the_slope_between_actuators_close_to_each_other_is_seen():
+    s = summary_with(
+        ActuatorCase(position=(90e-6, 40e-6), stroke=2e-6, frequency=300),
+        ActuatorCase(position=(98e-6, 40e-6), stroke=0.0, frequency=300),
+        duration=2e-3,
+    )
+    x = np.linspace(85e-6, 103e-6, 181)
+    spots = np.stack(np.meshgrid(x, x - 54e-6), axis=-1).reshape(-1, 2)
+    truth = np.hypot(*DiscShapes([[90e-6, 40e-6], [98e-6, 40e-6]], 300e-6).evaluate(spots, [2e-6, 0.0])[1].T).max()
+    assert 0.9 * truth < s.largest_slope < 1.01 * truth
+
+
+def test_a_stroke_makes_the_plate_ring_alike_however_it_is_written():
+    stroke, at, rest = 2e-7, (0.0, 0.0), 1 / 900
+    ways = [
+        {"cycle": "up", "stroke": stroke, "frequency": 900},
+        {"table": [(0.0, 0.0), (rest, stroke)]},
+        {"cycle": "up-down", "stroke": stroke, "frequency": 450},
+    ]
+    errors = [summary_with(ActuatorCase(position=at, **way)).quasi_static_error for way in ways]
+    assert errors == pytest.approx([3.3 * 450 / 484.477e3] * 3, rel=1e-4)
+
+
+@pytest.mark.parametrize("cycle", ["sine", "cosine"])
+def test_a_drive_that_jumps_lets_the_plate_ring_at_any_frequency(cycle):
+    s = summary_with(ActuatorCase(position=(0.0, 0.0), stroke=2e-7, frequency=300, cycle=cycle))
+    assert s.plate_rings and s.quasi_static_error is None
+    assert any("rings" in said for said in report.warnings(s))
+    assert any("it rings where a drive jumps" in text for _, text in report.lines(s))
+
+
+def test_a_drive_at_rest_counts_for_nothing():
+    alone = ActuatorCase(position=(-1e-4, 0.0), stroke=2e-7, frequency=300)
+    still = ActuatorCase(position=(1e-4, 0.0), stroke=0.0, frequency=1e5)
+    s = summary_with(alone, still)
+    assert s.drive_over_first == pytest.approx(300 / s.first_frequency)
+    assert s.strokes_over_first == pytest.approx((600 / s.first_frequency,) * 2)
+
+
 def test_long_runs_say_that_their_files_strobe():
     """2 s of 300 Hz in at most 1000 steps; the extremes are found although 201 even moments fall on whole periods."""
-    disc = {"shape": "disc", "radius": 300e-6, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6}
     case = Case(
-        plate=disc,
+        plate=DISC,
         actuators=[{"position": (0.0, 0.0), "stroke": 10e-6, "frequency": 300.0}],
         part={"mass": 2e-9, "position": (100e-6, 0.0)},
         friction={"model": "constant", "limit": 1e-6},

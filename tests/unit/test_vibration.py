@@ -137,3 +137,25 @@ def test_a_held_point_beyond_the_rim_or_twice_is_refused(plate):
 def test_evaluating_beyond_the_rim_is_refused(plate):
     with pytest.raises(ValueError, match="must lie on the plate"):
         plate.modes(1).evaluate([[1.0, 1.0]])
+
+
+def test_a_free_plate_on_soft_springs_bounces_and_tilts_as_a_rigid_body():
+    plate, angle = Plate(disc(1.0, 0.4), UNIT, "free"), 2 * np.pi / 3 * np.arange(3)
+    feet, k, mass = 0.5 * np.stack([np.cos(angle), np.sin(angle)], axis=1), 1e-5, np.pi
+    tilt, bounce = np.sqrt(1.5 * k * 0.5**2 / (mass / 4)), np.sqrt(3 * k / mass)
+    found = 2 * np.pi * plate.frequencies(3, feet, k)
+    assert found == pytest.approx([tilt, tilt, bounce], rel=1e-5)
+    assert 2 * np.pi * plate.frequencies(3, feet, [1e9, 1e9, np.inf]) == pytest.approx(omega(plate, 3, feet), rel=1e-6)
+
+
+def test_a_spring_between_gives_a_frequency_between(plate):
+    plain, held = omega(plate, 1)[0], omega(plate, 1, HELD)[0]
+    found = [2 * np.pi * plate.frequencies(1, HELD, k)[0] for k in (1e-6, 30.0, 1e8)]
+    assert found[0] == pytest.approx(plain, rel=1e-7) and found[2] == pytest.approx(held, rel=1e-6)
+    assert 1.05 * plain < found[1] < 0.95 * held
+
+
+@pytest.mark.parametrize("wrong", [0.0, -1.0, [1.0, np.nan, 1.0]])
+def test_a_hold_of_no_stiffness_is_refused(plate, wrong):
+    with pytest.raises(ValueError, match="^Input stiffness of modes must be positive; got .* N/m for point [12]$"):
+        plate.modes(1, HELD, wrong)
