@@ -112,6 +112,7 @@ def test_one_actuator_may_have_a_truncation(section, radius):
     assert np.abs(shapes.evaluate(spots)[0] - dense.evaluate(spots)[0]).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_a_boundary_named_cut_is_not_taken_for_one(section):
     """Its own support holds there, and cuts are clamped."""
     corners = np.array([[-30.5, -2], [30.5, -2], [30.5, 2], [-30.5, 2.2]]) * PITCH
@@ -128,6 +129,7 @@ def test_a_boundary_named_cut_is_not_taken_for_one(section):
     assert (found[0].evaluate(xy)[0] == found[1].evaluate(xy)[0]).all()
 
 
+@pytest.mark.slow
 def test_points_on_the_rim_and_on_cuts_belong_to_the_plate(section):
     """On a free rim a shape does not vanish, wherever rounding puts the point."""
     plate = Plate(rectangle(61 * PITCH, 4 * PITCH, PITCH), section, {"left": "clamped", "right": "clamped"})

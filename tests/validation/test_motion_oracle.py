@@ -33,8 +33,9 @@ THREE = [[0.0, 120e-6], [110e-6, -60e-6], [-90e-6, -80e-6]]
 POINTS = FrictionTable([-4e-7, -2e-7, 0.0, 4e-7, 1e-6, 4e-6], [0.0, 1.5e-8, 2.6e-8, 4.2e-8, 6e-8, 1e-7], 1.2)
 DOWN = (0.0, 0.0, -G)
 NAMES = {"SLIPS": "slips", "STOPS": "stops", "REVERSES": "reverses", "DETACHES": "detaches", "LEAVES_PLATE": "leaves"}
-# Tolerance, then how far ends may differ over the length of the path, and how far events over their time.
-BOUNDS = [(1e-10, 1e-8, 1e-7), (1e-12, 1e-9, 1e-8)]
+# Tolerance, then how far ends may differ over the length of the path, and how far events over their time: the second
+# tolerance is finer than the surface, whose fit to 1e-11 rounds another way on other processors.
+BOUNDS = [(1e-10, 1e-8, 1e-7), (1e-12, 5e-9, 1e-8)]
 
 # Actuators, (stroke, frequency, delay) of each, part, friction, gravity, duration.
 PLATES = {
