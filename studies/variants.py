@@ -147,7 +147,8 @@ _READERS: Final[dict[str, TypeAdapter[Any]]] = {
 def lattice_of(case: Case) -> tuple[dict[str, Any] | None, int]:
     """The [lattice] in the text of a case, and how many actuators are given beside it one by one."""
     written = tomllib.loads(case.source) if case.source else {}
-    return written.get("lattice"), len(written.get("actuators", case.actuators))
+    # Beside a lattice that is written none need be, and those of the case are the lattice's.
+    return written.get("lattice"), len(written.get("actuators", () if "lattice" in written else case.actuators))
 
 
 def _plain(value: Any) -> Any:

@@ -210,6 +210,9 @@ def test_an_axis_over_what_another_axis_makes_anew_is_a_mistake(tmp_path, made, 
         assert told.endswith(f"axes[{2 if first else 1}].field {message}")
     else:
         assert len(read_study(written(tmp_path, text, LATTICE)).points) == 2
+    alone = LATTICE[: LATTICE.index("[[actuators]]")] + LATTICE[LATTICE.index("[lattice]") :]
+    (told,) = mistakes(tmp_path, text, alone)
+    assert "must not vary actuators from 0 on: the axis over lattice." in told
 
 
 def test_values_of_an_axis_are_checked_whatever_else_is_wrong_with_it(tmp_path):

@@ -84,6 +84,23 @@ def test_the_case_at_a_point_is_that_of_a_file_with_its_values(tmp_path, text, f
     assert base.case.plate == expected.plate
 
 
+@pytest.mark.parametrize(
+    ("field", "value", "old"),
+    [
+        ("rows", "2", "rows = 1"),
+        ("columns", "2", "columns = 3"),
+        ("pitch", '"90 um"', 'pitch = "100 um"'),
+        ("stroke", '"7 um"', 'stroke = "5 * (1 + column) um"'),
+    ],
+)
+def test_a_lattice_alone_is_made_anew_and_none_of_its_old_actuators_stay(tmp_path, field, value, old):
+    alone = LATTICE[: LATTICE.index("[[actuators]]")] + LATTICE[LATTICE.index("[lattice]") :]
+    study = read_study(written(tmp_path, f'[[axes]]\nfield = "lattice.{field}"\nvalues = [{value}]\n', alone))
+    (values,) = study.points.values(0, 1)
+    (tmp_path / "same.toml").write_text(alone.replace(old, f"{field} = {value}"))
+    assert Variants(study.case, study.points.axes).at(values)[0].actuators == read_case(tmp_path / "same.toml").actuators
+
+
 def test_an_actuator_that_a_lattice_made_may_be_varied_by_itself(tmp_path):
     study = read_study(written(tmp_path, '[[axes]]\nfield = "actuators.3.stroke"\nvalues = ["7 um"]\n', LATTICE))
     case, _ = Variants(study.case, study.points.axes).at((7e-6,))
