@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-
-import numpy as np
 
 from steering.found import Found
 from steering.route import Route
@@ -26,7 +25,8 @@ class Planned(Found):
     def distances(self) -> list[float]:
         """From the part to each way-point [m] when it has arrived there."""
         there = self.trajectory.at(self.arrivals).position
-        return [float(np.hypot(*off)) for off in there - self.route.through[: len(self.arrivals)]]
+        ways = zip(there.tolist(), self.route.through, strict=False)  # to those where it has arrived
+        return [math.dist(place, target) for place, target in ways]
 
     @property
     def reached(self) -> list[bool]:
