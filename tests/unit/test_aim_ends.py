@@ -12,12 +12,13 @@ from sweeps import PLATE
 from command_line.main import main
 from coupling import build_surface, read_case
 from particle import Outcome
-from steering import Route, Settings, Task, aim, found
+from steering import Route, Settings, Task, aim, found, plan
 from steering.aiming import aim_over
 from steering.objective import SAMPLES
 from steering.paths import Disturbance, Paths
 from steering.planning import plan_over
-from steering.report import lines
+from steering.report import lines, plan_figures, plan_lines, scatter_line
+from steering.scatter import Scatter
 
 TARGET = (-2e-5, 2e-5)
 pytestmark = pytest.mark.compiled
@@ -122,9 +123,33 @@ def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(tmp_path):
     surface = build_surface(case)
     planned = plan_over(surface, Route(case, (TARGET, (0.0, 0.0)), Settings(**LIFTED)))
     assert planned.trajectory.time[-1] < planned.case.run.duration
-    assert not planned.arrivals and not planned.complete and planned.scatter.lost == 5
+    assert not planned.arrivals and not planned.distances and not planned.complete and planned.scatter.lost == 5
     assert planned.failure.startswith("leg 1: The part ")
     assert planned.failure.endswith(f"At {planned.trajectory.time[-1] * 1e3:g} ms.")
+
+
+def test_a_plan_whose_disturbed_runs_are_all_lost_says_nothing_of_how_near_they_are(tmp_path):
+    case = case_of(tmp_path)
+    planned = plan(Route(case, (TARGET,), Settings(**LIFTED)), tmp_path / "out")
+    assert planned.scatter.as_dict() == {"count": 5, "median": None, "nine_in_ten": None, "worst": None, "lost": 5}
+    assert dict(plan_lines(planned))["scatter"].startswith("5 lost (5 runs")
+    json.dumps(plan_figures(planned), allow_nan=False)
+    assert (tmp_path / "out" / "base_plan.png").exists() and np.isfinite(planned.scatter.ends).all()
+
+
+@pytest.mark.parametrize(
+    ("off", "within", "said"),
+    [
+        ([1.0, 100.0], [1.0, 100.0, 100.0], "half within 1 um, 90 % within 100 um, all within 100 um of the target ("),
+        ([*range(1, 10), np.inf], [5.0, 9.0, None], "half within 5 um, 90 % within 9 um of the target; 1 lost ("),
+        ([3.0, np.inf, 2.0, np.inf], [3.0, None, None], "half within 3 um of the target; 2 lost ("),
+    ],
+)
+def test_a_share_of_the_parts_is_within_a_distance_only_where_that_many_are(off, within, said):
+    scatter = Scatter(np.zeros((len(off), 2)), 1e-6 * np.array(off))
+    wanted = [None if away is None else pytest.approx(1e-6 * away) for away in within]
+    assert [scatter.as_dict()[name] for name in ("median", "nine_in_ten", "worst")] == wanted
+    assert scatter_line(scatter).startswith(said)
 
 
 def test_a_plan_says_which_way_points_it_missed(tmp_path):
