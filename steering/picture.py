@@ -61,7 +61,7 @@ def draw_aim(found: Aimed, path: Path) -> Path:
 def draw_plan(found: Planned, path: Path) -> Path:
     """Draws what a plan found into a PNG file; returns that."""
     route = found.route
-    targets = route.through[: max(len(found.arrivals), 1)]
+    targets = found.targets
     which = "the last of them" if len(targets) == len(route.through) else f"way-point {len(targets)}"
     count = f"{sum(found.reached)} of {len(route.through)} way-points within {_length(route.settings.tolerance)}"
     return _draw(found, f"{route.name}: {count}; the part ends {_off(found, targets[-1], which)}", targets, path)

@@ -128,6 +128,19 @@ def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(tmp_path):
     assert planned.failure.endswith(f"At {planned.trajectory.time[-1] * 1e3:g} ms.")
 
 
+def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, monkeypatch):
+    """The second leg does not settle: its drives are in the case all the same."""
+    case, settings, rests = case_of(tmp_path), Settings(paths=40, scatter=3), iter([True, False])
+    monkeypatch.setattr("steering.planning.settled", lambda path: next(rests))
+    way = (TARGET, (6e-5, 5e-5))
+    planned = plan_over(build_surface(case), Route(case, way, settings), file=tmp_path / "out" / "p.toml")
+    assert len(planned.arrivals) == 1 and planned.targets == way and planned.failure.startswith("leg 2: ")
+    assert planned.scatter.distance == pytest.approx(np.hypot(*(planned.scatter.ends - way[1]).T))
+    comment = (tmp_path / "out" / "p.toml").read_text().split("\n\n")[0].splitlines()
+    off = f"{planned.distances[0] * 1e6:g} um"
+    assert comment == [f"# The drives carry the part over (-20 um, 20 um) but for {off}.", f"# {planned.failure}"]
+
+
 def test_a_plan_whose_disturbed_runs_are_all_lost_says_nothing_of_how_near_they_are(tmp_path):
     case = case_of(tmp_path)
     planned = plan(Route(case, (TARGET,), Settings(**LIFTED)), tmp_path / "out")
