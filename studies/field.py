@@ -122,11 +122,12 @@ def _inside(keys: list[str], at: Location, value: Any, annotation: Any, metadata
         raise ValueError(
             f"must be a field of the case; its {name} are counted from 0 to {len(value) - 1}, * for all; got {key}"
         )
-    quantity = quantity_of(annotation, metadata)
     types = get_args(of_kind(annotation, tuple))
     for index in range(len(value)) if key == ALL else [int(key)]:
         item = types[0] if types[-1:] == (...,) else types[index]
         here = (*at, index)
+        # What marks the whole holds for items without a mark of their own, as the time and the height in a table have.
+        quantity = None if quantity_of(item, []) else quantity_of(annotation, metadata)
         marks = [quantity] if quantity else []
         if rest:
             yield from _inside(rest, here, value[index], item, marks)

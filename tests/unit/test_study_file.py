@@ -254,5 +254,16 @@ def test_fields_of_lattices_platforms_and_texts_are_found(tmp_path):
     assert 'must be one number; got "column um"' in told
 
 
+def test_a_table_has_times_and_heights(tmp_path):
+    rows = 'table = [["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "0 um"]]\n'
+    text = PLATE.replace('stroke = "60 um"\nfrequency = "400 Hz"\n', rows)
+    axis = '[[axes]]\nfield = "actuators.0.table.1.{}"\nvalues = ["{}"]\n'
+    for item, value, unit, read in ((0, "2 ms", "s", 2e-3), (1, "20 um", "m", 2e-5)):
+        study = read_study(written(tmp_path, axis.format(item, value), text))
+        assert (study.points.axes[0].field.unit, study.points.axes[0].values) == (unit, (pytest.approx(read),))
+    (told,) = mistakes(tmp_path, axis.format(1, "0.02 ms"), text)
+    assert told.endswith('must be a length such as "150 um"; got "0.02 ms", a time')
+
+
 def test_a_file_that_is_no_toml_is_told(tmp_path):
     assert "is not valid TOML" in mistakes(tmp_path, "[study\n")[0]
