@@ -76,9 +76,19 @@ def test_the_lowest_value_is_found_in_any_order_of_the_values():
 
 
 def test_half_of_the_repeats_are_enough_and_refused_points_hold_nothing():
-    values = np.array([[1.0, 3.0, np.nan, 3.0], [np.nan, np.nan, np.nan, 3.0]])
-    condition = Threshold("distance", ">", 2.0, "")
-    assert condition.holds({"distance": type("Array", (), {"values": values})}, 4).tolist() == [True, False]
+    refused = OUTCOMES.index("refused")
+    distance = np.array([[1.0, 3.0, np.nan, 3.0], [np.nan, np.nan, np.nan, 3.0]])
+    outcome = np.where(np.isnan(distance), refused, 0)
+    columns = {"distance": distance, "outcome": outcome, "evaluations": np.where(np.isnan(distance), 0, 99)}
+    columns["mistakes"] = np.isnan(distance).astype(int)
+    dataset = {name: type("Array", (), {"values": values}) for name, values in columns.items()}
+    for condition, holds in (
+        (Threshold("distance", ">", 2.0, ""), [True, False]),
+        (Threshold("evaluations", "<", 1e9, ""), [True, False]),
+        (Threshold("outcome", "=", refused, ""), [False, True]),
+        (Threshold("mistakes", ">", 0.0, ""), [False, True]),
+    ):
+        assert condition.holds(dataset, 4).tolist() == holds
 
 
 def drawn(tmp_path, threshold):
