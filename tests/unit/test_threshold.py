@@ -9,11 +9,12 @@ from sweeps import PLATE, PLATFORM, written
 
 from coupling.case import CaseError
 from studies import read_study, run_study
-from studies.dataset import read_dataset, write_dataset
+from studies.dataset import key_of, read_dataset, write_dataset
 from studies.engine import Engine
-from studies.findings import Findings
+from studies.findings import Findings, read_findings
 from studies.map import compose
 from studies.record import OUTCOMES, new_records
+from studies.saved import read_sweep
 from studies.threshold import Threshold, lowest, read_threshold
 
 AXES = """\
@@ -136,7 +137,14 @@ def test_another_threshold_is_drawn_without_running_again(tmp_path, monkeypatch)
     monkeypatch.setattr(Engine, "records", None)
     other = read_study(written(tmp_path, AXES + '[map]\nthreshold = "distance > 20 um"\n', PLATFORM))
     assert other.key == first.key
-    assert run_study(other, tmp_path / "out").files[1].read_bytes() != one
+    file, picture = run_study(other, tmp_path / "out").files
+    assert picture.read_bytes() != one
+    with read_findings(file) as found:
+        assert found.threshold == other.threshold
+    assert read_sweep(file)[0].threshold == other.threshold and key_of(file) == first.key
+    kept = file.stat().st_mtime_ns, sorted(file.parent.iterdir())
+    run_study(other, tmp_path / "out")
+    assert (file.stat().st_mtime_ns, sorted(file.parent.iterdir())) == kept
 
 
 @pytest.mark.parametrize(
