@@ -5,6 +5,7 @@ route -> surface -> leg by leg: task -> approach -> schedule so far -> place rea
 
 from __future__ import annotations
 
+import math
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
@@ -91,7 +92,10 @@ class _Work:
     def run(self) -> None:
         """Find leg after leg, until one fails; after Ctrl-C `close` has those so far."""
         route, place = self._route, self._route.case.part.position
-        for number in range(len(route.through)):
+        for number, target in enumerate(route.through):
+            if number and math.dist(place, target) <= route.settings.tolerance:
+                self._stay()
+                continue
             try:
                 task = route.leg(number, place)
             except ValueError as error:
@@ -105,6 +109,10 @@ class _Work:
                 return
             x, y = path.position[-1].tolist()
             place = (x, y)
+
+    def _stay(self) -> None:
+        """Count a way-point where the part rests already as reached, without a leg."""
+        self._arrivals, self._tried = (*self._arrivals, self._now), self._tried + 1
 
     def close(self) -> Planned:
         """What was found; KeyboardInterrupt where there is nothing."""
