@@ -93,9 +93,7 @@ def test_a_part_may_come_back_to_where_it_started(case, surface):
 @pytest.mark.compiled
 def test_a_way_point_where_the_part_rests_is_reached_without_a_leg(case, surface):
     settings = Settings(scatter=1, tolerance=2e-6)
-    once, twice = (
-        plan_over(surface, Route(case, (THROUGH[0],) * count + (THROUGH[1],), settings)) for count in (1, 2)
-    )
+    once, twice = (plan_over(surface, Route(case, (THROUGH[0],) * count + (THROUGH[1],), settings)) for count in (1, 2))
     assert once.complete and not twice.failure and twice.reached[:2] == [True, True]
     assert twice.arrivals[0] == twice.arrivals[1] == once.arrivals[0] and len(twice.arrivals) == 3
     assert twice.targets[-1] == THROUGH[1] and twice.distances[0] == twice.distances[1]

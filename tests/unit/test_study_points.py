@@ -98,7 +98,9 @@ def test_a_lattice_alone_is_made_anew_and_none_of_its_old_actuators_stay(tmp_pat
     study = read_study(written(tmp_path, f'[[axes]]\nfield = "lattice.{field}"\nvalues = [{value}]\n', alone))
     (values,) = study.points.values(0, 1)
     (tmp_path / "same.toml").write_text(alone.replace(old, f"{field} = {value}"))
-    assert Variants(study.case, study.points.axes).at(values)[0].actuators == read_case(tmp_path / "same.toml").actuators
+    assert (
+        Variants(study.case, study.points.axes).at(values)[0].actuators == read_case(tmp_path / "same.toml").actuators
+    )
 
 
 def test_an_actuator_that_a_lattice_made_may_be_varied_by_itself(tmp_path):
