@@ -14,7 +14,7 @@ from coupling import build_surface, read_case
 from particle import Outcome
 from steering import Route, Settings, Task, aim, found, plan
 from steering.aiming import aim_over
-from steering.objective import SAMPLES
+from steering.objective import SAMPLES, Objective
 from steering.paths import Disturbance, Paths
 from steering.planning import plan_over
 from steering.report import lines, plan_figures, plan_lines, scatter_line
@@ -193,6 +193,20 @@ def test_a_case_file_may_follow_the_way_points(tmp_path):
     arguments = ["plan", "--through", "-90,120", "90,120", str(tmp_path / "1.toml"), "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(main, [*arguments, "--json"])
     assert done.exit_code == 0 and len(json.loads(done.stdout)["legs"]) == 2
+
+
+@pytest.mark.parametrize("paths", [1, 2, 40])
+def test_a_robust_search_by_few_paths_ends_with_them(tmp_path, monkeypatch, paths):
+    case, asked, of = case_of(tmp_path), [], Objective.of
+
+    def counted(objective, values):
+        asked.append(len(values))
+        return of(objective, values)
+
+    monkeypatch.setattr(Objective, "of", counted)
+    task = Task(case, TARGET, Settings(quantile=0.9, paths=paths, scatter=1))
+    found = aim_over(build_surface(case), task)
+    assert np.isfinite(found.distance) and found.paths <= paths + SAMPLES and len(asked) < 20
 
 
 def test_the_option_robust_is_the_quantile(tmp_path):
