@@ -134,6 +134,15 @@ def test_all_mistakes_are_told_at_once(tmp_path):
     assert told[4].endswith('must be greater than 0; got "-1 kg"')
 
 
+@pytest.mark.parametrize("first", [True, False])
+def test_an_axis_over_part_of_what_another_one_varies_is_a_mistake(tmp_path, first):
+    axes = [f'[[axes]]\nfield = "run.gravity{item}"\nvalues = ["9 m/s^2"]\n' for item in ("", ".0")]
+    tilted = PLATE + 'gravity = ["1 m/s^2", "0 m/s^2", "9.8 m/s^2"]\n'
+    (told,) = mistakes(tmp_path, "".join(axes if first else axes[::-1]), tilted)
+    already = f"run.gravity.0 is varied by the axis run.gravity{'' if first else '.0'} already"
+    assert told.endswith(f"axes[2].field must be varied by one axis only; {already}")
+
+
 def test_a_file_without_axes_and_one_without_a_case_are_told(tmp_path):
     assert mistakes(tmp_path, "") == [
         "None axes is missing; it must be a table, written [[axes]]",
