@@ -261,6 +261,10 @@ def test_fields_of_lattices_platforms_and_texts_are_found(tmp_path):
     assert "has no values in between; list its values" in told
     (told,) = mistakes(tmp_path, '[[axes]]\nfield = "lattice.stroke"\nvalues = ["column um"]\n', LATTICE)
     assert 'must be one number; got "column um"' in told
+    (told,) = mistakes(tmp_path, '[[axes]]\nfield = "plate.supports"\nvalues = [{ rim = "free" }]\n')
+    assert "must be one text; got" in told
+    (told,) = mistakes(tmp_path, '[[axes]]\nfield = "lattice.pitch.0"\nvalues = ["9 um"]\n', LATTICE)
+    assert "its lattice.pitch is a single value" in told
 
 
 def test_a_table_has_times_and_heights(tmp_path):

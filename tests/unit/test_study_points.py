@@ -56,6 +56,7 @@ def test_a_list_goes_along_all_axes_at_once(tmp_path):
     assert points.values(0, 3) == [(100.0, 1e-8), (pytest.approx(200.0), 2e-8), (400.0, 3e-8)]
 
 
+UNEVEN = LATTICE.replace('"100 um"', '["100 um", "9 um"]')
 CHANGED = [
     (PLATE, "actuators.*.stroke", '"30 um"', 'stroke = "60 um"', 'stroke = "30 um"'),
     (PLATE, "actuators.1.frequency", '"350 Hz"', 'frequency = "300 Hz"', 'frequency = "350 Hz"'),
@@ -71,6 +72,9 @@ CHANGED = [
     (PLATFORM, "plate.motion.x.frequency", '"300 Hz"', '"200 Hz"', '"300 Hz"'),
     (LATTICE, "lattice.pitch", '"90 um"', '"100 um"', '"90 um"'),
     (LATTICE, "lattice.columns", "2", "columns = 3", "columns = 2"),
+    (LATTICE, "lattice.centre.0", '"20 um"', "[lattice]", '[lattice]\ncentre = ["20 um", "0 um"]'),
+    (LATTICE, "lattice.where", '"column > 0"', "[lattice]", '[lattice]\nwhere = "column > 0"'),
+    (UNEVEN, "lattice.pitch.0", '"80 um"', '["100 um", "9 um"]', '["80 um", "9 um"]'),
 ]
 
 
