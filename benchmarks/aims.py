@@ -74,7 +74,8 @@ def _table(name: str, case: Case, surface: SurfaceMotion, tasks: list, settings:
 
 def _row(start: tuple[float, float], found: Aimed, seconds: float) -> str:
     places = [f"({x * 1e6:.0f}, {y * 1e6:.0f})" for x, y in (start, found.task.target)]
-    shares = [f"{found.scatter.quantile(share) * 1e6:.1f} um" for share in (0.5, 0.9, 1.0)]
+    within = [found.scatter.quantile(share) for share in (0.5, 0.9, 1.0)]
+    shares = [f"{distance * 1e6:.1f} um" if np.isfinite(distance) else "lost" for distance in within]
     lost = found.scatter.lost
     cells = [*places, f"{found.distance * 1e6:.3f} um", str(found.paths), f"{seconds:.1f} s", *shares, str(lost)]
     return f"| {' | '.join(cells)} |"

@@ -85,6 +85,8 @@ def load(path: str | os.PathLike[str]) -> tuple[str, dict[str, Any]]:
         problem = Problem(line, "", f"is not UTF-8 text; got the byte 0x{error.object[error.start]:02x}")
     except tomllib.TOMLDecodeError as error:
         problem = _syntax_problem(str(error), text)
+    except ValueError as error:  # no file can have such a name
+        problem = Problem(None, "", f"cannot be read: {error}")
     raise CaseError(os.fspath(path), [problem])
 
 

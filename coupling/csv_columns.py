@@ -67,9 +67,10 @@ def read_columns(path: Path, known: Mapping[str, Quantity], needed: Sequence[Seq
     return File(whole, tuple(number for number, _ in rows), told(mistakes))
 
 
-def unreadable(file: str, error: OSError) -> str:
-    """That a file cannot be read, and why."""
-    return f"must be a file that can be read; got {shown(file)}: {(error.strerror or str(error)).lower()}"
+def unreadable(file: str, error: OSError | ValueError) -> str:
+    """That a file cannot be read, and why; ValueError where no file can have such a name."""
+    reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+    return f"must be a file that can be read; got {shown(file)}: {reason.lower()}"
 
 
 def told(mistakes: Sequence[str]) -> list[str]:

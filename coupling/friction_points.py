@@ -87,10 +87,10 @@ def _read(path: Path) -> tuple[dict[str, Any], list[str]]:
 
     try:
         text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        return {}, [unreadable(path.name, error)]
     except UnicodeDecodeError:
         return {}, ["is not UTF-8 text"]
+    except (OSError, ValueError) as error:
+        return {}, [unreadable(path.name, error)]
     rows = [
         (number, [cell.strip() for cell in line.split(",")])
         for number, line in enumerate(text.splitlines(), 1)

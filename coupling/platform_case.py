@@ -95,7 +95,7 @@ class PlatformCase(Table):
         where = ("plate", "motion")
         try:
             measured, mistakes = self.read_motion
-        except OSError as error:
+        except (OSError, ValueError) as error:
             yield where, unreadable(Path(str(self.motion)).name, error)
             return
         for mistake in mistakes:

@@ -88,5 +88,5 @@ def scattered(paths: Paths, case: Case, target: Place, count: int, seed: int) ->
     ways = disturbances(count, len(case.actuators), seed, TOLD)
     found = paths.of([(case.actuators, way) for way in ways])
     ends = np.array([path.position[-1] for path in found])
-    lost = sum(path.time[-1] < case.run.duration for path in found)
-    return Scatter(ends, np.hypot(*(ends - target).T), int(lost))
+    lost = np.array([path.time[-1] < case.run.duration for path in found])
+    return Scatter(ends, np.where(lost, np.inf, np.hypot(*(ends - target).T)))

@@ -26,7 +26,7 @@ class LegSearch:
         self._robust: Objective | None = None
         if task.settings.quantile is not None:
             self._robust = Objective(task, self._knobs, self._paths, tell, most, disturbed=True)
-            most //= 2
+            most = max(most // 2, 1)
         self._nominal = Objective(task, self._knobs, self._paths, tell, most)
 
     def run(self) -> None:

@@ -52,8 +52,8 @@ class Objective:
 
     @property
     def exhausted(self) -> bool:
-        """Whether there have been as many paths as there may be."""
-        return self._paths.found >= self._most
+        """Whether fewer paths are left than one trial takes."""
+        return self._paths.found + len(self._ways) > self._most
 
     def of(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """How far off the ends are (m, 2) [m], and the costs (m,) [m], of trials (m, n).

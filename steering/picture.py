@@ -61,7 +61,7 @@ def draw_aim(found: Aimed, path: Path) -> Path:
 def draw_plan(found: Planned, path: Path) -> Path:
     """Draws what a plan found into a PNG file; returns that."""
     route = found.route
-    targets = route.through[: max(len(found.arrivals), 1)]
+    targets = found.targets
     which = "the last of them" if len(targets) == len(route.through) else f"way-point {len(targets)}"
     count = f"{sum(found.reached)} of {len(route.through)} way-points within {_length(route.settings.tolerance)}"
     return _draw(found, f"{route.name}: {count}; the part ends {_off(found, targets[-1], which)}", targets, path)
@@ -120,8 +120,10 @@ def _draw_plate(axes: Axes, case: Case, trajectory: Trajectory, targets: Sequenc
 def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatter) -> list[Artist]:
     """Draw the ends about the target, those far off left out, with circles that hold half and nine tenths of them.
 
+    A circle that would have to hold lost parts is left out.
     Where all are far from the target they are drawn about their middle, with an arrow towards it.
     """
+    circles = {share: away for share in (0.5, 0.9) if np.isfinite(away := scatter.quantile(share))}
     off, end = scatter.ends - target, trajectory.position[-1] - target
     middle = np.median(np.vstack([off, end]), axis=0)
     spread = float(np.quantile(np.hypot(*(np.vstack([off, end]) - middle).T), SHARE))
@@ -130,7 +132,7 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
         centre, shown = middle, max(spread, LEAST * float(np.hypot(*middle)))
     else:
         centre = np.zeros(2)
-        shown = max(float(np.quantile(np.hypot(*off.T), SHARE)), float(np.hypot(*end)), scatter.quantile(0.9))
+        shown = max(float(np.quantile(np.hypot(*off.T), SHARE)), float(np.hypot(*end)), *circles.values())
     side = ROOM * max(shown, SMALLEST)
     unit = readable(np.array([side + float(np.hypot(*centre))]), "m")
     _label(axes, unit, " from the target")
@@ -144,8 +146,8 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
         axes.annotate(f"target, {_length(float(np.hypot(*middle)))}", tail, (0, 14), ha="center", **NUMBER)
     else:
         axes.plot(0, 0, linestyle="", **TARGET, zorder=4)
-        for share in (0.5, 0.9):
-            radius = scatter.quantile(share) * unit.per_si
+        for share, distance in circles.items():
+            radius = distance * unit.per_si
             axes.add_patch(Circle((0, 0), radius, fill=False, edgecolor="#606060", linewidth=0.8))
             axes.annotate(f"{share:.0%}", (0, radius), (2, 1), color="#606060", **NUMBER)
     low, high = (centre - side) * unit.per_si, (centre + side) * unit.per_si

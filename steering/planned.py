@@ -2,31 +2,38 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from steering.found import Found
-from steering.route import Route
+from steering.route import Place, Route
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Planned(Found):
     """The case with the schedule that was found, its path, and what became of each leg.
 
-    arrivals: s, when the part rests for good at each way-point, or beside it.  failure: why there are less of them than
-    way-points; "": there are not, or Ctrl-C came.
+    arrivals: s, when the part rests for good at each way-point, or beside it.  tried: for how many way-points there are
+    drives, which counts one on whose way the path failed.  failure: why there are less arrivals than way-points; "":
+    there are not, or Ctrl-C came.
     """
 
     route: Route
     arrivals: tuple[float, ...]
+    tried: int
     failure: str = ""
+
+    @property
+    def targets(self) -> tuple[Place, ...]:
+        """The way-points [m] for which there are drives: the last of them is where these are to end."""
+        return self.route.through[: self.tried]
 
     @property
     def distances(self) -> list[float]:
         """From the part to each way-point [m] when it has arrived there."""
         there = self.trajectory.at(self.arrivals).position
-        return [float(np.hypot(*off)) for off in there - self.route.through[: len(self.arrivals)]]
+        ways = zip(there.tolist(), self.route.through, strict=False)  # to those where it has arrived
+        return [math.dist(place, target) for place, target in ways]
 
     @property
     def reached(self) -> list[bool]:

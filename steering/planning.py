@@ -5,6 +5,7 @@ route -> surface -> leg by leg: task -> approach -> schedule so far -> place rea
 
 from __future__ import annotations
 
+import math
 from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
@@ -69,16 +70,12 @@ def plan_over(
                 shield.enter_context(unbroken())
             found = replace(work.close(), interrupted=interrupted)
             if file is not None:
-                through = route.through[: len(found.arrivals)]
-                places = ", ".join(f"({shown_length(x)}, {shown_length(y)})" for x, y in through)
-                said = f"The drives carry the part over {places}." if through else found.failure
-                found = replace(found, files=(write_case(found.case, file, said),))
+                found = replace(found, files=(write_case(found.case, file, _comment(found)),))
     except KeyboardInterrupt:  # what was found before it stays
         if found is None:
             raise
         return replace(found, interrupted=True)
-    target = route.through[max(len(found.arrivals) - 1, 0)]
-    return with_scatter(found, Paths(found.case, surface, threads), target, route.settings)
+    return with_scatter(found, Paths(found.case, surface, threads), found.targets[-1], route.settings)
 
 
 class _Work:
@@ -89,13 +86,16 @@ class _Work:
         self._approach: Approach | None = None
         self._legs: tuple[Leg, ...] = ()
         self._arrivals: tuple[float, ...] = ()
-        self._now, self._paths, self._failure = 0.0, 0, ""
+        self._now, self._paths, self._tried, self._failure = 0.0, 0, 0, ""
         self._whole: tuple[Case, Trajectory] | None = None
 
     def run(self) -> None:
         """Find leg after leg, until one fails; after Ctrl-C `close` has those so far."""
         route, place = self._route, self._route.case.part.position
-        for number in range(len(route.through)):
+        for number, target in enumerate(route.through):
+            if number and math.dist(place, target) <= route.settings.tolerance:
+                self._stay()
+                continue
             try:
                 task = route.leg(number, place)
             except ValueError as error:
@@ -109,6 +109,10 @@ class _Work:
                 return
             x, y = path.position[-1].tolist()
             place = (x, y)
+
+    def _stay(self) -> None:
+        """Count a way-point where the part rests already as reached, without a leg."""
+        self._arrivals, self._tried = (*self._arrivals, self._now), self._tried + 1
 
     def close(self) -> Planned:
         """What was found; KeyboardInterrupt where there is nothing."""
@@ -125,6 +129,7 @@ class _Work:
             case=case,
             trajectory=path,
             arrivals=self._arrivals,
+            tried=self._tried,
             paths=self._paths,
             failure=self._failure,
         )
@@ -140,12 +145,20 @@ class _Work:
         case = scheduled(self._route.case, self._legs, end)
         case = case.model_copy(update={"name": f"{self._route.name}_planned"})
         path = path_of(Paths(case, self._surface, self._threads), case)
-        self._whole = case, path
+        self._whole, self._tried = (case, path), self._tried + 1
         if settled(path):
             self._arrivals, self._now = (*self._arrivals, end), end
         else:
             self._failure = f"leg {len(self._arrivals) + 1}: {path.sentence} At {path.time[-1] * 1e3:g} ms."
         return path
+
+
+def _comment(found: Planned) -> str:
+    """What a file of the drives begins with: how near they bring the part to each way-point, and why no farther."""
+    legs = zip(found.route.through, found.distances, strict=False)
+    places = [f"({shown_length(x)}, {shown_length(y)}) but for {shown_length(off)}" for (x, y), off in legs]
+    said = [f"The drives carry the part over {', '.join(places)}."] if places else []
+    return "\n".join([*said, found.failure] if found.failure else said)
 
 
 def _tell_leg(tell: Tell, leg: int, legs: int, done: int, of: int) -> None:

@@ -62,8 +62,11 @@ def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Setti
     case, wrong = _case(Path(path), written)
     if case and table:
         wrong += mistakes(case, table, table.target if aims else None)
-    elif case and aims and (place := _target(written)):
-        wrong += [("target", message) for message in misplaced(case, place)]
+    elif case:
+        # What depends on the target depends on the other keys, too, of which some are wrong.
+        wrong += mistakes(case, _right(written), None)
+        place = _valid(written, "target") if aims else None
+        wrong += [("target", message) for message in misplaced(case, place)] if place else []
     for key, message in wrong:
         context = {"error": ValueError(message)}
         errors.append({"type": "value_error", "loc": ("aim", key), "input": None, "ctx": context})
@@ -77,9 +80,8 @@ def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Setti
 
 def _case(path: Path, table: Mapping[str, Any]) -> tuple[Case | None, list[Mistake]]:
     """The case that an aim file names, and what is wrong with it."""
-    try:
-        name = adapter(AimTable, "case").validate_python(table.get("case"))
-    except ValidationError:
+    name = _valid(table, "case")
+    if name is None:
         return None, []
     try:
         return read_case(path.parent / name), []
@@ -87,10 +89,16 @@ def _case(path: Path, table: Mapping[str, Any]) -> tuple[Case | None, list[Mista
         return None, [("case", "must be the file of a case; " + str(error).replace("\n", "\n    "))]
 
 
-def _target(table: Mapping[str, Any]) -> Place | None:
-    """The target [m] of a table in which anything may be wrong; None where that is the target, or there is none."""
+def _right(table: Mapping[str, Any]) -> Settings:
+    """The settings of a table in which anything may be wrong, without what is; strokes count as given even then."""
+    valid = {key: _valid(table, key) for key in Settings.model_fields}
+    known = {key: value for key, value in valid.items() if value is not None}
+    return Settings.model_construct(**({"stroke": (0.0, 0.0)} if "stroke" in table else {}) | known)
+
+
+def _valid(table: Mapping[str, Any], key: str) -> Any:
+    """The value of a key in such a table; None where it is wrong, or there is none."""
     try:
-        place: Place | None = adapter(AimTable, "target").validate_python(table.get("target"), context=UNITS_REQUIRED)
+        return adapter(AimTable, key).validate_python(table.get(key), context=UNITS_REQUIRED)
     except ValidationError:
         return None
-    return place

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from coupling.drive_case import ActuatorCase
@@ -114,13 +115,14 @@ def point(place: tuple[float, float]) -> str:
 
 
 def scatter_line(scatter: Scatter) -> str:
-    """How far disturbed runs end from the target, in words."""
-    half, most, worst = (scatter.quantile(share) * MICRO for share in (0.5, 0.9, 1.0))
-    lost = f"; {scatter.lost} lost" if scatter.lost else ""
-    return (
-        f"half within {half:.3g} um, 90 % within {most:.3g} um, all within {worst:.3g} um of the target{lost} "
-        f"({len(scatter.distance)} runs with friction and strokes up to 1 %, starts up to 1 um off)"
-    )
+    """How far disturbed runs end from the target, in words: of shares without lost ones."""
+    shares = {"half": 0.5, "90 %": 0.9, "all": 1.0}
+    found = {name: scatter.quantile(share) * MICRO for name, share in shares.items()}
+    within = ", ".join(f"{name} within {away:.3g} um" for name, away in found.items() if math.isfinite(away))
+    said = [f"{within} of the target"] if within else []
+    said += [f"{scatter.lost} lost"] if scatter.lost else []
+    count = len(scatter.distance)
+    return f"{'; '.join(said)} ({count} runs with friction and strokes up to 1 %, starts up to 1 um off)"
 
 
 def _drive(actuator: ActuatorCase) -> str:

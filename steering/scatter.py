@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,22 +23,24 @@ class Scatter:
     """The ends of disturbed runs, and their distances from the target."""
 
     ends: FloatArray  # (n, 2) m
-    distance: FloatArray  # (n,) m
-    lost: int  # parts that came off, left the plate or the like
+    distance: FloatArray  # (n,) m, inf of those that were lost: came off, left the plate or the like
+
+    @property
+    def lost(self) -> int:
+        """How many were lost."""
+        return int(np.isinf(self.distance).sum())
 
     def quantile(self, share: float) -> float:
-        """The distance [m] that a share of the parts is within."""
-        return float(np.quantile(self.distance, share))
+        """The least distance [m] that a share of the parts is within; inf where too many were lost."""
+        # That of one of the parts: between two of them, or between one and inf, there is none.
+        return float(np.quantile(self.distance, share, method="inverted_cdf"))
 
     def as_dict(self) -> dict[str, Any]:
-        """Its figures by name, in SI units."""
-        return {
-            "count": len(self.distance),
-            "median": self.quantile(0.5),
-            "nine_in_ten": self.quantile(0.9),
-            "worst": self.quantile(1.0),
-            "lost": self.lost,
-        }
+        """Its figures by name, in SI units; None where too many were lost."""
+        shares = {"median": 0.5, "nine_in_ten": 0.9, "worst": 1.0}
+        found = {name: self.quantile(share) for name, share in shares.items()}
+        within = {name: distance if math.isfinite(distance) else None for name, distance in found.items()}
+        return {"count": len(self.distance), **within, "lost": self.lost}
 
 
 def disturbances(count: int, actuators: int, seed: int, stream: int) -> list[Disturbance]:

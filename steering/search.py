@@ -58,6 +58,8 @@ def search_robust(knobs: Knobs, nominal: Objective, robust: Objective, near: flo
         _evolve(knobs, nominal, near, (*seed, populations))
         robust.of(nominal.recent.values[None])
         populations += 1
+    if robust.exhausted:
+        return
     low, high = np.array(knobs.bounds).T
     middle, reach = robust.best.values, AROUND * (high - low)
     box = list(zip(np.maximum(low, middle - reach), np.minimum(high, middle + reach), strict=True))
@@ -106,7 +108,7 @@ class _Watch:
         if not objective.reached and objective.recent.cost <= min(self._near, self._tried * (1 - 1e-9)):
             _newton(self._knobs, objective)
             self._tried = objective.recent.cost
-        gets_on = objective.recent.cost <= PROGRESS * self._before
+        gets_on = objective.recent.cost < PROGRESS * self._before
         self._idle = 0 if gets_on else self._idle + 1
         self._before = objective.recent.cost if gets_on else self._before
         if objective.reached or objective.exhausted or self._idle >= PATIENCE:

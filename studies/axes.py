@@ -98,12 +98,18 @@ class Axes:
             if makes and numbers and max(numbers) >= alone:
                 yield ("axes", k, "field"), f"must not vary actuators from {alone} on: the axis over {makes} makes them"
             for _, other, varied in self._fields[:n]:
-                if shared := set(field.locations) & set(varied.locations):
+                if shared := _within(field, varied) | _within(varied, field):
                     at = ".".join(map(str, min(shared, key=str)))
                     same = f"{at} is varied by the axis {other} already"
                     yield ("axes", k, "field"), f"must be varied by one axis only; {same}"
                 elif name == other:
                     yield ("axes", k, "name"), f"must differ from that of another axis; got {shown(name)} twice"
+
+
+def _within(field: Field, other: Field) -> set[Location]:
+    """The locations of a field that another one has, or has as part of what it varies."""
+    known = set(other.locations)
+    return {at for at in field.locations if any(at[:n] in known for n in range(1, len(at) + 1))}
 
 
 def _read(field: Field, written: Sequence[Any]) -> tuple[list[Value], list[tuple[int, str]]]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from coupling.case import Case
 from coupling.plate_case import PlateCase
 from coupling.rim import rim_curves
+from coupling.whole_file import whole_file
 from studies.axis import Axis
 from studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from studies.slabs import slabs
@@ -51,6 +52,21 @@ def write_dataset(
     finally:
         partial.unlink(missing_ok=True)
     return path
+
+
+def renew_text(study: Study, path: Path) -> None:
+    """Has the file at `path`, which holds the results of a study, say of it what its text says now.
+
+    Only what results do not depend on can differ, as the threshold that is drawn.
+    """
+    with h5netcdf.File(path, "r") as file:
+        if not study.source or file.attrs["study"] == study.source:
+            return
+    with whole_file(path) as partial:
+        shutil.copyfile(path, partial)
+        with h5netcdf.File(partial, "a") as file:
+            file.attrs["study"] = study.source
+        _sync(partial)
 
 
 def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:

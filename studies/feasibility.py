@@ -11,14 +11,15 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from coupling.case import Case
+from coupling.drives import build_drives
 from coupling.progress import Progress, interruptible, silent
 from coupling.run import build_friction, build_scene
 from coupling.whole_file import whole_file
 from meshes import Outline
-from particle import Micropart
+from particle import AnyDrive, Micropart
 from particle.drive import drive_table
 from particle.stay import horizon
-from studies.feasible import ACROSS, Curves, Feasible, find_feasible
+from studies.feasible import ACROSS, Curves, Feasible, find_feasible, moving
 
 if TYPE_CHECKING:
     import xarray
@@ -31,7 +32,10 @@ COUNT: Final = 31  # frequencies
 
 @dataclass(frozen=True, eq=False)
 class Feasibility:
-    """The feasible areas of a case, over frequencies (F,) [Hz] of its fastest drive; the others keep their ratios."""
+    """The feasible areas of a case, over frequencies (F,) [Hz] of its fastest drive.
+
+    All drives run as many times as fast, whatever they are: times of tables and segments shrink as cycles do.
+    """
 
     case: Case
     found: Feasible
@@ -126,18 +130,19 @@ def feasibility(
     """The feasible areas of a case.
 
     lowest, highest: Hz, the frequencies of its fastest drive that are looked at, by default a quarter of its own and
-    eight times that; delays and dwells shrink with the cycles.  across: places along the plate's longer side.
+    eight times that; all times of all drives shrink likewise. Of segments the highest frequency counts, of a table
+    that of strokes as short as its shortest, of a drive at rest none.  across: places along the plate's longer side.
     The window is what the drives do until they repeat themselves, at most the run's duration, and of that no more than
     `studies.feasible` looks at.
-    Raises ValueError for a platform, drives without a frequency, and numbers that make no sense.
+    Raises ValueError for a platform, drives of which none moves, and numbers that make no sense.
     """
-    drives_of = [actuator.frequency for actuator in case.actuators]
+    drives = _movers(case)
     wrong = []
     if not case.actuators:
         wrong.append("Input case of feasibility must have a plate on actuators; got a platform")
-    frequency = max((own or 0.0 for own in drives_of), default=0.0)
+    frequency = max((drive.frequency for drive in drives), default=0.0)
     if case.actuators and not frequency:
-        wrong.append("Input case of feasibility must have a drive with a frequency; got none")
+        wrong.append("Input case of feasibility must have a drive that moves; got none")
     low = SPAN[0] * frequency if lowest is None else lowest
     high = SPAN[1] * frequency if highest is None else highest
     if not wrong and not 0 < low < high:
@@ -149,7 +154,7 @@ def feasibility(
     with threadpool_limits(limits=1, user_api="blas"):
         scene = build_scene(case, progress)
         assert scene.shapes
-        until = horizon(drive_table(scene.lifts), 0.0)
+        until = horizon(drive_table(drives), 0.0)
         whole = case.run.duration if until is None else min(until, case.run.duration)
         part = Micropart(case.part.mass, case.part.position, squeeze=case.part.squeeze)
         factors = np.geomspace(low, high, COUNT) / frequency
@@ -159,6 +164,12 @@ def feasibility(
                 case.run.gravity, across,
             )  # fmt: skip
     return Feasibility(case, found, frequency, whole, scene.shapes.outline, scene.shapes.points)
+
+
+def _movers(case: Case) -> list[AnyDrive]:
+    """The drives that move; the others have a frequency, too, which counts for nothing."""
+    drives = build_drives(case)
+    return [drive for drive, moves in zip(drives, moving(drive_table(drives)), strict=True) if moves]
 
 
 def _ends_fault(lowest: float | None, highest: float | None, low: float, high: float) -> str:

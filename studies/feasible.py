@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from numpy.typing import NDArray
 
 from meshes import Outline
 from particle import Micropart, SurfaceMotion
+from particle.drive_table import DriveTable
 from particle.friction import Contact
 from particle.motion import Part
 from particle.slipping import count_slips, find_lost
@@ -81,14 +83,14 @@ def find_feasible(
     """The feasible areas of a part at rest on a surface within an outline, over a window [s] from the start.
 
     factors: (F,) what the drives' frequencies are multiplied with, the base's drives among them.
-    window: no more of it is looked at than MOST_STROKES of the drives' shortest strokes.
+    window: no more of it is looked at than MOST_STROKES of the shortest strokes of drives that move.
     gravity: as for `particle.simulate`.  across: places along the longer side.
     The part's place and velocity do not matter.
     """
     factors = np.sort(np.asarray(factors, dtype=float))
     every = np.append(factors, 1.0)
     points, spacing = places(outline, across)
-    stroke_time = float(surface.drives.stroke_time.min(initial=window))
+    stroke_time = float(surface.drives.stroke_time[moving(surface.drives)].min(initial=window))
     window = min(window, MOST_STROKES * stroke_time)
     count = max(int(np.ceil(PER_STROKE * window / stroke_time)), PER_STROKE)
     moments = window * (np.arange(count) + 0.5) / count
@@ -109,6 +111,12 @@ def find_feasible(
     lost_area = lost.sum(axis=1) * spacing**2
     own = Own(float(peaks[0, -1]), float(integrals[0, -1]), float(lost_area[-1]), slips / count, lost[-1], areas[0, -1])
     return Feasible(factors, window, moments, points, spacing, feasible, slipping, lost_area[:-1], own)
+
+
+def moving(drives: DriveTable) -> BoolArray:
+    """Whether each drive (N,) ever changes its height; one without a stroke has a frequency, too."""
+    pieces = drives.coefficients[:, 1:]
+    return np.array([pieces[first:last].any() for first, last in pairwise(drives.first)], dtype=np.bool_)
 
 
 def _states(

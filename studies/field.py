@@ -46,9 +46,12 @@ class Field:
             read: Any = self.reader.validate_python(value, context=UNITS_REQUIRED)
         except ValidationError as error:
             raise ValueError("; ".join(message_of(detail, value, {}) for detail in error.errors())) from None
+        if self.kind == "text" and isinstance(value, str):
+            return value  # also where it is read as an expression
         wanted = {"number": (int, float), "whole": (int,), "text": (str,)}[self.kind]
         if not isinstance(read, wanted):
-            raise ValueError(f"must be one {'number' if self.kind == 'number' else 'whole number'}; got {shown(value)}")
+            said = {"number": "number", "whole": "whole number", "text": "text"}[self.kind]
+            raise ValueError(f"must be one {said}; got {shown(value)}")
         return float(read) if self.kind == "number" else read
 
 
@@ -92,13 +95,14 @@ def _ends(
             raise ValueError("must be a field of the case; it has no [lattice]")
         if not rest:
             raise ValueError("must be a single value; got lattice, which is a table")
-        yield from _ends(rest, here, None, LatticeCase.model_fields, None)
+        read = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
+        yield from _ends(rest, here, read, LatticeCase.model_fields, None)
         return
     within = getattr(value, key, None)
     if not rest:
         # Supports are one text or a table of texts.
         annotation = str if isinstance(within, str) else field.annotation
-        yield here, _model_of(value, at), key, annotation, field.metadata
+        yield here, type(value), key, annotation, field.metadata
     else:
         yield from _inside(rest, here, within, field.annotation, field.metadata)
 
@@ -122,20 +126,17 @@ def _inside(keys: list[str], at: Location, value: Any, annotation: Any, metadata
         raise ValueError(
             f"must be a field of the case; its {name} are counted from 0 to {len(value) - 1}, * for all; got {key}"
         )
-    quantity = quantity_of(annotation, metadata)
     types = get_args(of_kind(annotation, tuple))
     for index in range(len(value)) if key == ALL else [int(key)]:
         item = types[0] if types[-1:] == (...,) else types[index]
         here = (*at, index)
+        # What marks the whole holds for items without a mark of their own, as the time and the height in a table have.
+        quantity = None if quantity_of(item, []) else quantity_of(annotation, metadata)
         marks = [quantity] if quantity else []
         if rest:
             yield from _inside(rest, here, value[index], item, marks)
         else:
             yield here, None, key, item, marks
-
-
-def _model_of(value: Any, at: Location) -> Any:
-    return LatticeCase if at == ("lattice",) else type(value)
 
 
 def _unknown(key: str, at: Location, known: Iterable[str]) -> str:

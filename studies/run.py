@@ -18,7 +18,7 @@ import numpy as np
 from coupling.progress import Tell, untold
 from studies.chunk_store import ChunkStore
 from studies.cluster import records_on
-from studies.dataset import differences, key_of, read_dataset, write_dataset
+from studies.dataset import differences, key_of, read_dataset, renew_text, write_dataset
 from studies.engine import Engine
 from studies.lock import alone_in
 from studies.map import draw_sweep
@@ -124,6 +124,8 @@ def _found(study: Study, folder: Path, threads: int | None, tell: Tell, schedule
             engine = Engine(study, threads)
             _find(engine, store, tell, scheduler)
             write_dataset(study, _chunks(engine, store), file, model_warnings(study))
+        else:
+            renew_text(study, file)
         store.clear()
     return file
 

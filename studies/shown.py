@@ -19,6 +19,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 DISTANCE = "distance"
+NUMBER = "number of the path"  # with spaces, which no axis has in its name
 MOST_POINTS = 100_000  # of random ones
 NAMED = "m", "s", "N", "Hz", "m/s", "Pa"
 """Units that take a prefix."""
@@ -121,10 +122,10 @@ class Shown:
                 fixed[axis.name] = scale.texts[0] if scale.texts else counted(f"{scale.drawn[0]:.4g}", scale.unit.name)
         outcome = findings.dataset["outcome"]
         numbers = outcome.copy(data=np.arange(outcome.size).reshape(outcome.shape))
-        part = findings.dataset.assign(number=numbers).isel(picked)
+        part = findings.dataset.assign({NUMBER: numbers}).isel(picked)
         if not scattered:
             part = part.transpose(*(axis.name for axis in axes), ...)
-        arrays = {name: part[name].values for name in (column, DISTANCE, "outcome", "end_x", "end_y", "number")}
+        arrays = {name: part[name].values for name in (column, DISTANCE, "outcome", "end_x", "end_y", NUMBER)}
         if findings.repeats == 1:
             arrays = {name: array[..., None] for name, array in arrays.items()}
         scales = tuple(Scale.of(axis, part[axis.name].values) for axis in axes)
@@ -137,7 +138,7 @@ class Shown:
             arrays["outcome"].astype(np.int64),
             np.stack([arrays["end_x"], arrays["end_y"]], axis=-1),
             fixed,
-            arrays["number"],
+            arrays[NUMBER],
             findings.threshold and findings.threshold.holds(part, findings.repeats),
         )
 

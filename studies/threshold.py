@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.units import Quantity, shown
-from studies.record import COLUMNS, OUTCOMES
+from studies.record import COLUMNS, OUTCOMES, REFUSED
 
 if TYPE_CHECKING:
     import xarray
@@ -19,6 +19,8 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 EXAMPLES: Final = {"m": "1 um", "s": "1 ms", "N": "1 uN"}
+OF_REFUSED: Final = ("outcome", "mistakes")
+"""Columns that say something of a refused point."""
 WANTED: Final = 'a condition such as "distance > 1 um" or "outcome = stuck"'
 
 
@@ -34,7 +36,9 @@ class Threshold(NamedTuple):
         """Whether the condition holds at each point, or for at least half of its repeats, the last dimension."""
         values: NDArray[Any] = dataset[self.column].values
         compare = {"<": np.less, ">": np.greater, "=": np.equal}[self.sign]
-        found: BoolArray = compare(values, self.level)  # a refused point is nan, and holds nothing
+        found: BoolArray = compare(values, self.level)
+        if self.column not in OF_REFUSED:  # though other counts of a refused point are numbers, too
+            found &= dataset["outcome"].values != OUTCOMES.index(REFUSED)
         return found.mean(axis=-1) >= 0.5 if repeats > 1 else found
 
 

@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from coupling.case import AnyFriction, Case, PartCase, RunCase
 from coupling.case_lines import Location
 from coupling.drive_case import ActuatorCase
+from coupling.lattice_case import LatticeCase
 from coupling.plate_scene import springs
 from coupling.platform_case import PlatformCase
 from coupling.table import Table
@@ -44,7 +45,10 @@ class Variants:
         self._plain = {key: table for key, table in _plain(case).items() if key not in LEFT_OUT}
         if any(axis.field.locations[0][0] == "lattice" for axis in axes):
             lattice, alone = lattice_of(case)
-            self._plain |= {"lattice": lattice, "actuators": self._plain["actuators"][:alone]}
+            assert lattice is not None
+            # A centre that is not written may be varied in part, too.
+            whole = {"centre": LatticeCase.model_fields["centre"].default} | lattice
+            self._plain |= {"lattice": whole, "actuators": self._plain["actuators"][:alone]}
         heads: dict[Location, list[tuple[int, Location]]] = {}
         for k, axis in enumerate(axes):
             for location in axis.field.locations if k not in self._deep_places else ():
@@ -147,7 +151,8 @@ _READERS: Final[dict[str, TypeAdapter[Any]]] = {
 def lattice_of(case: Case) -> tuple[dict[str, Any] | None, int]:
     """The [lattice] in the text of a case, and how many actuators are given beside it one by one."""
     written = tomllib.loads(case.source) if case.source else {}
-    return written.get("lattice"), len(written.get("actuators", case.actuators))
+    # Beside a lattice that is written none need be, and those of the case are the lattice's.
+    return written.get("lattice"), len(written.get("actuators", () if "lattice" in written else case.actuators))
 
 
 def _plain(value: Any) -> Any:

@@ -12,12 +12,13 @@ from sweeps import PLATE
 from command_line.main import main
 from coupling import build_surface, read_case
 from particle import Outcome
-from steering import Route, Settings, Task, aim, found
+from steering import Route, Settings, Task, aim, found, plan
 from steering.aiming import aim_over
-from steering.objective import SAMPLES
+from steering.objective import SAMPLES, Objective
 from steering.paths import Disturbance, Paths
 from steering.planning import plan_over
-from steering.report import lines
+from steering.report import lines, plan_figures, plan_lines, scatter_line
+from steering.scatter import Scatter
 
 TARGET = (-2e-5, 2e-5)
 pytestmark = pytest.mark.compiled
@@ -122,9 +123,46 @@ def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(tmp_path):
     surface = build_surface(case)
     planned = plan_over(surface, Route(case, (TARGET, (0.0, 0.0)), Settings(**LIFTED)))
     assert planned.trajectory.time[-1] < planned.case.run.duration
-    assert not planned.arrivals and not planned.complete and planned.scatter.lost == 5
+    assert not planned.arrivals and not planned.distances and not planned.complete and planned.scatter.lost == 5
     assert planned.failure.startswith("leg 1: The part ")
     assert planned.failure.endswith(f"At {planned.trajectory.time[-1] * 1e3:g} ms.")
+
+
+def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, monkeypatch):
+    """The second leg does not settle: its drives are in the case all the same."""
+    case, settings, rests = case_of(tmp_path), Settings(paths=40, scatter=3), iter([True, False])
+    monkeypatch.setattr("steering.planning.settled", lambda path: next(rests))
+    way = (TARGET, (6e-5, 5e-5))
+    planned = plan_over(build_surface(case), Route(case, way, settings), file=tmp_path / "out" / "p.toml")
+    assert len(planned.arrivals) == 1 and planned.targets == way and planned.failure.startswith("leg 2: ")
+    assert planned.scatter.distance == pytest.approx(np.hypot(*(planned.scatter.ends - way[1]).T))
+    comment = (tmp_path / "out" / "p.toml").read_text().split("\n\n")[0].splitlines()
+    off = f"{planned.distances[0] * 1e6:g} um"
+    assert comment == [f"# The drives carry the part over (-20 um, 20 um) but for {off}.", f"# {planned.failure}"]
+
+
+def test_a_plan_whose_disturbed_runs_are_all_lost_says_nothing_of_how_near_they_are(tmp_path):
+    case = case_of(tmp_path)
+    planned = plan(Route(case, (TARGET,), Settings(**LIFTED)), tmp_path / "out")
+    assert planned.scatter.as_dict() == {"count": 5, "median": None, "nine_in_ten": None, "worst": None, "lost": 5}
+    assert dict(plan_lines(planned))["scatter"].startswith("5 lost (5 runs")
+    json.dumps(plan_figures(planned), allow_nan=False)
+    assert (tmp_path / "out" / "base_plan.png").exists() and np.isfinite(planned.scatter.ends).all()
+
+
+@pytest.mark.parametrize(
+    ("off", "within", "said"),
+    [
+        ([1.0, 100.0], [1.0, 100.0, 100.0], "half within 1 um, 90 % within 100 um, all within 100 um of the target ("),
+        ([*range(1, 10), np.inf], [5.0, 9.0, None], "half within 5 um, 90 % within 9 um of the target; 1 lost ("),
+        ([3.0, np.inf, 2.0, np.inf], [3.0, None, None], "half within 3 um of the target; 2 lost ("),
+    ],
+)
+def test_a_share_of_the_parts_is_within_a_distance_only_where_that_many_are(off, within, said):
+    scatter = Scatter(np.zeros((len(off), 2)), 1e-6 * np.array(off))
+    wanted = [None if away is None else pytest.approx(1e-6 * away) for away in within]
+    assert [scatter.as_dict()[name] for name in ("median", "nine_in_ten", "worst")] == wanted
+    assert scatter_line(scatter).startswith(said)
 
 
 def test_a_plan_says_which_way_points_it_missed(tmp_path):
@@ -155,6 +193,20 @@ def test_a_case_file_may_follow_the_way_points(tmp_path):
     arguments = ["plan", "--through", "-90,120", "90,120", str(tmp_path / "1.toml"), "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(main, [*arguments, "--json"])
     assert done.exit_code == 0 and len(json.loads(done.stdout)["legs"]) == 2
+
+
+@pytest.mark.parametrize("paths", [1, 2, 40])
+def test_a_robust_search_by_few_paths_ends_with_them(tmp_path, monkeypatch, paths):
+    case, asked, of = case_of(tmp_path), [], Objective.of
+
+    def counted(objective, values):
+        asked.append(len(values))
+        return of(objective, values)
+
+    monkeypatch.setattr(Objective, "of", counted)
+    task = Task(case, TARGET, Settings(quantile=0.9, paths=paths, scatter=1))
+    found = aim_over(build_surface(case), task)
+    assert np.isfinite(found.distance) and found.paths <= paths + SAMPLES and len(asked) < 20
 
 
 def test_the_option_robust_is_the_quantile(tmp_path):

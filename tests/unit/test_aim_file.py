@@ -139,6 +139,16 @@ def test_the_actuators_nearest_to_the_way_take_part(tmp_path):
     assert Route(case, ((1e-4, -9e-5), (1e-4, 1e-4))).leg(1, (1e-4, -9e-5)).movers == (2, 4, 5, 8)
 
 
+def test_actuators_are_checked_whatever_else_is_wrong(tmp_path):
+    (tmp_path / "base.toml").write_text(PLATE.replace('stroke = "60 um"', 'stroke = "0 um"'))
+    (tmp_path / "aim.toml").write_text(
+        '[aim]\ncase = "base.toml"\nstroke = ["60 um", "0 um"]\nactuators = [0, 99]\ntarget = ["0 um", "1 mm"]\n'
+    )
+    told = mistakes(tmp_path / "aim.toml")
+    assert [line.split(" must")[0] for line in told] == ["3 aim.stroke", "4 aim.actuators", "5 aim.target"]
+    assert told[1].endswith("must be numbers of actuators from 0 to 1; got 99")
+
+
 def test_way_points_are_checked_before_any_search(tmp_path):
     (tmp_path / "base.toml").write_text(PLATE)
     with pytest.raises(ValueError) as error:

@@ -228,3 +228,15 @@ def test_case_error_survives_pickling(tmp_path: Path) -> None:
     again = pickle.loads(pickle.dumps(caught.value))
     assert str(again) == str(caught.value)
     assert again.problems == caught.value.problems
+
+
+@pytest.mark.parametrize(
+    ("where", "text"),
+    [
+        ("friction.file", changed((FRICTION, 'model = "table"\nfile = "a\\u0000"'))),
+        ("plate.motion", '[plate]\nshape = "platform"\nmotion = "a\\u0000"\n' + GOOD[GOOD.index("[part]") :]),
+    ],
+)
+def test_a_null_byte_in_the_name_of_a_file_is_told_where_it_is(tmp_path: Path, where: str, text: str) -> None:
+    (told,) = problems(tmp_path, text)
+    assert f" {where} must be a file that can be read" in told and told.endswith("embedded null byte")

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from sweeps import PLATE
 
 from command_line.main import main
 from coupling import read_case, surface_motion
@@ -17,6 +18,8 @@ from particle import (
     KogutEtsion,
     Micropart,
     Outcome,
+    Segment,
+    SegmentDrive,
     TableDrive,
     polynomial_surface,
     simulate,
@@ -65,16 +68,57 @@ def test_areas_are_those_of_the_radial_integral(frequency):
     assert [found.own.peak, found.own.integral] == [found.feasible.peak[0], found.feasible.integral[0]]
 
 
+def drives_of(kind, speed):
+    """A drive of 300 Hz that runs so many times as fast."""
+    if kind == "strokes":
+        return Drive(STROKE, 300.0 * speed)
+    if kind == "table":
+        return TableDrive(np.array([0, 1 / 600, 1 / 400, 1 / 200]) / speed, [0.0, STROKE, STROKE / 2, 0.0])
+    segments = Segment(STROKE, 200.0 * speed, dwell=1e-4 / speed), Segment(STROKE / 2, 300.0 * speed)
+    return SegmentDrive(segments, delay=1e-3 / speed)
+
+
 @pytest.mark.compiled
-def test_a_factor_is_a_drive_that_runs_so_much_faster():
+@pytest.mark.parametrize("kind", ["strokes", "table", "segments"])
+def test_a_factor_is_a_drive_that_runs_so_much_faster(kind):
     law = KogutEtsion.paper()
     both = []
-    for frequency, factor in ((300.0, 2.5), (750.0, 1.0)):
-        surface = surface_motion(SHAPES, [Drive(STROKE, frequency)])
-        found = find_feasible(surface, SHAPES.outline, PART, law, 1 / frequency, np.array([factor]), GRAVITY, 40)
-        assert found.factors.tolist() == [factor]
+    for speed, factor in ((1.0, 2.5), (2.5, 1.0)):
+        surface = surface_motion(SHAPES, [drives_of(kind, speed)])
+        found = find_feasible(surface, SHAPES.outline, PART, law, 1 / (200 * speed), np.array([factor]), GRAVITY, 40)
+        assert found.factors.tolist() == [factor] and found.slipping.peak[0] > 0
         both.append([found.feasible.peak[0], found.feasible.integral[0], found.slipping.peak[0]])
     assert both[0] == pytest.approx(both[1], rel=1e-9)
+
+
+FIRST, SECOND = 'stroke = "60 um"\nfrequency = "400 Hz"\n', 'stroke = "60 um"\nfrequency = "300 Hz"\n'
+REST = 'stroke = "0 um"\nfrequency = "100 kHz"\n'
+PART_OF = '[[actuators.segments]]\nstroke = "{}"\nfrequency = "{}"\n'
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    ("drives", "frequency", "whole"),
+    [
+        ((FIRST, REST), 400, 2.5e-3),
+        ((FIRST, PART_OF.format("20 um", "3 kHz")), 3000, 1 / 3000 + 2.5e-3),
+        ((REST, PART_OF.format("20 um", "250 Hz") + PART_OF.format("9 um", "500 Hz")), 500, 5e-3),
+        ((REST, 'table = [["0 ms", "0 um"], ["1 ms", "9 um"], ["3 ms", "0 um"]]\n'), 500, 3e-3),
+    ],
+)
+def test_the_fastest_drive_is_one_that_moves_of_any_kind(tmp_path, drives, frequency, whole):
+    text = PLATE.replace(FIRST, "FIRST").replace(SECOND, drives[1]).replace("FIRST", drives[0])
+    (tmp_path / "base.toml").write_text(text)
+    found = feasibility(read_case(tmp_path / "base.toml"), across=10)
+    assert found.frequency == pytest.approx(frequency) and found.found.factors[0] == pytest.approx(0.25)
+    assert found.whole_window == found.found.window == pytest.approx(whole)
+    assert len(found.found.moments) == pytest.approx(96 * frequency * whole, abs=1)
+
+
+def test_drives_of_which_none_moves_are_refused(tmp_path):
+    (tmp_path / "base.toml").write_text(PLATE.replace('"60 um"', '"0 um"'))
+    with pytest.raises(ValueError, match="^Input case of feasibility must have a drive that moves; got none$"):
+        feasibility(read_case(tmp_path / "base.toml"))
 
 
 def test_nothing_is_lost_without_pull_off_and_nothing_moves_where_friction_holds():

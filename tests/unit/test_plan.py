@@ -11,7 +11,7 @@ from command_line.main import main
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
-from steering import Route, Settings, plan
+from steering import Route, Settings, Task, plan
 from steering.planning import plan_over
 from steering.schedule import Leg, lasting, scheduled
 
@@ -81,6 +81,38 @@ def test_a_plan_carries_the_part_over_its_way_points_and_its_file_runs_the_same(
         there = path.at([time - 1e-4, time])
         assert np.hypot(*(there.position - target).T).max() < 0.5e-6 and not there.velocity.any()
     assert plan(route, threads=1).case.actuators == found.case.actuators
+
+
+@pytest.mark.compiled
+def test_a_part_may_come_back_to_where_it_started(case, surface):
+    route = Route(case, (THROUGH[0], case.part.position), Settings(scatter=1, tolerance=2e-6))
+    found = plan_over(surface, route)
+    assert found.complete and np.hypot(*(found.trajectory.position[-1] - case.part.position)) < 2e-6
+
+
+@pytest.mark.compiled
+def test_a_way_point_where_the_part_rests_is_reached_without_a_leg(case, surface):
+    settings = Settings(scatter=1, tolerance=2e-6)
+    once, twice = (plan_over(surface, Route(case, (THROUGH[0],) * count + (THROUGH[1],), settings)) for count in (1, 2))
+    assert once.complete and not twice.failure and twice.reached[:2] == [True, True]
+    assert twice.arrivals[0] == twice.arrivals[1] == once.arrivals[0] and len(twice.arrivals) == 3
+    assert twice.targets[-1] == THROUGH[1] and twice.distances[0] == twice.distances[1]
+
+
+def test_what_the_start_cannot_reach_a_later_place_may(tmp_path):
+    """One actuator after the other pushes the part along lines that it could not leave from the start."""
+    text = PLATE.replace('["-75 um", "0 um"]', '["0 um", "0 um"]').replace('["75 um", "0 um"]', '["0 um", "100 um"]')
+    third = text[text.index("[[actuators]]") : text.index("[part]")].split("[[actuators]]")[1]
+    third = "[[actuators]]" + third.replace('"0 um"]', '"-100 um"]') + "[part]"
+    (tmp_path / "base.toml").write_text(
+        text.replace("[part]", third).replace('["-140 um", "20 um"]', '["100 um", "0 um"]')
+    )
+    case, ways = read_case(tmp_path / "base.toml"), ((0.0, 6e-5), (-5e-5, 2e-5))
+    assert [actuator.position for actuator in case.actuators] == [(0.0, 0.0), (0.0, 1e-4), (0.0, -1e-4)]
+    route = Route(case, ways, Settings(nearest=1))
+    with pytest.raises(ValueError, match="cannot be reached: from this start"):
+        Task(case, ways[1], Settings(nearest=1))
+    assert route.leg(1, (1e-7, 6e-5)).target == ways[1]
 
 
 @pytest.mark.compiled

@@ -134,12 +134,23 @@ def test_all_mistakes_are_told_at_once(tmp_path):
     assert told[4].endswith('must be greater than 0; got "-1 kg"')
 
 
+@pytest.mark.parametrize("first", [True, False])
+def test_an_axis_over_part_of_what_another_one_varies_is_a_mistake(tmp_path, first):
+    axes = [f'[[axes]]\nfield = "run.gravity{item}"\nvalues = ["9 m/s^2"]\n' for item in ("", ".0")]
+    tilted = PLATE + 'gravity = ["1 m/s^2", "0 m/s^2", "9.8 m/s^2"]\n'
+    (told,) = mistakes(tmp_path, "".join(axes if first else axes[::-1]), tilted)
+    already = f"run.gravity.0 is varied by the axis run.gravity{'' if first else '.0'} already"
+    assert told.endswith(f"axes[2].field must be varied by one axis only; {already}")
+
+
 def test_a_file_without_axes_and_one_without_a_case_are_told(tmp_path):
     assert mistakes(tmp_path, "") == [
         "None axes is missing; it must be a table, written [[axes]]",
     ]
     (told,) = mistakes(tmp_path, '[study]\ncase = "nowhere.toml"\n' + STROKE)
     assert "2 study.case must be the file of a case; " in told and "nowhere.toml" in told
+    (told,) = mistakes(tmp_path, '[study]\ncase = "a\\u0000"\n' + STROKE)
+    assert "2 study.case must be the file of a case; " in told and "cannot be read: embedded null byte" in told
 
 
 def test_missing_keys_are_told_with_what_they_must_be(tmp_path):
@@ -210,6 +221,9 @@ def test_an_axis_over_what_another_axis_makes_anew_is_a_mistake(tmp_path, made, 
         assert told.endswith(f"axes[{2 if first else 1}].field {message}")
     else:
         assert len(read_study(written(tmp_path, text, LATTICE)).points) == 2
+    alone = LATTICE[: LATTICE.index("[[actuators]]")] + LATTICE[LATTICE.index("[lattice]") :]
+    (told,) = mistakes(tmp_path, text, alone)
+    assert "must not vary actuators from 0 on: the axis over lattice." in told
 
 
 def test_values_of_an_axis_are_checked_whatever_else_is_wrong_with_it(tmp_path):
@@ -249,6 +263,21 @@ def test_fields_of_lattices_platforms_and_texts_are_found(tmp_path):
     assert "has no values in between; list its values" in told
     (told,) = mistakes(tmp_path, '[[axes]]\nfield = "lattice.stroke"\nvalues = ["column um"]\n', LATTICE)
     assert 'must be one number; got "column um"' in told
+    (told,) = mistakes(tmp_path, '[[axes]]\nfield = "plate.supports"\nvalues = [{ rim = "free" }]\n')
+    assert "must be one text; got" in told
+    (told,) = mistakes(tmp_path, '[[axes]]\nfield = "lattice.pitch.0"\nvalues = ["9 um"]\n', LATTICE)
+    assert "its lattice.pitch is a single value" in told
+
+
+def test_a_table_has_times_and_heights(tmp_path):
+    rows = 'table = [["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "0 um"]]\n'
+    text = PLATE.replace('stroke = "60 um"\nfrequency = "400 Hz"\n', rows)
+    axis = '[[axes]]\nfield = "actuators.0.table.1.{}"\nvalues = ["{}"]\n'
+    for item, value, unit, read in ((0, "2 ms", "s", 2e-3), (1, "20 um", "m", 2e-5)):
+        study = read_study(written(tmp_path, axis.format(item, value), text))
+        assert (study.points.axes[0].field.unit, study.points.axes[0].values) == (unit, (pytest.approx(read),))
+    (told,) = mistakes(tmp_path, axis.format(1, "0.02 ms"), text)
+    assert told.endswith('must be a length such as "150 um"; got "0.02 ms", a time')
 
 
 def test_a_file_that_is_no_toml_is_told(tmp_path):

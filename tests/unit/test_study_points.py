@@ -56,6 +56,7 @@ def test_a_list_goes_along_all_axes_at_once(tmp_path):
     assert points.values(0, 3) == [(100.0, 1e-8), (pytest.approx(200.0), 2e-8), (400.0, 3e-8)]
 
 
+UNEVEN = LATTICE.replace('"100 um"', '["100 um", "9 um"]')
 CHANGED = [
     (PLATE, "actuators.*.stroke", '"30 um"', 'stroke = "60 um"', 'stroke = "30 um"'),
     (PLATE, "actuators.1.frequency", '"350 Hz"', 'frequency = "300 Hz"', 'frequency = "350 Hz"'),
@@ -71,6 +72,9 @@ CHANGED = [
     (PLATFORM, "plate.motion.x.frequency", '"300 Hz"', '"200 Hz"', '"300 Hz"'),
     (LATTICE, "lattice.pitch", '"90 um"', '"100 um"', '"90 um"'),
     (LATTICE, "lattice.columns", "2", "columns = 3", "columns = 2"),
+    (LATTICE, "lattice.centre.0", '"20 um"', "[lattice]", '[lattice]\ncentre = ["20 um", "0 um"]'),
+    (LATTICE, "lattice.where", '"column > 0"', "[lattice]", '[lattice]\nwhere = "column > 0"'),
+    (UNEVEN, "lattice.pitch.0", '"80 um"', '["100 um", "9 um"]', '["80 um", "9 um"]'),
 ]
 
 
@@ -82,6 +86,25 @@ def test_the_case_at_a_point_is_that_of_a_file_with_its_values(tmp_path, text, f
     expected = read_case(tmp_path / "changed.toml")
     assert case.model_dump(exclude={"name", "source"}) == expected.model_dump(exclude={"name", "source"})
     assert base.case.plate == expected.plate
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "old"),
+    [
+        ("rows", "2", "rows = 1"),
+        ("columns", "2", "columns = 3"),
+        ("pitch", '"90 um"', 'pitch = "100 um"'),
+        ("stroke", '"7 um"', 'stroke = "5 * (1 + column) um"'),
+    ],
+)
+def test_a_lattice_alone_is_made_anew_and_none_of_its_old_actuators_stay(tmp_path, field, value, old):
+    alone = LATTICE[: LATTICE.index("[[actuators]]")] + LATTICE[LATTICE.index("[lattice]") :]
+    study = read_study(written(tmp_path, f'[[axes]]\nfield = "lattice.{field}"\nvalues = [{value}]\n', alone))
+    (values,) = study.points.values(0, 1)
+    (tmp_path / "same.toml").write_text(alone.replace(old, f"{field} = {value}"))
+    assert (
+        Variants(study.case, study.points.axes).at(values)[0].actuators == read_case(tmp_path / "same.toml").actuators
+    )
 
 
 def test_an_actuator_that_a_lattice_made_may_be_varied_by_itself(tmp_path):

@@ -15,7 +15,7 @@ from studies.findings import Findings
 from studies.heat import edges
 from studies.map import compose, draw_sweep
 from studies.record import OUTCOMES, new_records
-from studies.shown import Scale
+from studies.shown import Scale, Shown
 
 
 def axis(field, values, name=""):
@@ -174,6 +174,16 @@ def test_a_sweep_of_refused_points_alone_is_drawn(tmp_path):
 def test_one_value_alone_is_drawn(tmp_path):
     assert drawn(*made(tmp_path, axis("part.mass", '["1e-9 kg"]') + STROKE))
     assert drawn(*made(tmp_path, axis("part.mass", '["1e-9 kg"]')))
+
+
+@pytest.mark.parametrize("other", ["", STROKE])
+def test_an_axis_may_be_called_number(tmp_path, other):
+    study, dataset = made(tmp_path, LIMIT.replace('"limit"', '"number"') + other)
+    shown = Shown.of(Findings.of(study.name, dataset, None))
+    scale = shown.axes[[axis.axis.name for axis in shown.axes].index("number")]
+    assert scale.drawn == pytest.approx([1, 2]) and scale.unit.name == "nN"
+    assert sorted(shown.numbers.ravel()) == list(range(len(study.points)))
+    assert drawn(study, dataset).axes
 
 
 def test_edges_lie_half_way_between_values(tmp_path):

@@ -9,11 +9,12 @@ from sweeps import PLATE, PLATFORM, written
 
 from coupling.case import CaseError
 from studies import read_study, run_study
-from studies.dataset import read_dataset, write_dataset
+from studies.dataset import key_of, read_dataset, write_dataset
 from studies.engine import Engine
-from studies.findings import Findings
+from studies.findings import Findings, read_findings
 from studies.map import compose
 from studies.record import OUTCOMES, new_records
+from studies.saved import read_sweep
 from studies.threshold import Threshold, lowest, read_threshold
 
 AXES = """\
@@ -76,9 +77,19 @@ def test_the_lowest_value_is_found_in_any_order_of_the_values():
 
 
 def test_half_of_the_repeats_are_enough_and_refused_points_hold_nothing():
-    values = np.array([[1.0, 3.0, np.nan, 3.0], [np.nan, np.nan, np.nan, 3.0]])
-    condition = Threshold("distance", ">", 2.0, "")
-    assert condition.holds({"distance": type("Array", (), {"values": values})}, 4).tolist() == [True, False]
+    refused = OUTCOMES.index("refused")
+    distance = np.array([[1.0, 3.0, np.nan, 3.0], [np.nan, np.nan, np.nan, 3.0]])
+    outcome = np.where(np.isnan(distance), refused, 0)
+    columns = {"distance": distance, "outcome": outcome, "evaluations": np.where(np.isnan(distance), 0, 99)}
+    columns["mistakes"] = np.isnan(distance).astype(int)
+    dataset = {name: type("Array", (), {"values": values}) for name, values in columns.items()}
+    for condition, holds in (
+        (Threshold("distance", ">", 2.0, ""), [True, False]),
+        (Threshold("evaluations", "<", 1e9, ""), [True, False]),
+        (Threshold("outcome", "=", refused, ""), [False, True]),
+        (Threshold("mistakes", ">", 0.0, ""), [False, True]),
+    ):
+        assert condition.holds(dataset, 4).tolist() == holds
 
 
 def drawn(tmp_path, threshold):
@@ -126,7 +137,14 @@ def test_another_threshold_is_drawn_without_running_again(tmp_path, monkeypatch)
     monkeypatch.setattr(Engine, "records", None)
     other = read_study(written(tmp_path, AXES + '[map]\nthreshold = "distance > 20 um"\n', PLATFORM))
     assert other.key == first.key
-    assert run_study(other, tmp_path / "out").files[1].read_bytes() != one
+    file, picture = run_study(other, tmp_path / "out").files
+    assert picture.read_bytes() != one
+    with read_findings(file) as found:
+        assert found.threshold == other.threshold
+    assert read_sweep(file)[0].threshold == other.threshold and key_of(file) == first.key
+    kept = file.stat().st_mtime_ns, sorted(file.parent.iterdir())
+    run_study(other, tmp_path / "out")
+    assert (file.stat().st_mtime_ns, sorted(file.parent.iterdir())) == kept
 
 
 @pytest.mark.parametrize(
