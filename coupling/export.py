@@ -16,12 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.progress import Tell, untold
-from coupling.saved import SavedRun
+from coupling.saved import OF_PART, SavedRun
 from coupling.vtkhdf import GZIP, part_file, plate_file
 from coupling.whole_file import whole_file
 
 FORMATS = ("pvd", "xdmf", "vtkhdf")
-OF_PART = ("velocity", "state", "normal_force", "friction_force")
 VERTEX = np.zeros((1, 1), np.int64)
 XDMF_TYPES = {"f": "Float", "i": "Int"}
 XDMF_CELLS = {

@@ -15,7 +15,8 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 from command_line.main import main
 from coupling import Case, read_run, run_case
 from coupling.case import ConstantCase, PartCase, RunCase
-from coupling.export import OF_PART, export_run
+from coupling.export import export_run
+from coupling.saved import OF_PART
 
 PLATE = {"shape": "disc", "radius": 300e-6, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6}
 
