@@ -1,7 +1,7 @@
 """Export: a saved run in other formats, for programs that cannot read VTKHDF.
 
 Each of NAME.plate and NAME.part becomes NAME.plate.pvd with a folder NAME.plate of VTU files, or NAME.plate.xdmf with
-NAME.plate.h5, or a VTKHDF file anew, which finishes what an interrupted run left. All have every step and field.
+NAME.plate.h5, or a VTKHDF file anew, which closes what an interrupted run left. All have every step and field.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
 from pathlib import Path
@@ -40,7 +40,7 @@ class SavedRun:
     """A run as its two files hold it, finished or as far as it was written; the k steps are those that both have."""
 
     name: str  # of the files
-    complete: bool  # whether they were written to the end
+    complete: bool  # whether they were written to the end of the run
     summary: dict[str, Any] = field(repr=False)
     versions: dict[str, str] = field(repr=False)
     units: dict[str, str] = field(repr=False)
@@ -104,7 +104,7 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
         with _readable(path):
             run = _read(plate, part, paths, k)
             _check(run, k)
-            return run
+            return replace(run, complete=run.complete and bool(run.time[-1] >= run.summary["end_time"]))
 
 
 def _read(plate: h5py.File, part: h5py.File, paths: dict[str, Path], k: int) -> SavedRun:
