@@ -24,8 +24,7 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
     Raises ValueError when the file at `path` holds something else; OSError if it cannot be written.
     """
     path = Path(path)
-    if path.exists() and not _is_ours(path):
-        raise ValueError(f"Input path of write_surface must be free or a surface; got {path}, which is neither")
+    check_surface(path)
     with whole_file(path) as partial, h5py.File(partial, "w") as file:
         file.attrs.update(kind=KIND, version=VERSION, error=surface.error, moving_base=surface.moving_base)
         file.attrs.update(size=surface.size, floor=surface.floor, overhang=surface.overhang)
@@ -35,6 +34,12 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
             for name, value in table._asdict().items():
                 file[f"{group}/{name}"] = value
     return path
+
+
+def check_surface(path: Path) -> None:
+    """Raises ValueError when there is a file at `path` that is no surface."""
+    if path.exists() and not _is_ours(path):
+        raise ValueError(f"Input path of write_surface must be free or a surface; got {path}, which is neither")
 
 
 def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
