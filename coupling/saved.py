@@ -216,6 +216,8 @@ def _opened(path: Path) -> Iterator[h5py.File]:
         raise ValueError(f"{WANTED}; got {path}, which is no HDF5 file")
     try:
         file = h5py.File(path, "r")
+    except BlockingIOError as error:  # its writer keeps others out
+        raise ValueError(f"{WANTED}; got {path}, which is being written: its run has not ended") from error
     except OSError as error:
         raise ValueError(f"{WANTED}; got {path}, which is damaged: {error}") from error
     with file:

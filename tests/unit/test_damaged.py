@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from contextlib import ExitStack
 from pathlib import Path
 
 import h5py
@@ -10,23 +11,24 @@ import pytest
 from click.testing import CliRunner
 
 from command_line.main import main
+from command_line.refusal import refusal_of
 from coupling import Case, read_run, run_case
 from coupling.case import CoulombCase, PartCase, RunCase
 
+CASE = Case(
+    plate={"shape": "platform", "motion": {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}}},
+    part=PartCase(mass=2e-9, position=(1e-4, 0.0)),
+    friction=CoulombCase(coefficient=0.3),
+    run=RunCase(duration=6e-4, frames=11),
+    name="run",
+)
 READERS = (["view"], ["plot"], ["rerun", "--quiet"], ["export", "--format", "pvd"])
 
 
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory):
-    case = Case(
-        plate={"shape": "platform", "motion": {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}}},
-        part=PartCase(mass=2e-9, position=(1e-4, 0.0)),
-        friction=CoulombCase(coefficient=0.3),
-        run=RunCase(duration=6e-4, frames=11),
-        name="run",
-    )
     folder = tmp_path_factory.mktemp("ran")
-    run_case(case, folder)
+    run_case(CASE, folder)
     return folder
 
 
@@ -118,3 +120,28 @@ def test_damage_of_what_is_read_later_is_told_as_well(folder, kind, change, comm
     for command in READERS:
         if command[0] in commands:
             assert said in refused(command, folder) and f"run.{kind}.vtkhdf" in refused(command, folder)
+
+
+@pytest.fixture
+def written(folder):
+    """The same while another process writes it."""
+    fcntl = pytest.importorskip("fcntl", reason="files are locked otherwise here")
+    with ExitStack() as files:
+        for kind in ("plate", "part"):
+            path = (folder / f"run.{kind}.vtkhdf").rename(folder / f"run.partial.{kind}.vtkhdf")
+            fcntl.flock(files.enter_context(path.open("rb+")), fcntl.LOCK_EX)
+        yield folder
+
+
+@pytest.mark.parametrize("command", [*READERS, ["animate", "--format", "png"]], ids=lambda command: command[0])
+def test_a_run_that_is_being_written_is_not_called_damaged(written, command):
+    said = refused(command, written)
+    assert said.endswith("run.partial.plate.vtkhdf, which is being written: its run has not ended")
+
+
+def test_two_runs_do_not_write_the_same_file(written):
+    partial = written / "run.partial.plate.vtkhdf"
+    with pytest.raises(BlockingIOError, match="another run is writing it") as error:
+        run_case(CASE, written)
+    assert error.value.filename == str(partial)
+    assert refusal_of(error.value, "run", False).message == f"run: {partial}: another run is writing it"
