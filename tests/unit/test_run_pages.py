@@ -199,6 +199,7 @@ def test_view_writes_beside_the_result_or_where_it_is_told(folder, result, endin
         ("broken.toml", "[plate", "broken.toml"),
         ("case.toml", "[plate]\n", "active-surface run"),
         ("study.toml", "[study]\n", "active-surface sweep"),
+        ("aim.toml", "[aim]\n", "whose table [aim] is for `active-surface aim`"),
     ],
 )
 def test_what_is_no_result_is_refused(tmp_path, name, text, said):
