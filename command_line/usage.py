@@ -64,6 +64,8 @@ def _mistake(error: click.UsageError) -> Mistake:
         return _named(param), f"is missing; it must be {_wanted(param)}{like}"
     if isinstance(error, click.BadParameter) and param is not None:
         return _named(param), f"must be {_wanted(param)}; got {_got(error.message)}"
+    if isinstance(error, click.BadParameter) and isinstance(error.param_hint, str):
+        return error.param_hint, error.message
     extra = re.fullmatch(r"Got unexpected extra arguments? \((.*)\)", error.message)
     if extra and error.ctx:
         return extra[1], f"is too much; the command is {_usage(error.ctx)}"

@@ -213,3 +213,11 @@ def test_what_is_no_result_is_refused(tmp_path, name, text, said):
 def test_paths_are_of_sweeps_only(folder, result):
     answer = CliRunner().invoke(main, ["view", str(folder / NAME), "--paths", "3"])
     assert answer.exit_code == 2 and "--paths" in answer.output
+
+
+def test_an_output_that_is_no_page_is_told_with_its_option(folder, result):
+    answer = CliRunner().invoke(main, ["view", str(folder / NAME), "-o", "page.pdf"])
+    assert answer.exit_code == 2 and "  --output must end in .html; got page.pdf\n" in answer.stderr
+    answer = CliRunner().invoke(main, ["view", str(folder / NAME), "-o", "page.pdf", "--json"])
+    told = {"file": None, "line": None, "field": "--output", "message": "must end in .html; got page.pdf"}
+    assert json.loads(answer.stdout) == {"mistakes": [told]}
