@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -101,8 +102,7 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
     steps = ET.SubElement(
         ET.SubElement(root, "Domain"), "Grid", Name=name, GridType="Collection", CollectionType="Temporal"
     )
-    partial = folder / f"{name}.partial.h5"
-    with h5py.File(partial, "w") as file:
+    with _numbers(folder, name) as file:
 
         def item(grid: ET.Element, element: str, what: dict[str, str], place: str, array: NDArray) -> None:
             """An element of the grid whose numbers are an array, which is written unless its place has one."""
@@ -125,9 +125,16 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
                 form = "Scalar" if array.ndim == 1 else "Vector"
                 what = {"Name": key, "AttributeType": form, "Center": "Node"}
                 item(grid, "Attribute", what, f"{k}/{key}", array)
-    (folder / f"{name}.xdmf").unlink(missing_ok=True)  # it is of the old numbers
-    partial.replace(folder / f"{name}.h5")
     return _write_xml(root, folder / f"{name}.xdmf")
+
+
+@contextmanager
+def _numbers(folder: Path, name: str) -> Iterator[h5py.File]:
+    """NAME.h5 to write to; once whole it replaces the old one, and NAME.xdmf, which is of the old numbers, goes."""
+    with whole_file(folder / f"{name}.h5") as partial:
+        with h5py.File(partial, "w") as file:
+            yield file
+        (folder / f"{name}.xdmf").unlink(missing_ok=True)
 
 
 def _write_xml(root: ET.Element, path: Path) -> Path:

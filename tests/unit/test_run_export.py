@@ -98,8 +98,10 @@ def test_an_export_that_fails_leaves_nothing_that_mixes_runs(folder, tmp_path, f
             raise OSError("full")
 
     export_run(saved, tmp_path, form)
+    there = {file for file in tmp_path.iterdir() if file != files[0]}
     with pytest.raises(OSError, match="full"):
         export_run(short, tmp_path, form, fails)
+    assert {file for file in tmp_path.iterdir() if file != files[0]} == there
     assert not files[0].exists() if form == "pvd" else files[0].read_bytes() == before[files[0]]
 
 
