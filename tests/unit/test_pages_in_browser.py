@@ -9,7 +9,7 @@ from coupling.saved import read_run
 from views.run_page import write_run_page
 
 pytest.importorskip("selenium", reason="selenium is not installed")
-from page_browser import CASE, changed, chromium, drawn, opening, pixels, readout, reddish, wait  # noqa: E402
+from page_browser import CASE, changed, chromium, drawn, errors, opening, pixels, readout, reddish, wait  # noqa: E402
 from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
 from selenium.webdriver.common.by import By  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
@@ -146,3 +146,19 @@ def test_a_single_step_is_shown_and_cannot_be_played(open_page):
     assert not browser.find_element(By.ID, "play").is_enabled()
     assert readout(browser)["state"] == "stuck"
     assert pixels(browser, "surface").std() > 0.05
+
+
+def test_a_drawing_that_fails_while_it_plays_is_told_and_ends_the_play(open_page):
+    browser = open_page("run")
+    browser.execute_script(  # as a program of the page: of others' rejections Chromium tells it nothing
+        "const program = document.createElement('script');"
+        "program.textContent = `Plotly.restyle = async () => { throw new Error('no ink'); }`;"
+        "document.head.append(program)"
+    )
+    browser.find_element(By.ID, "play").click()
+    trouble = browser.find_element(By.ID, "trouble")
+    wait(trouble.is_displayed)
+    assert trouble.text == "A drawing of this page failed: no ink"
+    assert "Play" in browser.find_element(By.ID, "play").text
+    assert any("no ink" in error for error in errors(browser))
+    browser.refresh()

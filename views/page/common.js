@@ -9,6 +9,7 @@ const NARROW = window.innerWidth < 700;
 const CONFIG = { responsive: true, displaylogo: false, displayModeBar: !NARROW, modeBarButtonsToRemove: ["select2d", "lasso2d", "resetCameraLastSave3d"] };
 
 window.addEventListener("error", (event) => tellTrouble(event.message));
+window.addEventListener("unhandledrejection", (event) => tellTrouble(event.reason?.message ?? event.reason));
 
 function element(id) { return document.getElementById(id); }
 

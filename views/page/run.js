@@ -59,7 +59,12 @@ function play() {
     began ??= now;
     const seconds = Number(element("pace").value);
     const step = Math.min(last, from + Math.floor((now - began) / 1000 / seconds * last));
-    if (step !== shown || step === from) await show(step);
+    try {
+      if (step !== shown || step === from) await show(step);
+    } catch (error) {
+      if (playing && mine === turn) play(); // the end of it
+      throw error;
+    }
     if (step >= last) { if (playing && mine === turn) play(); } else requestAnimationFrame(next);
   };
   requestAnimationFrame(next);
