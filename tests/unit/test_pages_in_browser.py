@@ -162,3 +162,35 @@ def test_a_drawing_that_fails_while_it_plays_is_told_and_ends_the_play(open_page
     assert "Play" in browser.find_element(By.ID, "play").text
     assert any("no ink" in error for error in errors(browser))
     browser.refresh()
+
+
+def eye(browser):
+    """From where the surface is seen."""
+    return browser.execute_script(
+        "const { eye } = element('surface')._fullLayout.scene._scene.getCamera(); return [eye.x, eye.y, eye.z]"
+    )
+
+
+def test_the_surface_is_turned_by_the_mouse_while_it_plays(open_page):
+    browser = open_page("run")
+    shown = lambda: int(browser.find_element(By.ID, "step").get_attribute("value"))  # noqa: E731
+    browser.execute_script("document.getElementById('pace').value = '60'")
+    slanted = eye(browser)
+    browser.find_element(By.ID, "play").click()
+    canvas = browser.find_element(By.CSS_SELECTOR, "#surface canvas")
+    dragging = ActionChains(browser, duration=100).move_to_element(canvas).click_and_hold()
+    for _ in range(5):
+        dragging.move_by_offset(15, 0).pause(0.1)
+    dragging.perform()
+    for held in (True, False):
+        before = shown()
+        wait(lambda since=before: shown() >= since + 2)
+        assert eye(browser) != pytest.approx(slanted, abs=0.1)
+        if held:
+            ActionChains(browser).release().perform()
+    assert not browser.find_elements(By.CSS_SELECTOR, "[data-eye][aria-pressed=true]")
+    browser.find_element(By.CSS_SELECTOR, "[data-eye=above]").click()
+    before = shown()
+    wait(lambda: shown() >= before + 2)
+    assert eye(browser) == pytest.approx([0, 0, 1.5], abs=1e-3)
+    assert "Pause" in browser.find_element(By.ID, "play").text

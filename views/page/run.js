@@ -40,11 +40,18 @@ async function draw() {
   while (wanted !== null) {
     const step = wanted, now = changingAt(step);
     wanted = null;
+    keepCamera();
     await Promise.all([
       Plotly.restyle("surface", { x: now.x, y: now.y, z: now.z, intensity: now.intensity }, [...now.z.keys()]),
       Plotly.relayout("curves", { "shapes[0].x0": time[step], "shapes[0].x1": time[step] }),
     ]);
   }
+}
+
+// Plotly redraws with the camera of the layout, which it updates only when the mouse lets go.
+function keepCamera() {
+  const plot = element("surface"), scene = plot._fullLayout?.scene, now = scene?._scene?.getCamera?.(); // none without WebGL
+  if (now && !looking) plot.layout.scene.camera = scene.camera = now;
 }
 
 function play() {
