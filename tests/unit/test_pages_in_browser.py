@@ -119,9 +119,11 @@ def test_heights_cameras_and_texts(open_page):
     browser.find_element(By.CSS_SELECTOR, "[data-eye=above]").click()
     wait(lambda: changed(before, pixels(browser, "surface")) > 0.01)
     field = browser.find_element(By.ID, "exaggeration")
-    field.clear()
-    field.send_keys("3", Keys.ENTER)
-    wait(lambda: "3 times" in browser.find_element(By.ID, "surface-caption").text)
+    field.send_keys(Keys.CONTROL, "a", Keys.NULL, "3", Keys.ENTER)
+    wait(lambda: "3 times as large as lengths" in browser.find_element(By.ID, "surface-caption").text)
+    for refused in ("-3", "0", Keys.BACKSPACE):
+        field.send_keys(Keys.CONTROL, "a", Keys.NULL, refused, Keys.TAB)
+        assert field.get_attribute("value") == "3"
     assert not browser.find_element(By.TAG_NAME, "pre").is_displayed()
     browser.find_element(By.CSS_SELECTOR, "details summary").click()
     assert browser.find_element(By.TAG_NAME, "pre").text.startswith("[plate]")

@@ -79,7 +79,7 @@ function play() {
 
 function caption() {
   const [low, high] = surface.range;
-  const factor = high === low ? (last ? "The surface stays flat." : "The surface is flat at this step.") : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${Number(exaggeration.toPrecision(4))} times larger than lengths.`;
+  const factor = high === low ? (last ? "The surface stays flat." : "The surface is flat at this step.") : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${Number(exaggeration.toPrecision(4))} times as large as lengths.`;
   const lines = [factor];
   if (!surface.whole && !closeBy) lines.push("Of the surface, only that around the path is shown, with fewer points where that is large.");
   if (surface.unmarked) lines.push(`${surface.unmarked} actuators, too many to be marked.`);
@@ -99,8 +99,8 @@ async function look(name) {
 }
 
 function exaggerate() {
-  const factor = Number(element("exaggeration").value);
-  if (!(factor > 0)) return;
+  const field = element("exaggeration"), factor = Number(field.value);
+  if (!(factor > 0)) { field.value = exaggeration; return; }
   exaggeration = factor;
   caption();
   reframe();
