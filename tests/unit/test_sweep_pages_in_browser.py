@@ -1,5 +1,6 @@
 """Pages of sweeps in a real browser: Chromium clicks cells and presses keys, and looks at pixels and labels."""
 
+import numpy as np
 import pytest
 
 from studies import read_study, run_study
@@ -31,6 +32,19 @@ count = 3
 """
 
 
+NARROW = """\
+[study]
+case = "base.toml"
+repeats = 3
+jitter = "1 um"
+
+[[axes]]
+field = "actuators.0.frequency"
+name = "frequency"
+values = ["10000 Hz", "10000.5 Hz", "10001 Hz"]
+"""
+
+
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pages")
@@ -41,7 +55,19 @@ def pages(tmp_path_factory):
     return {
         "sweep": write_study_page(study, found.dataset, folder / "sweep.html"),
         "few": write_study_page(study, found.dataset, folder / "few.html", 3),
+        "repeats": repeated(folder),
     }
+
+
+def repeated(folder):
+    """The page of a narrow sweep with repeats, at whose first point the first start was refused."""
+    (folder / "narrow.toml").write_text(NARROW)
+    study = read_study(folder / "narrow.toml")
+    with run_study(study).dataset as dataset:
+        found = dataset.load()
+    for name in ("distance", "end_x", "end_y"):
+        found[name][0, 0] = np.nan
+    return write_study_page(study, found, folder / "repeats.html")
 
 
 @pytest.fixture(scope="module")
@@ -100,3 +126,16 @@ def test_cells_are_chosen_by_keys_and_the_map_shows_outcomes(open_page):
     browser.find_element(By.CSS_SELECTOR, "[data-value=outcome]").click()
     wait(lambda: changed(before, pixels(browser, "map")) > 0.05)
     assert "stuck" in browser.find_element(By.ID, "outcome-key").text
+
+
+def test_ends_are_shown_where_the_first_start_was_refused(open_page):
+    browser = open_page("repeats")
+    picker = browser.find_element(By.ID, "picker-0")
+    picker.send_keys(Keys.HOME)
+    names = "return element('path').data.map((trace) => trace.name).filter((name) => name)"
+    wait(lambda: browser.execute_script(names) == ["actuator", "ends of 3 starts"])
+    assert "The first start was refused." in browser.find_element(By.ID, "path-caption").text
+    said = browser.find_element(By.CLASS_NAME, "sentence").text
+    assert said.endswith("if it is one of the 2, of 3, in this page.")
+    picker.send_keys(Keys.ARROW_RIGHT)
+    wait(lambda: browser.execute_script(names) == ["actuator", "path", "ends of 3 starts", "start", "end"])
