@@ -55,6 +55,7 @@ def pages(tmp_path_factory):
     return {
         "sweep": write_study_page(study, found.dataset, folder / "sweep.html"),
         "few": write_study_page(study, found.dataset, folder / "few.html", 3),
+        "none": write_study_page(study, found.dataset, folder / "none.html", 0),
         "repeats": repeated(folder),
     }
 
@@ -126,6 +127,13 @@ def test_cells_are_chosen_by_keys_and_the_map_shows_outcomes(open_page):
     browser.find_element(By.CSS_SELECTOR, "[data-value=outcome]").click()
     wait(lambda: changed(before, pixels(browser, "map")) > 0.05)
     assert "stuck" in browser.find_element(By.ID, "outcome-key").text
+
+
+def test_a_page_without_paths_does_not_speak_of_any(open_page):
+    browser = open_page("none")
+    assert browser.find_element(By.ID, "map-caption").text == ""
+    said = browser.find_element(By.CLASS_NAME, "sentence").text
+    assert said == "12 points. A click on a point shows where its path starts and ends."
 
 
 def test_ends_are_shown_where_the_first_start_was_refused(open_page):

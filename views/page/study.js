@@ -130,7 +130,7 @@ function overMap() {
 function mapCaption() {
   const known = distance.filter(Number.isFinite).length, lines = [];
   if (pageData.outline.length) lines.push(`The line: where ${pageData.threshold} begins to hold.`);
-  if (pageData.kind === "map" && paths.size < known) lines.push("Dots: points whose path this page has.");
+  if (pageData.kind === "map" && paths.size && paths.size < known) lines.push("Dots: points whose path this page has.");
   element("map-caption").textContent = lines.join(" ");
 }
 
