@@ -136,14 +136,17 @@ def test_a_page_without_paths_does_not_speak_of_any(open_page):
     assert said == "12 points. A click on a point shows where its path starts and ends."
 
 
-def test_ends_are_shown_where_the_first_start_was_refused(open_page):
+def test_values_are_told_apart_and_ends_are_shown_where_the_first_start_was_refused(open_page):
     browser = open_page("repeats")
     picker = browser.find_element(By.ID, "picker-0")
     picker.send_keys(Keys.HOME)
+    wait(lambda: readout(browser)["frequency"] == "10000.00 Hz")
     names = "return element('path').data.map((trace) => trace.name).filter((name) => name)"
     wait(lambda: browser.execute_script(names) == ["actuator", "ends of 3 starts"])
     assert "The first start was refused." in browser.find_element(By.ID, "path-caption").text
     said = browser.find_element(By.CLASS_NAME, "sentence").text
     assert said.endswith("if it is one of the 2, of 3, in this page.")
     picker.send_keys(Keys.ARROW_RIGHT)
+    wait(lambda: readout(browser)["frequency"] == "10000.50 Hz")
     wait(lambda: browser.execute_script(names) == ["actuator", "path", "ends of 3 starts", "start", "end"])
+    assert picker.get_attribute("aria-valuetext") == "10000.50 Hz"

@@ -1,6 +1,6 @@
 // The page of a sweep: a map, curve or points over its axes, and the path of the chosen one.
 
-const unpackAxis = (axis) => ({ ...axis, values: unpack(axis.values), edges: unpack(axis.edges) });
+const unpackAxis = (axis) => { const values = unpack(axis.values); return { ...axis, values, edges: unpack(axis.edges), step: stepOf(values) }; };
 const axes = pageData.axes.map(unpackAxis), others = pageData.others.map(unpackAxis);
 const distance = unpack(pageData.distance), outcome = unpack(pageData.outcome), units = pageData.units;
 const starts = unpack(pageData.starts), ends = unpack(pageData.ends), repeats = pageData.repeats, kept = pageData.kept; // ends of a cell
@@ -29,9 +29,16 @@ function cellOf(place) {
   return axes.length === 2 && pageData.kind === "map" ? place[0] * axes[1].values.length + place[1] : place[0];
 }
 
+// The smallest step from one value to another along a grid; of points, which lie anywhere, a thousandth of their range.
+function stepOf(values) {
+  const sorted = Float64Array.from(values).sort(), most = sorted[sorted.length - 1] - sorted[0];
+  if (pageData.kind === "points") return most / 1000;
+  return sorted.reduce((least, number, k) => (k && number > sorted[k - 1] ? Math.min(least, number - sorted[k - 1]) : least), most);
+}
+
 function valueSaid(axis, k) {
   const drawn = axis.values[k];
-  return `${axis.texts.length ? axis.texts[Math.round(drawn)] : said(drawn)} ${axis.unit}`.trim();
+  return `${axis.texts.length ? axis.texts[Math.round(drawn)] : said(drawn, axis.step)} ${axis.unit}`.trim();
 }
 
 function axisLayout(axis) {
