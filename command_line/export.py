@@ -20,7 +20,7 @@ OUTPUT = Path("export")
     "form",
     type=click.Choice(["pvd", "xdmf", "vtkhdf"]),
     required=True,
-    help="pvd: with a VTU file a step; xdmf: with one HDF5 file; vtkhdf: anew, as of a run that was finished.",
+    help="pvd: with a VTU file a step; xdmf: with one HDF5 file; vtkhdf: anew, under their final names.",
 )
 @options.output_folder("export", "files", OUTPUT)
 @options.quiet

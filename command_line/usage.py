@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import copy
 import json
 import re
@@ -14,6 +15,8 @@ from coupling.near import near
 
 PATHS = (" is a file", " is a directory", " does not exist", " is not readable", " is not writable")
 """What click says of a path that cannot be used."""
+TEXT = r"""'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*\""""
+"""A text as Python writes it, in quotes."""
 Mistake = tuple[str, str]
 """An argument or option, and what is wrong with it."""
 
@@ -64,6 +67,8 @@ def _mistake(error: click.UsageError) -> Mistake:
         return _named(param), f"is missing; it must be {_wanted(param)}{like}"
     if isinstance(error, click.BadParameter) and param is not None:
         return _named(param), f"must be {_wanted(param)}; got {_got(error.message)}"
+    if isinstance(error, click.BadParameter) and isinstance(error.param_hint, str):
+        return error.param_hint, error.message
     extra = re.fullmatch(r"Got unexpected extra arguments? \((.*)\)", error.message)
     if extra and error.ctx:
         return extra[1], f"is too much; the command is {_usage(error.ctx)}"
@@ -83,12 +88,12 @@ def _named(param: click.Parameter) -> str:
 
 def _got(message: str) -> str:
     """The value that click complains about in a message, and of a path why."""
-    found = re.match(r"(?:\w+ )?'(.*?)'(.*)|(\S+)", message)
+    found = re.match(rf"(?:\w+ )?({TEXT})(.*)|(\S+)", message)
     assert found
     if found[1] is None:
         return found[3]
     why = next((f", which{end}" for end in PATHS if found[2] == f"{end}."), "")
-    return json.dumps(found[1], ensure_ascii=False) + why
+    return json.dumps(ast.literal_eval(found[1]), ensure_ascii=False) + why
 
 
 def _wanted(param: click.Parameter) -> str:

@@ -41,11 +41,14 @@ def write_csv(trajectory: Trajectory, path: str | os.PathLike[str], times: Array
 
 def check_csv(path: Path) -> None:
     """Raises ValueError when there is a file at `path` that is no trajectory, such as a measured motion."""
-    if path.is_file():
-        with path.open(encoding="utf-8", errors="replace") as file:
-            first = file.readline().rstrip("\n")
-        if first != HEADER:
-            raise ValueError(f"Input path of write_csv must be free or a trajectory; got {path}, which is neither")
+    if path.is_file() and not is_trajectory(path):
+        raise ValueError(f"Input path of write_csv must be free or a trajectory; got {path}, which is neither")
+
+
+def is_trajectory(path: Path) -> bool:
+    """Whether `write_csv` wrote a file."""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return file.readline().rstrip("\n") == HEADER
 
 
 def _rows(samples: Samples) -> Iterator[str]:

@@ -1,13 +1,14 @@
 """Export: a saved run in other formats, for programs that cannot read VTKHDF.
 
 Each of NAME.plate and NAME.part becomes NAME.plate.pvd with a folder NAME.plate of VTU files, or NAME.plate.xdmf with
-NAME.plate.h5, or a VTKHDF file anew, which finishes what an interrupted run left. All have every step and field.
+NAME.plate.h5, or a VTKHDF file anew, which closes what an interrupted run left. All have every step and field.
 """
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,12 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.progress import Tell, untold
-from coupling.saved import SavedRun
+from coupling.saved import OF_PART, SavedRun
 from coupling.vtkhdf import GZIP, part_file, plate_file
 from coupling.whole_file import whole_file
 
 FORMATS = ("pvd", "xdmf", "vtkhdf")
-OF_PART = ("velocity", "state", "normal_force", "friction_force")
 VERTEX = np.zeros((1, 1), np.int64)
 XDMF_TYPES = {"f": "Float", "i": "Int"}
 XDMF_CELLS = {
@@ -102,8 +102,7 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
     steps = ET.SubElement(
         ET.SubElement(root, "Domain"), "Grid", Name=name, GridType="Collection", CollectionType="Temporal"
     )
-    partial = folder / f"{name}.partial.h5"
-    with h5py.File(partial, "w") as file:
+    with _numbers(folder, name) as file:
 
         def item(grid: ET.Element, element: str, what: dict[str, str], place: str, array: NDArray) -> None:
             """An element of the grid whose numbers are an array, which is written unless its place has one."""
@@ -126,9 +125,16 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
                 form = "Scalar" if array.ndim == 1 else "Vector"
                 what = {"Name": key, "AttributeType": form, "Center": "Node"}
                 item(grid, "Attribute", what, f"{k}/{key}", array)
-    (folder / f"{name}.xdmf").unlink(missing_ok=True)  # it is of the old numbers
-    partial.replace(folder / f"{name}.h5")
     return _write_xml(root, folder / f"{name}.xdmf")
+
+
+@contextmanager
+def _numbers(folder: Path, name: str) -> Iterator[h5py.File]:
+    """NAME.h5 to write to; once whole it replaces the old one, and NAME.xdmf, which is of the old numbers, goes."""
+    with whole_file(folder / f"{name}.h5") as partial:
+        with h5py.File(partial, "w") as file:
+            yield file
+        (folder / f"{name}.xdmf").unlink(missing_ok=True)
 
 
 def _write_xml(root: ET.Element, path: Path) -> Path:

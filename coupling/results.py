@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 from coupling.case import Case
 from coupling.case_record import CaseRecord
-from coupling.csv_file import write_csv
+from coupling.csv_file import is_trajectory, write_csv
 from coupling.drives import frame_times, stroke_heights
 from coupling.pictures import draw_run, moment_of_most
 from coupling.progress import Tell, untold
 from coupling.scene import Ground, Scene
 from coupling.summary import Summary
+from coupling.surface_file import is_surface
 from coupling.versions import versions
 from coupling.vtkhdf import part_file, plate_file
 from particle import Samples, Trajectory
@@ -93,7 +94,7 @@ def write_results(
             )
     picture = folder / f"{case.name}.png"
     files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
-    picture.unlink(missing_ok=True)
+    _clear(folder, case.name)
     try:
         draw_run(case, scene, trajectory, ground, float(times[moment_of_most(np.array(spread))]), picture)
         files.append(picture)
@@ -129,6 +130,14 @@ def _arrays(record: CaseRecord, trajectory: Trajectory) -> dict[str, dict[str, N
         "rows": {key: getattr(trajectory, key) for key in Samples._fields},
         "events": events,
     }
+
+
+def _clear(folder: Path, name: str) -> None:
+    """Removes what a run of an older case left beside the two files: its picture, trajectory and surface."""
+    (folder / f"{name}.png").unlink(missing_ok=True)
+    for path, is_ours in ((folder / f"{name}.csv", is_trajectory), (folder / f"{name}.surface.h5", is_surface)):
+        if path.is_file() and is_ours(path):
+            path.unlink()
 
 
 def check_folder(folder: Path) -> None:

@@ -24,7 +24,7 @@ from coupling.progress import Progress, interruptible, silent
 from coupling.results import write_results
 from coupling.scene import Scene
 from coupling.summary import Summary, summarise
-from coupling.surface_file import write_surface
+from coupling.surface_file import check_surface, write_surface
 from fem_plate import PlateShapes
 from particle import SurfaceMotion, Trajectory
 from particle.fixed import default_step
@@ -89,11 +89,13 @@ def run_case(
 
     csv: whether to write the trajectory to NAME.csv as well.  save_surface: whether to write the moving surface, with
     the cells that the part came to, to NAME.surface.h5 (`read_surface`).
-    Raises ValueError when the case cannot be run, and before any work when NAME.csv is a file of something else;
-    OSError when a file that the case reads is gone.
+    Raises ValueError when the case cannot be run, and before any work when NAME.csv or NAME.surface.h5 is a file of
+    something else; OSError when a file that the case reads is gone.
     """
     if output is not None and csv:
         check_csv(Path(output) / f"{case.name}.csv")
+    if output is not None and save_surface:
+        check_surface(Path(output) / f"{case.name}.surface.h5")
     # Many small systems: BLAS threads would only wait for each other, and take two to four times as long.
     with threadpool_limits(limits=1, user_api="blas"):
         return _run(case, None if output is None else Path(output), progress, csv, save_surface)

@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
 from pathlib import Path
@@ -19,6 +19,7 @@ from pydantic import ValidationError
 
 from coupling.case import Case
 from coupling.case_record import CaseRecord, case_of
+from coupling.summary import summary_of
 from particle import Event, EventKind, Samples
 
 FloatArray = NDArray[np.float64]
@@ -27,7 +28,11 @@ KINDS = ("plate", "part")
 SUFFIX, PARTIAL = ".vtkhdf", ".partial"
 ENDINGS = tuple(f"{part}.{kind}{SUFFIX}" for part in ("", PARTIAL) for kind in KINDS)
 EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
+OF_PART = ("velocity", "state", "normal_force", "friction_force")
+OVER_TIME = ("time", "position", *OF_PART)
 WANTED = "Input path must be a result of `active-surface run`"
+UNREADABLE = (AttributeError, IndexError, KeyError, OSError, RuntimeError, TypeError, ValueError)
+"""What reading raises where something is not there, or not as a run writes it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +40,7 @@ class SavedRun:
     """A run as its two files hold it, finished or as far as it was written; the k steps are those that both have."""
 
     name: str  # of the files
-    complete: bool  # whether they were written to the end
+    complete: bool  # whether they were written to the end of the run
     summary: dict[str, Any] = field(repr=False)
     versions: dict[str, str] = field(repr=False)
     units: dict[str, str] = field(repr=False)
@@ -60,30 +65,28 @@ class SavedRun:
 
         Raises ValueError when the file holds no valid case.
         """
-        with h5py.File(self.part_path, "r") as file:
+        with _opened(self.part_path) as file, _readable(self.part_path, "whose case is damaged"):
             ours = file["active_surface"]
             files = {name: data[()].tobytes() for name, data in ours["files"].items()}
             text, source = ours["case"]["json"][()].tobytes().decode(), ours.attrs["case"]
-            try:
-                return case_of(CaseRecord(text, files), self.name, None if source == text else source)
-            except ValueError as error:
-                raise ValueError(f"{WANTED}; got {self.part_path}, whose case is damaged: {_told(error)}") from error
+            return case_of(CaseRecord(text, files), self.name, None if source == text else source)
 
     def plate_field(self, name: str, steps: int | slice | Sequence[int] | NDArray[np.int64] = slice(None)) -> NDArray:
         """A field of the plate at steps: (k', n) or, of a vector, (k', n, 3); at a single step without the first axis.
 
-        Raises ValueError for a field that the file lacks, IndexError for a step that it lacks.
+        Raises ValueError for a field that the file lacks, or has damaged, IndexError for a step that it lacks.
         """
         if name not in self.plate_fields:
             known = ", ".join(self.plate_fields)
             raise ValueError(f"Input name of plate_field must be one of {known}; got {name!r}")
         wanted = np.arange(len(self.time))[steps]
         n = len(self.points)
-        with h5py.File(self.plate_path, "r") as file:
+        with _opened(self.plate_path) as file, _readable(self.plate_path, f"whose field {name} is damaged"):
             data = file[f"VTKHDF/PointData/{name}"]
             found = np.empty((wanted.size, n, *data.shape[1:]), data.dtype)
             for row, step in zip(found, np.atleast_1d(wanted).tolist(), strict=True):
                 row[...] = data[step * n : (step + 1) * n]
+            _check_finite(**{name: found})
         return found.reshape(*wanted.shape, *found.shape[1:])
 
 
@@ -94,17 +97,19 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
     """
     paths = _pair(Path(path))
     with _opened(paths["plate"]) as plate, _opened(paths["part"]) as part:
-        try:
-            return _read(plate, part, paths)
-        except (KeyError, OSError, RuntimeError) as error:
-            raise ValueError(f"{WANTED}; got {path}, which is damaged: {error}") from error
+        with _readable(path):
+            k = min(int(file["VTKHDF/Steps"].attrs["NSteps"]) for file in (plate, part))
+        if k == 0:
+            raise ValueError(f"{WANTED}; got {paths['part']}, to which no step was written")
+        with _readable(path):
+            run = _read(plate, part, paths, k)
+            _check(run, k)
+            return replace(run, complete=run.complete and bool(run.time[-1] >= run.summary["end_time"]))
 
 
-def _read(plate: h5py.File, part: h5py.File, paths: dict[str, Path]) -> SavedRun:
-    ours, steps = part["active_surface"], [file["VTKHDF/Steps"] for file in (plate, part)]
-    k = min(int(step.attrs["NSteps"]) for step in steps)
-    if k == 0:
-        raise ValueError(f"{WANTED}; got {paths['part']}, to which no step was written")
+def _read(plate: h5py.File, part: h5py.File, paths: dict[str, Path], k: int) -> SavedRun:
+    """What both files hold, with their first k steps."""
+    ours = part["active_surface"]
     points, fields = plate["VTKHDF/Points"][:, :2], part["VTKHDF/PointData"]
     rows = Samples(**{name: ours["rows"][name][()] for name in Samples._fields})
     names = [EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE]
@@ -113,12 +118,12 @@ def _read(plate: h5py.File, part: h5py.File, paths: dict[str, Path]) -> SavedRun
         name=_split(paths["plate"])[0],
         complete=not any(_split(path)[2] for path in paths.values()),
         **{key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")},
-        time=steps[1]["Values"][:k],
+        time=part["VTKHDF/Steps/Values"][:k],
         points=points,
         triangles=plate["VTKHDF/Connectivity"][()].reshape(-1, 3),
         actuators=points[: ours.attrs["actuators"]],
         position=part["VTKHDF/Points"][:k],
-        **{name: fields[name][:k] for name in ("velocity", "state", "normal_force", "friction_force")},
+        **{name: fields[name][:k] for name in OF_PART},
         events=[
             Event(EventKind(kind), position=(place[0], place[1]), **dict(zip(EVENT_NUMBERS, numbers, strict=True)))
             for kind, *numbers, place in events
@@ -128,6 +133,23 @@ def _read(plate: h5py.File, part: h5py.File, paths: dict[str, Path]) -> SavedRun
         plate_path=paths["plate"],
         part_path=paths["part"],
     )
+
+
+def _check(run: SavedRun, k: int) -> None:
+    """Raises ValueError where what was read of a run of k steps does not fit together."""
+    summary_of(run.summary)
+    for name in OVER_TIME:
+        if len(getattr(run, name)) != k:
+            raise ValueError(f"{name} has {len(getattr(run, name))} of {k} steps")
+    _check_finite(time=run.time, points=run.points, position=run.position, rows=run.rows.position)
+    if run.triangles.min() < 0 or run.triangles.max() >= len(run.points):
+        raise ValueError(f"a triangle has a corner that is none of the {len(run.points)} points")
+
+
+def _check_finite(**arrays: NDArray) -> None:
+    for name, array in arrays.items():
+        if not np.isfinite(array).all():
+            raise ValueError(f"{name} has a number that is not finite")
 
 
 def _pair(path: Path) -> dict[str, Path]:
@@ -146,11 +168,20 @@ def _pair(path: Path) -> dict[str, Path]:
     raise ValueError(f"{WANTED}; got {path}, but {found['plate'][0]} and {found['part'][0]} are of different runs")
 
 
-def _told(error: ValueError) -> str:
+def _told(error: Exception) -> str:
     """What is wrong, on one line."""
     if isinstance(error, ValidationError):
         return ", ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
-    return str(error)
+    return str(error.args[0] if isinstance(error, KeyError) else error).replace("\n", " ")
+
+
+@contextmanager
+def _readable(path: str | os.PathLike[str], but: str = "which is damaged") -> Iterator[None]:
+    """Raises ValueError, with the file and what is wrong with it, where what is read from it is not as it must be."""
+    try:
+        yield
+    except UNREADABLE as error:
+        raise ValueError(f"{WANTED}; got {path}, {but}: {_told(error)}") from error
 
 
 def name_of(path: Path) -> str:
@@ -185,6 +216,8 @@ def _opened(path: Path) -> Iterator[h5py.File]:
         raise ValueError(f"{WANTED}; got {path}, which is no HDF5 file")
     try:
         file = h5py.File(path, "r")
+    except BlockingIOError as error:  # its writer keeps others out
+        raise ValueError(f"{WANTED}; got {path}, which is being written: its run has not ended") from error
     except OSError as error:
         raise ValueError(f"{WANTED}; got {path}, which is damaged: {error}") from error
     with file:

@@ -85,14 +85,18 @@ class PlateSummary(PlateFigures, Summary):
 
 
 def summary_of(figures: Mapping[str, Any]) -> Summary:
-    """The summary whose `as_dict`, written as JSON and read again, gave these figures."""
+    """The summary whose `as_dict`, written as JSON and read again, gave these figures.
+
+    Raises ValueError when one is missing.
+    """
+    if lost := [field.name for field in fields(PlateSummary) if field.name not in figures]:
+        raise ValueError(f"the summary lacks {', '.join(lost)}, as that of another version may")
     plain: dict[str, Any] = {
         name: tuple(value) if isinstance(value, list) else value for name, value in figures.items()
     }
     plain["motion_fits"] = tuple(MotionFit(**fit) for fit in plain["motion_fits"])
-    if plain["plate_unknowns"] is not None:
-        return PlateSummary(**plain)
-    return Summary(**{field.name: plain[field.name] for field in fields(Summary)})
+    kind = Summary if plain["plate_unknowns"] is None else PlateSummary
+    return kind(**{field.name: plain[field.name] for field in fields(kind)})
 
 
 def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory, friction: Contact) -> Summary:

@@ -24,8 +24,7 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
     Raises ValueError when the file at `path` holds something else; OSError if it cannot be written.
     """
     path = Path(path)
-    if path.exists() and not _is_ours(path):
-        raise ValueError(f"Input path of write_surface must be free or a surface; got {path}, which is neither")
+    check_surface(path)
     with whole_file(path) as partial, h5py.File(partial, "w") as file:
         file.attrs.update(kind=KIND, version=VERSION, error=surface.error, moving_base=surface.moving_base)
         file.attrs.update(size=surface.size, floor=surface.floor, overhang=surface.overhang)
@@ -37,6 +36,12 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
     return path
 
 
+def check_surface(path: Path) -> None:
+    """Raises ValueError when there is a file at `path` that is no surface."""
+    if path.exists() and not is_surface(path):
+        raise ValueError(f"Input path of write_surface must be free or a surface; got {path}, which is neither")
+
+
 def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
     """The surface that `write_surface` wrote: the same bits, with the cells that were built then and no others.
 
@@ -44,7 +49,7 @@ def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
     Raises ValueError when the file at `path` is no such file; OSError if it cannot be read.
     """
     path = Path(path)
-    if path.exists() and not _is_ours(path):
+    if path.exists() and not is_surface(path):
         raise ValueError(f"Input path of read_surface must be a file that write_surface wrote; got {path}")
     with h5py.File(path, "r") as file:
         tables = {
@@ -61,7 +66,8 @@ def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
         )
 
 
-def _is_ours(path: Path) -> bool:
+def is_surface(path: Path) -> bool:
+    """Whether `write_surface` wrote a file."""
     if not h5py.is_hdf5(path):
         return False
     with h5py.File(path, "r") as file:

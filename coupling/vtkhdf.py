@@ -231,7 +231,11 @@ def _written(
 ) -> Iterator[_File]:
     """Yield the file that `create` lays out under its partial name; give it the final name if all goes well."""
     partial = Path(directory, f"{name}.partial.{kind}.vtkhdf")
-    with h5py.File(partial, "w") as file:
+    try:
+        opened = h5py.File(partial, "w")
+    except BlockingIOError as error:
+        raise BlockingIOError(error.errno, "another run is writing it", str(partial)) from error
+    with opened as file:
         result = create(file)
         result.add_metadata(metadata or {})
         try:

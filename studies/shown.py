@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from coupling.near import near
 from coupling.readable import Unit, readable
@@ -55,7 +55,7 @@ class Scale:
             return self
         if self.values[0] > 0 and _even(np.log(self.values)):
             return replace(self, logarithmic=True)
-        names = tuple(f"{value:.6g}" for value in self.drawn)
+        names = tuple(said(value, self.drawn, 6) for value in self.drawn)
         return replace(self, unit=Unit(self.unit.name, 1.0), values=np.arange(len(names), dtype=float), texts=names)
 
     @property
@@ -119,7 +119,7 @@ class Shown:
                 order = np.argsort(axis.values) if axis.field.kind != "text" else np.arange(len(axis.values))
                 picked[axis.name] = int(order[len(order) // 2])
                 scale = Scale.of(axis, np.array([axis.values[picked[axis.name]]]))
-                fixed[axis.name] = scale.texts[0] if scale.texts else counted(f"{scale.drawn[0]:.4g}", scale.unit.name)
+                fixed[axis.name] = scale.texts[0] if scale.texts else _fixed(scale, axis.values)
         outcome = findings.dataset["outcome"]
         numbers = outcome.copy(data=np.arange(outcome.size).reshape(outcome.shape))
         part = findings.dataset.assign({NUMBER: numbers}).isel(picked)
@@ -173,6 +173,20 @@ class Shown:
         """The most frequent outcome of the repeats, of two that are as frequent that with the lower number."""
         counts = np.stack([(self.outcome == k).sum(axis=-1) for k in range(len(OUTCOMES))])
         return np.argmax(counts, axis=0)
+
+
+def said(value: float, values: ArrayLike, digits: int) -> str:
+    """A number with as many digits, and with more where fewer would not tell it from the others of an axis."""
+    steps = np.diff(np.unique(values))
+    if len(steps) and value:
+        digits = max(digits, 2 + int(np.floor(np.log10(abs(value))) - np.floor(np.log10(steps.min()))))
+    return f"{value:.{min(digits, 15)}g}"
+
+
+def _fixed(scale: Scale, values: tuple[Any, ...]) -> str:
+    """The only value of a scale in words, beside the other values of its axis [SI]."""
+    text = said(float(scale.drawn[0]), np.asarray(values, dtype=float) * scale.unit.per_si, 4)
+    return counted(text, scale.unit.name)
 
 
 def mean(values: FloatArray) -> FloatArray:

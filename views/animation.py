@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
+from coupling.case_lines import load
 from coupling.drives import build_drives
 from coupling.progress import Tell, untold
 from coupling.results import check_folder
@@ -35,9 +36,12 @@ Image = NDArray[np.uint8]
 FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
 SIZE = {"mp4": (1280, 720), "gif": (800, 450), "png": (1280, 720)}
 
+SWEEP = "`active-surface view` and `active-surface plot` show it"
 OTHERS = {
-    ".toml": "a case or study file: name the result, such as results/{name} after `active-surface run`",
-    ".nc": "which is of a sweep: `active-surface view` and `active-surface plot` show it",
+    ".toml": "a case file: name the result, such as results/{name} after `active-surface run`",
+    "study": "a study file: it is of a sweep, and " + SWEEP,
+    "aim": "an aim file: name the result of the case file that `active-surface aim` writes",
+    ".nc": "which is of a sweep: " + SWEEP,
 }
 HELP = "It needs OpenGL; Debian has it in libegl1 and libgl1-mesa-dri."
 
@@ -191,7 +195,16 @@ def _run_of(result: str | Path | SavedRun) -> SavedRun:
         if path.suffix not in OTHERS:
             raise
         wanted = f"Input RESULT must be that of a run: one of its files, or FOLDER/NAME; got {path}"
-        raise ValueError(f"{wanted}, {OTHERS[path.suffix].format(name=path.stem)}") from None
+        raise ValueError(f"{wanted}, {OTHERS[_kind(path)].format(name=path.stem)}") from None
+
+
+def _kind(path: Path) -> str:
+    """Which of the OTHERS a file is."""
+    try:
+        _, tables = load(path) if path.suffix == ".toml" else ("", {})
+    except ValueError:  # no TOML
+        return path.suffix
+    return next((table for table in ("study", "aim") if table in tables), path.suffix)
 
 
 def _check_positive(name: str, value: float | None) -> None:

@@ -45,6 +45,10 @@ def is_of(run: SavedRun, path: Path) -> bool:
 
 def _of_file(path: Path, folder: Path) -> Found:
     _, tables = load(path)
+    wanted = f"a result, or a file whose result is in {folder} or beside it"
+    if "aim" in tables:
+        its = "whose table [aim] is for `active-surface aim`: name the result of the case file that this writes"
+        raise ValueError(f"Input RESULT must be {wanted}; got {path}, {its}")
     is_sweep = "study" in tables
     endings = (ENDING,) if is_sweep else ENDINGS
     for place in (folder, path.parent):
@@ -54,7 +58,6 @@ def _of_file(path: Path, folder: Path) -> Found:
                 page = place / f"{path.stem}{'.sweep' if is_sweep else ''}.html"
                 return Found(file if is_sweep else place / path.stem, page, is_sweep, path if is_sweep else None)
     command = "sweep" if is_sweep else "run"
-    wanted = f"a result, or a file whose result is in {folder} or beside it"
     raise ValueError(
         f"Input RESULT must be {wanted}; got {path}, and no {path.stem}{endings[0]} is there: "
         f"`active-surface {command} {path}` makes it"

@@ -12,7 +12,7 @@ INT16 = 32767
 
 
 def packed(values: ArrayLike, kind: str) -> dict[str, str]:
-    """Numbers as `kind`, such as f4, u1, u2, i2, u4: their rows follow each other."""
+    """Numbers as `kind`, such as f4, f8, u1, u2, i2, u4: their rows follow each other."""
     data = np.ascontiguousarray(values, dtype=f"<{kind}")
     return {"kind": kind, "bytes": base64.b64encode(data.tobytes()).decode()}
 

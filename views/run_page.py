@@ -13,7 +13,6 @@ from views.run_data import run_data
 
 PROGRAMS = "surface.js", "curves.js", "run.js"
 PARTIAL = "The results are partial, as they were not written to their end: this page shows the steps that were."
-UNFINISHED = "This run is unfinished: where the part ends is not known."
 
 
 def write_run_page(run: SavedRun, path: Path) -> Path:
@@ -23,7 +22,7 @@ def write_run_page(run: SavedRun, path: Path) -> Path:
     versions = ", ".join(f"{name} {version}" for name, version in run.versions.items())
     texts = {
         "name": escape(run.name),
-        "sentence": escape(summary.sentence if run.complete else UNFINISHED),
+        "sentence": escape(summary.sentence),
         "warnings": notes_of(warnings),
         "rows": rows_of([*report.lines(summary), ("versions", versions)]),
         "case": escape(run.case.source or run.case.model_dump_json(indent=2)),

@@ -79,8 +79,8 @@ def _axis(scale: Scale, in_cells: bool) -> dict[str, Any]:
         "name": scale.axis.name,
         "label": scale.label,
         "unit": "" if scale.unit.name == "1" else scale.unit.name,
-        "values": packed(scale.drawn, "f4"),
-        "edges": packed(edges(scale) if in_cells else [], "f4"),
+        "values": packed(scale.drawn, "f8" if in_cells else "f4"),  # of points there are many
+        "edges": packed(edges(scale) if in_cells else [], "f8"),
         "logarithmic": scale.logarithmic,
         "texts": list(scale.texts),
     }

@@ -54,7 +54,9 @@ def _sentence(study: Study, shown: Shown, found: Paths) -> str:
     """What there is to be seen."""
     repeats = study.points.repeats
     said = f"{shown.numbers[..., 0].size} points" + (f", each with {repeats} starts" if repeats > 1 else "")
-    known = int(np.isfinite(shown.end[..., 0, 0]).sum())
+    known = int(np.isfinite(shown.mean_distance).sum())
+    if not found.lines:
+        return f"{said}. A click on a point shows where its path starts and ends." if known else f"{said}."
     if len(found.lines) == known:
         return f"{said}. A click on a point shows its path."
     return (

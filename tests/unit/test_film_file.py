@@ -251,9 +251,18 @@ def test_a_result_that_is_none_is_refused(tmp_path):
     assert answer.exit_code == 2 and "Input path must be" in answer.output
 
 
-@pytest.mark.parametrize(("name", "said"), [("x.toml", "name the result, such as results/x"), ("x.nc", "of a sweep")])
-def test_a_file_that_is_no_result_of_a_run_is_told_what_it_is(tmp_path, name, said):
-    (tmp_path / name).write_text("")
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("x.toml", "", "a case file: name the result, such as results/x"),
+        ("x.toml", "[study]", "a study file: it is of a sweep, and `active-surface view`"),
+        ("x.toml", "[aim]", "an aim file: name the result of the case file that `active-surface aim` writes"),
+        ("x.toml", "[no TOML", "name the result"),
+        ("x.nc", "", "of a sweep"),
+    ],
+)
+def test_a_file_that_is_no_result_of_a_run_is_told_what_it_is(tmp_path, name, text, said):
+    (tmp_path / name).write_text(text)
     answer = called(tmp_path / name)
     assert answer.exit_code == 2 and said in " ".join(answer.output.split()) and "vtkhdf" not in answer.output
 

@@ -15,7 +15,8 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 from command_line.main import main
 from coupling import Case, read_run, run_case
 from coupling.case import ConstantCase, PartCase, RunCase
-from coupling.export import OF_PART, export_run
+from coupling.export import export_run
+from coupling.saved import OF_PART
 
 PLATE = {"shape": "disc", "radius": 300e-6, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6}
 
@@ -97,12 +98,14 @@ def test_an_export_that_fails_leaves_nothing_that_mixes_runs(folder, tmp_path, f
             raise OSError("full")
 
     export_run(saved, tmp_path, form)
+    there = {file for file in tmp_path.iterdir() if file != files[0]}
     with pytest.raises(OSError, match="full"):
         export_run(short, tmp_path, form, fails)
+    assert {file for file in tmp_path.iterdir() if file != files[0]} == there
     assert not files[0].exists() if form == "pvd" else files[0].read_bytes() == before[files[0]]
 
 
-def test_an_interrupted_run_becomes_a_finished_one_with_the_steps_that_it_has(folder, tmp_path):
+def test_an_interrupted_run_is_exported_with_the_steps_that_it_has_and_stays_partial(folder, tmp_path):
     for kind in ("plate", "part"):
         shutil.copy(folder / f"one.{kind}.vtkhdf", tmp_path / f"one.partial.{kind}.vtkhdf")
     with h5py.File(tmp_path / "one.partial.plate.vtkhdf", "r+") as file:
@@ -112,10 +115,19 @@ def test_an_interrupted_run_becomes_a_finished_one_with_the_steps_that_it_has(fo
     done = CliRunner().invoke(main, command)
     assert done.exit_code == 0 and "these are its first 4 steps" in done.output
     partial, whole = read_run(tmp_path / "one"), read_run(tmp_path / "out" / "one")
-    assert whole.complete and len(whole.time) == 4
+    assert not whole.complete and len(whole.time) == 4
     assert_same(partial, tmp_path / "out", "vtkhdf")
     assert whole.case == read_run(folder / "one").case and whole.events == partial.events
     assert (whole.summary, whole.versions, whole.units) == (partial.summary, partial.versions, partial.units)
+    said = CliRunner().invoke(main, ["view", str(tmp_path / "out" / "one.plate.vtkhdf")])
+    assert said.exit_code == 0 and "The results are partial" in said.output
+
+
+def test_a_run_that_lacks_but_the_last_renaming_is_finished_by_its_export(folder, tmp_path):
+    for kind in ("plate", "part"):
+        shutil.copy(folder / f"one.{kind}.vtkhdf", tmp_path / f"one.partial.{kind}.vtkhdf")
+    export_run(read_run(tmp_path / "one"), tmp_path / "out", "vtkhdf")
+    assert not read_run(tmp_path / "one").complete and read_run(tmp_path / "out" / "one").complete
 
 
 def test_an_export_is_told_as_json_or_not_at_all(folder, tmp_path):

@@ -155,7 +155,8 @@ def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
     said = CliRunner().invoke(main, ["view", str(tmp_path / "cut.partial.part.vtkhdf")])
     assert said.exit_code == 0 and "partial" in said.output
     text = (tmp_path / "cut.html").read_text(encoding="utf-8")
-    assert "not written to their end" in text and "This run is unfinished" in text
+    assert "not written to their end" in text
+    assert f'<p class="sentence">{result.summary.sentence}</p>' in text  # the summary is whole, whatever was written
 
 
 def test_a_case_that_is_not_that_of_its_result_is_told_of(folder, result, tmp_path):
@@ -198,6 +199,7 @@ def test_view_writes_beside_the_result_or_where_it_is_told(folder, result, endin
         ("broken.toml", "[plate", "broken.toml"),
         ("case.toml", "[plate]\n", "active-surface run"),
         ("study.toml", "[study]\n", "active-surface sweep"),
+        ("aim.toml", "[aim]\n", "whose table [aim] is for `active-surface aim`"),
     ],
 )
 def test_what_is_no_result_is_refused(tmp_path, name, text, said):
@@ -211,3 +213,11 @@ def test_what_is_no_result_is_refused(tmp_path, name, text, said):
 def test_paths_are_of_sweeps_only(folder, result):
     answer = CliRunner().invoke(main, ["view", str(folder / NAME), "--paths", "3"])
     assert answer.exit_code == 2 and "--paths" in answer.output
+
+
+def test_an_output_that_is_no_page_is_told_with_its_option(folder, result):
+    answer = CliRunner().invoke(main, ["view", str(folder / NAME), "-o", "page.pdf"])
+    assert answer.exit_code == 2 and "  --output must end in .html; got page.pdf\n" in answer.stderr
+    answer = CliRunner().invoke(main, ["view", str(folder / NAME), "-o", "page.pdf", "--json"])
+    told = {"file": None, "line": None, "field": "--output", "message": "must end in .html; got page.pdf"}
+    assert json.loads(answer.stdout) == {"mistakes": [told]}

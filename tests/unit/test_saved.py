@@ -58,6 +58,17 @@ def test_a_run_is_finished_though_its_picture_cannot_be_drawn(tmp_path, monkeypa
     assert not list(tmp_path.glob("*.png")) and read_run(tmp_path / "run").complete
 
 
+def test_a_run_leaves_nothing_of_an_older_one_beside_it(tmp_path):
+    run_case(shaken(), tmp_path, csv=True, save_surface=True)
+    assert {file.name for file in tmp_path.iterdir()} >= {"run.csv", "run.surface.h5"}
+    result = run_case(shaken(3e-4), tmp_path)
+    assert set(tmp_path.iterdir()) == set(result.files)
+    for name in ("run.csv", "run.surface.h5"):
+        (tmp_path / name).write_text("mine")
+    run_case(shaken(), tmp_path)
+    assert (tmp_path / "run.csv").read_text() == (tmp_path / "run.surface.h5").read_text() == "mine"
+
+
 @pytest.mark.parametrize("ending", ["", ".plate.vtkhdf", ".part.vtkhdf"])
 def test_a_run_comes_back(ran, ending):
     result, folder = ran

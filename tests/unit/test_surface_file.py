@@ -74,38 +74,48 @@ def test_what_is_something_else_is_neither_read_nor_written_over(tmp_path):
     assert write_surface(surface, tmp_path / "twice.h5").exists()
 
 
+CASE = """\
+[plate]
+shape = "disc"
+radius = "300 um"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.22
+thickness = "5 um"
+cell_size = "100 um"
+
+[[actuators]]
+position = ["100 um", "0 um"]
+stroke = "1 um"
+frequency = "300 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["-100 um", "20 um"]
+
+[friction]
+model = "constant"
+limit = "4 nN"
+
+[run]
+duration = "1 ms"
+frames = 3
+"""
+
+
 def test_a_run_saves_its_surface_on_request(tmp_path):
-    file = tmp_path / "case.toml"
-    file.write_text(
-        """
-        [plate]
-        shape = "disc"
-        radius = "300 um"
-        youngs_modulus = "169 GPa"
-        poisson_ratio = 0.22
-        thickness = "5 um"
-        cell_size = "100 um"
-
-        [[actuators]]
-        position = ["100 um", "0 um"]
-        stroke = "1 um"
-        frequency = "300 Hz"
-
-        [part]
-        mass = "2e-9 kg"
-        position = ["-100 um", "20 um"]
-
-        [friction]
-        model = "constant"
-        limit = "4 nN"
-
-        [run]
-        duration = "1 ms"
-        frames = 3
-        """
-    )
-    result = run_case(read_case(file), tmp_path / "out", save_surface=True)
+    (tmp_path / "case.toml").write_text(CASE)
+    result = run_case(read_case(tmp_path / "case.toml"), tmp_path / "out", save_surface=True)
     assert result.files[-1] == tmp_path / "out" / "case.surface.h5"
     points = [[50e-6, 10e-6], [-100e-6, 20e-6]]
     saved, ours = read_surface(result.files[-1]).evaluate(points, 4e-4), result.surface.evaluate(points, 4e-4)
     assert all(np.array_equal(a, b) for a, b in zip(saved, ours, strict=True))
+
+
+def test_a_file_in_the_way_of_a_surface_is_told_before_the_run(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    foreign = tmp_path / "out" / "case.surface.h5"
+    foreign.parent.mkdir()
+    foreign.write_text("mine")
+    with pytest.raises(ValueError, match=r"must be free or a surface; got \S+case.surface.h5, which is neither"):
+        run_case(read_case(tmp_path / "case.toml"), tmp_path / "out", save_surface=True)
+    assert list(foreign.parent.iterdir()) == [foreign] and foreign.read_text() == "mine"

@@ -191,3 +191,12 @@ def test_edges_lie_half_way_between_values(tmp_path):
     study, dataset = made(tmp_path, text)
     scale = Scale.of(study.points.axes[0], dataset["part.mass"].values)
     assert edges(scale) == pytest.approx(10.0 ** np.array([-0.5, 0.5, 1.5, 2.5]))
+
+
+def test_near_values_of_an_axis_are_told_apart(tmp_path):
+    near = axis("actuators.0.frequency", '["10000 Hz", "10000.5 Hz", "10001 Hz"]', "frequency")
+    uneven = axis("actuators.0.stroke", '["20 um", "20.00001 um", "20.001 um", "30 um"]', "stroke")
+    study, dataset = made(tmp_path, near + uneven + axis("friction.limit", '["1 nN", "2 nN", "3 nN", "4 nN"]', "limit"))
+    shown = Shown.of(Findings.of(study.name, dataset, study.threshold), "stroke", "limit")
+    assert shown.fixed == {"frequency": "10000.5 Hz"}
+    assert shown.axes[0].texts == ("20", "20.00001", "20.001", "30")

@@ -34,6 +34,8 @@ MISUSES = [
     (["run", "x", "-o"], "active-surface run: 1 mistake\n  -o must be followed by its value; got nothing"),
     (["sweep", "x", "-t", "0"], "  --threads must be a whole number of at least 1; got 0"),
     (["sweep", "x", "-t", "ab"], '  --threads must be a whole number of at least 1; got "ab"'),
+    (["sweep", "x", "-t", "it's a"], '  --threads must be a whole number of at least 1; got "it\'s a"\n'),
+    (["sweep", "x", "-t", 'it\'s "a"'], '  --threads must be a whole number of at least 1; got "it\'s \\"a\\""\n'),
     (["completion", "bsh"], '  SHELL must be bash, zsh or fish; got "bsh"'),
     (["sweep", "x", "-t", "1", "-s", "y"], "active-surface sweep: 1 mistake\n  --threads must not be given with"),
     (

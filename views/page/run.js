@@ -40,11 +40,18 @@ async function draw() {
   while (wanted !== null) {
     const step = wanted, now = changingAt(step);
     wanted = null;
+    keepCamera();
     await Promise.all([
       Plotly.restyle("surface", { x: now.x, y: now.y, z: now.z, intensity: now.intensity }, [...now.z.keys()]),
       Plotly.relayout("curves", { "shapes[0].x0": time[step], "shapes[0].x1": time[step] }),
     ]);
   }
+}
+
+// Plotly redraws with the camera of the layout, which it updates only when the mouse lets go.
+function keepCamera() {
+  const plot = element("surface"), scene = plot._fullLayout?.scene, now = scene?._scene?.getCamera?.(); // none without WebGL
+  if (now && !looking) plot.layout.scene.camera = scene.camera = now;
 }
 
 function play() {
@@ -59,7 +66,12 @@ function play() {
     began ??= now;
     const seconds = Number(element("pace").value);
     const step = Math.min(last, from + Math.floor((now - began) / 1000 / seconds * last));
-    if (step !== shown || step === from) await show(step);
+    try {
+      if (step !== shown || step === from) await show(step);
+    } catch (error) {
+      if (playing && mine === turn) play(); // the end of it
+      throw error;
+    }
     if (step >= last) { if (playing && mine === turn) play(); } else requestAnimationFrame(next);
   };
   requestAnimationFrame(next);
@@ -67,7 +79,7 @@ function play() {
 
 function caption() {
   const [low, high] = surface.range;
-  const factor = high === low ? (last ? "The surface stays flat." : "The surface is flat at this step.") : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${Number(exaggeration.toPrecision(4))} times larger than lengths.`;
+  const factor = high === low ? (last ? "The surface stays flat." : "The surface is flat at this step.") : exaggeration === 1 ? "Heights are drawn to the scale of lengths." : `Heights are drawn ${Number(exaggeration.toPrecision(4))} times as large as lengths.`;
   const lines = [factor];
   if (!surface.whole && !closeBy) lines.push("Of the surface, only that around the path is shown, with fewer points where that is large.");
   if (surface.unmarked) lines.push(`${surface.unmarked} actuators, too many to be marked.`);
@@ -87,8 +99,8 @@ async function look(name) {
 }
 
 function exaggerate() {
-  const factor = Number(element("exaggeration").value);
-  if (!(factor > 0)) return;
+  const field = element("exaggeration"), factor = Number(field.value);
+  if (!(factor > 0)) { field.value = exaggeration; return; }
   exaggeration = factor;
   caption();
   reframe();

@@ -1,6 +1,6 @@
 // The page of a sweep: a map, curve or points over its axes, and the path of the chosen one.
 
-const unpackAxis = (axis) => ({ ...axis, values: unpack(axis.values), edges: unpack(axis.edges) });
+const unpackAxis = (axis) => { const values = unpack(axis.values); return { ...axis, values, edges: unpack(axis.edges), step: stepOf(values) }; };
 const axes = pageData.axes.map(unpackAxis), others = pageData.others.map(unpackAxis);
 const distance = unpack(pageData.distance), outcome = unpack(pageData.outcome), units = pageData.units;
 const starts = unpack(pageData.starts), ends = unpack(pageData.ends), repeats = pageData.repeats, kept = pageData.kept; // ends of a cell
@@ -29,9 +29,16 @@ function cellOf(place) {
   return axes.length === 2 && pageData.kind === "map" ? place[0] * axes[1].values.length + place[1] : place[0];
 }
 
+// The smallest step from one value to another along a grid; of points, which lie anywhere, a thousandth of their range.
+function stepOf(values) {
+  const sorted = Float64Array.from(values).sort(), most = sorted[sorted.length - 1] - sorted[0];
+  if (pageData.kind === "points") return most / 1000;
+  return sorted.reduce((least, number, k) => (k && number > sorted[k - 1] ? Math.min(least, number - sorted[k - 1]) : least), most);
+}
+
 function valueSaid(axis, k) {
   const drawn = axis.values[k];
-  return `${axis.texts.length ? axis.texts[Math.round(drawn)] : said(drawn)} ${axis.unit}`.trim();
+  return `${axis.texts.length ? axis.texts[Math.round(drawn)] : said(drawn, axis.step)} ${axis.unit}`.trim();
 }
 
 function axisLayout(axis) {
@@ -130,7 +137,7 @@ function overMap() {
 function mapCaption() {
   const known = distance.filter(Number.isFinite).length, lines = [];
   if (pageData.outline.length) lines.push(`The line: where ${pageData.threshold} begins to hold.`);
-  if (pageData.kind === "map" && paths.size < known) lines.push("Dots: points whose path this page has.");
+  if (pageData.kind === "map" && paths.size && paths.size < known) lines.push("Dots: points whose path this page has.");
   element("map-caption").textContent = lines.join(" ");
 }
 
@@ -160,13 +167,15 @@ function pathTraces(cell) {
       marker: { symbol: "triangle-up", size: 10, color: "#ffffff", line: { color: INK, width: 1.5 } } });
   }
   const start = { x: [starts[2 * cell]], y: [starts[2 * cell + 1]] }, of = ends.subarray(2 * kept * cell, 2 * kept * (cell + 1));
-  if (!Number.isFinite(of[0])) return traces;
-  const path = paths.get(cell), straight = { x: [start.x[0], of[0]], y: [start.y[0], of[1]] };
-  traces.push({ ...(path || straight), mode: "lines", name: path ? "path" : "from start to end",
-    line: { color: PATH, width: path ? 2.5 : 1.5, dash: path ? "solid" : "dot" } });
-  if (kept > 1) {
+  const path = paths.get(cell), straight = { x: [start.x[0], of[0]], y: [start.y[0], of[1]] }, isFirst = Number.isFinite(of[0]);
+  if (isFirst) {
+    traces.push({ ...(path || straight), mode: "lines", name: path ? "path" : "from start to end",
+      line: { color: PATH, width: path ? 2.5 : 1.5, dash: path ? "solid" : "dot" } });
+  }
+  if (kept > 1 && of.some(Number.isFinite)) {
     traces.push({ x: even(of), y: odd(of), mode: "markers", name: `ends of ${repeats} starts`, marker: { size: 5, color: "#1b4f9c", opacity: 0.6 } });
   }
+  if (!isFirst) return traces; // the first start was refused
   traces.push({ ...start, mode: "markers", name: "start", marker: { symbol: "circle-open", size: 11, color: "#000000", line: { width: 2 } } });
   traces.push({ x: [of[0]], y: [of[1]], mode: "markers", name: "end", marker: { symbol: "x-thin-open", size: 10, color: "#000000", line: { width: 2.5 } } });
   return traces;
@@ -198,8 +207,9 @@ function tell(cell) {
   if (Number.isFinite(distance[cell])) terms.push([repeats > 1 ? "mean distance" : "distance", `${said(distance[cell])} ${units.distance}`]);
   describe(element("readout"), terms);
   const which = repeats > 1 ? " The path is that of the first start." : "";
-  const has = paths.has(cell) ? which : Number.isFinite(ends[2 * kept * cell]) ? " This page has no path of this point: only where it starts and ends." : "";
-  element("path-caption").textContent = sentence + has;
+  const lacks = Number.isFinite(ends[2 * kept * cell]) ? " This page has no path of this point: only where it starts and ends."
+    : Number.isFinite(distance[cell]) ? " The first start was refused." : "";
+  element("path-caption").textContent = sentence + (paths.has(cell) ? which : lacks);
 }
 
 // Show the path of a cell, and mark the cell.

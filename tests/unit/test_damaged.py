@@ -1,0 +1,147 @@
+"""What damaged, foreign or unfinished files of a run lack is told with the file, in one line, by every command."""
+
+import json
+import shutil
+from contextlib import ExitStack
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from command_line.main import main
+from command_line.refusal import refusal_of
+from coupling import Case, read_run, run_case
+from coupling.case import CoulombCase, PartCase, RunCase
+
+CASE = Case(
+    plate={"shape": "platform", "motion": {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}}},
+    part=PartCase(mass=2e-9, position=(1e-4, 0.0)),
+    friction=CoulombCase(coefficient=0.3),
+    run=RunCase(duration=6e-4, frames=11),
+    name="run",
+)
+READERS = (["view"], ["plot"], ["rerun", "--quiet"], ["export", "--format", "pvd"])
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("ran")
+    run_case(CASE, folder)
+    return folder
+
+
+@pytest.fixture
+def folder(ran, tmp_path):
+    """A copy of the results."""
+    return Path(shutil.copytree(ran, tmp_path / "results"))
+
+
+def put(file, place, values):
+    """A dataset in place of another."""
+    del file[place]
+    file[place] = values
+
+
+def summary_without(key):
+    def change(file):
+        attributes = file["active_surface"].attrs
+        summary = json.loads(attributes["summary"])
+        del summary[key]
+        attributes["summary"] = json.dumps(summary)
+
+    return change
+
+
+def with_summary(text):
+    return lambda file: file["active_surface"].attrs.modify("summary", text)
+
+
+def height_that_is_no_number(file):
+    file["VTKHDF/PointData/deflection"][5] = np.nan
+
+
+def chunk_that_cannot_be_read(file):
+    data = file["VTKHDF/PointData/deflection"]
+    values = data[()]
+    del file["VTKHDF/PointData/deflection"]
+    data = file.create_dataset("VTKHDF/PointData/deflection", data=values, chunks=(4,), compression="gzip")
+    data.id.write_direct_chunk((8,), b"no gzip")
+
+
+DAMAGES = [
+    ("part", summary_without("squeeze"), "which is damaged: the summary lacks squeeze, as that of another version may"),
+    ("part", with_summary('{"some": 1}'), "which is damaged: the summary lacks "),
+    ("part", with_summary("text"), "which is damaged: Expecting value"),
+    ("part", lambda file: file.__delitem__("active_surface/events"), "which is damaged: "),
+    ("part", lambda file: put(file, "active_surface/events/kind", [99]), "99 is not a valid EventKind"),
+    ("part", lambda file: put(file, "VTKHDF/Points", np.zeros((3, 3))), "position has 3 of 11 steps"),
+    ("part", lambda file: put(file, "VTKHDF/Points", np.full((11, 3), np.nan)), "position has a number that is not"),
+    ("plate", lambda file: put(file, "VTKHDF/Connectivity", [0, 1, 99]), "a corner that is none of the 4 points"),
+]
+DAMAGES_BESIDE = [
+    ("part", lambda file: file.__delitem__("active_surface/case"), ("view", "plot", "rerun"), "whose case is damaged"),
+    ("part", lambda file: file.__delitem__("active_surface/files"), ("view", "plot", "rerun"), "whose case is damaged"),
+    ("plate", lambda file: put(file, "VTKHDF/PointData/deflection", np.zeros(7)), ("view", "plot", "export"), "field"),
+    ("plate", height_that_is_no_number, ("view", "plot", "export"), "deflection has a number that is not finite"),
+    ("plate", chunk_that_cannot_be_read, ("view", "plot", "export"), "whose field deflection is damaged"),
+]
+
+
+def damaged(folder, kind, change):
+    with h5py.File(folder / f"run.{kind}.vtkhdf", "r+") as file:
+        change(file)
+
+
+def refused(command, folder):
+    """What a command says of the run in a folder."""
+    done = CliRunner().invoke(main, [*command, str(folder / "run"), "-o", str(folder / "new.html")])
+    assert isinstance(done.exception, SystemExit) and done.exit_code == 2, done.exception
+    head, said = done.stderr.splitlines()
+    assert head.endswith(": 1 mistake") and f"Input path must be a result of `active-surface run`; got {folder}" in said
+    return said
+
+
+@pytest.mark.parametrize(("kind", "change", "said"), DAMAGES, ids=[said for *_, said in DAMAGES])
+def test_damage_is_told_before_anything_else(folder, kind, change, said):
+    damaged(folder, kind, change)
+    with pytest.raises(ValueError, match=said):
+        read_run(folder / "run")
+    for command in READERS:
+        assert said in refused(command, folder)
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "commands", "said"), DAMAGES_BESIDE, ids=[change.__name__ for _, change, *_ in DAMAGES_BESIDE]
+)
+def test_damage_of_what_is_read_later_is_told_as_well(folder, kind, change, commands, said):
+    damaged(folder, kind, change)
+    for command in READERS:
+        if command[0] in commands:
+            assert said in refused(command, folder) and f"run.{kind}.vtkhdf" in refused(command, folder)
+
+
+@pytest.fixture
+def written(folder):
+    """The same while another process writes it."""
+    fcntl = pytest.importorskip("fcntl", reason="files are locked otherwise here")
+    with ExitStack() as files:
+        for kind in ("plate", "part"):
+            path = (folder / f"run.{kind}.vtkhdf").rename(folder / f"run.partial.{kind}.vtkhdf")
+            fcntl.flock(files.enter_context(path.open("rb+")), fcntl.LOCK_EX)
+        yield folder
+
+
+@pytest.mark.parametrize("command", [*READERS, ["animate", "--format", "png"]], ids=lambda command: command[0])
+def test_a_run_that_is_being_written_is_not_called_damaged(written, command):
+    said = refused(command, written)
+    assert said.endswith("run.partial.plate.vtkhdf, which is being written: its run has not ended")
+
+
+def test_two_runs_do_not_write_the_same_file(written):
+    partial = written / "run.partial.plate.vtkhdf"
+    with pytest.raises(BlockingIOError, match="another run is writing it") as error:
+        run_case(CASE, written)
+    assert error.value.filename == str(partial)
+    assert refusal_of(error.value, "run", False).message == f"run: {partial}: another run is writing it"

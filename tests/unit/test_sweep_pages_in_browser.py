@@ -1,0 +1,152 @@
+"""Pages of sweeps in a real browser: Chromium clicks cells and presses keys, and looks at pixels and labels."""
+
+import numpy as np
+import pytest
+
+from studies import read_study, run_study
+from views.study_page import write_study_page
+
+pytest.importorskip("selenium", reason="selenium is not installed")
+from page_browser import CASE, changed, chromium, opening, pixels, readout, reddish, wait  # noqa: E402
+from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
+from selenium.webdriver.common.by import By  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
+
+pytestmark = [pytest.mark.compiled, pytest.mark.filterwarnings("ignore::ResourceWarning")]
+
+STUDY = """\
+[study]
+case = "base.toml"
+
+[[axes]]
+field = "actuators.0.frequency"
+name = "frequency"
+range = ["300 Hz", "600 Hz"]
+count = 4
+
+[[axes]]
+field = "actuators.*.stroke"
+name = "stroke"
+range = ["20 um", "60 um"]
+count = 3
+"""
+
+
+NARROW = """\
+[study]
+case = "base.toml"
+repeats = 3
+jitter = "1 um"
+
+[[axes]]
+field = "actuators.0.frequency"
+name = "frequency"
+values = ["10000 Hz", "10000.5 Hz", "10001 Hz"]
+"""
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("pages")
+    (folder / "base.toml").write_text(CASE)
+    (folder / "many.toml").write_text(STUDY)
+    study = read_study(folder / "many.toml")
+    found = run_study(study)
+    return {
+        "sweep": write_study_page(study, found.dataset, folder / "sweep.html"),
+        "few": write_study_page(study, found.dataset, folder / "few.html", 3),
+        "none": write_study_page(study, found.dataset, folder / "none.html", 0),
+        "repeats": repeated(folder),
+    }
+
+
+def repeated(folder):
+    """The page of a narrow sweep with repeats, at whose first point the first start was refused."""
+    (folder / "narrow.toml").write_text(NARROW)
+    study = read_study(folder / "narrow.toml")
+    with run_study(study).dataset as dataset:
+        found = dataset.load()
+    for name in ("distance", "end_x", "end_y"):
+        found[name][0, 0] = np.nan
+    return write_study_page(study, found, folder / "repeats.html")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as driver:
+        yield driver
+
+
+@pytest.fixture
+def open_page(browser, pages):
+    with opening(browser, pages) as opened:
+        yield opened
+
+
+def cell_at(browser, frequency, stroke):
+    """Where a cell is, from the middle of the map."""
+    x, y, width, height = browser.execute_script(
+        "const l = element('map')._fullLayout, r = element('map').getBoundingClientRect();"
+        "const at = (axis, value) => axis._offset + axis.l2p(value);"
+        "return [at(l.xaxis, arguments[0]), at(l.yaxis, arguments[1]), r.width, r.height]",
+        frequency,
+        stroke,
+    )
+    return x - width / 2, y - height / 2
+
+
+def test_a_click_on_a_cell_shows_its_path(open_page):
+    browser = open_page("sweep")
+    chart = browser.find_element(By.ID, "map")
+    assert pixels(browser, "map").std() > 0.05
+    ActionChains(browser).move_to_element_with_offset(chart, *cell_at(browser, 300, 20)).pause(0.5).click().perform()
+    wait(lambda: readout(browser).get("frequency") == "300.0 Hz")
+    assert readout(browser)["stroke"] == "20.00 µm"
+    still, marked = pixels(browser, "path"), pixels(browser, "map")
+    ActionChains(browser).move_to_element_with_offset(chart, *cell_at(browser, 600, 60)).pause(0.5).click().perform()
+    wait(lambda: readout(browser).get("frequency") == "600.0 Hz")
+    wait(lambda: changed(still, pixels(browser, "path")) > 5e-4)
+    assert reddish(pixels(browser, "path")) > reddish(still)
+    assert changed(marked, pixels(browser, "map")) > 1e-3
+    assert "no path" not in browser.find_element(By.ID, "path-caption").text
+
+
+def test_cells_are_chosen_by_keys_and_the_map_shows_outcomes(open_page):
+    browser = open_page("few")
+    first = browser.find_element(By.ID, "picker-0")
+    first.send_keys(Keys.HOME)
+    browser.find_element(By.ID, "picker-1").send_keys(Keys.HOME)
+    wait(lambda: readout(browser).get("frequency") == "300.0 Hz" and readout(browser)["stroke"] == "20.00 µm")
+    captions = {browser.find_element(By.ID, "path-caption").text}
+    for _ in range(3):
+        first.send_keys(Keys.ARROW_RIGHT)
+        captions.add(browser.find_element(By.ID, "path-caption").text)
+    assert first.get_attribute("aria-valuetext") == "600.0 Hz"
+    assert any("no path of this point" in caption for caption in captions)
+    before = pixels(browser, "map")
+    browser.find_element(By.CSS_SELECTOR, "[data-value=outcome]").click()
+    wait(lambda: changed(before, pixels(browser, "map")) > 0.05)
+    assert "stuck" in browser.find_element(By.ID, "outcome-key").text
+
+
+def test_a_page_without_paths_does_not_speak_of_any(open_page):
+    browser = open_page("none")
+    assert browser.find_element(By.ID, "map-caption").text == ""
+    said = browser.find_element(By.CLASS_NAME, "sentence").text
+    assert said == "12 points. A click on a point shows where its path starts and ends."
+
+
+def test_values_are_told_apart_and_ends_are_shown_where_the_first_start_was_refused(open_page):
+    browser = open_page("repeats")
+    picker = browser.find_element(By.ID, "picker-0")
+    picker.send_keys(Keys.HOME)
+    wait(lambda: readout(browser)["frequency"] == "10000.00 Hz")
+    names = "return element('path').data.map((trace) => trace.name).filter((name) => name)"
+    wait(lambda: browser.execute_script(names) == ["actuator", "ends of 3 starts"])
+    assert "The first start was refused." in browser.find_element(By.ID, "path-caption").text
+    said = browser.find_element(By.CLASS_NAME, "sentence").text
+    assert said.endswith("if it is one of the 2, of 3, in this page.")
+    picker.send_keys(Keys.ARROW_RIGHT)
+    wait(lambda: readout(browser)["frequency"] == "10000.50 Hz")
+    wait(lambda: browser.execute_script(names) == ["actuator", "path", "ends of 3 starts", "start", "end"])
+    assert picker.get_attribute("aria-valuetext") == "10000.50 Hz"
