@@ -1,4 +1,4 @@
-"""Ctrl-C that is not lost: a KeyboardInterrupt that Python drops comes again."""
+"""Ctrl-C that is not lost: a KeyboardInterrupt that Python drops comes again, and one in disguise is known."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ SOON = 0.05  # s
 
 @contextmanager
 def heard_again() -> Iterator[None]:
-    """Raises KeyboardInterrupt in its block, or at its end, though one was dropped.
+    """Raises KeyboardInterrupt in its block, or at its end, though one was dropped or became a SystemError.
 
-    That happens to exceptions in a callback or finaliser: nobody is there to be told but `sys.unraisablehook`.
+    Exceptions in a callback or finaliser are dropped: nobody is there to be told but `sys.unraisablehook`. Where
+    compiled code goes on after one, Python complains of that in its place.
     """
     before = sys.unraisablehook
     coming: list[threading.Timer] = []
@@ -32,6 +33,10 @@ def heard_again() -> Iterator[None]:
     sys.unraisablehook = hook
     try:
         yield
+    except SystemError as error:
+        if isinstance(error.__cause__, KeyboardInterrupt):
+            raise error.__cause__ from None
+        raise
     finally:
         sys.unraisablehook = before
         still = [timer for timer in coming if timer.is_alive()]

@@ -156,6 +156,16 @@ def test_ctrl_c_that_python_drops_ends_a_command_all_the_same(after, monkeypatch
     assert after == 0 or time.monotonic() < begun + after
 
 
+@pytest.mark.parametrize(("cause", "ending"), [(KeyboardInterrupt(), 130), (OSError(), 1), (None, 1)])
+def test_ctrl_c_that_compiled_code_went_on_after_ends_a_command_as_any(cause, ending, monkeypatch):
+    def read(path):
+        raise SystemError("<built-in function> returned a result with an exception set") from cause
+
+    monkeypatch.setattr("coupling.case_lines.load", read)
+    done = CliRunner().invoke(main, ["check", "any.toml"])
+    assert done.exit_code == ending and (done.stderr == "interrupted\n") == (ending == 130)
+
+
 @pytest.mark.parametrize(
     ("command", "file", "said"),
     [
