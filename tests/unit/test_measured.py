@@ -21,7 +21,7 @@ def largest_errors(drive):
 def test_a_smooth_motion_is_met_at_every_sample_and_between_them():
     drive, fit = fit_motion("x", TIMES, growing(TIMES)[0])
     assert fit.axis == "x"
-    assert fit.rms <= fit.largest < 1e-12
+    assert fit.rms <= fit.largest < 1e-13
     height, velocity, acceleration = largest_errors(drive)
     assert height < 1e-11 and velocity < 1e-8 and acceleration < 1e-5
 
@@ -29,7 +29,7 @@ def test_a_smooth_motion_is_met_at_every_sample_and_between_them():
 def test_a_quintic_at_uneven_times_is_met_exactly():
     times = np.array([0.0, 0.1, 0.4, 0.5, 0.9, 1.3, 1.4, 2.0])
     drive, fit = fit_motion("z", times, 3 - times + times**5)
-    assert fit.largest < 1e-12
+    assert fit.largest < 5e-15 * 33  # the largest height, of which that is rounding
     fine = np.linspace(0, 1.99, 50)
     assert drive.evaluate(fine)[2] == pytest.approx(20 * fine**3, abs=1e-9)
 

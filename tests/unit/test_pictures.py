@@ -207,5 +207,5 @@ def test_a_map_whose_lines_would_merge_is_shaded_and_its_bar_ends_where_the_heig
     keys = draw_plate(figure, figure.subplots(), relief, readable(relief.box, "m"), relief.frame, width=1.0)
     FigureCanvasAgg(figure).draw()
     low, high = figure.axes[1].get_ylim()
-    assert -1.3 < low <= -1 + 1e-9 and 2 - 1e-9 <= high < 2.5
+    assert -1.3 < low <= -1 + 1e-12 and 2 - 1e-12 <= high < 2.5
     assert [key.get_label() for key in keys] == ["2 actuators, too many to be marked"]

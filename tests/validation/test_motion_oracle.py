@@ -33,9 +33,11 @@ THREE = [[0.0, 120e-6], [110e-6, -60e-6], [-90e-6, -80e-6]]
 POINTS = FrictionTable([-4e-7, -2e-7, 0.0, 4e-7, 1e-6, 4e-6], [0.0, 1.5e-8, 2.6e-8, 4.2e-8, 6e-8, 1e-7], 1.2)
 DOWN = (0.0, 0.0, -G)
 NAMES = {"SLIPS": "slips", "STOPS": "stops", "REVERSES": "reverses", "DETACHES": "detaches", "LEAVES_PLATE": "leaves"}
-# Tolerance, then how far ends may differ over the length of the path, and how far events over their time: the second
-# tolerance is finer than the surface, whose fit to 1e-11 rounds another way on other processors.
-BOUNDS = [(1e-10, 1e-8, 1e-7), (1e-12, 5e-9, 1e-8)]
+# Tolerance, then how far ends may differ over the length of the path, and how far events over their time.
+BOUNDS = [(1e-10, 1e-8, 1e-7), (1e-12, 1e-9, 1e-8)]
+# m: rounding on a plate of 300 um. Whatever the tolerances of both and of the surface, ends stay 2e-14 to 9e-14 off,
+# more or less by processor.
+ROUNDING = 2e-13
 
 # Actuators, (stroke, frequency, delay) of each, part, friction, gravity, duration.
 PLATES = {
@@ -105,7 +107,7 @@ def problem(actuators, strokes, part, law, gravity, duration):
     )
 
 
-def compare(run, theirs, start):
+def compare(run, theirs, start, rounding=0.0):
     """The same events at the same times and places, for each of the tolerances. run: of a tolerance."""
     kinds, times = [kind for kind, *_ in theirs.events], [time for _, time, *_ in theirs.events]
     corners = [start, *(place for _, _, *place in theirs.events), theirs.position]
@@ -116,9 +118,9 @@ def compare(run, theirs, start):
         late = 1e-12 * ours.time[-1]  # for what begins at once
         assert [event.time for event in ours.events] == pytest.approx(times, rel=prompt, abs=late)
         assert [math.dist(e.position, p) for e, p in zip(ours.events, corners[1:-1], strict=True)] == pytest.approx(
-            [0.0] * len(kinds), abs=near * way
+            [0.0] * len(kinds), abs=near * way + rounding
         )
-        assert np.hypot(*(ours.position[-1] - theirs.position)) < near * way
+        assert np.hypot(*(ours.position[-1] - theirs.position)) < near * way + rounding
         assert ours.time[-1] == pytest.approx(theirs.time, rel=prompt)
 
 
@@ -162,7 +164,9 @@ def test_a_path_on_a_plate_is_the_oracle_s(name):
     theirs = trace(problem(*PLATES[name]), part.position, part.velocity, duration)
     drives = [Drive(stroke, f, delay=delay) for stroke, f, delay in strokes]
     surface = surface_motion(DiscShapes(actuators, RADIUS), drives, 1e-11)
-    compare(lambda tolerance: simulate(surface, part, law, duration, gravity, tolerance), theirs, part.position)
+    compare(
+        lambda tolerance: simulate(surface, part, law, duration, gravity, tolerance), theirs, part.position, ROUNDING
+    )
 
 
 BOWL = np.array([[0.0, 0.05, 0.9], [0.0, 0.2, 0.0], [0.6, 0.0, 0.0]])
