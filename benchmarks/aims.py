@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
+from active_surface.steering import Aimed, Settings, Task
+from active_surface.steering.aiming import aim_over
 from coupling import Case, build_surface, read_case
 from particle import SurfaceMotion
-from steering import Aimed, Settings, Task
-from steering.aiming import aim_over
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 HORIZON = 50e-3  # s

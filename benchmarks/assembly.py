@@ -11,10 +11,10 @@ from scipy.sparse import csc_matrix
 from skfem import Basis, BilinearForm, ElementTriArgyris, MeshTri
 from skfem.helpers import dd, ddot, trace
 
-from fem_plate import forms
-from fem_plate.argyris import Triangles
-from fem_plate.assembly import sum_up
-from fem_plate.space import _entities
+from fem_plate.elements import forms
+from fem_plate.elements.argyris import Triangles
+from fem_plate.elements.assembly import sum_up
+from fem_plate.elements.space import _entities
 from meshes import PlateMesh, disc
 
 CELLS_FROM_CENTRE = (4, 8, 16)

@@ -38,7 +38,7 @@ def flush(self):
     plain(self)
     os.write(1, f"{type(self).__name__[:-4].lower()} {len(self._times)}\\n".encode())
 vtkhdf._ResultFile.flush = flush
-from command_line.main import main
+from active_surface.cli.program import main
 main()
 """
 CASE = """\

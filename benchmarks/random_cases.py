@@ -19,7 +19,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import (
     ConstantFriction,
@@ -31,7 +31,7 @@ from particle import (
     Trajectory,
     simulate,
 )
-from particle.friction import Contact
+from particle.friction.contact import Contact
 
 FloatArray = NDArray[np.float64]
 

@@ -19,8 +19,8 @@ import numpy as np
 import pyvista
 from numpy.typing import NDArray
 
-from coupling.export import Frame, write_pvd, write_xdmf
-from coupling.vtkhdf import part_file, plate_file
+from coupling.results.export import Frame, write_pvd, write_xdmf
+from coupling.results.vtkhdf import part_file, plate_file
 
 STEPS, SIDE = 200, 142  # 20 164 points
 SIZE = 300e-6  # m

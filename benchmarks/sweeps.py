@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 from distributed import LocalCluster
 
+from active_surface.studies import Study, read_study, run_study
 from coupling import read_case
-from studies import Study, read_study, run_study
 
 CASE = Path(__file__).parents[1] / "examples/two_actuators.toml"
 STUDY = """\

@@ -1,26 +1,21 @@
-"""The coupling: case files, runs that join plate, part and friction, and their results.
+"""The coupling: case files, runs that join plate, part and friction, and their results."""
 
-Names are loaded when they are first used, so that `active-surface --help` does not wait for the solvers.
-"""
+import lazy_loader
 
-from coupling.lazy import lazy
+__getattr__, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
 
-_HOMES = {
-    "Case": "coupling.case",
-    "CaseError": "coupling.case",
-    "InputError": "coupling.input_error",
-    "read_case": "coupling.case",
-    "Result": "coupling.run",
-    "run_case": "coupling.run",
-    "build_surface": "coupling.run",
-    "write_csv": "coupling.csv_file",
-    "SavedRun": "coupling.saved",
-    "read_run": "coupling.saved",
-    "surface_motion": "coupling.surface",
-    "write_surface": "coupling.surface_file",
-    "read_surface": "coupling.surface_file",
-}
-
-__all__ = list(_HOMES)  # noqa: PLE0605
-
-__getattr__, __dir__ = lazy(__name__, _HOMES)
+__all__ = [  # public; the stub beside has also what other packages of the program use
+    "Case",
+    "CaseError",
+    "InputError",
+    "Result",
+    "SavedRun",
+    "build_surface",
+    "read_case",
+    "read_run",
+    "read_surface",
+    "run_case",
+    "surface_motion",
+    "write_csv",
+    "write_surface",
+]

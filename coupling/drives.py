@@ -8,10 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.case import Case
-from coupling.drive_case import ENDLESS, DriveCase, amplitude
+from coupling.case import ENDLESS, Case, DriveCase, amplitude
 from particle import AnyDrive, Drive, Segment, SegmentDrive, TableDrive
-from particle.drive import drive_table, next_kink
+from particle.drives import drive_table, next_kink
 
 FloatArray = NDArray[np.float64]
 

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 
-from coupling.case import Case, KogutEtsionCase
+from coupling.case import SAME_PLACE, Case, KogutEtsionCase
 from coupling.drives import moments, stroke_heights, travel
-from coupling.lattice_places import SAME_PLACE
 from coupling.steepest import around, steepest
 from coupling.summary import PlateFigures
 from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes

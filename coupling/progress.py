@@ -29,7 +29,7 @@ def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
 
     A signal that arrives inside a compiled kernel, or while one is compiled, would otherwise be handled late or never.
     """
-    from particle.interrupt import wait  # here, because it comes with the kernels
+    from particle import wait  # here, because it comes with the kernels
 
     done: list[Answer] = []
     failed: list[BaseException] = []

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes import Outline
-from meshes.rim_curves import rim_curves as rim_curves
+from meshes import rim_curves as rim_curves
 
 FloatArray = NDArray[np.float64]
 

@@ -13,18 +13,13 @@ from typing import TYPE_CHECKING, Any
 from threadpoolctl import threadpool_limits
 
 import particle
-from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, TableCase
-from coupling.case_record import record_of
-from coupling.csv_file import check_csv
+from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, PlatformCase, TableCase
 from coupling.drives import build_drives as build_drives
-from coupling.plate_scene import plate_scene
-from coupling.platform_case import PlatformCase
-from coupling.platform_scene import platform_scene
 from coupling.progress import Progress, interruptible, silent
-from coupling.results import write_results
-from coupling.scene import Scene
+from coupling.results import check_csv, record_of, write_results
+from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
-from coupling.surface_file import check_surface, write_surface
+from coupling.surface import check_surface, write_surface
 from fem_plate import PlateShapes
 from particle import SurfaceMotion, Trajectory
 from particle.fixed import default_step
@@ -73,7 +68,7 @@ class Result:
         return plot_run(self.case, self.scene, self.trajectory, axes)
 
     def _repr_html_(self) -> str:
-        from plotting.drawing import html
+        from meshes import html
 
         return html(self)
 

@@ -5,8 +5,8 @@ from tempfile import TemporaryDirectory
 
 from PIL import Image
 
+from active_surface.views.film.animation import still
 from coupling import read_case, run_case
-from views.animation import still
 
 ROOT = Path(__file__).parent.parent
 MOMENT = 2.2e-3  # s

@@ -5,11 +5,11 @@ import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from active_surface.studies import read_study, run_study
+from active_surface.views.pages.run_page import write_run_page
+from active_surface.views.pages.study_page import write_study_page
 from coupling import read_case, run_case
-from coupling.saved import read_run
-from studies import read_study, run_study
-from views.run_page import write_run_page
-from views.study_page import write_study_page
+from coupling.results.saved import read_run
 
 ROOT = Path(__file__).parent.parent
 SIZE = "1360,860"

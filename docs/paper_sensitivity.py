@@ -7,12 +7,20 @@ import math
 import re
 from pathlib import Path
 
-from paper.coming_off import PLACES, SPEED, bending_pull, length
-from paper.pairs import SURFACES
-from paper.parameters import PARAMETERS, QUICK
-from paper.sensitivity import LOW_AND_HIGH, Row, beginnings, readings, row_of, steps_of_the_scheme, variants
-from paper.share import percents
-from paper.split import Split
+from active_surface.paper.figures.coming_off import PLACES, SPEED, bending_pull, length
+from active_surface.paper.figures.pairs import SURFACES
+from active_surface.paper.parameters import PARAMETERS, QUICK
+from active_surface.paper.sensitivity import (
+    LOW_AND_HIGH,
+    Row,
+    beginnings,
+    readings,
+    row_of,
+    steps_of_the_scheme,
+    variants,
+)
+from active_surface.paper.share import percents
+from active_surface.paper.split import Split
 
 PAGE = Path(__file__).parent / "paper-open-points.md"
 EFFORT = QUICK._replace(starts=20, starts_by_steps=12)

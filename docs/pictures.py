@@ -19,14 +19,14 @@ from page_pictures import draw_pages
 from paraview_pictures import draw_paraview
 from tolerance_pictures import draw_tolerance
 
+from active_surface.steering import aim, plan, read_route, read_task
+from active_surface.studies import read_study, run_study
+from active_surface.views import animate
 from coupling import read_case, run_case
-from coupling.drawn_plate import drawn_plate
 from coupling.rim import onto_plate
+from coupling.scene.drawn_mesh import drawn_plate
 from fem_plate import InfluenceShapes, Plate, PlateSection
 from meshes import PlateMesh, annulus, read, rectangle
-from steering import aim, plan, read_route, read_task
-from studies import read_study, run_study
-from views import animate
 
 ROOT = Path(__file__).parent.parent
 SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6, density=2330)

@@ -1,15 +1,10 @@
 """The elastic plate: Kirchhoff-Love finite elements under point actuators, and the theory they are checked against."""
 
-from fem_plate import analytic
-from fem_plate.deflection import Deflection
-from fem_plate.export import neighbour_coupling, save_influence
-from fem_plate.influence import InfluenceShapes, Shapes
-from fem_plate.patched import PatchedShapes, PlateShapes
-from fem_plate.plate import Plate
-from fem_plate.section import PlateSection
-from fem_plate.vibration import Modes
+import lazy_loader
 
-__all__ = [
+__getattr__, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
+
+__all__ = [  # public; the stub beside has also what other packages of the program use
     "Deflection",
     "InfluenceShapes",
     "Modes",

@@ -10,9 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_plate.field import Fields
+from fem_plate.elements import Fields, point_load, point_value
 from fem_plate.influence import Shapes, check_points
-from fem_plate.singular import point_load, point_value
 from meshes import Outline
 
 FloatArray = NDArray[np.float64]

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_plate.field import Estimated, Field, Fields
+from fem_plate.elements import Estimated, Field, Fields, PlateModel
 from fem_plate.influence import check_on_plate
-from fem_plate.model import PlateModel
 
 FloatArray = NDArray[np.float64]
 

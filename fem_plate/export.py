@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from fem_plate.arrays import PatchedShapes
 from fem_plate.influence import InfluenceShapes
-from fem_plate.patched import PatchedShapes
 
 FloatArray = NDArray[np.float64]
 

@@ -9,9 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from fem_plate.field import Estimated, Field, Fields
-from fem_plate.model import PlateModel
-from fem_plate.singular import point_value
+from fem_plate.elements import Estimated, Field, Fields, PlateModel, point_value
 from meshes import Outline
 
 if TYPE_CHECKING:
@@ -91,14 +89,14 @@ class Shapes(ABC):
 
         Without weights it is the shape of the actuator in the middle.
         """
-        from fem_plate.picture import draw_shapes  # here, because matplotlib is loaded for pictures only
-        from plotting.drawing import plotted
+        from fem_plate.pictures import draw_shapes  # here, because matplotlib is loaded for pictures only
+        from meshes import plotted
 
         chosen = None if weights is None else self._one_each(weights, "plot")
         return plotted(lambda axes: draw_shapes(self, chosen, axes), axes)
 
     def _repr_html_(self) -> str:
-        from plotting.drawing import html
+        from meshes import html
 
         return html(self)
 

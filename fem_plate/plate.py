@@ -10,16 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fem_plate import vibration
-from fem_plate.cutting import CELL, FINER_CELL, Cutter
+from fem_plate.arrays import CELL, FINER_CELL, Array, Cutter, PatchedShapes, Tell, spacing
 from fem_plate.deflection import Deflection
-from fem_plate.field import Estimated
-from fem_plate.grading import Fineness, corner_rows, graded, singular_corners
+from fem_plate.elements import Estimated, Fineness, PlateModel, by_boundary, corner_rows, graded, singular_corners
 from fem_plate.influence import MOST_DENSE, InfluenceShapes, check_points
-from fem_plate.model import PlateModel
-from fem_plate.patched import PatchedShapes
-from fem_plate.patches import Array, Tell, spacing
 from fem_plate.section import PlateSection
-from fem_plate.supports import by_boundary
 from fem_plate.vibration import Modes
 from meshes import PlateMesh
 
@@ -172,13 +167,13 @@ class Plate:
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rim by its supports and the mesh, into axes in m or new ones."""
-        from fem_plate.picture import draw_cells  # here, because matplotlib is loaded for pictures only
-        from plotting.drawing import plotted
+        from fem_plate.pictures import draw_cells  # here, because matplotlib is loaded for pictures only
+        from meshes import plotted
 
         return plotted(lambda axes: draw_cells(self, axes), axes)
 
     def _repr_html_(self) -> str:
-        from plotting.drawing import html
+        from meshes import html
 
         return html(self)
 

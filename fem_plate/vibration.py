@@ -15,10 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from fem_plate.field import Field, Fields
+from fem_plate.elements import Field, Fields, PlateModel, point_value
 from fem_plate.influence import check_on_plate
-from fem_plate.model import PlateModel
-from fem_plate.singular import point_value
 
 FloatArray = NDArray[np.float64]
 

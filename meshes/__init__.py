@@ -1,13 +1,10 @@
 """Triangle meshes of plate outlines, with named boundaries and their true curves."""
 
-from meshes.curves import Circle, Ellipse, Parabolas
-from meshes.mesh import Corner, PlateMesh
-from meshes.outline import Outline
-from meshes.polygon import polygon
-from meshes.read import read
-from meshes.shapes import annulus, disc, ellipse, rectangle
+import lazy_loader
 
-__all__ = [
+__getattr__, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
+
+__all__ = [  # public; the stub beside has also what other packages of the program use
     "Circle",
     "Corner",
     "Ellipse",

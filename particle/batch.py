@@ -10,15 +10,14 @@ from typing import TypeGuard
 
 import numpy as np
 
-from particle.drive import AnyDrive
+from particle.cores import processors
+from particle.drives import AnyDrive
 from particle.friction import Contact, FrictionLaw
 from particle.interrupt import wait
 from particle.micropart import Micropart
 from particle.path import find_path
-from particle.processors import processors
-from particle.rim import rim_gap
-from particle.simulate import faults, new_request
-from particle.surface import SurfaceMotion
+from particle.simulation import faults, new_request
+from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
 
 

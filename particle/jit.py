@@ -28,7 +28,7 @@ def _drop_stale_kernels(folder: Path) -> None:
 
     numba looks at a kernel's own file only and would go on with old code of the kernels that it calls.
     """
-    sources = b"".join(path.read_bytes() for path in sorted(folder.glob("*.py")))
+    sources = b"".join(path.read_bytes() for path in sorted(folder.rglob("*.py")))
     digest, cache = hashlib.sha256(sources).hexdigest(), folder / "__pycache__"
     note = cache / "kernels.sha256"
     with suppress(OSError):  # a folder that cannot be written to holds no cache either

@@ -10,17 +10,29 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.between import between
-from particle.events import Memory, forget, march, new_memory
-from particle.fixed import march_fixed
-from particle.local import missing_place, new_local
-from particle.motion import Part
-from particle.record import X, Y
-from particle.resume import resume
-from particle.runge_kutta import Pairs, pairs_for
-from particle.slide import DETACHED, GOES_ON, INTERRUPTED, LACKS_CELL, LEFT_PLATE, OVERLOADED, WORK_LIMIT, Request
-from particle.stay import stays
-from particle.surface import Surface, SurfaceMotion
+from particle.events import (
+    DETACHED,
+    GOES_ON,
+    INTERRUPTED,
+    LACKS_CELL,
+    LEFT_PLATE,
+    OVERLOADED,
+    WORK_LIMIT,
+    Memory,
+    Pairs,
+    Part,
+    Request,
+    X,
+    Y,
+    forget,
+    march,
+    new_memory,
+    pairs_for,
+    resume,
+    stays,
+)
+from particle.fixed import between, march_fixed
+from particle.surface import Surface, SurfaceMotion, missing_place, new_local
 from particle.trajectory import Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
 
 FloatArray = NDArray[np.float64]

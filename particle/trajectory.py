@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle import record
+from particle.events import record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -198,13 +198,13 @@ class Trajectory:
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the path and the speed over time; with axes only the path, into these. Axes are in SI units."""
-        from particle.picture import plot, plot_path  # here, because matplotlib is loaded for pictures only
-        from plotting.drawing import plotted
+        from meshes import plotted
+        from particle.pictures import plot, plot_path  # here, because matplotlib is loaded for pictures only
 
         return plot(self) if axes is None else plotted(lambda axes: plot_path(self, axes), axes)
 
     def _repr_html_(self) -> str:
-        from plotting.drawing import html
+        from meshes import html
 
         return html(self)
 

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from coupling import surface_motion
 from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate, simulate_many
-from particle.fields import fields
-from particle.friction import friction_limit
-from particle.local import cell_at, new_local, within_cell
-from particle.span import enter
+from particle.friction.contact import friction_limit
+from particle.surface.at_point import fields
+from particle.surface.local import cell_at, new_local, within_cell
+from particle.surface.span import enter
 from rivals.problem import GRAVITY, MASS, PathProblem
 
 __all__ = ["ends", "evaluations", "friction_limit", "path_of", "surface_of"]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from fem_plate.analytic import DiscShapes
 from particle import ConstantFriction, KogutEtsion
-from particle.friction import Contact
+from particle.friction.contact import Contact
 
 FloatArray = NDArray[np.float64]
 

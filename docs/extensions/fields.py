@@ -12,10 +12,10 @@ from typing import NamedTuple, get_args
 
 from pydantic import BaseModel
 
-import coupling.units
+from coupling.case import units as quantities
 
 HIDDEN = "_"
-PACKAGES = {"meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "paper"}
+PACKAGES = {"meshes", "fem_plate", "particle", "coupling", "active_surface"}
 PLAIN = {"StrictInt": "int", "StrictFloat": "float", "StrictStr": "str", "Count": "int", "Repeats": "int | str"}
 SHAPES = {
     "Point": ("tuple[float, float]", "m"),
@@ -118,8 +118,8 @@ def _without_units(kind: str) -> tuple[str, str]:
         if name in SHAPES:
             units.append(SHAPES[name][1])
             return SHAPES[name][0]
-        marks = get_args(getattr(coupling.units, name, None))
-        if len(marks) == 2 and isinstance(marks[1], coupling.units.Quantity):
+        marks = get_args(getattr(quantities, name, None))
+        if len(marks) == 2 and isinstance(marks[1], quantities.Quantity):
             units.append(marks[1].unit)
             return "float"
         return PLAIN.get(name, match[0])

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from coupling.drawn_plate import drawn_plate
 from coupling.rim import onto_plate
+from coupling.scene.drawn_mesh import drawn_plate
 from fem_plate import Plate, PlateSection
 from meshes import read
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import particle
-from coupling.case import PartCase
+from coupling.case.case import PartCase
 
 ROOT = Path(__file__).parents[2]
 DOCS = sorted((ROOT / "docs").rglob("*.md"))
@@ -72,7 +72,9 @@ def fields(monkeypatch):
     return importlib.import_module("fields")
 
 
-PACKAGES = ["meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "paper"]
+PACKAGES = ["meshes", "fem_plate", "particle", "coupling"] + [
+    f"active_surface.{room}" for room in ("studies", "views", "steering", "paper")
+]
 
 
 @pytest.mark.parametrize("package", PACKAGES)

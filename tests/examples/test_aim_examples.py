@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from steering import aim, plan, read_route, read_task
-from steering.places import read_place
+from active_surface.steering import aim, plan, read_route, read_task
+from active_surface.steering.places import read_place
 
 ROOT = Path(__file__).parents[2]
 AIMS = ROOT / "examples" / "aims"

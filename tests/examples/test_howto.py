@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from command_line.main import main
+from active_surface.cli.program import main
 from coupling import read_case
 
 ROOT = Path(__file__).parents[2]

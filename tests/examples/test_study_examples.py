@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from studies import read_study, run_study
+from active_surface.studies import read_study, run_study
 
 STUDIES = Path(__file__).parents[2] / "examples" / "studies"
 FILES = [file for file in sorted(STUDIES.glob("*.toml")) if "[study]" in file.read_text()]

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import (
     ConstantFriction,

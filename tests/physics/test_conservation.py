@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from particle import ConstantFriction, CoulombAdhesion, Drive, Micropart, Outcome, polynomial_surface, simulate
 
 G, MASS = 9.80665, 2e-9

@@ -8,13 +8,8 @@ from typing import Any
 
 import pytest
 
-from coupling.case import (
-    Case,
-    CaseError,
-    CoulombCase,
-    read_case,
-)
-from coupling.plate_case import DiscCase
+from coupling.case.case import Case, CaseError, CoulombCase, read_case
+from coupling.case.plate import DiscCase
 
 GOOD = """\
 [plate]

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from coupling.case import Case
-from coupling.saved import SavedRun
+from coupling.case.case import Case
+from coupling.results.saved import SavedRun
 from particle import Samples
 
 SIDE = 1e-3  # m

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coupling import run_case, surface_motion
-from coupling.case import Case
+from coupling.case.case import Case
 from fem_plate.analytic import DiscShapes
 from particle import (
     ConstantFriction,
@@ -16,7 +16,7 @@ from particle import (
     polynomial_surface,
     simulate,
 )
-from particle.drive import drive_table, next_kink
+from particle.drives.drive import drive_table, next_kink
 
 RADIUS = 300e-6
 

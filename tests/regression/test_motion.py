@@ -7,7 +7,7 @@ import pytest
 from driven_surface import driven, level, steady
 from random_cases import random_case
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import (
     ConstantFriction,

@@ -8,7 +8,7 @@ import pytest
 
 import meshes
 from coupling import surface_motion
-from coupling.cells import PlateCells
+from coupling.surface.cells import PlateCells
 from fem_plate import Plate, PlateSection
 from fem_plate.analytic import DiscShapes
 from particle import ConstantFriction, CoulombAdhesion, Drive, HermiteDrive, Micropart, simulate, simulate_many

@@ -9,17 +9,17 @@ import pytest
 from click.testing import CliRunner
 from sweeps import PLATE
 
-from command_line.main import main
+from active_surface.cli.program import main
+from active_surface.steering import Settings, Task, aim
+from active_surface.steering.aiming import aim_over
+from active_surface.steering.knobs import Knobs
+from active_surface.steering.objective import SAMPLES
+from active_surface.steering.paths import Disturbance, Paths, cost
+from active_surface.steering.scatter import SEARCHED, TOLD, disturbances
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
 from particle import ConstantFriction, Micropart, Outcome, polynomial_surface, simulate
-from steering import Settings, Task, aim
-from steering.aiming import aim_over
-from steering.knobs import Knobs
-from steering.objective import SAMPLES
-from steering.paths import Disturbance, Paths, cost
-from steering.scatter import SEARCHED, TOLD, disturbances
 
 CASE = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
 TARGET = (-2e-5, 2e-5)

@@ -9,16 +9,16 @@ import pytest
 from click.testing import CliRunner
 from sweeps import PLATE
 
-from command_line.main import main
+from active_surface.cli.program import main
+from active_surface.steering import Route, Settings, Task, aim, found, plan
+from active_surface.steering.aiming import aim_over
+from active_surface.steering.objective import SAMPLES, Objective
+from active_surface.steering.paths import Disturbance, Paths
+from active_surface.steering.planning import plan_over
+from active_surface.steering.report import lines, plan_figures, plan_lines, scatter_line
+from active_surface.steering.scatter import Scatter
 from coupling import build_surface, read_case
 from particle import Outcome
-from steering import Route, Settings, Task, aim, found, plan
-from steering.aiming import aim_over
-from steering.objective import SAMPLES, Objective
-from steering.paths import Disturbance, Paths
-from steering.planning import plan_over
-from steering.report import lines, plan_figures, plan_lines, scatter_line
-from steering.scatter import Scatter
 
 TARGET = (-2e-5, 2e-5)
 pytestmark = pytest.mark.compiled
@@ -90,7 +90,7 @@ def test_a_second_interruption_does_not_undo_the_first(tmp_path, monkeypatch):
 
     assert threading.current_thread() is threading.main_thread()
     before = signal.getsignal(signal.SIGINT)
-    monkeypatch.setattr("steering.aiming.write_case", write)
+    monkeypatch.setattr("active_surface.steering.aiming.write_case", write)
     aimed = aim_over(build_surface(case), Task(case, TARGET, Settings(scatter=5)), tell=stop, file=tmp_path / "a.toml")
     assert aimed.interrupted and len(written) == 1 and signal.getsignal(signal.SIGINT) is before
 
@@ -102,7 +102,7 @@ def test_an_interruption_while_the_file_is_written_is_heard_after_it(tmp_path, m
         return file
 
     for module in ("aiming", "planning"):
-        monkeypatch.setattr(f"steering.{module}.write_case", write)
+        monkeypatch.setattr(f"active_surface.steering.{module}.write_case", write)
     case, settings = case_of(tmp_path), Settings(paths=2, scatter=5)
     task = Task(case, TARGET, settings) if over is aim_over else Route(case, (TARGET,), settings)
     found = over(build_surface(case), task, file=tmp_path / "a.toml")
@@ -131,7 +131,7 @@ def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(tmp_path):
 def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, monkeypatch):
     """The second leg does not settle: its drives are in the case all the same."""
     case, settings, rests = case_of(tmp_path), Settings(paths=40, scatter=3), iter([True, False])
-    monkeypatch.setattr("steering.planning.settled", lambda path: next(rests))
+    monkeypatch.setattr("active_surface.steering.planning.settled", lambda path: next(rests))
     way = (TARGET, (6e-5, 5e-5))
     planned = plan_over(build_surface(case), Route(case, way, settings), file=tmp_path / "out" / "p.toml")
     assert len(planned.arrivals) == 1 and planned.targets == way and planned.failure.startswith("leg 2: ")

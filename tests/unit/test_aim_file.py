@@ -5,9 +5,9 @@ import math
 import pytest
 from sweeps import PLATE, PLATFORM
 
+from active_surface.steering import Route, Settings, Task, read_route, read_task
+from active_surface.steering.places import read_place
 from coupling import CaseError, read_case
-from steering import Route, Settings, Task, read_route, read_task
-from steering.places import read_place
 
 ONE = PLATE[: PLATE.index("[[actuators]]")] + PLATE[PLATE.rindex("[[actuators]]") :]
 

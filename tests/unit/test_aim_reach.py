@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from active_surface.steering import Settings, Task
 from coupling import read_case
-from steering import Settings, Task
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 NINE = (EXAMPLES / "array_3x3.toml").read_text()

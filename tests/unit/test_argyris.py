@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fem_plate.argyris import DERIVATIVES, EDGES, EXPONENTS, Triangles, monomials
-from fem_plate.space import PlateSpace
+from fem_plate.elements.argyris import DERIVATIVES, EDGES, EXPONENTS, Triangles, monomials
+from fem_plate.elements.space import PlateSpace
 from meshes import disc, polygon
 
 
@@ -143,7 +143,7 @@ def test_point_values_are_the_matrix_of_evaluation(space):
 def test_evaluating_in_chunks_changes_nothing(space, monkeypatch):
     u, points = np.random.default_rng(7).normal(size=(space.unknowns, 1)), inside(space.triangles, 3).reshape(-1, 2)
     whole = space.evaluate(points, u, orders=3)
-    monkeypatch.setattr("fem_plate.space.CHUNK", 17)
+    monkeypatch.setattr("fem_plate.elements.space.CHUNK", 17)
     for one, other in zip(whole, space.evaluate(points, u, orders=3), strict=True):
         assert np.abs(one - other).max() < 1e-12
 

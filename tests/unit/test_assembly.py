@@ -6,9 +6,9 @@ from scipy.sparse import coo_matrix
 from skfem import Basis, BilinearForm, ElementTriArgyris, MeshTri
 from skfem.helpers import dd, ddot, trace
 
-from fem_plate.argyris import DERIVATIVES, EDGES
-from fem_plate.assembly import LOCAL_ENTITY, WITHIN_ENTITY, sum_up
-from fem_plate.space import PlateSpace
+from fem_plate.elements.argyris import DERIVATIVES, EDGES
+from fem_plate.elements.assembly import LOCAL_ENTITY, WITHIN_ENTITY, sum_up
+from fem_plate.elements.space import PlateSpace
 from meshes import PlateMesh, annulus, disc, ellipse, polygon, rectangle
 
 
@@ -26,7 +26,7 @@ def test_blocks_sum_up_to_what_triplets_do(seed, monkeypatch):
     whole = sum_up(matrices, entities, first)
     assert np.abs(whole.toarray() - expected).max() < 1e-13
     assert whole.has_canonical_format or whole.has_sorted_indices
-    monkeypatch.setattr("fem_plate.assembly.CHUNK", 7)
+    monkeypatch.setattr("fem_plate.elements.assembly.CHUNK", 7)
     assert np.abs(sum_up(matrices, entities, first).toarray() - expected).max() < 1e-13
 
 

@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from particle.bernstein import DEEPEST, first_negative, halve, to_bernstein
+from particle.events.bernstein import DEEPEST, first_negative, halve, to_bernstein
 
 SIZES = st.integers(1, 17)
 NUMBERS = st.floats(-1, 1, allow_subnormal=False)

@@ -6,8 +6,8 @@ import pytest
 from click.testing import CliRunner
 
 import particle
-from command_line.main import main
-from coupling.case import CaseError, TableCase, read_case
+from active_surface.cli.program import main
+from coupling.case.case import CaseError, TableCase, read_case
 from coupling.run import build_friction
 
 EXAMPLE = (Path(__file__).parents[2] / "examples" / "one_actuator.toml").read_text()

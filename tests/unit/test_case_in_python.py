@@ -9,12 +9,8 @@ import pytest
 from case_files import JARGON, plate, python_case
 from pydantic import ValidationError
 
-from coupling.case import (
-    ActuatorCase,
-    Case,
-    PartCase,
-)
-from coupling.input_error import InputError
+from coupling.case.case import ActuatorCase, Case, PartCase
+from coupling.case.input_error import InputError
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coupling.any_plate import PLATES
-from coupling.case import ActuatorCase, Case, CaseError, ConstantCase, PartCase, RunCase, read_case
-from coupling.input_error import InputError
-from coupling.plate_case import AnnulusCase, DiscCase, MeshCase, PolygonCase, RectangleCase
+from coupling.case.any_plate import PLATES
+from coupling.case.case import ActuatorCase, Case, CaseError, ConstantCase, PartCase, RunCase, read_case
+from coupling.case.input_error import InputError
+from coupling.case.plate import AnnulusCase, DiscCase, MeshCase, PolygonCase, RectangleCase
 
 MESH = Path(__file__).parents[1] / "data" / "l_with_hole.msh"
 MATERIAL = """\

@@ -5,7 +5,7 @@ import weakref
 import numpy as np
 import pytest
 
-from particle.cells import CellFit, CellPool
+from particle.surface.cells import CellFit, CellPool
 
 CENTRE, HALF, NONE = np.zeros(2), np.ones(2), np.zeros(0, dtype=np.int64)
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from command_line.main import main
-from coupling import verification
+from active_surface.cli.program import main
+from fem_plate import verification
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BROKEN = """\
@@ -62,7 +62,7 @@ def test_an_interrupt_exits_130_with_one_line(command, tmp_path, monkeypatch):
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("coupling.case.read_case", interrupted)
-    monkeypatch.setattr("coupling.case_lines.load", interrupted)
+    monkeypatch.setattr("coupling.case.load", interrupted)
     done = CliRunner().invoke(main, [command, "any.toml"])
     assert (done.exit_code, done.stdout, done.stderr) == (130, "", "interrupted\n")
 
@@ -73,7 +73,7 @@ def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
     text = (EXAMPLES / "one_actuator.toml").read_text()
     case = tmp_path / "long.toml"
     case.write_text(re.sub('duration = "[^"]*"', 'duration = "1000 s"', text))
-    command = [sys.executable, "-m", "command_line", "run", str(case), "--output", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "active_surface", "run", str(case), "--output", str(tmp_path / "out")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         time.sleep(12)  # it has begun by then, on a busy machine too
         process.send_signal(signal.SIGINT)
@@ -133,9 +133,7 @@ def test_run_prints_the_summary_as_json(tmp_path):
 
 
 def test_help_loads_no_solver():
-    code = (
-        "import sys; from command_line.main import main; main(['--help'], standalone_mode=False); print(*sys.modules)"
-    )
+    code = "import sys, active_surface.cli.program as p; p.main(['--help'], standalone_mode=False); print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     said = set(done.stdout.split())
     assert {"run", "check", "sweep", "aim", "plan", "verify", "schema", "completion"} <= said

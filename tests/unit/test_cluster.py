@@ -11,10 +11,10 @@ import pytest
 from click.testing import CliRunner
 from sweeps import PLATE, PLATFORM, written
 
-from command_line.main import main
-from studies import read_study, run_study
-from studies.cluster import AHEAD, records_on
-from studies.engine import Engine
+from active_surface.cli.program import main
+from active_surface.studies import read_study, run_study
+from active_surface.studies.cluster import AHEAD, records_on
+from active_surface.studies.engine import Engine
 
 SHAKEN = """\
 [[axes]]
@@ -126,7 +126,7 @@ def test_a_stop_keeps_the_chunks_that_came_in(tmp_path, cluster, monkeypatch):
 def test_a_worker_with_another_version_is_refused(tmp_path, cluster, monkeypatch):
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))
     own = {"active-surface": "9.8.7", "numpy": np.__version__}
-    monkeypatch.setattr("studies.cluster.versions", lambda: own)
+    monkeypatch.setattr("active_surface.studies.cluster.versions", lambda: own)
     with pytest.raises(ValueError) as caught:
         run_study(study, scheduler=cluster.scheduler_address)
     said = (
@@ -173,7 +173,7 @@ def test_an_address_where_something_else_listens_is_one_clear_error(tmp_path, cl
 
 def test_a_scheduler_without_workers_is_one_clear_error(tmp_path, monkeypatch):
     distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr("studies.cluster.ARRIVAL", 1)
+    monkeypatch.setattr("active_surface.studies.cluster.ARRIVAL", 1)
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))
     with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as empty, pytest.raises(RuntimeError) as caught:
         run_study(study, scheduler=empty.scheduler_address)

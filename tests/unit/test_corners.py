@@ -9,9 +9,9 @@ sin^2(lambda omega) = (4 - (1 - nu)^2 lambda^2 sin^2(omega)) / ((3 + nu)(1 - nu)
 import numpy as np
 import pytest
 
-from fem_plate.corners import MOST, exponent
-from fem_plate.grading import corner_rows, singular_corners
-from fem_plate.space import PlateSpace
+from fem_plate.elements.corners import MOST, exponent
+from fem_plate.elements.grading import corner_rows, singular_corners
+from fem_plate.elements.space import PlateSpace
 from meshes import polygon, rectangle
 
 C, S, F = "clamped", "simply-supported", "free"

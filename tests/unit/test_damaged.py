@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from command_line.main import main
-from command_line.refusal import refusal_of
+from active_surface.cli.program import main
+from active_surface.cli.refusal import refusal_of
 from coupling import Case, read_run, run_case
-from coupling.case import CoulombCase, PartCase, RunCase
+from coupling.case.case import CoulombCase, PartCase, RunCase
 
 CASE = Case(
     plate={"shape": "platform", "motion": {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}}},

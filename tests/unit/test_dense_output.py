@@ -4,18 +4,9 @@ import numpy as np
 import pytest
 from driven_surface import driven, level
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
-from particle import (
-    ConstantFriction,
-    CoulombAdhesion,
-    Drive,
-    EventKind,
-    KogutEtsion,
-    Micropart,
-    State,
-    simulate,
-)
+from particle import ConstantFriction, CoulombAdhesion, Drive, EventKind, KogutEtsion, Micropart, State, simulate
 
 G, MASS = 9.80665, 2e-9
 

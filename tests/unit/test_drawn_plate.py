@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import meshes
-from coupling.drawn_plate import CELLS, MOST_POINTS, drawn_plate
+from coupling.scene.drawn_mesh import CELLS, MOST_POINTS, drawn_plate
 from meshes.fill import angles, sides
 
 MESH = Path(__file__).parents[1] / "data" / "l_with_hole.msh"

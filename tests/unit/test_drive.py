@@ -7,7 +7,7 @@ import pytest
 from pieces import piece_at
 
 from particle import Drive
-from particle.drive import drive_table, next_kink
+from particle.drives.drive import drive_table, next_kink
 
 
 def quintic(s):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from coupling.case import ActuatorCase, Case, CaseError, read_case
-from coupling.drive_case import SegmentCase, amplitude
+from coupling.case.case import ActuatorCase, Case, CaseError, read_case
+from coupling.case.drive import SegmentCase, amplitude
 from coupling.run import build_drives
 from particle import Drive, Segment, SegmentDrive, TableDrive
 

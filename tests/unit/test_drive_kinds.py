@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pieces import piece_at
 
 from particle import Drive, HermiteDrive, Segment, SegmentDrive, TableDrive
-from particle.drive import drive_table, monomial_table, next_kink
+from particle.drives.drive import drive_table, monomial_table, next_kink
 
 POLYNOMIAL = np.polynomial.Polynomial([1e-6, -2e-3, 3.0, 4e2, -5e4, 6e6])
 

@@ -7,7 +7,10 @@ import pytest
 from click.testing import CliRunner
 from sweeps import PLATE
 
-from command_line.main import main
+from active_surface.cli.program import main
+from active_surface.studies.feasibility.area import find_feasible, places
+from active_surface.studies.feasibility.case import feasibility
+from active_surface.studies.feasibility.report import warnings
 from coupling import read_case, surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import (
@@ -24,9 +27,6 @@ from particle import (
     polynomial_surface,
     simulate,
 )
-from studies.feasibility import feasibility
-from studies.feasible import find_feasible, places
-from studies.feasible_report import warnings
 
 RADIUS, STROKE, MASS, GRAVITY = 300e-6, 150e-6, 2e-9, 9.80665
 SHAPES = DiscShapes([[0.0, 0.0]], RADIUS)

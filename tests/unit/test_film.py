@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from made_runs import SIDE, grid, hill, made_run
 
+from active_surface.views.film.camera import CAMERAS, Camera, camera_of
+from active_surface.views.film.frames import frames_of
+from active_surface.views.film.layout import BOTTOM, LEFT, RIGHT, TOP, layout_of, size_of
+from active_surface.views.film.pace import FEWEST, MOST_FRAMES, pace_of, warnings_of
+from active_surface.views.film.stage import stage_of
+from active_surface.views.lines import path_points
+from active_surface.views.smooth import Smooth
 from particle import State
-from views.camera import CAMERAS, Camera, camera_of
-from views.frames import frames_of
-from views.layout import BOTTOM, LEFT, RIGHT, TOP, layout_of, size_of
-from views.lines import path_points
-from views.pace import FEWEST, MOST_FRAMES, pace_of, warnings_of
-from views.smooth import Smooth
-from views.stage import stage_of
 
 LONG = np.stack([np.linspace(-4e-4, 4e-4, 5), np.zeros(5)], axis=1)  # a path across the plate
 RANDOM = SIDE * (np.random.default_rng(1).random((300, 2)) - 0.5)
@@ -261,7 +261,7 @@ def test_crowded_actuators_are_not_marked():
         return len(stage_of(made_run(LONG, lambda points: hill(points, 1e-5), actuators=count)).actuators)
 
     assert marks(1) == 1 and marks(100) == 100
-    from views import stage
+    from active_surface.views.film import stage
 
     crowded, stage.CROWDED = stage.CROWDED, 0.1
     assert marks(100) == 0

@@ -16,10 +16,10 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from command_line.main import main
-from coupling.case import Case, CoulombCase, PartCase, RunCase
+from active_surface.cli.program import main
+from active_surface.views.film.film_file import ENCODERS, check_film, film_file, format_of
+from coupling.case.case import Case, CoulombCase, PartCase, RunCase
 from coupling.run import run_case
-from views.film_file import ENCODERS, check_film, film_file, format_of
 
 SIZE = (320, 240)
 MOTION = {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}, "z": {"stroke": 3e-6, "frequency": 500.0}}
@@ -269,7 +269,7 @@ def test_a_file_that_is_no_result_of_a_run_is_told_what_it_is(tmp_path, name, te
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_ctrl_c_leaves_no_half_film(ran, tmp_path):
-    command = [sys.executable, "-m", "command_line", "animate", str(ran / "run"), "-o", str(tmp_path / "film.mp4")]
+    command = [sys.executable, "-m", "active_surface", "animate", str(ran / "run"), "-o", str(tmp_path / "film.mp4")]
     command += ["--renderer", "matplotlib", "--slow-motion", "500000"]
     with subprocess.Popen(command, cwd=ROOT, start_new_session=True, stderr=subprocess.PIPE, text=True) as child:
         deadline = time.monotonic() + 120

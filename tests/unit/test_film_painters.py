@@ -8,17 +8,17 @@ from made_runs import hill, made_run
 from matplotlib.collections import PolyCollection
 from PIL import Image
 
+from active_surface.views.film.animation import animate, still
+from active_surface.views.film.camera import CAMERAS
+from active_surface.views.film.captions import Captions
+from active_surface.views.film.frames import frames_of
+from active_surface.views.film.layout import layout_of
+from active_surface.views.film.look import Look
+from active_surface.views.film.offscreen import prepare
+from active_surface.views.film.pace import pace_of
+from active_surface.views.film.painter import chosen, painter
+from active_surface.views.film.stage import stage_of
 from particle import State
-from views.animation import animate, still
-from views.camera import CAMERAS
-from views.captions import Captions
-from views.frames import frames_of
-from views.layout import layout_of
-from views.look import Look
-from views.offscreen import prepare
-from views.pace import pace_of
-from views.painter import chosen, painter
-from views.stage import stage_of
 
 SIZE = (480, 270)
 PATH = np.stack([np.linspace(-3e-4, 3e-4, 5), np.zeros(5)], axis=1)

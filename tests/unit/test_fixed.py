@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from particle import (
     ConstantFriction,
     CoulombAdhesion,
@@ -19,11 +19,11 @@ from particle import (
     polynomial_surface,
     simulate,
 )
-from particle.fields import Fields
-from particle.fixed import MOST_ROWS, MOST_STEPS, step_count
-from particle.moreau import moreau_step
-from particle.motion import Part
-from particle.record import RESTING, SLIDING
+from particle.events.equations import Part
+from particle.events.record import RESTING, SLIDING
+from particle.fixed.moreau import moreau_step
+from particle.fixed.steps import MOST_ROWS, MOST_STEPS, step_count
+from particle.surface.at_point import Fields
 
 MASS, G = 2e-9, 9.80665
 FLAT = polynomial_surface([[0.0]])

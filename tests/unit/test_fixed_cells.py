@@ -5,11 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import ConstantFriction, Drive, Micropart, SurfaceMotion, simulate
-from particle.cells import NOWHERE, CellFit, CellPool
-from particle.drive import monomial_table
+from particle.drives.drive import monomial_table
+from particle.surface.cells import NOWHERE, CellFit, CellPool
 
 RADIUS, MASS = 300e-6, 2e-9
 SCHEMES = pytest.mark.parametrize("scheme", ["fixed", "paper"])

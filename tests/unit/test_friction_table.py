@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from particle import CoulombAdhesion, FrictionTable, KogutEtsion, Micropart, Outcome, polynomial_surface, simulate
-from particle.friction import friction_limit
+from particle.friction.contact import friction_limit
 
 LOADS, LIMITS = (-2e-6, -1e-6, 0.0, 3e-6, 1e-5), (0.0, 4e-8, 4e-8, 9e-8, 1.2e-7)
 

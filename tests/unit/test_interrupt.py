@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from command_line.ctrl_c import SOON, heard_again
+from active_surface.cli.ctrl_c import SOON, heard_again
 from coupling.progress import interruptible
 from particle.interrupt import unbroken, wait
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from particle import KogutEtsion
-from particle.friction import TABLE
-from particle.kogut_etsion import lowest
+from particle.friction.contact import TABLE
+from particle.friction.kogut_etsion import lowest
 
 PAPER_MASS = 2e-9  # kg
 
@@ -126,7 +126,7 @@ def test_the_friction_limit_never_falls(contact):
 
 def test_a_law_beyond_its_ends_goes_on_without_a_jump(contact):
     """An integrator tries steps beyond the ends before it locates them."""
-    from particle.friction import friction_limit
+    from particle.friction.contact import friction_limit
 
     low, high = contact.friction_limit([-contact.pull_off, contact.largest_load])
     assert friction_limit(contact.law, -2 * contact.pull_off) == low

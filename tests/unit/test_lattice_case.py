@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from coupling.case import ActuatorCase, Case, CaseError, ConstantCase, LatticeCase, PartCase, RunCase, read_case
-from coupling.input_error import InputError
-from coupling.plate_case import DiscCase
+from coupling.case.case import ActuatorCase, Case, CaseError, ConstantCase, LatticeCase, PartCase, RunCase, read_case
+from coupling.case.input_error import InputError
+from coupling.case.plate import DiscCase
 from coupling.run import build_drives
-from particle.drive import drive_table
+from particle.drives.drive import drive_table
 
 FRAME = """\
 [plate]

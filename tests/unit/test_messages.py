@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from command_line.main import main
-from coupling.case import CaseTables
-from coupling.schema import json_schema
+from active_surface.cli.program import main
+from coupling.case.case import CaseTables
+from coupling.case.schema import json_schema
 
 ROOT = Path(__file__).parents[2]
 BROKEN = sorted((ROOT / "tests/broken").glob("*.toml"))

@@ -7,16 +7,16 @@ import pytest
 from click.testing import CliRunner
 from scipy.spatial import Delaunay
 
-from command_line.main import main
-from views.found import result_of
-from views.modes import SEEN, modes_of
-from views.packed import packed, packed_rows
-from views.page_file import notes_of, rows_of, write_page
-from views.rounding import exaggeration, round_above, round_below
-from views.run_data import _around
-from views.sweep_paths import spread
-from views.thinned import thinned
-from views.triangles import coarse, inside, outer_edges, spots_of
+from active_surface.cli.program import main
+from active_surface.views.found import result_of
+from active_surface.views.pages.modes import SEEN, modes_of
+from active_surface.views.pages.packed import packed, packed_rows
+from active_surface.views.pages.page_file import notes_of, rows_of, write_page
+from active_surface.views.pages.run_data import _around
+from active_surface.views.pages.sweep_paths import spread
+from active_surface.views.pages.thinned import thinned
+from active_surface.views.rounding import exaggeration, round_above, round_below
+from active_surface.views.triangles import coarse, inside, outer_edges, spots_of
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 HALVES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -94,7 +94,7 @@ def test_a_coarse_surface_covers_the_same_with_fewer_points(hole):
 
 @pytest.mark.parametrize("ends", [[(-0.9, -0.8), (0.9, 0.8)], [(0.5, 0.5), (0.52, 0.5)], [(0.999, -0.9), (0.999, 0.9)]])
 def test_a_large_surface_is_shown_around_the_whole_path(monkeypatch, ends):
-    monkeypatch.setattr("views.run_data.MOST_POINTS", 300)
+    monkeypatch.setattr("active_surface.views.pages.run_data.MOST_POINTS", 300)
     x, y = np.meshgrid(np.linspace(-1, 1, 60), np.linspace(-1, 1, 60))
     points = np.stack([x.ravel(), y.ravel()], axis=1)
     triangles = Delaunay(points).simplices.astype(np.int64)

@@ -4,9 +4,9 @@ import time
 
 import pytest
 
+from active_surface.views.pages.run_page import write_run_page
 from coupling import read_case, run_case
-from coupling.saved import read_run
-from views.run_page import write_run_page
+from coupling.results.saved import read_run
 
 pytest.importorskip("selenium", reason="selenium is not installed")
 from page_browser import CASE, changed, chromium, drawn, errors, opening, pixels, readout, reddish, wait  # noqa: E402

@@ -6,15 +6,15 @@ import pytest
 from click.testing import CliRunner
 from matplotlib.figure import Figure
 
-from command_line.main import main
-from paper.catalogue import MODULES, finder, modules_of
-from paper.dead_zones import touched
-from paper.found import Found
-from paper.models import Bench
-from paper.page import page_of
-from paper.parameters import PARAMETERS, TINY
-from paper.reproduction import reproduce, rounded
-from paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Answer, Verdict, of_checks
+from active_surface.cli.program import main
+from active_surface.paper.catalogue import MODULES, finder, modules_of
+from active_surface.paper.figures.dead_zones import touched
+from active_surface.paper.found import Found
+from active_surface.paper.models import Bench
+from active_surface.paper.page import page_of
+from active_surface.paper.parameters import PARAMETERS, TINY
+from active_surface.paper.reproduction import reproduce, rounded
+from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Answer, Verdict, of_checks
 
 pytestmark = pytest.mark.compiled
 

@@ -5,19 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from particle import (
-    ConstantFriction,
-    CoulombAdhesion,
-    EventKind,
-    Micropart,
-    Outcome,
-    polynomial_surface,
-    simulate,
-)
-from particle.fields import Fields
-from particle.motion import Part
-from particle.paper_scheme import across, paper_step, rotation
-from particle.record import RESTING, SLIDING
+from particle import ConstantFriction, CoulombAdhesion, EventKind, Micropart, Outcome, polynomial_surface, simulate
+from particle.events.equations import Part
+from particle.events.record import RESTING, SLIDING
+from particle.fixed.paper_scheme import across, paper_step, rotation
+from particle.surface.at_point import Fields
 
 MASS, G = 2e-9, 9.80665
 

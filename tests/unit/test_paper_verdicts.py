@@ -5,21 +5,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from paper.accuracy import _band, _fine, _named, within
-from paper.coming_off import bending_pull, end_said, hardest, off_numbers, off_said
-from paper.convergence import _converges, _leaves, leave
-from paper.dead_zones import widest_served
-from paper.feasible_area import curve_of
-from paper.friction_logic import slips_of
-from paper.handover import HANDOVERS, arrives, cycles_until_there
-from paper.models import Bench
-from paper.neighbours import crosses_and_returns, goes_over, trend_of
-from paper.parameters import PARAMETERS
-from paper.path import Path
-from paper.share import Share, share_of
-from paper.split import Ends, best_split, first_loss, fits_of
-from paper.threshold import _at_stated, _curve, exceptions, mixed, thresholds
-from paper.translocation import beyond, ends_of, farther, grows
+from active_surface.paper.figures.accuracy import _band, _fine, _named, within
+from active_surface.paper.figures.coming_off import bending_pull, end_said, hardest, off_numbers, off_said
+from active_surface.paper.figures.convergence import _converges, _leaves, leave
+from active_surface.paper.figures.dead_zones import widest_served
+from active_surface.paper.figures.feasible_area import curve_of
+from active_surface.paper.figures.friction_logic import slips_of
+from active_surface.paper.figures.handover import HANDOVERS, arrives, cycles_until_there
+from active_surface.paper.figures.neighbours import crosses_and_returns, goes_over, trend_of
+from active_surface.paper.figures.threshold import _at_stated, _curve, exceptions, mixed, thresholds
+from active_surface.paper.figures.translocation import beyond, ends_of, farther, grows
+from active_surface.paper.models import Bench
+from active_surface.paper.parameters import PARAMETERS
+from active_surface.paper.path import Path
+from active_surface.paper.share import Share, share_of
+from active_surface.paper.split import Ends, best_split, first_loss, fits_of
 from particle import EventKind
 
 BENCH = Bench()

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.sparse import issparse
 
-from fem_plate import PatchedShapes, Plate, patched, patches
-from fem_plate.patches import spacing
+from fem_plate import PatchedShapes, Plate
+from fem_plate.arrays import patched, patches
+from fem_plate.arrays.patches import spacing
 from meshes import disc, polygon, rectangle
 
 PITCH = 25e-6

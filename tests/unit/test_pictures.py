@@ -7,18 +7,18 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from coupling import plate_picture
-from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
-from coupling.drawn_plate import drawn_plate
-from coupling.pictures import compose
-from coupling.plate_picture import BOTH_WAYS, FEW, UPWARDS, Scale, draw_plate, fine_field, marker_size, relief_of
-from coupling.plate_scene import lifting
-from coupling.portrait import moment_of_most, portrait_of
-from coupling.readable import readable
+from coupling.case.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
+from coupling.pictures import plate as plate_picture
+from coupling.pictures.plate import BOTH_WAYS, FEW, UPWARDS, Scale, draw_plate, fine_field, marker_size, relief_of
+from coupling.pictures.portrait import moment_of_most, portrait_of
+from coupling.pictures.prefixes import readable
+from coupling.pictures.run import compose
+from coupling.pictures.time import limits
+from coupling.pictures.window import LEAST, MOST, path_window
 from coupling.run import run_case
-from coupling.scene import Ground
-from coupling.time_picture import limits
-from coupling.window import LEAST, MOST, path_window
+from coupling.scene.drawn_mesh import drawn_plate
+from coupling.scene.plate import lifting
+from coupling.scene.scene import Ground
 from fem_plate import Plate, PlateSection
 from meshes import disc
 

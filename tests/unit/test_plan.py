@@ -7,13 +7,13 @@ import pytest
 from click.testing import CliRunner
 from sweeps import PLATE
 
-from command_line.main import main
+from active_surface.cli.program import main
+from active_surface.steering import Route, Settings, Task, plan
+from active_surface.steering.planning import plan_over
+from active_surface.steering.schedule import Leg, lasting, scheduled
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
-from steering import Route, Settings, Task, plan
-from steering.planning import plan_over
-from steering.schedule import Leg, lasting, scheduled
 
 LATTICE = """\
 [lattice]

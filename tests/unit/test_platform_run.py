@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from command_line.main import main
+from active_surface.cli.program import main
 from coupling import report, run_case
-from coupling.case import Case, CoulombCase, PartCase, RunCase
+from coupling.case.case import Case, CoulombCase, PartCase, RunCase
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 X = {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}

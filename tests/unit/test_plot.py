@@ -12,19 +12,19 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 from sweeps import PLATE, PLATFORM, written
 
-from command_line.main import main
+from active_surface.cli.program import main
+from active_surface.studies import read_study, run_study
+from active_surface.studies.pictures.findings import read_findings
+from active_surface.studies.pictures.shown import Shown
+from active_surface.views.prints.plots import plot
+from active_surface.views.prints.run_pictures import MARKS, courses, run_pictures
+from active_surface.views.prints.saved_portrait import portrait_of_saved
+from active_surface.views.prints.sheet import MM, drawn
+from active_surface.views.prints.sweep_pictures import sweep_pictures
 from coupling import read_case, run_case
-from coupling.portrait import deflected_most, portrait_of
-from coupling.saved import read_run
+from coupling.pictures.portrait import deflected_most, portrait_of
+from coupling.results.saved import read_run
 from particle import EventKind
-from studies import read_study, run_study
-from studies.findings import read_findings
-from studies.shown import Shown
-from views.plots import plot
-from views.run_pictures import MARKS, courses, run_pictures
-from views.saved_portrait import portrait_of_saved
-from views.sheet import MM, drawn
-from views.sweep_pictures import sweep_pictures
 
 STROKE = '[[axes]]\nfield = "actuators.*.stroke"\nname = "stroke"\nvalues = ["20 um", "40 um", "60 um"]\n'
 FREQUENCY = '[[axes]]\nfield = "actuators.0.frequency"\nname = "frequency"\nrange = ["200 Hz", "600 Hz"]\ncount = 4\n'

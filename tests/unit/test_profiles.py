@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from active_surface.paper.profiles import NEAREST, SUPERPOSED, profile_outline, profile_surface
 from fem_plate.analytic import central_load
-from paper.profiles import NEAREST, SUPERPOSED, profile_outline, profile_surface
 from particle import Drive
 
 PITCH, RADIUS, TIME = 150e-6, 300e-6, 0.7e-3

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import gamma, pbdv
 
-from particle.quadrature import from_power, gaussian, on_panels
+from particle.friction.quadrature import from_power, gaussian, on_panels
 
 
 @pytest.mark.parametrize("d", [0.0, 1.0, 3.0])

@@ -11,10 +11,11 @@ import pytest
 from click.testing import CliRunner
 
 import meshes
-from command_line.main import main
-from coupling import read_case, read_run, run_case, versions
-from coupling.case_record import case_of, record_of
+from active_surface.cli.program import main
+from coupling import environment as versions
+from coupling import read_case, read_run, run_case
 from coupling.progress import silent
+from coupling.results.case_record import case_of, record_of
 
 POINTS = "load [uN], limit [nN]\n-1, 4\n0, 18.7\n2.2, 35\n5, 52\n"
 

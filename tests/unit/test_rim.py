@@ -9,7 +9,7 @@ import pytest
 from coupling.rim import onto_plate, rim_curves
 from meshes import Outline
 from particle import ConstantFriction, EventKind, Micropart, Outcome, polynomial_surface, simulate
-from particle.rim import ellipse_gap, rim_gap
+from particle.surface.rim import ellipse_gap, rim_gap
 
 NO_CONICS, NO_EDGES = np.zeros((0, 4)), np.zeros((0, 3, 2))
 

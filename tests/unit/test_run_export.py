@@ -12,11 +12,11 @@ import pyvista as pv
 from click.testing import CliRunner
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
-from command_line.main import main
+from active_surface.cli.program import main
 from coupling import Case, read_run, run_case
-from coupling.case import ConstantCase, PartCase, RunCase
-from coupling.export import export_run
-from coupling.saved import OF_PART
+from coupling.case.case import ConstantCase, PartCase, RunCase
+from coupling.results.export import export_run
+from coupling.results.saved import OF_PART
 
 PLATE = {"shape": "disc", "radius": 300e-6, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6}
 

@@ -8,12 +8,12 @@ import pytest
 from click.testing import CliRunner
 from page_files import CASE, NAME, numbers
 
-from command_line.main import main
+from active_surface.cli.program import main
+from active_surface.views.pages.run_data import MOST_POINTS, run_data
+from active_surface.views.pages.run_page import write_run_page
 from coupling import read_case, report, run_case
-from coupling.saved import read_run
+from coupling.results.saved import read_run
 from coupling.summary import summary_of
-from views.run_data import MOST_POINTS, run_data
-from views.run_page import write_run_page
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +73,7 @@ def test_the_page_of_a_run_is_safe_small_and_alone(folder, run):
 
 
 def test_of_a_large_surface_that_around_the_path_is_shown(run, monkeypatch):
-    monkeypatch.setattr("views.run_data.MOST_POINTS", 200)
+    monkeypatch.setattr("active_surface.views.pages.run_data.MOST_POINTS", 200)
     data = run_data(run)
     assert not data["surface"]["whole"]
     assert 100 < len(numbers(data["surface"]["x"])) < 260
@@ -85,7 +85,7 @@ def test_of_a_large_surface_that_around_the_path_is_shown(run, monkeypatch):
 
 
 def test_of_many_steps_as_many_are_shown_as_fit(run, monkeypatch):
-    monkeypatch.setattr("views.run_data.MOST_STEPS", 5)
+    monkeypatch.setattr("active_surface.views.pages.run_data.MOST_STEPS", 5)
     data = run_data(run)
     assert data["steps"] == {"shown": 5, "stored": 11}
     assert numbers(data["time"])[[0, -1]] == pytest.approx(run.time[[0, -1]] * 1e3)

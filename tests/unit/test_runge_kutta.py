@@ -6,21 +6,12 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, polynomial_surface
-from particle.fields import fields
-from particle.local import CELL, new_local
-from particle.motion import Part
-from particle.record import SLIDING
-from particle.runge_kutta import (
-    Pairs,
-    attempt,
-    error,
-    fields_at_start,
-    new_step,
-    pairs_for,
-    rate,
-    tableau,
-)
-from particle.span import enter
+from particle.events.equations import Part
+from particle.events.record import SLIDING
+from particle.events.runge_kutta import Pairs, attempt, error, fields_at_start, new_step, pairs_for, rate, tableau
+from particle.surface.at_point import fields
+from particle.surface.local import CELL, new_local
+from particle.surface.span import enter
 
 OMEGA = 3.0  # 1/s
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from coupling import Case, read_case, read_run, run_case
-from coupling.case import CoulombCase, PartCase, RunCase
-from coupling.case_record import case_of, record_of
+from coupling.case.case import CoulombCase, PartCase, RunCase
+from coupling.results.case_record import case_of, record_of
 from particle import Samples
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -51,7 +51,7 @@ def test_a_run_is_finished_though_its_picture_cannot_be_drawn(tmp_path, monkeypa
         raise RuntimeError("no ink")
 
     (tmp_path / "run.png").write_text("of another run")
-    monkeypatch.setattr("coupling.results.draw_run", fails)
+    monkeypatch.setattr("coupling.results.results.draw_run", fails)
     with pytest.warns(RuntimeWarning, match=r"run.png could not be drawn: no ink"):
         result = run_case(shaken(), tmp_path, csv=True)
     assert [file.name for file in result.files] == ["run.plate.vtkhdf", "run.part.vtkhdf", "run.csv"]

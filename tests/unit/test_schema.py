@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from command_line.main import main
-from command_line.schema import AIM, CASE, STUDY, _model
-from coupling.field_texts import all_tables, field_texts
+from active_surface.cli.program import main
+from active_surface.cli.schema import AIM, CASE, STUDY, _model
+from coupling.case.field_texts import all_tables, field_texts
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = (CASE, STUDY, AIM)

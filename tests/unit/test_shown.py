@@ -14,7 +14,7 @@ from sweeps import LATTICE, PLATE, PLATFORM
 from coupling import read_case, run_case
 from fem_plate import Plate, PlateSection
 from meshes import annulus, disc, rectangle
-from plotting.drawing import Drawing, in_unit
+from meshes.drawing import Drawing, in_unit
 
 SECTION = PlateSection(169e9, 0.3, 5e-6, 2330.0)
 

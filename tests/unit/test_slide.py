@@ -6,12 +6,13 @@ import numba
 import numpy as np
 import pytest
 
-from particle import ConstantFriction, polynomial_surface, slide
-from particle.local import new_local
-from particle.motion import Part
-from particle.record import SLIDING
-from particle.runge_kutta import new_step, pairs_for
-from particle.span import enter
+from particle import ConstantFriction, polynomial_surface
+from particle.events import slide
+from particle.events.equations import Part
+from particle.events.record import SLIDING
+from particle.events.runge_kutta import new_step, pairs_for
+from particle.surface.local import new_local
+from particle.surface.span import enter
 
 
 @pytest.mark.skipif(not numba.config.DISABLE_JIT, reason="compiled kernels cannot be replaced")

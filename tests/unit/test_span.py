@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import Drive, platform_surface
-from particle.bridge import allow
-from particle.cells import NOWHERE, UNBUILT
-from particle.drive import next_kink
-from particle.fields import fields
-from particle.local import END, HALF_X, HALF_Y, X, Y, cell_at, missing_place, new_local
-from particle.span import enter
+from particle.drives.drive import next_kink
+from particle.surface.at_point import fields
+from particle.surface.bridge import allow
+from particle.surface.cells import NOWHERE, UNBUILT
+from particle.surface.local import END, HALF_X, HALF_Y, X, Y, cell_at, missing_place, new_local
+from particle.surface.span import enter
 
 RADIUS, STROKE = 300e-6, 10e-6
 

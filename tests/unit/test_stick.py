@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, CoulombAdhesion, Drive, KogutEtsion, polynomial_surface
-from particle.fields import fields
-from particle.friction import friction_limit
-from particle.local import new_local
-from particle.motion import Part, length, pull
-from particle.span import enter
-from particle.stick import leaves_rest, new_rest
+from particle.events.equations import Part, length, pull
+from particle.events.stick import leaves_rest, new_rest
+from particle.friction.contact import friction_limit
+from particle.surface.at_point import fields
+from particle.surface.local import new_local
+from particle.surface.span import enter
 
 SAMPLES = 400
 MASS = 2e-9

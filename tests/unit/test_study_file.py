@@ -3,8 +3,8 @@
 import pytest
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
+from active_surface.studies import read_study
 from coupling import CaseError
-from studies import read_study
 
 STROKE = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["10 um", "20 um"]\n'
 

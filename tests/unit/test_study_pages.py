@@ -7,16 +7,16 @@ import pytest
 from click.testing import CliRunner
 from page_files import CASE, STUDY, data_of, numbers
 
-from command_line.main import main
+from active_surface.cli.program import main
+from active_surface.studies import read_study, run_study
+from active_surface.studies.engine import Engine
+from active_surface.studies.pictures.findings import Findings
+from active_surface.studies.pictures.shown import Shown
+from active_surface.studies.saved import read_sweep
+from active_surface.views.pages.study_data import study_data
+from active_surface.views.pages.study_page import write_study_page
+from active_surface.views.pages.sweep_paths import Paths
 from coupling import read_case
-from studies import read_study, run_study
-from studies.engine import Engine
-from studies.findings import Findings
-from studies.saved import read_sweep
-from studies.shown import Shown
-from views.study_data import study_data
-from views.study_page import write_study_page
-from views.sweep_paths import Paths
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +84,7 @@ def test_of_many_ends_the_first_are_kept_and_the_repeats_stated(folder, sweep, m
     shown = Shown.of(Findings.of(study.name, sweep, study.threshold))
     shown = replace(shown, end=np.repeat(shown.end, 3, axis=-2))
     for most, kept in ((27, 3), (26, 1)):
-        monkeypatch.setattr("views.study_data.MOST_ENDS", most)
+        monkeypatch.setattr("active_surface.views.pages.study_data.MOST_ENDS", most)
         data = study_data(study, shown, np.zeros((3, 3, 2)), Paths({}, 0))
         assert (data["repeats"], data["kept"], len(numbers(data["ends"]))) == (3, kept, 18 * kept)
 

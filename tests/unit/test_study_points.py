@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
+from active_surface.studies import read_study
+from active_surface.studies.slabs import slabs
+from active_surface.studies.variants import Variants
 from coupling import read_case
-from studies import read_study
-from studies.slabs import slabs
-from studies.variants import Variants
 
 TWO = """\
 [[axes]]

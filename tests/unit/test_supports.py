@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fem_plate import Plate
-from fem_plate.rim import rim_of
-from fem_plate.supports import by_boundary, prescribed, rigid_modes
+from fem_plate.elements.rim import rim_of
+from fem_plate.elements.supports import by_boundary, prescribed, rigid_modes
 from meshes import annulus, disc, rectangle
 
 BOUNDARIES = {"left": None, "right": None, "top": None}

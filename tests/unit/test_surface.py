@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from numpy.polynomial import polynomial
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate import Plate
 from fem_plate.analytic import DiscShapes
 from meshes import disc
 from particle import Drive, polynomial_surface
-from particle.cells import UNBUILT, CellPool
-from particle.fields import fields
-from particle.local import new_local, within_cell
-from particle.span import enter
+from particle.surface.at_point import fields
+from particle.surface.cells import UNBUILT, CellPool
+from particle.surface.local import new_local, within_cell
+from particle.surface.span import enter
 
 DRIVES = [Drive(150e-6, 300), Drive(-60e-6, 450, cycle="up", delay=0.2e-3)]
 NAMES = ("w", "w_t", "w_tt", "gradient", "gradient_t", "hessian")

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate import Plate, Shapes
 from meshes import Outline, annulus, rectangle
 from particle import Drive

@@ -14,14 +14,14 @@ import xarray
 from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
-from command_line.main import main
+from active_surface.cli.program import main
+from active_surface.studies import engine, read_study, run_study
+from active_surface.studies.chunk_store import ChunkStore
+from active_surface.studies.dataset import read_dataset
+from active_surface.studies.engine import Engine
+from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, new_records
 from coupling import read_case
 from coupling.run import build_friction, build_surface, follow_part
-from studies import engine, read_study, run_study
-from studies.chunk_store import ChunkStore
-from studies.dataset import read_dataset
-from studies.engine import Engine
-from studies.record import COLUMNS, KIND, OUTCOMES, new_records
 
 SHAKEN = """\
 [[axes]]
@@ -282,7 +282,7 @@ def test_a_study_with_mistakes_leaves_nothing_behind(tmp_path):
 
 
 def command(path, folder):
-    return [sys.executable, "-m", "command_line", "sweep", str(path), "--output", str(folder), "--quiet"]
+    return [sys.executable, "-m", "active_surface", "sweep", str(path), "--output", str(folder), "--quiet"]
 
 
 def stopped_after(chunks, path, folder, number):

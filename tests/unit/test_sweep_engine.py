@@ -10,11 +10,11 @@ import pytest
 from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
-from command_line.main import main
-from studies import engine, read_study, run_study
-from studies.engine import Engine
-from studies.record import COLUMNS, OUTCOMES
-from studies.validity import corners
+from active_surface.cli.program import main
+from active_surface.studies import engine, read_study, run_study
+from active_surface.studies.engine import Engine
+from active_surface.studies.record import COLUMNS, OUTCOMES
+from active_surface.studies.validity import corners
 
 FREQUENCY = '[[axes]]\nfield = "plate.motion.x.frequency"\nvalues = ["200 Hz", "1e170 Hz", "300 Hz"]\n'
 

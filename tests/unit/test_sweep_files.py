@@ -13,14 +13,14 @@ import xarray
 from click.testing import CliRunner
 from sweeps import PLATFORM, written
 
-from command_line.main import main
-from coupling import versions
+from active_surface.cli.program import main
+from active_surface.studies import dataset, read_study, run_study
+from active_surface.studies.chunk_store import ChunkStore
+from active_surface.studies.engine import Engine
+from active_surface.studies.lock import alone_in
+from active_surface.studies.record import COLUMNS
+from coupling import environment as versions
 from coupling.progress import CountBar
-from studies import dataset, read_study, run_study
-from studies.chunk_store import ChunkStore
-from studies.engine import Engine
-from studies.lock import alone_in
-from studies.record import COLUMNS
 
 MASS = """\
 [[axes]]
@@ -74,7 +74,7 @@ def test_the_sources_are_hashed_with_their_places(tmp_path, monkeypatch):
         shutil.rmtree(tmp_path / "particle", ignore_errors=True)
         (tmp_path / "particle").mkdir()
         (tmp_path / "particle" / f"{name}.py").write_text(content)
-        monkeypatch.setattr(versions, "__file__", str(tmp_path / "coupling" / "versions.py"))
+        monkeypatch.setattr(versions, "__file__", str(tmp_path / "coupling" / "environment.py"))
         found.add(versions._sources.__wrapped__(("particle",)))
     assert len(found) == 3
 
@@ -126,7 +126,7 @@ def test_chunks_go_only_when_all_results_are_on_disk(tmp_path, monkeypatch):
 
 HOLD = """\
 import pathlib, sys
-from studies.lock import alone_in
+from active_surface.studies.lock import alone_in
 with alone_in(pathlib.Path(sys.argv[1])):
     print("held", flush=True)
     sys.stdin.readline()

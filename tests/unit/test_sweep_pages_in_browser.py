@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from studies import read_study, run_study
-from views.study_page import write_study_page
+from active_surface.studies import read_study, run_study
+from active_surface.views.pages.study_page import write_study_page
 
 pytest.importorskip("selenium", reason="selenium is not installed")
 from page_browser import CASE, changed, chromium, opening, pixels, readout, reddish, wait  # noqa: E402

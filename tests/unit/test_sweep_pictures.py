@@ -9,13 +9,13 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from sweeps import PLATE, PLATFORM, written
 
-from studies import read_study
-from studies.dataset import read_dataset, write_dataset
-from studies.findings import Findings
-from studies.heat import edges
-from studies.map import compose, draw_sweep
-from studies.record import OUTCOMES, new_records
-from studies.shown import Scale, Shown
+from active_surface.studies import read_study
+from active_surface.studies.dataset import read_dataset, write_dataset
+from active_surface.studies.pictures.findings import Findings
+from active_surface.studies.pictures.heat import edges
+from active_surface.studies.pictures.map import compose, draw_sweep
+from active_surface.studies.pictures.shown import Scale, Shown
+from active_surface.studies.record import OUTCOMES, new_records
 
 
 def axis(field, values, name=""):

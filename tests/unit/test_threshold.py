@@ -7,15 +7,15 @@ from matplotlib.collections import LineCollection, QuadMesh
 from matplotlib.figure import Figure
 from sweeps import PLATE, PLATFORM, written
 
-from coupling.case import CaseError
-from studies import read_study, run_study
-from studies.dataset import key_of, read_dataset, write_dataset
-from studies.engine import Engine
-from studies.findings import Findings, read_findings
-from studies.map import compose
-from studies.record import OUTCOMES, new_records
-from studies.saved import read_sweep
-from studies.threshold import Threshold, lowest, read_threshold
+from active_surface.studies import read_study, run_study
+from active_surface.studies.dataset import key_of, read_dataset, write_dataset
+from active_surface.studies.engine import Engine
+from active_surface.studies.pictures.findings import Findings, read_findings
+from active_surface.studies.pictures.map import compose
+from active_surface.studies.record import OUTCOMES, new_records
+from active_surface.studies.saved import read_sweep
+from active_surface.studies.threshold import Threshold, lowest, read_threshold
+from coupling.case.case import CaseError
 
 AXES = """\
 [[axes]]

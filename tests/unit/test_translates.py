@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from coupling.surface import surface_motion
-from coupling.translates import lattice_of
+from coupling.surface.motion import surface_motion
+from coupling.surface.translates import lattice_of
 from fem_plate import Plate
 from meshes import disc, rectangle
 from particle import Drive
-from particle.cells import CellFit
+from particle.surface.cells import CellFit
 
 PITCH, ACROSS = 150e-6, 16
 TRUNCATION = 1e-2

@@ -16,9 +16,9 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from command_line.group import Group
-from command_line.main import main
-from command_line.options import tell
+from active_surface.cli.group import Group
+from active_surface.cli.options import tell
+from active_surface.cli.program import main
 
 ROOT = Path(__file__).parents[2]
 MISUSES = [
@@ -106,7 +106,7 @@ def test_colours_only_where_they_are_wanted(settings, coloured, monkeypatch):
 
 
 def test_no_colours_where_there_is_no_terminal():
-    command = [sys.executable, "-m", "command_line", "check", "examples/one_actuator.toml"]
+    command = [sys.executable, "-m", "active_surface", "check", "examples/one_actuator.toml"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, env={**os.environ, "TERM": "xterm"}, check=True)
     assert b"\x1b" not in done.stdout + done.stderr
 
@@ -123,7 +123,7 @@ def test_commands_and_options_are_completed():
     def completed(*words):
         env = {**os.environ, "COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
         env["_ACTIVE_SURFACE_COMPLETE"] = "bash_complete"
-        code = "from command_line.main import main; main(prog_name='active-surface')"
+        code = "from active_surface.cli.program import main; main(prog_name='active-surface')"
         return subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, env=env).stdout
 
     assert set(completed("active-surface", "ch").split()) == {"plain,check"}
@@ -149,7 +149,7 @@ def test_ctrl_c_that_python_drops_ends_a_command_all_the_same(after, monkeypatch
             time.sleep(0.01)
 
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    monkeypatch.setattr("coupling.case_lines.load", read)
+    monkeypatch.setattr("coupling.case.lines.load", read)
     done = CliRunner().invoke(main, ["check", "any.toml"])
     signal.signal(signal.SIGINT, before)
     assert (done.exit_code, done.stderr) == (130, "interrupted\n")
@@ -161,7 +161,7 @@ def test_ctrl_c_that_compiled_code_went_on_after_ends_a_command_as_any(cause, en
     def read(path):
         raise SystemError("<built-in function> returned a result with an exception set") from cause
 
-    monkeypatch.setattr("coupling.case_lines.load", read)
+    monkeypatch.setattr("coupling.case.lines.load", read)
     done = CliRunner().invoke(main, ["check", "any.toml"])
     assert done.exit_code == ending and (done.stderr == "interrupted\n") == (ending == 130)
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
-from coupling import vtkhdf
+from coupling.results import vtkhdf
 
 N_STEPS = 20  # neither flushed by count at the end nor fewer than one flush
 TIMES = [0.1 * k**1.5 for k in range(N_STEPS)]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from coupling.whole_file import whole_file
+from coupling.files import whole_file
 
 
 def test_a_file_is_there_only_when_it_is_whole(tmp_path):

@@ -7,8 +7,8 @@ stay free.
 import numpy as np
 import pytest
 
-from fem_plate.forms import rim_traces
-from fem_plate.model import PlateModel
+from fem_plate.elements.forms import rim_traces
+from fem_plate.elements.model import PlateModel
 from meshes import annulus, disc, ellipse, polygon, rectangle
 
 CASES = [(n, k) for k in (0, 1) for n in range(6 - k)]

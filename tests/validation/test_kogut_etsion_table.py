@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from particle import KogutEtsion
-from particle.kogut_etsion import NEAREST, ROUNDING
+from particle.friction.kogut_etsion import NEAREST, ROUNDING
 
 RANGES = {
     "roughness": (3e-9, 200e-9), "contact_area": (1e-12, 1e-6), "hardness": (2e8, 2e10), "adhesion_energy": (1e-2, 5.0),

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from coupling.plate_scene import DRAWN, lifting
+from coupling.scene.plate import DRAWN, lifting
 from coupling.steepest import steepest
-from fem_plate import PatchedShapes, Plate, patches
+from fem_plate import PatchedShapes, Plate
+from fem_plate.arrays import patches
 from meshes import annulus, disc, polygon, rectangle
 
 pytestmark = pytest.mark.slow  # it has no kernels, so that the compiled pass is enough

@@ -12,7 +12,7 @@ import pytest
 from motion_oracle import Problem, trace
 from motion_surfaces import boggio, polynomial, still, up, up_down
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import (
     ConstantFriction,

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from paper import deceleration, friction_logic, radial
-from paper.feasible_area import onset
-from paper.models import CLOSED, MODELS, PAPER, Bench
-from paper.parameters import PARAMETERS, TINY
-from paper.radial import one_cycle
-from paper.sensitivity import threshold
+from active_surface.paper.figures import deceleration, friction_logic, radial
+from active_surface.paper.figures.feasible_area import onset
+from active_surface.paper.figures.radial import one_cycle
+from active_surface.paper.models import CLOSED, MODELS, PAPER, Bench
+from active_surface.paper.parameters import PARAMETERS, TINY
+from active_surface.paper.sensitivity import threshold
 
 pytestmark = pytest.mark.compiled
 

@@ -6,7 +6,7 @@ Radius 300 um, stroke 150 um at the centre, start (100 um, 0) at rest, no gravit
 import numpy as np
 import pytest
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate import Plate
 from fem_plate.analytic import DiscShapes
 from meshes import disc

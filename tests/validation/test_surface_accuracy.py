@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import ConstantFriction, Drive, Micropart, simulate
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from coupling.surface import surface_motion
+from coupling.surface.motion import surface_motion
 from fem_plate import Plate
 from fem_plate.analytic import DiscShapes
 from meshes import disc

@@ -1,0 +1,1 @@
+"""active-surface: simulate active surfaces, thin plates on point actuators that move micron-sized parts."""

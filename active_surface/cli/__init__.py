@@ -1,0 +1,5 @@
+"""The command `active-surface`: one module for each command or two, over all the packages."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,52 @@
+"""The command `check`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+from active_surface.cli import options
+from active_surface.cli.group import main, read, refusing
+
+
+@main.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@options.quiet
+@options.as_json
+def check(file: Path, quiet: bool, as_json: bool) -> None:
+    """Report every mistake in FILE: a case, a study or an aim."""
+    from coupling.case import load
+
+    _, tables = refusing(load, file)
+    figures: dict[str, Any]
+    if "study" in tables:
+        from active_surface.studies import read_study
+
+        study = refusing(read_study, file)
+        figures = {"paths": len(study.points)}
+        said = f"a study of {_counted(len(study.points), 'path')}"
+    elif "aim" in tables:
+        from active_surface.steering import read_settings
+
+        case, _, target = refusing(read_settings, file, True)
+        figures = {"actuators": len(case.actuators), "target": target}
+        said = f"an aim of {case.name}, {_counted(len(case.actuators), 'actuator')}"
+    else:
+        wanted = read(file)
+        from coupling import build_friction
+
+        refusing(lambda: build_friction(wanted).law)
+        count = len(wanted.actuators)
+        figures = {"actuators": count, "duration": wanted.run.duration}
+        said = f"{_counted(count, 'actuator') if count else 'a platform'}, {wanted.run.duration * 1e3:g} ms"
+    if as_json:
+        click.echo(json.dumps({"file": str(file), "mistakes": [], **figures}, indent=2))
+    elif not quiet:
+        click.echo(f"{file}: fine; {said}")
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'s' * (count != 1)}"

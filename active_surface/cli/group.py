@@ -1,0 +1,117 @@
+"""The group that commands join, and what they have in common. Heavy imports wait until a command needs them."""
+
+from __future__ import annotations
+
+import copy
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from active_surface.cli.ctrl_c import heard_again
+from active_surface.cli.refusal import refusal, refusal_of
+from active_surface.cli.usage import mistakes_in, unknown
+
+if TYPE_CHECKING:
+    from coupling.case import Case
+
+Answer = TypeVar("Answer")
+
+DEFAULT_OUTPUT = Path("results")
+INTERRUPTED = 130  # 128 and the number of the signal
+JSON = "--json"
+KINDS = {"study": ("study", "sweep"), "aim": ("aim", "aim"), "case": ("plate", "run")}
+"""Kinds of files: the table that only they have, and the command that takes them."""
+
+
+class Command(click.Command):
+    """A command that tells all that is wrong with its words at once."""
+
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
+    ) -> click.Context:
+        given = list(args)
+
+        def again(params: Sequence[click.Parameter]) -> None:
+            other = copy.copy(self)
+            other.params = list(params)
+            click.Command.make_context(other, info_name, list(given), parent, **extra)
+
+        try:
+            return super().make_context(info_name, args, parent, **extra)
+        except click.exceptions.NoArgsIsHelpError:
+            raise  # which shows the help
+        except click.UsageError as error:
+            command = " ".join([*([parent.command_path] if parent else []), info_name or ""])
+            raise refusal(command, mistakes_in(error, again), JSON in given) from None
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except click.UsageError as error:
+            raise refusal(ctx.command_path, mistakes_in(error), bool(ctx.params.get("as_json"))) from None
+
+
+class Group(Command, click.Group):
+    """The commands: errors in one style, colours only where they are wanted, and the exit code of Ctrl-C."""
+
+    command_class = Command
+
+    def make_context(self, *arguments: Any, **extra: Any) -> click.Context:
+        context = super().make_context(*arguments, **extra)
+        if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+            context.color = False
+        return context
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
+            mistake = unknown(args[0], self.list_commands(ctx), ctx.command_path)
+            raise refusal(ctx.command_path, [mistake], JSON in args)
+        return super().resolve_command(ctx, args)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            with heard_again():
+                return super().invoke(ctx)
+        except KeyboardInterrupt:
+            click.echo("interrupted", err=True)
+            sys.exit(INTERRUPTED)
+
+
+@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="active-surface")
+def main() -> None:
+    """Simulate microparts on active surfaces: thin plates pushed from below by point actuators."""
+
+
+def read(path: Path) -> Case:
+    """The case in a file."""
+    from coupling.case import read_case
+
+    check_kind(path, "case")
+    return refusing(read_case, path)
+
+
+def check_kind(path: Path, wanted: str) -> None:
+    """Refuse a file of another of the KINDS, in which nearly all would be a mistake."""
+    from coupling.case import load
+
+    _, tables = refusing(load, path)
+    kind = next((kind for kind, (table, _) in KINDS.items() if table in tables), wanted)
+    if kind != wanted:
+        table, command = KINDS[kind]
+        said = f"must be a {wanted}; got {path}, whose table [{table}] is for `active-surface {command}`"
+        context = click.get_current_context()
+        raise refusal(context.command_path, [(wanted.upper(), said)], bool(context.params.get("as_json")))
+
+
+def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:
+    """work(*arguments), with a refused input said in one message and exit code 2."""
+    try:
+        return work(*arguments)
+    except (ValueError, OSError, RuntimeError) as error:
+        context = click.get_current_context()
+        raise refusal_of(error, context.command_path, bool(context.params.get("as_json"))) from None

@@ -1,0 +1,201 @@
+"""Figures 5 and 6: the feasible area over frequency, its peak and its time integral.
+
+At rest the paper's conditions and ours are the same, so that there are two surfaces to compare and no schemes.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from active_surface.paper.found import COLOURS, MICRO, Found, finish
+from active_surface.paper.models import CLOSED, PAPER, PLATE, Bench
+from active_surface.paper.parameters import Effort
+from active_surface.paper.path import FloatArray
+from active_surface.paper.verdict import Answer, Verdict, of_checks
+from active_surface.studies.feasibility import Feasible, find_feasible
+from particle import Micropart
+
+LOWEST, HIGHEST = 50.0, 2500.0  # Hz
+THRESHOLD: Final = 150.0, 250.0  # Hz, "about 200"
+LARGEST: Final = 300.0, 400.0  # Hz, where the integral is to be largest
+RANGE, NEAR = (300.0, 1000.0), 1.25  # Hz, the paper's feasible range, and the ratio up to which ends are the same
+FINER: Final = 40  # frequencies between two, in the search for the onset
+STEADY: Final = 0.95  # of the largest value so far: a curve that grows falls back no farther, as places are a grid
+SAME: Final = "same as closed form: there is no scheme in it"
+
+
+class Curve(NamedTuple):
+    """The largest area at any moment over frequency."""
+
+    top: float  # Hz, where it is largest
+    grows: bool  # up to there
+    falls: bool  # from there on
+    half: tuple[float, float]  # Hz, between which it is at least half as large
+
+
+def find(bench: Bench, effort: Effort) -> Found:
+    """Both figures, with both meanings of the feasible area."""
+    p = bench.parameters
+    factors = np.geomspace(1.0, HIGHEST / LOWEST, effort.frequencies)
+    found: dict[str, dict[float, Feasible]] = {}
+    onsets: dict[str, list[float]] = {}
+    for model in (CLOSED, PLATE):
+        found[model] = {stroke: areas(bench, model, stroke, factors, effort.across) for stroke in p.strokes}
+        onsets[model] = [onset(bench, model, stroke, effort.across) for stroke in p.strokes]
+    data: dict[str, Any] = {"strokes": list(p.strokes), "frequency": (LOWEST * factors).tolist()}
+    for model, rows in found.items():
+        data[model] = [
+            {
+                "stroke": stroke,
+                "peak_area": row.feasible.peak.tolist(),
+                "time_integral": row.feasible.integral.tolist(),
+                "peak_area_slipping": row.slipping.peak.tolist(),
+                "time_integral_slipping": row.slipping.integral.tolist(),
+                "lost_area": row.lost_area.tolist(),
+            }
+            for stroke, row in rows.items()
+        ]
+
+    def draw(figure: Figure) -> None:
+        peak, integral = figure.subplots(1, 2)
+        _draw(peak, integral, found)
+        finish(peak, "frequency [Hz]", "largest feasible area [µm²]", "figure 5")
+        finish(integral, "frequency [Hz]", "time integral [µm² ms]", "figure 6", legend=False)
+        peak.set_ylim(0, 1.35 * peak.get_ylim()[1])
+
+    verdicts = (_five(found, onsets), _six(found), _range(found))
+    return Found("fig5-6", "Feasible area", verdicts, data, draw, (11.5, 4.6),
+                 "Largest feasible area over a cycle, and its time integral. Places where the part comes off at some "
+                 "moment of the cycle do not count; dashed: they do, at moments when it is attached.")  # fmt: skip
+
+
+def areas(bench: Bench, model: str, stroke: float, factors: FloatArray, across: int) -> Feasible:
+    """The feasible areas of one actuator with a stroke [m], at factors (F,) of LOWEST."""
+    p, ground, drive = bench.parameters, bench.ground(model), bench.drive(LOWEST, stroke)
+    part = Micropart(p.mass, (0.0, 0.0))
+    surface, window = ground.surface.driven_by([drive]), 1 / drive.frequency
+    return find_feasible(surface, ground.outline, part, p.friction, window, factors, p.gravity, across)
+
+
+def onset(bench: Bench, model: str, stroke: float, across: int) -> float:
+    """The lowest frequency [Hz] at which a part at rest slips anywhere, to some 0.3 %; nan: there is none."""
+    factors = np.geomspace(1.0, HIGHEST / LOWEST, FINER)
+    for _ in range(2):
+        moves = np.flatnonzero(areas(bench, model, stroke, factors, across).slipping.peak > 0)
+        if not len(moves):
+            return float("nan")
+        before, first = float(factors[max(moves[0] - 1, 0)]), float(factors[moves[0]])
+        factors = np.geomspace(before, first, FINER)
+    return float(LOWEST * factors[-1])
+
+
+def curve_of(frequencies: FloatArray, area: FloatArray) -> Curve:
+    """What a curve over frequencies (F,) [Hz] does."""
+    k = int(area.argmax())
+    up, down = area[: k + 1], area[k:]
+    wide = frequencies[np.flatnonzero(area >= area[k] / 2)[[0, -1]]]
+    grows = bool((up >= STEADY * np.maximum.accumulate(up)).all())
+    falls = k + 1 < len(area) and bool((down <= np.minimum.accumulate(down) / STEADY).all())
+    return Curve(float(frequencies[k]), grows, falls, (float(wide[0]), float(wide[1])))
+
+
+def _five(found: dict[str, dict[float, Feasible]], onsets: dict[str, list[float]]) -> Verdict:
+    answers: dict[str, Answer] = {}
+    numbers: dict[str, Any] = {}
+    for model, rows in found.items():
+        frequencies = LOWEST * next(iter(rows.values())).factors
+        texts, checks = [], [THRESHOLD[0] <= f <= THRESHOLD[1] for f in onsets[model]]
+        meanings = {
+            "never coming off": [row.feasible.peak for row in rows.values()],
+            "attached at that moment": [row.slipping.peak for row in rows.values()],
+        }
+        numbers[f"onset_{model}"] = onsets[model]
+        for meaning, every in meanings.items():
+            curves = [curve_of(frequencies, area) for area in every]
+            lost = [row.lost_area[np.argmax(area) :].max() > 0 for row, area in zip(rows.values(), every, strict=True)]
+            falls = [one.falls and off for one, off in zip(curves, lost, strict=True)]
+            checks += [all(one.grows for one in curves), all(falls)]
+            texts.append(
+                f"{meaning}: {'grows' if checks[-2] else 'does not grow steadily'} to "
+                f"{_list([one.top for one in curves])} Hz, {_fall(curves, falls)}"
+            )
+            numbers[f"{meaning}, {model}"] = [one._asdict() for one in curves]
+        answers[model] = of_checks(f"from {_list(onsets[model])} Hz; {'; '.join(texts)}", checks)
+    strokes = _list([MICRO * stroke for stroke in found[CLOSED]])
+    return Verdict(
+        "5", "Below about 200 Hz nothing moves, for three strokes alike; the area grows with frequency, peaks, and "
+        "falls because the part comes off.", _with_paper(answers),
+        f"Strokes are not stated; here {strokes} um. Slip begins where slope times acceleration is enough; one goes "
+        "with the stroke, the other with that times frequency squared: one threshold for all strokes cannot be. "
+        "The area has two meanings: without the places where the part comes off at some moment of the cycle, or, as "
+        f"the paper's text has it, at each moment by itself. Growing and falling: but for {100 * (1 - STEADY):.0f} %, "
+        f"up to {HIGHEST:g} Hz.", numbers,
+    )  # fmt: skip
+
+
+def _fall(curves: list[Curve], falls: list[bool]) -> str:
+    if all(falls):
+        return "then falls as it comes off"
+    if all(one.top >= HIGHEST * 0.999 for one in curves):
+        return "the highest looked at"
+    return f"then falls as it comes off with {sum(falls)} of {len(falls)} strokes"
+
+
+def _six(found: dict[str, dict[float, Feasible]]) -> Verdict:
+    answers: dict[str, Answer] = {}
+    numbers: dict[str, Any] = {}
+    for model, rows in found.items():
+        most = [float(LOWEST * row.factors[row.feasible.integral.argmax()]) for row in rows.values()]
+        other = [float(LOWEST * row.factors[row.slipping.integral.argmax()]) for row in rows.values()]
+        numbers |= {f"never coming off, {model}": most, f"attached at that moment, {model}": other}
+        text = f"never coming off: largest at {_list(most)} Hz; attached at that moment: at {_list(other)} Hz"
+        answers[model] = of_checks(text, [LARGEST[0] <= f <= LARGEST[1] for f in most + other])
+    return Verdict(
+        "6", "The time integral is largest at 300 to 400 Hz, for all strokes.", _with_paper(answers),
+        "Its place moves with the stroke, as the threshold does.", numbers,
+    )  # fmt: skip
+
+
+def _range(found: dict[str, dict[float, Feasible]]) -> Verdict:
+    answers: dict[str, Answer] = {}
+    numbers: dict[str, Any] = {}
+    for model, rows in found.items():
+        halves = [curve_of(LOWEST * row.factors, row.feasible.peak).half for row in rows.values()]
+        numbers[model] = halves
+        ends = list(zip(*halves, strict=True))
+        checks = [all(1 / NEAR <= f / stated <= NEAR for f in end) for end, stated in zip(ends, RANGE, strict=True)]
+        checks.append(all(max(end) / min(end) <= NEAR for end in ends))
+        answers[model] = of_checks(", ".join(f"{low:.0f} to {high:.0f} Hz" for low, high in halves), checks)
+    return Verdict(
+        "5, 6 (range)", "Frequencies from 300 to 1000 Hz are feasible, almost whatever the stroke.",
+        _with_paper(answers),
+        "How the range follows from the two figures is not said; here the frequencies at which the largest area is at "
+        f"least half of its peak, by stroke. Ends within a factor of {NEAR:g} count as the same.", numbers,
+    )  # fmt: skip
+
+
+def _with_paper(answers: dict[str, Answer]) -> dict[str, Answer]:
+    return {PAPER: Answer(SAME, answers[CLOSED].met)} | answers
+
+
+def _list(values: list[float]) -> str:
+    return ", ".join(f"{value:.0f}" for value in values)
+
+
+def _draw(peak: Axes, integral: Axes, found: dict[str, dict[float, Feasible]]) -> None:
+    for (stroke, row), colour in zip(found[CLOSED].items(), COLOURS, strict=False):
+        frequency, said = LOWEST * row.factors, f"{MICRO * stroke:g} µm"
+        peak.plot(frequency, 1e12 * row.feasible.peak, color=colour, label=said)
+        integral.plot(frequency, 1e15 * row.feasible.integral, color=colour, label=said)
+        peak.plot(frequency, 1e12 * row.slipping.peak, "--", color=colour, linewidth=0.8)
+        integral.plot(frequency, 1e15 * row.slipping.integral, "--", color=colour, linewidth=0.8)
+    for row, colour in zip(found[PLATE].values(), COLOURS, strict=False):
+        marks: dict[str, Any] = {"linestyle": "", "marker": "x", "markersize": 4, "color": colour}
+        peak.plot(LOWEST * row.factors, 1e12 * row.feasible.peak, **marks)
+        integral.plot(LOWEST * row.factors, 1e15 * row.feasible.integral, **marks)
+    peak.plot([], [], "k--", linewidth=0.8, label="counting places where it comes off later")
+    peak.plot([], [], "kx", markersize=4, label="finite elements")

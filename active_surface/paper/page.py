@@ -1,0 +1,87 @@
+"""The page about the paper: the table of verdicts, and every picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from active_surface.paper.figures import paragraph
+from active_surface.paper.found import Found
+from active_surface.paper.models import MODELS, PAPER, PLATE
+from active_surface.paper.parameters import Effort, Parameters
+from active_surface.paper.share import FEW, MOST
+from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Verdict
+
+MICRO = 1e6
+SAID = {REPRODUCED: "**reproduced**", PARTLY: "partly", NOT: "**not**", BEYOND: "-"}
+
+
+def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, folder: str) -> str:
+    """The page in Markdown; pictures are in a folder beside it."""
+    verdicts = [verdict for one in found for verdict in one.verdicts]
+    counts = {said: sum(verdict.verdict == said for verdict in verdicts) for said in (REPRODUCED, PARTLY, NOT)}
+    parts = [
+        "# The paper, figure by figure\n",
+        '"Micropart Motion on a Surface Due to Controlled Surface Excitation": what it states, and what this '
+        "program finds.\n",
+        f"Written by `active-surface reproduce all{' --full' if effort.name == 'full' else ''} --output docs`. Of "
+        f"{sum(counts.values())} statements {counts[REPRODUCED]} are reproduced, {counts[PARTLY]} partly, "
+        f"{counts[NOT]} not. "
+        "What the paper leaves open, and how much each figure depends on it: [open points](paper-open-points.md).\n",
+        "Figures 1, 2 and 7 to 10 are drawings of concepts; there is nothing in them to be found again.\n",
+        _how(effort, parameters),
+        "## Verdicts\n",
+        _table(verdicts),
+        "## Figures\n",
+    ]
+    for one in found:
+        parts.append(f"### {one.title}\n")
+        parts.append(f"![{one.title}]({folder}/{one.name}.png)\n")
+        parts.append(one.caption.rstrip(".").replace(" um", " µm") + f". [Data]({folder}/{one.name}.json)\n")
+        for verdict in one.verdicts:
+            parts.append(f"- **{verdict.figure}**: {verdict.why}".replace(" um", " µm"))
+        parts.append("")
+    return "\n".join(parts).rstrip() + "\n"
+
+
+def _how(effort: Effort, p: Parameters) -> str:
+    return "\n".join([
+        "## How it was compared\n",
+        f"One set of parameters for all figures (`active_surface/paper/parameters.py`): a = {MICRO * p.radius:g} µm, "
+        f"actuators {MICRO * p.pitch:g} µm apart, stroke {MICRO * p.stroke:g} µm up and down in 1/f, "
+        f"mass {1e9 * p.mass:g} µg, "
+        f"gravity {p.gravity} m/s², friction by the preset `paper`. a, the drive and the preset were chosen with "
+        "these figures in view, so where they agree that is in part a fit. What single figures need and the paper does "
+        "not state was chosen for them: the platform's motion and friction (4), the strokes (5, 6, 15), the second "
+        "start (14), the start (15, 16) and the states (19, 22).\n",
+        "Three models:\n",
+        f"- **{MODELS[PAPER]}**: fixed steps of {MICRO * p.time_step:g} µs by its equations (6) to (12), on equation "
+        "(2);",
+        "- **our equations, closed form**: the same surface, the full equations of motion, every slip and stop "
+        "located ([motion](motion.md));",
+        f"- **{MODELS[PLATE]}**: the same on one clamped plate of finite elements that all actuators are attached "
+        "to.\n",
+        paragraph(p),
+        "One actuator in the middle of a clamped disc bends it by equation (2), so that there the second and the "
+        "third model must agree; they differ where paths are chaotic.\n",
+        "With two actuators the closed form is put together in two ways: the profiles of both are added, or that of "
+        "the nearest actuator counts alone. A plate does neither: on it an actuator that holds its point shapes the "
+        "other's deflection. Nor is its rim the same: each closed form is a disc of radius a around its actuator, "
+        f"together from {-MICRO * p.radius:g} to {MICRO * (p.pitch + p.radius):g} µm along x, the plate is one such "
+        f"disc with its centre half-way between them, from {MICRO * (p.pitch / 2 - p.radius):g} to "
+        f"{MICRO * (p.pitch / 2 + p.radius):g} µm. Parts that go over the rim cannot be compared.\n",
+        f"Where paths are chaotic each model is asked from many starts, displaced by up to {MICRO * p.jitter:g} µm "
+        f"along x and y, as the paper states places in µm: {effort.starts} ({effort.starts_by_steps} with the paper's "
+        'scheme). "87 % (76-93)" has Wilson\'s interval of 95 %. A statement is met when that interval lies above '
+        f"{100 * MOST:.0f} %, and not met when it lies below {100 * FEW:.0f} %; else it is undecided, and counts "
+        "half. A verdict is "
+        '"reproduced" when every model meets all of a statement, "not" when none meets any of it, else "partly".\n',
+    ])  # fmt: skip
+
+
+def _table(verdicts: Sequence[Verdict]) -> str:
+    head = ["figure", "the paper", *MODELS.values(), "verdict"]
+    rows = [head, ["---"] * len(head)]
+    for verdict in verdicts:
+        answers = [verdict.answers[model].text if model in verdict.answers else "-" for model in MODELS]
+        rows.append([verdict.figure, verdict.statement, *answers, SAID[verdict.verdict]])
+    return "\n".join("| " + " | ".join(cell.replace(" um", " µm") for cell in row) + " |" for row in rows) + "\n"

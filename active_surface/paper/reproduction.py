@@ -1,0 +1,100 @@
+"""reproduce: figures of the paper, one after the other: found, drawn, written; of all of them a page as well."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NamedTuple
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from active_surface.paper.catalogue import MODULES, finder, modules_of
+from active_surface.paper.found import Found
+from active_surface.paper.models import Bench
+from active_surface.paper.page import page_of
+from active_surface.paper.parameters import PARAMETERS, QUICK, Effort, Parameters
+from active_surface.paper.verdict import Verdict
+from coupling import Progress, silent, whole_file
+
+FOLDER, PAGE = "paper", "paper.md"
+
+
+class Reproduction(NamedTuple):
+    """What was found, and where it was written."""
+
+    found: tuple[Found, ...]
+    files: tuple[Path, ...]
+    seconds: float
+
+    @property
+    def verdicts(self) -> list[Verdict]:
+        """Of all figures."""
+        return [verdict for one in self.found for verdict in one.verdicts]
+
+
+def reproduce(
+    names: Sequence[str] = (),
+    output: str | Path | None = None,
+    effort: Effort = QUICK,
+    parameters: Parameters = PARAMETERS,
+    progress: Progress = silent,
+) -> Reproduction:
+    """Reproduce figures by name, or all.
+
+    output: a folder; there FOLDER gets a picture and a JSON file for each, and PAGE is written when all were asked for.
+    Raises ValueError for a name that there is no figure of.
+    """
+    modules = modules_of(names)
+    begun, bench = perf_counter(), Bench(parameters)
+    found: list[Found] = []
+    files: list[Path] = []
+    for module in modules:
+        with progress(f"Reproducing {', '.join(MODULES[module])}"):
+            one = finder(module)(bench, effort)
+        found.append(one)
+        if output is not None:
+            files += write(one, Path(output) / FOLDER)
+    seconds = perf_counter() - begun
+    if output is not None and len(modules) == len(MODULES):
+        page = Path(output) / PAGE
+        _replace(page, page_of(found, effort, parameters, FOLDER))
+        files.append(page)
+    return Reproduction(tuple(found), tuple(files), seconds)
+
+
+def write(found: Found, folder: Path) -> list[Path]:
+    """Writes NAME.png and NAME.json into a folder; returns them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    picture = folder / f"{found.name}.png"
+    figure = Figure(figsize=found.size)
+    FigureCanvasAgg(figure)
+    figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
+    found.draw(figure)
+    with whole_file(picture) as partial:
+        figure.savefig(partial, dpi=90)
+    data = folder / f"{found.name}.json"
+    verdicts = [verdict.as_dict() for verdict in found.verdicts]
+    whole = {"title": found.title, "verdicts": verdicts, "data": found.data}
+    _replace(data, json.dumps(rounded(whole), allow_nan=False) + "\n")
+    return [picture, data]
+
+
+def rounded(value: Any) -> Any:
+    """The same with numbers of seven digits, and None for what is none, as JSON knows no nan."""
+    if isinstance(value, dict):
+        return {str(key): rounded(own) for key, own in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [rounded(own) for own in value]
+    if isinstance(value, float):
+        return float(f"{value:.7g}") if math.isfinite(value) else None
+    return value
+
+
+def _replace(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with whole_file(path) as partial:
+        partial.write_text(text)

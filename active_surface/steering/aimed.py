@@ -1,0 +1,33 @@
+"""Aimed: what an aim found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from active_surface.steering.found import Found
+from active_surface.steering.paths import settled
+from active_surface.steering.schedule import Leg
+from active_surface.steering.task import Task
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Aimed(Found):
+    """The case with the drives that were found, its path, and how far it ends from the target.
+
+    legs: in which it comes there, one after the other; the drives of a single one are cycles, of several segments.
+    """
+
+    task: Task
+    legs: tuple[Leg, ...]
+
+    @property
+    def distance(self) -> float:
+        """From the path's end to the target [m]."""
+        return float(np.hypot(*(self.trajectory.position[-1] - self.task.target)))
+
+    @property
+    def reached(self) -> bool:
+        """Whether the part comes to rest for good within the tolerance of the target."""
+        return self.distance <= self.task.settings.tolerance and settled(self.trajectory)

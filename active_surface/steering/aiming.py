@@ -1,0 +1,83 @@
+"""One aim, from task to drive: this file reads as the pipeline.
+
+task -> surface -> approach, leg by leg: knobs, search -> case and path -> case file -> scatter and picture
+"""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+from active_surface.steering.aimed import Aimed
+from active_surface.steering.approach import Approach
+from active_surface.steering.found import check_free, drawn, prepared, with_scatter
+from active_surface.steering.paths import Paths
+from active_surface.steering.picture import draw_aim
+from active_surface.steering.task import Task
+from coupling import Tell, untold
+from coupling.case import shown_length, write_case
+from particle import SurfaceMotion, unbroken
+
+
+def aim(
+    task: Task,
+    output: str | Path | None = None,
+    threads: int | None = None,
+    tell: Tell = untold,
+    overwrite: bool = False,
+) -> Aimed:
+    """Find the drives that bring a part to a target; with `output`, a folder, write NAME_aimed.toml and NAME_aim.png.
+
+    threads: how many paths are found at a time, by default one on each processor; the result is the same for any.
+    tell: gets how many paths have been found, and of how many at most.  overwrite: whether to replace those files.
+    Upon Ctrl-C the best drives so far count, if there are any.
+    Raises ValueError when the case cannot be run or those files are there and not to be replaced, and KeyboardInterrupt
+    upon Ctrl-C before there are any drives.
+    """
+    if output is None:
+        return aim_over(prepared(task.case), task, threads, tell)
+    file, picture = Path(output) / f"{task.name}_aimed.toml", Path(output) / f"{task.name}_aim.png"
+    check_free((file, picture), overwrite)
+    found = aim_over(prepared(task.case), task, threads, tell, file)
+    return drawn(found, draw_aim, picture)
+
+
+def aim_over(
+    surface: SurfaceMotion,
+    task: Task,
+    threads: int | None = None,
+    tell: Tell = untold,
+    file: Path | None = None,
+) -> Aimed:
+    """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
+    approach, interrupted = Approach(surface, task, threads, tell), False
+    found: Aimed | None = None
+    try:
+        with ExitStack() as shield:
+            try:
+                approach.run()
+            except KeyboardInterrupt:
+                shield.enter_context(unbroken())
+                interrupted = True
+            else:
+                shield.enter_context(unbroken())
+            case, path = approach.close()
+            case = case.model_copy(update={"name": f"{task.name}_aimed"})
+            found = Aimed(
+                task=task,
+                case=case,
+                trajectory=path,
+                legs=approach.legs,
+                paths=approach.paths,
+                interrupted=interrupted,
+            )
+            if file is not None:
+                x, y = (shown_length(place) for place in task.target)
+                said = f"The drives bring the part to ({x}, {y}), but for {shown_length(found.distance)}."
+                found = replace(found, files=(write_case(case, file, said),))
+    except KeyboardInterrupt:  # what was found before it stays
+        if found is None:
+            raise
+        return replace(found, interrupted=True)
+    return with_scatter(found, Paths(case, surface, threads), task.target, task.settings)

@@ -1,0 +1,123 @@
+"""Paths: where a part goes under each of many drives, over one plate whose cells they share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from active_surface.studies import start_faults
+from coupling import build_drives, build_friction
+from coupling.case import ActuatorCase, Case
+from particle import Micropart, Outcome, SurfaceMotion, Trajectory, simulate_many
+from particle.friction import Contact, ScaledFriction
+
+FloatArray = NDArray[np.float64]
+
+AT_ONCE = 256  # paths: handing out more at a time costs more
+SETTLING = 1e-3  # s: a part on the move counts as that much farther away, at its speed
+NOT_FOR_GOOD = 0.1  # of the surface's size: no nearer counts a part that does not rest for good
+LOST = 3.0  # of the surface's size: so much farther away counts a part that is lost, than which no other can be
+
+
+class Disturbance(NamedTuple):
+    """How a run differs from its case."""
+
+    friction: float = 1.0  # times as much
+    strokes: tuple[float, ...] | None = None  # times as much, of each actuator; None: all as they are
+    shift: tuple[float, float] = (0.0, 0.0)  # m, of the start
+
+
+class Paths:
+    """Finds the paths of a case's part."""
+
+    def __init__(self, case: Case, surface: SurfaceMotion, threads: int | None = None) -> None:
+        self.case, self.surface, self._threads = case, surface, threads
+        self.found = 0
+        self._friction = build_friction(case)
+
+    def of(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
+        """The path of each run: its actuators, and how it is disturbed. The same bits as from the case itself."""
+        found: list[Trajectory] = []
+        # Many small systems: BLAS threads would only wait for each other.
+        with threadpool_limits(limits=1, user_api="blas"):
+            for start in range(0, len(runs), AT_ONCE):
+                found += self._chunk(runs[start : start + AT_ONCE])
+        self.found += len(found)
+        return found
+
+    def _chunk(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
+        run = self.case.run
+        drives = [build_drives(driven(self.case, actuators, way.strokes)) for actuators, way in runs]
+        return simulate_many(
+            self.surface,
+            self._parts(np.array([way.shift for _, way in runs])),
+            [self._contact(way.friction) for _, way in runs],
+            run.duration,
+            run.gravity,
+            run.tolerance,
+            run.after_detachment,
+            drives,
+            self._threads,
+        )
+
+    def _contact(self, factor: float) -> Contact:
+        return self._friction if factor == 1.0 else ScaledFriction(self._friction, factor)
+
+    def _parts(self, shifts: FloatArray) -> list[Micropart]:
+        """Parts with shifted starts (n, 2) [m]: the other way where that is off the plate, not at all if both are."""
+        part = self.case.part
+        starts = np.repeat(np.array([part.position]), len(shifts), axis=0)
+        left = shifts.any(axis=1)
+        for way in (1.0, -1.0):
+            moved = starts + way * shifts
+            good = left & np.array([not faults for faults in start_faults(self.case, moved)])
+            starts[good] = moved[good]
+            left &= ~good
+        return [Micropart(part.mass, (x, y), part.velocity, part.squeeze) for x, y in starts.tolist()]
+
+
+def path_of(paths: Paths, case: Case) -> Trajectory:
+    """The path of a case."""
+    return paths.of([(case.actuators, Disturbance())])[0]
+
+
+def settled(trajectory: Trajectory) -> bool:
+    """Whether the part rests for good at the end."""
+    return trajectory.outcome is Outcome.STUCK and bool(trajectory.stays)
+
+
+def driven(case: Case, actuators: tuple[ActuatorCase, ...], factors: Sequence[float] | None = None) -> Case:
+    """A case with other actuators, whose strokes are so many times as high."""
+    if factors is not None:
+        actuators = tuple(_raised(one, factor) for one, factor in zip(actuators, factors, strict=True))
+    return case.model_copy(update={"actuators": actuators, "source": None})
+
+
+def _raised(actuator: ActuatorCase, factor: float) -> ActuatorCase:
+    update: dict[str, object] = {}
+    if actuator.stroke is not None:
+        update["stroke"] = actuator.stroke * factor
+    if actuator.segments is not None:
+        update["segments"] = tuple(
+            segment if segment.stroke is None else segment.model_copy(update={"stroke": segment.stroke * factor})
+            for segment in actuator.segments
+        )
+    return actuator.model_copy(update=update)
+
+
+def cost(trajectory: Trajectory, target: tuple[float, float], duration: float, size: float, tolerance: float) -> float:
+    """How far [m] the end is from a target [m], more for a part that does not rest there at the end of the duration.
+
+    size: m, of the surface.  tolerance: m, which only a part that rests for good is within.
+    """
+    away = float(np.hypot(*(trajectory.position[-1] - target)))
+    if trajectory.outcome is Outcome.MOVING:
+        away += min(SETTLING * float(np.hypot(*trajectory.velocity[-1])), size)
+    elif trajectory.outcome is not Outcome.STUCK:
+        return away + size * (LOST + 1 - float(trajectory.time[-1]) / duration)  # the later it was lost, the better
+    least = max(NOT_FOR_GOOD * size, 2 * tolerance)
+    return away if away > least or settled(trajectory) else least

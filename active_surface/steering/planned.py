@@ -1,0 +1,46 @@
+"""Planned: what a plan found."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from active_surface.steering.found import Found
+from active_surface.steering.route import Place, Route
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Planned(Found):
+    """The case with the schedule that was found, its path, and what became of each leg.
+
+    arrivals: s, when the part rests for good at each way-point, or beside it.  tried: for how many way-points there are
+    drives, which counts one on whose way the path failed.  failure: why there are less arrivals than way-points; "":
+    there are not, or Ctrl-C came.
+    """
+
+    route: Route
+    arrivals: tuple[float, ...]
+    tried: int
+    failure: str = ""
+
+    @property
+    def targets(self) -> tuple[Place, ...]:
+        """The way-points [m] for which there are drives: the last of them is where these are to end."""
+        return self.route.through[: self.tried]
+
+    @property
+    def distances(self) -> list[float]:
+        """From the part to each way-point [m] when it has arrived there."""
+        there = self.trajectory.at(self.arrivals).position
+        ways = zip(there.tolist(), self.route.through, strict=False)  # to those where it has arrived
+        return [math.dist(place, target) for place, target in ways]
+
+    @property
+    def reached(self) -> list[bool]:
+        """Whether it arrived at each way-point within the tolerance."""
+        return [distance <= self.route.settings.tolerance for distance in self.distances]
+
+    @property
+    def complete(self) -> bool:
+        """Whether every way-point was reached, within the tolerance."""
+        return len(self.arrivals) == len(self.route.through) and all(self.reached)

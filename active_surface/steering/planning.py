@@ -1,0 +1,162 @@
+"""One plan, from route to schedule: this file reads as the pipeline.
+
+route -> surface -> leg by leg: task -> approach -> schedule so far -> place reached -> case file -> scatter and picture
+"""
+
+from __future__ import annotations
+
+import math
+from contextlib import ExitStack
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from active_surface.steering.approach import Approach, next_start
+from active_surface.steering.found import check_free, drawn, prepared, with_scatter
+from active_surface.steering.paths import Paths, path_of, settled
+from active_surface.steering.picture import draw_plan
+from active_surface.steering.planned import Planned
+from active_surface.steering.route import Route
+from active_surface.steering.schedule import Leg, scheduled
+from coupling import Tell, untold
+from coupling.case import Case, shown_length, write_case
+from particle import SurfaceMotion, Trajectory, unbroken
+
+
+def plan(
+    route: Route,
+    output: str | Path | None = None,
+    threads: int | None = None,
+    tell: Tell = untold,
+    overwrite: bool = False,
+) -> Planned:
+    """Find the drives that carry a part over way-points; with `output`, write NAME_planned.toml and NAME_plan.png.
+
+    threads: how many paths are found at a time, by default one on each processor; the result is the same for any.
+    tell: gets how many paths have been found, and of how many at most.  overwrite: whether to replace those files.
+    Upon Ctrl-C the legs so far count, if there are any.
+    Raises ValueError when the case cannot be run or those files are there and not to be replaced, and KeyboardInterrupt
+    upon Ctrl-C before there are any legs.
+    """
+    if output is None:
+        return plan_over(prepared(route.case), route, threads, tell)
+    file, picture = Path(output) / f"{route.name}_planned.toml", Path(output) / f"{route.name}_plan.png"
+    check_free((file, picture), overwrite)
+    found = plan_over(prepared(route.case), route, threads, tell, file)
+    return drawn(found, draw_plan, picture)
+
+
+def plan_over(
+    surface: SurfaceMotion,
+    route: Route,
+    threads: int | None = None,
+    tell: Tell = untold,
+    file: Path | None = None,
+) -> Planned:
+    """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
+    work, interrupted = _Work(surface, route, threads, tell), False
+    found: Planned | None = None
+    try:
+        with ExitStack() as shield:
+            try:
+                work.run()
+            except KeyboardInterrupt:
+                shield.enter_context(unbroken())
+                interrupted = True
+            else:
+                shield.enter_context(unbroken())
+            found = replace(work.close(), interrupted=interrupted)
+            if file is not None:
+                found = replace(found, files=(write_case(found.case, file, _comment(found)),))
+    except KeyboardInterrupt:  # what was found before it stays
+        if found is None:
+            raise
+        return replace(found, interrupted=True)
+    return with_scatter(found, Paths(found.case, surface, threads), found.targets[-1], route.settings)
+
+
+class _Work:
+    """The legs of a plan, as they are found."""
+
+    def __init__(self, surface: SurfaceMotion, route: Route, threads: int | None, tell: Tell) -> None:
+        self._surface, self._route, self._threads, self._tell = surface, route, threads, tell
+        self._approach: Approach | None = None
+        self._legs: tuple[Leg, ...] = ()
+        self._arrivals: tuple[float, ...] = ()
+        self._now, self._paths, self._tried, self._failure = 0.0, 0, 0, ""
+        self._whole: tuple[Case, Trajectory] | None = None
+
+    def run(self) -> None:
+        """Find leg after leg, until one fails; after Ctrl-C `close` has those so far."""
+        route, place = self._route, self._route.case.part.position
+        for number, target in enumerate(route.through):
+            if number and math.dist(place, target) <= route.settings.tolerance:
+                self._stay()
+                continue
+            try:
+                task = route.leg(number, place)
+            except ValueError as error:
+                self._failure = f"leg {number + 1}: {error}"
+                return
+            tell = partial(_tell_leg, self._tell, number, len(route.through))
+            self._approach = Approach(self._surface, task, self._threads, tell)
+            self._approach.run()
+            path = self._end_leg()
+            if self._failure:
+                return
+            x, y = path.position[-1].tolist()
+            place = (x, y)
+
+    def _stay(self) -> None:
+        """Count a way-point where the part rests already as reached, without a leg."""
+        self._arrivals, self._tried = (*self._arrivals, self._now), self._tried + 1
+
+    def close(self) -> Planned:
+        """What was found; KeyboardInterrupt where there is nothing."""
+        if self._approach is not None:
+            try:
+                self._end_leg()
+            except KeyboardInterrupt:
+                if not self._legs:
+                    raise
+        assert self._whole is not None
+        case, path = self._whole
+        return Planned(
+            route=self._route,
+            case=case,
+            trajectory=path,
+            arrivals=self._arrivals,
+            tried=self._tried,
+            paths=self._paths,
+            failure=self._failure,
+        )
+
+    def _end_leg(self) -> Trajectory:
+        """Take the leg that is under way into the schedule, and find out where the whole of it leads."""
+        assert self._approach is not None
+        approach, self._approach = self._approach, None
+        self._paths += approach.paths
+        _, path = approach.close()
+        end = round(self._now + next_start(approach.legs, path), 9)
+        self._legs += tuple(leg._replace(start=leg.start + self._now) for leg in approach.legs)
+        case = scheduled(self._route.case, self._legs, end)
+        case = case.model_copy(update={"name": f"{self._route.name}_planned"})
+        path = path_of(Paths(case, self._surface, self._threads), case)
+        self._whole, self._tried = (case, path), self._tried + 1
+        if settled(path):
+            self._arrivals, self._now = (*self._arrivals, end), end
+        else:
+            self._failure = f"leg {len(self._arrivals) + 1}: {path.sentence} At {path.time[-1] * 1e3:g} ms."
+        return path
+
+
+def _comment(found: Planned) -> str:
+    """What a file of the drives begins with: how near they bring the part to each way-point, and why no farther."""
+    legs = zip(found.route.through, found.distances, strict=False)
+    places = [f"({shown_length(x)}, {shown_length(y)}) but for {shown_length(off)}" for (x, y), off in legs]
+    said = [f"The drives carry the part over {', '.join(places)}."] if places else []
+    return "\n".join([*said, found.failure] if found.failure else said)
+
+
+def _tell_leg(tell: Tell, leg: int, legs: int, done: int, of: int) -> None:
+    tell(leg * of + done, legs * of)

@@ -1,0 +1,97 @@
+"""Reach: the line that a part cannot leave, because all that can push it is the same on both sides of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from coupling.case import AnnulusCase, Case, DiscCase, EllipseCase, PlateCase, RectangleCase, shown_length
+
+FloatArray = NDArray[np.float64]
+Direction = tuple[float, float]
+
+ON_LINE: Final = 1e-12  # of the farthest place: nearer counts as on the line
+ALONG: Final = ((1.0, 0.0), (0.0, 1.0))
+DIAGONAL: Final = ((math.sqrt(0.5), math.sqrt(0.5)), (math.sqrt(0.5), -math.sqrt(0.5)))
+
+
+def off_the_line(
+    case: Case, plate: PlateCase, target: tuple[float, float], tolerance: float, movers: Sequence[int]
+) -> Iterator[str]:
+    """Yield that a target [m] is farther than a tolerance [m] off a line that the part cannot leave, if there is one.
+
+    movers: the numbers of the actuators that take part; all others are at rest.
+    """
+    lines = [line for line in _mirrors(case, plate, movers) if _keeps(case, line, movers)]
+    if len(lines) > 1:
+        away = math.dist(case.part.position, target)
+        if away > tolerance:
+            yield (
+                "cannot be reached: nothing moves the part, which stands in the plate's centre with the same on all "
+                f"sides, and the target is {shown_length(away)} off it"
+            )
+        return
+    for x, y in lines:
+        away = abs(x * target[1] - y * target[0])
+        if away > tolerance:
+            angle = math.degrees(math.atan2(y, x)) % 180
+            who = "one actuator moves" if len(movers) == 1 else f"these {len(movers)} actuators move"
+            yield (
+                f"cannot be reached: from this start {who} the part only along the line through the plate's centre at "
+                f"{angle:.4g} degrees from x, and the target is {shown_length(away)} off it"
+            )
+
+
+def _keeps(case: Case, line: Direction, movers: Sequence[int]) -> bool:
+    """Whether the part stands on a line through the centre, and nothing pushes it aside."""
+    gravity = case.run.gravity if isinstance(case.run.gravity, tuple) else (0.0, 0.0, 0.0)
+    every = np.array([actuator.position for actuator in case.actuators])
+    most = float(np.hypot(*np.array([case.part.position, *every]).T).max())
+    moving = np.isin(np.arange(len(every)), movers)
+    standing = np.array([case.part.position, *every[moving]])
+    pushes = np.array([case.part.velocity, gravity[:2]])
+    if (_aside(line, standing) > ON_LINE * most).any():
+        return False
+    if (_aside(line, pushes) > ON_LINE * np.hypot(*pushes.T)).any():
+        return False
+    held = [(actuator.force is None, actuator.stiffness) for actuator in case.actuators]
+    return _same_on_both_sides(every[~moving], [held[k] for k in np.flatnonzero(~moving)], line, ON_LINE * most)
+
+
+def _aside(line: Direction, vectors: FloatArray) -> FloatArray:
+    """How far vectors (n, 2) point aside of a line."""
+    return np.asarray(np.abs(line[0] * vectors[:, 1] - line[1] * vectors[:, 0]))
+
+
+def _same_on_both_sides(places: FloatArray, kinds: Sequence[object], line: Direction, least: float) -> bool:
+    """Whether the mirror image of each place (n, 2) [m] is, within `least` [m], a place of the same kind."""
+    if not len(places):
+        return True
+    along = np.array(line)
+    away, other = cKDTree(places).query(2 * np.outer(places @ along, along) - places)
+    return bool((away <= least).all()) and all(kinds[k] == kinds[j] for k, j in enumerate(other))
+
+
+def _mirrors(case: Case, plate: PlateCase, movers: Sequence[int]) -> Iterator[Direction]:
+    """Yield the axes, as directions, about which a plate is the same on both sides; of a round one those that count."""
+    if isinstance(plate, (DiscCase, AnnulusCase)) or (
+        isinstance(plate, EllipseCase) and plate.semi_axis_x == plate.semi_axis_y
+    ):
+        places = np.array([case.part.position, *(case.actuators[k].position for k in movers)])
+        x, y = places[np.argmax(np.hypot(*places.T))].tolist()
+        radius = math.hypot(x, y)
+        # In the centre itself a part at rest stays: on every line.
+        yield from [(x / radius, y / radius)] if radius > 0 else (*ALONG, *DIAGONAL)
+    elif isinstance(plate, EllipseCase):
+        yield from ALONG
+    elif isinstance(plate, RectangleCase):
+        left, right, bottom, top = plate.supports_of(["left", "right", "bottom", "top"]).values()
+        square = plate.width == plate.height
+        same = (bottom == top, left == right, square and (left, right) == (bottom, top))
+        kept = (*same, square and (left, right) == (top, bottom))
+        yield from (line for line, good in zip((*ALONG, *DIAGONAL), kept, strict=True) if good)

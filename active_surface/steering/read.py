@@ -1,0 +1,101 @@
+"""Reading an aim file, or a case file that is to be aimed as it is: every mistake in it at once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from active_surface.steering.route import Route
+from active_surface.steering.tables import TABLES, AimTable, AimTables, Settings
+from active_surface.steering.task import Mistake, Task, misplaced, mistakes
+from coupling.case import UNITS_REQUIRED, Case, CaseError, adapter, find_problems, load, read_case
+
+Place = tuple[float, float]
+
+
+def read_task(path: str | os.PathLike[str], target: Place | None = None, quantile: float | None = None) -> Task:
+    """The task in the file at `path`, which is an aim file or a case file.
+
+    target: m, in place of the file's.  quantile: likewise.
+    Raises CaseError with every mistake in the file, and ValueError for a target that does not suit the case.
+    """
+    case, settings, told = read_settings(path, target is None)
+    goal = target or told
+    if goal is None:
+        raise ValueError("the target is missing; it must be two lengths, as --target 100,-50 or in the file's [aim]")
+    if quantile is not None:
+        settings = Settings(**(dict(settings) | {"quantile": quantile}))
+    return Task(case, goal, settings, Path(path).stem)
+
+
+def read_route(path: str | os.PathLike[str], through: Sequence[Place]) -> Route:
+    """The route through way-points [m] that the file at `path`, an aim file or a case file, is to be followed along.
+
+    Raises CaseError with every mistake in the file, and ValueError for way-points that do not suit the case.
+    """
+    case, settings, _ = read_settings(path, False)
+    return Route(case, tuple(through), settings, Path(path).stem)
+
+
+def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Settings, Place | None]:
+    """The case, the settings and the target [m], if any, in the file at `path`; CaseError with every mistake in it.
+
+    aims: whether its target counts.
+    """
+    text, data = load(path)
+    if "aim" not in data:
+        return read_case(path), Settings(), None
+    errors: list[Any] = []
+    table: AimTable | None = None
+    try:
+        table = AimTables.model_validate(data, context=UNITS_REQUIRED).aim
+    except ValidationError as error:
+        errors += error.errors()
+    written = data["aim"] if isinstance(data["aim"], dict) else {}
+    case, wrong = _case(Path(path), written)
+    if case and table:
+        wrong += mistakes(case, table, table.target if aims else None)
+    elif case:
+        # What depends on the target depends on the other keys, too, of which some are wrong.
+        wrong += mistakes(case, _right(written), None)
+        place = _valid(written, "target") if aims else None
+        wrong += [("target", message) for message in misplaced(case, place)] if place else []
+    for key, message in wrong:
+        context = {"error": ValueError(message)}
+        errors.append({"type": "value_error", "loc": ("aim", key), "input": None, "ctx": context})
+    if errors:
+        found = ValidationError.from_exception_data("AimTables", errors)
+        raise CaseError(os.fspath(path), find_problems(found, text, data, TABLES))
+    assert case and table
+    own = {key: getattr(table, key) for key in Settings.model_fields}
+    return case, Settings.model_construct(**own), table.target
+
+
+def _case(path: Path, table: Mapping[str, Any]) -> tuple[Case | None, list[Mistake]]:
+    """The case that an aim file names, and what is wrong with it."""
+    name = _valid(table, "case")
+    if name is None:
+        return None, []
+    try:
+        return read_case(path.parent / name), []
+    except CaseError as error:
+        return None, [("case", "must be the file of a case; " + str(error).replace("\n", "\n    "))]
+
+
+def _right(table: Mapping[str, Any]) -> Settings:
+    """The settings of a table in which anything may be wrong, without what is; strokes count as given even then."""
+    valid = {key: _valid(table, key) for key in Settings.model_fields}
+    known = {key: value for key, value in valid.items() if value is not None}
+    return Settings.model_construct(**({"stroke": (0.0, 0.0)} if "stroke" in table else {}) | known)
+
+
+def _valid(table: Mapping[str, Any], key: str) -> Any:
+    """The value of a key in such a table; None where it is wrong, or there is none."""
+    try:
+        return adapter(AimTable, key).validate_python(table.get(key), context=UNITS_REQUIRED)
+    except ValidationError:
+        return None

@@ -1,0 +1,116 @@
+"""The table [aim] of an aim file: what may be varied, between which bounds, and how long to search."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Final
+
+from pydantic import BaseModel, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictFloat, StrictInt, StrictStr
+from pydantic_core import CoreSchema, core_schema
+
+from coupling.case import Frequency, Length, Point, Table, Time, shown
+
+
+@dataclass(frozen=True)
+class _Bounds:
+    """Marks two values as the least and the largest that are tried."""
+
+    example: str
+
+    @property
+    def wanted(self) -> str:
+        return f"the least and the largest value, such as {self.example}"
+
+    def validate(self, value: object, handler: Any) -> object:
+        if not isinstance(value, (list, tuple)) or len(value) != 2:
+            raise ValueError(f"must be {self.wanted}; got {shown(value)}")
+        low, high = handler(value)
+        if low > high:
+            raise ValueError(f"must be {self.wanted}, in that order; got {shown(value)}")
+        return low, high
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
+
+
+@dataclass(frozen=True)
+class _Numbers:
+    """Marks a tuple as numbers of actuators, each once."""
+
+    wanted = "a list of numbers of actuators, counted from 0, such as [0, 4]"
+
+    def validate(self, value: object) -> object:
+        good = isinstance(value, (list, tuple)) and value and all(type(k) is int and k >= 0 for k in value)
+        if not good or not isinstance(value, (list, tuple)) or len(set(value)) < len(value):
+            raise ValueError(f"must be {self.wanted}, each once; got {shown(value)}")
+        return tuple(value)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.validate)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        whole = {"type": "integer", "minimum": 0}
+        return {"type": "array", "items": whole, "minItems": 1, "uniqueItems": True}
+
+
+MOST_PATHS, MOST_PATHS_DISTURBED = 10_000, 40_000
+
+Positive = Annotated[Frequency, Field(gt=0)]
+Waiting = Annotated[Time, Field(ge=0)]
+Count = Annotated[StrictInt, Field(ge=1, le=1_000_000)]
+
+
+class Settings(Table):
+    """How drives are searched for. Bounds hold for each actuator that takes part; None: they follow from its drive."""
+
+    actuators: Annotated[tuple[int, ...], _Numbers()] | None = Field(default=None, examples=[[0, 4]])
+    """Those that take part, by their numbers from 0; without it the nearest to the way to the target."""
+    nearest: Count = 4
+    """How many these are."""
+    frequency: Annotated[tuple[Positive, Positive], _Bounds('["100 Hz", "600 Hz"]')] | None = None
+    """Bounds; without them from 0.2 times to twice its own."""
+    stroke: Annotated[tuple[Length, Length], _Bounds('["0 um", "60 um"]')] | None = None
+    """Bounds; without them from 0 to its own."""
+    delay: Annotated[tuple[Waiting, Waiting], _Bounds('["0 ms", "2 ms"]')] | None = None
+    """Bounds; without them from 0 to twice its own, where it has one."""
+    cycles: Annotated[tuple[Count, Count], _Bounds("[1, 5]")] = (1, 3)
+    """Bounds of how many cycles each drive has."""
+    seed: StrictInt = Field(default=0, ge=0, lt=2**32)
+    """From which random numbers follow."""
+    paths: Count | None = Field(default=None, examples=[10000])
+    """How many are found at most; without it 10 000, with a quantile 40 000."""
+    tolerance: Length = Field(default=5e-7, gt=0)
+    """The distance from the target at which a search ends."""
+    quantile: StrictFloat | None = Field(default=None, gt=0, le=1, examples=[0.9])
+    """This quantile of the distances of disturbed runs is made small in place of the distance."""
+    scatter: Count = 100
+    """How many disturbed runs tell how robust the found drives are."""
+
+    @property
+    def most(self) -> int:
+        """How many paths are found at most."""
+        return self.paths or (MOST_PATHS if self.quantile is None else MOST_PATHS_DISTURBED)
+
+
+class _File:
+    wanted = 'the name of a case file such as "array_3x3.toml"'
+
+
+class AimTable(Settings):
+    """The file of the `case`, beside this one; where the part is to go, unless that is told elsewhere; `Settings`."""
+
+    case: Annotated[StrictStr, _File()] = Field(examples=["array_3x3.toml"])
+    """The case whose part is to be moved, a file beside this one."""
+    target: Point | None = Field(default=None, examples=[["100 um", "-50 um"]])
+    """Where the part is to go, unless the command tells it."""
+
+
+class AimTables(Table):
+    """All that an aim file holds."""
+
+    aim: AimTable
+    """What may be varied, and how long to search."""
+
+
+TABLES: Final[dict[str, type[BaseModel]]] = {"": AimTables, "aim": AimTable}
+"""The models by the names of their tables."""

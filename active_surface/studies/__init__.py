@@ -1,0 +1,12 @@
+"""Studies: sweeps of thousands of paths over the fields of a case."""
+
+import lazy_loader
+
+__getattr__, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
+
+__all__ = [  # public; the stub beside has also what other packages of the program use
+    "Study",
+    "Sweep",
+    "read_study",
+    "run_study",
+]

@@ -1,0 +1,13 @@
+from .read import read_study as read_study
+from .run import Sweep as Sweep, run_study as run_study
+from .study import Study as Study
+
+# Not public: for the packages that build on this one.
+from .dataset import key_of as key_of
+from .engine import AT_ONCE as AT_ONCE, Engine as Engine
+from .record import OUTCOMES as OUTCOMES, REFUSED as REFUSED, SENTENCES as SENTENCES
+from .refusal import start_faults as start_faults
+from .report import figures as figures, lines as lines
+from .run import ENDING as ENDING
+from .saved import read_sweep as read_sweep
+from .tables import StudyTables as StudyTables

@@ -1,0 +1,128 @@
+"""The axes of a study file, each with the field that it varies, and what is wrong with them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from active_surface.studies.axis import Axis, counted, spaced
+from active_surface.studies.field import Field, Value, find_field
+from active_surface.studies.variants import is_deep, lattice_of
+from coupling.case import WRONG, Case, Location, shown
+
+Mistake = tuple[Location, str]
+
+
+class Axes:
+    """The axes that tables are right about, and the mistakes in the others.
+
+    tables: the values of each by key, WRONG for those that are not valid by themselves.
+    """
+
+    def __init__(self, case: Case | None, tables: Sequence[Mapping[str, Any]], sampling: Any) -> None:
+        self.mistakes: list[Mistake] = []
+        self._sampling = sampling
+        self._lattice = lattice_of(case) if case else (None, 0)
+        self._fields: list[tuple[int, str, Field]] = []
+        found = [self._axis(case, k, table) for k, table in enumerate(tables)] if case else []
+        self.whole = bool(found) and None not in found
+        axes = [(k, axis) for k, axis in enumerate(found) if axis]
+        self.mistakes += [*self._doubled(), *_unlike(axes, sampling)]
+        # What the plate depends on varies slowest: points that follow each other share it.
+        self.axes = tuple(sorted((axis for _, axis in axes), key=lambda axis: not (case and is_deep(case, axis))))
+
+    def _axis(self, case: Case, k: int, table: Mapping[str, Any]) -> Axis | None:
+        if table["field"] is WRONG:
+            return None
+        try:
+            field = find_field(case, self._lattice[0], table["field"])
+        except ValueError as error:
+            self.mistakes.append((("axes", k, "field"), str(error)))
+            return None
+        self._fields.append((k, table["name"] if isinstance(table["name"], str) else field.path, field))
+        key = "values" if table["values"] is not None else "range"
+        if table[key] is None or table[key] is WRONG:
+            return None
+        values, wrong = _read(field, table[key])
+        if wrong:
+            self.mistakes += [(("axes", k, key, place), message) for place, message in wrong]
+        elif WRONG in table.values():
+            return None
+        elif mistakes := list(self._misfits(field, key, values, table)):
+            self.mistakes += [(("axes", k, at), message) for at, message in mistakes]
+        else:
+            return self._made(field, key, values, table)
+        return None
+
+    def _made(self, field: Field, key: str, values: list[Any], table: Mapping[str, Any]) -> Axis:
+        name, logarithmic = table["name"] or field.path, table["spacing"] == "logarithmic"
+        if key == "values":
+            return Axis(name, field, tuple(values))
+        if table["count"] is None:
+            return Axis(name, field, (), values[0], values[1], logarithmic)
+        return Axis(name, field, spaced(values[0], values[1], table["count"], logarithmic), logarithmic=logarithmic)
+
+    def _misfits(
+        self, field: Field, key: str, values: list[Any], table: Mapping[str, Any]
+    ) -> Iterator[tuple[str, str]]:
+        """What does not fit the field or the sampling, by key."""
+        drawn = self._sampling in ("random", "sobol")
+        if key == "values":
+            doubled = next((value for value, count in Counter(values).items() if count > 1), None)
+            if doubled is not None and self._sampling == "grid":
+                yield "values", f"must differ from each other; got {counted(shown(doubled), field.unit)} twice"
+            return
+        if field.kind != "number":
+            yield "range", f"must not be given for {field.path}, which has no values in between; list its values"
+        elif values[0] == values[1]:
+            yield "range", "must have a last value that differs from the first"
+        elif table["spacing"] == "logarithmic" and not (values[0] > 0 and values[1] > 0):
+            yield "range", 'must have values above 0 with spacing = "logarithmic"'
+        if not drawn and self._sampling is not WRONG and table["count"] is None:
+            yield "count", f'is missing; with sampling = "{self._sampling}" a range needs a count of values'
+        if drawn and table["count"] is not None:
+            yield "count", f'must not be given with sampling = "{self._sampling}", which draws from all of a range'
+        if table["count"] == 1:
+            yield "count", "must be at least 2 for a range; got 1"
+
+    def _doubled(self) -> Iterator[Mistake]:
+        """What two axes both have."""
+        makes = next((field.path for *_, field in self._fields if field.locations[0][0] == "lattice"), None)
+        alone = self._lattice[1]
+        for n, (k, name, field) in enumerate(self._fields):
+            numbers = [int(at[1]) for at in field.locations if at[0] == "actuators"]
+            if makes and numbers and max(numbers) >= alone:
+                yield ("axes", k, "field"), f"must not vary actuators from {alone} on: the axis over {makes} makes them"
+            for _, other, varied in self._fields[:n]:
+                if shared := _within(field, varied) | _within(varied, field):
+                    at = ".".join(map(str, min(shared, key=str)))
+                    same = f"{at} is varied by the axis {other} already"
+                    yield ("axes", k, "field"), f"must be varied by one axis only; {same}"
+                elif name == other:
+                    yield ("axes", k, "name"), f"must differ from that of another axis; got {shown(name)} twice"
+
+
+def _within(field: Field, other: Field) -> set[Location]:
+    """The locations of a field that another one has, or has as part of what it varies."""
+    known = set(other.locations)
+    return {at for at in field.locations if any(at[:n] in known for n in range(1, len(at) + 1))}
+
+
+def _read(field: Field, written: Sequence[Any]) -> tuple[list[Value], list[tuple[int, str]]]:
+    values, wrong = [], []
+    for place, value in enumerate(written):
+        try:
+            values.append(field.read(value))
+        except ValueError as error:
+            wrong.append((place, str(error)))
+    return values, wrong
+
+
+def _unlike(axes: Sequence[tuple[int, Axis]], sampling: Any) -> Iterator[Mistake]:
+    """What in a list has not as many values as the first axis."""
+    for k, axis in axes[1:] if sampling == "list" else ():
+        most = len(axes[0][1].values)
+        if len(axis.values) != most:
+            key = "values"
+            yield ("axes", k, key), f'must be as many as those of the first axis with sampling = "list", {most}'

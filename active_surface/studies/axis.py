@@ -1,0 +1,49 @@
+"""Axis: a field of the case that a study varies, and the values that it takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from active_surface.studies.field import Field
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A field and its values in SI units: those that are listed, or all between two bounds."""
+
+    name: str
+    field: Field
+    values: tuple[Any, ...]  # those of a grid or list; empty: any within the bounds
+    low: float = 0.0
+    high: float = 0.0
+    logarithmic: bool = False
+
+    @property
+    def kind(self) -> Any:
+        """The type of its values in arrays."""
+        return {"number": np.float64, "whole": np.int64, "text": object}[self.field.kind]
+
+    def spread(self, units: FloatArray) -> NDArray[Any]:
+        """Its values (n,) at places (n,) in [0, 1)."""
+        if self.values:
+            return np.array(self.values, dtype=self.kind)[(units * len(self.values)).astype(np.int64)]
+        if self.logarithmic:
+            return self.low * (self.high / self.low) ** units
+        return self.low + (self.high - self.low) * units
+
+
+def spaced(low: float, high: float, count: int, logarithmic: bool) -> tuple[float, ...]:
+    """So many values from one to another, both among them."""
+    space = np.geomspace if logarithmic else np.linspace
+    return tuple(space(low, high, count).tolist())
+
+
+def counted(number: str, unit: str) -> str:
+    """A number with its unit, if it has one."""
+    return number if unit in ("", "1") else f"{number} {unit}"

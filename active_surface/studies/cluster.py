@@ -1,0 +1,133 @@
+"""Cluster: the chunks of a study, found by the workers of a dask scheduler.
+
+A worker finds one chunk at a time, with as many threads as it has, and solves each plate itself.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import pickle
+import threading
+from collections.abc import Generator, Iterable, Iterator, Mapping
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from functools import lru_cache
+from itertools import islice
+from typing import TYPE_CHECKING, Final
+
+from active_surface.studies.engine import Engine
+from active_surface.studies.record import Records
+from active_surface.studies.study import versions
+from coupling import interruptible
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+PATIENCE: Final = 5  # s that a scheduler may take to answer
+ARRIVAL: Final = 30  # s that the first worker may take to come
+AHEAD: Final = 2  # chunks handed out for each thread of the workers
+
+_ONE_AT_A_TIME = threading.Lock()
+
+
+def records_on(scheduler: str, engine: Engine, chunks: Iterable[int]) -> Generator[tuple[int, Records], None, None]:
+    """Yield chunks of an engine's study and their records as they come in from the workers of a scheduler.
+
+    scheduler: its address.
+    A chunk whose worker dies is found by another one. Only a few chunks at a time are under way.
+    Raises ValueError when there is no scheduler at the address, or when a worker has other versions or files than this
+    process; RuntimeError when dask is not installed, no worker comes, or scheduler or workers are lost.
+    """
+    with _connected(scheduler) as client:
+        from distributed import as_completed
+
+        pickled, key, wanted = pickle.dumps(engine.study), engine.study.key, versions()
+        left = iter(chunks)
+        numbers: dict[Future, int] = {}
+        running = as_completed([], loop=client.loop)
+
+        def hand_out() -> None:
+            threads = sum(client.nthreads().values())
+            for chunk in islice(left, max(AHEAD * max(threads, 1) - len(numbers), 0)):
+                future = client.submit(_records_there, pickled, key, wanted, *engine.span(chunk), pure=False)
+                numbers[future] = chunk
+                running.add(future)
+
+        hand_out()
+        for future in running:
+            records = future.result()
+            chunk = numbers.pop(future)
+            hand_out()
+            yield chunk, records
+
+
+@contextmanager
+def _connected(scheduler: str) -> Iterator[Client]:
+    """A client of a scheduler that has workers; what goes wrong with it is said in words."""
+    try:
+        from distributed import Client, KilledWorker
+    except ImportError:
+        how = "pip install 'active-surface[cluster]'"
+        raise RuntimeError(f"Input scheduler needs dask, which is not installed; it comes with {how}") from None
+    _check_address(scheduler)
+    with Client(scheduler, timeout=PATIENCE, set_as_default=False) as client:
+        try:
+            client.wait_for_workers(1, timeout=ARRIVAL)
+        except TimeoutError:
+            said = f"Input scheduler must have workers; the one at {scheduler} got none in {ARRIVAL} s"
+            raise RuntimeError(f"{said}; dask worker {scheduler} starts one") from None
+        try:
+            yield client
+        except KilledWorker as error:
+            died = error.allowed_failures + 1
+            raise RuntimeError(f"{died} workers died one after the other, each with the same chunk of paths") from None
+        except ModuleNotFoundError as error:
+            raise RuntimeError(f"a worker lacks active-surface or what it needs: {error}") from None
+        except CancelledError:
+            raise RuntimeError(f"the scheduler at {scheduler} is gone; the same command goes on with another") from None
+
+
+def _check_address(scheduler: str) -> None:
+    """Raises ValueError unless there is a scheduler at an address."""
+    try:
+        kind = interruptible(asyncio.run, _kind_of(scheduler))
+        wrong = "" if kind == "Scheduler" else f"there is a dask {kind.lower()} at that address"
+    except OSError:
+        wrong = f"no dask scheduler answered there in {PATIENCE} s"
+    except (ValueError, TypeError) as error:
+        wrong = str(error)
+    if wrong:
+        wanted = "the address of a running dask scheduler such as tcp://127.0.0.1:8786"
+        raise ValueError(f"Input scheduler must be {wanted}; got {scheduler!r}: {wrong}")
+
+
+async def _kind_of(address: str) -> str:
+    """What of dask there is at an address."""
+    from distributed import Security
+    from distributed.core import rpc
+
+    arguments = Security().get_connection_args("client")
+    async with rpc(address, timeout=PATIENCE, connection_args=arguments) as there:
+        return str((await asyncio.wait_for(there.identity(), PATIENCE))["type"])
+
+
+def _records_there(pickled: bytes, key: str, wanted: Mapping[str, str], start: int, stop: int) -> Records:
+    """The records of the paths from one to before another, found by the worker that this runs on."""
+    from distributed import get_worker
+
+    worker, found = get_worker(), versions()
+    here = f"the worker at {worker.address} must have"
+    if others := [f"{name} {found[name]} in place of {wanted[name]}" for name in wanted if found[name] != wanted[name]]:
+        raise ValueError(f"{here} the same versions as the command; it has {', '.join(others)}")
+    with _ONE_AT_A_TIME:
+        engine = _engine(pickled, key, worker.state.nthreads)
+        if engine is None:
+            raise ValueError(f"{here} the same files as the command; those that the case names differ there")
+        return engine.records(start, stop)
+
+
+@lru_cache(maxsize=1)
+def _engine(pickled: bytes, key: str, threads: int) -> Engine | None:
+    """The engine of a study; None: the study has another key here."""
+    study = pickle.loads(pickled)
+    return Engine(study, threads) if study.key == key else None

@@ -1,0 +1,192 @@
+"""The results of a sweep as one netCDF file with labelled axes, which xarray reads; it is HDF5."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import h5netcdf
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from active_surface.studies.axis import Axis
+from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
+from active_surface.studies.slabs import slabs
+from active_surface.studies.study import Study, versions
+from coupling import whole_file
+from coupling.case import Case, PlateCase
+from meshes import rim_curves
+
+if TYPE_CHECKING:
+    import xarray
+
+SORT: Final = "active-surface sweep"
+ENGINE: Final = "h5netcdf"
+LOGARITHMIC: Final = "logarithmic"
+RIM_PIECES: Final = 200  # of the longer side of the plate's box: how fine the rim is
+AT_ONCE: Final = 65536  # points whose coordinates are written together
+ROOM: Final = 1_000_000  # bytes, for all that does not grow with the points
+
+
+def write_dataset(
+    study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str] = ()
+) -> Path:
+    """Writes the records of a study to the file at `path`, chunk by chunk, and returns that.
+
+    chunks: the number of each chunk's first path, and the records.  warnings: what a user must know, kept with them.
+    Returns once the file is safe on disk. Raises OSError when it has no room.
+    """
+    _check_room(study, path.parent)
+    partial = path.with_suffix(f".partial{path.suffix}")
+    try:
+        _write(study, chunks, partial, warnings)
+        _sync(partial)
+        os.replace(partial, path)
+        _sync(path.parent)
+    finally:
+        partial.unlink(missing_ok=True)
+    return path
+
+
+def renew_text(study: Study, path: Path) -> None:
+    """Has the file at `path`, which holds the results of a study, say of it what its text says now.
+
+    Only what results do not depend on can differ, as the threshold that is drawn.
+    """
+    with h5netcdf.File(path, "r") as file:
+        if not study.source or file.attrs["study"] == study.source:
+            return
+    with whole_file(path) as partial:
+        shutil.copyfile(path, partial)
+        with h5netcdf.File(partial, "a") as file:
+            file.attrs["study"] = study.source
+        _sync(partial)
+
+
+def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:
+    sizes = study.points.dimensions
+    with h5netcdf.File(path, "w") as file:
+        file.dimensions = sizes
+        file.attrs.update(_about(study), warnings="\n".join(warnings))
+        _write_axes(file, study)
+        for name, column in COLUMNS.items():
+            variable = file.create_variable(name, tuple(sizes), column.kind, fillvalue=_fill(column.kind))
+            variable.attrs["long_name"] = column.meaning
+            variable.attrs["coordinates"] = " ".join(axis.name for axis in study.points.axes)
+            if column.unit:
+                variable.attrs["units"] = column.unit
+        file["outcome"].attrs.update(
+            flag_values=np.arange(len(OUTCOMES), dtype="i1"),
+            flag_meanings=" ".join(outcome.replace(" ", "_") for outcome in OUTCOMES),
+            sentences="\n".join(SENTENCES),
+        )
+        for start, records in chunks:
+            first = 0
+            for slab, count in slabs(tuple(sizes.values()), start, start + len(records)):
+                shape = [piece.stop - piece.start for piece in slab]
+                for name in COLUMNS:
+                    file[name][slab] = records[name][first : first + count].reshape(shape)
+                first += count
+
+
+def _check_room(study: Study, folder: Path) -> None:
+    """Raises OSError unless a folder has room for the results: HDF5 does not survive a full disk."""
+    count = len(study.points)
+    coordinates = 0 if study.points.sampling == "grid" else 8 * len(study.points.axes) * count // study.points.repeats
+    needed, free = KIND.itemsize * count + coordinates + ROOM, shutil.disk_usage(folder).free
+    if free < needed:
+        sizes = f"the results take {needed / 1e6:.1f} MB, and {free / 1e6:.1f} MB are free"
+        raise OSError(f"{folder}: {sizes}; finished chunks are kept, and the same command goes on from them")
+
+
+def _sync(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _fill(kind: str) -> float | None:
+    return float("nan") if kind == "f8" else None
+
+
+def _about(study: Study) -> dict[str, Any]:
+    return {
+        "kind": SORT,
+        "key": study.key,
+        "traits": json.dumps(study.traits),
+        "study": study.source,
+        "case": study.case.source or study.case.model_dump_json(),
+        "versions": json.dumps(versions()),
+        "sampling": study.points.sampling,
+        "axes": " ".join(axis.name for axis in study.points.axes),
+        "actuators": np.array([c for actuator in study.case.actuators for c in actuator.position], dtype=float),
+        "rim": _rim(study.case).ravel(),
+    }
+
+
+def _rim(case: Case) -> NDArray[np.float64]:
+    """The curves of the plate's rim (n, 2) [m], with nan after each; empty: there is a platform."""
+    if not isinstance(case.plate, PlateCase):
+        return np.empty((0, 2))
+    outline = case.plate.coarse_mesh.outline
+    curves = rim_curves(outline, float(np.ptp(outline.box, axis=0).max()) / RIM_PIECES)
+    return np.concatenate([np.append(curve, [[np.nan, np.nan]], axis=0) for curve in curves])
+
+
+def _write_axes(file: h5netcdf.File, study: Study) -> None:
+    """The coordinates: of a grid a dimension each, else all along the points."""
+    points = study.points
+    if points.sampling == "grid":
+        for axis in points.axes:
+            _axis(file, axis, axis.name)[...] = np.array(axis.values, axis.kind)
+        return
+    count = points.dimensions["point"]
+    variables = [_axis(file, axis, "point") for axis in points.axes]
+    for first in range(0, count, AT_ONCE):
+        last = min(first + AT_ONCE, count)
+        for variable, values in zip(variables, points.columns(first, last), strict=True):
+            variable[first:last] = values
+
+
+def _axis(file: h5netcdf.File, axis: Axis, dimension: str) -> h5netcdf.Variable:
+    kind = h5py.string_dtype() if axis.kind is object else axis.kind
+    variable = file.create_variable(axis.name, (dimension,), kind)
+    variable.attrs["field"] = axis.field.path
+    if axis.field.unit:
+        variable.attrs["units"] = axis.field.unit
+    if axis.logarithmic:
+        variable.attrs["spacing"] = LOGARITHMIC
+    return variable
+
+
+def key_of(path: Path) -> str | None:
+    """The key of the study whose results a file holds; None: there is no such file."""
+    if not path.is_file():
+        return None
+    try:
+        with h5netcdf.File(path, "r") as file:
+            return str(file.attrs["key"]) if file.attrs.get("kind") == SORT else None
+    except OSError:
+        return None
+
+
+def differences(study: Study, path: Path) -> list[str]:
+    """In what a study differs from the one whose results a file holds."""
+    with h5netcdf.File(path, "r") as file:
+        known = json.loads(file.attrs.get("traits", "{}"))
+    return [name for name, trait in study.traits.items() if known.get(name) != trait]
+
+
+def read_dataset(path: Path) -> xarray.Dataset:
+    """The results of a sweep, which are read from the file when they are needed, until they are closed."""
+    import xarray
+
+    return xarray.open_dataset(path, engine=ENGINE)

@@ -1,0 +1,206 @@
+"""The engine: the records of a study's paths, a chunk of about a second of work at a time.
+
+What a chunk is depends on the study alone, and its records on nothing but the study and the chunk's number: neither on
+threads nor on which chunks came before.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from pydantic import ValidationError
+from threadpoolctl import threadpool_limits
+
+from active_surface.studies.points import Points
+from active_surface.studies.record import Records, new_records, put
+from active_surface.studies.refusal import contact_of, mistakes_of, start_faults
+from active_surface.studies.study import Study
+from active_surface.studies.variants import Base, Variants
+from coupling import build_drives, build_scene, silent
+from coupling.case import Case, PlatformCase, RunCase
+from coupling.scene import platform_scene
+from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
+from particle.friction import Contact
+
+AT_ONCE: Final = 1.0  # s, about, that a chunk takes
+A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about, that a path takes, and each cycle of its fastest drive
+A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about, that these take
+SURFACES: Final = 16  # kept at most: each takes some 5 MB
+HELD: Final = 256  # trajectories in memory at a time: each takes 0.13 MB, however short
+TOGETHER: Final = 64  # paths found side by side when some are asked for
+FAILURES: Final = (ValueError, ArithmeticError, RuntimeError)
+
+
+class _Path(NamedTuple):
+    """A path that is to be found."""
+
+    row: int
+    case: Case
+    part: Micropart
+    friction: Contact
+
+
+Seen = Callable[[int, Trajectory], object]  # gets the number of a path among those found together, and the path
+_Group = tuple[list[_Path], SurfaceMotion, RunCase]
+
+
+class Engine:
+    """Finds the records of a study."""
+
+    def __init__(self, study: Study, threads: int | None = None) -> None:
+        self.study, self._threads = study, threads
+        self.variants = Variants(study.case, study.points.axes)
+        self._surfaces: dict[str, SurfaceMotion | str] = {}
+        self._kept = min(self.variants.grounds(study.points), SURFACES)
+        self.paths = len(study.points)
+        self.chunk_length = self._chunk_length()
+
+    @property
+    def chunks(self) -> int:
+        """How many chunks there are."""
+        return -(-self.paths // self.chunk_length)
+
+    def span(self, chunk: int) -> tuple[int, int]:
+        """The first path of a chunk, and the one after its last."""
+        start = chunk * self.chunk_length
+        return start, min(start + self.chunk_length, self.paths)
+
+    def _chunk_length(self) -> int:
+        case, points = self.study.case, self.study.points
+        if isinstance(case.plate, PlatformCase):
+            scene = platform_scene(case.plate, silent)
+            drives, base = [*scene.lifts, *scene.base], A_PLATFORM
+        else:
+            drives, base = build_drives(case), A_PLATE
+        fastest = max((*(drive.frequency for drive in drives), *_largest(points, "frequency")), default=0.0)
+        duration = max(_largest(points, "run.duration"), default=case.run.duration)
+        each = A_PATH + A_CYCLE * duration * fastest + base / self.variants.paths_of_a_base(points)
+        return max(int(AT_ONCE / each), 1)
+
+    def records_of(self, chunks: Iterable[int]) -> Generator[tuple[int, Records], None, None]:
+        """Yield chunks and their records, one after the other."""
+        for chunk in chunks:
+            yield chunk, self.records(*self.span(chunk))
+
+    def records(self, start: int, stop: int) -> Records:
+        """The records of the paths from one to before another."""
+        return self._found(start, stop)[0]
+
+    def faults(self, k: int) -> list[str]:
+        """Why path k was refused, which is found out anew; nothing: it was not."""
+        return self._found(k, k + 1)[1].get(0, [])
+
+    def follow(self, numbers: Iterable[int], seen: Seen) -> None:
+        """Find the paths of these ascending numbers once more; seen: gets each but the refused, with its number."""
+        together: list[int] = []
+        for k in numbers:
+            if together and (k != together[-1] + 1 or len(together) == TOGETHER):
+                self._show(together, seen)
+                together = []
+            together.append(k)
+        if together:
+            self._show(together, seen)
+
+    def _show(self, together: list[int], seen: Seen) -> None:
+        """The same for numbers that follow each other."""
+        first = together[0]
+        self._found(first, together[-1] + 1, lambda row, path: seen(first + row, path))
+
+    def _found(self, start: int, stop: int, seen: Seen | None = None) -> tuple[Records, dict[int, list[str]]]:
+        """The records, and by row what is wrong with those that were refused."""
+        records = new_records(stop - start)
+        wrong: dict[int, list[str]] = {}
+        # Many small systems: BLAS threads would only wait for each other.
+        with threadpool_limits(limits=1, user_api="blas"):
+            for paths, surface, run in self._groups(start, stop, records, wrong):
+                for first in range(0, len(paths), HELD):
+                    self._follow(records, wrong, paths[first : first + HELD], surface, run, seen)
+        for row, said in wrong.items():
+            records["mistakes"][row] = len(said)
+        return records, wrong
+
+    def _groups(self, start: int, stop: int, records: Records, wrong: dict[int, list[str]]) -> Iterator[_Group]:
+        """Yield paths that can be followed side by side; of the others it is noted what is wrong with them."""
+        points = self.study.points
+        displaced = points.displacements(start, stop)
+        grounds: dict[str, list[tuple[int, Case, Base]]] = defaultdict(list)
+        for row, values in enumerate(points.values(start, stop)):
+            try:
+                case, base = self.variants.at(values)
+            except ValidationError as error:
+                wrong[row] = mistakes_of(error)
+            except ArithmeticError as error:
+                wrong[row] = [f"its case cannot be made: {error}"]
+            else:
+                grounds[base.ground].append((row, case, base))
+        for several in grounds.values():
+            groups: dict[RunCase, list[_Path]] = defaultdict(list)
+            surface = self._surface(several[0][2])
+            starts = np.array([case.part.position for _, case, _ in several]) + displaced[[row for row, *_ in several]]
+            faults = start_faults(several[0][2].case, starts)
+            for (row, case, _), place, said in zip(several, starts.tolist(), faults, strict=True):
+                records["start_x"][row], records["start_y"][row] = place
+                law = contact_of(case.friction)
+                if said := said + [fault for fault in (law, surface) if isinstance(fault, str)]:
+                    wrong[row] = said
+                elif not isinstance(law, str):
+                    part = Micropart(case.part.mass, (place[0], place[1]), case.part.velocity, case.part.squeeze)
+                    groups[case.run].append(_Path(row, case, part, law))
+            if not isinstance(surface, str):
+                yield from ((paths, surface, run) for run, paths in groups.items())
+
+    def _follow(
+        self,
+        records: Records,
+        wrong: dict[int, list[str]],
+        paths: Sequence[_Path],
+        surface: SurfaceMotion,
+        run: RunCase,
+        seen: Seen | None,
+    ) -> None:
+        try:
+            found = simulate_many(
+                surface,
+                [path.part for path in paths],
+                [path.friction for path in paths],
+                run.duration,
+                run.gravity,
+                run.tolerance,
+                run.after_detachment,
+                [build_drives(path.case) for path in paths] if self.variants.drives_vary else None,
+                self._threads,
+            )
+        except FAILURES as error:
+            if len(paths) == 1:
+                wrong[paths[0].row] = [f"its path cannot be found: {error}"]
+            else:
+                for path in paths:
+                    self._follow(records, wrong, [path], surface, run, seen)
+        else:
+            for path, trajectory in zip(paths, found, strict=True):
+                put(records, path.row, path.part.position, trajectory)
+                if seen is not None:
+                    seen(path.row, trajectory)
+
+    def _surface(self, base: Base) -> SurfaceMotion | str:
+        """The moving surface, or why there is none.
+
+        It is made on this thread, where those that are no longer kept are given up: elsewhere their memory would leak.
+        """
+        if base.ground not in self._surfaces:
+            if len(self._surfaces) == self._kept:
+                del self._surfaces[next(iter(self._surfaces))]
+            try:
+                self._surfaces[base.ground] = build_scene(base.case).surface
+            except FAILURES as error:
+                self._surfaces[base.ground] = f"what the part moves over cannot be made: {error}"
+        return self._surfaces[base.ground]
+
+
+def _largest(points: Points, path: str) -> list[float]:
+    """The largest value of each axis over a field whose path ends so."""
+    axes = [axis for axis in points.axes if f".{axis.field.path}".endswith(f".{path}")]
+    return [max(axis.values or (axis.low, axis.high)) for axis in axes]

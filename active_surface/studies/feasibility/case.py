@@ -1,0 +1,182 @@
+"""Feasibility: where, and at which frequencies, the array of a case moves its part without losing it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from active_surface.studies.feasibility.area import ACROSS, Curves, Feasible, find_feasible, moving
+from coupling import Progress, build_drives, build_friction, build_scene, interruptible, silent, whole_file
+from coupling.case import Case
+from meshes import Outline
+from particle import AnyDrive, Micropart
+from particle.drives import drive_table
+from particle.events import horizon
+
+if TYPE_CHECKING:
+    import xarray
+
+FloatArray = NDArray[np.float64]
+
+SPAN: Final = 0.25, 8.0  # times the case's own frequency
+COUNT: Final = 31  # frequencies
+
+
+@dataclass(frozen=True, eq=False)
+class Feasibility:
+    """The feasible areas of a case, over frequencies (F,) [Hz] of its fastest drive.
+
+    All drives run as many times as fast, whatever they are: times of tables and segments shrink as cycles do.
+    """
+
+    case: Case
+    found: Feasible
+    frequency: float  # Hz, of the fastest drive in the case
+    whole_window: float  # s, what the drives do until they repeat themselves, at most the run's duration
+    outline: Outline
+    actuators: FloatArray  # (N, 2) m
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Hz, of the fastest drive: (F,)."""
+        return self.found.factors * self.frequency
+
+    def figures(self) -> dict[str, Any]:
+        """The figures by name, in SI units; None: there is no such frequency."""
+        found = self.found
+        return {
+            "frequency": self.frequency,
+            "frequencies": self.frequencies[[0, -1]].tolist(),
+            "window": found.window,
+            "whole_window": self.whole_window,
+            "peak_area": found.own.peak,
+            "time_integral": found.own.integral,
+            "area_where_it_comes_off": found.own.lost_area,
+            "frequency_of_largest_peak_area": _top(self.frequencies, found.feasible.peak),
+            "largest_peak_area": float(found.feasible.peak.max()),
+            "frequency_of_largest_time_integral": _top(self.frequencies, found.feasible.integral),
+            "largest_time_integral": float(found.feasible.integral.max()),
+            "moves_it_from_between": _begins(self.frequencies, found.slipping.peak > 0),
+            "loses_it_from_between": _begins(self.frequencies, found.lost_area > 0),
+        }
+
+    def dataset(self) -> xarray.Dataset:
+        """All of it with labels."""
+        import xarray
+
+        found, own = self.found, self.found.own
+        slipping: Curves = found.slipping
+        return xarray.Dataset(
+            {
+                "peak_area": ("frequency", found.feasible.peak, {"units": "m^2"}),
+                "time_integral": ("frequency", found.feasible.integral, {"units": "m^2 s"}),
+                "slipping_peak_area": ("frequency", slipping.peak, {"units": "m^2"}),
+                "slipping_time_integral": ("frequency", slipping.integral, {"units": "m^2 s"}),
+                "lost_area": ("frequency", found.lost_area, {"units": "m^2"}),
+                "area": ("time", own.over_time, {"units": "m^2"}),
+                "share": ("place", own.shares, {"units": "1", "long_name": "share of the window in which it slips"}),
+                "lost": ("place", own.lost.astype(np.int8), {"long_name": "whether the part comes off at some time"}),
+                "x": ("place", found.points[:, 0], {"units": "m"}),
+                "y": ("place", found.points[:, 1], {"units": "m"}),
+            },
+            {
+                "frequency": ("frequency", self.frequencies, {"units": "Hz", "long_name": "of the fastest drive"}),
+                "time": ("time", found.moments, {"units": "s"}),
+            },
+            {"case": self.case.source or "", "window": found.window, "spacing": found.spacing},
+        )
+
+    def write(self, folder: Path) -> tuple[Path, ...]:
+        """Writes NAME.feasibility.nc and NAME.feasibility.png into a folder; returns them."""
+        from active_surface.studies.feasibility.picture import draw_feasibility
+
+        folder.mkdir(parents=True, exist_ok=True)
+        data = folder / f"{self.case.name}.feasibility.nc"
+        with whole_file(data) as partial:
+            self.dataset().to_netcdf(partial, engine="h5netcdf")
+        return data, draw_feasibility(self, folder / f"{self.case.name}.feasibility.png")
+
+
+def _top(frequencies: FloatArray, values: FloatArray) -> float | None:
+    return float(frequencies[np.argmax(values)]) if values.max() > 0 else None
+
+
+def _begins(frequencies: FloatArray, holds: NDArray[np.bool_]) -> list[float | None] | None:
+    """The neighbouring frequencies [Hz] between which something begins; the first is None if it holds at the lowest.
+
+    None: it holds at none.
+    """
+    first = np.flatnonzero(holds)
+    if not len(first):
+        return None
+    return [float(frequencies[first[0] - 1]) if first[0] else None, float(frequencies[first[0]])]
+
+
+def feasibility(
+    case: Case,
+    lowest: float | None = None,
+    highest: float | None = None,
+    across: int = ACROSS,
+    progress: Progress = silent,
+) -> Feasibility:
+    """The feasible areas of a case.
+
+    lowest, highest: Hz, the frequencies of its fastest drive that are looked at, by default a quarter of its own and
+    eight times that; all times of all drives shrink likewise. Of segments the highest frequency counts, of a table
+    that of strokes as short as its shortest, of a drive at rest none.  across: places along the plate's longer side.
+    The window is what the drives do until they repeat themselves, at most the run's duration, and of that no more than
+    `active_surface.studies.feasibility.area` looks at.
+    Raises ValueError for a platform, drives of which none moves, and numbers that make no sense.
+    """
+    drives = _movers(case)
+    wrong = []
+    if not case.actuators:
+        wrong.append("Input case of feasibility must have a plate on actuators; got a platform")
+    frequency = max((drive.frequency for drive in drives), default=0.0)
+    if case.actuators and not frequency:
+        wrong.append("Input case of feasibility must have a drive that moves; got none")
+    low = SPAN[0] * frequency if lowest is None else lowest
+    high = SPAN[1] * frequency if highest is None else highest
+    if not wrong and not 0 < low < high:
+        wrong.append(_ends_fault(lowest, highest, low, high))
+    if not 10 <= across <= 1000:
+        wrong.append(f"Input across of feasibility must be in [10, 1000]; got {across}")
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    with threadpool_limits(limits=1, user_api="blas"):
+        scene = build_scene(case, progress)
+        assert scene.shapes
+        until = horizon(drive_table(drives), 0.0)
+        whole = case.run.duration if until is None else min(until, case.run.duration)
+        part = Micropart(case.part.mass, case.part.position, squeeze=case.part.squeeze)
+        factors = np.geomspace(low, high, COUNT) / frequency
+        with progress("Looking where the part slips"):
+            found = interruptible(
+                find_feasible, scene.surface, scene.shapes.outline, part, build_friction(case), whole, factors,
+                case.run.gravity, across,
+            )  # fmt: skip
+    return Feasibility(case, found, frequency, whole, scene.shapes.outline, scene.shapes.points)
+
+
+def _movers(case: Case) -> list[AnyDrive]:
+    """The drives that move; the others have a frequency, too, which counts for nothing."""
+    drives = build_drives(case)
+    return [drive for drive, moves in zip(drives, moving(drive_table(drives)), strict=True) if moves]
+
+
+def _ends_fault(lowest: float | None, highest: float | None, low: float, high: float) -> str:
+    """What is wrong with the ends of the frequencies, in the words of those that were given."""
+    if lowest is None:
+        return (
+            f"Input highest of feasibility must be above the lowest, by default a quarter of the case's, {low:g} Hz; "
+            f"got {high:g} Hz"
+        )
+    limit = f"below the highest, {high:g} Hz" if highest is not None else (
+        f"below the highest, by default eight times the case's, {high:g} Hz"
+    )  # fmt: skip
+    return f"Input lowest of feasibility must be positive and {limit}; got {low:g} Hz"

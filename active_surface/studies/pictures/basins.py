@@ -1,0 +1,86 @@
+"""Basins of attraction: to which actuator parts come from where they start."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+
+from active_surface.studies.pictures.heat import COLOURS, draw_classes, draw_field, draw_outline
+from active_surface.studies.pictures.shown import Scale, Shown, mean
+from active_surface.studies.record import OUTCOMES
+from coupling.pictures import readable
+from particle import Outcome
+
+STARTS = ("part.position.0", "part.position.1")
+STAYING = (Outcome.STUCK, Outcome.MOVING)
+MOST_ACTUATORS = 20  # with a colour each
+SHORT = 0.02  # of the distance between the outermost actuators: less is hardly a way
+NEARNESS = "end to nearest actuator"
+STAYS = "#f2efe6"
+WHITE = withStroke(linewidth=2.0, foreground="white")
+
+
+def is_over_starts(shown: Shown) -> bool:
+    """Whether a sweep's axes are the start's x and y, over a few actuators."""
+    found = {scale.axis.field.path for scale in shown.axes}
+    return found == set(STARTS) and 0 < len(shown.findings.actuators) <= MOST_ACTUATORS
+
+
+class Basins:
+    """Where parts are carried from where, over the start's x and y."""
+
+    def __init__(self, shown: Shown) -> None:
+        turned = shown.axes[0].axis.field.path == STARTS[1]
+        places = [Scale.of(scale.axis, np.sort(scale.axis.values)) for scale in shown.axes]
+        self.across, self.up = reversed(places) if turned else places
+        self.findings = shown.findings
+        actuators = shown.findings.actuators
+        away = np.linalg.norm(shown.end[..., None, :] - actuators, axis=-1)  # (n, m, repeats, N)
+        numbers, staying = shown.usual_outcome, [OUTCOMES.index(outcome.value) for outcome in STAYING]
+        nearest = np.argmin(mean(np.moveaxis(away, -2, -1)), axis=-1)
+        widest = np.ptp(actuators, axis=0).max() if len(actuators) > 1 else np.abs(self.across.values).max()
+        self.near = SHORT * float(widest)
+        carried = shown.mean_distance > self.near
+        classes = np.where(np.isin(numbers, staying), len(OUTCOMES) + np.where(carried, 1 + nearest, 0), numbers)
+        lengths = np.where(np.isin(numbers, staying), mean(away.min(axis=-1)), np.nan)
+        holds = shown.holds
+        if turned:
+            classes, lengths, holds = classes.T, lengths.T, None if holds is None else holds.T
+        self.classes, self.lengths, self.holds = classes, lengths, holds
+
+    def draw_carried(self, axes: Axes) -> None:
+        """Draw the actuator that is nearest to the end."""
+        count, unit = len(self.findings.actuators), readable(np.array([self.near]), "m")
+        stays = f"carried less than {self.near * unit.per_si:.2g} {unit.name}"
+        names = (*OUTCOMES, stays, *(f"carried, nearest to actuator {k}" for k in range(count)))
+        colours = (*COLOURS, STAYS, *(colormaps["tab20"](2 * k % 20 + 2 * k // 20) for k in range(count)))
+        draw_classes(axes, self.across, self.up, self.classes, names, colours)
+        self._draw_plate(axes)
+
+    def draw_nearness(self, figure: Figure, axes: Axes) -> None:
+        """Draw how near the end is to the nearest actuator."""
+        known = self.lengths[np.isfinite(self.lengths)]
+        unit = readable(known if known.size else np.zeros(1), "m")
+        draw_field(figure, axes, self.across, self.up, self.lengths, NEARNESS, unit)
+        self._draw_plate(axes)
+
+    def _draw_plate(self, axes: Axes) -> None:
+        """Draw the rim, the actuators and the threshold's line, without making the frame larger."""
+        scale = np.array([self.across.unit.per_si, self.up.unit.per_si])
+        limits = axes.get_xlim(), axes.get_ylim()
+        axes.add_collection(LineCollection([curve * scale for curve in self.findings.rim], colors="black"))
+        actuators = self.findings.actuators * scale
+        axes.plot(*actuators.T, "^", color="white", markeredgecolor="black", markersize=7)
+        look: dict[str, Any] = {"textcoords": "offset points", "fontsize": "small", "path_effects": [WHITE]}
+        for k, place in enumerate(actuators):
+            axes.annotate(str(k), place, (4, 4), clip_on=True, **look)
+        axes.set_aspect("equal")
+        axes.set_xlim(*limits[0])
+        axes.set_ylim(*limits[1])
+        draw_outline(axes, self.across, self.up, self.holds)

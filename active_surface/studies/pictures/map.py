@@ -1,0 +1,55 @@
+"""The picture of a sweep: curves over one axis, maps over two, places of random points, basins over starts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from active_surface.studies.pictures.findings import Findings
+from active_surface.studies.pictures.panel import panels
+from active_surface.studies.pictures.shown import Shown
+from active_surface.studies.study import Study
+from coupling import whole_file
+
+if TYPE_CHECKING:
+    import xarray
+
+WIDTH, HEIGHT = 6.2, 5.2  # inches, of a panel
+
+
+def draw_sweep(study: Study, dataset: xarray.Dataset, path: Path) -> Path:
+    """Draws the results of a study into a PNG file; returns that.
+
+    Of a grid the two axes with the most values are drawn, the others at their middle value; of repeats the mean.
+    """
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    compose(figure, Findings.of(study.name, dataset, study.threshold))
+    with whole_file(path) as partial:
+        figure.savefig(partial, dpi=110)
+    return path
+
+
+def compose(figure: Figure, findings: Findings) -> None:
+    """Draws the results of a sweep into an empty figure."""
+    shown = Shown.of(findings)
+    drawn = panels(shown)
+    figure.set_size_inches(WIDTH * len(drawn), HEIGHT)
+    figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
+    places = [figure.add_subplot(1, len(drawn), k + 1) for k in range(len(drawn))]
+    for axes, panel in zip(places, drawn, strict=True):
+        panel.draw(figure, axes)
+        axes.set_title(panel.title, fontsize=10, parse_math=False)
+    figure.suptitle(f"{findings.name}: {about(shown)}", parse_math=False)
+
+
+def about(shown: Shown) -> str:
+    """What is shown, in words."""
+    of, drawn, repeats = shown.findings.dataset["outcome"].size, shown.outcome.size, shown.findings.repeats
+    said = [f"{of} paths" if drawn == of else f"{drawn} of {of} paths"]
+    if repeats > 1:
+        said.append(f"mean of {repeats} starts")
+    return ", ".join(said + [f"{name} = {text}" for name, text in shown.fixed.items()])

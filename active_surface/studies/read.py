@@ -1,0 +1,96 @@
+"""Reading a study file: every mistake in it at once, those of its axes against the base case among them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from active_surface.studies.axes import Axes
+from active_surface.studies.points import Points
+from active_surface.studies.refusal import all_refused
+from active_surface.studies.study import Study
+from active_surface.studies.tables import MOST_PATHS, TABLES, AxisTable, StudyTable, StudyTables
+from coupling.case import UNITS_REQUIRED, WRONG, Case, CaseError, Location, find_problems, load, read_case
+
+Mistake = tuple[Location, str]
+
+
+def read_study(path: str | os.PathLike[str], case: Case | None = None) -> Study:
+    """Read the study file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read.
+
+    case: its base case; None: that of the file that it names.
+    """
+    text, data = load(path)
+    errors: list[Any] = []
+    threshold = None
+    try:
+        threshold = StudyTables.model_validate(data, context=UNITS_REQUIRED).map.threshold
+    except ValidationError as error:
+        errors += error.errors()
+    study, mistakes = _study(Path(path), text, data, case)
+    if study and threshold and (message := _undrawn(study.points)):
+        mistakes.append((("map", "threshold"), message))
+    if study and not errors and not mistakes and (message := all_refused(study)):
+        mistakes = [(("axes",), message)]
+    for location, message in mistakes:
+        errors.append({"type": "value_error", "loc": location, "input": None, "ctx": {"error": ValueError(message)}})
+    if errors:
+        found = ValidationError.from_exception_data("StudyTables", errors)
+        raise CaseError(os.fspath(path), find_problems(found, text, data, TABLES))
+    assert study
+    return replace(study, threshold=threshold)
+
+
+def _study(path: Path, text: str, data: Mapping[str, Any], case: Case | None) -> tuple[Study | None, list[Mistake]]:
+    """The study, None where it is not known, and what is wrong with it beyond each table by itself."""
+    table = data.get("study")
+    given = StudyTable.values_of(table if isinstance(table, dict) else {}, UNITS_REQUIRED)
+    mistakes: list[Mistake] = []
+    if case is None:
+        case, mistakes = _case(path, given["case"])
+    written = data.get("axes")
+    tables = [table for table in written if isinstance(table, dict)] if isinstance(written, list) else []
+    axes = Axes(case, [AxisTable.values_of(table, UNITS_REQUIRED) for table in tables], given["sampling"])
+    mistakes += axes.mistakes
+    if written == []:
+        mistakes.append((("axes",), "must be at least one table, written [[axes]]; got none"))
+    if case is None or not axes.whole or WRONG in given.values():
+        return None, mistakes
+    points = Points(
+        axes.axes,
+        given["sampling"],
+        given["points"] or 0,
+        given["repeats"],
+        given["jitter"],
+        given["seed"],
+    )
+    if len(points) > MOST_PATHS:
+        mistakes.append((("axes",), f"must make at most {MOST_PATHS} paths; got {len(points)}"))
+    return Study(case, points, path.stem, text), mistakes
+
+
+def _undrawn(points: Points) -> str:
+    """Why there is no place where a condition begins; "": there is."""
+    if points.sampling != "grid" or len(points.axes) < 2:
+        return "must not be given without a grid over two axes, between whose points a condition begins to hold"
+    last = points.longest[-1]
+    return f"must not be given with texts along the second axis, {last.name}" if last.field.kind == "text" else ""
+
+
+def _case(path: Path, name: Any) -> tuple[Case | None, list[Mistake]]:
+    """The base case, and what is wrong with it."""
+    where: Location = ("study", "case")
+    if name is WRONG:
+        return None, []
+    try:
+        case = read_case(path.parent / name)
+    except CaseError as error:
+        return None, [(where, "must be the file of a case; " + str(error).replace("\n", "\n    "))]
+    if case.run.scheme != "events":
+        return case, [(where, f'must have run.scheme = "events", by which sweeps go; got "{case.run.scheme}"')]
+    return case, []

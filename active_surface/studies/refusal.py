@@ -1,0 +1,87 @@
+"""Points of a study that cannot be run: how many mistakes they have, and what these are."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from active_surface.studies.study import Study
+from active_surface.studies.variants import Variants
+from coupling import friction_law
+from coupling.case import (
+    LACKS_DEFAULT,
+    SAME_PLACE,
+    TABLES,
+    Case,
+    FrictionCase,
+    PlateCase,
+    beyond,
+    gaps,
+    half_size,
+    in_file,
+    message_of,
+    shown_location,
+)
+from particle.friction import Contact
+
+FloatArray = NDArray[np.float64]
+
+TRIED = 64  # points, before the work begins
+LAWS = 256  # kept
+
+
+def all_refused(study: Study) -> str:
+    """What is wrong where every point of a study that is tried is refused; "" where one is not."""
+    variants = Variants(study.case, study.points.axes)
+    places = np.unique(np.linspace(0, len(study.points) - 1, TRIED).astype(np.int64)).tolist()
+    first = ""
+    for k in places:
+        messages = refusals(study, variants, k)
+        if not messages:
+            return ""
+        first = first or "; ".join(messages)
+    tried = "every point" if len(places) == len(study.points) else f"each of {len(places)} points that were tried"
+    return f"lead to a case that cannot be run at {tried}: {first}"
+
+
+def refusals(study: Study, variants: Variants, k: int) -> list[str]:
+    """What is wrong with path k of a study; nothing: it can be run."""
+    (values,) = study.points.values(k, k + 1)
+    try:
+        case, base = variants.at(values)
+        start = study.points.displacements(k, k + 1)[0] + case.part.position
+    except ValidationError as error:
+        return mistakes_of(error)
+    return [law] if isinstance(law := contact_of(case.friction), str) else start_faults(base.case, start[None])[0]
+
+
+def mistakes_of(error: ValidationError) -> list[str]:
+    """What is wrong with the tables of a case."""
+    details = [detail for detail in error.errors() if detail["type"] != LACKS_DEFAULT]
+    return [f"{shown_location(in_file(detail))} {message_of(detail, detail['input'], TABLES)}" for detail in details]
+
+
+@lru_cache(LAWS)
+def contact_of(friction: FrictionCase) -> Contact | str:
+    """The friction law of a case's table, or what is wrong with it."""
+    try:
+        law = friction_law(friction)
+        law.law  # noqa: B018  # made when it is first asked for
+    except (ValueError, ArithmeticError) as error:
+        return str(error)
+    return law
+
+
+def start_faults(case: Case, starts: FloatArray) -> list[list[str]]:
+    """For each start (n, 2) [m] what is wrong with it, nothing where it is on the plate."""
+    if not isinstance(case.plate, PlateCase):
+        return [[] for _ in starts]
+    mesh = case.plate.coarse_mesh
+    least = SAME_PLACE * half_size(mesh)
+    return [
+        [] if gap > least else [f"part.position must be inside the rim; got a point {beyond(gap, least, 'um')}"]
+        for gap in gaps(mesh, [(x, y) for x, y in starts.tolist()])
+    ]

@@ -1,0 +1,46 @@
+"""A sweep in words and in numbers: what the command prints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from active_surface.studies.run import Sweep
+
+MICRO = 1e6
+
+
+def figures(sweep: Sweep) -> dict[str, Any]:
+    """The figures of a sweep by name."""
+    return {
+        "paths": len(sweep.study.points),
+        "dimensions": sweep.study.points.dimensions,
+        "outcomes": sweep.outcomes,
+        "first_refused": sweep.first_refused,
+        "warnings": sweep.warnings,
+        "largest_distance": _largest(sweep),
+        "files": [str(file) for file in sweep.files],
+    }
+
+
+def lines(sweep: Sweep) -> list[tuple[str, str]]:
+    """Rows (label, text) to print."""
+    sizes = sweep.study.points.dimensions
+    plural = {"point": "points", "repeat": "repeats"}
+    shape = " x ".join(f"{count} {plural.get(name, name)}" for name, count in sizes.items())
+    rows = [
+        ("paths", f"{len(sweep.study.points)}: {shape}"),
+        ("outcomes", ", ".join(f"{count} {name}" for name, count in sweep.outcomes.items())),
+    ]
+    if (largest := _largest(sweep)) is not None:
+        rows.append(("distance", f"{largest * MICRO:.4f} um at most"))
+    if wrong := sweep.first_refused:
+        rows.append(("refused", f"the first for {'; '.join(wrong)}"))
+    return rows + [("wrote", str(file)) for file in sweep.files]
+
+
+def _largest(sweep: Sweep) -> float | None:
+    """The largest distance [m] that a part went; None: there was no path."""
+    distances = sweep.dataset["distance"].values
+    return None if np.isnan(distances).all() else float(np.nanmax(distances))

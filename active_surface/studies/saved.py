@@ -1,0 +1,51 @@
+"""A sweep read back from the file of its results."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from active_surface.studies.dataset import differences, key_of, read_dataset
+from active_surface.studies.read import read_study
+from active_surface.studies.study import Study
+from coupling.case import CaseError, read_case
+
+if TYPE_CHECKING:
+    import xarray
+
+WANTED = "Input path must be a result of `active-surface sweep`"
+VERSIONS = "versions"  # the trait that may differ
+
+
+def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Dataset]:
+    """The study whose results a netCDF file holds, and these, which are read when they are needed until closed.
+
+    study: that study, if its file is at hand; None: it is read from what the results say of it.
+    Raises ValueError when there is no such file or it holds something else, when it is of another study, and when its
+    case reads files that are not there.
+    """
+    if not path.is_file():
+        raise ValueError(f"{WANTED}; got {path}, and there is no such file")
+    if key_of(path) is None:
+        raise ValueError(f"{WANTED}; got {path}, which is something else")
+    if study is not None:
+        others = [name for name in differences(study, path) if name != VERSIONS]
+        if others:
+            raise ValueError(f"{WANTED} of {study.name}; got {path}, which is of other {' and '.join(others)}")
+        return study, read_dataset(path)
+    with read_dataset(path) as dataset:
+        texts = {name: str(dataset.attrs[name]) for name in ("study", "case")}
+    if not texts["study"]:
+        raise ValueError(f"{WANTED}; got {path}, whose study was made without a file")
+    with tempfile.TemporaryDirectory() as folder:
+        files = {name: Path(folder, name, f"{path.stem}.toml") for name in texts}
+        for name, file in files.items():
+            file.parent.mkdir()
+            file.write_text(texts[name], encoding="utf-8")
+        try:
+            return read_study(files["study"], read_case(files["case"])), read_dataset(path)
+        except CaseError as error:
+            raise ValueError(
+                f"{path}: what it says of its study cannot be read; give the study file in its place\n{error}"
+            ) from error

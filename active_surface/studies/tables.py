@@ -1,0 +1,129 @@
+"""The tables of a study file: [study], and [[axes]] once for each axis."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, Field, PlainValidator, StrictInt, StrictStr, WithJsonSchema
+
+from active_surface.studies.points import Sampling
+from active_surface.studies.record import COLUMNS
+from active_surface.studies.threshold import Threshold, read_threshold
+from coupling.case import WRONG, Contradictions, KeyedTable, Length, Table, shown
+
+MOST_PATHS, MOST_VALUES = 1_000_000_000, 1_000_000
+
+
+TAKEN = ("point", "repeat", *COLUMNS)
+"""Names that the results have themselves."""
+
+
+def _several(value: object) -> object:
+    if not isinstance(value, list) or not value:
+        raise ValueError(f'must be a list of values such as ["300 Hz", "400 Hz"]; got {shown(value)}')
+    return value
+
+
+def _two(value: object) -> object:
+    if not isinstance(value, list) or len(value) != 2:
+        raise ValueError(f'must be the first and the last value, such as ["200 Hz", "600 Hz"]; got {shown(value)}')
+    return value
+
+
+class _File:
+    wanted = 'the name of a case file such as "two_actuators.toml"'
+
+
+class _Path:
+    wanted = 'the path of a field such as "actuators.0.frequency"'
+
+
+def _name(value: object) -> object:
+    if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z][\w.*-]*", value) or value in TAKEN:
+        rule = "a letter, followed by letters, digits or any of _ . * -, and none of the results' own names"
+        raise ValueError(f"must be {rule}; got {shown(value)}")
+    return value
+
+
+class StudyTable(KeyedTable):
+    """What is swept, and how points are chosen; jitter in m."""
+
+    case: Annotated[StrictStr, _File()] = Field(examples=["one_actuator.toml"])
+    """The base case, a file beside the study's."""
+    sampling: Sampling = "grid"
+    """How points are chosen: all of a grid, one for each entry of lists, or drawn."""
+    points: StrictInt | None = Field(default=None, ge=1, le=MOST_PATHS, examples=[1000])
+    """How many, of random and Sobol ones."""
+    repeats: StrictInt = Field(default=1, ge=1, le=1_000_000, examples=[10])
+    """How many paths there are of each point."""
+    jitter: Length = Field(default=0.0, ge=0, examples=["1 um"])
+    """How far the starts of repeats are displaced at most."""
+    seed: StrictInt = Field(default=0, ge=0, lt=2**32)
+    """From which random numbers follow."""
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        sampling = given.get("sampling", "grid")
+        if sampling in ("random", "sobol") and "points" not in given:
+            yield "points", f'is missing; with sampling = "{sampling}" it must be a whole number'
+        if sampling in ("grid", "list") and "points" in given:
+            yield "points", f'must not be given with sampling = "{sampling}", whose axes tell the points'
+        if given.get("repeats", 1) not in (1, WRONG) and given.get("jitter", 0.0) == 0.0:
+            yield "repeats", 'must not be given without a jitter such as "1 um": the paths would all be the same'
+
+
+class AxisTable(KeyedTable):
+    """An axis: the path of a `field` of the case, and its `values`, or their `range` and `count`."""
+
+    field: Annotated[StrictStr, _Path()] = Field(examples=["actuators.*.frequency"])
+    """The field of the case that is varied; * stands for every actuator."""
+    name: Annotated[str, BeforeValidator(_name)] | None = Field(default=None, examples=["frequency"])
+    """The axis's name in the results; without it the field's."""
+    values: Annotated[tuple[Any, ...], BeforeValidator(_several)] | None = Field(
+        default=None, examples=[["300 Hz", "400 Hz"]]
+    )
+    """The values that it takes."""
+    range: Annotated[tuple[Any, Any], BeforeValidator(_two)] | None = Field(
+        default=None, examples=[["200 Hz", "600 Hz"]]
+    )
+    """In place of values: the first and the last."""
+    count: StrictInt | None = Field(default=None, ge=1, le=MOST_VALUES, examples=[41])
+    """How many values a range has."""
+    spacing: Literal["linear", "logarithmic"] = "linear"
+    """How those of a range lie."""
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        if "values" in given and "range" in given:
+            yield "range", "must not be given with values"
+        elif "values" not in given and "range" not in given:
+            yield "values", "is missing; it must be a list of values, or have range and count in its place"
+        for key in ("count", "spacing"):
+            if key in given and "values" in given and "range" not in given:
+                yield key, "must not be given with values; it belongs to a range"
+
+
+class MapTable(Table):
+    """What the picture shows: where the condition `threshold` begins to hold."""
+
+    threshold: Annotated[Threshold, PlainValidator(read_threshold), WithJsonSchema({"type": "string"})] | None = Field(
+        default=None, examples=["distance > 1 um"]
+    )
+    """A condition; the picture shows where it begins to hold."""
+
+
+class StudyTables(Table):
+    """All that a study file holds."""
+
+    study: StudyTable
+    """What is swept, and how."""
+    axes: tuple[AxisTable, ...]
+    """The axes, one table each."""
+    map: MapTable = MapTable()
+    """The picture."""
+
+
+TABLES: dict[str, type[BaseModel]] = {"": StudyTables, "study": StudyTable, "axes": AxisTable, "map": MapTable}
+"""The models by the names of their tables."""

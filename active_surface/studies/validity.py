@@ -1,0 +1,85 @@
+"""Validity: where the model of a sweep's plates stops holding, as a run would say it of a few of its points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
+from typing import Any, Final
+
+import numpy as np
+
+from active_surface.studies.engine import FAILURES
+from active_surface.studies.points import Points
+from active_surface.studies.study import Study
+from active_surface.studies.variants import Variants
+from coupling import PlateSummary, report, run_case
+from coupling.case import Case, PlatformCase
+
+CHECKED: Final = 4  # corners, besides the base case
+SEEN: Final = 4096  # points among which the corners of other samplings than a grid are looked for
+FIGURES: Final = (
+    "plate_error",
+    "surface_error",
+    "deflection_over_thickness",
+    "linear_path_error",
+    "largest_slope",
+    "drive_over_first",
+    "quasi_static_error",
+    "plate_rings",
+    "part_curvature",
+    "energy_balance",
+)
+
+
+def model_warnings(study: Study) -> tuple[str, ...]:
+    """What a run warns about, each with the worst figure of the base case and a few corners of the study's axes.
+
+    Those that cannot be run are left out, and what a run says of its own files and of the digits of its path. A rigid
+    platform has nothing to be warned about.
+    """
+    if isinstance(study.case.plate, PlatformCase):
+        return ()
+    summaries = []
+    for case in _cases(study):
+        try:
+            summary = run_case(case).summary
+        except FAILURES:
+            continue
+        if isinstance(summary, PlateSummary):
+            summaries.append(summary)
+    if not summaries:
+        return ()
+    known = {name: [value for one in summaries if (value := getattr(one, name)) is not None] for name in FIGURES}
+    worst: dict[str, Any] = {name: max(values, default=None) for name, values in known.items()}
+    return tuple(report.warnings(replace(summaries[0], path_error=0.0, frames_per_cycle=None, **worst)))
+
+
+def _cases(study: Study) -> Iterator[Case]:
+    yield study.case
+    variants, points = Variants(study.case, study.points.axes), study.points
+    for point in corners(points):
+        path = point * points.repeats
+        try:
+            yield variants.at(points.values(path, path + 1)[0])[0]
+        except FAILURES:
+            continue
+
+
+def corners(points: Points) -> list[int]:
+    """A few points at which axes have their least or greatest value."""
+    if points.sampling == "grid":
+        ends = [_ends(np.array(axis.values, axis.kind)) for axis in points.axes]
+        found = [int(np.ravel_multi_index(at, [len(axis.values) for axis in points.axes])) for at in product(*ends)]
+    else:
+        count = min(points.dimensions["point"], SEEN)
+        found = [end for column in points.columns(0, count) for end in _ends(column)]
+    found = list(dict.fromkeys(found))
+    return [found[k] for k in sorted({*np.linspace(0, len(found) - 1, CHECKED).astype(int).tolist()})]
+
+
+def _ends(values: np.ndarray[tuple[int], np.dtype[np.generic]]) -> tuple[int, int]:
+    """Where values (n,) are least and greatest; texts: the first and the last."""
+    if values.dtype == object:
+        return 0, len(values) - 1
+    return int(np.argmin(values)), int(np.argmax(values))

@@ -1,0 +1,7 @@
+from .film.animation import Animation as Animation, animate as animate, still as still
+from .pages.run_page import write_run_page as write_run_page
+from .pages.study_page import write_study_page as write_study_page
+from .prints.plots import plot as plot
+
+# Not public: for the packages that build on this one.
+from .found import is_of as is_of, result_of as result_of

@@ -1,0 +1,1 @@
+from .animation import animate as animate

@@ -1,0 +1,215 @@
+"""Animation: from a result to a film. This file reads as the pipeline.
+
+run -> stage -> pace -> layout -> painter -> frames, each painted and captioned -> film file
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from active_surface.views.film.camera import Camera, camera_of
+from active_surface.views.film.captions import Captions
+from active_surface.views.film.film_file import check_film, film_file, format_of
+from active_surface.views.film.frames import frames_of
+from active_surface.views.film.layout import layout_of, size_of
+from active_surface.views.film.look import Look
+from active_surface.views.film.pace import Pace, pace_of, warnings_of
+from active_surface.views.film.painter import chosen, painter
+from active_surface.views.film.stage import Stage, stage_of
+from coupling import Tell, build_drives, untold
+from coupling.case import Case, load
+from coupling.results import SavedRun, check_folder, read_run
+
+FloatArray = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
+SIZE = {"mp4": (1280, 720), "gif": (800, 450), "png": (1280, 720)}
+
+SWEEP = "`active-surface view` and `active-surface plot` show it"
+OTHERS = {
+    ".toml": "a case file: name the result, such as results/{name} after `active-surface run`",
+    "study": "a study file: it is of a sweep, and " + SWEEP,
+    "aim": "an aim file: name the result of the case file that `active-surface aim` writes",
+    ".nc": "which is of a sweep: " + SWEEP,
+}
+HELP = "It needs OpenGL; Debian has it in libegl1 and libgl1-mesa-dri."
+
+
+@dataclass(frozen=True)
+class Animation:
+    """A film that was made."""
+
+    file: Path  # of PNG pictures their folder
+    frames: int
+    fps: float  # frames a second
+    slow_motion: float  # seconds of film for each second of the run
+    exaggeration: float  # of heights
+    renderer: str
+    warnings: tuple[str, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything, for JSON."""
+        return vars(self) | {"file": str(self.file), "warnings": list(self.warnings)}
+
+
+def animate(
+    result: str | Path | SavedRun,
+    output: str | Path | None = None,
+    *,
+    kind: str | None = None,
+    camera: str | Camera = "iso",
+    fps: float | None = None,
+    slow_motion: float | None = None,
+    exaggeration: float | None = None,
+    size: str | tuple[int, int] | None = None,
+    renderer: str = "auto",
+    tell: Tell = untold,
+) -> Animation:
+    """Make a film of a run.
+
+    result: one of its files, FOLDER/NAME, or what `read_run` gives.  output: file of the film, or folder of its
+    pictures; without one NAME.mp4 beside the result.  kind: "mp4", "gif" or "png"; without one as `output` ends.
+    camera: a name in `CAMERAS`, "azimuth,elevation" in degrees, or a camera.  fps: frames a second.  slow_motion:
+    seconds of film for each second of the run; without it the film lasts about 8 s.  exaggeration: of heights;
+    without it a round number that shows them.  size: "WIDTHxHEIGHT" in pixels, or the two numbers.  renderer:
+    "pyvista", "matplotlib", or "auto", pyvista where it can draw.  tell: gets how many frames are done, and of how
+    many.
+
+    Between stored steps heights are interpolated linearly. An older film of that name is replaced.
+    Raises ValueError when the result cannot be read or an input is refused, OSError when the film cannot be written.
+    """
+    tries = _Tries()
+    form = tries(format_of, None if output is None else Path(output), kind) or "mp4"
+    rate, wanted = FPS[form] if fps is None else fps, SIZE[form] if size is None else size
+    view = tries(camera_of, camera)
+    wanted = tries(size_of, wanted) or SIZE[form]
+    for name, value in (("exaggeration", exaggeration), ("fps", rate), ("slow-motion", slow_motion)):
+        tries(_check_positive, name, value)
+    run = tries(_run_of, result)
+    tries.end()
+    path = _output(run, output, form)
+    tries(check_folder, path.parent)
+    pace = tries(pace_of, run.time, rate, slow_motion)
+    tries(check_film, path, form, wanted, rate, len(pace.times) if pace else 0)
+    taken, reason = tries(chosen, renderer) or ("", None)
+    tries.end()
+
+    stage = stage_of(run)
+    times = exaggeration or stage.exaggeration
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with film_file(path, form, wanted, rate) as film:
+        for k, image in enumerate(_images(stage, view, wanted, times, pace.times, pace, taken)):
+            film.add(image)
+            tell(k + 1, len(pace.times))
+    said = [] if reason is None else [f"pyvista cannot draw here, so matplotlib has: {reason}. {HELP}"]
+    said += warnings_of(pace, run.time, _cycle(run.case))
+    if not run.complete:
+        said.append("The result is partial: its run was interrupted, or has not ended. The film ends where it does.")
+    return Animation(path, len(pace.times), rate, pace.slow_motion, times, taken, tuple(said))
+
+
+def still(
+    result: str | Path | SavedRun,
+    time: float,
+    *,
+    camera: str | Camera = "iso",
+    exaggeration: float | None = None,
+    size: str | tuple[int, int] = SIZE["png"],
+    renderer: str = "auto",
+) -> Image:
+    """The picture (height, width, 3) of a film at a time [s]; otherwise as `animate`."""
+    tries = _Tries()
+    view, pixels = tries(camera_of, camera), tries(size_of, size)
+    tries(_check_positive, "exaggeration", exaggeration)
+    run = tries(_run_of, result)
+    tries.end()
+    if not run.time[0] <= time <= run.time[-1]:
+        raise ValueError(f"Input time must be from {run.time[0]:g} to {run.time[-1]:g} s; got {time!r}")
+    stage = stage_of(run)
+    taken, times = chosen(renderer)[0], exaggeration or stage.exaggeration
+    return next(_images(stage, view, pixels, times, np.array([time]), None, taken))
+
+
+def _images(
+    stage: Stage,
+    camera: Camera,
+    size: tuple[int, int],
+    exaggeration: float,
+    times: FloatArray,
+    pace: Pace | None,
+    renderer: str,
+) -> Iterator[Image]:
+    layout = layout_of(stage, camera, size, exaggeration)
+    captions = Captions(stage, layout, pace)
+    with painter(renderer, Look(stage, layout, stage.scale)) as drawn:
+        for frame in frames_of(stage, times):
+            yield captions.put_on(drawn.paint(frame), frame)
+
+
+def _output(run: SavedRun, output: str | Path | None, form: str) -> Path:
+    if output is None:
+        name = f"{run.name}.frames" if form == "png" else f"{run.name}.{form}"
+        return run.plate_path.with_name(name)
+    path = Path(output)
+    return path.with_suffix("") if form == "png" and path.suffix.lower() == ".png" else path
+
+
+class _Tries:
+    """Collects what is refused, to say it all at once."""
+
+    def __init__(self) -> None:
+        self._mistakes: list[str] = []
+
+    def __call__(self, work: Callable[..., Any], *arguments: object) -> Any:
+        """work(*arguments), or None where it is refused."""
+        try:
+            return work(*arguments)
+        except ValueError as error:
+            self._mistakes.append(str(error))
+            return None
+
+    def end(self) -> None:
+        """Raises ValueError with all that was refused."""
+        if self._mistakes:
+            raise ValueError("\n".join(self._mistakes))
+
+
+def _run_of(result: str | Path | SavedRun) -> SavedRun:
+    if isinstance(result, SavedRun):
+        return result
+    try:
+        return read_run(result)
+    except ValueError:
+        path = Path(result)
+        if path.suffix not in OTHERS:
+            raise
+        wanted = f"Input RESULT must be that of a run: one of its files, or FOLDER/NAME; got {path}"
+        raise ValueError(f"{wanted}, {OTHERS[_kind(path)].format(name=path.stem)}") from None
+
+
+def _kind(path: Path) -> str:
+    """Which of the OTHERS a file is."""
+    try:
+        _, tables = load(path) if path.suffix == ".toml" else ("", {})
+    except ValueError:  # no TOML
+        return path.suffix
+    return next((table for table in ("study", "aim") if table in tables), path.suffix)
+
+
+def _check_positive(name: str, value: float | None) -> None:
+    if value is not None and not (math.isfinite(value) and value > 0):
+        raise ValueError(f"Input {name} must be a finite number above 0; got {value!r}")
+
+
+def _cycle(case: Case) -> float | None:
+    """The time [s] of a cycle of the fastest drive; None: there are no cycles."""
+    fastest = max((drive.frequency for drive in build_drives(case)), default=0.0)
+    return 1 / fastest if fastest > 0 else None

@@ -1,0 +1,221 @@
+"""Captions: what a film says in words and scales, the same whoever draws the surface."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+from matplotlib.text import Text
+from matplotlib.ticker import MaxNLocator, StrMethodFormatter
+from numpy.typing import NDArray
+
+from active_surface.views.film.frames import Frame
+from active_surface.views.film.layout import BOTTOM, Layout
+from active_surface.views.film.pace import Pace
+from active_surface.views.film.stage import Stage
+from active_surface.views.rounding import round_below
+from coupling.case import PlatformCase
+from coupling.pictures import PATH_COLOUR, SHADES, STEPS, STICK_COLOUR, readable, stretches
+from particle import HALO, State
+
+Image = NDArray[np.uint8]
+
+DPI = 100
+LEAST_LETTER = 9.0  # pixels
+WORDS = {State.STICK: "part stuck", State.SLIP: "part slipping", State.FLIGHT: "part in flight"}
+COLOURS = {State.STICK: STICK_COLOUR, State.SLIP: PATH_COLOUR, State.FLIGHT: "#303030"}
+
+
+class Captions:
+    """Words and scales of a film. They are drawn once; clock, state and the time line's hand for each frame."""
+
+    def __init__(self, stage: Stage, layout: Layout, pace: Pace | None) -> None:
+        self._figure = Figure(figsize=(layout.width / DPI, layout.height / DPI), dpi=DPI, facecolor="none")
+        self._canvas = FigureCanvasAgg(self._figure)
+        self._letter = max(min(layout.height * 0.021, layout.width * 0.0165), LEAST_LETTER) * 72 / DPI  # points
+        self._stage, self._layout = stage, layout
+        self._time_unit = readable(stage.run.time, "s")
+        self._draw_bar()
+        self._draw_lengths()
+        self._draw_notes(pace)
+        if stage.window:
+            self._draw_map()
+        self._clock, self._state = self._draw_clock()
+        self._hand = self._draw_time_line()
+        self._canvas.draw()
+        self._still = self._canvas.copy_from_bbox(self._figure.bbox)
+
+    def put_on(self, image: Image, frame: Frame) -> Image:
+        """The picture (height, width, 3) with all captions of a frame."""
+        now = frame.time * self._time_unit.per_si
+        self._clock.set_text(f"{now:.{self._digits}f} {self._time_unit.name}")
+        flight = readable(np.array([frame.flight]), "m")
+        above = f", {frame.flight * flight.per_si:.3g} {flight.name} above" if frame.flight > 0 else ""
+        self._state.set_text(f"{WORDS[frame.state]}{above}")
+        self._state.set_color(COLOURS[frame.state])
+        self._hand.set_xdata([now])
+        self._canvas.restore_region(self._still)
+        for text in (self._clock, self._state):
+            self._figure.draw_artist(text)
+        self._figure.draw_artist(self._hand)
+        drawn = np.asarray(self._canvas.buffer_rgba())
+        touched = np.flatnonzero(drawn[..., 3].any(axis=1))
+        rows = slice(touched[0], touched[-1] + 1)
+        alpha = drawn[rows, :, 3:].astype(np.uint16)
+        result = image.copy()
+        result[rows] = ((image[rows] * (255 - alpha) + drawn[rows, :, :3] * alpha + 127) // 255).astype(np.uint8)
+        return result
+
+    def _draw_bar(self) -> None:
+        """The scale of colours, no longer than the heights that there are."""
+        if self._stage.flat:
+            return
+        low, high = (float(part) for part in (self._stage.reach[0].min(), self._stage.reach[1].max()))
+        scale = self._stage.scale
+        unit = scale.unit
+        tall = 0.38 if self._stage.window else 0.48
+        axes = self._figure.add_axes((0.89, BOTTOM + 0.12, 0.016, tall))
+        bar = self._figure.colorbar(ScalarMappable(scale.norm, scale.colours), cax=axes)
+        axes.set_ylim(low * unit.per_si, high * unit.per_si)
+        bar.set_ticks(MaxNLocator(6, steps=STEPS))
+        bar.ax.yaxis.set_major_formatter(StrMethodFormatter("{x:.7g}"))
+        axes.tick_params(labelsize=self._letter, pad=2, length=3)
+        axes.set_title(f"height [{unit.name}]", fontsize=self._letter, pad=self._letter)
+
+    def _draw_lengths(self) -> None:
+        """How long a length in the plane is across the picture, and how tall a height."""
+        layout, figure = self._layout, self._figure
+        left, bottom = 0.045 * layout.width, (BOTTOM + 0.01) * layout.height
+        whole = 0.13 * min(layout.width, layout.height)
+        dot: dict[str, Any] = {"color": "black", "linewidth": max(layout.height / 500, 1.0), "solid_capstyle": "butt"}
+        rise = float(abs(layout.camera.up[2])) * layout.exaggeration
+        for up, per_metre in ((False, layout.scale / layout.size), (True, layout.scale / layout.size * rise)):
+            if per_metre * layout.size < 0.05 * layout.scale or (up and self._stage.flat):
+                continue
+            length = round_below(whole / per_metre)
+            pixels = length * per_metre
+            unit = readable(np.array([length]), "m")
+            ends = ([left, left], [bottom, bottom + pixels]) if up else ([left, left + pixels], [bottom, bottom])
+            shares = [np.array(part) / side for part, side in zip(ends, (layout.width, layout.height), strict=True)]
+            figure.add_artist(Line2D(*shares, **dot))
+            text = f"{length * unit.per_si:.6g} {unit.name}"
+            place = (shares[0][-1], shares[1][-1])
+            if up:
+                kept: dict[str, Any] = {"ha": "left", "va": "bottom"}
+                figure.text(0.03, place[1] + 0.006, text + self._times, fontsize=self._letter * 0.9, **kept)
+            else:
+                figure.text(place[0] + 0.006, place[1], text, fontsize=self._letter * 0.9, va="center")
+
+    @property
+    def _times(self) -> str:
+        times = self._layout.exaggeration
+        return "" if times == 1 else f" (×{times:.6g})"
+
+    def _draw_notes(self, pace: Pace | None) -> None:
+        stage, letter = self._stage, self._letter
+        unit = readable(np.array([stage.mesh_width]), "m")
+        times = self._layout.exaggeration
+        said = [
+            "flat"
+            if stage.flat
+            else "heights true to scale"
+            if times == 1
+            else f"heights drawn {times:.6g} times larger",
+            f"squares of {stage.mesh_width * unit.per_si:.6g} {unit.name}",
+        ]
+        if pace is not None and len(pace.times) > 1:
+            said.append(pace.words)
+        if isinstance(stage.run.case.plate, PlatformCase):
+            said.append("seen from the platform")
+        grey: dict[str, Any] = {"fontsize": letter, "color": "#404040"}
+        self._fit(self._figure.text(0.5, 0.012, "   ·   ".join(said), ha="center", va="bottom", **grey), 0.97)
+        self._fit(self._figure.text(0.975, 0.972, stage.run.name, ha="right", va="top", parse_math=False, **grey), 0.6)
+        keys: list[Artist] = []
+        look: dict[str, Any] = {"color": "none", "marker": "o", "markeredgecolor": "black", "markersize": letter * 0.6}
+        if len(stage.actuators):
+            keys.append(Line2D([], [], markerfacecolor="white", label="actuator", **look))
+        if len(stage.trail):
+            keys.append(Line2D([], [], color=PATH_COLOUR, linewidth=letter * 0.2, label="trail"))
+        for state, (colour, name) in SHADES.items():
+            if (self._rows[1] == state).any():
+                keys.append(Patch(color=colour, alpha=0.25, linewidth=0, label=name))
+        if keys:
+            place: dict[str, Any] = {
+                "loc": "lower right",
+                "bbox_to_anchor": (0.985, 0.115),
+                "borderpad": 0,
+                "labelspacing": 0.3,
+            }
+            self._figure.legend(handles=keys, fontsize=letter * 0.9, frameon=False, handlelength=1.4, **place)
+
+    def _fit(self, text: Text, share: float) -> None:
+        """Make letters so small that a text is no wider than a share of the picture."""
+        wide = text.get_window_extent(self._canvas.get_renderer()).width / self._layout.width
+        text.set_fontsize(float(text.get_fontsize()) * min(1.0, share / wide))
+
+    @property
+    def _rows(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """When (r,), in the clock's unit, the part came to its states (r,), as far as the run is stored."""
+        run = self._stage.run
+        known = run.rows.time <= run.time[-1]
+        state = run.rows.state[known]
+        return np.append(run.rows.time[known], run.time[-1]) * self._time_unit.per_si, np.append(state, state[-1:])
+
+    def _draw_clock(self) -> tuple[Text, Text]:
+        last, frames = self._stage.run.time[-1] * self._time_unit.per_si, 250
+        self._digits = int(np.clip(np.ceil(np.log10(frames / last)), 0, 6)) if last > 0 else 0
+        common: dict[str, Any] = {"ha": "left", "va": "top", "animated": True, "path_effects": HALO}
+        clock = self._figure.text(0.03, 0.972, "", fontsize=1.9 * self._letter, weight="bold", **common)
+        below = 0.972 - 2.7 * self._letter * DPI / 72 / self._layout.height
+        state = self._figure.text(0.031, below, "", fontsize=1.15 * self._letter, **common)
+        return clock, state
+
+    def _draw_time_line(self) -> Line2D:
+        run, unit, letter = self._stage.run, self._time_unit, self._letter
+        axes = self._figure.add_axes((0.045, 0.09, 0.8, 0.024), facecolor="none")
+        edges = run.time * unit.per_si
+        rows, known = self._rows
+        for state, (colour, _) in SHADES.items():
+            parts = [(rows[begin], rows[end] - rows[begin]) for begin, end in stretches(known == state)]
+            axes.broken_barh(parts, (0, 1), color=colour, alpha=0.25, linewidth=0)
+        axes.set_yticks([])
+        axes.set_ylim(0, 1)
+        if len(edges) > 1:
+            axes.set_xlim(edges[0], edges[-1])
+            axes.xaxis.set_major_locator(MaxNLocator(10, steps=STEPS))
+        else:
+            axes.set_xlim(edges[0] - 1, edges[0] + 1)
+            axes.set_xticks(edges)
+        axes.tick_params(labelsize=0.9 * letter, length=2, pad=2)
+        self._figure.text(0.862, 0.0845, unit.name, fontsize=0.9 * letter, va="top")
+        for spine in axes.spines.values():
+            spine.set_linewidth(0.6)
+        return axes.axvline(edges[0], color="black", linewidth=max(letter / 6, 1.2), animated=True)
+
+    def _draw_map(self) -> None:
+        """Where on the plate the frame is."""
+        stage, layout = self._stage, self._layout
+        side = 0.2 * min(layout.width, layout.height)
+        axes = self._figure.add_axes(
+            (0.975 - side / layout.width, 0.92 - side / layout.height, side / layout.width, side / layout.height)
+        )
+
+        run = stage.run
+        axes.add_collection(LineCollection(list(stage.outer), colors="black", linewidths=0.8, clip_on=False))
+        corner, sides = stage.frame[0], np.ptp(stage.frame, axis=0)
+        axes.add_patch(
+            Rectangle(tuple(corner), *sides, facecolor=PATH_COLOUR, edgecolor=to_rgb(PATH_COLOUR), linewidth=1.5)
+        )
+        axes.set_aspect("equal", anchor="NE")
+        axes.set_axis_off()
+        axes.set_xlim(run.points[:, 0].min(), run.points[:, 0].max())
+        axes.set_ylim(run.points[:, 1].min(), run.points[:, 1].max())
+        axes.margins(0.02)

@@ -1,0 +1,52 @@
+"""A page as one file that needs nothing else: its texts, styles, programs, numbers, and the plotting library."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+from string import Template
+from typing import Any
+
+from coupling import whole_file
+
+PARTS = Path(__file__).parent / "page"
+
+
+def write_page(path: Path, title: str, body: str, texts: Mapping[str, str], data: Any, programs: Sequence[str]) -> Path:
+    """Writes a page as a whole or not at all; returns its path.
+
+    body: the name of the file in `page/` that has the page's elements, into which `texts`, already HTML, are put.
+    data: what `programs`, names of files in `page/`, find as `pageData`.
+    """
+    from plotly.offline import get_plotlyjs
+
+    text = Template(_part("page.html")).substitute(
+        title=escape(title),
+        style=_part("page.css"),
+        main=Template(_part(body)).substitute(texts),
+        data=json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c"),
+        library=get_plotlyjs(),
+        programs="\n".join(_part(name) for name in ("common.js", *programs)),
+    )
+    with whole_file(path) as partial:
+        partial.write_text(text, encoding="utf-8")
+    return path
+
+
+def rows_of(rows: Sequence[tuple[str, str]]) -> str:
+    """Labels and texts as the rows of a table; a label without text goes on with the one before."""
+    return "\n".join(f'<tr><th scope="row">{escape(label)}</th><td>{escape(text)}</td></tr>' for label, text in rows)
+
+
+def notes_of(warnings: Sequence[str]) -> str:
+    """Warnings as a list, or nothing."""
+    if not warnings:
+        return ""
+    items = "\n".join(f"<li>{escape(warning)}</li>" for warning in warnings)
+    return f'<section class="warnings" aria-label="Warnings"><h2>Warnings</h2><ul>\n{items}\n</ul></section>'
+
+
+def _part(name: str) -> str:
+    return (PARTS / name).read_text(encoding="utf-8")

@@ -1,0 +1,200 @@
+"""The numbers of a run as its page has them: a surface of modes, and the part on it, in units that are easy to read."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.colors import Normalize, to_hex
+from numpy.typing import NDArray
+
+from active_surface.views.lines import cut_in
+from active_surface.views.pages.modes import modes_of
+from active_surface.views.pages.packed import packed, packed_rows
+from active_surface.views.rounding import exaggeration
+from active_surface.views.triangles import Spots, coarse, inside, outer_edges, spots_of
+from coupling.pictures import Scale, Unit, extent, path_window, readable, stretches
+from coupling.results import SavedRun
+from particle import State
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+MOST_STEPS: Final = 1000  # of a page; of more, as many evenly spread
+MOST_POINTS: Final = 6000  # of its surface; of more, those around the path, or fewer of these
+MOST_ACTUATORS: Final = 1000  # that are marked
+MARGIN: Final = 0.1  # of the path's extent, of thinned surfaces around it
+AT_ONCE: Final = 64  # steps read together
+LINES, PER_LINE = 16, 64  # drawn on the surface along each side, and points on each
+STRETCHES: Final = {"stuck": State.STICK, "flying": State.FLIGHT}
+PLATE: Final = "the plate"
+COLOURS: Final = 11  # stops of the colour scale
+
+
+def run_data(run: SavedRun) -> dict[str, Any]:
+    """What the programs of the page read."""
+    steps = np.unique(np.linspace(0, len(run.time) - 1, min(len(run.time), MOST_STEPS)).astype(np.int64))
+    points, triangles = _around(run.points, run.triangles, run.position[:, :2])
+    heights = _heights(run, steps, points)
+    place = run.points[points]
+    length = float(np.ptp(place, axis=0).max())
+    along = readable(place, "m")
+    position = run.position[steps]
+    spots = spots_of(place, triangles, position[:, :2])
+    flying = run.state[steps] == State.FLIGHT
+    drawn = np.where(flying, position[:, 2], spots.heights(heights))
+    scale = Scale.of(np.array([heights.min(), heights.max()]))
+    highest = max(float(drawn.max()), float(heights.max()))
+    lowest = min(float(drawn.min()), float(heights.min()))
+    box = np.stack([place.min(axis=0), place.max(axis=0)])
+    window = path_window(run.rows.position, box, run.actuators)
+    modes = modes_of(heights, None if window is None else _close(place, triangles, window))
+    clock = readable(run.time, "s")
+    marked = np.flatnonzero(points < len(run.actuators))
+    shown = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
+    return {
+        "time": packed(run.time[steps] * clock.per_si, "f4"),
+        "units": {"time": clock.name, "length": along.name, "height": scale.unit.name},
+        "steps": {"shown": len(steps), "stored": len(run.time)},
+        "counted": _counted(run),
+        "exaggeration": [exaggeration(highest - lowest, length), _closer(position[:, 2], window)],
+        "window": None if window is None else (window * along.per_si).tolist(),
+        "perLength": scale.unit.per_si / along.per_si,
+        "surface": {
+            "x": packed(place[:, 0] * along.per_si, "f4"),
+            "y": packed(place[:, 1] * along.per_si, "f4"),
+            "triangles": packed(triangles, "u2"),
+            "shapes": packed_rows(modes.shapes, exact=window is not None),
+            "amplitudes": packed(modes.amplitudes * scale.unit.per_si, "f4"),
+            "range": (spread := [float(w) * scale.unit.per_si for w in (heights.min(), heights.max())]),
+            "colours": _colours(scale, *spread),
+            "extent": [lowest * scale.unit.per_si, highest * scale.unit.per_si],
+            "error": modes.error * scale.unit.per_si,
+            "rim": packed(outer_edges(triangles), "u2"),
+            "lines": [_lines(place, triangles, box) for box in ([box] if window is None else [box, window])],
+            "actuators": packed(marked if shown <= MOST_ACTUATORS else [], "u2"),
+            "unmarked": shown if shown > MOST_ACTUATORS else 0,
+            "whole": len(np.unique(run.triangles)) == len(points),
+        },
+        "part": {
+            "x": packed(position[:, 0] * along.per_si, "f4"),
+            "y": packed(position[:, 1] * along.per_si, "f4"),
+            "z": packed(drawn * scale.unit.per_si, "f4"),
+            "height": packed(position[:, 2] * scale.unit.per_si, "f4"),
+            "state": packed(run.state[steps], "u1"),
+            "below": _spots(spots),
+        },
+        "trail": _trail(place, triangles, position[:, :2], length),
+        "stretches": {name: packed(_stretches(run, state) * clock.per_si, "f4") for name, state in STRETCHES.items()},
+        "curves": _curves(run, steps, along),
+    }
+
+
+def _colours(scale: Scale, low: float, high: float) -> list[list[Any]]:
+    """The colours from the lowest to the highest height, as stops from 0 to 1."""
+    stops = np.linspace(0, 1, COLOURS)
+    norm = scale.norm if scale.highest > scale.lowest else Normalize(0, 1)
+    return [[stop, to_hex(scale.colours(norm(low + stop * (high - low))))] for stop in stops.tolist()]
+
+
+def _close(points: FloatArray, triangles: IntArray, window: FloatArray) -> NDArray[np.bool_]:
+    """Which points (n, 2) [m] have a triangle that reaches into a window (2, 2) [m]."""
+    corners = points[triangles]
+    reach = ((corners.max(axis=1) >= window[0]) & (corners.min(axis=1) <= window[1])).all(axis=1)
+    return np.isin(np.arange(len(points)), triangles[reach])
+
+
+def _closer(heights: FloatArray, window: FloatArray | None) -> float:
+    """How many times heights [m] along a path are drawn larger in a window (2, 2) [m]."""
+    return 1.0 if window is None else exaggeration(float(np.ptp(heights)), extent(window))
+
+
+def _around(points: FloatArray, triangles: IntArray, path: FloatArray) -> tuple[IntArray, IntArray]:
+    """The points that are drawn, by their numbers, and the triangles of these: all, or those around a path (k, 2) [m].
+
+    All of the path is on them: where that takes too many, they are thinned.
+    """
+    used = np.unique(triangles)
+    if len(used) > MOST_POINTS:
+        corners = points[triangles]
+        apart = np.maximum(corners.min(axis=1) - path.max(axis=0), path.min(axis=0) - corners.max(axis=1))
+        away = apart.max(axis=1).clip(0.0)  # of each triangle from the box of the path
+        first = np.full(len(points), np.inf)
+        np.minimum.at(first, triangles.ravel(), np.repeat(away, 3))
+        limit = np.partition(first[used], MOST_POINTS)[MOST_POINTS]
+        if limit > 0:
+            triangles = triangles[away < limit]
+        else:
+            triangles = coarse(points, triangles[away <= MARGIN * extent(path)], MOST_POINTS)
+        used = np.unique(triangles)
+    return used, np.searchsorted(used, triangles)
+
+
+def _heights(run: SavedRun, steps: IntArray, points: IntArray) -> FloatArray:
+    """The deflections (k, n) [m] of points at steps."""
+    heights = np.empty((len(steps), len(points)))
+    for start in range(0, len(steps), AT_ONCE):
+        some = slice(start, start + AT_ONCE)
+        heights[some] = run.plate_field("deflection", steps[some])[:, points]
+    return heights
+
+
+def _lines(points: FloatArray, triangles: IntArray, box: FloatArray) -> dict[str, Any]:
+    """Lines along x and y on the surface in a box (2, 2) [m], which show its form without colours."""
+    low, high = box
+    apart = float((high - low).max()) / LINES
+    pieces: list[FloatArray] = []
+    for axis in (0, 1):
+        count = max(int(np.ceil((high - low)[axis] / apart)), 1)
+        for c in low[axis] + (np.arange(count) + 0.5) * (high - low)[axis] / count:
+            line = np.empty((PER_LINE, 2))
+            line[:, axis], line[:, 1 - axis] = c, np.linspace(low[1 - axis], high[1 - axis], PER_LINE)
+            on = inside(points, triangles, line)
+            breaks = np.flatnonzero(np.diff(on.astype(int))) + 1
+            pieces += [piece for piece, o in zip(np.split(line, breaks), np.split(on, breaks), strict=True) if o[0]]
+    ends = np.cumsum([len(piece) for piece in pieces])
+    return _spots(spots_of(points, triangles, np.concatenate([points[:0], *pieces]))) | {"ends": packed(ends, "u4")}
+
+
+def _trail(points: FloatArray, triangles: IntArray, path: FloatArray, length: float) -> dict[str, Any]:
+    """Points along the path, so close that its line lies on the surface, each with the step at which it is passed."""
+    cell = length / np.sqrt(len(triangles)) if len(triangles) > 2 else length
+    steps = np.hypot(*np.diff(path, axis=0).T)
+    counts = np.where(steps > 0, np.ceil(2 * steps / cell), 0).astype(np.int64)
+    number, share = cut_in(counts)
+    places = path[number] * (1 - share)[:, None] + path[number + 1] * share[:, None]
+    spots = spots_of(points, triangles, places.reshape(-1, 2))
+    return _spots(spots) | {"step": packed(number, "u2")}
+
+
+def _spots(spots: Spots) -> dict[str, Any]:
+    return {"corners": packed(spots.corners, "u2"), "weights": packed(spots.weights[:, 1:], "f4")}
+
+
+def _stretches(run: SavedRun, state: State) -> FloatArray:
+    """When each stretch of a state begins and ends (s, 2) [s], as the integrator found it."""
+    rows = stretches(run.rows.state == state)
+    found = run.rows.time[np.array(rows, dtype=np.int64).reshape(-1, 2)]
+    return np.asarray(found[found[:, 0] < run.time[-1]].clip(max=run.time[-1]))
+
+
+def _counted(run: SavedRun) -> str:
+    """What positions are counted from, if it is not the plate."""
+    origin = run.summary.get("origin", PLATE)
+    return "" if origin == PLATE else f" on {origin}"
+
+
+def _curves(run: SavedRun, steps: IntArray, along: Unit) -> list[dict[str, Any]]:
+    """What is drawn over time, one pair of axes each."""
+    velocity = run.velocity[steps]
+    panels = [
+        ("Position", "m", {f"{axis}{_counted(run)}": run.position[steps, k] for k, axis in enumerate("xy")}),
+        ("Velocity", "m/s", {"along x": velocity[:, 0], "along y": velocity[:, 1]}),
+        ("Force", "N", {"normal load": run.normal_force[steps], "friction": run.friction_force[steps]}),
+    ]
+    found = []
+    for label, si, values in panels:
+        unit = along if si == "m" else readable(np.concatenate(list(values.values())), si)
+        lines = [{"name": name, "values": packed(v * unit.per_si, "f4")} for name, v in values.items()]
+        found.append({"label": label, "unit": unit.name, "lines": lines})
+    return found

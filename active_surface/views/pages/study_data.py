@@ -1,0 +1,102 @@
+"""The numbers of a sweep as its page has them: a map, a curve or points, and paths to look at."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
+from numpy.typing import NDArray
+
+from active_surface.studies import OUTCOMES, SENTENCES, Study
+from active_surface.studies.pictures import COLOURS, Scale, Shown, edges, outline
+from active_surface.views.pages.packed import packed, packed_rows
+from active_surface.views.pages.sweep_paths import Paths
+from coupling.case import Case, PlateCase
+from coupling.pictures import Unit, readable
+from meshes import rim_curves
+
+FloatArray = NDArray[np.float64]
+
+MOST_ENDS = 100_000  # of all starts; of more only the first of each point
+MOST_ACTUATORS = 400  # that are drawn
+RIM_STAYS = ("supports", "youngs_modulus", "poisson_ratio", "thickness", "density", "cell_size")  # keys of a plate
+STOPS = 9  # of the colour scale
+
+
+def study_data(study: Study, shown: Shown, starts: FloatArray, paths: Paths) -> dict[str, Any]:
+    """What the program of the page, `page/study.js`, reads; starts: (..., 2) m, of the first repeat of each cell."""
+    ends = shown.end if shown.end[..., 0].size <= MOST_ENDS else shown.end[..., :1, :]
+    places = np.concatenate([ends.reshape(-1, 2), starts.reshape(-1, 2)])
+    known = places[np.isfinite(places).all(axis=1)]
+    along = readable(known if len(known) else np.zeros((1, 2)), "m")
+    lengths = shown.mean_distance
+    finite = lengths[np.isfinite(lengths)]
+    unit = readable(finite if len(finite) else np.zeros(1), "m")
+    cells = {number: cell for cell, number in enumerate(shown.numbers[..., 0].ravel().tolist())}
+    lines = sorted((cells[number], line) for number, line in paths.lines.items())
+    every = np.concatenate([line for _, line in lines]) if lines else np.empty((0, 2))
+    return {
+        "kind": "points" if shown.findings.scattered else "map" if len(shown.axes) == 2 else "curve",
+        "axes": [_axis(scale, not shown.findings.scattered) for scale in shown.axes],
+        "others": [_axis(scale, False) for scale in _others(study, shown)],
+        "outline": outline(*shown.axes, shown.holds) if shown.holds is not None and len(shown.axes) == 2 else [],
+        "threshold": study.threshold.said if study.threshold else "",
+        "units": {"length": along.name, "distance": unit.name},
+        "distance": packed(lengths.ravel() * unit.per_si, "f4"),
+        "outcome": packed(shown.usual_outcome.ravel(), "u1"),
+        "outcomes": [list(pair) for pair in zip(OUTCOMES, SENTENCES, strict=True)],
+        "colours": COLOURS,
+        "scale": [[k / STOPS, to_hex(colormaps["viridis"](k / STOPS))] for k in range(STOPS + 1)],
+        "starts": packed(starts.reshape(-1, 2) * along.per_si, "f4"),
+        "ends": packed(ends * along.per_si, "f4"),
+        "repeats": shown.end.shape[-2],
+        "kept": ends.shape[-2],
+        "paths": {
+            "cells": packed([cell for cell, _ in lines], "u4"),
+            "stops": packed(np.cumsum([len(line) for _, line in lines]), "u4"),
+            "points": packed_rows(every.T * along.per_si),
+        },
+        "drawing": _drawing(study, along),
+    }
+
+
+def _others(study: Study, shown: Shown) -> list[Scale]:
+    """The axes of points that are not drawn."""
+    if not shown.findings.scattered:
+        return []
+    axes = study.points.axes
+    columns = study.points.columns(0, len(shown.distance))
+    return [Scale.of(axis, column) for axis, column in list(zip(axes, columns, strict=True))[len(shown.axes) :]]
+
+
+def _axis(scale: Scale, in_cells: bool) -> dict[str, Any]:
+    return {
+        "name": scale.axis.name,
+        "label": scale.label,
+        "unit": "" if scale.unit.name == "1" else scale.unit.name,
+        "values": packed(scale.drawn, "f8" if in_cells else "f4"),  # of points there are many
+        "edges": packed(edges(scale) if in_cells else [], "f8"),
+        "logarithmic": scale.logarithmic,
+        "texts": list(scale.texts),
+    }
+
+
+def _drawing(study: Study, along: Unit) -> dict[str, Any]:
+    """Rim and actuators, but for those that the axes move."""
+    case: Case = study.case
+    moved = [location for axis in study.points.axes for location in axis.field.locations]
+    rim: list[Any] = []
+    if isinstance(case.plate, PlateCase) and not any(
+        location[0] == "plate" and location[1] not in RIM_STAYS for location in moved
+    ):
+        outline = case.plate.coarse_mesh.outline
+        step = float(np.ptp(outline.box, axis=0).max()) / 200
+        rim = [packed(curve * along.per_si, "f4") for curve in rim_curves(outline, step)]
+    stay = not any(
+        location[0] == "lattice" or "position" in location[1:] for location in moved if location[0] != "part"
+    )
+    places = [actuator.position for actuator in case.actuators]
+    drawn = places if stay and len(places) <= MOST_ACTUATORS else []
+    return {"rim": rim, "actuators": packed(np.array(drawn).reshape(-1, 2) * along.per_si, "f4")}

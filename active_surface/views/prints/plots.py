@@ -1,0 +1,75 @@
+"""Plot: the pictures of a result, whatever it is of, into files for print."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from active_surface.studies import ENDING, key_of
+from active_surface.studies.pictures import read_findings
+from active_surface.views.prints.run_pictures import run_pictures
+from active_surface.views.prints.saved_portrait import portrait_of_saved
+from active_surface.views.prints.sheet import FORMATS, WIDTH, Picture, drawn, save
+from active_surface.views.prints.sweep_pictures import sweep_pictures
+from coupling.results import is_run, read_run
+
+
+class Plotted(NamedTuple):
+    """A picture in its files."""
+
+    caption: str
+    files: tuple[Path, ...]
+    complete: bool = True  # whether the result is that of a whole run
+
+
+def plot(
+    path: str | Path,
+    output: str | Path | None = None,
+    formats: Sequence[str] = FORMATS[:1],
+    width: float = WIDTH,
+    x: str | None = None,
+    y: str | None = None,
+    value: str | None = None,
+) -> list[Plotted]:
+    """Draw a run or a sweep into a folder, by default that of the result: NAME.path.pdf, NAME.time.pdf and so on.
+
+    path: a file that a run or sweep left, or FOLDER/NAME of a run.  formats: of "pdf", "svg", "png".
+    width: mm.  x, y: of a sweep, the names of the axes that are shown.  value: a column of its results, only that.
+    Raises ValueError for a path to anything else, a format, width or name that there is not, OSError when a picture
+    cannot be written.
+    """
+    unknown = [kind for kind in formats if kind not in FORMATS]
+    if unknown:
+        raise ValueError(f"Input formats must be of {', '.join(FORMATS)}; got {', '.join(unknown)}")
+    name, pictures, complete = _pictures(Path(path), x, y, value)
+    figures = [drawn(picture, width) for picture in pictures]  # all of them, before a file is written
+    folder = Path(path).parent if output is None else Path(output)
+    folder.mkdir(parents=True, exist_ok=True)
+    return [
+        Plotted(picture.caption, tuple(save(figure, folder / f"{name}.{picture.name}", formats)), complete)
+        for picture, figure in zip(pictures, figures, strict=True)
+    ]
+
+
+def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tuple[str, list[Picture], bool]:
+    """The name of a result, its pictures, and whether it was written to the end."""
+    if is_run(path):
+        given = [key for key, name in (("x", x), ("y", y), ("value", value)) if name is not None]
+        if given:
+            raise ValueError(f"Input {' and '.join(given)} of plot must be given for a sweep only; {path} is of a run")
+        run = read_run(path)
+        return run.name, run_pictures(portrait_of_saved(run)), run.complete
+    file = path if path.is_file() else path.with_name(path.name + ENDING)
+    if key_of(file) is None:
+        wanted = "must be a file that `active-surface run` or `active-surface sweep` left"
+        raise ValueError(f"Input result of plot {wanted}; got {path}, {_instead(path)}")
+    with read_findings(file) as findings:
+        return findings.name, sweep_pictures(findings, x, y, value), True
+
+
+def _instead(path: Path) -> str:
+    """What there is in place of a result."""
+    if path.suffix == ".toml" and path.is_file():
+        return "which tells what to do; what one of these commands makes of it can be drawn"
+    return "which is something else" if path.exists() else "which is no file"

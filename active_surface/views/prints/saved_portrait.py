@@ -1,0 +1,102 @@
+"""The portrait of a run that is read from its files."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.tri import CubicTriInterpolator, Triangulation
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+from coupling import silent
+from coupling.case import PlateCase
+from coupling.pictures import Patch, Portrait, Relief, cut_out, divided, moment_of_most
+from coupling.results import SavedRun
+from coupling.scene import platform_scene
+from meshes import rim_curves
+from particle import Samples
+
+FloatArray = NDArray[np.float64]
+
+AT_ONCE = 64  # steps whose deflections are read together
+JUMP = ("vertical_velocity", "normal_force", "friction_force")  # with velocities, where the state changes
+BETWEEN = 4  # pieces of a line from one moment to the next
+
+
+def portrait_of_saved(run: SavedRun) -> Portrait:
+    """The portrait of a saved run, with its plate as at the step at which it is deflected the most."""
+    plate = run.case.plate
+    step = moment_of_most(_spread(run))
+    return Portrait(
+        run.name,
+        run.summary["sentence"],
+        run.summary["origin"],
+        run.rows,
+        samples_of(run),
+        run.events,
+        np.stack([run.points.min(axis=0), run.points.max(axis=0)]),
+        _relief(run, plate, step) if isinstance(plate, PlateCase) else None,
+        float(run.time[step]),
+        () if isinstance(plate, PlateCase) else platform_scene(plate, silent).base,
+        run.complete,
+    )
+
+
+def samples_of(run: SavedRun) -> Samples:
+    """All that the files know of the part, with cubics for the places in between."""
+    steps = Samples(
+        run.time,
+        run.position[:, :2],
+        run.velocity[:, :2],
+        run.velocity[:, 2],
+        run.position[:, 2],
+        run.normal_force,
+        run.friction_force,
+        run.state,
+    )
+    _, chosen = np.unique(np.concatenate([run.rows.time, steps.time]), return_index=True)
+    known = Samples(*(np.concatenate(pair)[chosen] for pair in zip(run.rows, steps, strict=True)))
+    places = np.arange((len(known.time) - 1) * BETWEEN + 1) / BETWEEN
+    before = places.astype(np.int64)
+    time = np.interp(places, np.arange(len(known.time)), known.time)
+    line = CubicHermiteSpline(known.time, known.position, known.velocity) if len(known.time) > 1 else None
+    changes = np.append(known.state[1:] != known.state[:-1], False)[before]
+    last = changes & (places % 1 == (BETWEEN - 1) / BETWEEN)
+    time[last] = np.nextafter(known.time[before[last] + 1], -np.inf)  # what jumps does so at once
+
+    def between(values: FloatArray) -> FloatArray:
+        """Values (k,) at the times in between; before the state changes they are held."""
+        column = np.interp(time, known.time, values)
+        return np.where(changes, values[before], column)
+
+    columns = {
+        "velocity": np.stack([between(values) for values in known.velocity.T], axis=1),
+        "height": np.interp(time, known.time, known.height),
+        **{name: between(getattr(known, name)) for name in JUMP},
+    }
+    return Samples(time, line(time) if line else known.position, state=known.state[before], **columns)
+
+
+def _spread(run: SavedRun) -> FloatArray:
+    """The mean square deflection (k,) [m^2] at each step."""
+    found = []
+    for start in range(0, len(run.time), AT_ONCE):
+        w = run.plate_field("deflection", slice(start, start + AT_ONCE)).astype(float)
+        found.append(np.square(w).mean(axis=1))
+    return np.concatenate(found)
+
+
+def _relief(run: SavedRun, plate: PlateCase, step: int) -> Relief:
+    deflection = run.plate_field("deflection", step).astype(float)
+
+    def within(frame: FloatArray) -> Patch:
+        points, triangles, used = cut_out(run.points, run.triangles, frame)
+        fine = divided(points, triangles)
+        if fine is None:
+            return points, triangles, deflection[used]
+        between = CubicTriInterpolator(Triangulation(*points.T, triangles), deflection[used], kind="geom")
+        w = between(fine.x, fine.y).filled(0.0)
+        return np.stack([fine.x, fine.y], axis=1), fine.triangles.astype(np.int64), w
+
+    outline = plate.coarse_mesh.outline
+    box = np.stack([run.points.min(axis=0), run.points.max(axis=0)])
+    return Relief(box, run.actuators, deflection, within, lambda spacing: rim_curves(outline, spacing))

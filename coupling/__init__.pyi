@@ -1,0 +1,32 @@
+from .case.case import Case as Case, CaseError as CaseError, read_case as read_case
+from .case.input_error import InputError as InputError
+from .results.csv_file import write_csv as write_csv
+from .results.saved import SavedRun as SavedRun, read_run as read_run
+from .run import Result as Result, build_surface as build_surface, run_case as run_case
+from .surface.file import read_surface as read_surface, write_surface as write_surface
+from .surface.motion import surface_motion as surface_motion
+
+# Not public: for the packages that build on this one.
+from .drives import build_drive as build_drive, build_drives as build_drives, stroke_heights as stroke_heights
+from .environment import PACKAGES as PACKAGES, versions as versions
+from .files import whole_file as whole_file
+from .progress import (
+    CountBar as CountBar,
+    Progress as Progress,
+    StageBar as StageBar,
+    Tell as Tell,
+    interruptible as interruptible,
+    silent as silent,
+    untold as untold,
+)
+from .repeat import Rerun as Rerun, rerun as rerun
+from . import report as report
+from .report import warnings as warnings
+from .run import (
+    build_friction as build_friction,
+    build_scene as build_scene,
+    follow_part as follow_part,
+    friction_law as friction_law,
+)
+from .suggestion import near as near
+from .summary import PlateSummary as PlateSummary, summary_of as summary_of

@@ -1,0 +1,24 @@
+"""What the annotation of a field tells: the kinds that it is made of, and the quantity that it is marked with."""
+
+from __future__ import annotations
+
+from typing import Any, get_args, get_origin
+
+from coupling.case.units import Directed, Quantity
+
+
+def parts_of(annotation: Any) -> list[Any]:
+    """An annotation and all that it is made of."""
+    return [annotation, *(part for inner in get_args(annotation) for part in parts_of(inner))]
+
+
+def of_kind(annotation: Any, kind: type) -> Any:
+    """The first part of an annotation that is a generic of a kind, such as tuple."""
+    return next(part for part in parts_of(annotation) if get_origin(part) is kind)
+
+
+def quantity_of(annotation: Any, metadata: list[Any]) -> Quantity | None:
+    """What marks a number, or several of one kind, as a quantity; metadata: what marks all of the annotation."""
+    marks = [*metadata, *(mark for part in parts_of(annotation) for mark in getattr(part, "__metadata__", ()))]
+    quantities = [mark.quantity if isinstance(mark, Directed) else mark for mark in marks]
+    return next((mark for mark in quantities if isinstance(mark, Quantity)), None)

@@ -1,0 +1,107 @@
+"""The actuators of a lattice: the value that each key has at each of its places."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, Self
+
+from coupling.case.drive import ActuatorCase
+from coupling.case.formula import Condition, Formula
+from coupling.case.keyed_table import WRONG
+from coupling.case.lattice import AMOUNTS, MOST, SHARED, broken_rule, size
+from coupling.case.lines import Location
+from coupling.case.units import DIMENSIONS, shown
+
+Mistake = tuple[Location, str]
+
+
+class Spot(NamedTuple):
+    """A place in a lattice: row and column from 0, and x and y in m."""
+
+    row: int
+    column: int
+    x: float
+    y: float
+
+    def __str__(self) -> str:
+        return f"row {self.row}, column {self.column}"
+
+
+class Grid(NamedTuple):
+    """All places of a lattice, as far as they can be told from those of its keys that are right."""
+
+    spots: Sequence[Spot]  # row by row from the lowest, each from the left; the first where a count is not known
+    shared: Mapping[str, float]  # the names of formulas that have the same value at all places
+    known: frozenset[str]  # the names of formulas whose values are known
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> Self:
+        """The places of a lattice with these values of its keys, WRONG for those that are not right."""
+        counted = values if size(values) <= MOST else {}
+        counts = {key: counted[key] for key in ("rows", "columns") if counted.get(key, WRONG) is not WRONG}
+        rows, columns = (counts.get(key, 1) for key in ("rows", "columns"))
+        known = {"pi", *counts} | {key[:-1] for key in counts}
+        pitch, centre = values["pitch"], values["centre"]
+        if pitch is WRONG or centre is WRONG:
+            pitch, centre = math.nan, (math.nan, math.nan)
+        else:
+            known |= {axis for axis, key in (("x", "columns"), ("y", "rows")) if key in counts}
+        across, along = pitch if isinstance(pitch, tuple) else (pitch, pitch)
+        x = [centre[0] + (column - (columns - 1) / 2) * across for column in range(columns)]
+        y = [centre[1] + (row - (rows - 1) / 2) * along for row in range(rows)]
+        spots = [Spot(row, column, x[column], y[row]) for row in range(rows) for column in range(columns)]
+        return cls(spots, {"pi": math.pi, "rows": float(rows), "columns": float(columns)}, frozenset(known))
+
+    @property
+    def whole(self) -> bool:
+        """Whether all its places are known."""
+        return {"x", "y"} <= self.known
+
+    def tells(self, formula: Formula | Condition) -> bool:
+        """Whether it tells all that a formula asks for."""
+        return formula.expression.names <= self.known
+
+    def names(self, spot: Spot) -> dict[str, float]:
+        """The values that names have at a place; nan for those that are not known."""
+        return {**self.shared, "row": float(spot.row), "column": float(spot.column), "x": spot.x, "y": spot.y}
+
+
+def actuators_at(
+    spots: Sequence[Spot], grid: Grid, values: Mapping[str, Any]
+) -> tuple[tuple[ActuatorCase, ...], list[Mistake]]:
+    """The actuators at some places of a grid; none, but what is wrong, if any of the values is."""
+    columns: dict[str, list[float | None]] = {}
+    mistakes: list[Mistake] = []
+    for key in AMOUNTS:
+        try:
+            columns[key] = _column(key, values[key], spots, grid)
+        except ValueError as error:
+            mistakes.append((("lattice", key), str(error)))
+    if mistakes or WRONG in values.values():
+        return (), mistakes
+    same = {key: values[key] for key in SHARED}
+    # All values are valid: to check them once more would take longer than the rest.
+    made = [
+        ActuatorCase.model_construct(position=(spot.x, spot.y), **same, **dict(zip(columns, column, strict=True)))
+        for spot, column in zip(spots, zip(*columns.values(), strict=True), strict=True)
+    ]
+    return tuple(made), []
+
+
+def _column(key: str, amount: Any, spots: Sequence[Spot], grid: Grid) -> list[float | None]:
+    """The values of a key at places; ValueError, which names the first place where there is none."""
+    if not isinstance(amount, Formula):
+        return [amount] * len(spots)
+    found: list[float | None] = []
+    for spot in spots if grid.tells(amount) else ():
+        try:
+            value = amount.value(grid.names(spot))
+        except ValueError as error:
+            rule = f"must be {DIMENSIONS[AMOUNTS[key].unit]} for each actuator"
+            raise ValueError(f"{rule}; {shown(amount.text)} {error} at {spot}") from None
+        if rule := broken_rule(key, value):
+            got = f"{shown(amount.text)} is {amount.shown(value)} at {spot}"
+            raise ValueError(f"must be {rule} for each actuator; {got}")
+        found.append(value)
+    return found

@@ -1,0 +1,226 @@
+"""The plate of a case: its shape, material and supports, with one model for each shape."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import Discriminator, Field, StrictFloat, StrictStr, Tag, ValidationInfo, field_validator
+
+from coupling.case import units
+from coupling.case.table import Table
+from coupling.case.units import Length, Point, shown, shown_length
+
+if TYPE_CHECKING:
+    from meshes import PlateMesh
+
+CELLS_OF_A_DISC = 64 * math.pi
+"""Without a cell size a plate has as many cells as a disc with 8 from centre to rim."""
+
+
+SupportName = Literal["clamped", "simply-supported", "free"]
+ONE_SUPPORT, SUPPORT_OF_EACH = "one support", "a support of each boundary"
+Supports = Annotated[
+    Annotated[SupportName, Tag(ONE_SUPPORT)] | Annotated[dict[str, SupportName], Tag(SUPPORT_OF_EACH)],
+    Discriminator(lambda value: SUPPORT_OF_EACH if isinstance(value, dict) else ONE_SUPPORT),
+]
+
+
+class PlateCase(Table, ABC):
+    """The plate, in m, Pa and kg/m^3."""
+
+    outlined_by: ClassVar[str] = "shape"
+    """The key at which a mistake in the outline as a whole is reported."""
+
+    supports: Supports = "clamped"
+    """How the whole rim is held, or a table with how each boundary is; those left out are free."""
+    youngs_modulus: units.Pressure = Field(gt=0)
+    """Young's modulus."""
+    poisson_ratio: StrictFloat = Field(ge=0, lt=0.5, examples=[0.3])
+    """Poisson's ratio."""
+    thickness: Length = Field(gt=0, examples=["5 um"])
+    """How thick it is."""
+    density: units.Density | None = Field(default=None, gt=0)
+    """With it drives are compared with the plate's first frequency."""
+
+    @abstractmethod
+    def build_mesh(self) -> PlateMesh:
+        """The plate's mesh; ValueError or OSError where there is none."""
+
+    @cached_property
+    def coarse_mesh(self) -> PlateMesh:
+        """A mesh that is quickly made, for its outline and its boundaries' names; raises as `build_mesh`."""
+        return self.build_mesh()
+
+    @property
+    def cell_size_given(self) -> bool:
+        """Whether the mesh is to stay as fine as it is."""
+        return False
+
+    def supports_of(self, boundaries: list[str]) -> dict[str, str]:
+        """The support of each boundary."""
+        if isinstance(self.supports, str):
+            return dict.fromkeys(boundaries, self.supports)
+        return {name: self.supports.get(name, "free") for name in boundaries}
+
+
+class ShapeCase(PlateCase):
+    """A plate given by a few lengths in m, around the origin."""
+
+    cell_size: Length | None = Field(default=None, gt=0, examples=["50 um"])
+    """The size of the mesh's cells, at most half of the smallest width; without it the mesh is refined as it needs."""
+
+    @property
+    @abstractmethod
+    def measures(self) -> tuple[float, float]:
+        """The smallest width [m] and the area [m^2]."""
+
+    @property
+    def cell_size_given(self) -> bool:
+        return self.cell_size is not None
+
+    def build_mesh(self) -> PlateMesh:
+        width, area = self.measures
+        return self.mesh_of(self.cell_size or min(width / 4, math.sqrt(area / CELLS_OF_A_DISC)))
+
+    @cached_property
+    def coarse_mesh(self) -> PlateMesh:
+        return self.mesh_of(self.measures[0] / 2)
+
+    def mesh_of(self, cell_size: float) -> PlateMesh:
+        """The mesh with cells of a size [m]."""
+        import meshes  # Here, because reading a case is to be quick.
+
+        own = [key for key in type(self).model_fields if key not in ShapeCase.model_fields and key != "shape"]
+        return getattr(meshes, self.shape)(*(getattr(self, key) for key in own), cell_size)  # type: ignore[attr-defined]
+
+
+class DiscCase(ShapeCase):
+    """A disc."""
+
+    shape: Literal["disc"]
+    """A disc around the origin; its boundary is rim."""
+    radius: Length = Field(gt=0, examples=["300 um"])
+    """From the centre to the rim."""
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        return 2 * self.radius, math.pi * self.radius**2
+
+
+class RectangleCase(ShapeCase):
+    """A rectangle."""
+
+    shape: Literal["rectangle"]
+    """A rectangle around the origin; its boundaries are left, right, bottom and top."""
+    width: Length = Field(gt=0, examples=["600 um"])
+    """Along x."""
+    height: Length = Field(gt=0, examples=["400 um"])
+    """Along y."""
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        return min(self.width, self.height), self.width * self.height
+
+
+class AnnulusCase(ShapeCase):
+    """A disc with a round hole in its middle."""
+
+    shape: Literal["annulus"]
+    """A disc with a round hole; its boundaries are inner and outer."""
+    inner_radius: Length = Field(gt=0, examples=["100 um"])
+    """The radius of the hole."""
+    outer_radius: Length = Field(gt=0, examples=["300 um"])
+    """The radius of the disc."""
+
+    @field_validator("outer_radius")
+    @classmethod
+    def _around_inner(cls, outer: float, info: ValidationInfo) -> float:
+        inner = info.data.get("inner_radius")
+        if inner is not None and outer <= inner:
+            raise ValueError(f"must exceed inner_radius, {shown_length(inner)}; got {shown_length(outer)}")
+        return outer
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        return self.outer_radius - self.inner_radius, math.pi * (self.outer_radius**2 - self.inner_radius**2)
+
+
+class EllipseCase(ShapeCase):
+    """An ellipse."""
+
+    shape: Literal["ellipse"]
+    """An ellipse around the origin; its boundary is rim."""
+    semi_axis_x: Length = Field(gt=0, examples=["300 um"])
+    """Half of its axis along x."""
+    semi_axis_y: Length = Field(gt=0, examples=["200 um"])
+    """Half of its axis along y."""
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        return 2 * min(self.semi_axis_x, self.semi_axis_y), math.pi * self.semi_axis_x * self.semi_axis_y
+
+
+class PolygonCase(ShapeCase):
+    """A polygon."""
+
+    outlined_by = "corners"
+
+    shape: Literal["polygon"]
+    """A polygon, which may turn inwards; its boundary is rim, or by sides."""
+    corners: tuple[Point, ...] = Field(examples=[[["-300 um", "-300 um"], ["300 um", "-300 um"], ["0 um", "300 um"]]])
+    """Its corners, three or more, in either sense."""
+    sides: tuple[StrictStr, ...] | None = Field(default=None, examples=[["base", "flank", "flank"]])
+    """A name for each side, the first from the first corner to the second; sides of one name are one boundary."""
+
+    @field_validator("corners", mode="before")
+    @classmethod
+    def _three_points(cls, corners: Any) -> Any:
+        if not isinstance(corners, (list, tuple)) or len(corners) < 3:
+            example = '[["0 um", "0 um"], ["2 um", "0 um"], ["0 um", "1 um"]]'
+            raise ValueError(f"must be three points or more, such as {example}; got {shown(corners)}")
+        return corners
+
+    @field_validator("sides", mode="before")
+    @classmethod
+    def _one_a_side(cls, sides: Any, info: ValidationInfo) -> Any:
+        corners = info.data.get("corners")
+        if not isinstance(sides, (list, tuple)) or (corners and len(sides) != len(corners)):
+            count = f"{len(corners)} names" if corners else "a list of names"
+            raise ValueError(f"must be {count}, one a side; got {shown(sides)}")
+        return sides
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        width = min(max(places) - min(places) for places in zip(*self.corners, strict=True))
+        ahead = zip(self.corners, self.corners[1:] + self.corners[:1], strict=True)
+        return width, abs(sum(x * v - u * y for (x, y), (u, v) in ahead)) / 2
+
+    def mesh_of(self, cell_size: float) -> PlateMesh:
+        import meshes
+
+        return meshes.polygon(self.corners, cell_size, self.sides)
+
+
+class MeshCase(PlateCase):
+    """A plate read from a mesh file."""
+
+    outlined_by = "mesh"
+
+    mesh: StrictStr = Field(examples=["plate.msh"])
+    """A mesh file of gmsh, VTU or XDMF, beside the case file; its boundaries are the physical curves."""
+    mesh_unit: Length = Field(default=1.0, gt=0, examples=["1 um"])
+    """What one unit of its coordinates stands for."""
+
+    @field_validator("mesh")
+    @classmethod
+    def _beside_the_case(cls, mesh: str, info: ValidationInfo) -> str:
+        return str(Path((info.context or {}).get("folder", ""), mesh))
+
+    def build_mesh(self) -> PlateMesh:
+        import meshes
+
+        return meshes.read(self.mesh, self.mesh_unit)

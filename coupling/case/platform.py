@@ -1,0 +1,129 @@
+"""The platform of a case: a flat rigid surface, moved by drives along its axes or as it was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple
+
+from pydantic import Discriminator, Field, StrictStr, Tag, ValidationInfo, field_validator
+
+from coupling.case.csv_columns import Columns, File, read_columns, told, unreadable
+from coupling.case.drive import CLOSEST, DriveCase
+from coupling.case.table import Table
+from coupling.case.units import Length, Quantity
+
+AXES: Final = ("x", "y", "z")
+FROM_FILE, BY_DRIVES = "a motion from a file", "a motion by drives"
+HEADER: Final = "time [ms], x [um], z [um]"
+QUANTITIES: Final = {"time": Quantity("s", "50 ms")} | dict.fromkeys(AXES, Quantity("m", "150 um"))
+FEWEST: Final = 6  # rows: as many as a quintic has coefficients
+
+
+class Measured(NamedTuple):
+    """A measured motion: `time` in s from 0, and in m the positions along the axes that were measured."""
+
+    time: tuple[float, ...]
+    axes: Columns
+
+
+class AxisCase(DriveCase):
+    """What moves a platform along one axis."""
+
+    owner: ClassVar[str] = "an axis"
+    segments_table: ClassVar[str] = "[[plate.motion.x.segments]]"
+
+
+class MotionCase(Table):
+    """What moves a platform; along an axis that is not given it does not move."""
+
+    x: AxisCase | None = None
+    """The drive along x."""
+    y: AxisCase | None = None
+    """The drive along y."""
+    z: AxisCase | None = None
+    """The drive along z."""
+
+
+class PlatformCase(Table):
+    """A flat rigid surface without end; without a motion it stands still."""
+
+    shape: Literal["platform"]
+    """No plate, but a flat rigid surface without end that moves as a whole."""
+    motion: (
+        Annotated[
+            Annotated[StrictStr, Tag(FROM_FILE)] | Annotated[MotionCase, Tag(BY_DRIVES)],
+            Discriminator(lambda value: FROM_FILE if isinstance(value, str) else BY_DRIVES),
+        ]
+        | None
+    ) = Field(default=None, examples=["shaker.csv"])
+    """What moves it: a CSV file of measured positions beside the case file, or a table for each axis."""
+    smoothing: Length | None = Field(default=None, gt=0, examples=["0.1 um"])
+    """The noise of the positions in the file; without it they are followed exactly."""
+
+    @field_validator("motion")
+    @classmethod
+    def _beside_the_case(cls, motion: str | MotionCase | None, info: ValidationInfo) -> str | MotionCase | None:
+        return str(Path((info.context or {}).get("folder", ""), motion)) if isinstance(motion, str) else motion
+
+    @field_validator("smoothing")
+    @classmethod
+    def _of_a_file(cls, smoothing: float | None, info: ValidationInfo) -> float | None:
+        if smoothing is not None and not isinstance(info.data.get("motion", ""), str):
+            raise ValueError('must not be given without motion = "file.csv", the noise of whose positions it is')
+        return smoothing
+
+    @cached_property
+    def read_motion(self) -> tuple[Measured | None, list[str]]:
+        """The measured motion of a file and what is wrong with that; None where there is none or it is wrong.
+
+        Raises OSError when the file cannot be read.
+        """
+        if not isinstance(self.motion, str):
+            return None, []
+        file = read_columns(Path(self.motion), QUANTITIES, (["time"], AXES), HEADER)
+        mistakes = file.mistakes or list(_mistakes(file))
+        if mistakes:
+            return None, mistakes
+        columns = dict(file.columns)
+        times = columns.pop("time")
+        return Measured(tuple(time - times[0] for time in times), columns), []
+
+    def mistakes(self, duration: float | None) -> Iterator[tuple[tuple[str, ...], str]]:
+        """Yield where its motion is wrong, and why, for a run of a duration [s], None where that is wrong itself."""
+        where = ("plate", "motion")
+        try:
+            measured, mistakes = self.read_motion
+        except (OSError, ValueError) as error:
+            yield where, unreadable(Path(str(self.motion)).name, error)
+            return
+        for mistake in mistakes:
+            yield where, f"in {Path(str(self.motion)).name}: {mistake}"
+        if measured and duration is not None and duration > measured.time[-1] * (1 + CLOSEST):
+            message = f"must not exceed the measured motion's, {measured.time[-1]:g} s; got {duration:g} s"
+            yield ("run", "duration"), message
+
+
+def _mistakes(file: File) -> Iterator[str]:
+    """What is wrong with columns that are whole by themselves."""
+    times = file.columns["time"]
+    if len(times) < FEWEST:
+        yield f"must have at least {FEWEST} rows below its header; got {len(times)}"
+        return
+    closest = CLOSEST * (max(times) - min(times))
+    late = [k for k in range(1, len(times)) if times[k] - times[k - 1] <= closest]
+    rule = "must have a later time than the row before"
+    yield from told([f"line {file.lines[k]} {rule}; got {times[k]:g} s after {times[k - 1]:g} s" for k in late])
+
+
+def platform_of(plate: Any, context: Any) -> PlatformCase | None:
+    """The platform as far as its measured motion goes, whatever else is wrong with it; None for what has none."""
+    if isinstance(plate, PlatformCase):
+        return plate
+    if isinstance(plate, dict) and plate.get("shape") == "platform":
+        motion = plate.get("motion")
+        return PlatformCase.model_validate(
+            {"shape": "platform", "motion": motion if isinstance(motion, str) else None}, context=context
+        )
+    return None

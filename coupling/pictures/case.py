@@ -1,0 +1,51 @@
+"""The picture of a case: its plate from above with the actuators, and the part where it starts; or a platform's way."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from coupling.case import AXES, Case, PlateCase, PlatformCase
+from coupling.progress import silent
+from coupling.scene import platform_scene
+from fem_plate import draw_rim, mark_actuators
+from meshes import in_unit, plan, put_below
+from particle import PLACE, RING
+
+ARROW = 0.15  # of the frame's side is the arrow of the start's velocity
+SAMPLES = 1000
+STYLES = "-", "--", ":"
+
+
+def draw_case(case: Case, axes: Axes) -> None:
+    """Draw a case into axes in m, or of a platform in s and m."""
+    if isinstance(case.plate, PlateCase):
+        _draw_plate(case, case.plate, axes)
+    else:
+        _draw_motion(case.plate, case.run.duration, axes)
+
+
+def _draw_plate(case: Case, plate: PlateCase, axes: Axes) -> None:
+    mesh = plate.coarse_mesh
+    keys = draw_rim(axes, mesh, plate.supports_of(list(mesh.boundaries)))
+    keys += mark_actuators(axes, np.array([actuator.position for actuator in case.actuators]))
+    start, velocity = np.array(case.part.position), np.array(case.part.velocity)
+    keys += axes.plot(*start, **RING, **PLACE, label="start")
+    plan(axes)
+    speed = float(np.hypot(*velocity))
+    if speed:
+        tip = start + velocity / speed * ARROW * np.ptp(axes.get_xlim())
+        axes.annotate("", tuple(tip), tuple(start), arrowprops={"arrowstyle": "->", "linewidth": 1.4})
+    put_below(axes, handles=keys, ncols=min(len(keys), 3))
+
+
+def _draw_motion(platform: PlatformCase, duration: float, axes: Axes) -> None:
+    """Draw how far a platform has moved along each axis over time."""
+    scene = platform_scene(platform, silent)
+    times = np.linspace(0, duration, SAMPLES)
+    for name, drive, style in zip(AXES, (*scene.base, *scene.lifts), STYLES, strict=True):
+        axes.plot(times, drive.evaluate(times)[0], style, color="black", label=f"along {name}")
+    axes.set_xlim(0, duration)
+    in_unit(axes.xaxis, "time", "s")
+    in_unit(axes.yaxis, "place of the platform", "m")
+    put_below(axes, ncols=len(STYLES))

@@ -1,0 +1,80 @@
+"""Portrait: what pictures show of a run, found just now or read from its files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.drives import stroke_heights
+from coupling.pictures.plate import Relief, relief_of
+from coupling.pictures.prefixes import readable
+from particle import AnyDrive, Event, Rows, Samples, Trajectory
+
+if TYPE_CHECKING:
+    from coupling.scene import Ground, Scene
+
+FloatArray = NDArray[np.float64]
+
+SAMPLES = 4000
+AT_ONCE = 64  # moments at which deflections are found together
+AS_MUCH = 0.999  # of the largest deflection: the first moment with so much is shown
+
+
+@dataclass(frozen=True, eq=False)
+class Portrait:
+    """A run as pictures show it."""
+
+    name: str
+    sentence: str  # how it ended
+    origin: str  # what positions are counted from
+    rows: Rows  # where states change, among others
+    samples: Samples  # as many as make smooth lines
+    events: Sequence[Event]
+    box: FloatArray  # (2, 2) m, around the surface as drawn
+    relief: Relief | None  # of the plate at the moment; None: there is a platform
+    moment: float  # s
+    base: Sequence[AnyDrive]  # of a platform, along x and y; none: the surface stays in its plane
+    complete: bool = True  # whether the surface is known to the end of the run
+
+    @property
+    def when(self) -> str:
+        """The moment, in words."""
+        unit = readable(np.array([self.samples.time[-1]]), "s")
+        return f"{self.moment * unit.per_si:.4g} {unit.name}"
+
+    @property
+    def most(self) -> str:
+        """What is special about the moment, in words."""
+        return "when it is deflected most" + ("" if self.complete else " of the steps that were written")
+
+
+def portrait_of(name: str, scene: Scene, trajectory: Trajectory, ground: Ground, moment: float) -> Portrait:
+    """The portrait of a run that was just found, with its surface as it is at a moment [s]."""
+    return Portrait(
+        name,
+        trajectory.sentence,
+        scene.origin,
+        trajectory,
+        trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)),
+        trajectory.events,
+        np.stack([ground.points.min(axis=0), ground.points.max(axis=0)]),
+        relief_of(scene.shapes, ground, stroke_heights(scene.lifts, np.array([moment]))[0]) if scene.shapes else None,
+        moment,
+        scene.base,
+    )
+
+
+def deflected_most(scene: Scene, ground: Ground, times: FloatArray) -> float:
+    """The first of times (k,) [s] at which the surface is deflected the most."""
+    heights = stroke_heights(scene.lifts, times)
+    lots = (heights[start : start + AT_ONCE] for start in range(0, len(times), AT_ONCE))
+    return float(times[moment_of_most(np.concatenate([np.square(ground.lifted(lot)).mean(axis=1) for lot in lots]))])
+
+
+def moment_of_most(spread: FloatArray) -> int:
+    """The first of k moments at which the plate is deflected the most; spread: (k,), its mean square deflections."""
+    return int(np.argmax(spread >= AS_MUCH**2 * spread.max()))

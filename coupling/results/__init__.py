@@ -1,0 +1,5 @@
+"""Result files of a run: written, read back, exported."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,85 @@
+"""A case as results keep it: every number to the last bit, and the contents of the files that it reads."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import re
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from coupling.case import Case, MeshCase, PlatformCase
+
+PATHS = ("mesh", "motion")  # keys of a plate that may name a file
+_HEAVY = re.compile(r"(<DataItem\b[^>]*>\s*)([^<>:]+)(?=:)")  # what an XDMF file names as holding its numbers
+
+
+class CaseRecord(NamedTuple):
+    """A case: `text` is JSON in SI units, `files` the contents of what it reads, by their names without a folder."""
+
+    text: str
+    files: Mapping[str, bytes]
+
+
+def record_of(case: Case) -> CaseRecord:
+    """The record of a case; raises OSError when a file that it reads is gone.
+
+    An XDMF file names those beside it, wherever they are, without a folder.
+    """
+    tables = case.model_dump(mode="json", exclude_none=True, exclude={"name", "source"})
+    for key in PATHS:
+        if isinstance(tables["plate"].get(key), str):
+            tables["plate"][key] = Path(tables["plate"][key]).name
+    return CaseRecord(json.dumps(tables), files_of(case))
+
+
+def case_of(record: CaseRecord, name: str, source: str | None = None) -> Case:
+    """The case of a record, whose files are in a temporary folder until the interpreter ends.
+
+    Raises ValueError when the record holds no case.
+    """
+    tables = json.loads(record.text)
+    if record.files:
+        folder = Path(_kept_folder())
+        for file, content in record.files.items():
+            (folder / Path(file).name).write_bytes(content)
+        for key in PATHS:
+            if isinstance(tables["plate"].get(key), str):
+                tables["plate"][key] = str(folder / Path(tables["plate"][key]).name)
+    return Case.model_validate(tables | {"name": name, "source": source})
+
+
+def files_of(case: Case) -> dict[str, bytes]:
+    """The contents of the files that a case reads when its scene is built, by their names without a folder."""
+    plate = case.plate
+    if isinstance(plate, MeshCase):
+        path = Path(plate.mesh)
+        return _with_heavy(path) if path.suffix.lower() == ".xdmf" else {path.name: path.read_bytes()}
+    if isinstance(plate, PlatformCase) and isinstance(plate.motion, str):
+        return {Path(plate.motion).name: Path(plate.motion).read_bytes()}
+    return {}
+
+
+def _with_heavy(path: Path) -> dict[str, bytes]:
+    """An XDMF file and those that hold its numbers, which it names by the names that they get."""
+    kept: dict[Path, str] = {}
+    contents: dict[str, bytes] = {path.name: b""}
+
+    def renamed(found: re.Match[str]) -> str:
+        file = path.resolve().parent / found[2].strip()  # as meshio finds it
+        if file not in kept:
+            name = file.name if file.name not in contents else f"{len(kept)}.{file.name}"
+            kept[file], contents[name] = name, file.read_bytes()
+        return found[1] + kept[file]
+
+    said = _HEAVY.sub(renamed, path.read_bytes().decode("utf-8", "surrogateescape"))
+    contents[path.name] = said.encode("utf-8", "surrogateescape")
+    return contents
+
+
+def _kept_folder() -> str:
+    folder = tempfile.TemporaryDirectory(prefix="active-surface-")
+    atexit.register(folder.cleanup)
+    return folder.name

@@ -1,0 +1,61 @@
+"""A trajectory as a CSV file: a header of names and units, and a row for each time."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from coupling.files import whole_file
+from particle import Samples, State, Trajectory
+
+COLUMNS = (
+    *("time [s]", "x [m]", "y [m]", "z [m]", "vx [m/s]", "vy [m/s]", "state"),
+    *("normal force [N]", "friction force [N]"),
+)
+HEADER = ",".join(COLUMNS)
+
+
+def write_csv(trajectory: Trajectory, path: str | os.PathLike[str], times: ArrayLike | None = None) -> Path:
+    """Write a trajectory at times (k,) [s] and at its events, or at all its rows, to the file at `path`; return that.
+
+    Times before its start or after its end count as these. Each time comes once, at an event as it is from then on.
+    Numbers are written so that reading them gives the same floats; the state is stick, slip or flight.
+    Raises ValueError when a time is not finite or the file at `path` holds something else; OSError if it cannot be
+    written.
+    """
+    path = Path(path)
+    check_csv(path)
+    wanted = trajectory.time if times is None else np.asarray(times, dtype=float).ravel()
+    if not np.isfinite(wanted).all():
+        raise ValueError(f"Input times of write_csv must be finite times in s; got {wanted[~np.isfinite(wanted)][0]}")
+    wanted = np.concatenate([wanted, [event.time for event in trajectory.events]])
+    samples = trajectory.at(np.unique(np.clip(wanted, trajectory.time[0], trajectory.time[-1])))
+    with whole_file(path) as partial:
+        partial.write_text("\n".join([HEADER, *_rows(samples), ""]), encoding="utf-8")
+    return path
+
+
+def check_csv(path: Path) -> None:
+    """Raises ValueError when there is a file at `path` that is no trajectory, such as a measured motion."""
+    if path.is_file() and not is_trajectory(path):
+        raise ValueError(f"Input path of write_csv must be free or a trajectory; got {path}, which is neither")
+
+
+def is_trajectory(path: Path) -> bool:
+    """Whether `write_csv` wrote a file."""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return file.readline().rstrip("\n") == HEADER
+
+
+def _rows(samples: Samples) -> Iterator[str]:
+    columns = (samples.time, *samples.position.T, samples.height, *samples.velocity.T)
+    words = [State(state).name.lower() for state in samples.state.tolist()]
+    forces = (samples.normal_force, samples.friction_force)
+    for *numbers, word, normal, friction in zip(
+        *(column.tolist() for column in columns), words, *(force.tolist() for force in forces), strict=True
+    ):
+        yield ",".join([*map(repr, numbers), word, repr(normal), repr(friction)])

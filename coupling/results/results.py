@@ -1,0 +1,149 @@
+"""Result files of a run: two VTKHDF files on one time axis, a picture, and on request a CSV file."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from uuid import uuid4
+from warnings import warn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.case import Case
+from coupling.drives import frame_times, stroke_heights
+from coupling.environment import versions
+from coupling.pictures import draw_run, moment_of_most
+from coupling.progress import Tell, untold
+from coupling.results.case_record import CaseRecord
+from coupling.results.csv_file import is_trajectory, write_csv
+from coupling.results.vtkhdf import part_file, plate_file
+from coupling.scene import Ground, Scene
+from coupling.summary import Summary
+from coupling.surface import is_surface
+from particle import Samples, Trajectory
+
+FloatArray = NDArray[np.float64]
+
+AT_ONCE = 64  # time steps whose deflections are found together
+UNITS = {
+    "time": "s",
+    "deflection": "m",
+    "velocity": "m/s",
+    "curvature": "1/m, the Laplacian of the deflection, positive where the plate is bent like a bowl; at an actuator, "
+    "where it has no bound, that at a millionth of the plate's half length from it",
+    "drive": "m (N where a force drives) at actuators, 0 elsewhere",
+    "normal_force": "N",
+    "friction_force": "N",
+    "state": "0: stuck, 1: slipping, 2: flying",
+}
+
+
+def write_results(
+    case: Case,
+    record: CaseRecord,
+    scene: Scene,
+    trajectory: Trajectory,
+    summary: Summary,
+    folder: Path,
+    csv: bool = False,
+    tell: Tell = untold,
+) -> tuple[Path, ...]:
+    """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
+
+    A picture that cannot be drawn is left out, with a RuntimeWarning.
+
+    record: of the case, taken before the work: later its files may be others.  csv: whether to write NAME.csv as well.
+    tell: gets how many time steps are written, and of how many.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
+    ground = scene.ground(trajectory)
+    heights, speeds = stroke_heights(scene.lifts, times), stroke_heights(scene.lifts, times, 1)
+    metadata: dict[str, str | int] = {
+        "run": uuid4().hex,  # the same in both files, which so find each other
+        "case": case.source or record.text,
+        "summary": json.dumps(summary.as_dict()),
+        "units": json.dumps(UNITS | {"points": f"m, counted from {scene.origin}"}),
+        "versions": json.dumps(versions()),
+        "actuators": len(case.actuators),
+    }
+    samples = trajectory.at(times)
+    place = scene.onto(samples.position)
+    spread: list[float] = []
+    with (
+        plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
+        part_file(folder, case.name, metadata) as part,
+    ):
+        for group, arrays in _arrays(record, trajectory).items():
+            part.add_arrays(group, arrays)
+        for k, time in enumerate(times.tolist()):
+            if k % AT_ONCE == 0:
+                tell(k, len(times))
+                fields = _fields(ground, heights[k : k + AT_ONCE], speeds[k : k + AT_ONCE])
+                spread.extend(np.square(fields["deflection"], dtype=np.float64).mean(axis=1))
+            plate.append(time, **{name: values[k % AT_ONCE] for name, values in fields.items()})
+            part.append(
+                time,
+                (*place[k], samples.height[k]),
+                velocity=(*samples.velocity[k], samples.vertical_velocity[k]),
+                state=samples.state[k],
+                normal_force=samples.normal_force[k],
+                friction_force=samples.friction_force[k],
+            )
+    picture = folder / f"{case.name}.png"
+    files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
+    _clear(folder, case.name)
+    try:
+        draw_run(case, scene, trajectory, ground, float(times[moment_of_most(np.array(spread))]), picture)
+        files.append(picture)
+    except Exception as error:  # the run is finished, whatever becomes of its picture
+        warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
+    if csv:
+        files.append(write_csv(trajectory, folder / f"{case.name}.csv", times))
+    return tuple(files)
+
+
+def _fields(ground: Ground, heights: FloatArray, speeds: FloatArray) -> dict[str, NDArray[np.float32]]:
+    """The fields (k, n) of the surface as drawn under heights [m] and speeds [m/s] (k, N) of its drives."""
+    single = np.float32
+    found = {"deflection": ground.lifted(heights).astype(single), "velocity": ground.lifted(speeds).astype(single)}
+    if ground.bent is not None:
+        found["curvature"] = ground.bent(heights).astype(single)
+        found["drive"] = np.zeros_like(found["curvature"])
+        found["drive"][:, : heights.shape[1]] = heights  # the actuators are the first of the points
+    return found
+
+
+def _arrays(record: CaseRecord, trajectory: Trajectory) -> dict[str, dict[str, NDArray]]:
+    """What the part's file holds beside its steps, by groups: the case and its files, all rows, all events."""
+    events = {
+        "kind": np.array([event.kind for event in trajectory.events], np.int64),
+        "position": np.array([event.position for event in trajectory.events], float).reshape(-1, 2),
+    }
+    for key in ("time", "speed", "load"):
+        events[key] = np.array([getattr(event, key) for event in trajectory.events], float)
+    return {
+        "case": {"json": np.frombuffer(record.text.encode(), np.uint8)},
+        "files": {name: np.frombuffer(content, np.uint8) for name, content in record.files.items()},
+        "rows": {key: getattr(trajectory, key) for key in Samples._fields},
+        "events": events,
+    }
+
+
+def _clear(folder: Path, name: str) -> None:
+    """Removes what a run of an older case left beside the two files: its picture, trajectory and surface."""
+    (folder / f"{name}.png").unlink(missing_ok=True)
+    for path, is_ours in ((folder / f"{name}.csv", is_trajectory), (folder / f"{name}.surface.h5", is_surface)):
+        if path.is_file() and is_ours(path):
+            path.unlink()
+
+
+def check_folder(folder: Path) -> None:
+    """Raises ValueError unless the folder can be made and written to: better before the work than after it."""
+    made = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
+    if not made.is_dir():
+        raise ValueError(f"Input output must be a folder; got {folder}, but {made} is a file")
+    if not os.access(made, os.W_OK):
+        raise ValueError(f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it")

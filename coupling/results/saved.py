@@ -1,0 +1,226 @@
+"""Saved run: what the result files of a run hold, read back."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from coupling.case import Case
+from coupling.results.case_record import CaseRecord, case_of
+from coupling.summary import summary_of
+from particle import Event, EventKind, Samples
+
+FloatArray = NDArray[np.float64]
+
+KINDS = ("plate", "part")
+SUFFIX, PARTIAL = ".vtkhdf", ".partial"
+ENDINGS = tuple(f"{part}.{kind}{SUFFIX}" for part in ("", PARTIAL) for kind in KINDS)
+EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
+OF_PART = ("velocity", "state", "normal_force", "friction_force")
+OVER_TIME = ("time", "position", *OF_PART)
+WANTED = "Input path must be a result of `active-surface run`"
+UNREADABLE = (AttributeError, IndexError, KeyError, OSError, RuntimeError, TypeError, ValueError)
+"""What reading raises where something is not there, or not as a run writes it."""
+
+
+@dataclass(frozen=True, eq=False)
+class SavedRun:
+    """A run as its two files hold it, finished or as far as it was written; the k steps are those that both have."""
+
+    name: str  # of the files
+    complete: bool  # whether they were written to the end of the run
+    summary: dict[str, Any] = field(repr=False)
+    versions: dict[str, str] = field(repr=False)
+    units: dict[str, str] = field(repr=False)
+    time: FloatArray = field(repr=False)  # (k,) s
+    points: FloatArray = field(repr=False)  # (n, 2) m, of the plate at rest, the N actuators first
+    triangles: NDArray[np.int64] = field(repr=False)  # (m, 3)
+    actuators: FloatArray = field(repr=False)  # (N, 2) m
+    position: FloatArray = field(repr=False)  # (k, 3) m, of the part
+    velocity: FloatArray = field(repr=False)  # (k, 3) m/s
+    state: NDArray[np.int64] = field(repr=False)  # (k,) 0 stuck, 1 slipping, 2 flying
+    normal_force: FloatArray = field(repr=False)  # (k,) N
+    friction_force: FloatArray = field(repr=False)  # (k,) N
+    events: list[Event] = field(repr=False)
+    rows: Samples = field(repr=False)  # all that the integrator found
+    plate_fields: tuple[str, ...]
+    plate_path: Path = field(repr=False)
+    part_path: Path = field(repr=False)
+
+    @cached_property
+    def case(self) -> Case:
+        """The case that was run, to the last bit; the files that it reads are in a temporary folder.
+
+        Raises ValueError when the file holds no valid case.
+        """
+        with _opened(self.part_path) as file, _readable(self.part_path, "whose case is damaged"):
+            ours = file["active_surface"]
+            files = {name: data[()].tobytes() for name, data in ours["files"].items()}
+            text, source = ours["case"]["json"][()].tobytes().decode(), ours.attrs["case"]
+            return case_of(CaseRecord(text, files), self.name, None if source == text else source)
+
+    def plate_field(self, name: str, steps: int | slice | Sequence[int] | NDArray[np.int64] = slice(None)) -> NDArray:
+        """A field of the plate at steps: (k', n) or, of a vector, (k', n, 3); at a single step without the first axis.
+
+        Raises ValueError for a field that the file lacks, or has damaged, IndexError for a step that it lacks.
+        """
+        if name not in self.plate_fields:
+            known = ", ".join(self.plate_fields)
+            raise ValueError(f"Input name of plate_field must be one of {known}; got {name!r}")
+        wanted = np.arange(len(self.time))[steps]
+        n = len(self.points)
+        with _opened(self.plate_path) as file, _readable(self.plate_path, f"whose field {name} is damaged"):
+            data = file[f"VTKHDF/PointData/{name}"]
+            found = np.empty((wanted.size, n, *data.shape[1:]), data.dtype)
+            for row, step in zip(found, np.atleast_1d(wanted).tolist(), strict=True):
+                row[...] = data[step * n : (step + 1) * n]
+            _check_finite(**{name: found})
+        return found.reshape(*wanted.shape, *found.shape[1:])
+
+
+def read_run(path: str | os.PathLike[str]) -> SavedRun:
+    """Read a run from its files: `path` is either of the two, finished or partial, or FOLDER/NAME without the endings.
+
+    Raises ValueError when there is no such file, when it is no result of a run, is damaged, or has no other beside it.
+    """
+    paths = _pair(Path(path))
+    with _opened(paths["plate"]) as plate, _opened(paths["part"]) as part:
+        with _readable(path):
+            k = min(int(file["VTKHDF/Steps"].attrs["NSteps"]) for file in (plate, part))
+        if k == 0:
+            raise ValueError(f"{WANTED}; got {paths['part']}, to which no step was written")
+        with _readable(path):
+            run = _read(plate, part, paths, k)
+            _check(run, k)
+            return replace(run, complete=run.complete and bool(run.time[-1] >= run.summary["end_time"]))
+
+
+def _read(plate: h5py.File, part: h5py.File, paths: dict[str, Path], k: int) -> SavedRun:
+    """What both files hold, with their first k steps."""
+    ours = part["active_surface"]
+    points, fields = plate["VTKHDF/Points"][:, :2], part["VTKHDF/PointData"]
+    rows = Samples(**{name: ours["rows"][name][()] for name in Samples._fields})
+    names = [EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE]
+    events = zip(*(ours["events"][name][()].tolist() for name in names), strict=True)
+    return SavedRun(
+        name=_split(paths["plate"])[0],
+        complete=not any(_split(path)[2] for path in paths.values()),
+        **{key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")},
+        time=part["VTKHDF/Steps/Values"][:k],
+        points=points,
+        triangles=plate["VTKHDF/Connectivity"][()].reshape(-1, 3),
+        actuators=points[: ours.attrs["actuators"]],
+        position=part["VTKHDF/Points"][:k],
+        **{name: fields[name][:k] for name in OF_PART},
+        events=[
+            Event(EventKind(kind), position=(place[0], place[1]), **dict(zip(EVENT_NUMBERS, numbers, strict=True)))
+            for kind, *numbers, place in events
+        ],
+        rows=rows,
+        plate_fields=tuple(plate["VTKHDF/PointData"]),
+        plate_path=paths["plate"],
+        part_path=paths["part"],
+    )
+
+
+def _check(run: SavedRun, k: int) -> None:
+    """Raises ValueError where what was read of a run of k steps does not fit together."""
+    summary_of(run.summary)
+    for name in OVER_TIME:
+        if len(getattr(run, name)) != k:
+            raise ValueError(f"{name} has {len(getattr(run, name))} of {k} steps")
+    _check_finite(time=run.time, points=run.points, position=run.position, rows=run.rows.position)
+    if run.triangles.min() < 0 or run.triangles.max() >= len(run.points):
+        raise ValueError(f"a triangle has a corner that is none of the {len(run.points)} points")
+
+
+def _check_finite(**arrays: NDArray) -> None:
+    for name, array in arrays.items():
+        if not np.isfinite(array).all():
+            raise ValueError(f"{name} has a number that is not finite")
+
+
+def _pair(path: Path) -> dict[str, Path]:
+    """The two files of a run by their kinds: those of one run, finished ones first."""
+    name, kind, _ = _split(path)
+    found: dict[str, list[Path]] = {}
+    for one in KINDS:
+        both = [path] if one == kind else [path.with_name(f"{name}{part}.{one}{SUFFIX}") for part in ("", PARTIAL)]
+        found[one] = [file for file in both if file.is_file()]
+        if not found[one] and (kind in (None, one) or path.is_file()):
+            beside = "" if kind in (None, one) else ", the other file of this run"
+            raise ValueError(f"{WANTED}; got {path}, but there is no {both[0]}{beside}")
+    for plate, part in product(*found.values()):
+        if _run(plate) == _run(part):
+            return {"plate": plate, "part": part}
+    raise ValueError(f"{WANTED}; got {path}, but {found['plate'][0]} and {found['part'][0]} are of different runs")
+
+
+def _told(error: Exception) -> str:
+    """What is wrong, on one line."""
+    if isinstance(error, ValidationError):
+        return ", ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
+    return str(error.args[0] if isinstance(error, KeyError) else error).replace("\n", " ")
+
+
+@contextmanager
+def _readable(path: str | os.PathLike[str], but: str = "which is damaged") -> Iterator[None]:
+    """Raises ValueError, with the file and what is wrong with it, where what is read from it is not as it must be."""
+    try:
+        yield
+    except UNREADABLE as error:
+        raise ValueError(f"{WANTED}; got {path}, {but}: {_told(error)}") from error
+
+
+def name_of(path: Path) -> str:
+    """The NAME of a run, from one of its files or from FOLDER/NAME."""
+    return _split(path)[0]
+
+
+def is_run(path: Path) -> bool:
+    """Whether a path is that of a run's file, or FOLDER/NAME of such files, even of one that is damaged."""
+    if _split(path)[1] is not None:
+        return path.is_file()
+    return any(path.with_name(path.name + ending).is_file() for ending in ENDINGS)
+
+
+def _split(path: Path) -> tuple[str, str | None, bool]:
+    """A file's NAME, its kind, None where the path is FOLDER/NAME, and whether it is a partial one."""
+    for kind in KINDS:
+        name = path.name.removesuffix(f".{kind}{SUFFIX}")
+        if name != path.name:
+            return name.removesuffix(PARTIAL), kind, name.endswith(PARTIAL)
+    return path.name, None, False
+
+
+def _run(path: Path) -> str:
+    with _opened(path) as file:
+        return str(file["active_surface"].attrs["run"])
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[h5py.File]:
+    if not h5py.is_hdf5(path):
+        raise ValueError(f"{WANTED}; got {path}, which is no HDF5 file")
+    try:
+        file = h5py.File(path, "r")
+    except BlockingIOError as error:  # its writer keeps others out
+        raise ValueError(f"{WANTED}; got {path}, which is being written: its run has not ended") from error
+    except OSError as error:
+        raise ValueError(f"{WANTED}; got {path}, which is damaged: {error}") from error
+    with file:
+        if "VTKHDF" not in file or "run" not in getattr(file.get("active_surface"), "attrs", ()):
+            raise ValueError(f"{WANTED}; got {path}, which is HDF5 but holds something else")
+        yield file

@@ -1,0 +1,80 @@
+"""The scene of a platform: a flat rigid surface that moves as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.case import AXES, Case, MotionCase, PlatformCase
+from coupling.drives import build_drive, travel
+from coupling.measured import MotionFit, fit_motion
+from coupling.progress import Progress
+from coupling.scene.scene import Ground
+from particle import AnyDrive, Drive, SurfaceMotion, Trajectory, platform_surface
+
+FloatArray = NDArray[np.float64]
+
+STILL = Drive(0.0, 1.0, "up")
+STILL_SIZE = 1e-3  # m, what tolerances refer to where nothing moves
+MARGIN = 0.2  # of the path's extent, by which the drawn square goes beyond it
+
+
+@dataclass(frozen=True, eq=False)
+class PlatformScene:
+    """A platform; positions are counted from it."""
+
+    lifts: Sequence[AnyDrive]
+    base: Sequence[AnyDrive]
+    surface: SurfaceMotion
+    fits: tuple[MotionFit, ...] = ()
+    shapes: None = field(default=None, init=False)
+    origin: str = field(default="the platform", init=False)
+
+    def ground(self, trajectory: Trajectory) -> Ground:
+        """A square around the path."""
+        low, high = trajectory.position.min(axis=0), trajectory.position.max(axis=0)
+        half = (0.5 + MARGIN) * float((high - low).max()) or self.surface.size / 2
+        corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+        return Ground(
+            (low + high) / 2 + half * corners,
+            np.array([[0, 1, 2], [0, 2, 3]]),
+            lambda heights: heights @ np.ones((1, 4)),
+        )
+
+    def onto(self, xy: FloatArray) -> FloatArray:
+        return xy
+
+    def figures(self, case: Case, trajectory: Trajectory) -> None:
+        return None
+
+
+def platform_scene(platform: PlatformCase, progress: Progress) -> PlatformScene:
+    """The scene of a case with a platform.
+
+    Raises ValueError or OSError when the file of its motion can no longer be read.
+    """
+    with progress("Fitting the motion"):
+        drives, fits = _drives(platform)
+    with progress("Joining the surface"):
+        x, y, z = (drives.get(axis) for axis in AXES)
+        size = max(map(travel, drives.values()), default=0.0) or STILL_SIZE
+        surface = platform_surface(x, y, z, size)
+    return PlatformScene([z or STILL], [x or STILL, y or STILL], surface, fits)
+
+
+def _drives(platform: PlatformCase) -> tuple[dict[str, AnyDrive], tuple[MotionFit, ...]]:
+    """The drive of each axis that moves, and how closely a measured motion is followed."""
+    if isinstance(platform.motion, MotionCase):
+        given = {axis: getattr(platform.motion, axis) for axis in AXES}
+        return {axis: build_drive(drive) for axis, drive in given.items() if drive is not None}, ()
+    measured, mistakes = platform.read_motion
+    if mistakes:
+        raise ValueError(f"{Path(str(platform.motion))}: " + "; ".join(mistakes))
+    if measured is None:
+        return {}, ()
+    fitted = [fit_motion(axis, measured.time, place, platform.smoothing) for axis, place in measured.axes.items()]
+    return {fit.axis: drive for drive, fit in fitted}, tuple(fit for _, fit in fitted)

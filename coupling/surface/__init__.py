@@ -1,0 +1,5 @@
+"""The moving surface of a plate: cells fitted to its influence shapes, driven over time."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

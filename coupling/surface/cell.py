@@ -1,0 +1,64 @@
+"""A cell of a plate's surface in the making, and how far it is off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_plate import Shapes
+from fem_plate.elements import UNIT_STRENGTH, point_value
+from particle.surface import CellFit
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class Cell:
+    """A rectangle around a centre (2,) [m], half as wide as (2,) [m], with its fit or the four it is divided into."""
+
+    centre: FloatArray
+    half: FloatArray
+    fit: CellFit | None = None  # None: off the plate, or divided
+    error: float = 0.0  # of the fit, over the shapes' heights
+    left_out: float = 0.0  # the sum of what the shapes left out reach there, over their heights
+    quarters: list[Cell] = field(default_factory=list)
+
+    def leaves(self) -> list[Cell]:
+        """Those that are not divided."""
+        return [leaf for quarter in self.quarters for leaf in quarter.leaves()] if self.quarters else [self]
+
+
+def misfit(cell: Cell, local: FloatArray, shapes: Shapes, heights: FloatArray) -> tuple[float, float]:
+    """The largest error of a cell's fit, and the sum of the shapes left out, at points (n, 2) in half widths.
+
+    heights: (N,), what both are relative to.
+    """
+    fit = cell.fit
+    assert fit
+    at = cell.centre + local * cell.half
+    rows, values = shapes.nearby(at)
+    column = np.full(len(shapes.points), len(rows))  # of zeros, for those that are not near
+    column[rows] = np.arange(len(rows))
+    exact = np.concatenate([values, np.zeros((len(at), 1))], axis=1)[:, column[fit.drive]]
+    table = monomials(local, fit.degree)
+    polynomial, strengths = np.split(fit.rows, [table.shape[1]], axis=1)
+    logarithms = point_value(at / shapes.size, shapes.points[fit.near] / shapes.size)
+    fitted = table @ polynomial.T + logarithms @ strengths.T / UNIT_STRENGTH
+    out = ~np.isin(rows, fit.drive)
+    error = np.abs(fitted - exact) / heights[fit.drive]
+    left_out = np.abs(values[:, out]).max(axis=0) / heights[rows[out]]
+    return float(error.max(initial=0.0)), float(left_out.sum())
+
+
+def monomials(local: FloatArray, degree: int) -> FloatArray:
+    """x^i y^j at points (n, 2), sorted by powers of x, then of y: (n, M)."""
+    i, j = powers(degree).T
+    each = local[:, :, None] ** np.arange(degree + 1)
+    return np.asarray(each[:, 0, i] * each[:, 1, j])
+
+
+def powers(degree: int) -> NDArray[np.int64]:
+    """The powers (M, 2) of x and y in a polynomial of a degree."""
+    return np.array([(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)])

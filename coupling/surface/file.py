@@ -1,0 +1,74 @@
+"""A moving surface as a file: its cells and drives, to follow parts over it again without its plate."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from coupling.files import whole_file
+from particle import SurfaceMotion
+from particle.drives import DriveTable
+from particle.surface import BuiltCells, Cells
+
+KIND, VERSION = "active-surface surface motion", 1
+
+
+def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
+    """Write a surface, with the cells that are built so far, to the HDF5 file at `path`; return that.
+
+    `surface.evaluate` at points all over the plate first makes sure that there are cells everywhere.
+    Raises ValueError when the file at `path` holds something else; OSError if it cannot be written.
+    """
+    path = Path(path)
+    check_surface(path)
+    with whole_file(path) as partial, h5py.File(partial, "w") as file:
+        file.attrs.update(kind=KIND, version=VERSION, error=surface.error, moving_base=surface.moving_base)
+        file.attrs.update(size=surface.size, floor=surface.floor, overhang=surface.overhang)
+        for name in ("sources", "conics", "edges"):
+            file[name] = getattr(surface, name)
+        for group, table in (("drives", surface.drives), ("cells", surface.store.cells)):
+            for name, value in table._asdict().items():
+                file[f"{group}/{name}"] = value
+    return path
+
+
+def check_surface(path: Path) -> None:
+    """Raises ValueError when there is a file at `path` that is no surface."""
+    if path.exists() and not is_surface(path):
+        raise ValueError(f"Input path of write_surface must be free or a surface; got {path}, which is neither")
+
+
+def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
+    """The surface that `write_surface` wrote: the same bits, with the cells that were built then and no others.
+
+    A path that comes to a place without one raises ValueError.
+    Raises ValueError when the file at `path` is no such file; OSError if it cannot be read.
+    """
+    path = Path(path)
+    if path.exists() and not is_surface(path):
+        raise ValueError(f"Input path of read_surface must be a file that write_surface wrote; got {path}")
+    with h5py.File(path, "r") as file:
+        tables = {
+            group: {name: value[()] if value.shape else value[()].item() for name, value in file[group].items()}
+            for group in ("drives", "cells")
+        }
+        rest: dict[str, Any] = {name: float(file.attrs[name]) for name in ("size", "floor", "overhang")}
+        rest |= {name: np.ascontiguousarray(file[name][()]) for name in ("sources", "conics", "edges")}
+        return SurfaceMotion(
+            drives=DriveTable(**tables["drives"]),
+            store=BuiltCells(Cells(**tables["cells"]), float(file.attrs["error"])),
+            moving_base=bool(file.attrs["moving_base"]),
+            **rest,
+        )
+
+
+def is_surface(path: Path) -> bool:
+    """Whether `write_surface` wrote a file."""
+    if not h5py.is_hdf5(path):
+        return False
+    with h5py.File(path, "r") as file:
+        return bool(file.attrs.get("kind") == KIND and file.attrs.get("version") == VERSION)

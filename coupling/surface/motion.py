@@ -1,0 +1,44 @@
+"""From the plate's shapes and the drives to the moving surface: where statics meets time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coupling.surface.cell_maker import OVERHANG
+from coupling.surface.cells import PlateCells
+from fem_plate import Shapes
+from particle import AnyDrive, SurfaceMotion
+from particle.drives import drive_table
+
+SURFACE_TOLERANCE = 1e-8  # of a unit stroke
+FLOOR = 1e-6  # of the plate's size: the radius below which a point load's Hessian grows no more
+
+
+def surface_motion(
+    shapes: Shapes, drives: Sequence[AnyDrive], surface_tolerance: float = SURFACE_TOLERANCE
+) -> SurfaceMotion:
+    """The surface over time, w(x, t) = sum_i h_i(t) phi_i(x).
+
+    shapes: influence shapes of N actuators, from finite elements or in closed form.  drives: one for each.
+    surface_tolerance: largest error of a unit shape's fit in w; the surface's `error` says what was measured.
+    Raises ValueError when there is not one drive for each actuator, or the tolerance is not within [1e-13, 1e-3].
+    """
+    wrong = []
+    if len(drives) != len(shapes.points):
+        wrong.append(f"Input drives must be one an actuator, {len(shapes.points)}; got {len(drives)}")
+    if not 1e-13 <= surface_tolerance <= 1e-3:
+        wrong.append(f"Input surface_tolerance must be in [1e-13, 1e-3]; got {surface_tolerance!r}")
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    return SurfaceMotion(
+        drives=drive_table(drives),
+        store=PlateCells(shapes, surface_tolerance),
+        sources=shapes.points,
+        size=shapes.size,
+        floor=FLOOR * shapes.size,
+        overhang=OVERHANG,
+        conics=np.ascontiguousarray(shapes.outline.conics),
+        edges=np.ascontiguousarray(shapes.outline.edges),
+    )

@@ -1,0 +1,15 @@
+from . import analytic as analytic
+from .arrays.patched import PatchedShapes as PatchedShapes, PlateShapes as PlateShapes
+from .deflection import Deflection as Deflection
+from .export import neighbour_coupling as neighbour_coupling, save_influence as save_influence
+from .influence import InfluenceShapes as InfluenceShapes, Shapes as Shapes
+from .plate import Plate as Plate
+from .section import PlateSection as PlateSection
+from .vibration import Modes as Modes
+
+# Not public: for the packages that build on this one.
+from .analytic import DiscShapes as DiscShapes
+from .pictures import draw_rim as draw_rim, mark_actuators as mark_actuators
+from .plate import TRUNCATION as TRUNCATION
+from . import verification as verification
+from .verification import Check as Check

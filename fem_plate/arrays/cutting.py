@@ -1,0 +1,187 @@
+"""Patches cut out of a plate: rectangles with a mesh of their own where they can be, else parts of its mesh."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from fem_plate.elements import CLAMPED, Fineness, Singular, corner_rows, graded
+from meshes import Outline, PlateMesh, rectangle
+
+FloatArray = NDArray[np.float64]
+
+CELL = 1.0  # pitches, the largest cell: shapes are then good to 4e-6, by their estimate
+FINER_CELL = 0.8  # which makes that 5e-7, in twice the time
+CUT = "cut"  # the boundary, clamped, along which a patch was cut out
+SIDES = {"left": (0, 0), "right": (1, 0), "bottom": (0, 1), "top": (1, 1)}  # row and axis of a box
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """Where a patch lies.
+
+    origin: (2,) m.  box: (2, 2) m from the origin.  edge: (n, 2) m from the origin, close-set points along the cut.
+    name: what tells it from patches whose box and actuators look the same.
+    sides: for a rectangle, the boundary on each side; empty for a part of the plate's mesh.
+    """
+
+    origin: FloatArray
+    box: FloatArray
+    edge: FloatArray
+    name: bytes
+    sides: Mapping[str, str]
+
+
+class Cutter:
+    """Cuts patches out of a plate for an array of actuators.
+
+    fine, corners: as in `grading.graded`.  points: (N, 2) m.  pitch: (2,) m.  cell: pitches, the largest cell.
+    """
+
+    def __init__(
+        self,
+        mesh: PlateMesh,
+        supports: Mapping[str, str],
+        fine: Fineness,
+        corners: list[Singular],
+        points: FloatArray,
+        pitch: FloatArray,
+        cell: float = CELL,
+    ) -> None:
+        self.plate, self.supports = _without_cuts(mesh, supports)
+        self.fine, self.corners = fine, corners
+        self.points, self.pitch = points, np.minimum(pitch, mesh.size)
+        self.cell = min(cell * float(self.pitch.min()), fine.cell)
+        self._sides = _rectangle_sides(self.plate)
+
+    def halved(self) -> Cutter:
+        """One with cells of half the size."""
+        cell = self.cell / float(self.pitch.min()) / 2
+        return Cutter(self.plate, self.supports, self.fine.halved(), self.corners, self.points, self.pitch, cell)
+
+    def cut(self, middle: FloatArray, reach: FloatArray) -> Cut:
+        """The patch that reaches from `middle` (2,) along x and y by `reach` (2,) [m], as far as there is plate."""
+        whole = np.stack([middle - reach, middle + reach])
+        limits = self.plate.outline.box
+        box = np.clip(whole, limits[0], limits[1])
+        if self._sides or self._inside(box):
+            # A side that falls short of the plate's is a cut, except where hardly any plate is left beyond it.
+            beyond = np.array([box[0] - limits[0], limits[1] - box[1]])
+            box = np.where(beyond < 0.5 * self.cell, limits, box)
+            names = {
+                side: self._sides.get(side, CUT) if beyond[row, axis] < 0.5 * self.cell else CUT
+                for side, (row, axis) in SIDES.items()
+            }
+            kinds = ",".join(self.supports.get(name, CUT) for name in names.values())
+            return Cut(middle, box - middle, self._edge(box - middle, names), kinds.encode(), names)
+        part = self._part(box)
+        edges = part.points[part.boundaries[CUT]] if CUT in part.boundaries else np.empty((0, 2, 2))
+        along = np.linspace(0, 1, 11)[:, None, None]
+        edge = (edges[:, 0] + along * (edges[:, 1] - edges[:, 0])).reshape(-1, 2)
+        return Cut(np.zeros(2), box, edge, middle.tobytes(), {})
+
+    def mesh(self, cut: Cut, actuators: FloatArray) -> tuple[PlateMesh, dict[str, str], list[int]]:
+        """A patch's mesh around its origin, its supports, and the rows of its points at singular corners.
+
+        actuators: (n, 2) m from the origin, for which the cells at the plate's rim are graded.
+        """
+        if not cut.sides:
+            part = self._part(cut.box)
+            corners = [c for c in self.corners if (part.points == c.point).all(axis=1).any()]
+            return part, self._supports(part), corner_rows(part, corners)
+        width, height = cut.box[1] - cut.box[0]
+        plain = rectangle(width, height, self.cell)
+        boundaries: dict[str, list] = {}
+        for side, name in cut.sides.items():
+            boundaries.setdefault(name, []).append(plain.boundaries[side])
+        outline = self.plate.outline
+        shift = cut.origin
+        moved = Outline(outline.conics - np.array([*shift, 0.0, 0.0]), outline.edges - shift)
+        mesh = PlateMesh(
+            plain.points + cut.box.mean(axis=0),
+            plain.triangles,
+            {name: np.concatenate(edges) for name, edges in boundaries.items()},
+            {},
+            moved,
+        )
+        corners = [replace(c, point=c.point - shift) for c in self._corners_in(cut.box + shift)]
+        touches = set(cut.sides.values()) != {CUT}
+        mesh = graded(mesh, self.fine, corners, actuators if touches else None)
+        return mesh, self._supports(mesh), corner_rows(mesh, corners)
+
+    def _supports(self, mesh: PlateMesh) -> dict[str, str]:
+        return {name: self.supports.get(name, CLAMPED) for name in mesh.boundaries}
+
+    def _corners_in(self, box: FloatArray) -> list[Singular]:
+        slack = 1e-6 * self.cell
+        return [c for c in self.corners if ((c.point > box[0] - slack) & (c.point < box[1] + slack)).all()]
+
+    def _inside(self, box: FloatArray) -> bool:
+        """Whether the rim keeps off a box."""
+        count = np.ceil((box[1] - box[0]) / self.cell).astype(int) + 1
+        x, y = (np.linspace(box[0, axis], box[1, axis], count[axis]) for axis in range(2))
+        grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        return bool(np.all(self.plate.outline.gap(grid) > self.cell))
+
+    def _edge(self, box: FloatArray, names: Mapping[str, str]) -> FloatArray:
+        points = [np.empty((0, 2))]
+        for side, (row, axis) in SIDES.items():
+            if names[side] == CUT:
+                start, end = box[:, 1 - axis]
+                other = np.linspace(start, end, math.ceil(4 * (end - start) / self.cell) + 1)
+                here = np.full_like(other, box[row, axis])
+                points.append(np.stack([here, other] if axis == 0 else [other, here], axis=1))
+        return np.concatenate(points)
+
+    def _part(self, box: FloatArray) -> PlateMesh:
+        # Every triangle that may reach into the box, so that no actuator there is off the part.
+        corners = self._fine_mesh.points[self._fine_mesh.triangles]
+        return self._fine_mesh.part(((corners.max(axis=1) > box[0]) & (corners.min(axis=1) < box[1])).all(axis=1))
+
+    @cached_property
+    def _fine_mesh(self) -> PlateMesh:
+        """The plate's mesh with cells as small as patches need them."""
+        mesh, tree = self.plate, cKDTree(self.points)
+        while True:
+            centre = mesh.points[mesh.triangles].mean(axis=1)
+            distance, _ = tree.query(centre)
+            large = mesh.cell_sizes > np.maximum(1.5 * self.cell, distance / 2)
+            if not large.any():
+                break
+            mesh = mesh.refined(large)
+        return graded(mesh, self.fine, self.corners, self.points)
+
+
+def _without_cuts(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[PlateMesh, dict[str, str]]:
+    """A plate and its supports with no boundary of the name that cuts have."""
+    names = {name: name + "'" if name.startswith(CUT) else name for name in mesh.boundaries}
+    boundaries = {names[name]: edges for name, edges in mesh.boundaries.items()}
+    curves = {names[name]: curve for name, curve in mesh.curves.items()}
+    renamed = replace(mesh, boundaries=boundaries, curves=curves)
+    return renamed, {names[name]: support for name, support in supports.items()}
+
+
+def _rectangle_sides(mesh: PlateMesh) -> dict[str, str]:
+    """The boundary on each side of a plate that is a rectangle along x and y; empty where it is not."""
+    outline, box = mesh.outline, mesh.outline.box
+    if len(outline.conics) or len(outline.edges) != 4:
+        return {}
+    sides: dict[str, str] = {}
+    for name, pairs in mesh.boundaries.items():
+        ends = mesh.points[pairs]
+        for side, (row, axis) in SIDES.items():
+            on = (np.abs(ends[..., axis] - box[row, axis]) < 1e-9 * mesh.size).all(axis=1)
+            if on.any():
+                if side in sides:
+                    return {}
+                sides[side] = name
+    straight = np.abs(outline.edges - box[0]) < 1e-9 * mesh.size
+    opposite = np.abs(outline.edges - box[1]) < 1e-9 * mesh.size
+    along = (straight | opposite).all(axis=1).any(axis=1)
+    return sides if len(sides) == 4 and along.all() else {}

@@ -1,0 +1,141 @@
+"""The discrete plate: a graded mesh, its stiffness factorised, and its answers to unit loads; all dimensionless."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix, diags
+from scipy.sparse.linalg import splu
+
+from fem_plate.elements.forms import rim_traces
+from fem_plate.elements.singular import point_derivatives, potential, pressure_derivatives
+from fem_plate.elements.space import PlateSpace
+from fem_plate.elements.supports import rigid_modes
+from meshes import PlateMesh
+
+FloatArray = NDArray[np.float64]
+
+
+TOGETHER = 128  # forces answered at once, to bound memory
+
+
+class PlateModel:
+    """A plate on one mesh.
+
+    supports: that of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
+    """
+
+    def __init__(
+        self, mesh: PlateMesh, supports: Mapping[str, str], poisson_ratio: float, free_corners: Iterable[int] = ()
+    ) -> None:
+        self.mesh = mesh
+        self.poisson_ratio = poisson_ratio
+        self.space = PlateSpace(mesh, supports, list(free_corners))
+        self.rigid = self._orthonormal(rigid_modes(self.space.rim))  # (3, r), coefficients of 1, x, y
+
+    @property
+    def unknowns(self) -> int:
+        return self.space.unknowns
+
+    def _orthonormal(self, rigid: FloatArray) -> FloatArray:
+        """The same rigid motions, combined so that their products have the integrals 1 and 0 over the plate."""
+        if not rigid.size:
+            return rigid
+        points, weights = self.space.quadrature
+        motions = np.column_stack([np.ones(len(points)), points]) @ rigid
+        return np.asarray(rigid @ np.linalg.inv(np.linalg.cholesky(motions.T @ (weights[:, None] * motions))).T)
+
+    @cached_property
+    def mean(self) -> FloatArray:
+        """(unknowns, r), what turns a function's unknowns into its integrals with the rigid motions."""
+        if not self.rigid.size:
+            return np.zeros((self.unknowns, 0))
+        return np.asarray(self.space.mass() @ (self.space.linear() @ self.rigid))
+
+    @cached_property
+    def _pins(self) -> csc_matrix:
+        """(r, unknowns), the deflections at points that, held, would stop every rigid motion."""
+        xy = self.mesh.points / self.mesh.size
+        chosen: list[int] = []
+        motions = np.column_stack([np.ones(len(xy)), xy]) @ self.rigid
+        for _ in range(self.rigid.shape[1]):
+            row = int(np.argmax((motions**2).sum(axis=1)))
+            chosen.append(row)
+            direction = motions[row] / np.linalg.norm(motions[row])
+            motions = motions - np.outer(motions @ direction, direction)
+        return self.space.point_values(xy[chosen])
+
+    @cached_property
+    def solve(self) -> Callable[[FloatArray], FloatArray]:
+        """The plate's answer (unknowns, ...) to a load (unknowns, ...).
+
+        A plate that can move rigidly rests on springs spread evenly under all of it, the reactions of which are as
+        smooth as they can be; loads in balance do not feel them.
+        """
+        matrix = self.space.stiffness(self.poisson_ratio) + self._pins.T @ self._pins
+        # Unknowns of small and large cells differ by many powers of ten until they are scaled alike. Symmetric
+        # ordering without pivoting: the matrix is positive definite, and rounding stays at 1e-11.
+        scale = 1 / np.sqrt(matrix.diagonal())
+        scaled = (diags(scale) @ matrix @ diags(scale)).tocsc()
+        factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+        def pinned(load: FloatArray) -> FloatArray:
+            scales = scale if load.ndim == 1 else scale[:, None]
+            return np.asarray(scales * factor.solve(scales * load))
+
+        if not self.rigid.size:
+            return pinned
+        motions, mean = self.space.linear() @ self.rigid, self.mean
+
+        def sprung(load: FloatArray) -> FloatArray:
+            # The springs take the load's part that is out of balance. The pins do not feel the rest.
+            moved = motions.T @ load
+            answer = pinned(load - mean @ moved)
+            return np.asarray(answer + motions @ (moved - mean.T @ answer))
+
+        return sprung
+
+    @cached_property
+    def _load(self) -> csc_matrix:
+        return self.space.load(self.poisson_ratio)
+
+    def _answer(self, known: list[list[FloatArray]]) -> FloatArray:
+        """The smooth parts (unknowns, k) that make k known functions, by their derivatives at the rim, hold there."""
+        traces = [rim_traces(one, self.space.rim.normal, self.poisson_ratio).ravel() for one in known]
+        return self.solve(-(self._load @ np.stack(traces, axis=1)))
+
+    def under_forces(self, sources: FloatArray) -> FloatArray:
+        """The smooth parts (unknowns, N) of the answers to unit forces at sources (N, 2)."""
+        answers = np.empty((self.unknowns, len(sources)), order="F")
+        for start in range(0, len(sources), TOGETHER):
+            part = slice(start, start + TOGETHER)
+            answers[:, part] = self._answer([point_derivatives(self.space.rim.points, at) for at in sources[part]])
+        # The springs answer to the known functions too, by a rigid motion.
+        return answers - self.space.linear() @ (self.rigid @ self._known_means(sources)) if self.rigid.size else answers
+
+    def _known_means(self, sources: FloatArray) -> FloatArray:
+        """The integrals of F around sources (N, 2) with the rigid motions, (r, N).
+
+        F = laplace P and rigid motions R are harmonic: int F R = rim[R dP/dn - P dR/dn].
+        """
+        rim = self.space.rim
+        motions = self.motions(rim.points.reshape(-1, 2)).reshape(*rim.weights.shape, -1)
+        slopes = rim.normal @ self.rigid[1:]
+        integrals = []
+        for source in sources:
+            value, gradient = potential(rim.points, source)
+            flux = (gradient * rim.normal).sum(axis=-1)
+            parts = motions * flux[..., None] - slopes * value[..., None]
+            integrals.append(np.einsum("kn,knr->r", rim.weights, parts))
+        return np.stack(integrals, axis=1)
+
+    def under_pressure(self) -> FloatArray:
+        """The smooth part (unknowns, 1) of the answer to a unit pressure."""
+        return self._answer([pressure_derivatives(self.space.rim.points - self.space.middle)])
+
+    def motions(self, xy: FloatArray) -> FloatArray:
+        """The rigid motions at points (n, 2): (n, r)."""
+        return np.asarray(np.column_stack([np.ones(len(xy)), xy]) @ self.rigid)

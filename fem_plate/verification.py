@@ -1,0 +1,103 @@
+"""Verification: the finite-element plate against theory on three meshes, with errors, orders and bounds."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_plate import analytic
+from fem_plate.plate import Plate
+from fem_plate.section import PlateSection
+from meshes import disc
+
+FloatArray = NDArray[np.float64]
+
+RADIUS = 300e-6  # m
+SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6, density=2330.0)
+FORCE = 1e-3  # N
+CELLS_FROM_CENTRE = (7, 10, 14)
+LAYOUT = RADIUS * np.array([[0.35, 0.10], [-0.20, -0.30]])
+STROKES = np.array([1.0, -0.6])  # of a unit stroke
+CLEARANCE = 0.02  # of the radius: errors are taken this far from the actuators, where the Hessian is infinite
+QUANTITIES = ("w", "gradient", "hessian")
+ERROR_BOUNDS = (1e-8, 2e-7, 1e-5)  # relative largest errors on the finest mesh
+ORDER_BOUNDS = (5.0, 4.0, 3.0)
+ROUNDING = 1e-9  # errors below this come from rounding and have no order
+MOST_UNKNOWNS = 6000
+
+
+@dataclass(frozen=True)
+class Check:
+    """One case of the verification."""
+
+    name: str
+    unknowns: tuple[int, ...]
+    errors: dict[str, tuple[float, ...]]  # relative largest error of each quantity on each mesh
+    orders: dict[str, float | None]  # None: the errors are rounding
+    failures: tuple[str, ...]
+
+    @property
+    def passed(self) -> bool:
+        return not self.failures
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self) | {"passed": self.passed}
+
+
+def verify() -> list[Check]:
+    """Equation (2) and an off-centre layout by Boggio's function, each on three meshes."""
+    plates = [Plate(disc(RADIUS, RADIUS / cells), SECTION) for cells in CELLS_FROM_CENTRE]
+    return [_central_load(plates), _off_centre(plates)]
+
+
+def _central_load(plates: list[Plate]) -> Check:
+    centre = np.zeros((1, 2))
+    xy = _points(centre)
+    exact = _equation_2(xy)
+    found = [plate.deflection(centre, [FORCE]).evaluate(xy) for plate in plates]
+    return _check("central load, equation (2)", plates, found, exact)
+
+
+def _equation_2(xy: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Equation (2) with its derivatives, w' = P r ln(r/a) / (4 pi D)."""
+    r = np.hypot(*xy.T)
+    unit = xy / r[:, None]
+    factor = FORCE / (4 * np.pi * SECTION.rigidity)
+    logarithm = np.log(r / RADIUS)
+    radial = unit[:, :, None] * unit[:, None, :]
+    w = analytic.central_load(r, RADIUS, SECTION.rigidity, FORCE)
+    gradient = factor * (r * logarithm)[:, None] * unit
+    return w, gradient, factor * (logarithm[:, None, None] * np.eye(2) + radial)
+
+
+def _off_centre(plates: list[Plate]) -> Check:
+    xy = _points(LAYOUT)
+    exact = analytic.DiscShapes(LAYOUT, RADIUS).evaluate(xy, STROKES)
+    found = [plate.influence(LAYOUT).evaluate(xy, STROKES) for plate in plates]
+    return _check("two off-centre actuators, Boggio", plates, found, exact)
+
+
+def _points(actuators: FloatArray) -> FloatArray:
+    """A fixed cloud of points on the disc, off the actuators."""
+    xy = RADIUS * np.random.default_rng(2).uniform(-1, 1, (12_000, 2))
+    xy = xy[np.hypot(*xy.T) < RADIUS]
+    return xy[np.min(np.linalg.norm(xy[:, None] - actuators, axis=2), axis=1) > CLEARANCE * RADIUS]
+
+
+def _check(name: str, plates: list[Plate], found: list[Any], exact: tuple[FloatArray, ...]) -> Check:
+    unknowns = tuple(plate.model().unknowns for plate in plates)
+    errors, orders, failures = {}, {}, []
+    if max(unknowns) > MOST_UNKNOWNS:
+        failures.append(f"{max(unknowns)} unknowns, more than {MOST_UNKNOWNS}")
+    for k, quantity in enumerate(QUANTITIES):
+        errors[quantity] = tuple(float(np.abs(f[k] - exact[k]).max() / np.abs(exact[k]).max()) for f in found)
+        order = -np.polyfit(np.log(CELLS_FROM_CENTRE), np.log(errors[quantity]), 1)[0]
+        orders[quantity] = None if max(errors[quantity]) < ROUNDING else float(order)
+        if not errors[quantity][-1] <= ERROR_BOUNDS[k]:
+            failures.append(f"error of {quantity} {errors[quantity][-1]:.1e}, more than {ERROR_BOUNDS[k]:.0e}")
+        if orders[quantity] is not None and not order >= ORDER_BOUNDS[k]:
+            failures.append(f"order of {quantity} {order:.2f}, less than {ORDER_BOUNDS[k]:g}")
+    return Check(name, unknowns, errors, orders, tuple(failures))

@@ -1,0 +1,41 @@
+from .batch import Interrupted as Interrupted, simulate_many as simulate_many
+from .drives.drive import AnyDrive as AnyDrive, Drive as Drive
+from .drives.points import HermiteDrive as HermiteDrive, TableDrive as TableDrive
+from .drives.schedule import Segment as Segment, SegmentDrive as SegmentDrive
+from .friction.contact import ConstantFriction as ConstantFriction, CoulombAdhesion as CoulombAdhesion
+from .friction.kogut_etsion import KogutEtsion as KogutEtsion
+from .friction.table import FrictionTable as FrictionTable
+from .micropart import Micropart as Micropart
+from .simulation import simulate as simulate
+from .surface.moving_surface import (
+    SurfaceMotion as SurfaceMotion,
+    SurfaceState as SurfaceState,
+    platform_surface as platform_surface,
+    polynomial_surface as polynomial_surface,
+)
+from .trajectory import (
+    Energy as Energy,
+    Event as Event,
+    EventKind as EventKind,
+    Outcome as Outcome,
+    Samples as Samples,
+    State as State,
+    Trajectory as Trajectory,
+)
+
+# Not public: for the packages that build on this one.
+from .cores import processors as processors
+from .interrupt import unbroken as unbroken, wait as wait
+from .pictures import (
+    HALO as HALO,
+    PATH_COLOUR as PATH_COLOUR,
+    PLACE as PLACE,
+    RING as RING,
+    Rows as Rows,
+    SHADES as SHADES,
+    STICK_COLOUR as STICK_COLOUR,
+    draw_line as draw_line,
+    shade as shade,
+    shade_keys as shade_keys,
+    stretches as stretches,
+)

@@ -1,0 +1,176 @@
+"""Drives through given points: a table of heights at rest, and measured or analytic motions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from particle.checks import as_row, not_negative, positive, refuse, times_fault, whole
+from particle.drives.quintic import hermite
+from particle.drives.table import Evaluated, FloatArray, Segments
+
+TIMES = "two or more times in s that increase from 0"
+
+
+@dataclass(frozen=True, eq=False)
+class TableDrive(Evaluated):
+    """Heights at given times, at rest and unaccelerated at each; from one to the next the quintic of a stroke.
+
+    repeats: how often the table is run through, None: without end; more than once only if it ends where it began.
+    Before the delay the first height is held, after the end the last.
+    Raises ValueError, naming every field that is wrong.
+    """
+
+    times: FloatArray  # (n,) s, increasing from 0
+    heights: FloatArray  # (n,) m
+    repeats: int | None = 1
+    delay: float = 0.0  # s
+
+    def __post_init__(self) -> None:
+        for name in ("times", "heights"):
+            object.__setattr__(self, name, as_row(getattr(self, name)))
+        fault = times_fault(self.times)
+        returns = self.heights.size > 0 and self.heights[-1] == self.heights[0]
+        again = self.repeats == 1 or returns
+        wanted = "a whole number or None, and 1 unless the last height is the first"
+        refuse(
+            "TableDrive",
+            [
+                (fault is None, "times", TIMES, Said(fault)),
+                row_check("heights", self.heights, self.times, "m"),
+                ((self.repeats is None or whole(self.repeats)) and again, "repeats", wanted, self.repeats),
+                (not_negative(self.delay), "delay", "0 or a positive time in s", self.delay),
+            ],
+        )
+
+    @property
+    def stroke_time(self) -> float:
+        """The shortest time [s] between two neighbouring points of different height; of a level table the whole."""
+        moves = np.diff(self.times)[np.diff(self.heights) != 0]
+        return float(moves.min(initial=self.times[-1]))
+
+    @property
+    def frequency(self) -> float:
+        """Of strokes up and down, each as short as the shortest [Hz]; 0 for a level table."""
+        return 0.5 / self.stroke_time if np.ptp(self.heights) else 0.0
+
+    @property
+    def error(self) -> float:
+        """0: the pieces are the motion."""
+        return 0.0
+
+    def segments(self) -> Segments:
+        """Start (S,) and scale (S,) [s] and coefficients (S, 6) [m] of one pass, and how often it repeats."""
+        rest = np.zeros(len(self.times))
+        return self.times[:-1], *hermite(self.times, self.heights, rest, rest), float(self.repeats or math.inf)
+
+
+@dataclass(frozen=True, eq=False)
+class HermiteDrive(Evaluated):
+    """A motion given by its height, velocity and acceleration at points in time: between two the quintic through both.
+
+    It is twice continuously differentiable from the first point to the last; the first height is held before, the last
+    afterwards, so that a motion that is not at rest there begins and ends with a jump.
+    Raises ValueError, naming every field that is wrong.
+    """
+
+    times: FloatArray  # (n,) s, increasing from 0
+    heights: FloatArray  # (n,) m
+    velocities: FloatArray  # (n,) m/s
+    accelerations: FloatArray  # (n,) m/s^2
+    delay: float = 0.0  # s
+    error: float = 0.0  # of the quintics, over the motion's extent; 0: what was given says no more
+
+    def __post_init__(self) -> None:
+        for name in ("times", "heights", "velocities", "accelerations"):
+            object.__setattr__(self, name, as_row(getattr(self, name)))
+        fault = times_fault(self.times)
+        refuse(
+            "HermiteDrive",
+            [
+                (fault is None, "times", TIMES, Said(fault)),
+                row_check("heights", self.heights, self.times, "m"),
+                row_check("velocities", self.velocities, self.times, "m/s"),
+                row_check("accelerations", self.accelerations, self.times, "m/s^2"),
+                (not_negative(self.delay), "delay", "0 or a positive time in s", self.delay),
+                (not_negative(self.error), "error", "0 or positive", self.error),
+            ],
+        )
+
+    @classmethod
+    def of(cls, function: Callable[[FloatArray], Any], end: float, pieces: int, delay: float = 0.0) -> HermiteDrive:
+        """The motion h(t) from 0 to `end` [s] as so many pieces of equal length.
+
+        function: of times (n,) [s], returns h [m], h' [m/s] and h'' [m/s^2], each (n,) or one number.
+        `error` is the largest difference from h that was found at seven points inside each piece.
+        """
+        refuse(
+            "HermiteDrive.of",
+            [
+                (positive(end), "end", "a positive time in s", end),
+                (whole(pieces), "pieces", "a whole number of pieces", pieces),
+            ],
+        )
+        times = np.linspace(0, end, int(pieces) + 1)
+        drive = cls(times, *_three(function, times), delay)
+        inside = (times[:-1, None] + np.diff(times)[:, None] * np.arange(1, 8) / 8).ravel()
+        truth = _three(function, inside)[0]
+        extent = float(np.ptp(np.concatenate([truth, drive.heights])))
+        wrong = float(np.abs(cls(*drive._rows()).evaluate(inside)[0] - truth).max())
+        return cls(*drive._rows(), delay, wrong / extent if extent else 0.0)
+
+    @property
+    def stroke_time(self) -> float:
+        """The shortest time [s] between neighbouring turning points, or from the start to the first of them.
+
+        They are where the velocity's line between two points crosses 0; no time is shorter than the shortest piece.
+        """
+        t, v = self.times, self.velocities
+        moving = np.flatnonzero(v)
+        one, other = moving[:-1], moving[1:]
+        turns = np.sign(v[one]) != np.sign(v[other])
+        one, other = one[turns], other[turns]
+        turning = t[one] + (t[other] - t[one]) * v[one] / (v[one] - v[other])
+        strokes = np.diff(turning, prepend=0.0)
+        return float(max(strokes.min(initial=t[-1]), np.diff(t).min()))
+
+    @property
+    def frequency(self) -> float:
+        """Of strokes up and down, each as short as the shortest [Hz]; 0 for a level motion."""
+        return 0.5 / self.stroke_time if self.velocities.any() or np.ptp(self.heights) else 0.0
+
+    def segments(self) -> Segments:
+        """Start (S,) and scale (S,) [s] and coefficients (S, 6) [m] of the pieces, and 1: they come once."""
+        return self.times[:-1], *hermite(*self._rows()), 1.0
+
+    def _rows(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        return self.times, self.heights, self.velocities, self.accelerations
+
+
+def _three(function: Callable[[FloatArray], Any], times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """h, h' and h'' of a function at times (n,): three rows (n,)."""
+    try:
+        h, v, a = (np.broadcast_to(np.asarray(row, dtype=float), times.shape) for row in function(times))
+    except (TypeError, ValueError) as error:
+        wanted = "return h, h' and h'', each a number or as many as there are times"
+        raise ValueError(f"Input function of HermiteDrive.of must {wanted}; got {error}") from None
+    return h, v, a
+
+
+class Said(str):
+    """What was got, in words."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def row_check(name: str, row: FloatArray, times: ArrayLike, unit: str) -> tuple[bool, str, str, Said]:
+    """The check that a row holds one finite number in `unit` for each time."""
+    count, bad = np.size(times), row[~np.isfinite(row)]
+    fine = len(row) == count > 0 and not bad.size
+    return fine, name, f"a finite number in {unit} for each time", Said(bad[0] if bad.size else f"{len(row)} numbers")

@@ -1,0 +1,213 @@
+"""How long a part that rests on the surface stays: a search that can miss no break-away.
+
+At a fixed place the surface is polynomial in time, and so are C = (N - squeeze) s / m, the square of the force along
+the surface times s^2, and s^2 itself. Positive Bernstein coefficients of
+
+    Q^2 s^2 - (m s x force along the surface)^2     with the least Q that the subinterval's loads allow,
+
+prove that the part sticks throughout it. What is not proved is halved, the earlier half first.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.drives import ORDER
+from particle.events.bernstein import DEEPEST, halve, to_bernstein
+from particle.events.equations import Part
+from particle.friction import friction_limit
+from particle.jit import bare, jit
+from particle.surface import BASE, TIME, UNIT, standing
+
+FloatArray = NDArray[np.float64]
+
+DEGREE = 16  # of the squared force along the surface; everything else is raised to it
+# A part sticks up to the limit itself, as on a slope at the angle of friction: rounding must not decide.
+ROUNDING = 1 + 1e-14
+SLACK = 1e-15  # of the largest squared force in the span
+
+
+class Rest(NamedTuple):
+    """Scratch memory of the search: subintervals still to be proved, the earliest on top."""
+
+    polynomials: FloatArray  # (DEEPEST + 2, 3, DEGREE + 1): C, squared force times s^2, s^2, in Bernstein form
+    low: FloatArray  # (DEEPEST + 2,)
+    width: FloatArray  # (DEEPEST + 2,)
+    motion: FloatArray  # (3, 6), w, w_x and w_y at the place as polynomials of the share of the time
+    bounds: FloatArray  # (6,), one of these in Bernstein form
+
+
+@jit
+def new_rest() -> Rest:
+    return Rest(
+        np.zeros((DEEPEST + 2, 3, DEGREE + 1)),
+        np.zeros(DEEPEST + 2),
+        np.zeros(DEEPEST + 2),
+        np.zeros((3, ORDER)),
+        np.zeros(ORDER),
+    )
+
+
+@jit
+def leaves_rest(local: Any, part: Part, rest: Rest, x: float, y: float, begin: float, end: float) -> float:
+    """When [s] a part at rest at (x, y) [m] first slips, comes off or is overloaded; inf when it does not.
+
+    The search goes from `begin` to `end` [s], within the prepared span.
+    """
+    standing(local, x, y, rest.motion)
+    low, width = (begin - local.frame[TIME]) / local.frame[UNIT], (end - begin) / local.frame[UNIT]
+    for row in range(3):
+        _move(rest.motion[row], low, width)
+    straight = local.counts[BASE] == 0 and part.tilt_x == 0.0 and part.tilt_y == 0.0
+    if straight and _plainly_safe(part, rest, end - begin):
+        return math.inf
+    _polynomials(local, part, rest.motion, begin, end, rest.polynomials[0])
+    # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
+    slack = SLACK * np.abs(rest.polynomials[0, 1]).max()
+    rest.low[0], rest.width[0] = 0.0, 1.0
+    narrowest = 0.5**DEEPEST
+    top = 0
+    while top >= 0:
+        if _proved_safe(part, rest.polynomials[top], slack):
+            top -= 1
+        elif rest.width[top] <= narrowest:
+            # Neither provable nor divisible: a slip if the far end says so, else the limit was only touched.
+            c, force, square = rest.polynomials[top, :, -1]
+            if not holds(part, c, force - slack, square):
+                return float(begin + (rest.low[top] + rest.width[top]) * (end - begin))
+            top -= 1
+        else:
+            half = 0.5 * rest.width[top]
+            rest.low[top + 1] = rest.low[top]
+            rest.low[top] += half
+            rest.width[top] = rest.width[top + 1] = half
+            for row in range(3):
+                halve(rest.polynomials[top, row], rest.polynomials[top + 1, row])
+            top += 1
+    return math.inf
+
+
+@bare
+def _plainly_safe(part: Part, rest: Rest, lasting: float) -> bool:
+    """Whether the largest slope and the extreme accelerations of `lasting` [s] together leave the part at rest.
+
+    This costs little and settles most cases, with the base at rest and no tilt.
+    """
+    square = 0.0
+    for row in (1, 2):
+        to_bernstein(rest.motion[row], rest.bounds)
+        steepest = 0.0
+        for k in range(ORDER):
+            steepest = max(steepest, abs(rest.bounds[k]))
+        square += steepest * steepest
+    # The second derivative of a quintic has the second differences of its Bernstein coefficients.
+    to_bernstein(rest.motion[0], rest.bounds)
+    b, factor = rest.bounds, 20.0 / (lasting * lasting)
+    least, most = math.inf, -math.inf
+    for k in range(ORDER - 2):
+        bend = factor * (b[k] - 2 * b[k + 1] + b[k + 2])
+        least, most = min(least, part.gravity + bend), max(most, part.gravity + bend)
+    s = math.sqrt(1.0 + square)
+    load_low = part.mass * (least / s if least > 0 else least) + part.squeeze
+    load_high = part.mass * (most if most > 0 else most / s) + part.squeeze
+    if load_low < -part.law.pull_off or load_high > part.law.largest_load:
+        return False
+    limit = part.law.static_ratio * friction_limit(part.law, load_low) / part.mass
+    return max(least * least, most * most) * square <= limit * limit
+
+
+@bare
+def holds(part: Part, c: float, force: float, square: float) -> bool:
+    """Whether the part stays, given C, the squared force along the surface times s^2 (per kg) and s^2."""
+    s = math.sqrt(square)
+    load = part.mass * c / s + part.squeeze
+    limit = part.law.static_ratio * friction_limit(part.law, load) / part.mass
+    return -part.law.pull_off <= load <= part.law.largest_load and force <= limit * limit * square * ROUNDING
+
+
+@jit
+def _proved_safe(part: Part, rest: FloatArray, slack: float) -> bool:
+    c_low, c_high = rest[0].min(), rest[0].max()
+    s_low, s_high = math.sqrt(max(1.0, rest[2].min())), math.sqrt(max(1.0, rest[2].max()))
+    load_low = part.mass * c_low / (s_high if c_low > 0 else s_low) + part.squeeze
+    load_high = part.mass * c_high / (s_low if c_high > 0 else s_high) + part.squeeze
+    if load_low < -part.law.pull_off or load_high > part.law.largest_load:
+        return False
+    limit = part.law.static_ratio * friction_limit(part.law, load_low) / part.mass
+    for k in range(DEGREE + 1):
+        if rest[1, k] - slack > limit * limit * rest[2, k] * ROUNDING:
+            return False
+    return True
+
+
+@jit
+def _polynomials(local: Any, part: Part, motion: FloatArray, begin: float, end: float, out: FloatArray) -> None:
+    """C, the squared force along the surface times s^2, and s^2, from `begin` to `end` [s]: Bernstein form (3, 17)."""
+    w_tt, g_x, g_y = _second(motion[0], end - begin), motion[1], motion[2]
+    b_x, b_y = np.zeros(ORDER - 2), np.zeros(ORDER - 2)
+    if local.counts[BASE] > 0:
+        base = local.base.T.copy()
+        low, width = (begin - local.frame[TIME]) / local.frame[UNIT], (end - begin) / local.frame[UNIT]
+        _move(base[0], low, width)
+        _move(base[1], low, width)
+        b_x, b_y = _second(base[0], end - begin), _second(base[1], end - begin)
+    b_x[0] -= part.tilt_x
+    b_y[0] -= part.tilt_y
+    upright = w_tt.copy()
+    upright[0] += part.gravity
+    q_2 = _plus(_times(g_x, g_x), _times(g_y, g_y))
+    b_g = _plus(_times(b_x, g_x), _times(b_y, g_y))
+    b_2 = _plus(_times(b_x, b_x), _times(b_y, b_y))
+    c = _plus(upright, -b_g)
+    # s^2 |force|^2 = |b|^2 s^2 + upright^2 q^2 + 2 upright (b.g) - (b.g)^2: what gravity and inertia leave along it.
+    force = _plus(b_2, _times(b_2, q_2))
+    force = _plus(force, _times(_times(upright, upright), q_2))
+    force = _plus(force, _plus(2 * _times(upright, b_g), -_times(b_g, b_g)))
+    square = q_2.copy()
+    square[0] += 1.0
+    to_bernstein(c, out[0])
+    to_bernstein(force, out[1])
+    to_bernstein(square, out[2])
+
+
+@bare
+def _move(c: FloatArray, low: float, width: float) -> None:
+    """A polynomial of s on [low, low + width] as one of r on [0, 1], in place."""
+    n = len(c) - 1
+    for k in range(n):
+        for j in range(n - 1, k - 1, -1):
+            c[j] += low * c[j + 1]
+    factor = 1.0
+    for k in range(n + 1):
+        c[k] *= factor
+        factor *= width
+
+
+@jit
+def _second(c: FloatArray, unit: float) -> FloatArray:
+    """The second derivative in time of a polynomial of s = t / unit."""
+    out = np.zeros(len(c) - 2)
+    for k in range(len(out)):
+        out[k] = (k + 2) * (k + 1) * c[k + 2] / (unit * unit)
+    return out
+
+
+@jit
+def _times(a: FloatArray, b: FloatArray) -> FloatArray:
+    out = np.zeros(len(a) + len(b) - 1)
+    for i in range(len(a)):
+        for j in range(len(b)):
+            out[i + j] += a[i] * b[j]
+    return out
+
+
+@jit
+def _plus(a: FloatArray, b: FloatArray) -> FloatArray:
+    out = np.zeros(max(len(a), len(b)))
+    out[: len(a)] += a
+    out[: len(b)] += b
+    return out

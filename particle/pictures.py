@@ -1,0 +1,113 @@
+"""The look of a path in pictures: its line and places, and what the part does over time as shades."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
+
+from meshes import SIZE, Drawing, in_unit, plan
+from particle.trajectory import State, Trajectory
+
+FloatArray = NDArray[np.float64]
+
+PATH_COLOUR, STICK_COLOUR = "#c8371b", "#1b4f9c"
+HALO = [withStroke(linewidth=2.6, foreground="white")]
+RING: dict[str, Any] = {"marker": "o", "markerfacecolor": "none", "markersize": 8, "markeredgewidth": 1.4}
+CROSS: dict[str, Any] = {"marker": "x", "markersize": 7, "markeredgewidth": 1.6}
+PLACE: dict[str, Any] = {"color": "black", "linestyle": "", "path_effects": HALO, "zorder": 5}
+REST: dict[str, Any] = {"color": STICK_COLOUR, "markeredgewidth": 0, "markersize": 4.5}
+SHADES = {State.STICK: (STICK_COLOUR, "stuck"), State.FLIGHT: ("#606060", "in flight")}
+SAMPLES = 2000
+ROOM = 0.6  # of a path's extent, from its middle to the frame
+SMALLEST = 1e-6  # m: so far from the part is the frame where there is no path
+
+
+class Rows(Protocol):
+    """A path at n moments, such as a `Trajectory`; a state holds from its row to the next."""
+
+    @property
+    def time(self) -> FloatArray:
+        """(n,) s."""
+
+    @property
+    def position(self) -> FloatArray:
+        """(n, 2) m."""
+
+    @property
+    def state(self) -> NDArray[np.int64]:
+        """(n,) State."""
+
+
+def draw_line(axes: Axes, rows: Rows, line: FloatArray, per_metre: float = 1.0) -> list[Artist]:
+    """Draw a path, points (k, 2) [m] along it, its ends and where the part rests; return keys."""
+    points = rows.position * per_metre
+    keys: list[Artist] = []
+    keys += axes.plot(
+        *(line * per_metre).T, color=PATH_COLOUR, linewidth=1.2, path_effects=HALO, zorder=3, label="path"
+    )
+    rests = np.unique(points[rows.state == State.STICK], axis=0)
+    if rests.size:
+        keys += axes.plot(*rests.T, "o", **REST, zorder=2.9, label="rests here")  # many must not hide the line
+    keys += axes.plot(*points[:1].T, **RING, **PLACE, label="start")
+    keys += axes.plot(*points[-1:].T, **CROSS, **PLACE, label="end")
+    return keys
+
+
+def shade(axes: Axes, rows: Rows, per_second: float = 1.0) -> None:
+    """Shade the times at which the part does not slip."""
+    edges = rows.time * per_second
+    for state in SHADES:
+        for begin, end in stretches(rows.state == state):
+            axes.axvspan(edges[begin], edges[end], zorder=0, **_look(state))
+
+
+def shade_keys(rows: Rows) -> list[Artist]:
+    """Keys of the shades that there are."""
+    return [Patch(label=name, **_look(state)) for state, (_, name) in SHADES.items() if stretches(rows.state == state)]
+
+
+def _look(state: State) -> dict[str, Any]:
+    colour = SHADES[state][0]
+    if state is State.STICK:
+        return {"color": colour, "alpha": 0.18, "linewidth": 0}
+    return {"facecolor": "none", "edgecolor": colour, "hatch": "////", "linewidth": 0}  # also told from it in grey
+
+
+def stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First and last row of each stretch of rows during which something (n,) holds."""
+    change = np.diff(np.concatenate([[0], holds[:-1].astype(int), [0]]))
+    return list(zip(np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist(), strict=True))
+
+
+def plot(trajectory: Trajectory) -> Drawing:
+    """The path, and beside it the speed over time, in SI units."""
+    figure = Drawing(figsize=(2 * SIZE[0], SIZE[1]))
+    places, speeds = figure.subplots(1, 2)
+    keys = plot_path(trajectory, places) + shade_keys(trajectory)
+    samples = trajectory.at(np.linspace(trajectory.time[0], trajectory.time[-1], SAMPLES))
+    speeds.plot(samples.time, np.hypot(*samples.velocity.T), color="black", linewidth=1.0)
+    shade(speeds, trajectory)
+    in_unit(speeds.xaxis, "time", "s")
+    in_unit(speeds.yaxis, "speed in the plane", "m/s")
+    speeds.set_xlim(trajectory.time[0], trajectory.time[-1])
+    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
+    return figure
+
+
+def plot_path(trajectory: Trajectory, axes: Axes) -> list[Artist]:
+    """Draw the path into axes in m; return keys."""
+    samples = trajectory.at(np.linspace(trajectory.time[0], trajectory.time[-1], SAMPLES))
+    keys = draw_line(axes, trajectory, samples.position)
+    low, high = samples.position.min(axis=0), samples.position.max(axis=0)
+    half = ROOM * float((high - low).max()) or SMALLEST
+    (left, bottom), (right, top) = (low + high) / 2 - half, (low + high) / 2 + half
+    axes.set_xlim(left, right)
+    axes.set_ylim(bottom, top)
+    plan(axes)
+    return keys

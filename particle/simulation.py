@@ -1,0 +1,111 @@
+"""simulate: from a surface, a part and a friction law to a trajectory."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from particle.events import Part, Request
+from particle.fixed import MOREAU, MOST_ROWS, PAPER, default_step, shortest_stroke, step_count
+from particle.friction import Contact
+from particle.micropart import Micropart
+from particle.path import find_path, find_path_by_steps
+from particle.surface import SurfaceMotion, rim_gap
+from particle.trajectory import Trajectory
+
+BRIDGED = 100.0  # tolerances, relative: how far off the surface's acceleration may be where kinks are bridged
+
+_FIXED_STEPS = {"fixed": MOREAU, "paper": PAPER}
+
+
+def simulate(
+    surface: SurfaceMotion,
+    part: Micropart,
+    friction: Contact,
+    duration: float,
+    gravity: float | Sequence[float] = 9.80665,
+    tolerance: float = 1e-9,
+    scheme: str = "events",
+    after_detachment: str = "stop",
+    time_step: float | None = None,
+) -> Trajectory:
+    """The part's path over the moving surface, by the equations of `particle.events.equations`.
+
+    duration: s.  gravity: m/s^2 towards the plate, or a vector along x, y, z for a tilted device: (0, 0, -9.80665) is
+    the same as 9.80665.  tolerance: error of one step, relative to the surface's size.
+    scheme: "events" locates every event.  For comparison, of first order in steps of time_step: "fixed", Moreau's time
+    stepping by the same equations, and "paper", the paper's own scheme, which tends to others (docs/motion.md).
+    after_detachment: "stop" ends the run where the part comes off, "fly" follows it to where it lands ("events" only).
+    time_step: s, of the schemes "fixed" and "paper", which heed no tolerance; by default 1e-4 of the shortest stroke.
+    Raises ValueError, naming every input that makes no sense, as a start beyond the rim.
+    """
+    wrong = []
+    if scheme != "events" and scheme not in _FIXED_STEPS:
+        wrong.append(f"Input scheme of simulate must be 'events', 'fixed' or 'paper'; got {scheme!r}")
+    if time_step is not None and scheme == "events":
+        wrong.append(f"Input time_step of simulate must be None with the scheme 'events'; got {time_step!r}")
+    elif time_step is not None and not (math.isfinite(time_step) and time_step > 0):
+        wrong.append(f"Input time_step of simulate must be a positive time in s; got {time_step!r}")
+    if scheme in _FIXED_STEPS and after_detachment == "fly":
+        wrong.append(f"Input after_detachment of simulate must be 'stop' with the scheme {scheme!r}; got 'fly'")
+    wrong += faults(duration, gravity, tolerance, after_detachment)
+    if not rim_gap(surface.record, *map(float, part.position)) >= 0:
+        wrong.append(f"Input position of Micropart must lie on the plate; got {tuple(part.position)!r} m")
+    if wrong:
+        raise ValueError("; ".join(wrong))
+    request = new_request(surface, part, friction, duration, gravity, tolerance, after_detachment == "fly")
+    if scheme == "events":
+        found = find_path(surface, request, tolerance)
+        assert found
+        return found
+    step = float(default_step(surface, duration) if time_step is None else time_step)
+    steps = step_count(request.duration, step)
+    return find_path_by_steps(surface, request, _FIXED_STEPS[scheme], step, steps, math.ceil(steps / MOST_ROWS))
+
+
+def faults(duration: float, gravity: float | Sequence[float], tolerance: float, after_detachment: str) -> list[str]:
+    """What is wrong with what all paths of a run have in common."""
+    wrong = []
+    vector = np.atleast_1d(np.asarray(gravity, dtype=float))
+    if not (vector.shape in ((1,), (3,)) and np.isfinite(vector).all()):
+        wrong.append(f"Input gravity of simulate must be an acceleration in m/s^2 or three of them; got {gravity!r}")
+    if after_detachment not in ("stop", "fly"):
+        wrong.append(f"Input after_detachment of simulate must be 'stop' or 'fly'; got {after_detachment!r}")
+    if not (math.isfinite(duration) and duration > 0):
+        wrong.append(f"Input duration of simulate must be a positive time in s; got {duration!r}")
+    if not 1e-13 <= tolerance <= 1e-2:
+        wrong.append(f"Input tolerance of simulate must be in [1e-13, 1e-2]; got {tolerance!r}")
+    return wrong
+
+
+def new_request(
+    surface: SurfaceMotion,
+    part: Micropart,
+    friction: Contact,
+    duration: float,
+    gravity: float | Sequence[float],
+    tolerance: float,
+    flies: bool,
+) -> Request:
+    """What kernels are asked for."""
+    vector = np.atleast_1d(np.asarray(gravity, dtype=float))
+    x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
+    stroke_time = shortest_stroke(surface, duration)
+    force = float(part.mass * (np.linalg.norm(vector) + surface.size / stroke_time**2))
+    jumps, bends = (bool((surface.drives.jump[:, k] > 0).any()) for k in (0, 1))
+    return Request(
+        part=Part(float(part.mass), -float(z), float(x), float(y), float(part.squeeze), friction.law),
+        start=np.array([*part.position, *part.velocity], dtype=float),
+        duration=float(duration),
+        tolerance=tolerance * surface.size,
+        stroke_time=stroke_time,
+        force=force,
+        flies=flies,
+        jumps=jumps,
+        bends=bends,
+        bridged=(0.0, 0.0)
+        if bends
+        else (tolerance * surface.size / stroke_time, BRIDGED * tolerance * force / part.mass),
+    )

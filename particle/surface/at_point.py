@@ -1,0 +1,199 @@
+"""The surface where the part is: its height, slopes and curvatures, and their rates, from the cell that it is in."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.drives import ORDER
+from particle.jit import bare, jit
+from particle.surface.cells import UNBUILT
+from particle.surface.local import (
+    BASE,
+    DEGREE,
+    FLOOR,
+    HALF_X,
+    HALF_Y,
+    MONOMIALS,
+    NEAR,
+    SIZE,
+    TIME,
+    UNIT,
+    Local,
+    X,
+    Y,
+    new_local,
+)
+from particle.surface.rim import rim_gap
+from particle.surface.span import enter
+
+FloatArray = NDArray[np.float64]
+
+
+class Fields(NamedTuple):
+    """The surface at one point and time, in SI units, with the base's place, velocity and acceleration in its plane."""
+
+    w: float
+    w_t: float
+    w_tt: float
+    x: float
+    y: float
+    xt: float
+    yt: float
+    xx: float
+    xy: float
+    yy: float
+    base_px: float
+    base_py: float
+    base_vx: float
+    base_vy: float
+    base_ax: float
+    base_ay: float
+
+
+@bare
+def at_time(local: Local, time: float) -> None:
+    """The cell's polynomial and logarithms at `time` [s], with two derivatives, into `at`."""
+    unit = local.frame[UNIT]
+    s = (time - local.frame[TIME]) / unit
+    c, at = local.smooth, local.at
+    for m in range(local.counts[MONOMIALS] + local.counts[NEAR]):
+        at[0, m] = ((((c[5, m] * s + c[4, m]) * s + c[3, m]) * s + c[2, m]) * s + c[1, m]) * s + c[0, m]
+        at[1, m] = ((((5 * c[5, m] * s + 4 * c[4, m]) * s + 3 * c[3, m]) * s + 2 * c[2, m]) * s + c[1, m]) / unit
+        at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
+
+
+@bare
+def quintic(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
+    """A quintic in s = t / unit, with its first and second derivative in t."""
+    value = ((((c[5] * s + c[4]) * s + c[3]) * s + c[2]) * s + c[1]) * s + c[0]
+    first = (((5 * c[5] * s + 4 * c[4]) * s + 3 * c[3]) * s + 2 * c[2]) * s + c[1]
+    second = ((20 * c[5] * s + 12 * c[4]) * s + 6 * c[3]) * s + 2 * c[2]
+    return value, first / unit, second / (unit * unit)
+
+
+@bare
+def fields(local: Local, x: float, y: float, time: float) -> Fields:
+    """The surface at a point [m] of the prepared cell and a time [s] of the prepared span."""
+    at_time(local, time)
+    at, frame, size = local.at, local.frame, local.frame[SIZE]
+    half_x, half_y = frame[HALF_X], frame[HALF_Y]
+    u, v = (x - frame[X]) / half_x, (y - frame[Y]) / half_y
+    w = w_u = w_uu = w_v = w_uv = w_vv = 0.0
+    w_t = w_ut = w_vt = w_tt = 0.0
+    monomials, degree = local.counts[MONOMIALS], local.counts[DEGREE]
+    m = monomials
+    # Horner in v inside Horner in u; w_uu and w_vv carry half of the second derivative.
+    for i in range(degree, -1, -1):
+        a = a_v = a_vv = b = b_v = c = 0.0
+        for _ in range(degree + 1 - i):
+            m -= 1
+            a_vv = a_vv * v + a_v
+            a_v = a_v * v + a
+            a = a * v + at[0, m]
+            b_v = b_v * v + b
+            b = b * v + at[1, m]
+            c = c * v + at[2, m]
+        w_uu = w_uu * u + w_u
+        w_u = w_u * u + w
+        w = w * u + a
+        w_uv = w_uv * u + w_v
+        w_v = w_v * u + a_v
+        w_vv = w_vv * u + a_vv
+        w_ut = w_ut * u + w_t
+        w_t = w_t * u + b
+        w_vt = w_vt * u + b_v
+        w_tt = w_tt * u + c
+    g_x, g_y, g_xt, g_yt = w_u / half_x, w_v / half_y, w_ut / half_x, w_vt / half_y
+    h_xx, h_xy, h_yy = 2 * w_uu / half_x**2, w_uv / (half_x * half_y), 2 * w_vv / half_y**2
+    for j in range(local.counts[NEAR]):
+        d_x, d_y = (x - local.near[j, 0]) / size, (y - local.near[j, 1]) / size
+        square = d_x * d_x + d_y * d_y
+        bounded, inner, logarithm = _logarithm(frame[FLOOR], square)
+        m = monomials + j
+        f, f_t, f_tt = at[0, m], at[1, m], at[2, m]
+        value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
+        slope = (logarithm + 1 + inner) / size
+        w += f * value
+        w_t += f_t * value
+        w_tt += f_tt * value
+        g_x += f * slope * d_x
+        g_y += f * slope * d_y
+        g_xt += f_t * slope * d_x
+        g_yt += f_t * slope * d_y
+        bend = f / (size * size)
+        h_xx += bend * (logarithm + 1 + inner + 2 * d_x * d_x / bounded)
+        h_xy += bend * 2 * d_x * d_y / bounded
+        h_yy += bend * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
+    base_px = base_py = base_vx = base_vy = base_ax = base_ay = 0.0
+    if local.counts[BASE] > 0:
+        s, unit = (time - frame[TIME]) / frame[UNIT], frame[UNIT]
+        base_px, base_vx, base_ax = quintic(local.base[:, 0], s, unit)
+        base_py, base_vy, base_ay = quintic(local.base[:, 1], s, unit)
+    return Fields(
+        w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, base_px, base_py, base_vx, base_vy, base_ax, base_ay
+    )
+
+
+@bare
+def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
+    """What r^2 ln r is made of: r^2 outside the floor, how far r is inside it, and 2 ln r there; lengths over the size.
+
+    Within the floor it is the parabola in r^2 that meets r^2 ln r with two derivatives: there `inner` is not 0.
+    """
+    bounded = max(square, floor * floor)
+    return bounded, (square - bounded) / bounded, math.log(bounded)
+
+
+@bare
+def standing(local: Local, x: float, y: float, out: FloatArray) -> None:
+    """The surface at a fixed point [m] as polynomials in time: w, w_x, w_y into `out` (3, 6)."""
+    frame, size, c = local.frame, local.frame[SIZE], local.smooth
+    u, v = (x - frame[X]) / frame[HALF_X], (y - frame[Y]) / frame[HALF_Y]
+    monomials, degree = local.counts[MONOMIALS], local.counts[DEGREE]
+    for k in range(ORDER):
+        w = w_u = w_v = 0.0
+        m = monomials
+        for i in range(degree, -1, -1):
+            a = a_v = 0.0
+            for _ in range(degree + 1 - i):
+                m -= 1
+                a_v = a_v * v + a
+                a = a * v + c[k, m]
+            w_u = w_u * u + w
+            w = w * u + a
+            w_v = w_v * u + a_v
+        out[0, k], out[1, k], out[2, k] = w, w_u / frame[HALF_X], w_v / frame[HALF_Y]
+    for j in range(local.counts[NEAR]):
+        d_x, d_y = (x - local.near[j, 0]) / size, (y - local.near[j, 1]) / size
+        bounded, inner, logarithm = _logarithm(frame[FLOOR], d_x * d_x + d_y * d_y)
+        value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
+        slope = (logarithm + 1 + inner) / size
+        for k in range(ORDER):
+            f = c[k, monomials + j]
+            out[0, k] += f * value
+            out[1, k] += f * slope * d_x
+            out[2, k] += f * slope * d_y
+
+
+@jit
+def evaluate_points(surface: Any, xy: FloatArray, time: float) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """The first ten of `Fields` at points (n, 2) [m] and one time [s]: (n, 10), nan beyond the rim.
+
+    Also (n,) which of the points have no cell yet.
+    """
+    out, missing = np.full((len(xy), 10), math.nan), np.zeros(len(xy), dtype=np.bool_)
+    local = new_local(surface)
+    for n in range(len(xy)):
+        x, y = xy[n]
+        if rim_gap(surface, x, y) < -1e-9 * surface.size:
+            continue
+        cell = enter(surface, local, x, y, time, math.inf)
+        missing[n] = cell == UNBUILT
+        if cell >= 0:
+            f = fields(local, x, y, time)
+            out[n] = np.array([f.w, f.w_t, f.w_tt, f.x, f.y, f.xt, f.yt, f.xx, f.xy, f.yy])
+    return out, missing
