@@ -20,7 +20,7 @@ from active_surface.cli.group import Group
 from active_surface.cli.options import tell
 from active_surface.cli.program import main
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 MISUSES = [
     (["rnu", "x"], "active-surface: 1 mistake\n  rnu is not known; did you mean run?"),
     (["--versoin"], "active-surface: 1 mistake\n  --versoin is not known; did you mean --version?"),
@@ -175,7 +175,7 @@ def test_ctrl_c_that_compiled_code_went_on_after_ends_a_command_as_any(cause, en
     ],
 )
 def test_a_file_for_another_command_is_told_in_one_line(tmp_path, command, file, said):
-    path = Path(__file__).parents[2] / "examples" / file
+    path = Path(__file__).parents[3] / "examples" / file
     done = CliRunner().invoke(main, [command, str(path), "-o", str(tmp_path / "out")])
     assert done.exit_code == 2 and not (tmp_path / "out").exists()
     assert said.format(path) in done.output and len(done.output.splitlines()) == 2

@@ -10,7 +10,7 @@ from coupling import read_case
 from coupling.case.case import Case
 from coupling.case.text import case_text, write_case
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 FILES = [
     file for file in sorted(EXAMPLES.rglob("*.toml")) if "[run]" in file.read_text() and "100x100" not in file.name
 ]

@@ -13,7 +13,7 @@ from coupling.case.case import CoulombCase, PartCase, RunCase
 from coupling.results.case_record import case_of, record_of
 from particle import Samples
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 FILES = [file for file in sorted(EXAMPLES.glob("*.toml")) if "100x100" not in file.name]
 MOTION = {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}, "z": {"stroke": 3e-6, "frequency": 500.0}}
 

@@ -23,7 +23,7 @@ from coupling.run import run_case
 
 SIZE = (320, 240)
 MOTION = {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}, "z": {"stroke": 3e-6, "frequency": 500.0}}
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def shade(level, size=SIZE):

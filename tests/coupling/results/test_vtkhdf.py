@@ -19,7 +19,7 @@ from coupling.results import vtkhdf
 
 N_STEPS = 20  # neither flushed by count at the end nor fewer than one flush
 TIMES = [0.1 * k**1.5 for k in range(N_STEPS)]
-ROOT = Path(vtkhdf.__file__).parents[1]
+ROOT = Path(vtkhdf.__file__).parents[2]
 
 side = np.linspace(0.0, 0.01, 7)
 POINTS = np.array([(x, y) for y in side for x in side])

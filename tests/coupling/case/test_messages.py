@@ -14,7 +14,7 @@ from active_surface.cli.program import main
 from coupling.case.case import CaseTables
 from coupling.case.schema import json_schema
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 BROKEN = sorted((ROOT / "tests/broken").glob("*.toml"))
 BEYOND_A_SCHEMA = {"contradictions", "formulas", "measured_points", "outside"}
 """Of these it finds some mistakes at most: they depend on other fields, other files or the plate."""

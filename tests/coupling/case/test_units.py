@@ -73,4 +73,4 @@ def test_units(unit: str, text: str, value: float) -> None:
 
 def test_import_does_not_load_pint() -> None:
     code = "import coupling.case.case, sys; sys.exit('pint' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2]).returncode == 0
+    assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[3]).returncode == 0

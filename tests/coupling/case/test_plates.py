@@ -13,7 +13,7 @@ from coupling.case.case import ActuatorCase, Case, CaseError, ConstantCase, Part
 from coupling.case.input_error import InputError
 from coupling.case.plate import AnnulusCase, DiscCase, MeshCase, PolygonCase, RectangleCase
 
-MESH = Path(__file__).parents[1] / "data" / "l_with_hole.msh"
+MESH = Path(__file__).parents[2] / "data" / "l_with_hole.msh"
 MATERIAL = """\
 youngs_modulus = "169 GPa"
 poisson_ratio = 0.3

@@ -15,7 +15,7 @@ from active_surface.cli.program import main
 from active_surface.cli.schema import AIM, CASE, STUDY, _model
 from coupling.case.field_texts import all_tables, field_texts
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 KINDS = (CASE, STUDY, AIM)
 
 

@@ -10,7 +10,7 @@ from active_surface.cli.program import main
 from coupling.case.case import CaseError, TableCase, read_case
 from coupling.run import build_friction
 
-EXAMPLE = (Path(__file__).parents[2] / "examples" / "one_actuator.toml").read_text()
+EXAMPLE = (Path(__file__).parents[3] / "examples" / "one_actuator.toml").read_text()
 BEFORE, REST = EXAMPLE.split("[friction]")
 AFTER = REST[REST.index("[run]") :]
 LINE = BEFORE.count("\n") + 2  # of the first line in [friction]

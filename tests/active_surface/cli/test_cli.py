@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from active_surface.cli.program import main
 from fem_plate import verification
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 BROKEN = """\
 [plate]
 shape = "disc"

@@ -7,7 +7,7 @@ import pytest
 from active_surface.steering import Settings, Task
 from coupling import read_case
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 NINE = (EXAMPLES / "array_3x3.toml").read_text()
 SQUARE = 'shape = "rectangle"\nwidth = "600 um"\nheight = "600 um"\n'
 OFF = (2e-5, -4e-5)
