@@ -2,6 +2,10 @@
 
 import lazy_loader
 
+from coupling.shadow import refuse_shadows
+
+refuse_shadows("meshes", "fem_plate", "particle")
+
 __getattr__, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
 
 __all__ = [  # public; the stub beside has also what other packages of the program use

@@ -1,0 +1,68 @@
+"""The public API: one module with all names, known to editors, loaded when they are used."""
+
+import importlib
+import subprocess
+import sys
+
+import pytest
+
+import active_surface
+
+ROOMS = ["studies", "steering", "views"]
+PACKAGES = ["fem_plate", "particle", "coupling", *(f"active_surface.{room}" for room in ROOMS)]
+MODULES = {"meshes", "paper", *ROOMS}
+
+
+def test_api_has_the_public_names_of_all_packages_and_no_others():
+    public = [name for package in PACKAGES for name in importlib.import_module(package).__all__]
+    assert len(public) == len(set(public))
+    assert set(active_surface.__all__) == {*public, *MODULES} <= set(dir(active_surface))
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_names_of_the_api_are_those_of_the_packages(package):
+    door = importlib.import_module(package)
+    for name in door.__all__:
+        assert getattr(active_surface, name) is getattr(door, name), name
+
+
+def test_a_name_that_does_not_exist_is_refused_as_in_any_module():
+    with pytest.raises(AttributeError, match="^module 'active_surface' has no attribute 'run_cases'"):
+        _ = active_surface.run_cases
+
+
+def test_the_api_starts_at_once():
+    code = (
+        "import sys, time; start = time.process_time(); import active_surface; took = time.process_time() - start;"
+        "assert not {'numpy', 'scipy', 'numba', 'pydantic', 'matplotlib'} & set(sys.modules); print(took)"
+    )
+    runs = [subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True) for _ in range(3)]
+    assert min(float(run.stdout) for run in runs) < 0.05
+
+
+SCRIPT = """\
+import active_surface
+from active_surface import Plate, aim, read_study
+from coupling import run_case
+from particle import simulate
+
+reveal_type(active_surface.run_case)
+reveal_type(active_surface.meshes.disc)
+reveal_type(Plate)
+reveal_type(aim)
+reveal_type(read_study)
+reveal_type(run_case)
+reveal_type(simulate)
+"""
+
+
+@pytest.mark.compiled  # needs no kernels, but one pass is enough
+def test_editors_know_the_types_of_a_user(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT)
+    command = [sys.executable, "-m", "mypy", "--follow-imports=silent", "--no-error-summary", "--cache-dir", tmp_path]
+    run = subprocess.run([*command, script], cwd=tmp_path, capture_output=True, text=True)
+    types = [line.partition("Revealed type is ")[2] for line in run.stdout.splitlines() if "Revealed type" in line]
+    assert run.returncode == 0, run.stdout
+    assert len(types) == SCRIPT.count("reveal_type")
+    assert all(kind.startswith('"def (') and not kind.endswith("Any\"") for kind in types), types
