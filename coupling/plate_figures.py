@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +11,8 @@ from scipy.sparse import csr_matrix, diags
 
 from coupling.case import SAME_PLACE, Case, KogutEtsionCase
 from coupling.drives import moments, stroke_heights, travel
+from coupling.scene import PlateScene
 from coupling.steepest import around, steepest
-from coupling.summary import PlateFigures
 from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes
 from meshes import Outline
 from particle import AnyDrive, SurfaceMotion, Trajectory
@@ -26,15 +27,31 @@ LINEAR_ERROR = 0.08
 QUASI_STATIC_ERROR = 1.65
 
 
-def plate_figures(
-    case: Case,
-    plate: Plate,
-    shapes: PlateShapes,
-    surface: SurfaceMotion,
-    drives: Sequence[AnyDrive],
-    trajectory: Trajectory,
-) -> PlateFigures:
+@dataclass(frozen=True)
+class PlateFigures:
+    """What a plate adds to the summary."""
+
+    plate_unknowns: int
+    plate_error: float  # of unit shapes, estimated
+    hold_residual: float  # largest |phi_i(x_j) - delta_ij|, what springs give added; 0 where only forces act
+    surface_error: float  # of unit shapes' fit, measured
+    deflection_over_thickness: float
+    linear_path_error: float  # relative, of small-deflection theory
+    largest_slope: float
+    in_plane_motion: float  # m, of the top face
+    first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
+    drive_over_first: float | None  # fastest drive over that frequency
+    drives_over_first: tuple[float, float] | None  # the slowest and the fastest drive over it
+    strokes_over_first: tuple[float, float] | None  # likewise one over the time of a stroke
+    plate_rings: bool  # whether a drive's velocity or acceleration jumps
+    quasi_static_error: float | None  # relative, of the surface's acceleration; None: no density given, or it rings
+    part_curvature: float | None  # part size times largest curvature on its path; None: size not given
+    part_sag: float  # m, the plate's deflection under the part's largest force
+
+
+def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory) -> PlateFigures:
     """The figures of a plate under its drives and a part's path over it."""
+    plate, shapes, drives, surface = scene.plate, scene.shapes, scene.lifts, scene.surface
     slope, deflection = _extremes(shapes, drives, case.run.duration)
     thickness = plate.section.thickness
     over_thickness = deflection / thickness

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from coupling.case import Case
 from coupling.drives import first_jump, frame_times
 from coupling.measured import MotionFit
+from coupling.plate_figures import PlateFigures, plate_figures
+from coupling.scene import PlateScene, Scene
 from particle import AnyDrive, EventKind, State, Trajectory
 from particle.friction import Contact
-
-if TYPE_CHECKING:
-    from coupling.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -55,28 +54,6 @@ class Summary:
     def as_dict(self) -> dict[str, Any]:
         """The figures by name; those of a plate are None where there is none."""
         return dict.fromkeys(field.name for field in fields(PlateFigures)) | asdict(self)
-
-
-@dataclass(frozen=True)
-class PlateFigures:
-    """What a plate adds to the summary."""
-
-    plate_unknowns: int
-    plate_error: float  # of unit shapes, estimated
-    hold_residual: float  # largest |phi_i(x_j) - delta_ij|, what springs give added; 0 where only forces act
-    surface_error: float  # of unit shapes' fit, measured
-    deflection_over_thickness: float
-    linear_path_error: float  # relative, of small-deflection theory
-    largest_slope: float
-    in_plane_motion: float  # m, of the top face
-    first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
-    drive_over_first: float | None  # fastest drive over that frequency
-    drives_over_first: tuple[float, float] | None  # the slowest and the fastest drive over it
-    strokes_over_first: tuple[float, float] | None  # likewise one over the time of a stroke
-    plate_rings: bool  # whether a drive's velocity or acceleration jumps
-    quasi_static_error: float | None  # relative, of the surface's acceleration; None: no density given, or it rings
-    part_curvature: float | None  # part size times largest curvature on its path; None: size not given
-    part_sag: float  # m, the plate's deflection under the part's largest force
 
 
 @dataclass(frozen=True)
@@ -134,8 +111,9 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         path_resolution=case.run.tolerance * scene.surface.size,
         frames_per_cycle=None if scene.fits else _frames_per_cycle(case, drives, float(trajectory.time[-1])),
     )
-    figures = scene.figures(case, trajectory)
-    return summary if figures is None else PlateSummary(**vars(summary), **vars(figures))
+    if isinstance(scene, PlateScene):
+        return PlateSummary(**vars(summary), **vars(plate_figures(case, scene, trajectory)))
+    return summary
 
 
 def _frames_per_cycle(case: Case, drives: Sequence[AnyDrive], end: float) -> float | None:

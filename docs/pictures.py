@@ -23,8 +23,7 @@ from active_surface.steering import aim, plan, read_route, read_task
 from active_surface.studies import read_study, run_study
 from active_surface.views import animate
 from coupling import read_case, run_case
-from coupling.rim import onto_plate
-from coupling.scene.drawn_mesh import drawn_plate
+from coupling.display import display_mesh, onto_plate
 from fem_plate import InfluenceShapes, Plate, PlateSection
 from meshes import PlateMesh, annulus, read, rectangle
 
@@ -121,7 +120,7 @@ def _draw_rectangle(figure: Figure, axes: Axes) -> None:
 def _fill(figure: Figure, axes: Axes, mesh: PlateMesh, supports, shapes: InfluenceShapes | None, deflection) -> None:
     """The deflection in µm, rims by their support, actuators."""
     actuators = np.empty((0, 2)) if shapes is None else shapes.points
-    points, triangles = drawn_plate(mesh.refined(), actuators)
+    points, triangles = display_mesh(mesh.refined(), actuators)
     w = deflection(onto_plate(mesh.outline, points)) * MICRO
     most = np.abs(w).max()
     low = -most if w.min() < -0.01 * most else 0.0

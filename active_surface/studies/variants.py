@@ -14,7 +14,7 @@ from active_surface.studies.axis import Axis
 from active_surface.studies.field import LEFT_OUT
 from active_surface.studies.points import Points
 from coupling.case import ActuatorCase, AnyFriction, Case, LatticeCase, Location, PartCase, PlatformCase, RunCase, Table
-from coupling.scene import springs
+from coupling.scene import actuator_stiffness
 
 Values = tuple[Any, ...]
 
@@ -103,7 +103,10 @@ class Variants:
                 plain = _put(plain, location, value)
         case = Case.model_validate(plain)
         plate = case.plate.model_dump_json()
-        held = [(actuator.position, spring) for actuator, spring in zip(case.actuators, springs(case), strict=True)]
+        held = [
+            (actuator.position, spring)
+            for actuator, spring in zip(case.actuators, actuator_stiffness(case), strict=True)
+        ]
         return Base(case, _plain(case), f"{plate} {held} {case.run.surface_tolerance!r}")
 
     def _table(self, deep: Values, head: Location, values: Values) -> Any:

@@ -11,7 +11,7 @@ from .plate import (
     marker_size as marker_size,
     relief_of as relief_of,
 )
-from .portrait import FloatArray as FloatArray, Portrait as Portrait, moment_of_most as moment_of_most
+from .portrait import FloatArray as FloatArray, Portrait as Portrait
 from .prefixes import NOTHING as NOTHING, STEPS as STEPS, Unit as Unit, plain_ticks as plain_ticks, readable as readable
 from .run import draw_run as draw_run, draw_surface as draw_surface, label_places as label_places, plot_run as plot_run
 from .time import (

@@ -18,14 +18,14 @@ from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from matplotlib.tri import Triangulation, UniformTriRefiner
 from numpy.typing import NDArray
 
+from coupling.display import onto_plate
 from coupling.pictures.prefixes import STEPS, Unit, readable
 from coupling.pictures.window import extent, pitch
-from coupling.rim import onto_plate
 from fem_plate import PlateShapes
 from meshes import rim_curves
 
 if TYPE_CHECKING:
-    from coupling.scene import Ground
+    from coupling.display import DisplaySurface
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -84,13 +84,13 @@ class Relief(NamedTuple):
         return self.box + MARGIN * extent(self.box) * np.array([[-1.0], [1.0]])
 
 
-def relief_of(shapes: PlateShapes, ground: Ground, heights: FloatArray) -> Relief:
+def relief_of(shapes: PlateShapes, surface: DisplaySurface, heights: FloatArray) -> Relief:
     """The plate of some shapes with its drives at heights (N,) [m]."""
     return Relief(
         shapes.outline.box,
         shapes.points,
-        ground.lifted(heights[None])[0],
-        lambda frame: fine_field(shapes, ground, heights, frame),
+        surface.deflection(heights[None])[0],
+        lambda frame: fine_field(shapes, surface, heights, frame),
         lambda spacing: rim_curves(shapes.outline, spacing),
     )
 
@@ -116,15 +116,15 @@ def draw_plate(
     return _mark_actuators(axes, relief.actuators, frame, unit, width)
 
 
-def fine_field(shapes: PlateShapes, ground: Ground, heights: FloatArray, frame: FloatArray) -> Patch:
+def fine_field(shapes: PlateShapes, surface: DisplaySurface, heights: FloatArray, frame: FloatArray) -> Patch:
     """What covers the plate within a frame (2, 2) [m].
 
     The triangles are those of the drawn plate, divided until they are so small that contours look smooth.
     """
-    points, triangles, used = cut_out(ground.points, ground.triangles, frame)
+    points, triangles, used = cut_out(surface.points, surface.triangles, frame)
     fine = divided(points, triangles)
     if fine is None:
-        return points, triangles, ground.lifted(heights[None])[0][used]
+        return points, triangles, surface.deflection(heights[None])[0][used]
     points = np.stack([fine.x, fine.y], axis=1)
     w = shapes.values(onto_plate(shapes.outline, points), heights[:, None])[:, 0]
     return points, fine.triangles.astype(np.int64), w

@@ -9,19 +9,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from coupling.display import most_deflected
 from coupling.drives import stroke_heights
 from coupling.pictures.plate import Relief, relief_of
 from coupling.pictures.prefixes import readable
 from particle import AnyDrive, Event, Rows, Samples, Trajectory
 
 if TYPE_CHECKING:
-    from coupling.scene import Ground, Scene
+    from coupling.display import DisplaySurface
+    from coupling.scene import Scene
 
 FloatArray = NDArray[np.float64]
 
 SAMPLES = 4000
 AT_ONCE = 64  # moments at which deflections are found together
-AS_MUCH = 0.999  # of the largest deflection: the first moment with so much is shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +53,7 @@ class Portrait:
         return "when it is deflected most" + ("" if self.complete else " of the steps that were written")
 
 
-def portrait_of(name: str, scene: Scene, trajectory: Trajectory, ground: Ground, moment: float) -> Portrait:
+def portrait_of(name: str, scene: Scene, trajectory: Trajectory, surface: DisplaySurface, moment: float) -> Portrait:
     """The portrait of a run that was just found, with its surface as it is at a moment [s]."""
     return Portrait(
         name,
@@ -61,20 +62,17 @@ def portrait_of(name: str, scene: Scene, trajectory: Trajectory, ground: Ground,
         trajectory,
         trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)),
         trajectory.events,
-        np.stack([ground.points.min(axis=0), ground.points.max(axis=0)]),
-        relief_of(scene.shapes, ground, stroke_heights(scene.lifts, np.array([moment]))[0]) if scene.shapes else None,
+        np.stack([surface.points.min(axis=0), surface.points.max(axis=0)]),
+        relief_of(scene.shapes, surface, stroke_heights(scene.lifts, np.array([moment]))[0]) if scene.shapes else None,
         moment,
         scene.base,
     )
 
 
-def deflected_most(scene: Scene, ground: Ground, times: FloatArray) -> float:
+def deflected_most(scene: Scene, surface: DisplaySurface, times: FloatArray) -> float:
     """The first of times (k,) [s] at which the surface is deflected the most."""
     heights = stroke_heights(scene.lifts, times)
     lots = (heights[start : start + AT_ONCE] for start in range(0, len(times), AT_ONCE))
-    return float(times[moment_of_most(np.concatenate([np.square(ground.lifted(lot)).mean(axis=1) for lot in lots]))])
-
-
-def moment_of_most(spread: FloatArray) -> int:
-    """The first of k moments at which the plate is deflected the most; spread: (k,), its mean square deflections."""
-    return int(np.argmax(spread >= AS_MUCH**2 * spread.max()))
+    return float(
+        times[most_deflected(np.concatenate([np.square(surface.deflection(lot)).mean(axis=1) for lot in lots]))]
+    )

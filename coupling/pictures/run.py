@@ -15,16 +15,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from coupling.case import Case
+from coupling.display import DisplaySurface, display_surface
 from coupling.drives import frame_times
 from coupling.files import whole_file
 from coupling.pictures.path import draw_path
 from coupling.pictures.plate import AXES_WIDTH, draw_plate, draw_window, join
 from coupling.pictures.portrait import Portrait, deflected_most, portrait_of
-from coupling.pictures.portrait import moment_of_most as moment_of_most
 from coupling.pictures.prefixes import Unit, plain_ticks, readable
 from coupling.pictures.time import curves_of, draw_over_time
 from coupling.pictures.window import is_visible, path_window
-from coupling.scene import Ground, Scene
+from coupling.scene import Scene
 from meshes import Drawing, plan
 from particle import Trajectory, shade_keys
 
@@ -32,21 +32,23 @@ PANEL = 5.5  # inches, about, of which a picture has two or three side by side
 SLIMMEST = 0.6  # of a panel is the least width of a map
 
 
-def draw_run(case: Case, scene: Scene, trajectory: Trajectory, ground: Ground, moment: float, path: Path) -> None:
+def draw_run(
+    case: Case, scene: Scene, trajectory: Trajectory, surface: DisplaySurface, moment: float, path: Path
+) -> None:
     """Draws the run into a PNG file; moment: the time [s] at which the surface is shown."""
     figure = Figure()
     FigureCanvasAgg(figure)
-    compose(figure, portrait_of(case.name, scene, trajectory, ground, moment))
+    compose(figure, portrait_of(case.name, scene, trajectory, surface, moment))
     with whole_file(path) as partial:
         figure.savefig(partial, dpi=110)
 
 
 def plot_run(case: Case, scene: Scene, trajectory: Trajectory, axes: Axes | None = None) -> Figure:
     """The picture of a run; with axes in m, only the path over its surface, drawn into these."""
-    ground = scene.ground(trajectory)
+    surface = display_surface(scene, trajectory)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
-    moment = deflected_most(scene, ground, times)
-    portrait = portrait_of(case.name, scene, trajectory, ground, moment)
+    moment = deflected_most(scene, surface, times)
+    portrait = portrait_of(case.name, scene, trajectory, surface, moment)
     if axes is None:
         drawing = Drawing()
         compose(drawing, portrait)

@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
+from coupling.display import DisplaySurface, display_surface, most_deflected, onto_surface
 from coupling.drives import frame_times, stroke_heights
 from coupling.environment import versions
-from coupling.pictures import draw_run, moment_of_most
 from coupling.progress import Tell, untold
 from coupling.results.case_record import CaseRecord
 from coupling.results.csv_file import is_trajectory, write_csv
 from coupling.results.vtkhdf import part_file, plate_file
-from coupling.scene import Ground, Scene
+from coupling.scene import Scene
 from coupling.summary import Summary
 from coupling.surface import is_surface
 from particle import Samples, Trajectory
@@ -59,7 +59,7 @@ def write_results(
     """
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
-    ground = scene.ground(trajectory)
+    ground = display_surface(scene, trajectory)
     heights, speeds = stroke_heights(scene.lifts, times), stroke_heights(scene.lifts, times, 1)
     metadata: dict[str, str | int] = {
         "run": uuid4().hex,  # the same in both files, which so find each other
@@ -70,7 +70,7 @@ def write_results(
         "actuators": len(case.actuators),
     }
     samples = trajectory.at(times)
-    place = scene.onto(samples.position)
+    place = onto_surface(scene, samples.position)
     spread: list[float] = []
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
@@ -92,11 +92,13 @@ def write_results(
                 normal_force=samples.normal_force[k],
                 friction_force=samples.friction_force[k],
             )
+    from coupling.pictures import draw_run  # here, because it loads matplotlib
+
     picture = folder / f"{case.name}.png"
     files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
     _clear(folder, case.name)
     try:
-        draw_run(case, scene, trajectory, ground, float(times[moment_of_most(np.array(spread))]), picture)
+        draw_run(case, scene, trajectory, ground, float(times[most_deflected(np.array(spread))]), picture)
         files.append(picture)
     except Exception as error:  # the run is finished, whatever becomes of its picture
         warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
@@ -105,12 +107,15 @@ def write_results(
     return tuple(files)
 
 
-def _fields(ground: Ground, heights: FloatArray, speeds: FloatArray) -> dict[str, NDArray[np.float32]]:
+def _fields(ground: DisplaySurface, heights: FloatArray, speeds: FloatArray) -> dict[str, NDArray[np.float32]]:
     """The fields (k, n) of the surface as drawn under heights [m] and speeds [m/s] (k, N) of its drives."""
     single = np.float32
-    found = {"deflection": ground.lifted(heights).astype(single), "velocity": ground.lifted(speeds).astype(single)}
-    if ground.bent is not None:
-        found["curvature"] = ground.bent(heights).astype(single)
+    found = {
+        "deflection": ground.deflection(heights).astype(single),
+        "velocity": ground.deflection(speeds).astype(single),
+    }
+    if ground.curvature is not None:
+        found["curvature"] = ground.curvature(heights).astype(single)
         found["drive"] = np.zeros_like(found["curvature"])
         found["drive"][:, : heights.shape[1]] = heights  # the actuators are the first of the points
     return found

@@ -9,47 +9,28 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.case import AXES, Case, MotionCase, PlatformCase
+from coupling.case import AXES, MotionCase, PlatformCase
 from coupling.drives import build_drive, travel
 from coupling.measured import MotionFit, fit_motion
 from coupling.progress import Progress
-from coupling.scene.scene import Ground
-from particle import AnyDrive, Drive, SurfaceMotion, Trajectory, platform_surface
+from particle import AnyDrive, Drive, SurfaceMotion, platform_surface
 
 FloatArray = NDArray[np.float64]
 
 STILL = Drive(0.0, 1.0, "up")
-STILL_SIZE = 1e-3  # m, what tolerances refer to where nothing moves
-MARGIN = 0.2  # of the path's extent, by which the drawn square goes beyond it
+STILL_SIZE = 1e-3  # m: the length that tolerances refer to where nothing moves
 
 
 @dataclass(frozen=True, eq=False)
 class PlatformScene:
-    """A platform; positions are counted from it."""
+    """A platform."""
 
-    lifts: Sequence[AnyDrive]
-    base: Sequence[AnyDrive]
+    lifts: Sequence[AnyDrive]  # one, along z
+    base: Sequence[AnyDrive]  # along x and y
     surface: SurfaceMotion
-    fits: tuple[MotionFit, ...] = ()
+    fits: tuple[MotionFit, ...] = ()  # how closely the drives follow a measured motion, by axis
     shapes: None = field(default=None, init=False)
-    origin: str = field(default="the platform", init=False)
-
-    def ground(self, trajectory: Trajectory) -> Ground:
-        """A square around the path."""
-        low, high = trajectory.position.min(axis=0), trajectory.position.max(axis=0)
-        half = (0.5 + MARGIN) * float((high - low).max()) or self.surface.size / 2
-        corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-        return Ground(
-            (low + high) / 2 + half * corners,
-            np.array([[0, 1, 2], [0, 2, 3]]),
-            lambda heights: heights @ np.ones((1, 4)),
-        )
-
-    def onto(self, xy: FloatArray) -> FloatArray:
-        return xy
-
-    def figures(self, case: Case, trajectory: Trajectory) -> None:
-        return None
+    origin: str = field(default="the platform", init=False)  # what positions are counted from
 
 
 def platform_scene(platform: PlatformCase, progress: Progress) -> PlatformScene:
@@ -67,10 +48,10 @@ def platform_scene(platform: PlatformCase, progress: Progress) -> PlatformScene:
 
 
 def _drives(platform: PlatformCase) -> tuple[dict[str, AnyDrive], tuple[MotionFit, ...]]:
-    """The drive of each axis that moves, and how closely a measured motion is followed."""
+    """The drive of each moving axis, and how closely it follows a measured motion."""
     if isinstance(platform.motion, MotionCase):
-        given = {axis: getattr(platform.motion, axis) for axis in AXES}
-        return {axis: build_drive(drive) for axis, drive in given.items() if drive is not None}, ()
+        drives = {axis: getattr(platform.motion, axis) for axis in AXES}
+        return {axis: build_drive(drive) for axis, drive in drives.items() if drive is not None}, ()
     measured, mistakes = platform.read_motion
     if mistakes:
         raise ValueError(f"{Path(str(platform.motion))}: " + "; ".join(mistakes))

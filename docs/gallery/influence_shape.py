@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from coupling.rim import onto_plate
-from coupling.scene.drawn_mesh import drawn_plate
+from coupling.display import display_mesh, onto_plate
 from fem_plate import Plate, PlateSection
 from meshes import read
 
@@ -20,7 +19,7 @@ def draw(quick: bool = False) -> Figure:
     shapes = plate.influence(ACTUATORS)
 
     mesh = plate.mesh if quick else plate.mesh.refined()
-    points, triangles = drawn_plate(mesh, ACTUATORS)
+    points, triangles = display_mesh(mesh, ACTUATORS)
     height = shapes.values(onto_plate(mesh.outline, points))[:, 0]
     figure = Figure(figsize=(6.4, 5), layout="constrained")
     axes = figure.subplots()

@@ -6,8 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from coupling.rim import onto_plate
-from coupling.scene.drawn_mesh import drawn_plate
+from coupling.display import display_mesh, onto_plate
 from fem_plate import Plate, PlateSection
 from meshes import ellipse
 
@@ -18,7 +17,7 @@ def draw(quick: bool = False) -> Figure:
     mesh = ellipse(300e-6, 200e-6, cell_size=60e-6 if quick else 40e-6)
     modes = Plate(mesh, SECTION).modes(6, held=[[0.0, 0.0]])
 
-    points, triangles = drawn_plate(mesh.refined(), np.empty((0, 2)))
+    points, triangles = display_mesh(mesh.refined(), np.empty((0, 2)))
     shapes = modes.evaluate(onto_plate(mesh.outline, points))[0]
     figure = Figure(figsize=(8, 4.2), layout="constrained")
     levels = np.linspace(-1.05, 1.05, 15)

@@ -35,3 +35,14 @@ def test_meshes_loads_none_of_our_other_packages():
 
 def test_fem_plate_does_not_load_particle_or_coupling():
     assert not loaded_by("fem_plate") & {"particle", "coupling"}
+
+
+PHYSICS = ["meshes", "fem_plate", "particle", "coupling", "coupling.scene", "coupling.display", "coupling.run"]
+
+
+@pytest.mark.parametrize("name", PHYSICS)
+def test_physics_loads_nothing_that_draws(name):
+    """Not even where every public name is loaded; pictures load matplotlib when they are drawn."""
+    loaded = loaded_by(name)
+    assert name.partition(".")[0] in loaded
+    assert not loaded & {"matplotlib", "plotly", "pyvista", "vtkmodules", "PIL"}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import meshes
-from coupling.scene.drawn_mesh import CELLS, MOST_POINTS, drawn_plate
+from coupling.display.mesh import CELLS, MAX_POINTS, display_mesh
 from meshes.fill import angles, sides
 
 MESH = Path(__file__).parents[1] / "data" / "l_with_hole.msh"
@@ -32,7 +32,7 @@ def areas(points, triangles):
 def test_the_actuators_come_first_and_the_cells_tile_the_plate(name):
     mesh, actuators, holes, area = PLATES[name]
     actuators = np.array(actuators, dtype=float)
-    points, triangles = drawn_plate(mesh, actuators)
+    points, triangles = display_mesh(mesh, actuators)
     assert np.array_equal(points[: len(actuators)], actuators)
     assert CELLS / 2 < len(triangles) < 25 * len(actuators) + 2 * CELLS
     assert (areas(points, triangles) > 0).all()
@@ -59,8 +59,8 @@ def lattice(nx, ny):
 def test_over_a_lattice_all_cells_but_those_at_the_rim_are_alike(across, pitch):
     actuators = lattice(across, across) * pitch
     side = (across + 2) * np.array(pitch)
-    points, triangles = drawn_plate(meshes.rectangle(*side, side.max() / 4), actuators)
-    assert len(points) < MOST_POINTS
+    points, triangles = display_mesh(meshes.rectangle(*side, side.max() / 4), actuators)
+    assert len(points) < MAX_POINTS
     area, middle = areas(points, triangles), np.abs(points[triangles].mean(axis=1))
     inner = (middle < (across - 1) / 2 * np.array(pitch)).all(axis=1)
     assert np.ptp(area[inner]) < 1e-6 * area[inner].max()
@@ -69,5 +69,5 @@ def test_over_a_lattice_all_cells_but_those_at_the_rim_are_alike(across, pitch):
 
 
 def test_a_hundred_thousand_actuators_have_no_more_points_than_they_need():
-    points, _ = drawn_plate(meshes.rectangle(400.0, 252.0, 100.0), lattice(398, 250))
-    assert len(points) < 1.05 * MOST_POINTS
+    points, _ = display_mesh(meshes.rectangle(400.0, 252.0, 100.0), lattice(398, 250))
+    assert len(points) < 1.05 * MAX_POINTS

@@ -8,17 +8,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from coupling.case.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
+from coupling.display.mesh import display_mesh
+from coupling.display.surface import DisplaySurface, deflections, display_surface, most_deflected
 from coupling.pictures import plate as plate_picture
 from coupling.pictures.plate import BOTH_WAYS, FEW, UPWARDS, Scale, draw_plate, fine_field, marker_size, relief_of
-from coupling.pictures.portrait import moment_of_most, portrait_of
+from coupling.pictures.portrait import portrait_of
 from coupling.pictures.prefixes import readable
 from coupling.pictures.run import compose
 from coupling.pictures.time import limits
 from coupling.pictures.window import LEAST, MOST, path_window
 from coupling.run import run_case
-from coupling.scene.drawn_mesh import drawn_plate
-from coupling.scene.plate import lifting
-from coupling.scene.scene import Ground
 from fem_plate import Plate, PlateSection
 from meshes import disc
 
@@ -99,10 +98,10 @@ def test_heights_below_zero_have_a_colour_of_their_own_and_zero_is_white_where_t
 
 
 def test_the_moment_shown_is_the_first_of_the_most():
-    assert moment_of_most(np.array([0.0, 1.0, 4.0, 2.0, 4.0])) == 2
-    assert moment_of_most(np.array([0.0, 1.0, 3.9999, 2.0, 4.0])) == 2
-    assert moment_of_most(np.array([0.0, 3.9, 4.0])) == 2
-    assert moment_of_most(np.zeros(5)) == 0
+    assert most_deflected(np.array([0.0, 1.0, 4.0, 2.0, 4.0])) == 2
+    assert most_deflected(np.array([0.0, 1.0, 3.9999, 2.0, 4.0])) == 2
+    assert most_deflected(np.array([0.0, 3.9, 4.0])) == 2
+    assert most_deflected(np.zeros(5)) == 0
 
 
 def drawn(case, tmp_path):
@@ -112,7 +111,7 @@ def drawn(case, tmp_path):
     canvas = FigureCanvasAgg(figure)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        ground = result.scene.ground(result.trajectory)
+        ground = display_surface(result.scene, result.trajectory)
         compose(
             figure,
             portrait_of(case.name, result.scene, result.trajectory, ground, result.trajectory.time[-1] / 3),
@@ -169,8 +168,8 @@ def test_a_part_at_rest_is_a_point_on_the_map_with_axes_that_can_be_read(case, t
 def small_plate():
     plate = Plate(disc(3e-4, 1e-4), PlateSection(169e9, 0.3, 2e-5, 2330.0))
     shapes = plate.influence([(-1e-4, 0.0), (1e-4, 0.0)])
-    points, triangles = drawn_plate(plate.mesh, shapes.points)
-    return shapes, Ground(points, triangles, lifting(shapes, points))
+    points, triangles = display_mesh(plate.mesh, shapes.points)
+    return shapes, DisplaySurface(points, triangles, deflections(shapes, points))
 
 
 def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():

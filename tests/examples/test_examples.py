@@ -7,7 +7,7 @@ import pytest
 import pyvista
 
 from coupling import read_case, report, run_case
-from coupling.rim import onto_plate
+from coupling.display import onto_plate
 
 FILES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 LARGE = "array_100x100"

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coupling.rim import onto_plate, rim_curves
-from meshes import Outline
+from coupling.display import onto_plate
+from meshes import Outline, rim_curves
 from particle import ConstantFriction, EventKind, Micropart, Outcome, polynomial_surface, simulate
 from particle.surface.rim import ellipse_gap, rim_gap
 

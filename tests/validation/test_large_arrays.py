@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from coupling.scene.plate import DRAWN, lifting
+from coupling.display.surface import TRUNCATED_HEIGHT, deflections
 from coupling.steepest import steepest
 from fem_plate import PatchedShapes, Plate
 from fem_plate.arrays import patches
@@ -115,8 +115,8 @@ def test_values_alone_are_those_of_the_fields_and_the_drawn_plate_follows_the_wh
         assert np.allclose(one.values(xy), one.evaluate(xy)[0], atol=1e-12)
         sums = one.fields(xy / one.size, heights.T)[0]
         assert np.allclose(one.values(xy, heights.T), sums, atol=1e-12)
-        assert np.allclose(lifting(one, xy)(heights), sums.T, atol=100 * DRAWN)
-    left_out = np.abs(lifting(dense, xy)(heights) - lifting(shapes, xy)(heights)).max()
+        assert np.allclose(deflections(one, xy)(heights), sums.T, atol=100 * TRUNCATED_HEIGHT)
+    left_out = np.abs(deflections(dense, xy)(heights) - deflections(shapes, xy)(heights)).max()
     assert left_out <= 2 * TRUNCATION * heights.max()
 
 

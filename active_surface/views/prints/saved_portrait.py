@@ -9,7 +9,8 @@ from scipy.interpolate import CubicHermiteSpline
 
 from coupling import silent
 from coupling.case import PlateCase
-from coupling.pictures import Patch, Portrait, Relief, cut_out, divided, moment_of_most
+from coupling.display import most_deflected
+from coupling.pictures import Patch, Portrait, Relief, cut_out, divided
 from coupling.results import SavedRun
 from coupling.scene import platform_scene
 from meshes import rim_curves
@@ -25,7 +26,7 @@ BETWEEN = 4  # pieces of a line from one moment to the next
 def portrait_of_saved(run: SavedRun) -> Portrait:
     """The portrait of a saved run, with its plate as at the step at which it is deflected the most."""
     plate = run.case.plate
-    step = moment_of_most(_spread(run))
+    step = most_deflected(_spread(run))
     return Portrait(
         run.name,
         run.summary["sentence"],

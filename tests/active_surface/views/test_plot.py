@@ -22,6 +22,7 @@ from active_surface.views.prints.saved_portrait import portrait_of_saved
 from active_surface.views.prints.sheet import MM, drawn
 from active_surface.views.prints.sweep_pictures import sweep_pictures
 from coupling import read_case, run_case
+from coupling.display import display_surface
 from coupling.pictures.portrait import deflected_most, portrait_of
 from coupling.results.saved import read_run
 from particle import EventKind
@@ -131,7 +132,7 @@ def test_pictures_of_a_run_can_be_read(tmp_path, text, width):
 def test_a_saved_run_looks_as_the_run_itself(folder):
     result = ran(folder)
     saved = portrait_of_saved(read_run(folder / "case"))
-    ground = result.scene.ground(result.trajectory)
+    ground = display_surface(result.scene, result.trajectory)
     times = read_run(folder / "case").time
     found = portrait_of("case", result.scene, result.trajectory, ground, deflected_most(result.scene, ground, times))
     assert (saved.moment, saved.sentence, saved.events) == (found.moment, found.sentence, found.events)

@@ -10,6 +10,7 @@ import pytest
 
 from coupling import Case, read_case, read_run, run_case
 from coupling.case.case import CoulombCase, PartCase, RunCase
+from coupling.display import display_surface
 from coupling.results.case_record import case_of, record_of
 from particle import Samples
 
@@ -85,7 +86,7 @@ def test_a_run_comes_back(ran, ending):
     assert saved.events == trajectory.events and saved.events
     for name in Samples._fields:
         np.testing.assert_array_equal(getattr(saved.rows, name), getattr(trajectory, name))
-    ground = result.scene.ground(trajectory)
+    ground = display_surface(result.scene, trajectory)
     np.testing.assert_array_equal(saved.points, ground.points)
     np.testing.assert_array_equal(saved.triangles, ground.triangles)
     assert saved.actuators.shape == (0, 2)

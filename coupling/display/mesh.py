@@ -1,4 +1,4 @@
-"""The plate as drawn: a mesh fine enough for pictures and animations, with the actuators among its points."""
+"""Display mesh: a triangle mesh of the plate fine enough for pictures, with the actuators among its points."""
 
 from __future__ import annotations
 
@@ -17,35 +17,36 @@ IntArray = NDArray[np.int64]
 CELLS = 3000  # about, of a plate with few actuators
 PER_PITCH = 3  # cells from one actuator to the next, where that is not too many
 PER_ACTUATOR = 10  # points
-MOST_POINTS = 100_000  # of which large arrays that do not fill the plate, or larger ones, have fewer per pitch
-CLEAR = 0.6  # of a cell: nearer to an actuator, or to a point of the rim, no other point is put
-ROUNDS = 60  # an actuator almost on the rim takes about 30
+MAX_POINTS = 100_000  # larger arrays, or those that fill only part of the plate, get fewer cells per pitch
+CLEARANCE = 0.6  # of a cell: no grid point lies closer to an actuator or to a point of the rim
+MAX_ROUNDS = 60  # an actuator almost on the rim takes about 30
 
 
-def drawn_plate(mesh: PlateMesh, actuators: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Points (n, 2) [m], the actuators (N, 2) [m] first, if any, and triangles (m, 3) for drawing the plate of a mesh.
+def display_mesh(mesh: PlateMesh, actuators: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Points (n, 2) [m], the actuators (N, 2) [m] first, and triangles (m, 3) that cover the plate of a mesh.
 
-    The points are those of a grid in step with the actuators, and of the rim; the triangles are Delaunay's.
+    The other points are those of a grid aligned with the actuators, and points of the rim. The triangulation is
+    Delaunay's.
     """
     cell = _cell(mesh, actuators)
     low, high = mesh.outline.box
     origin = actuators[0] if len(actuators) else low
     steps = [np.arange(np.ceil((low[k] - origin[k]) / cell[k]), (high[k] - origin[k]) / cell[k]) for k in (0, 1)]
     grid = origin + np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 2) * cell
-    grid = grid[cKDTree(actuators / cell).query(grid / cell)[0] > CLEAR]
+    grid = grid[cKDTree(actuators / cell).query(grid / cell)[0] > CLEARANCE]
     grid = grid[mesh.outline.inside(grid)]
     rim, edges = mesh.points, np.concatenate(list(mesh.boundaries.values()))
     used, rows = np.unique(edges, return_inverse=True)
     rim, edges = rim[used], rows.reshape(-1, 2)
     tree, longest = cKDTree(actuators), float(cell.max())
     points, triangles = rim, np.empty((0, 3), dtype=np.int64)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         ends = rim[edges]
         length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
-        # An edge is halved while it is long, sees an actuator at an obtuse angle, or is no edge of the triangles.
+        # Halve an edge while it is long, sees an actuator at an obtuse angle, or is no edge of the triangulation.
         cut = (length > 1.5 * longest) | (tree.query(ends.mean(axis=1))[0] < length / 2)
         if not cut.any():
-            kept = grid[cKDTree(rim).query(grid)[0] > CLEAR * longest]
+            kept = grid[cKDTree(rim).query(grid)[0] > CLEARANCE * longest]
             points = np.concatenate([actuators, kept, rim])
             triangles = delaunay(points, mesh.outline)
             number = edge_numbers(edges + len(actuators) + len(kept), len(points))
@@ -61,17 +62,17 @@ def drawn_plate(mesh: PlateMesh, actuators: FloatArray) -> tuple[FloatArray, Int
 
 
 def _cell(mesh: PlateMesh, actuators: FloatArray) -> FloatArray:
-    """The width and height (2,) [m] of the grid's cells: parts of the pitch, unless the array is a small spot."""
+    """The width and height (2,) [m] of the grid's cells: fractions of the pitch, unless the array is a small spot."""
     a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
     area = float(np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum() / 2)
     coarse = math.sqrt(2 * area / CELLS)
     if len(actuators) <= 1:
         return np.full(2, coarse)
     pitch = spacing(actuators)
-    most = min(max(CELLS / 2, PER_ACTUATOR * len(actuators)), MOST_POINTS)
+    max_points = min(max(CELLS / 2, PER_ACTUATOR * len(actuators)), MAX_POINTS)
     parts = np.maximum(np.ceil(pitch / coarse * (1 - 1e-9)), PER_PITCH if len(actuators) > CELLS / 100 else 1)
-    while area / float((pitch / parts).prod()) > 2 * most:
+    while area / float((pitch / parts).prod()) > 2 * max_points:
         if parts.max() == 1:
-            return np.full(2, math.sqrt(area / most))
+            return np.full(2, math.sqrt(area / max_points))
         parts = np.maximum(parts - 1, 1)
     return np.asarray(pitch / parts)

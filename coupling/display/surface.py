@@ -1,0 +1,87 @@
+"""Display surface: a scene's surface on a triangle mesh, for result files and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.display.mesh import display_mesh
+from coupling.scene import PlateScene, PlatformScene, Scene
+from coupling.surface import FLOOR
+from fem_plate import PatchedShapes, PlateShapes
+from meshes import Outline
+from particle import Trajectory
+
+FloatArray = NDArray[np.float64]
+
+MARGIN = 0.2  # of the path's extent: how far the square of a platform reaches beyond the path
+AS_MUCH = 0.999  # of the largest deflection: the first step with this much counts as the most deflected
+TRUNCATED_HEIGHT = 1e-7  # of a stroke: smaller entries of patched shapes are left out of deflections
+TRUNCATED_CURVATURE = 1e-5  # of the curvature at an actuator: likewise of curvatures
+
+
+class DisplaySurface(NamedTuple):
+    """A surface on a triangle mesh."""
+
+    points: FloatArray  # (n, 2) m
+    triangles: NDArray[np.int64]  # (m, 3)
+    deflection: Callable[[FloatArray], FloatArray]  # from heights (k, N) [m] of the drives to deflections (k, n) [m]
+    curvature: Callable[[FloatArray], FloatArray] | None = None  # likewise to Laplacians [1/m]; None: always flat
+
+
+def display_surface(scene: Scene, trajectory: Trajectory) -> DisplaySurface:
+    """The whole plate, or the square of a platform around a path."""
+    if isinstance(scene, PlatformScene):
+        return _square(scene, trajectory)
+    points, triangles = display_mesh(scene.plate.mesh, scene.shapes.points)
+    return DisplaySurface(points, triangles, deflections(scene.shapes, points), _curvatures(scene.shapes, points))
+
+
+def onto_surface(scene: Scene, xy: FloatArray) -> FloatArray:
+    """Points (n, 2) [m], those just past the rim of a plate moved onto it."""
+    return onto_plate(scene.shapes.outline, xy) if isinstance(scene, PlateScene) else xy
+
+
+def onto_plate(outline: Outline, xy: FloatArray) -> FloatArray:
+    """Points (n, 2) [m], those outside an outline moved to the nearest place on its rim."""
+    outside = outline.gap(xy) < 0
+    xy = xy.copy()
+    if outside.any():
+        xy[outside] = outline.project(xy[outside])
+    return xy
+
+
+def most_deflected(mean_squares: FloatArray) -> int:
+    """The first of k steps at which the surface is deflected most, from the mean square deflections (k,) [m^2]."""
+    return int(np.argmax(mean_squares >= AS_MUCH**2 * mean_squares.max()))
+
+
+def deflections(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """The deflections (k, n) [m] at points (n, 2) [m] as a function of the actuators' heights (k, N) [m]."""
+    values = shapes.matrix(points, TRUNCATED_HEIGHT) if isinstance(shapes, PatchedShapes) else shapes.values(points)
+    return lambda heights: np.asarray((values @ heights.T).T)
+
+
+def _curvatures(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """Likewise the Laplacians (k, n) [1/m], bounded at actuators as the part's surface is; built at the first call."""
+
+    @cache
+    def laplacians() -> Any:
+        floor = FLOOR * shapes.size
+        if isinstance(shapes, PatchedShapes):
+            return shapes.laplacians(points, floor, TRUNCATED_CURVATURE)
+        return shapes.laplacians(points, floor)
+
+    return lambda heights: np.asarray((laplacians() @ heights.T).T)
+
+
+def _square(scene: PlatformScene, trajectory: Trajectory) -> DisplaySurface:
+    low, high = trajectory.position.min(axis=0), trajectory.position.max(axis=0)
+    half = (0.5 + MARGIN) * float((high - low).max()) or scene.surface.size / 2
+    corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    triangles = np.array([[0, 1, 2], [0, 2, 3]])
+    return DisplaySurface((low + high) / 2 + half * corners, triangles, lambda heights: heights @ np.ones((1, 4)))
