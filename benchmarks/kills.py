@@ -32,12 +32,12 @@ KINDS = ("plate", "part")
 # What the command runs, with a line for each flush: the kind of file and how many steps it holds.
 SPY = """
 import os
-from coupling import vtkhdf
-plain = vtkhdf._ResultFile.flush
+from coupling.results import steps_file
+plain = steps_file.StepsFile.flush
 def flush(self):
     plain(self)
-    os.write(1, f"{type(self).__name__[:-4].lower()} {len(self._times)}\\n".encode())
-vtkhdf._ResultFile.flush = flush
+    os.write(1, f"{type(self).__name__[:-4].lower()} {self.count}\\n".encode())
+steps_file.StepsFile.flush = flush
 from active_surface.cli.program import main
 main()
 """

@@ -3,17 +3,57 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+
+_open: set[Path] = set()
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
-    """A path to write to; its file replaces that at `path` when the `with` block ends well, and is removed if not."""
-    partial = path.with_name(f"{path.stem}.{os.getpid()}.partial{path.suffix}")
+def whole_file(path: Path, partial: Path | None = None, keep: bool = False, synced: bool = False) -> Iterator[Path]:
+    """A path to write to; its file or folder replaces that at `path` when the `with` block ends well.
+
+    If it does not, the partial file is removed.
+
+    partial: the path to write to, by default beside `path` and of this process alone.
+    keep: whether to leave the partial file when the block fails.  synced: whether to return once all is safe on disk.
+    """
+    partial = partial or path.with_name(f"{path.stem}.{os.getpid()}.partial{path.suffix}")
+    if not keep:
+        _open.add(partial)
     try:
         yield partial
+        if synced:
+            _sync(partial)
         os.replace(partial, path)
+        if synced and os.name != "nt":  # which syncs no folders
+            _sync(path.parent)
     finally:
+        if not keep:
+            _remove(partial)
+            _open.discard(partial)
+
+
+def remove_partial_files() -> None:
+    """Remove what `whole_file` has open: before the process ends without leaving its `with` blocks."""
+    for partial in list(_open):
+        with suppress(OSError):
+            _remove(partial)
+
+
+def _remove(partial: Path) -> None:
+    if partial.is_dir():
+        shutil.rmtree(partial)
+    else:
         partial.unlink(missing_ok=True)
+
+
+def _sync(path: Path) -> None:
+    """Return once what a file or folder holds is on disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import io
-import os
 from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
 from active_surface.studies.record import KIND, Records
+from coupling import whole_file
 
 ENDING = ".chunk"
 
@@ -44,20 +44,17 @@ class ChunkStore:
         np.save(buffer, records)
         body = buffer.getvalue()
         file = self._file(start, start + len(records))
-        partial = file.with_suffix(f".{os.getpid()}.partial")
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            partial.write_bytes(self._key + hashlib.sha256(body).digest() + body)
-            os.replace(partial, file)
+            with whole_file(file) as partial:
+                partial.write_bytes(self._key + hashlib.sha256(body).digest() + body)
         except OSError as error:
-            with suppress(OSError):
-                partial.unlink(missing_ok=True)
             kept = "finished chunks are kept there, and the same command goes on from them"
             raise OSError(f"{self.folder}: {error.strerror}; {kept}") from None
 
     def clear(self) -> None:
         """Removes all chunks, and the folder unless there is anything else in it."""
-        for file in [*self.folder.glob(f"*{ENDING}"), *self.folder.glob("*.partial")]:
+        for file in self.folder.glob(f"*{ENDING}"):  # partial ones, too
             file.unlink()
         with suppress(OSError):
             self.folder.rmdir()

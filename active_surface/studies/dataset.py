@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -42,14 +41,8 @@ def write_dataset(
     Returns once the file is safe on disk. Raises OSError when it has no room.
     """
     _check_room(study, path.parent)
-    partial = path.with_suffix(f".partial{path.suffix}")
-    try:
+    with whole_file(path, path.with_suffix(f".partial{path.suffix}"), synced=True) as partial:
         _write(study, chunks, partial, warnings)
-        _sync(partial)
-        os.replace(partial, path)
-        _sync(path.parent)
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 
@@ -61,11 +54,10 @@ def renew_text(study: Study, path: Path) -> None:
     with h5netcdf.File(path, "r") as file:
         if not study.source or file.attrs["study"] == study.source:
             return
-    with whole_file(path) as partial:
+    with whole_file(path, synced=True) as partial:
         shutil.copyfile(path, partial)
         with h5netcdf.File(partial, "a") as file:
             file.attrs["study"] = study.source
-        _sync(partial)
 
 
 def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:
@@ -102,15 +94,6 @@ def _check_room(study: Study, folder: Path) -> None:
     if free < needed:
         sizes = f"the results take {needed / 1e6:.1f} MB, and {free / 1e6:.1f} MB are free"
         raise OSError(f"{folder}: {sizes}; finished chunks are kept, and the same command goes on from them")
-
-
-def _sync(path: Path) -> None:
-    """Wait until a file, or the names in a folder, are on disk."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 def _fill(kind: str) -> float | None:

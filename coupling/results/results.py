@@ -26,7 +26,7 @@ from particle import Samples, Trajectory
 
 FloatArray = NDArray[np.float64]
 
-AT_ONCE = 64  # time steps whose deflections are found together
+AT_ONCE = 64  # time steps whose deflections are computed and written together
 UNITS = {
     "time": "s",
     "deflection": "m",
@@ -70,27 +70,28 @@ def write_results(
         "actuators": len(case.actuators),
     }
     samples = trajectory.at(times)
-    place = onto_surface(scene, samples.position)
-    spread: list[float] = []
+    position = np.column_stack([onto_surface(scene, samples.position), samples.height])
+    velocity = np.column_stack([samples.velocity, samples.vertical_velocity])
+    spread: list[FloatArray] = []
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
         part_file(folder, case.name, metadata) as part,
     ):
         for group, arrays in _arrays(record, trajectory).items():
             part.add_arrays(group, arrays)
-        for k, time in enumerate(times.tolist()):
-            if k % AT_ONCE == 0:
-                tell(k, len(times))
-                fields = _fields(ground, heights[k : k + AT_ONCE], speeds[k : k + AT_ONCE])
-                spread.extend(np.square(fields["deflection"], dtype=np.float64).mean(axis=1))
-            plate.append(time, **{name: values[k % AT_ONCE] for name, values in fields.items()})
+        for first in range(0, len(times), AT_ONCE):
+            tell(first, len(times))
+            some = slice(first, first + AT_ONCE)
+            fields = _fields(ground, heights[some], speeds[some])
+            spread.append(np.square(fields["deflection"], dtype=np.float64).mean(axis=1))
+            plate.append(times[some], **fields)
             part.append(
-                time,
-                (*place[k], samples.height[k]),
-                velocity=(*samples.velocity[k], samples.vertical_velocity[k]),
-                state=samples.state[k],
-                normal_force=samples.normal_force[k],
-                friction_force=samples.friction_force[k],
+                times[some],
+                position[some],
+                velocity=velocity[some],
+                state=samples.state[some],
+                normal_force=samples.normal_force[some],
+                friction_force=samples.friction_force[some],
             )
     from coupling.pictures import draw_run  # here, because it loads matplotlib
 
@@ -98,7 +99,7 @@ def write_results(
     files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
     _clear(folder, case.name)
     try:
-        draw_run(case, scene, trajectory, ground, float(times[most_deflected(np.array(spread))]), picture)
+        draw_run(case, scene, trajectory, ground, float(times[most_deflected(np.concatenate(spread))]), picture)
         files.append(picture)
     except Exception as error:  # the run is finished, whatever becomes of its picture
         warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
