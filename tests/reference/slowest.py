@@ -16,8 +16,8 @@ KEY = "processor time"
 HEAD = """\
 # The {count} slowest tests
 
-Processor seconds of setup, call and teardown, and their share of the {total:.0f} s of all {number} tests. The first test
-that uses a shared fixture pays for it. Written by
+Processor seconds of setup, call and teardown, and their share of the {total:.0f} s of all {number} tests. The first
+test that uses a shared fixture pays for it. Written by
 
     {command}
 
