@@ -136,7 +136,7 @@ def stopped_after(chunks, path, folder, number):
     return process.returncode, errors
 
 
-@pytest.mark.compiled
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
 def test_a_sweep_that_is_killed_and_resumed_has_the_bits_of_one_that_was_not(tmp_path):
     path, folder = written(tmp_path, PLATES), tmp_path / "out"
