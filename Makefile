@@ -1,22 +1,36 @@
-# make demo: set up and run the main job.   make test: set up and pass every check.   make site: the documentation site.
+# make demo: set up and run the main job.   make test: set up, lint and test, in minutes.
+# make test-all: the long tests as well.    make site: the documentation site.
 PYTHON ?= python3
 BIN := .venv/bin
 # Small dense systems gain nothing from BLAS threads and lose much where cores are busy.
 export OPENBLAS_NUM_THREADS ?= 1
 
 # Tests run on all processors, those of a file on one, as they share what is made for them.
-SIDE_BY_SIDE := -n auto --dist loadfile
+PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --cov
+# Only the kernels of `particle` are compiled: what marches them runs in plain Python, too, which shows the lines covered.
+MARCHES := tests/particle tests/physics tests/regression
 
-.PHONY: demo test lint docs site paper benchmark clean
+.PHONY: demo test test-all long-tests lint kernels docs site paper benchmark clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/two_actuators.toml
 
-test: lint
-	@echo "== tests in plain Python, with coverage (1 of 2)"
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q $(SIDE_BY_SIDE) --cov --cov-report=term:skip-covered -m "not slow and not compiled"
-	@echo "== tests with compiled kernels (2 of 2)"
-	$(BIN)/python -m pytest -q $(SIDE_BY_SIDE)
+test: .venv/developer
+	@$(MAKE) --no-print-directory -j2 lint kernels
+	@echo "== what marches, in plain Python (1 of 2)"
+	NUMBA_DISABLE_JIT=1 $(PYTEST) --cov-report= -m "not slow and not compiled" $(MARCHES)
+	@echo "== all tests, with compiled kernels (2 of 2)"
+	$(PYTEST) --cov-append -m "not slow"
+
+test-all: test long-tests
+
+# Rivals, browsers, clusters, killed runs, long validation.
+long-tests: .venv/developer
+	$(PYTEST) --cov-append -m slow
+
+# Compiled once, before several processes would do so at a time.
+kernels: .venv/developer
+	@$(BIN)/active-surface run examples/two_actuators.toml --quiet --output build/kernels
 
 lint: .venv/developer
 	$(BIN)/ruff check .

@@ -7,6 +7,7 @@ import signal
 import numba
 import numpy as np
 import pytest
+import slowest
 
 from fem_plate import PlateSection
 from fem_plate.analytic import DiscShapes
@@ -16,6 +17,14 @@ RADIUS = 300e-6  # m
 # A shell starts what runs in the background deaf to Ctrl-C, and so would be the commands that tests interrupt.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+pytest_addoption = slowest.pytest_addoption
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("slowest"):
+        config.pluginmanager.register(slowest.Stopwatch(config))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -23,20 +23,27 @@ def unlike(shapes):
     return len({id(tile.patch) for tile in shapes.tiles})
 
 
-@pytest.fixture(autouse=True)
-def small_tiles(monkeypatch):
-    monkeypatch.setattr(patches, "TILE", 4)
+@pytest.fixture(scope="module", autouse=True)
+def small_tiles():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(patches, "TILE", 4)
+        yield
 
 
 @pytest.fixture(scope="module")
 def row(section):
-    """60 actuators along a strip."""
+    """A strip for 60 actuators."""
     return Plate(rectangle(61 * PITCH, 4 * PITCH, PITCH), section)
 
 
-def test_tiles_that_look_alike_share_a_patch(row):
+@pytest.fixture(scope="module")
+def shapes(row):
+    """Those of 60 actuators along the strip."""
+    return row.influence(lattice(60, 1), truncation=1e-3)
+
+
+def test_tiles_that_look_alike_share_a_patch(shapes):
     """Towards either end tiles differ by how far they are from it, all others are alike."""
-    shapes = row.influence(lattice(60, 1), truncation=1e-3)
     assert len(shapes.tiles) == 15 and unlike(shapes) <= 5
     middle = [tile.patch for tile in shapes.tiles[3:-3]]
     assert all(patch is middle[0] for patch in middle)
@@ -55,10 +62,10 @@ def test_rounding_and_another_order_of_the_points_do_not_keep_patches_apart(row,
     assert np.abs(other.evaluate(spots)[0] - plain.evaluate(spots)[0][:, order]).max() < 1e-9
 
 
-def test_actuators_out_of_line_keep_patches_apart(row):
+def test_actuators_out_of_line_keep_patches_apart(row, shapes):
     points = lattice(60, 1)
     points[30, 1] += 1e-3 * PITCH
-    assert unlike(row.influence(points, truncation=1e-3)) > unlike(row.influence(lattice(60, 1), truncation=1e-3))
+    assert unlike(row.influence(points, truncation=1e-3)) > unlike(shapes)
 
 
 @pytest.mark.parametrize("noise", [0.0, 1e-12])
@@ -145,8 +152,8 @@ def test_points_on_the_rim_and_on_cuts_belong_to_the_plate(section):
         assert np.abs(shapes.evaluate(xy)[0] - value).max() < 2e-3
 
 
-def test_forces_are_sparse_and_there_is_no_compliance(row):
-    dense, shapes = row.influence(lattice(60, 1)), row.influence(lattice(60, 1), truncation=1e-3)
+def test_forces_are_sparse_and_there_is_no_compliance(row, shapes):
+    dense = row.influence(lattice(60, 1))
     assert issparse(shapes.strengths) and issparse(shapes.stiffness) and shapes.stiffness.shape == (60, 60)
     assert shapes.stiffness.nnz < 60 * 30
     # The scale is the largest force; the truncation's share of it, some stiffness per deflection, is of order one.
@@ -158,9 +165,8 @@ def test_forces_are_sparse_and_there_is_no_compliance(row):
         _ = shapes.compliance
 
 
-def test_all_shapes_at_too_many_points_are_refused_and_sums_are_not(row, monkeypatch):
+def test_all_shapes_at_too_many_points_are_refused_and_sums_are_not(shapes, monkeypatch):
     monkeypatch.setattr(patched, "MOST_VALUES", 600)
-    shapes = row.influence(lattice(60, 1), truncation=1e-3)
     spots = np.stack([np.linspace(-20, 20, 11), np.full(11, 0.4)], axis=1) * PITCH
     every = shapes.evaluate(spots[:10])
     with pytest.raises(ValueError, match=re.escape("must be at most 10 points for all 60 shapes at once; got 11")):

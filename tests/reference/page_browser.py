@@ -13,44 +13,19 @@ webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not in
 from matplotlib.image import imread  # noqa: E402
 from selenium.common.exceptions import WebDriverException  # noqa: E402
 from selenium.webdriver.common.by import By  # noqa: E402
+from sweeps import PLATE, altered  # noqa: E402
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 DRIVER = shutil.which("chromedriver")
 PATIENCE = 120.0  # s: WebGL by software is slow on a busy machine
 OFFLINE = {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0}
-CASE = """\
-[plate]
-shape = "disc"
-radius = "300 um"
-supports = "clamped"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
-density = "2330 kg/m^3"
-cell_size = "100 um"
-
-[[actuators]]
-position = ["-75 um", "0 um"]
-stroke = "150 um"
-frequency = "400 Hz"
-
-[[actuators]]
-position = ["75 um", "0 um"]
-stroke = "150 um"
-frequency = "300 Hz"
-
-[part]
-mass = "2e-9 kg"
-position = ["-140 um", "20 um"]
-
-[friction]
-model = "kogut-etsion"
-preset = "paper"
-
-[run]
-duration = "8 ms"
-frames = 41
-"""
+CASE = altered(
+    PLATE,
+    ('cell_size = "80 um"', 'density = "2330 kg/m^3"\ncell_size = "100 um"'),
+    ('stroke = "60 um"', 'stroke = "150 um"'),
+    ('model = "constant"\nlimit = "40 nN"', 'model = "kogut-etsion"\npreset = "paper"'),
+    ('duration = "5 ms"', 'duration = "8 ms"\nframes = 41'),
+)
 
 
 @contextmanager

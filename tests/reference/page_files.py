@@ -5,36 +5,18 @@ import json
 import re
 
 import numpy as np
+from sweeps import PLATE, altered
 
 NAME = "a<script>alert(1)<b>&"
-CASE = """\
-# </script><script>alert(2)</script>
-[plate]
-shape = "disc"
-radius = "300 um"
-supports = "clamped"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
-cell_size = "100 um"
-
-[[actuators]]
-position = ["0 um", "0 um"]
-stroke = "150 um"
-frequency = "300 Hz"
-
-[part]
-mass = "2e-9 kg"
-position = ["100 um", "100 um"]
-
-[friction]
-model = "constant"
-limit = "41.8 nN"
-
-[run]
-duration = "2 ms"
-frames = 11
-"""
+CASE = "# </script><script>alert(2)</script>\n" + altered(
+    PLATE[: PLATE.index("[[actuators]]")] + PLATE[PLATE.rindex("[[actuators]]") :],
+    ('cell_size = "80 um"', 'cell_size = "100 um"'),
+    ('position = ["75 um", "0 um"]', 'position = ["0 um", "0 um"]'),
+    ('stroke = "60 um"', 'stroke = "150 um"'),
+    ('position = ["-140 um", "20 um"]', 'position = ["100 um", "100 um"]'),
+    ('limit = "40 nN"', 'limit = "41.8 nN"'),
+    ('duration = "5 ms"', 'duration = "2 ms"\nframes = 11'),
+)
 STUDY = """\
 [study]
 case = "base.toml"

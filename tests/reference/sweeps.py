@@ -1,8 +1,10 @@
-"""Small studies for tests: files of a case and of a study of it, written into a folder."""
+"""Small cases for tests, and studies of them written into a folder."""
 
 from __future__ import annotations
 
 from pathlib import Path
+
+from xarray import Dataset
 
 PLATFORM = """\
 [plate]
@@ -74,6 +76,24 @@ frequency = "400 Hz"
     + PLATE[PLATE.index("[part]") :]
 )
 
+SHAKEN = """\
+[[axes]]
+field = "plate.motion.x.stroke"
+name = "stroke"
+values = ["5 um", "20 um", "40 um"]
+[[axes]]
+field = "friction.limit"
+values = ["10 nN", "1 uN"]
+"""
+
+
+def altered(case: str, *changes: tuple[str, str]) -> str:
+    """A case with each old text replaced, wherever it stands."""
+    for old, new in changes:
+        assert old in case
+        case = case.replace(old, new)
+    return case
+
 
 def written(folder: Path, study: str, case: str = PLATE) -> Path:
     """The path of a study's file, beside that of its case."""
@@ -81,3 +101,11 @@ def written(folder: Path, study: str, case: str = PLATE) -> Path:
     path = folder / "study.toml"
     path.write_text(study if "[study]" in study else f'[study]\ncase = "base.toml"\n{study}')
     return path
+
+
+def same(one: Dataset, other: Dataset) -> bool:
+    """Whether two data sets have the same bits."""
+    return set(one.variables) == set(other.variables) and all(
+        one[name].dims == other[name].dims and one[name].values.tobytes() == other[name].values.tobytes()
+        for name in one.variables
+    )

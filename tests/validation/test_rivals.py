@@ -10,6 +10,7 @@ from rivals.problem import RADIUS, STARTS, problem, sunflower
 
 from particle import Drive, Micropart, simulate
 
+pytestmark = pytest.mark.slow
 STEPS = 60
 
 
@@ -88,7 +89,6 @@ def test_right_sides_agree(pair, rough):
 
 
 @pytest.mark.parametrize("contact", ["pair", "rough"])
-@pytest.mark.compiled
 def test_scipy_ends_where_the_product_does(contact, surface, request):
     which = request.getfixturevalue(contact)
     path = ours.path_of(which, surface)(tolerance=1e-11)
@@ -174,8 +174,6 @@ def test_counts_that_make_no_sense_are_refused(counts, monkeypatch, capsys):
     assert f"from 1 to 10000, up to which all forces fit in memory; got [{counts[-1]}]" in capsys.readouterr().err
 
 
-@pytest.mark.compiled
-@pytest.mark.slow
 def test_one_actuator_by_all():
     rows = list(Comparison(problem(1, STARTS[1])).rows())
     work = {(row.method, row.target): row.work for row in rows}

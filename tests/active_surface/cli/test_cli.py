@@ -67,15 +67,30 @@ def test_an_interrupt_exits_130_with_one_line(command, tmp_path, monkeypatch):
     assert (done.exit_code, done.stdout, done.stderr) == (130, "", "interrupted\n")
 
 
+# The command, with a line when it begins to follow the part.
+SPY = """
+import os
+from coupling import run
+follow = run.follow_part
+def spied(*arguments):
+    os.write(1, b"begins\\n")
+    return follow(*arguments)
+run.follow_part = spied
+from active_surface.cli.program import main
+main()
+"""
+
+
 @pytest.mark.compiled
 @pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
 def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
     text = (EXAMPLES / "one_actuator.toml").read_text()
     case = tmp_path / "long.toml"
     case.write_text(re.sub('duration = "[^"]*"', 'duration = "1000 s"', text))
-    command = [sys.executable, "-m", "active_surface", "run", str(case), "--output", str(tmp_path / "out")]
+    command = [sys.executable, "-c", SPY, "run", str(case), "--output", str(tmp_path / "out")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(12)  # it has begun by then, on a busy machine too
+        assert process.stdout.readline() == "begins\n"
+        time.sleep(1)  # so that compiled code runs
         process.send_signal(signal.SIGINT)
         output, errors = process.communicate(timeout=60)
     assert (process.returncode, output, errors) == (130, "", "interrupted\n")

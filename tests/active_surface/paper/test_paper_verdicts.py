@@ -4,110 +4,22 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from paper_paths import PERIOD, PITCH, lost_at, path
 
 from active_surface.paper.figures.accuracy import _band, _fine, _named, within
-from active_surface.paper.figures.coming_off import bending_pull, end_said, hardest, off_numbers, off_said
 from active_surface.paper.figures.convergence import _converges, _leaves, leave
 from active_surface.paper.figures.dead_zones import widest_served
 from active_surface.paper.figures.feasible_area import curve_of
 from active_surface.paper.figures.friction_logic import slips_of
 from active_surface.paper.figures.handover import HANDOVERS, arrives, cycles_until_there
 from active_surface.paper.figures.neighbours import crosses_and_returns, goes_over, trend_of
-from active_surface.paper.figures.threshold import _at_stated, _curve, exceptions, mixed, thresholds
 from active_surface.paper.figures.translocation import beyond, ends_of, farther, grows
 from active_surface.paper.models import Bench
-from active_surface.paper.parameters import PARAMETERS
-from active_surface.paper.path import Path
-from active_surface.paper.share import Share, share_of
-from active_surface.paper.split import Ends, best_split, first_loss, fits_of
 from particle import EventKind
 
 BENCH = Bench()
-PITCH, PERIOD = PARAMETERS.pitch, 1 / 300.0
 FREQUENCIES = np.array([200.0, 220.0, 240.0, 260.0, 280.0])
 NAN = float("nan")
-
-
-def path(*places, outcome="moving", duration=30 * PERIOD, events=()):
-    """A path over places in um, evenly spaced in time; it stays at the last one for the last half of the time."""
-    rows = np.array([*places, places[-1]], dtype=float) * 1e-6
-    times = np.append(np.linspace(0, duration / 2, len(places)), duration)
-    trajectory = SimpleNamespace(time=times, position=rows, outcome=SimpleNamespace(value=outcome), events=events)
-    return Path(trajectory, np.zeros(2))
-
-
-def lost_at(x, y, speed=0.2):
-    event = SimpleNamespace(kind=EventKind.DETACHES, position=(x, y), speed=speed)
-    return path((100, 0), (1e6 * x, 1e6 * y), outcome="detached", events=(event,))
-
-
-# ---- shares
-
-
-@pytest.mark.parametrize(
-    ("share", "interval", "met"),
-    [
-        (Share(52, 60), (0.758, 0.931), 0.5),
-        (Share(60, 60), (0.940, 1.0), 1.0),
-        (Share(58, 60), (0.886, 0.991), 0.5),
-        (Share(0, 60), (0.0, 0.060), 0.0),
-        (Share(9, 60), (0.081, 0.261), 0.5),
-        (Share(16, 16), (0.806, 1.0), 0.5),
-        (Share(1, 16), (0.011, 0.283), 0.5),
-    ],
-)
-def test_a_share_is_met_only_if_its_whole_interval_is(share, interval, met):
-    assert share.interval == pytest.approx(interval, abs=1e-3) and share.met == met
-
-
-def test_a_share_says_its_interval():
-    assert str(share_of([True] * 52 + [False] * 8)) == "87 % (76-93)"
-
-
-# ---- paths
-
-
-def test_converged_needs_the_last_five_cycles_near_the_actuator_and_on_the_surface():
-    assert path((100, 0), (29, 0)).converged(PERIOD, 30e-6)
-    assert not path((100, 0), (31, 0)).converged(PERIOD, 30e-6)
-    assert not path((100, 0), (29, 0), outcome="detached").converged(PERIOD, 30e-6)
-    assert path((100, 0), (140, 0)).converged(PERIOD, 30e-6, (150e-6, 0.0))
-    late = path((100, 0), (29, 0))
-    late.trajectory.position[-2] = 31e-6, 0.0
-    assert late.converged(PERIOD, 30e-6)  # that was at half of the time
-    late.trajectory.time[-2] = late.time[-1] - 4 * PERIOD
-    assert not late.converged(PERIOD, 30e-6)
-
-
-def test_leaves_at_and_lost():
-    assert path((0, 0), (201, 0), (0, 0)).leaves_at(200e-6) == pytest.approx(30 * PERIOD / 4)
-    assert path((0, 0), (199, 0)).leaves_at(200e-6) == np.inf
-    over = path((0, 0), (150, 0), outcome="left the plate")
-    assert over.leaves_at(200e-6) == over.time[-1] and over.lost(200e-6)
-    assert lost_at(1e-9, 0.0).lost(200e-6) and not path((0, 0), (199, 0)).lost(200e-6)
-
-
-@pytest.mark.parametrize("outcome", ["overloaded", "work limit"])
-def test_what_was_not_followed_to_the_end_is_neither_lost_nor_kept(outcome):
-    one = path((0, 0), (10, 0), outcome=outcome)
-    assert one.unknown and not (one.attached or one.came_off or one.over_rim or one.lost(200e-6))
-    assert not one.converged(PERIOD, 30e-6) and "not followed" in end_said(one, [(0, 0)])
-
-
-def test_where_parts_come_off():
-    parts = [lost_at(5e-9, 0.0), lost_at(PITCH, 20e-6), path((0, 0)), path((0, 0))]
-    numbers = off_numbers(parts, [(0.0, 0.0), (PITCH, 0.0)])
-    assert (numbers["come_off"], numbers["close"], numbers["median_speed"]) == (0.5, 0.5, 0.2)
-    assert numbers["median_distance"] == pytest.approx(10.0025e-6)
-    assert end_said(parts[0], [(0.0, 0.0)]) == "comes off 5 nm from an actuator"
-    assert off_numbers(parts[2:], [(0.0, 0.0)]) == {"come_off": 0.0} and "half" not in off_said(parts[2:], [(0.0, 0.0)])
-
-
-def test_the_pull_of_curvature_next_to_an_actuator():
-    assert bending_pull(PARAMETERS, [5e-9, 1e-6, 50e-6]) == pytest.approx([-2667, -1254, -211], abs=1)
-    drive = BENCH.drive(650.0)
-    moments = np.linspace(0, 1 / 650, 20001)
-    assert hardest(PARAMETERS, 650.0) == pytest.approx(np.abs(drive.evaluate(moments)[2]).max(), rel=1e-6)
 
 
 # ---- figure 4
@@ -208,72 +120,6 @@ def test_20_arrives_and_is_there_after_so_many_cycles():
     assert arrives(BENCH, HANDOVERS["21"], path((-50, 15), (150, 0)))  # 300 Hz at (150, 0)
     assert cycles_until_there(BENCH, one, there) == pytest.approx(30 * PERIOD / 4 * 450)
     assert cycles_until_there(BENCH, one, path((100, 0), (80, 0))) == np.inf
-
-
-# ---- figure 18
-
-
-def ends(*rows):
-    """By frequency one letter a start: c converges, l is lost, o neither."""
-    letters = np.array([list(row) for row in rows])
-    return Ends(letters == "c", letters == "l")
-
-
-def test_a_sharp_threshold_tells_all():
-    sharp = ends("cc", "cc", "ll", "ll", "ll")
-    split = best_split(FREQUENCIES, *sharp)
-    assert split == (230.0, 1.0, 1.0, 1.0)
-    assert mixed(FREQUENCIES, *sharp) is None and exceptions(FREQUENCIES, sharp, split) == ([], [])
-
-
-def test_a_band_in_which_all_converge_again_is_seen_and_costs():
-    """The first loss at 240 Hz is not the end of it: at 260 Hz all converge."""
-    bands = ends("cc", "cc", "ll", "cc", "ll")
-    split = best_split(FREQUENCIES, *bands)
-    assert split.told == pytest.approx(0.8) and mixed(FREQUENCIES, *bands) == (240.0, 260.0)
-    assert exceptions(FREQUENCIES, bands, split._replace(frequency=230.0)) == ([], [260.0])
-    assert exceptions(FREQUENCIES, bands, split._replace(frequency=270.0)) == ([240.0], [])
-    assert first_loss(FREQUENCIES, bands.lost) == 230.0
-
-
-def test_the_first_loss_counts_a_start_that_is_never_lost():
-    assert first_loss(FREQUENCIES, ends("cc", "lc", "cc", "cc", "lc").lost) == pytest.approx((210.0 + 290.0) / 2)
-
-
-def test_to_and_fro_is_told_by_no_threshold():
-    assert best_split(FREQUENCIES, *ends("oo", "cc", "co", "ll", "ll")).told == pytest.approx(0.7)
-    assert np.isnan(best_split(FREQUENCIES, *ends("oo", "oo", "oo", "oo", "oo")).frequency)
-    assert best_split(FREQUENCIES, *ends("cc", "cc", "cc", "cc", "cc")).frequency == 290.0
-    assert best_split(FREQUENCIES, *ends("ll", "ll", "ll", "ll", "ll")).frequency == 190.0
-
-
-def test_thresholds_scatter_over_single_starts():
-    converges, lost = (rows[None] for rows in ends("cc", "cc", "cl", "cl", "ll"))
-    found = thresholds(np.array([150e-6]), FREQUENCIES, Ends(converges, lost))
-    assert found.scatter[0] == pytest.approx((234.0, 266.0)) and found.fits is None
-
-
-@pytest.mark.parametrize(
-    ("frequency", "below", "above", "met"),
-    [(330.0, 0.95, 1.0, 1.0), (345.0, 0.95, 1.0, 2 / 3), (330.0, 0.6, 0.8, 1 / 3)],
-)
-def test_18_asks_for_the_place_and_for_what_parts_do_on_either_side(frequency, below, above, met):
-    split = best_split(FREQUENCIES, *ends("c", "c", "l", "l", "l"))._replace(
-        frequency=frequency, below=below, above=above
-    )
-    assert _at_stated(split, (300.0, 340.0), 20, None, ([], []), {}).met == pytest.approx(met)
-
-
-def test_quadratic_and_power_law_are_told_apart():
-    strokes = np.linspace(100e-6, 200e-6, 9)
-    x = strokes / 150e-6
-    square = fits_of(strokes, 900 - 900 * x + 320 * x**2, 150e-6)
-    assert square.quadratic_misfit < 1e-6 < square.law_misfit and _curve(square, {}).met == 1
-    law = fits_of(strokes, 320 * x**-1.6, 150e-6)
-    assert law.law_misfit < 1e-6 and law.exponent == pytest.approx(-1.6) and _curve(law, {}).met == 0.5
-    wild = fits_of(strokes, 320 + 100 * (-1.0) ** np.arange(9), 150e-6)
-    assert wild.quadratic_misfit > 10 and _curve(wild, {}).met < 1
-    assert fits_of(strokes, np.full(9, NAN), 150e-6) is None and _curve(None, {}).met == 0
 
 
 # ---- figure 22, dead zones

@@ -62,6 +62,7 @@ def bits(dataset):
     return {name: dataset[name].values.tobytes() for name in dataset.variables}
 
 
+@pytest.mark.slow
 def test_the_bits_are_those_of_a_sweep_without_a_cluster(tmp_path, cluster):
     study, told = read_study(written(tmp_path, SHAKEN, PLATFORM)), []
     found = run_study(study, tell=lambda done, of: told.append((done, of)), scheduler=cluster.scheduler_address)
@@ -69,7 +70,7 @@ def test_the_bits_are_those_of_a_sweep_without_a_cluster(tmp_path, cluster):
     assert told[-1] == (24, 24)
 
 
-@pytest.mark.compiled
+@pytest.mark.slow
 def test_a_killed_worker_costs_nothing_but_time(tmp_path, cluster):
     """One is killed as the first chunk comes in, while others are under way."""
     study = read_study(written(tmp_path, PLATES, PLATE))
@@ -89,6 +90,7 @@ def test_a_killed_worker_costs_nothing_but_time(tmp_path, cluster):
     assert bits(found.dataset) == bits(run_study(study).dataset)
 
 
+@pytest.mark.slow
 def test_few_chunks_are_under_way_at_a_time(tmp_path, cluster):
     axes = SHAKEN.replace("count = 12", "count = 2")
     engine, asked = Engine(read_study(written(tmp_path, axes, PLATFORM))), []
@@ -106,6 +108,7 @@ def test_few_chunks_are_under_way_at_a_time(tmp_path, cluster):
     assert len(asked) == len(ahead) == 24 and max(ahead) <= 2 * AHEAD + 1
 
 
+@pytest.mark.slow
 def test_a_stop_keeps_the_chunks_that_came_in(tmp_path, cluster, monkeypatch):
     monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 2)
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))
@@ -123,6 +126,7 @@ def test_a_stop_keeps_the_chunks_that_came_in(tmp_path, cluster, monkeypatch):
     assert bits(found.dataset) == bits(run_study(study).dataset)
 
 
+@pytest.mark.slow
 def test_a_worker_with_another_version_is_refused(tmp_path, cluster, monkeypatch):
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))
     own = {"active-surface": "9.8.7", "numpy": np.__version__}
@@ -135,6 +139,7 @@ def test_a_worker_with_another_version_is_refused(tmp_path, cluster, monkeypatch
     assert re.match(said, str(caught.value))
 
 
+@pytest.mark.slow
 def test_a_worker_that_reads_other_files_is_refused(tmp_path, cluster, monkeypatch):
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))
     monkeypatch.setattr(type(study), "key", "ab" * 32)
@@ -164,6 +169,7 @@ def test_an_address_where_nobody_listens_is_one_clear_error(tmp_path):
     assert refused(tmp_path, "tcp://127.0.0.1:9") == "no dask scheduler answered there in 5 s"
 
 
+@pytest.mark.slow
 def test_an_address_where_something_else_listens_is_one_clear_error(tmp_path, cluster):
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = "tcp://{}:{}".format(*silent.getsockname())
@@ -171,6 +177,7 @@ def test_an_address_where_something_else_listens_is_one_clear_error(tmp_path, cl
     assert refused(tmp_path, next(iter(workers(cluster)))) == "there is a dask worker at that address"
 
 
+@pytest.mark.slow
 def test_a_scheduler_without_workers_is_one_clear_error(tmp_path, monkeypatch):
     distributed = pytest.importorskip("distributed")
     monkeypatch.setattr("active_surface.studies.cluster.ARRIVAL", 1)
@@ -180,6 +187,7 @@ def test_a_scheduler_without_workers_is_one_clear_error(tmp_path, monkeypatch):
     assert str(caught.value).startswith("Input scheduler must have workers; the one at tcp://127.0.0.1:")
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_goes_is_one_clear_error(tmp_path, monkeypatch):
     distributed = pytest.importorskip("distributed")
     monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 2)

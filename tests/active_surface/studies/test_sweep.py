@@ -1,49 +1,19 @@
 """Sweeps: the same bits as single runs, for any number of threads and after any interruption."""
 
 import json
-import re
-import signal
-import subprocess
-import sys
-import time
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray
 from click.testing import CliRunner
-from sweeps import LATTICE, PLATE, PLATFORM, written
+from sweeps import LATTICE, PLATE, PLATFORM, SHAKEN, same, written
 
 from active_surface.cli.program import main
 from active_surface.studies import engine, read_study, run_study
-from active_surface.studies.chunk_store import ChunkStore
-from active_surface.studies.dataset import read_dataset
-from active_surface.studies.engine import Engine
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, new_records
 from coupling import read_case
 from coupling.run import build_friction, build_surface, follow_part
 
-SHAKEN = """\
-[[axes]]
-field = "plate.motion.x.stroke"
-name = "stroke"
-values = ["5 um", "20 um", "40 um"]
-[[axes]]
-field = "friction.limit"
-values = ["10 nN", "1 uN"]
-"""
-PLATES = """\
-sampling = "random"
-points = 12
-repeats = 2
-jitter = "1 um"
-[[axes]]
-field = "plate.thickness"
-range = ["5 um", "6 um"]
-[[axes]]
-field = "actuators.*.frequency"
-range = ["350 Hz", "500 Hz"]
-"""
 STROKES = """\
 sampling = "random"
 points = 24
@@ -54,14 +24,6 @@ range = ["40 um", "70 um"]
 field = "actuators.0.frequency"
 range = ["350 Hz", "500 Hz"]
 """
-
-
-def same(one, other):
-    """Whether two data sets have the same bits."""
-    return set(one.variables) == set(other.variables) and all(
-        one[name].dims == other[name].dims and one[name].values.tobytes() == other[name].values.tobytes()
-        for name in one.variables
-    )
 
 
 def test_a_platform_is_swept_in_memory_and_its_axes_are_labelled(tmp_path):
@@ -172,96 +134,6 @@ def test_a_start_off_the_plate_is_refused_where_it_is_off(tmp_path):
     assert 0 < found["mistakes"].sel({"part.position.0": 290e-6}).sum() < 60
 
 
-@pytest.mark.parametrize(("case", "field"), [(PLATFORM, "part.mass"), (PLATE, "actuators.0.stroke")])
-def test_chunks_are_as_long_as_the_cycles_that_their_paths_take(tmp_path, case, field):
-    unit = "kg" if field == "part.mass" else "m"
-    axes = f'[[axes]]\nfield = "{field}"\nrange = ["1e-9 {unit}", "1e-8 {unit}"]\ncount = 5000\n'
-    lengths = []
-    for duration in ("20 us", "2 ms", "200 ms"):
-        case = re.sub(r'duration = ".*"', f'duration = "{duration}"', case)
-        lengths.append(Engine(read_study(written(tmp_path, axes, case))).chunk_length)
-    assert lengths[0] > 1500 and lengths[0] > lengths[1] > 1.2 * lengths[2] and lengths[2] < 100
-
-
-def test_a_chunk_that_is_foreign_torn_or_of_another_length_counts_as_none(tmp_path):
-    store = ChunkStore(tmp_path / "chunks", "ab" * 32)
-    assert store.load(0, 3) is None
-    records = new_records(3)
-    records["end_x"] = [1.0, 2.0, np.nan]
-    store.save(0, records)
-    assert store.load(0, 3).tobytes() == records.tobytes()
-    assert store.load(0, 4) is None and store.load(1, 3) is None
-    assert ChunkStore(tmp_path / "chunks", "ac" * 32).load(0, 3) is None
-    (file,) = (tmp_path / "chunks").iterdir()
-    whole = file.read_bytes()
-    for torn in (b"", whole[:10], whole[:-1], whole[:-9] + bytes([whole[-9] ^ 1]) + whole[-8:]):
-        file.write_bytes(torn)
-        assert store.load(0, 3) is None
-    store.clear()
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkeypatch):
-    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 2)
-    study = read_study(written(tmp_path, SHAKEN, PLATFORM))
-    whole = run_study(study).dataset
-    asked = []
-    records = Engine.records
-
-    def counted(self, start, stop):
-        if len(asked) == 2:
-            raise KeyboardInterrupt
-        asked.append(start // 2)
-        return records(self, start, stop)
-
-    monkeypatch.setattr(Engine, "records", counted)
-    with pytest.raises(KeyboardInterrupt):
-        run_study(study, tmp_path / "out")
-    assert sorted(file.name for file in (tmp_path / "out").rglob("*.chunk")) == [
-        "0000000000-0000000002.chunk",
-        "0000000002-0000000004.chunk",
-    ]
-    asked.clear()
-    told = []
-    sweep = run_study(study, tmp_path / "out", tell=lambda done, of: told.append((done, of)))
-    assert asked == [2] and told == [(4, 6), (6, 6)]
-    assert same(whole, sweep.dataset)
-    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["study.nc", "study.sweep.png"]
-    asked.clear()
-    assert same(whole, run_study(study, tmp_path / "out").dataset) and asked == []
-    changed = read_study(written(tmp_path, SHAKEN.replace("40 um", "41 um"), PLATFORM))
-    with pytest.raises(KeyboardInterrupt):  # it begins anew, and is stopped after two chunks
-        run_study(changed, tmp_path / "out", overwrite=True)
-    assert asked == [0, 1] and same(whole, read_dataset(tmp_path / "out" / "study.nc").load())
-
-
-def test_the_key_is_that_of_what_the_results_depend_on(tmp_path):
-    def key(study=SHAKEN, case=PLATFORM):
-        return read_study(written(tmp_path, study, case)).key
-
-    assert key() == key("# a remark\n" + SHAKEN, PLATFORM + "# another one\n")
-    others = [
-        key(SHAKEN.replace("40 um", "41 um")),
-        key(SHAKEN.replace('"stroke"\n', '"Stroke"\n')),
-        key('repeats = 2\njitter = "1 um"\n' + SHAKEN),
-        key('repeats = 2\njitter = "1 um"\nseed = 1\n' + SHAKEN),
-        key(case=PLATFORM.replace('"2e-9 kg"', '"3e-9 kg"')),
-    ]
-    assert len({key(), *others}) == 6
-
-
-def test_the_key_knows_the_content_of_a_measured_motion(tmp_path):
-    motion = tmp_path / "motion.csv"
-    case = re.sub(r"\[plate\.motion\.x\].*?\n\n", "", PLATFORM, flags=re.S)
-    case = case.replace('"platform"', '"platform"\nmotion = "motion.csv"')
-    keys = set()
-    for size in (1, 2):
-        rows = [f"{time},{size * np.sin(time)}" for time in range(8)]
-        motion.write_text("time [ms], x [um]\n" + "\n".join(rows) + "\n")
-        keys.add(read_study(written(tmp_path, '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg"]\n', case)).key)
-    assert len(keys) == 2
-
-
 def test_the_command_says_what_it_found(tmp_path):
     path = written(tmp_path, SHAKEN, PLATFORM)
     done = CliRunner().invoke(main, ["sweep", str(path), "-o", str(tmp_path / "out")])
@@ -279,38 +151,6 @@ def test_a_study_with_mistakes_leaves_nothing_behind(tmp_path):
     done = CliRunner().invoke(main, ["sweep", str(path), "-o", str(tmp_path / "out")])
     assert done.exit_code == 2 and "axes[1].field" in done.output and "Traceback" not in done.output
     assert not (tmp_path / "out").exists()
-
-
-def command(path, folder):
-    return [sys.executable, "-m", "active_surface", "sweep", str(path), "--output", str(folder), "--quiet"]
-
-
-def stopped_after(chunks, path, folder, number):
-    """The exit code of a sweep that got a signal when it had so many chunks; its errors."""
-    with subprocess.Popen(command(path, folder), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        while len(list(Path(folder).rglob("*.chunk"))) < chunks:
-            assert process.poll() is None
-            time.sleep(0.002)
-        process.send_signal(number)
-        _, errors = process.communicate(timeout=60)
-    return process.returncode, errors
-
-
-@pytest.mark.compiled
-@pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
-def test_a_sweep_that_is_killed_and_resumed_has_the_bits_of_one_that_was_not(tmp_path):
-    path, folder = written(tmp_path, PLATES), tmp_path / "out"
-    whole = run_study(read_study(path)).dataset
-    for chunks in (1, 3, 6):
-        assert stopped_after(chunks, path, folder, signal.SIGKILL)[0] == -signal.SIGKILL
-        assert len(list(folder.rglob("*.chunk"))) >= chunks and not (folder / "study.nc").exists()
-    kept = {file: file.read_bytes() for file in folder.rglob("*.chunk")}
-    code, errors = stopped_after(len(kept) + 1, path, folder, signal.SIGINT)
-    assert (code, errors) == (130, "interrupted; the same command goes on where this one stopped\n")
-    assert all(file.read_bytes() == content for file, content in kept.items())
-    subprocess.run(command(path, folder), check=True)
-    assert same(whole, read_dataset(folder / "study.nc").load())
-    assert sorted(file.name for file in folder.iterdir()) == ["study.nc", "study.sweep.png"]
 
 
 def test_records_have_the_kinds_of_their_columns():

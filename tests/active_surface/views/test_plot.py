@@ -114,14 +114,22 @@ def check(figure, width):
         assert (edge > 200).all()
 
 
+@pytest.fixture(
+    scope="module",
+    params=[PLATE, STAYS, PLATFORM, COMES_OFF, MANY],
+    ids=["plate", "stays", "platform", "off", "many"],
+)
+def pictured(request, tmp_path_factory):
+    """A run and its pictures."""
+    folder = tmp_path_factory.mktemp("run")
+    result = ran(folder, request.param, "2 ms")
+    return result, run_pictures(portrait_of_saved(read_run(folder / "case")))
+
+
 @pytest.mark.compiled
 @pytest.mark.parametrize("width", [60, 85, 180])
-@pytest.mark.parametrize(
-    "text", [PLATE, STAYS, PLATFORM, COMES_OFF, MANY], ids=["plate", "stays", "platform", "off", "many"]
-)
-def test_pictures_of_a_run_can_be_read(tmp_path, text, width):
-    result = ran(tmp_path, text, "2 ms")
-    pictures = run_pictures(portrait_of_saved(read_run(tmp_path / "case")))
+def test_pictures_of_a_run_can_be_read(pictured, width):
+    result, pictures = pictured
     assert [picture.name for picture in pictures if picture.name != "closeup"] == ["path", "time"]
     assert result.summary.sentence in pictures[0].caption
     for picture in pictures:

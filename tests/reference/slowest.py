@@ -1,0 +1,73 @@
+"""The pytest option `--slowest FILE`: a Markdown table of the tests that take the most processor time.
+
+Processor time, of the test's process and of those that it started, says more than the clock where tests run side by
+side. What a shared fixture takes counts for the first test that uses it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+KEY = "processor time"
+HEAD = """\
+# The {count} slowest tests
+
+Processor seconds of setup, call and teardown, and their share of the {total:.0f} s of all {number} tests. The first
+test that uses a shared fixture pays for it. Written by
+
+    {command}
+
+| processor time, s | share | test |
+|---:|---:|---|
+"""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--slowest", type=Path, metavar="FILE", help="write a table of the slowest tests to FILE")
+    parser.addoption("--slowest-count", type=int, default=50, metavar="N", help="rows of that table [50]")
+
+
+class Stopwatch:
+    """Adds to each report the processor time of its phase; the controlling process sums them and writes the table."""
+
+    def __init__(self, config: pytest.Config):
+        self.config = config
+        self.last = spent()
+        self.seconds: Counter[str] = Counter()
+
+    def pytest_runtest_logstart(self) -> None:
+        self.last = spent()
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(self):
+        report = yield
+        now = spent()
+        report.user_properties.append((KEY, now - self.last))
+        self.last = now
+        return report
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self.seconds[report.nodeid] += dict(report.user_properties).get(KEY, 0.0)
+
+    def pytest_sessionfinish(self) -> None:
+        if not hasattr(self.config, "workerinput"):
+            command = "pytest " + " ".join(map(str, self.config.invocation_params.args))
+            self.config.getoption("slowest").write_text(
+                table(self.seconds, self.config.getoption("slowest_count"), command), encoding="utf-8"
+            )
+
+
+def spent() -> float:
+    """Processor time [s] of this process and of its children that have ended."""
+    return sum(os.times()[:4])
+
+
+def table(seconds: Counter[str], count: int, command: str) -> str:
+    total = seconds.total()
+    rows = seconds.most_common(count)
+    head = HEAD.format(count=len(rows), total=total, number=len(seconds), command=command)
+    return head + "".join(f"| {time:.1f} | {time / total:.1%} | `{test}` |\n" for test, time in rows)
