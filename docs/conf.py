@@ -6,19 +6,19 @@ from pathlib import Path
 sys.path[:0] = [str(Path(__file__).parent / "extensions"), str(Path(__file__).parent.parent)]
 
 project = "active-surface"
-author = "the authors of active-surface"
-project_copyright = author
+author = "the active-surface authors"
+project_copyright = f"2026, {author}"
 exclude_patterns = ["extensions"]
-extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "docstrings"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc", "contents", "mathml", "reference"]
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
-numfig = True  # equations are counted by page, as (2.7)
-math_numfig = True
-math_eqref_format = "({number})"
 default_role = "literal"
 smartquotes = False
 highlight_language = "text"
+
+numpydoc_show_class_members = False  # automodule lists them
+numpydoc_class_members_toctree = False
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"

@@ -1,10 +1,13 @@
 """Formulas as MathML, which browsers draw by themselves: neither a network nor LaTeX is needed."""
 
+import re
+
 from docutils.nodes import Element, SkipNode
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
-from sphinx.util.math import get_node_equation_number
 from sphinx.writers.html5 import HTML5Translator
+
+TAG = re.compile(r"\s*\\tag\{([^}]+)\}")
 
 
 def inline(translator: HTML5Translator, node: Element) -> None:
@@ -14,11 +17,13 @@ def inline(translator: HTML5Translator, node: Element) -> None:
 
 
 def block(translator: HTML5Translator, node: Element) -> None:
-    """A formula on lines of its own; if it has a label it has a number, and links lead to it."""
+    r"""A formula on lines of its own, with the number that its `\tag` states."""
+    tag = TAG.search(node.astext())
+    formula = TAG.sub("", node.astext())
     translator.body.append(translator.starttag(node, "div", CLASS="formula"))
-    translator.body.append(f'<div class="drawn">{tex2mathml(node.astext(), as_block=True)}</div>')
-    if node["number"]:
-        translator.body.append(f'<span class="number">({get_node_equation_number(translator, node)})</span>')
+    translator.body.append(f'<div class="drawn">{tex2mathml(formula, as_block=True)}</div>')
+    if tag:
+        translator.body.append(f'<span class="number">({tag[1]})</span>')
     translator.body.append("</div>\n")
     raise SkipNode
 

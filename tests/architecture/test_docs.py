@@ -14,7 +14,10 @@ ROOT = Path(__file__).parents[2]
 DOCS = sorted((ROOT / "docs").rglob("*.md"))
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *DOCS]
 FENCE = re.compile(r"^```.*?^```$", flags=re.DOTALL | re.MULTILINE)
-LABEL = re.compile(r"^\$\$ \(([\w-]+)\)$", flags=re.MULTILINE)
+TAG = re.compile(r"\\tag\{([\d.]+)\}")
+REFERENCE = re.compile(r"\[\((\d+\.\d+)\)\]\(([^)#]*)#([^)]+)\)")
+SECTION = re.compile(r"^#+ (.+)$", flags=re.MULTILINE)
+DIRECTIVES = re.compile(r"^(?:```|:::)\{|\{\w+\}`|^\([\w-]+\)=$|^\.\. \w+::", flags=re.MULTILINE)
 
 
 def name(page):
@@ -25,10 +28,13 @@ def prose(page):
     return FENCE.sub("", page.read_text())
 
 
-def anchors(page):
-    """What links to the headings of a page are called, on the site and on code hosts."""
-    titles = re.findall(r"^#+ (.+)$", prose(page), flags=re.MULTILINE)
-    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+def sections(page):
+    """The text below each heading of a page, by the name of the link to it on the site and on code hosts."""
+    _, *pieces = SECTION.split(prose(page))
+    return {
+        re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-"): text
+        for title, text in zip(pieces[::2], pieces[1::2], strict=True)
+    }
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name)
@@ -40,41 +46,71 @@ def test_links_lead_somewhere(page):
             continue
         file, _, heading = link.partition("#")
         target = page.parent / file if file else page
-        if not target.exists() or (heading and heading not in anchors(target)):
+        if not target.exists() or (heading and heading not in sections(target)):
             wrong.append(link)
     assert not wrong
 
 
-def test_equations_have_one_label_each_and_references_exist():
-    labels = Counter(label for page in DOCS for label in LABEL.findall(page.read_text()))
-    assert labels and max(labels.values()) == 1
+def test_equations_have_one_number_each_and_references_lead_to_them():
+    numbers = Counter(number for page in DOCS for number in TAG.findall(page.read_text()))
+    assert numbers and max(numbers.values()) == 1
+    references = 0
     for page in DOCS:
-        text = page.read_text()
-        assert set(re.findall(r"\{eq\}`([^`]+)`", text)) <= set(labels), name(page)
-        starts = len(re.findall(r"^\$\$", text, flags=re.MULTILINE))
-        assert starts == 2 * len(LABEL.findall(text)), f"an equation of {name(page)} has no label"
+        for number, file, heading in REFERENCE.findall(page.read_text()):
+            target = sections(page.parent / file if file else page)[heading]
+            assert number in TAG.findall(target), f"{name(page)} refers to ({number})"
+            references += 1
+        starts = len(re.findall(r"^\$\$$", page.read_text(), flags=re.MULTILINE))
+        assert starts == 2 * len(TAG.findall(page.read_text())), f"an equation of {name(page)} has no number"
+    assert references > 10
 
 
-def test_site_shows_every_page():
-    shown = {ROOT / "docs/index.md"}
-    for page in DOCS:
-        for tree in re.findall(r"^```\{toctree\}\n(.*?)^```$", page.read_text(), flags=re.DOTALL | re.MULTILINE):
-            for entry in (line for line in tree.splitlines() if line and not line.startswith(":")):
-                found = list(page.parent.glob(f"{entry}.md"))
-                assert found, f"{name(page)} lists {entry}"
-                shown |= set(found)
-    assert [name(page) for page in DOCS if page not in shown] == []
+@pytest.mark.parametrize("page", DOCS, ids=name)
+def test_pages_read_on_a_code_host(page):
+    assert DIRECTIVES.findall(page.read_text()) == []
+
+
+def test_site_shows_every_page(extension):
+    contents = extension("contents").CONTENTS
+    shown = [
+        (ROOT / "docs" / at).parent / page for at, parts in contents.items() for part in parts.values() for page in part
+    ]
+    files = Counter(page.with_name(f"{page.name}.md") for page in [ROOT / "docs/index", *shown])
+    assert max(files.values()) == 1
+    assert set(files) == set(DOCS)
+
+
+def test_site_adds_what_pages_leave_out(extension):
+    contents = extension("contents")
+    gallery = contents.with_directives("gallery/index", (ROOT / "docs/gallery/index.md").read_text())
+    assert gallery.count("{literalinclude}") == len(list((ROOT / "docs/gallery").glob("*.py")))
+    assert "{include} ../CHANGELOG.md" in contents.with_directives("changes", "")
+    for package in contents.PACKAGES:
+        assert ".. automodule::" in contents.with_directives(f"api/{package}", "")
 
 
 @pytest.fixture
-def fields(monkeypatch):
+def extension(monkeypatch):
+    """A module of the site's own extensions, by its name."""
     monkeypatch.syspath_prepend(str(ROOT / "docs/extensions"))
-    return importlib.import_module("fields")
+    return importlib.import_module
+
+
+@pytest.fixture
+def fields(extension):
+    return extension("fields")
 
 
 PACKAGES = ["meshes", "fem_plate", "particle", "coupling"] + [
     f"active_surface.{room}" for room in ("studies", "views", "steering", "paper")
 ]
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_reference_page_names_all_that_is_public(package):
+    page = (ROOT / "docs/api" / f"{package.rpartition('.')[2]}.md").read_text()
+    public = importlib.import_module(package).__all__
+    assert [item for item in public if f"| `{item}" not in page] == []
 
 
 @pytest.mark.parametrize("package", PACKAGES)
@@ -104,16 +140,6 @@ def test_fields_have_type_default_and_comment(fields):
     assert [row.name for row in fields.of(particle.State)] == ["STICK", "SLIP", "FLIGHT"]
 
 
-def test_docstrings_become_lists(fields):
-    docstrings = pytest.importorskip("docstrings", reason="needs sphinx, the extra docs")
-    lines, names = docstrings.paragraphs(
-        ["A disc.", "", "radius: m.  rigidity: N m, |x| * 2", "and more.", "Raises X."]
-    )
-    assert names == {"radius", "rigidity"}
-    assert [line for line in lines if line] == [
-        "A disc.",
-        "* `radius`: m.",
-        r"* `rigidity`: N m, \|x\| \* 2",
-        "  and more.",
-        "Raises X.",
-    ]
+def test_reference_escapes_what_is_no_markup(extension):
+    reference = pytest.importorskip("reference", reason="needs sphinx, the extra docs")
+    assert reference.escaped("N m, |x| * `a_b`") == r"N m, \|x\| \* `a_b`"

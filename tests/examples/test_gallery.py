@@ -32,7 +32,7 @@ def test_script_draws_a_picture_within_its_frame(script):
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_page_shows_script_and_picture(script):
     page = (GALLERY / "index.md").read_text()
-    assert f"({script.stem}.png)" in page and f"{{literalinclude}} {script.name}" in page
+    assert f"({script.stem}.png)" in page and f"Source: [`{script.name}`]({script.name})" in page
     picture = script.with_suffix(".png")
     assert picture.stat().st_size < 100_000
     assert imread(picture).std() > 0.05

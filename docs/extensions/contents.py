@@ -1,0 +1,66 @@
+"""What the site adds to the plain Markdown pages: tables of contents, listings of programs, the Python reference.
+
+Pages carry no Sphinx directives, so that they also read well on a code host. They get them when the site is built.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+DOCS = Path(__file__).parents[1]
+REFERENCE = Path(__file__).parent / "reference"  # a file of directives for each page of docs/api
+
+PACKAGES = ["meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "paper"]
+CONTENTS = {  # the pages below a page, by caption
+    "index": {
+        "First steps": ["quick-start", "gallery/index"],
+        "How to": ["howto/own-mesh", "howto/own-friction", "howto/sweep", "howto/aim", "howto/paraview"],
+        "The program": [
+            *("commands", "case-file", "results", "animations", "page", "plot"),
+            *("python", "messages", "sweeps", "aim", "feasibility"),
+        ],
+        "Theory and trust": ["theory", "accuracy", "paper", "paper-open-points", "limits", "benchmarks"],
+        "Reference": ["conventions", "api/index"],
+        "Inside": ["architecture", "decisions/index", "contributing", "changes"],
+    },
+    "theory": {"": ["plate", "surface", "motion", "contact"]},
+    "api/index": {"": PACKAGES},
+    "decisions/index": {"": sorted(page.stem for page in DOCS.glob("decisions/0*.md"))},
+}
+NUMBERED = {"theory"}  # whose pages have the numbers that their equations begin with
+COPIES = {"changes": "CHANGELOG.md", "contributing": "CONTRIBUTING.md"}  # pages that show a file of the root folder
+LISTING = re.compile(r"^Source: \[`[^`]+`\]\(([^)]+)\)$", re.MULTILINE)
+LANGUAGES = {".py": "python", ".geo": "c"}
+
+
+def with_directives(page: str, text: str) -> str:
+    """The text of a page with the directives that only the site needs."""
+    if page in COPIES:
+        return f"```{{include}} ../{COPIES[page]}\n:relative-docs: docs/\n```\n"
+    text = LISTING.sub(_listing, text)
+    directives = REFERENCE / f"{page.removeprefix('api/')}.rst"
+    if page.startswith("api/") and directives.exists():
+        text += f"\n```{{eval-rst}}\n{directives.read_text()}```\n"
+    for caption, pages in CONTENTS.get(page, {}).items():
+        options = [":hidden:", *([f":caption: {caption}"] if caption else []), *([":numbered: 1"] * (page in NUMBERED))]
+        text += "\n```{toctree}\n" + "\n".join([*options, "", *pages]) + "\n```\n"
+    return text
+
+
+def _listing(line: re.Match[str]) -> str:
+    language = LANGUAGES[Path(line[1]).suffix]
+    return f"{line[0]}\n\n```{{literalinclude}} {line[1]}\n:language: {language}\n```"
+
+
+def add_directives(app: Sphinx, page: str, source: list[str]) -> None:
+    source[0] = with_directives(page, source[0])
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    app.connect("source-read", add_directives)
+    return {"parallel_read_safe": True}
