@@ -2,44 +2,41 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+from filelock import FileLock, Timeout
 
 NAME = "lock"
 
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Have a folder for oneself; afterwards it is removed if it is empty, with those around it that were made for it.
+    """Lock a folder, making it if need be; at the end it is removed if it is empty, as are the parents made for it.
 
-    Raises RuntimeError when another process has it. The lock of a process that was killed is free.
+    Raises RuntimeError when another process holds the lock. The lock of a killed process is free.
     """
-    file = folder / NAME
-    made = [folder, *(around for around in folder.parents if not around.exists())]
-    descriptor = _held(file)
+    made = [folder, *(parent for parent in folder.parents if not parent.exists())]
+    lock = _locked(folder / NAME)
     try:
         yield
     finally:
-        file.unlink(missing_ok=True)
-        os.close(descriptor)
+        with suppress(OSError):  # Windows removes the file on release, and not before
+            Path(lock.lock_file).unlink()
+        lock.release()
         with suppress(OSError):
-            for one in made:
-                one.rmdir()
+            for parent in made:
+                parent.rmdir()
 
 
-def _held(file: Path) -> int:
-    while True:
-        with suppress(FileNotFoundError):
+def _locked(file: Path) -> FileLock:
+    lock = FileLock(file, blocking=False)
+    while not lock.is_locked:
+        with suppress(FileNotFoundError):  # another process removed the folder just then
             file.parent.mkdir(parents=True, exist_ok=True)
-            descriptor = os.open(file, os.O_RDWR | os.O_CREAT)
             try:
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                os.close(descriptor)
+                lock.acquire()
+            except Timeout:
                 raise RuntimeError(f"another sweep of this name is running in {file.parent.parent}") from None
-            if os.fstat(descriptor).st_nlink:
-                return descriptor
-            os.close(descriptor)  # that of a process which removed it just then
+    return lock
