@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 SORT: Final = "active-surface sweep"
 ENGINE: Final = "h5netcdf"
 LOGARITHMIC: Final = "logarithmic"
+LABELS: Final = ("axes", "study", "case")  # attributes that say how the numbers are labelled and described
 RIM_PIECES: Final = 200  # of the longer side of the plate's box: how fine the rim is
 AT_ONCE: Final = 65536  # points whose coordinates are written together
 ROOM: Final = 1_000_000  # bytes, for all that does not grow with the points
@@ -46,18 +48,30 @@ def write_dataset(
     return path
 
 
-def renew_text(study: Study, path: Path) -> None:
-    """Has the file at `path`, which holds the results of a study, say of it what its text says now.
-
-    Only what results do not depend on can differ, as the threshold that is drawn.
-    """
+def renew_labels(study: Study, path: Path) -> None:
+    """Rewrite the file at `path`, which holds the numbers of a study, if it labels or describes them otherwise."""
+    about = _about(study)
     with h5netcdf.File(path, "r") as file:
-        if not study.source or file.attrs["study"] == study.source:
+        described = LABELS if study.source else LABELS[:1]
+        if all(file.attrs[name] == about[name] for name in described):
             return
-    with whole_file(path, synced=True) as partial:
-        shutil.copyfile(path, partial)
-        with h5netcdf.File(partial, "a") as file:
-            file.attrs["study"] = study.source
+        warnings = str(file.attrs["warnings"]).splitlines()
+    write_dataset(study, _stored_records(path), path, warnings)
+
+
+def _stored_records(path: Path) -> Iterator[tuple[int, Records]]:
+    """Yield the number of the first path of each lot of records in a file, and the records."""
+    with h5netcdf.File(path, "r") as file:
+        shape = file["outcome"].shape
+        count = math.prod(shape)
+        for start in range(0, count, AT_ONCE):
+            stop = min(start + AT_ONCE, count)
+            records, first = np.empty(stop - start, KIND), 0
+            for slab, length in slabs(shape, start, stop):
+                for name in COLUMNS:
+                    records[name][first : first + length] = file[name][slab].ravel()
+                first += length
+            yield start, records
 
 
 def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:
@@ -168,8 +182,17 @@ def differences(study: Study, path: Path) -> list[str]:
     return [name for name, trait in study.traits.items() if known.get(name) != trait]
 
 
-def read_dataset(path: Path) -> xarray.Dataset:
-    """The results of a sweep, which are read from the file when they are needed, until they are closed."""
+def read_dataset(path: Path, axes: Sequence[str] | None = None) -> xarray.Dataset:
+    """The results of a sweep, read from the file on demand until the dataset is closed.
+
+    axes: new names for the axes, in their order; None: those in the file.
+    """
     import xarray
 
-    return xarray.open_dataset(path, engine=ENGINE)
+    dataset = xarray.open_dataset(path, engine=ENGINE)
+    if axes is None or dataset.attrs["axes"] == " ".join(axes):
+        return dataset
+    names = dict(zip(dataset.attrs["axes"].split(), axes, strict=True))
+    renamed = dataset.rename(names).assign_attrs(axes=" ".join(axes))
+    renamed.set_close(dataset.close)
+    return renamed

@@ -17,7 +17,7 @@ import numpy as np
 
 from active_surface.studies.chunk_store import ChunkStore
 from active_surface.studies.cluster import records_on
-from active_surface.studies.dataset import differences, key_of, read_dataset, renew_text, write_dataset
+from active_surface.studies.dataset import differences, key_of, read_dataset, renew_labels, write_dataset
 from active_surface.studies.engine import Engine
 from active_surface.studies.lock import alone_in
 from active_surface.studies.pictures import draw_sweep
@@ -125,7 +125,7 @@ def _found(study: Study, folder: Path, threads: int | None, tell: Tell, schedule
             _find(engine, store, tell, scheduler)
             write_dataset(study, _chunks(engine, store), file, model_warnings(study))
         else:
-            renew_text(study, file)
+            renew_labels(study, file)
         store.clear()
     return file
 

@@ -33,7 +33,7 @@ def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Da
         others = [name for name in differences(study, path) if name != VERSIONS]
         if others:
             raise ValueError(f"{WANTED} of {study.name}; got {path}, which is of other {' and '.join(others)}")
-        return study, read_dataset(path)
+        return study, read_dataset(path, [axis.name for axis in study.points.axes])
     with read_dataset(path) as dataset:
         texts = {name: str(dataset.attrs[name]) for name in ("study", "case")}
     if not texts["study"]:

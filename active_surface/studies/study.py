@@ -15,7 +15,8 @@ from coupling import versions as versions_of
 from coupling.case import Case
 from coupling.results import files_of
 
-PACKAGES = (*SHARED, "studies")
+PACKAGES = (*SHARED, "active_surface/studies")
+FILE_NAMES = {"mesh", "motion"}  # keys of a plate that may name a file; its content counts
 
 
 @dataclass(frozen=True)
@@ -30,29 +31,42 @@ class Study:
 
     @property
     def key(self) -> str:
-        """A hash of all that its results depend on."""
+        """A hash of all that its numbers depend on; labels, titles and what is drawn are no part of it."""
         return _hash(self.traits)
 
     @property
     def traits(self) -> dict[str, str]:
-        """Hashes of what its results depend on: case, the files that it reads, points and versions."""
+        """Hashes of what its numbers depend on: case, the files that it reads, points and versions."""
         return {
-            "case": _hash([self.case.model_dump_json(exclude={"name", "source"}), lattice_of(self.case)]),
+            "case": _hash(self._case_numbers()),
             "files of the case": _hash([hashlib.sha256(file).hexdigest() for file in files_of(self.case).values()]),
-            "points": _hash(repr(self._plain_points())),
+            "points": _hash(repr(self._point_numbers())),
             "versions": _hash(versions()),
         }
 
-    def _plain_points(self) -> list[Any]:
+    def _case_numbers(self) -> list[Any]:
+        """The tables of the case without the names of its files, and the lattice if an axis varies it."""
+        tables = self.case.model_dump(mode="json", exclude={"name", "source"})
+        del tables["run"]["frames"]
+        for key in FILE_NAMES & tables["plate"].keys():
+            if isinstance(tables["plate"][key], str):
+                del tables["plate"][key]
+        varied = any(axis.field.locations[0][0] == "lattice" for axis in self.points.axes)
+        return [tables, lattice_of(self.case) if varied else None]
+
+    def _point_numbers(self) -> list[Any]:
+        """What the points follow from; the seed counts only where something is drawn."""
         points = self.points
-        axes = [(a.name, a.field.path, a.values, a.low, a.high, a.logarithmic) for a in points.axes]
-        return [axes, points.sampling, points.count, points.repeats, points.jitter, points.seed]
+        axes = [(a.field.path, a.values or (a.low, a.high, a.logarithmic)) for a in points.axes]
+        drawn = points.sampling in ("random", "sobol")
+        seed = points.seed if drawn or points.jitter else None
+        return [axes, points.sampling, points.count if drawn else None, points.repeats, points.jitter, seed]
 
 
 def versions() -> dict[str, str]:
-    """The versions of what a sweep's paths are found by."""
+    """The versions of the code that finds a sweep's paths."""
     return versions_of(PACKAGES)
 
 
-def _hash(said: Any) -> str:
-    return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
+def _hash(value: Any) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()

@@ -16,6 +16,7 @@ from active_surface.studies.chunk_store import ChunkStore
 from active_surface.studies.dataset import read_dataset
 from active_surface.studies.engine import Engine
 from active_surface.studies.record import new_records
+from active_surface.studies.saved import read_sweep
 
 PLATES = """\
 sampling = "random"
@@ -94,19 +95,73 @@ def test_finished_chunks_are_not_found_again_and_other_ones_are(tmp_path, monkey
     assert asked == [0, 1] and same(whole, read_dataset(tmp_path / "out" / "study.nc").load())
 
 
-def test_the_key_is_that_of_what_the_results_depend_on(tmp_path):
-    def key(study=SHAKEN, case=PLATFORM):
-        return read_study(written(tmp_path, study, case)).key
+JITTERED = 'repeats = 2\njitter = "1 um"\n' + SHAKEN
+NUMBERS = {
+    "a value of an axis": (SHAKEN.replace("40 um", "41 um"), PLATFORM),
+    "repeats": (JITTERED, PLATFORM),
+    "a seed that is used": ("seed = 1\n" + JITTERED, PLATFORM),
+    "jitter": (JITTERED.replace("1 um", "2 um"), PLATFORM),
+    "a mass": (SHAKEN, PLATFORM.replace('"2e-9 kg"', '"3e-9 kg"')),
+    "a duration": (SHAKEN, PLATFORM.replace('"2 ms"', '"3 ms"')),
+    "a default": (SHAKEN, PLATFORM + 'gravity = "9.8 m/s^2"\n'),
+    "a tolerance": (SHAKEN, PLATFORM + "tolerance = 1e-8\n"),
+}
+TEXT = {
+    "remarks": ("# a remark\n" + SHAKEN, PLATFORM + "# another one\n"),
+    "the label of an axis": (SHAKEN.replace('"stroke"\n', '"Stroke"\n'), PLATFORM),
+    "a threshold of the picture": (SHAKEN + '[map]\nthreshold = "distance > 1 um"\n', PLATFORM),
+    "another unit": (SHAKEN, PLATFORM.replace('"2e-9 kg"', '"2e-6 g"')),
+    "steps in files that a sweep does not write": (SHAKEN, PLATFORM + "frames = 300\n"),
+    "a seed that is not used": ("seed = 1\n" + SHAKEN, PLATFORM),
+}
 
-    assert key() == key("# a remark\n" + SHAKEN, PLATFORM + "# another one\n")
-    others = [
-        key(SHAKEN.replace("40 um", "41 um")),
-        key(SHAKEN.replace('"stroke"\n', '"Stroke"\n')),
-        key('repeats = 2\njitter = "1 um"\n' + SHAKEN),
-        key('repeats = 2\njitter = "1 um"\nseed = 1\n' + SHAKEN),
-        key(case=PLATFORM.replace('"2e-9 kg"', '"3e-9 kg"')),
-    ]
-    assert len({key(), *others}) == 6
+
+def test_the_key_changes_with_every_number(tmp_path):
+    keys = [read_study(written(tmp_path, *texts)).key for texts in [(SHAKEN, PLATFORM), *NUMBERS.values()]]
+    assert len(set(keys)) == len(NUMBERS) + 1
+
+
+@pytest.mark.parametrize("what", TEXT)
+def test_the_key_does_not_change_with(what, tmp_path):
+    key = read_study(written(tmp_path, SHAKEN, PLATFORM)).key
+    path = written(tmp_path, *TEXT[what])
+    assert read_study(path).key == key
+    assert read_study(path.rename(tmp_path / "another_name.toml")).key == key
+
+
+def test_sweeps_go_on_under_other_labels(tmp_path, monkeypatch):
+    """One is interrupted, one finished; then the axes swap their names."""
+    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 2)
+    records, starts = Engine.records, []
+
+    def counted(self, start, stop):
+        starts.append(start)
+        if len(starts) == 3:
+            raise KeyboardInterrupt
+        return records(self, start, stop)
+
+    monkeypatch.setattr(Engine, "records", counted)
+    study = read_study(written(tmp_path, SHAKEN, PLATFORM))
+    with pytest.raises(KeyboardInterrupt):
+        run_study(study, tmp_path / "out")
+    stroke, limit = study.points.axes
+    swapped = SHAKEN.replace('name = "stroke"', 'name = "friction.limit"').replace(
+        'field = "friction.limit"\n', 'field = "friction.limit"\nname = "stroke"\n'
+    )
+    other = read_study(written(tmp_path, swapped, PLATFORM))
+    assert [axis.name for axis in other.points.axes] == ["friction.limit", "stroke"] == [limit.name, stroke.name]
+    found = run_study(other, tmp_path / "out").dataset
+    assert starts == [0, 2, 4, 4]
+    with read_sweep(tmp_path / "out" / "study.nc", study)[1] as seen:
+        assert list(seen["outcome"].dims) == ["stroke", "friction.limit"] == seen.attrs["axes"].split()
+        assert seen["stroke"].values.tolist() == list(stroke.values)
+    renamed = run_study(study, tmp_path / "out")
+    assert starts == [0, 2, 4, 4] and renamed.warnings == []
+    assert same(renamed.dataset, run_study(study).dataset)
+    assert list(found["outcome"].dims) == ["friction.limit", "stroke"]
+    with read_sweep(tmp_path / "out" / "study.nc")[1] as read:
+        assert list(read["outcome"].dims) == ["stroke", "friction.limit"] and "swap" not in read.attrs["study"]
+        assert read.attrs["study"] == study.source
 
 
 def test_the_key_knows_the_content_of_a_measured_motion(tmp_path):
