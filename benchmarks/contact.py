@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
 from particle import KogutEtsion
-from particle.friction.contact import FrictionLaw, friction_limit
+from particle.friction import FrictionLaw, friction_limit
 from particle.jit import jit
 
 FloatArray = NDArray[np.float64]

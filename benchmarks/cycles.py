@@ -13,7 +13,7 @@ from rivals import ours
 from rivals.problem import MASS, RADIUS, STARTS, problem
 
 from coupling import surface_motion
-from fem_plate.analytic import DiscShapes
+from fem_plate import DiscShapes
 from particle import ConstantFriction, Drive, Micropart, simulate
 
 FREQUENCY, LATER = 300.0, 5e-4  # Hz, s: two drives, one later than the other

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate.analytic import DiscShapes
+from fem_plate import DiscShapes
 
 FloatArray = NDArray[np.float64]
 Fields = tuple[FloatArray, FloatArray, FloatArray]

@@ -19,8 +19,8 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.surface.motion import surface_motion
-from fem_plate.analytic import DiscShapes
+from coupling import surface_motion
+from fem_plate import DiscShapes
 from particle import (
     ConstantFriction,
     CoulombAdhesion,
@@ -31,7 +31,7 @@ from particle import (
     Trajectory,
     simulate,
 )
-from particle.friction.contact import Contact
+from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
 

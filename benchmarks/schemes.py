@@ -16,7 +16,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from coupling import surface_motion
-from fem_plate.analytic import DiscShapes
+from fem_plate import DiscShapes
 from particle import ConstantFriction, Drive, KogutEtsion, Micropart, Trajectory, simulate
 
 RADIUS, MASS, G = 300e-6, 2e-9, 9.80665

@@ -15,7 +15,7 @@ import numpy as np
 from netgen.geom2d import SplineGeometry
 from problem import ACTUATORS, FloatArray, Run, Solution, forces
 
-from fem_plate.elements.singular import UNIT_STRENGTH, point_load
+from fem_plate.elements import UNIT_STRENGTH, point_load
 
 PENALTY = 4.0
 IMAGES = ACTUATORS / (ACTUATORS**2).sum(axis=1)[:, None]

@@ -5,7 +5,7 @@ from tempfile import TemporaryDirectory
 
 from PIL import Image
 
-from active_surface.views.film.animation import still
+from active_surface.views import still
 from coupling import read_case, run_case
 
 ROOT = Path(__file__).parent.parent

@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from coupling import surface_motion
-from fem_plate.analytic import DiscShapes
+from fem_plate import DiscShapes
 from particle import ConstantFriction, Drive, Micropart, simulate
 
 RADIUS, MASS = 300e-6, 2e-9

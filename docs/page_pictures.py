@@ -6,10 +6,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from active_surface.studies import read_study, run_study
-from active_surface.views.pages.run_page import write_run_page
-from active_surface.views.pages.study_page import write_study_page
-from coupling import read_case, run_case
-from coupling.results.saved import read_run
+from active_surface.views import write_run_page, write_study_page
+from coupling import read_case, read_run, run_case
 
 ROOT = Path(__file__).parent.parent
 SIZE = "1360,860"

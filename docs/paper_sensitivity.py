@@ -7,9 +7,9 @@ import math
 import re
 from pathlib import Path
 
+from active_surface.paper import PARAMETERS, QUICK
+from active_surface.paper.figures import SURFACES
 from active_surface.paper.figures.coming_off import PLACES, SPEED, bending_pull, length
-from active_surface.paper.figures.pairs import SURFACES
-from active_surface.paper.parameters import PARAMETERS, QUICK
 from active_surface.paper.sensitivity import (
     LOW_AND_HIGH,
     Row,

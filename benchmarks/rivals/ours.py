@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from coupling import surface_motion
 from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate, simulate_many
-from particle.friction.contact import friction_limit
+from particle.friction import friction_limit
 from particle.surface.at_point import fields
 from particle.surface.local import cell_at, new_local, within_cell
 from particle.surface.span import enter

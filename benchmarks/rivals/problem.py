@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate.analytic import DiscShapes
+from fem_plate import DiscShapes
 from particle import ConstantFriction, KogutEtsion
-from particle.friction.contact import Contact
+from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
 
