@@ -7,7 +7,7 @@ from .surface.file import read_surface as read_surface, write_surface as write_s
 from .surface.motion import surface_motion as surface_motion
 
 # Not public: for the packages that build on this one.
-from .drives import build_drive as build_drive, build_drives as build_drives, stroke_heights as stroke_heights
+from .drives import build_drive as build_drive, build_drives as build_drives
 from .environment import PACKAGES as PACKAGES, versions as versions
 from .files import whole_file as whole_file
 from .progress import (
