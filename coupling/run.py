@@ -68,9 +68,9 @@ class Result:
         return plot_run(self.case, self.scene, self.trajectory, axes)
 
     def _repr_html_(self) -> str:
-        from meshes import html
+        from meshes import notebook_html
 
-        return html(self)
+        return notebook_html(self)
 
 
 def run_case(

@@ -9,7 +9,14 @@ from .vibration import Modes as Modes
 
 # Not public: for the packages that build on this one.
 from .analytic import DiscShapes as DiscShapes
-from .pictures import draw_rim as draw_rim, mark_actuators as mark_actuators
+from .pictures import (
+    distance_drawn as distance_drawn,
+    draw_supports as draw_supports,
+    frame_around as frame_around,
+    mark_actuators as mark_actuators,
+    marker_size as marker_size,
+    pitch as pitch,
+)
 from .plate import TRUNCATION as TRUNCATION
 from . import verification as verification
 from .verification import Check as Check

@@ -96,9 +96,9 @@ class Shapes(ABC):
         return plotted(lambda axes: draw_shapes(self, chosen, axes), axes)
 
     def _repr_html_(self) -> str:
-        from meshes import html
+        from meshes import notebook_html
 
-        return html(self)
+        return notebook_html(self)
 
     def _one_each(self, weights: ArrayLike, where: str) -> FloatArray:
         found = np.asarray(weights, dtype=float)

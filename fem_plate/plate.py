@@ -173,9 +173,9 @@ class Plate:
         return plotted(lambda axes: draw_cells(self, axes), axes)
 
     def _repr_html_(self) -> str:
-        from meshes import html
+        from meshes import notebook_html
 
-        return html(self)
+        return notebook_html(self)
 
     def _patched(self, points: FloatArray, springs: FloatArray, truncation: float, tell: Tell) -> PatchedShapes:
         pitch, rigidity = spacing(points), self.section.rigidity

@@ -9,12 +9,14 @@ from .shapes import annulus as annulus, disc as disc, ellipse as ellipse, rectan
 from .drawing import (
     Drawing as Drawing,
     SIZE as SIZE,
-    html as html,
-    in_unit as in_unit,
-    plan as plan,
+    draw_rim as draw_rim,
+    label_axis as label_axis,
+    label_places as label_places,
+    legend_below as legend_below,
+    notebook_html as notebook_html,
     plotted as plotted,
-    put_below as put_below,
 )
 from .fill import delaunay as delaunay, sides as sides
+from .prefixes import NOTHING as NOTHING, Unit as Unit, quantity_text as quantity_text, unit_for as unit_for
 from .refine import edge_numbers as edge_numbers
 from .rim_points import rim_curves as rim_curves

@@ -1,10 +1,9 @@
-"""Drawing: a figure that a notebook shows, with axes of numbers in SI units that are labelled with prefixes."""
+"""Drawing: figures that notebooks show, axes in SI units with prefixes, and the rim of a plate."""
 
 from __future__ import annotations
 
-import math
 from base64 import b64encode
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from html import escape
 from io import BytesIO
 from typing import Any, cast
@@ -13,17 +12,20 @@ from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, FuncFormatter, MaxNLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.transforms import ScaledTranslation
 
+from meshes.nearest import FloatArray
+from meshes.prefixes import unit_for
+
 SIZE = 4.2, 3.6  # inches, of one pair of axes
-DOTS = 80  # an inch, in a notebook
-TICKS = 5
-LEAST = -12  # the power of ten of the smallest prefix
-ROUNDING = 1e-9
+DPI = 80  # in a notebook
+MAX_TICKS = 5
 MINUS = "\N{MINUS SIGN}"
-BELOW = 3.6  # times the size of the letters: room for an axis and its label
+BELOW = 3.6  # times the font size: room for an axis and its label
+RIM_WIDTH = 1.5  # points
 
 
 class Drawing(Figure):
@@ -35,48 +37,53 @@ class Drawing(Figure):
 
     def _repr_html_(self) -> str:
         image = BytesIO()
-        self.savefig(image, format="png", dpi=DOTS)
-        said = b64encode(image.getvalue()).decode()
-        return f'<img style="max-width: 100%" src="data:image/png;base64,{said}"/>'
+        self.savefig(image, format="png", dpi=DPI)
+        data = b64encode(image.getvalue()).decode()
+        return f'<img style="max-width: 100%" src="data:image/png;base64,{data}"/>'
 
 
 def plotted(draw: Callable[[Axes], object], axes: Axes | None) -> Figure:
-    """The figure of axes into which something was drawn, or of new ones."""
+    """Draw into axes, or into new ones; return their figure."""
     if axes is None:
         axes = Drawing().add_subplot()
     draw(axes)
     return cast(Figure, axes.figure)
 
 
-def html(thing: Any) -> str:
+def notebook_html(thing: Any) -> str:
     """What a notebook shows of something that can be plotted: its repr above its picture."""
     return f"<div><div>{escape(repr(thing))}</div>{thing.plot()._repr_html_()}</div>"
 
 
-def plan(axes: Axes) -> None:
-    """Make axes that show places in m ready."""
+def label_places(axes: Axes) -> None:
+    """Give axes in m equal scales, and label them in a unit with a prefix."""
     axes.set_aspect("equal")
     extent = max(_extent(axes.xaxis), _extent(axes.yaxis))
     for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
-        in_unit(axis, name, "m", extent)
+        label_axis(axis, name, "m", extent)
 
 
-def in_unit(axis: Axis, name: str, unit: str, extent: float | None = None) -> None:
-    """Label an axis of numbers in an SI unit as in one with a prefix, such as µm, by what it shows or an extent."""
-    largest = extent or _extent(axis)
-    power = min(max(3 * math.floor(math.log10(largest) / 3 + ROUNDING), LEAST), 0) if largest else 0
-    axis.set_major_locator(MaxNLocator(TICKS))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / 10.0**power:.6g}".replace("-", MINUS)))
-    axis.set_label_text(f"{name} [{EngFormatter.ENG_PREFIXES[power]}{unit}]")
+def label_axis(axis: Axis, name: str, si: str, extent: float | None = None) -> None:
+    """Label an axis of numbers in an SI unit as one in a unit with a prefix, which suits an extent or what it shows."""
+    unit = unit_for(extent or _extent(axis), si)
+    axis.set_major_locator(MaxNLocator(MAX_TICKS))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value * unit.per_si:.6g}".replace("-", MINUS)))
+    axis.set_label_text(f"{name} [{unit.name}]")
 
 
 def _extent(axis: Axis) -> float:
     return max(map(abs, axis.get_view_interval()))
 
 
-def put_below(axes: Axes, **legend: Any) -> None:
+def draw_rim(axes: Axes, curves: Iterable[FloatArray], per_metre: float | FloatArray = 1.0, **look: Any) -> None:
+    """Draw the rim of a plate, curves (k, 2) [m], into axes of so many units per metre, of each axis or of both."""
+    options: dict[str, Any] = {"colors": "black", "linewidths": RIM_WIDTH} | look
+    axes.add_collection(LineCollection([curve * per_metre for curve in curves], **options))
+
+
+def legend_below(axes: Axes, **options: Any) -> None:
     """Put a legend below axes and their label."""
     down = ScaledTranslation(0, -BELOW * rcParams["font.size"] / 72, axes.figure.dpi_scale_trans)
     place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": axes.transAxes + down}
-    for text in axes.legend(frameon=False, fontsize="small", **place, **legend).get_texts():
+    for text in axes.legend(frameon=False, fontsize="small", **place, **options).get_texts():
         text.set_parse_math(False)

@@ -7,9 +7,16 @@ import numpy as np
 from meshes.nearest import FloatArray
 from meshes.outline import Outline
 
+FINE = 1 / 200  # of the longer side of the outline
 
-def rim_curves(outline: Outline, spacing: float) -> list[FloatArray]:
-    """Points (n, 2) [m] along each ellipse and each edge of the rim, at most about `spacing` [m] apart."""
+
+def rim_curves(outline: Outline, spacing: float | None = None) -> list[FloatArray]:
+    """Points (n, 2) [m] along each ellipse and each edge of the rim, at most about `spacing` [m] apart.
+
+    spacing: None is fine enough to draw the whole rim.
+    """
+    if spacing is None:
+        spacing = FINE * float(np.ptp(outline.box, axis=0).max())
     curves = []
     for x, y, a, b in outline.conics.tolist():
         angle = np.linspace(0, 2 * np.pi, int(np.ceil(2 * np.pi * max(a, b) / spacing)) + 4)

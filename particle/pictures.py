@@ -1,4 +1,4 @@
-"""The look of a path in pictures: its line and places, and what the part does over time as shades."""
+"""Pictures of a path: its line with start, end and rests, and shades over time for what the part does."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from typing import Any, Protocol
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-from meshes import SIZE, Drawing, in_unit, plan
+from meshes import SIZE, Drawing, label_axis, label_places
 from particle.trajectory import State, Trajectory
 
 FloatArray = NDArray[np.float64]
@@ -24,8 +25,8 @@ PLACE: dict[str, Any] = {"color": "black", "linestyle": "", "path_effects": HALO
 REST: dict[str, Any] = {"color": STICK_COLOUR, "markeredgewidth": 0, "markersize": 4.5}
 SHADES = {State.STICK: (STICK_COLOUR, "stuck"), State.FLIGHT: ("#606060", "in flight")}
 SAMPLES = 2000
-ROOM = 0.6  # of a path's extent, from its middle to the frame
-SMALLEST = 1e-6  # m: so far from the part is the frame where there is no path
+HALF_FRAME = 0.6  # of a path's extent, from its middle to the frame
+MIN_HALF_FRAME = 1e-6  # m, around a part that stays where it is
 
 
 class Rows(Protocol):
@@ -45,7 +46,7 @@ class Rows(Protocol):
 
 
 def draw_line(axes: Axes, rows: Rows, line: FloatArray, per_metre: float = 1.0) -> list[Artist]:
-    """Draw a path, points (k, 2) [m] along it, its ends and where the part rests; return keys."""
+    """Draw a path through points (k, 2) [m], its ends and where the part rests; return keys."""
     points = rows.position * per_metre
     keys: list[Artist] = []
     keys += axes.plot(
@@ -53,7 +54,9 @@ def draw_line(axes: Axes, rows: Rows, line: FloatArray, per_metre: float = 1.0) 
     )
     rests = np.unique(points[rows.state == State.STICK], axis=0)
     if rests.size:
-        keys += axes.plot(*rests.T, "o", **REST, zorder=2.9, label="rests here")  # many must not hide the line
+        keys += axes.plot(
+            *rests.T, "o", **REST, zorder=2.9, label="rests here"
+        )  # below the line, which many rests would hide
     keys += axes.plot(*points[:1].T, **RING, **PLACE, label="start")
     keys += axes.plot(*points[-1:].T, **CROSS, **PLACE, label="end")
     return keys
@@ -61,14 +64,15 @@ def draw_line(axes: Axes, rows: Rows, line: FloatArray, per_metre: float = 1.0) 
 
 def shade(axes: Axes, rows: Rows, per_second: float = 1.0) -> None:
     """Shade the times at which the part does not slip."""
-    edges = rows.time * per_second
+    across = axes.get_xaxis_transform()  # times along x, from the bottom to the top of the axes along y
     for state in SHADES:
-        for begin, end in stretches(rows.state == state):
-            axes.axvspan(edges[begin], edges[end], zorder=0, **_look(state))
+        spans = rows.time[np.array(stretches(rows.state == state), dtype=np.int64).reshape(-1, 2)] * per_second
+        bars = [[(begin, 0), (begin, 1), (end, 1), (end, 0)] for begin, end in spans.tolist()]
+        axes.add_collection(PolyCollection(bars, transform=across, zorder=0, **_look(state)), autolim=False)
 
 
 def shade_keys(rows: Rows) -> list[Artist]:
-    """Keys of the shades that there are."""
+    """Keys of the shades in use."""
     return [Patch(label=name, **_look(state)) for state, (_, name) in SHADES.items() if stretches(rows.state == state)]
 
 
@@ -76,11 +80,11 @@ def _look(state: State) -> dict[str, Any]:
     colour = SHADES[state][0]
     if state is State.STICK:
         return {"color": colour, "alpha": 0.18, "linewidth": 0}
-    return {"facecolor": "none", "edgecolor": colour, "hatch": "////", "linewidth": 0}  # also told from it in grey
+    return {"facecolor": "none", "edgecolor": colour, "hatch": "////", "linewidth": 0}  # differs in grey, too
 
 
 def stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and last row of each stretch of rows during which something (n,) holds."""
+    """The first and last row of each stretch of time during which a condition (n,) holds."""
     change = np.diff(np.concatenate([[0], holds[:-1].astype(int), [0]]))
     return list(zip(np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist(), strict=True))
 
@@ -93,8 +97,8 @@ def plot(trajectory: Trajectory) -> Drawing:
     samples = trajectory.at(np.linspace(trajectory.time[0], trajectory.time[-1], SAMPLES))
     speeds.plot(samples.time, np.hypot(*samples.velocity.T), color="black", linewidth=1.0)
     shade(speeds, trajectory)
-    in_unit(speeds.xaxis, "time", "s")
-    in_unit(speeds.yaxis, "speed in the plane", "m/s")
+    label_axis(speeds.xaxis, "time", "s")
+    label_axis(speeds.yaxis, "speed in the plane", "m/s")
     speeds.set_xlim(trajectory.time[0], trajectory.time[-1])
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
     return figure
@@ -105,9 +109,9 @@ def plot_path(trajectory: Trajectory, axes: Axes) -> list[Artist]:
     samples = trajectory.at(np.linspace(trajectory.time[0], trajectory.time[-1], SAMPLES))
     keys = draw_line(axes, trajectory, samples.position)
     low, high = samples.position.min(axis=0), samples.position.max(axis=0)
-    half = ROOM * float((high - low).max()) or SMALLEST
+    half = HALF_FRAME * float((high - low).max()) or MIN_HALF_FRAME
     (left, bottom), (right, top) = (low + high) / 2 - half, (low + high) / 2 + half
     axes.set_xlim(left, right)
     axes.set_ylim(bottom, top)
-    plan(axes)
+    label_places(axes)
     return keys

@@ -204,9 +204,9 @@ class Trajectory:
         return plot(self) if axes is None else plotted(lambda axes: plot_path(self, axes), axes)
 
     def _repr_html_(self) -> str:
-        from meshes import html
+        from meshes import notebook_html
 
-        return html(self)
+        return notebook_html(self)
 
 
 def samples_of(rows: FloatArray) -> Samples:

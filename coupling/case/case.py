@@ -193,9 +193,9 @@ class Case(CaseTables):
         return plotted(lambda axes: draw_case(self, axes), axes)
 
     def _repr_html_(self) -> str:
-        from meshes import html
+        from meshes import notebook_html
 
-        return html(self)
+        return notebook_html(self)
 
 
 TABLES: dict[str, type[BaseModel]] = {

@@ -1,4 +1,4 @@
-"""The picture of a case: its plate from above with the actuators, and the part where it starts; or a platform's way."""
+"""The picture of a case: its plate from above with actuators and start, or the motion of its platform."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from matplotlib.axes import Axes
 from coupling.case import AXES, Case, PlateCase, PlatformCase
 from coupling.progress import silent
 from coupling.scene import platform_scene
-from fem_plate import draw_rim, mark_actuators
-from meshes import in_unit, plan, put_below
+from fem_plate import draw_supports, frame_around, mark_actuators
+from meshes import label_axis, label_places, legend_below
 from particle import PLACE, RING
 
-ARROW = 0.15  # of the frame's side is the arrow of the start's velocity
+ARROW = 0.15  # of the frame's side: the length of the arrow of the initial velocity
 SAMPLES = 1000
 STYLES = "-", "--", ":"
 
@@ -27,25 +27,26 @@ def draw_case(case: Case, axes: Axes) -> None:
 
 def _draw_plate(case: Case, plate: PlateCase, axes: Axes) -> None:
     mesh = plate.coarse_mesh
-    keys = draw_rim(axes, mesh, plate.supports_of(list(mesh.boundaries)))
-    keys += mark_actuators(axes, np.array([actuator.position for actuator in case.actuators]))
+    keys = draw_supports(axes, mesh, plate.supports_of(list(mesh.boundaries)))
+    places = np.array([actuator.position for actuator in case.actuators])
+    keys += mark_actuators(axes, places, frame_around(mesh.outline.box))
     start, velocity = np.array(case.part.position), np.array(case.part.velocity)
     keys += axes.plot(*start, **RING, **PLACE, label="start")
-    plan(axes)
+    label_places(axes)
     speed = float(np.hypot(*velocity))
     if speed:
         tip = start + velocity / speed * ARROW * np.ptp(axes.get_xlim())
         axes.annotate("", tuple(tip), tuple(start), arrowprops={"arrowstyle": "->", "linewidth": 1.4})
-    put_below(axes, handles=keys, ncols=min(len(keys), 3))
+    legend_below(axes, handles=keys, ncols=min(len(keys), 3))
 
 
 def _draw_motion(platform: PlatformCase, duration: float, axes: Axes) -> None:
-    """Draw how far a platform has moved along each axis over time."""
+    """Draw the displacement of a platform along each axis over time."""
     scene = platform_scene(platform, silent)
     times = np.linspace(0, duration, SAMPLES)
     for name, drive, style in zip(AXES, (*scene.base, *scene.lifts), STYLES, strict=True):
         axes.plot(times, drive.evaluate(times)[0], style, color="black", label=f"along {name}")
     axes.set_xlim(0, duration)
-    in_unit(axes.xaxis, "time", "s")
-    in_unit(axes.yaxis, "place of the platform", "m")
-    put_below(axes, ncols=len(STYLES))
+    label_axis(axes.xaxis, "time", "s")
+    label_axis(axes.yaxis, "place of the platform", "m")
+    legend_below(axes, ncols=len(STYLES))

@@ -1,4 +1,4 @@
-"""The plate in the picture of a run: heights as colours and lines, rim and actuators, whole and in the window."""
+"""The plate in the picture of a run, whole and in the window: colours and lines of heights, rim and actuators."""
 
 from __future__ import annotations
 
@@ -9,39 +9,34 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import ConnectionPatch, Rectangle
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from matplotlib.tri import Triangulation, UniformTriRefiner
 from numpy.typing import NDArray
 
 from coupling.display import onto_plate
-from coupling.pictures.prefixes import STEPS, Unit, readable
-from coupling.pictures.window import extent, pitch
-from fem_plate import PlateShapes
-from meshes import rim_curves
+from coupling.pictures.ticks import STEPS
+from coupling.pictures.window import extent
+from fem_plate import PlateShapes, distance_drawn, frame_around, mark_actuators
+from meshes import Unit, draw_rim, rim_curves, unit_for
 
 if TYPE_CHECKING:
     from coupling.display import DisplaySurface
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-Patch = tuple[FloatArray, IntArray, FloatArray]
+Piece = tuple[FloatArray, IntArray, FloatArray]
 """Points (n, 2) [m], triangles (m, 3) and deflections (n,) [m] that cover a piece of a plate."""
 
-MOST_TRIANGLES = 60_000  # of a mesh that is made finer to be drawn
-FINEST = 4  # times that its edges are halved
+MAX_TRIANGLES = 60_000  # of a mesh that is refined to be drawn
+MAX_HALVINGS = 4  # of its edges
 AXES_WIDTH = 330.0  # points, about
-MARGIN = 0.04  # of the plate's longer side, around it
-FEW = 25  # actuators, which are always marked
-LEAST_APART, LINES_APART = 4.0, 8.0  # points, where many are nearer markers or lines of equal height merge
-MARKERS = (1.5, 6.0)  # points, the smallest and largest
-FLAT = 1e-9  # of the largest height: smaller differences are none
-BELOW = 0.01  # of the largest height: shallower hollows are not told from 0
-BANDS, LABELS = 12, 8  # about, of a bar
+LINES_APART = 8.0  # points: where actuators stand closer together, contour lines would merge
+FLAT = 1e-9  # of the largest height: smaller differences are 0
+SHALLOW = 0.01  # of the largest height: shallower hollows get no colour of their own
+BANDS, LABELS = 12, 8  # of a colour bar, about
 UPWARDS = LinearSegmentedColormap.from_list("upwards", ["#ffffff", "#c6d9e8", "#7fa8c9", "#40719c"])
 BOTH_WAYS = LinearSegmentedColormap.from_list("both ways", ["#b8862d", "#ead7a6", "#ffffff", "#c6d9e8", "#40719c"])
 
@@ -56,41 +51,41 @@ class Scale(NamedTuple):
 
     @property
     def norm(self) -> Normalize:
-        """A new one each time: a bar whose norm others use as well loses its limits."""
+        """A new norm at each access: a colour bar that shares its norm loses its limits."""
         return Normalize(self.lowest, self.highest)
 
     @staticmethod
     def of(deflection: FloatArray) -> Scale:
-        """For the deflections (n,) [m] of the whole plate: white at 0, a colour below it where that matters."""
-        unit = readable(deflection, "m")
+        """The scale for deflections (n,) [m] of the whole plate: white at 0, another colour below 0 if need be."""
+        unit = unit_for(deflection, "m")
         high, low = (float(w) * unit.per_si for w in (deflection.max(), deflection.min()))
-        if -low > BELOW * high:
+        if -low > SHALLOW * high:
             return Scale(unit, -max(high, -low), max(high, -low), BOTH_WAYS)
         return Scale(unit, 0.0, high, UPWARDS)
 
 
 class Relief(NamedTuple):
-    """A plate as it is at one moment, to be drawn."""
+    """A plate at one moment."""
 
     box: FloatArray  # (2, 2) m, around it
     actuators: FloatArray  # (N, 2) m
     deflection: FloatArray  # (n,) m, of all of it
-    within: Callable[[FloatArray], Patch]  # what covers it within a frame (2, 2) [m]
+    within: Callable[[FloatArray], Piece]  # the piece within a frame (2, 2) [m]
     rim: Callable[[float], list[FloatArray]]  # its curves (k, 2) [m], with points so far apart [m]
 
     @property
     def frame(self) -> FloatArray:
         """The corners (2, 2) [m] of a picture of all of it."""
-        return self.box + MARGIN * extent(self.box) * np.array([[-1.0], [1.0]])
+        return frame_around(self.box)
 
 
 def relief_of(shapes: PlateShapes, surface: DisplaySurface, heights: FloatArray) -> Relief:
-    """The plate of some shapes with its drives at heights (N,) [m]."""
+    """The plate with its drives at heights (N,) [m]."""
     return Relief(
         shapes.outline.box,
         shapes.points,
         surface.deflection(heights[None])[0],
-        lambda frame: fine_field(shapes, surface, heights, frame),
+        lambda frame: fine_piece(shapes, surface, heights, frame),
         lambda spacing: rim_curves(shapes.outline, spacing),
     )
 
@@ -104,25 +99,21 @@ def draw_plate(
     side: Literal["left", "right"] = "right",
     width: float = AXES_WIDTH,
 ) -> list[Artist]:
-    """Draw what of a plate is in a frame (2, 2) [m] into axes so wide [points], with its bar at a side; return keys."""
+    """Draw a plate within a frame (2, 2) [m] into axes so wide [points], with its bar at a side; return keys."""
     scale = Scale.of(relief.deflection)
     points, triangles, w = relief.within(frame)
-    lined = apart(relief.actuators, frame, width) >= LINES_APART
+    lined = distance_drawn(relief.actuators, frame, width) >= LINES_APART
     _draw_heights(figure, axes, points * unit.per_si, triangles, w * scale.unit.per_si, scale, side, lined)
-    curves = [curve * unit.per_si for curve in relief.rim(extent(frame) / 200)]
-    axes.add_collection(LineCollection(curves, colors="black", linewidths=1.5))
+    draw_rim(axes, relief.rim(extent(frame) / 200), unit.per_si)
     axes.set_xlim(*(frame[:, 0] * unit.per_si))
     axes.set_ylim(*(frame[:, 1] * unit.per_si))
-    return _mark_actuators(axes, relief.actuators, frame, unit, width)
+    return mark_actuators(axes, relief.actuators, frame, unit.per_si, width)
 
 
-def fine_field(shapes: PlateShapes, surface: DisplaySurface, heights: FloatArray, frame: FloatArray) -> Patch:
-    """What covers the plate within a frame (2, 2) [m].
-
-    The triangles are those of the drawn plate, divided until they are so small that contours look smooth.
-    """
+def fine_piece(shapes: PlateShapes, surface: DisplaySurface, heights: FloatArray, frame: FloatArray) -> Piece:
+    """The plate within a frame (2, 2) [m]: the display mesh, refined until contours look smooth."""
     points, triangles, used = cut_out(surface.points, surface.triangles, frame)
-    fine = divided(points, triangles)
+    fine = refined(points, triangles)
     if fine is None:
         return points, triangles, surface.deflection(heights[None])[0][used]
     points = np.stack([fine.x, fine.y], axis=1)
@@ -131,16 +122,16 @@ def fine_field(shapes: PlateShapes, surface: DisplaySurface, heights: FloatArray
 
 
 def cut_out(points: FloatArray, triangles: IntArray, frame: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:
-    """Points, the triangles of a mesh that reach into a frame (2, 2) [m], and the rows of the points in the mesh."""
+    """The points and triangles of a mesh that reach into a frame (2, 2) [m], and the rows of the points in the mesh."""
     lowest, highest = (f(points[triangles], axis=1) for f in (np.min, np.max))
     triangles = triangles[((highest > frame[0]) & (lowest < frame[1])).all(axis=1)]
     used, rows = np.unique(triangles, return_inverse=True)
     return points[used], rows.reshape(-1, 3), used
 
 
-def divided(points: FloatArray, triangles: IntArray) -> Triangulation | None:
-    """Triangles divided until they are so small that contours look smooth; None: they are."""
-    halvings = min(int(math.log(max(MOST_TRIANGLES / max(len(triangles), 1), 1), 4)), FINEST)
+def refined(points: FloatArray, triangles: IntArray) -> Triangulation | None:
+    """Refine triangles until contours look smooth; None where they already do."""
+    halvings = min(int(math.log(max(MAX_TRIANGLES / max(len(triangles), 1), 1), 4)), MAX_HALVINGS)
     if not halvings:
         return None
     return UniformTriRefiner(Triangulation(*points.T, triangles)).refine_triangulation(subdiv=halvings)
@@ -156,7 +147,7 @@ def _draw_heights(
     side: Literal["left", "right"],
     lined: bool,
 ) -> None:
-    """Bands of equal height and the lines between them, or shades without lines, with their bar at a side."""
+    """Draw bands of equal height with lines between them, or shades without lines, with their bar at a side."""
     if scale.colours is UPWARDS:
         w = np.maximum(w, 0.0)
     if np.ptp(w) <= FLAT * scale.highest:
@@ -173,33 +164,6 @@ def _draw_heights(
     filled = axes.tricontourf(*points.T, triangles, w, levels=levels, **colours)
     lines = axes.tricontour(*points.T, triangles, w, levels=levels[1:-1], colors="#404040", linewidths=0.4)
     figure.colorbar(filled, ticks=levels[labelled], **bar).add_lines(lines)
-
-
-def apart(places: FloatArray, frame: FloatArray, width: float = AXES_WIDTH) -> float:
-    """How far apart [points] places (N, 2) [m] are in a frame (2, 2) [m] so wide [points]; inf where they are few."""
-    return width * pitch(places) / extent(frame) if len(places) > FEW else math.inf
-
-
-def marker_size(places: FloatArray, frame: FloatArray, width: float = AXES_WIDTH) -> float:
-    """The size [points] of markers at places (N, 2) [m], apart from each other; 0: they merge.
-
-    frame: (2, 2) m, that of axes so wide [points].
-    """
-    distance = apart(places, frame, width)
-    return float(np.clip(0.3 * distance, *MARKERS)) if distance >= LEAST_APART else 0.0
-
-
-def _mark_actuators(axes: Axes, actuators: FloatArray, frame: FloatArray, unit: Unit, width: float) -> list[Artist]:
-    """Mark the actuators (N, 2) [m] whose markers lie within a frame whole; return a key of these."""
-    seen = actuators[((actuators > frame[0]) & (actuators < frame[1])).all(axis=1)]
-    size = marker_size(seen, frame, width)
-    if not size:
-        return [Line2D([], [], linestyle="", label=f"{len(actuators)} actuators, too many to be marked")]
-    edge = size / width * extent(frame)
-    seen = seen[((seen > frame[0] + edge) & (seen < frame[1] - edge)).all(axis=1)]
-    look: dict[str, Any] = {"color": "white", "marker": "^", "markeredgecolor": "black", "linestyle": ""}
-    axes.plot(*(seen.T * unit.per_si), **look, markersize=size, markeredgewidth=size / MARKERS[1], zorder=2.5)
-    return [Line2D([], [], **look, label="actuator")] if len(seen) else []
 
 
 def draw_window(axes: Axes, unit: Unit, window: FloatArray) -> None:

@@ -1,4 +1,4 @@
-"""Portrait: what pictures show of a run, found just now or read from its files."""
+"""Portrait: what pictures show of a run, whether it has just ended or is read from its files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from coupling.display import most_deflected
 from coupling.drives import stroke_heights
 from coupling.pictures.plate import Relief, relief_of
-from coupling.pictures.prefixes import readable
+from meshes import unit_for
 from particle import AnyDrive, Event, Rows, Samples, Trajectory
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 SAMPLES = 4000
-AT_ONCE = 64  # moments at which deflections are found together
+BATCH = 64  # times whose deflections are computed together
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,22 +39,27 @@ class Portrait:
     relief: Relief | None  # of the plate at the moment; None: there is a platform
     moment: float  # s
     base: Sequence[AnyDrive]  # of a platform, along x and y; none: the surface stays in its plane
-    complete: bool = True  # whether the surface is known to the end of the run
+    complete: bool = True  # whether the files hold the run to its end
 
     @property
     def when(self) -> str:
-        """The moment, in words."""
-        unit = readable(np.array([self.samples.time[-1]]), "s")
+        """The moment, with its unit."""
+        unit = unit_for(self.samples.time[-1], "s")
         return f"{self.moment * unit.per_si:.4g} {unit.name}"
 
     @property
+    def where(self) -> str:
+        """What positions are counted from, where it is not the plate."""
+        return f" on {self.origin}" if self.base else ""
+
+    @property
     def most(self) -> str:
-        """What is special about the moment, in words."""
+        """Why the surface is drawn at that moment."""
         return "when it is deflected most" + ("" if self.complete else " of the steps that were written")
 
 
 def portrait_of(name: str, scene: Scene, trajectory: Trajectory, surface: DisplaySurface, moment: float) -> Portrait:
-    """The portrait of a run that was just found, with its surface as it is at a moment [s]."""
+    """The portrait of a run, with its surface as it is at a moment [s]."""
     return Portrait(
         name,
         trajectory.sentence,
@@ -72,7 +77,6 @@ def portrait_of(name: str, scene: Scene, trajectory: Trajectory, surface: Displa
 def deflected_most(scene: Scene, surface: DisplaySurface, times: FloatArray) -> float:
     """The first of times (k,) [s] at which the surface is deflected the most."""
     heights = stroke_heights(scene.lifts, times)
-    lots = (heights[start : start + AT_ONCE] for start in range(0, len(times), AT_ONCE))
-    return float(
-        times[most_deflected(np.concatenate([np.square(surface.deflection(lot)).mean(axis=1) for lot in lots]))]
-    )
+    batches = (heights[start : start + BATCH] for start in range(0, len(times), BATCH))
+    mean_squares = [np.square(surface.deflection(batch)).mean(axis=1) for batch in batches]
+    return float(times[most_deflected(np.concatenate(mean_squares))])

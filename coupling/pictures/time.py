@@ -1,4 +1,4 @@
-"""Curves over time in the picture of a run, with the stuck stretches shaded, and those in flight."""
+"""Curves over time in the picture of a run, with shades where the part is stuck or in flight."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from coupling.pictures.portrait import Portrait
-from coupling.pictures.prefixes import NOTHING, Unit, plain_ticks, readable
+from coupling.pictures.ticks import plain_ticks
+from meshes import NOTHING, Unit, unit_for
 from particle import PATH_COLOUR, Rows, shade
-from particle import SHADES as SHADES
-from particle import stretches as stretches
 
 FloatArray = NDArray[np.float64]
 
@@ -31,20 +30,20 @@ def curves_of(portrait: Portrait) -> list[Curves]:
     """Height and speed of the part and, where the surface moves in its plane, the velocities along its axes."""
     samples = portrait.samples
     speed = f"speed {'on ' + portrait.origin if portrait.base else 'in the plane'}"
-    found = [Curves(speed, "m/s", {"": np.hypot(*samples.velocity.T)})]
+    curves = [Curves(speed, "m/s", {"": np.hypot(*samples.velocity.T)})]
     if samples.height.any():
-        found.insert(0, Curves("height of the part", "m", {"": samples.height}))
+        curves.insert(0, Curves("height of the part", "m", {"": samples.height}))
     for name, drive, relative in zip("xy", portrait.base, samples.velocity.T, strict=False):
-        velocity = drive.evaluate(samples.time * (1 - 1e-12))[1]  # before a motion's end, not after it
+        velocity = drive.evaluate(samples.time * (1 - 1e-12))[1]  # just before the end of a motion, where it may jump
         if velocity.any():
-            found.append(Curves(f"velocity along {name}", "m/s", {"part": velocity + relative, "platform": velocity}))
-    return found
+            curves.append(Curves(f"velocity along {name}", "m/s", {"part": velocity + relative, "platform": velocity}))
+    return curves
 
 
 def draw_over_time(axes: Axes, rows: Rows, times: FloatArray, curves: Curves, time_unit: Unit) -> None:
-    """Draw curves of values (n,) at times (n,) [s], with the stretches shaded at which the part does not slip."""
+    """Draw curves of values (n,) at times (n,) [s], with shades where the part does not slip."""
     everything = np.concatenate(list(curves.values.values()))
-    unit = readable(everything, curves.si)
+    unit = unit_for(everything, curves.si)
     for (name, values), colour, style in zip(curves.values.items(), ("black", PATH_COLOUR), ("-", "--"), strict=False):
         axes.plot(
             times * time_unit.per_si, values * unit.per_si, color=colour, linestyle=style, linewidth=1.2, label=name
@@ -71,7 +70,7 @@ def draw_over_time(axes: Axes, rows: Rows, times: FloatArray, curves: Curves, ti
 
 
 def limits(values: FloatArray) -> tuple[float, float]:
-    """The lowest and highest value that an axis shows, for values with a good unit; 0 is among them."""
+    """The limits of an axis for values in a suitable unit; 0 lies between them."""
     low, high = min(float(values.min()), 0.0), max(float(values.max()), 0.0)
     if high - low < NOTHING:
         high = 1.0

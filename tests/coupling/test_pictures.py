@@ -10,16 +10,16 @@ from matplotlib.figure import Figure
 from coupling.case.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
 from coupling.display.mesh import display_mesh
 from coupling.display.surface import DisplaySurface, deflections, display_surface, most_deflected
-from coupling.pictures import plate as plate_picture
-from coupling.pictures.plate import BOTH_WAYS, FEW, UPWARDS, Scale, draw_plate, fine_field, marker_size, relief_of
+from coupling.pictures.plate import BOTH_WAYS, UPWARDS, Scale, draw_plate, fine_piece, relief_of
 from coupling.pictures.portrait import portrait_of
-from coupling.pictures.prefixes import readable
 from coupling.pictures.run import compose
 from coupling.pictures.time import limits
-from coupling.pictures.window import LEAST, MOST, path_window
+from coupling.pictures.window import MAX_LENGTHS, MIN_LENGTHS, path_window
 from coupling.run import run_case
 from fem_plate import Plate, PlateSection
-from meshes import disc
+from fem_plate import pictures as plate_pictures
+from fem_plate.pictures import FEW, marker_size
+from meshes import disc, quantity_text, unit_for
 
 BOX = np.array([[-50.0, -50.0], [50.0, 50.0]])
 DISC = {"shape": "disc", "radius": 3e-4, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 2e-5}
@@ -34,7 +34,9 @@ def lattice(n, pitch=1.0):
     return np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
 
 
-@pytest.mark.parametrize(("length", "times"), [(0.15, MOST), (0.7, 2.2 / 0.7), (5.0, LEAST), (16.0, LEAST)])
+@pytest.mark.parametrize(
+    ("length", "times"), [(0.15, MAX_LENGTHS), (0.7, 2.2 / 0.7), (5.0, MIN_LENGTHS), (16.0, MIN_LENGTHS)]
+)
 def test_a_short_path_has_a_window_of_a_few_lengths_or_two_pitches(length, times):
     window = path_window(straight(length), BOX, lattice(100))
     assert np.ptp(window, axis=0) == pytest.approx([times * length] * 2)
@@ -50,7 +52,7 @@ def test_a_long_path_and_one_that_is_a_point_have_none(length):
 def test_any_actuators_leave_the_path_visible_in_a_window_smaller_than_the_plate(actuators):
     for length in np.geomspace(0.11, 16, 9):
         side = np.ptp(path_window(straight(length), BOX, actuators), axis=0).max()
-        assert length <= side / LEAST * (1 + 1e-9) and side <= min(MOST * length, 0.42 * 100) * (1 + 1e-9)
+        assert length <= side / MIN_LENGTHS * (1 + 1e-9) and side <= min(MAX_LENGTHS * length, 0.42 * 100) * (1 + 1e-9)
 
 
 def test_markers_shrink_with_the_pitch_and_go_before_they_merge():
@@ -67,17 +69,25 @@ def test_markers_shrink_with_the_pitch_and_go_before_they_merge():
     [
         (0.0, "m", 0),
         (1e-13, "m", 0),
-        (8e-11, "nm", 0.08),
+        (8e-11, "pm", 80),
         (2.6e-6, "µm", 2.6),
         (1e-3, "mm", 1),
         (0.05, "mm", 50),
         (4, "m", 4),
+        (1500, "km", 1.5),
+        (1.69e11, "Gm", 169),
     ],
 )
 def test_numbers_have_a_prefix_of_their_size(largest, name, number):
-    unit = readable(np.array([-largest, largest / 2]), "m")
+    unit = unit_for(np.array([-largest, largest / 2]), "m")
     assert unit.name == name
     assert largest * unit.per_si == pytest.approx(number, abs=1e-12)
+
+
+def test_a_quantity_is_written_with_its_unit():
+    assert quantity_text(1.2345e-5, "m") == "12.3 µm"
+    assert quantity_text(0.2512, "s", 2) == "250 ms"
+    assert quantity_text(0.0, "N") == "0 N"
 
 
 def test_limits_hold_zero_and_every_value_and_are_never_empty():
@@ -148,7 +158,7 @@ def test_a_short_path_is_drawn_in_a_window_with_keys_for_what_is_there(tmp_path)
     path = next(line for line in window.lines if line.get_label() == "path").get_xydata()
     low, high = np.transpose([window.get_xlim(), window.get_ylim()])
     assert (path > low).all() and (path < high).all()
-    assert np.ptp(path, axis=0).max() > (high - low).max() / (1.01 * MOST)
+    assert np.ptp(path, axis=0).max() > (high - low).max() / (1.01 * MAX_LENGTHS)
     assert np.ptp(map_axes.get_xlim()) > 600  # µm: all of the plate
     start = next(line for line in window.lines if line.get_label() == "start")
     assert start.get_markerfacecolor() == "none"
@@ -172,10 +182,10 @@ def small_plate():
     return shapes, DisplaySurface(points, triangles, deflections(shapes, points))
 
 
-def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():
+def test_the_fine_piece_covers_the_plate_and_is_that_of_the_shapes():
     shapes, ground = small_plate()
     heights = np.array([2e-6, -1e-6])
-    xy, cells, w = fine_field(shapes, ground, heights, shapes.outline.box)
+    xy, cells, w = fine_piece(shapes, ground, heights, shapes.outline.box)
     assert len(cells) >= 4 * len(ground.triangles)
     inside = np.hypot(*xy.T) < 2.9e-4
     assert w[inside] == pytest.approx(shapes.evaluate(xy[inside], heights)[0], abs=1e-15)
@@ -183,11 +193,11 @@ def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():
     (p, q), (r, s) = (b - a).T, (c - a).T
     assert np.abs(p * s - q * r).sum() / 2 == pytest.approx(np.pi * 9e-8, rel=3e-3)
     window = np.array([[0.0, 0.0], [5e-5, 5e-5]])
-    xy, cells, _ = fine_field(shapes, ground, heights, window)
+    xy, cells, _ = fine_piece(shapes, ground, heights, window)
     longest = np.hypot(*(xy[cells] - xy[np.roll(cells, 1, axis=1)]).reshape(-1, 2).T).max()
     assert longest < 5e-5 / 25 and xy.min() > -5e-5 and xy.max() < 1e-4
     figure = Figure()
-    axes, relief, unit = list(figure.subplots(1, 2)), relief_of(shapes, ground, heights), readable(window, "m")
+    axes, relief, unit = list(figure.subplots(1, 2)), relief_of(shapes, ground, heights), unit_for(window, "m")
     keys = draw_plate(figure, axes[0], relief, unit, relief.frame)
     assert not draw_plate(figure, axes[1], relief, unit, window)  # both stand outside of the window
     FigureCanvasAgg(figure).draw()
@@ -199,12 +209,12 @@ def test_the_fine_field_covers_the_plate_and_is_that_of_the_shapes():
 
 def test_a_map_whose_lines_would_merge_is_shaded_and_its_bar_ends_where_the_heights_do(monkeypatch):
     shapes, ground = small_plate()
-    monkeypatch.setattr(plate_picture, "FEW", 1)
+    monkeypatch.setattr(plate_pictures, "FEW", 1)
     figure = Figure()
     relief = relief_of(shapes, ground, np.array([2e-6, -1e-6]))
     # So narrow that the lines would merge, as would the markers.
-    keys = draw_plate(figure, figure.subplots(), relief, readable(relief.box, "m"), relief.frame, width=1.0)
+    keys = draw_plate(figure, figure.subplots(), relief, unit_for(relief.box, "m"), relief.frame, width=1.0)
     FigureCanvasAgg(figure).draw()
     low, high = figure.axes[1].get_ylim()
     assert -1.3 < low <= -1 + 1e-12 and 2 - 1e-12 <= high < 2.5
-    assert [key.get_label() for key in keys] == ["2 actuators, too many to be marked"]
+    assert [key.get_label() for key in keys] == ["2 actuators, too many to mark"]

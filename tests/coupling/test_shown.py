@@ -14,7 +14,7 @@ from sweeps import LATTICE, PLATE, PLATFORM
 from coupling import read_case, run_case
 from fem_plate import Plate, PlateSection
 from meshes import annulus, disc, rectangle
-from meshes.drawing import Drawing, in_unit
+from meshes.drawing import Drawing, label_axis
 
 SECTION = PlateSection(169e9, 0.3, 5e-6, 2330.0)
 
@@ -109,12 +109,12 @@ def test_results_and_trajectories_show_themselves(tmp_path, text):
 
 
 @pytest.mark.parametrize(
-    ("extent", "label"), [(3e-4, "x [µm]"), (1e-3, "x [mm]"), (2.5, "x [m]"), (1e4, "x [m]"), (3e-14, "x [pm]")]
+    ("extent", "label"), [(3e-4, "x [µm]"), (1e-3, "x [mm]"), (2.5, "x [m]"), (1e4, "x [km]"), (3e-11, "x [pm]")]
 )
 def test_axes_of_si_numbers_are_labelled_with_a_prefix(extent, label):
     axes = Drawing().subplots()
     axes.plot([-extent, extent], [0, 1])
-    in_unit(axes.xaxis, "x", "m")
+    label_axis(axes.xaxis, "x", "m")
     axes.figure.canvas.draw()
     assert axes.get_xlabel() == label
     ticks = [tick.get_text() for tick in axes.get_xticklabels()]

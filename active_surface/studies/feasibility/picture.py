@@ -8,30 +8,26 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from active_surface.studies.feasibility.area import Feasible, FloatArray
-from coupling import whole_file
-from coupling.pictures import marker_size, readable
-from meshes import rim_curves
+from coupling.pictures import map_axes, save_picture
+from fem_plate import frame_around, mark_actuators
+from meshes import Drawing, draw_rim, rim_curves, unit_for
 
 if TYPE_CHECKING:
     from active_surface.studies.feasibility.case import Feasibility
 
 LOST, LINE, PALE = "#c8371b", "#40719c", "#8a8a8a"
-LARGE: Final = 1e-6  # m^2, from which on areas are in mm^2
+SMALLEST: Final = 1e-6  # m: areas are in the square of this at least
 
 
 def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
-    """Draws a feasibility into a PNG file; returns that."""
-    figure = Figure(figsize=(13.0, 5.6))
-    FigureCanvasAgg(figure)
+    """Draw a feasibility into a PNG file; return its path."""
+    figure = Drawing(figsize=(13.0, 5.6))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1))
     _draw_map(figure, figure.add_subplot(grid[:, 0]), feasibility)
@@ -40,14 +36,12 @@ def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
         f"{feasibility.case.name}: fastest drive {feasibility.frequency:g} Hz, {1e3 * feasibility.found.window:.4g} ms"
     )
     figure.suptitle(said, parse_math=False)
-    with whole_file(path) as partial:
-        figure.savefig(partial, dpi=110)
-    return path
+    return save_picture(figure, path)
 
 
 def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
     found, box = feasibility.found, feasibility.outline.box
-    unit = readable(box, "m")
+    unit = unit_for(box, "m")
     x, y, share = _grid(found, np.where(found.own.lost, np.nan, 100 * found.own.shares))
     half = found.spacing / 2
     edges = [np.append(side - half, side[-1] + half) * unit.per_si for side in (x, y)]
@@ -57,20 +51,12 @@ def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
     axes.pcolormesh(*edges, np.ma.masked_invalid(lost).T, cmap=ListedColormap([LOST]), vmin=0, vmax=1)
     if held.count():
         figure.colorbar(mesh, ax=axes, label="share of the time in which the part slips [%]", shrink=0.8)
-    curves = [curve * unit.per_si for curve in rim_curves(feasibility.outline, float(np.ptp(box, axis=0).max()) / 200)]
-    axes.add_collection(LineCollection(curves, colors="black", linewidths=1.5))
-    size = marker_size(feasibility.actuators, box)
+    draw_rim(axes, rim_curves(feasibility.outline), unit.per_si)
     keys: list[Artist] = [Patch(facecolor="white", edgecolor="black", label="the part stays at rest")]
     if found.own.lost.any():
         keys.append(Patch(facecolor=LOST, label="it comes off at some moment"))
-    if size:
-        axes.plot(
-            *(feasibility.actuators.T * unit.per_si), "^", color="white", markeredgecolor="black", markersize=size
-        )
-        keys.append(Line2D([], [], color="white", marker="^", markeredgecolor="black", linestyle="", label="actuator"))
-    axes.set_aspect("equal")
-    axes.set_xlabel(f"x [{unit.name}]")
-    axes.set_ylabel(f"y [{unit.name}]")
+    keys += mark_actuators(axes, feasibility.actuators, frame_around(box), unit.per_si)
+    map_axes(axes, unit)
     axes.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False, fontsize=9)
 
 
@@ -86,8 +72,8 @@ def _grid(found: Feasible, values: FloatArray) -> tuple[FloatArray, FloatArray, 
 
 def _draw_curves(peak: Axes, integral: Axes, feasibility: Feasibility) -> None:
     found, frequencies = feasibility.found, feasibility.frequencies
-    name, per_si = ("Hz", 1.0) if frequencies.max() < 1e3 else ("kHz", 1e-3)
-    square, area = ("mm²", 1e6) if found.slipping.peak.max() >= LARGE else ("µm²", 1e12)
+    unit, side = unit_for(frequencies, "Hz"), unit_for(max(float(found.slipping.peak.max()) ** 0.5, SMALLEST), "m")
+    per_si, area, square = unit.per_si, side.per_si**2, f"{side.name}²"
     across = frequencies * per_si
     peak.plot(across, found.slipping.peak * area, "--", color=PALE, linewidth=1.1, label="it slips, attached then")
     peak.plot(across, found.feasible.peak * area, color=LINE, linewidth=1.6, label="it slips and never comes off")
@@ -96,7 +82,7 @@ def _draw_curves(peak: Axes, integral: Axes, feasibility: Feasibility) -> None:
     integral.plot(across, found.feasible.integral * area * 1e3, color=LINE, linewidth=1.6)
     peak.set_ylabel(f"largest area [{square}]")
     integral.set_ylabel(f"time integral [{square} ms]")
-    integral.set_xlabel(f"frequency of the fastest drive [{name}]")
+    integral.set_xlabel(f"frequency of the fastest drive [{unit.name}]")
     for axes in (peak, integral):
         axes.axvline(feasibility.frequency * per_si, color="black", linewidth=0.8, alpha=0.6)
         axes.set_xscale("log")

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from active_surface.studies.pictures.heat import COLOURS, draw_classes, draw_field, draw_outline
 from active_surface.studies.pictures.shown import Scale, Shown, mean
 from active_surface.studies.record import OUTCOMES
-from coupling.pictures import readable
+from fem_plate import mark_actuators
+from meshes import draw_rim, quantity_text, unit_for
 from particle import Outcome
 
 STARTS = ("part.position.0", "part.position.1")
@@ -56,8 +56,8 @@ class Basins:
 
     def draw_carried(self, axes: Axes) -> None:
         """Draw the actuator that is nearest to the end."""
-        count, unit = len(self.findings.actuators), readable(np.array([self.near]), "m")
-        stays = f"carried less than {self.near * unit.per_si:.2g} {unit.name}"
+        count = len(self.findings.actuators)
+        stays = f"carried less than {quantity_text(self.near, 'm', 2)}"
         names = (*OUTCOMES, stays, *(f"carried, nearest to actuator {k}" for k in range(count)))
         colours = (*COLOURS, STAYS, *(colormaps["tab20"](2 * k % 20 + 2 * k // 20) for k in range(count)))
         draw_classes(axes, self.across, self.up, self.classes, names, colours)
@@ -66,7 +66,7 @@ class Basins:
     def draw_nearness(self, figure: Figure, axes: Axes) -> None:
         """Draw how near the end is to the nearest actuator."""
         known = self.lengths[np.isfinite(self.lengths)]
-        unit = readable(known if known.size else np.zeros(1), "m")
+        unit = unit_for(known if known.size else np.zeros(1), "m")
         draw_field(figure, axes, self.across, self.up, self.lengths, NEARNESS, unit)
         self._draw_plate(axes)
 
@@ -74,11 +74,10 @@ class Basins:
         """Draw the rim, the actuators and the threshold's line, without making the frame larger."""
         scale = np.array([self.across.unit.per_si, self.up.unit.per_si])
         limits = axes.get_xlim(), axes.get_ylim()
-        axes.add_collection(LineCollection([curve * scale for curve in self.findings.rim], colors="black"))
-        actuators = self.findings.actuators * scale
-        axes.plot(*actuators.T, "^", color="white", markeredgecolor="black", markersize=7)
+        draw_rim(axes, self.findings.rim, scale)
+        mark_actuators(axes, self.findings.actuators, per_metre=scale)
         look: dict[str, Any] = {"textcoords": "offset points", "fontsize": "small", "path_effects": [WHITE]}
-        for k, place in enumerate(actuators):
+        for k, place in enumerate(self.findings.actuators * scale):
             axes.annotate(str(k), place, (4, 4), clip_on=True, **look)
         axes.set_aspect("equal")
         axes.set_xlim(*limits[0])

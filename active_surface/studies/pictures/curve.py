@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from active_surface.studies.pictures.heat import COLOURS, add_key, edges, frame
 from active_surface.studies.pictures.shown import Shown
 from active_surface.studies.record import OUTCOMES
-from meshes import put_below
+from meshes import legend_below
 
 PERCENTILES = (10, 90)
 
@@ -34,7 +34,7 @@ def draw_curve(axes: Axes, shown: Shown) -> None:
     if np.nanmin(shown.value) >= 0:
         axes.set_ylim(bottom=0)
     if shown.value.shape[-1] > 1:
-        put_below(axes, ncols=2)
+        legend_below(axes, ncols=2)
 
 
 def draw_shares(axes: Axes, shown: Shown) -> None:

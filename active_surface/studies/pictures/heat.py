@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from active_surface.studies.pictures.shown import FloatArray, IntArray, Scale, Shown, labelled
 from active_surface.studies.record import OUTCOMES
 from active_surface.studies.threshold import BoolArray
-from coupling.pictures import Unit, plain_ticks
-from meshes import put_below
+from coupling.pictures import plain_ticks
+from meshes import Unit, legend_below
 
 COLOURS = ("#40719c", "#e0c368", "#b8862d", "#7d1f0e", "#7a4b94", "#a8a8a8", "#dedede")
 """Of the outcomes, by their number; they differ in grey, too."""
@@ -86,7 +86,7 @@ def add_key(axes: Axes, numbers: NDArray[np.int64], names: tuple[str, ...], colo
         Patch(facecolor=colours[k], edgecolor="#606060", linewidth=0.5, label=f"{names[k]}, {counts[k] * share:.3g} %")
         for k in np.flatnonzero(counts)
     ]
-    put_below(
+    legend_below(
         axes, handles=patches, ncols=2 if len(patches) > 1 and axes.figure.bbox.width > NARROW * axes.figure.dpi else 1
     )
 

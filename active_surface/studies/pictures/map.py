@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.pictures.panel import panels
 from active_surface.studies.pictures.shown import Shown
 from active_surface.studies.study import Study
-from coupling import whole_file
+from coupling.pictures import save_picture
+from meshes import Drawing
 
 if TYPE_CHECKING:
     import xarray
@@ -21,20 +21,17 @@ WIDTH, HEIGHT = 6.2, 5.2  # inches, of a panel
 
 
 def draw_sweep(study: Study, dataset: xarray.Dataset, path: Path) -> Path:
-    """Draws the results of a study into a PNG file; returns that.
+    """Draw the results of a study into a PNG file; return its path.
 
     Of a grid the two axes with the most values are drawn, the others at their middle value; of repeats the mean.
     """
-    figure = Figure()
-    FigureCanvasAgg(figure)
+    figure = Drawing()
     compose(figure, Findings.of(study.name, dataset, study.threshold))
-    with whole_file(path) as partial:
-        figure.savefig(partial, dpi=110)
-    return path
+    return save_picture(figure, path)
 
 
 def compose(figure: Figure, findings: Findings) -> None:
-    """Draws the results of a sweep into an empty figure."""
+    """Draw the results of a sweep into an empty figure."""
     shown = Shown.of(findings)
     drawn = panels(shown)
     figure.set_size_inches(WIDTH * len(drawn), HEIGHT)

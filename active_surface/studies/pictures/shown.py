@@ -13,7 +13,7 @@ from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.record import COLUMNS, OUTCOMES
 from active_surface.studies.threshold import BoolArray
 from coupling import near
-from coupling.pictures import Unit, readable
+from meshes import Unit, unit_for
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -70,9 +70,9 @@ class Scale:
 
 def _unit(numbers: FloatArray, si: str) -> Unit:
     if si == "kg" and np.abs(numbers).max() < 1:
-        grams = readable(1e3 * numbers, "g")
+        grams = unit_for(1e3 * numbers, "g")
         return Unit(grams.name, 1e3 * grams.per_si)
-    return readable(numbers, si) if si in NAMED else Unit(si, 1.0)
+    return unit_for(numbers, si) if si in NAMED else Unit(si, 1.0)
 
 
 def _even(values: FloatArray) -> bool:

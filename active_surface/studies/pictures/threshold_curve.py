@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from active_surface.studies.pictures.heat import edges, frame
 from active_surface.studies.pictures.shown import Shown
 from active_surface.studies.threshold import BoolArray, lowest
-from meshes import put_below
+from meshes import legend_below
 
 COLOUR, BAND = "#c8371b", "#f3c9bd"
 
@@ -36,4 +36,4 @@ def draw_threshold(axes: Axes, shown: Shown, holds: BoolArray, said: str) -> Non
     if np.isnan(begins).all():
         axes.text(0.5, 0.5, f"{said} nowhere", transform=axes.transAxes, ha="center", parse_math=False)
     else:
-        put_below(axes)
+        legend_below(axes)

@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -23,8 +22,9 @@ from active_surface.views.film.pace import Pace
 from active_surface.views.film.stage import Stage
 from active_surface.views.rounding import round_below
 from coupling.case import PlatformCase
-from coupling.pictures import PATH_COLOUR, SHADES, STEPS, STICK_COLOUR, readable, stretches
-from particle import HALO, State
+from coupling.pictures import STEPS
+from meshes import draw_rim, quantity_text, unit_for
+from particle import HALO, PATH_COLOUR, SHADES, STICK_COLOUR, State, stretches
 
 Image = NDArray[np.uint8]
 
@@ -42,7 +42,7 @@ class Captions:
         self._canvas = FigureCanvasAgg(self._figure)
         self._letter = max(min(layout.height * 0.021, layout.width * 0.0165), LEAST_LETTER) * 72 / DPI  # points
         self._stage, self._layout = stage, layout
-        self._time_unit = readable(stage.run.time, "s")
+        self._time_unit = unit_for(stage.run.time, "s")
         self._draw_bar()
         self._draw_lengths()
         self._draw_notes(pace)
@@ -57,8 +57,7 @@ class Captions:
         """The picture (height, width, 3) with all captions of a frame."""
         now = frame.time * self._time_unit.per_si
         self._clock.set_text(f"{now:.{self._digits}f} {self._time_unit.name}")
-        flight = readable(np.array([frame.flight]), "m")
-        above = f", {frame.flight * flight.per_si:.3g} {flight.name} above" if frame.flight > 0 else ""
+        above = f", {quantity_text(frame.flight, 'm')} above" if frame.flight > 0 else ""
         self._state.set_text(f"{WORDS[frame.state]}{above}")
         self._state.set_color(COLOURS[frame.state])
         self._hand.set_xdata([now])
@@ -102,7 +101,7 @@ class Captions:
                 continue
             length = round_below(whole / per_metre)
             pixels = length * per_metre
-            unit = readable(np.array([length]), "m")
+            unit = unit_for(length, "m")
             ends = ([left, left], [bottom, bottom + pixels]) if up else ([left, left + pixels], [bottom, bottom])
             shares = [np.array(part) / side for part, side in zip(ends, (layout.width, layout.height), strict=True)]
             figure.add_artist(Line2D(*shares, **dot))
@@ -121,7 +120,7 @@ class Captions:
 
     def _draw_notes(self, pace: Pace | None) -> None:
         stage, letter = self._stage, self._letter
-        unit = readable(np.array([stage.mesh_width]), "m")
+        unit = unit_for(stage.mesh_width, "m")
         times = self._layout.exaggeration
         said = [
             "flat"
@@ -209,7 +208,7 @@ class Captions:
         )
 
         run = stage.run
-        axes.add_collection(LineCollection(list(stage.outer), colors="black", linewidths=0.8, clip_on=False))
+        draw_rim(axes, stage.outer, linewidths=0.8, clip_on=False)
         corner, sides = stage.frame[0], np.ptp(stage.frame, axis=0)
         axes.add_patch(
             Rectangle(tuple(corner), *sides, facecolor=PATH_COLOUR, edgecolor=to_rgb(PATH_COLOUR), linewidth=1.5)

@@ -14,7 +14,8 @@ from active_surface.views.film.frames import Frame
 from active_surface.views.film.layout import Layout
 from active_surface.views.film.stage import Stage
 from active_surface.views.lines import Lines
-from coupling.pictures import PATH_COLOUR, Scale
+from coupling.pictures import Scale
+from particle import PATH_COLOUR
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

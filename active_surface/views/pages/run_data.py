@@ -13,9 +13,10 @@ from active_surface.views.pages.modes import modes_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.rounding import exaggeration
 from active_surface.views.triangles import Spots, coarse, inside, outer_edges, spots_of
-from coupling.pictures import Scale, Unit, extent, path_window, readable, stretches
+from coupling.pictures import Scale, extent, path_window
 from coupling.results import SavedRun
-from particle import State
+from meshes import Unit, unit_for
+from particle import State, stretches
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -38,7 +39,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     heights = _heights(run, steps, points)
     place = run.points[points]
     length = float(np.ptp(place, axis=0).max())
-    along = readable(place, "m")
+    along = unit_for(place, "m")
     position = run.position[steps]
     spots = spots_of(place, triangles, position[:, :2])
     flying = run.state[steps] == State.FLIGHT
@@ -49,7 +50,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     box = np.stack([place.min(axis=0), place.max(axis=0)])
     window = path_window(run.rows.position, box, run.actuators)
     modes = modes_of(heights, None if window is None else _close(place, triangles, window))
-    clock = readable(run.time, "s")
+    clock = unit_for(run.time, "s")
     marked = np.flatnonzero(points < len(run.actuators))
     shown = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
     return {
@@ -194,7 +195,7 @@ def _curves(run: SavedRun, steps: IntArray, along: Unit) -> list[dict[str, Any]]
     ]
     found = []
     for label, si, values in panels:
-        unit = along if si == "m" else readable(np.concatenate(list(values.values())), si)
+        unit = along if si == "m" else unit_for(np.concatenate(list(values.values())), si)
         lines = [{"name": name, "values": packed(v * unit.per_si, "f4")} for name, v in values.items()]
         found.append({"label": label, "unit": unit.name, "lines": lines})
     return found

@@ -14,8 +14,7 @@ from active_surface.studies.pictures import COLOURS, Scale, Shown, edges, outlin
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.sweep_paths import Paths
 from coupling.case import Case, PlateCase
-from coupling.pictures import Unit, readable
-from meshes import rim_curves
+from meshes import Unit, rim_curves, unit_for
 
 FloatArray = NDArray[np.float64]
 
@@ -30,10 +29,10 @@ def study_data(study: Study, shown: Shown, starts: FloatArray, paths: Paths) -> 
     ends = shown.end if shown.end[..., 0].size <= MOST_ENDS else shown.end[..., :1, :]
     places = np.concatenate([ends.reshape(-1, 2), starts.reshape(-1, 2)])
     known = places[np.isfinite(places).all(axis=1)]
-    along = readable(known if len(known) else np.zeros((1, 2)), "m")
+    along = unit_for(known if len(known) else np.zeros((1, 2)), "m")
     lengths = shown.mean_distance
     finite = lengths[np.isfinite(lengths)]
-    unit = readable(finite if len(finite) else np.zeros(1), "m")
+    unit = unit_for(finite if len(finite) else np.zeros(1), "m")
     cells = {number: cell for cell, number in enumerate(shown.numbers[..., 0].ravel().tolist())}
     lines = sorted((cells[number], line) for number, line in paths.lines.items())
     every = np.concatenate([line for _, line in lines]) if lines else np.empty((0, 2))
@@ -92,8 +91,7 @@ def _drawing(study: Study, along: Unit) -> dict[str, Any]:
         location[0] == "plate" and location[1] not in RIM_STAYS for location in moved
     ):
         outline = case.plate.coarse_mesh.outline
-        step = float(np.ptp(outline.box, axis=0).max()) / 200
-        rim = [packed(curve * along.per_si, "f4") for curve in rim_curves(outline, step)]
+        rim = [packed(curve * along.per_si, "f4") for curve in rim_curves(outline)]
     stay = not any(
         location[0] == "lattice" or "position" in location[1:] for location in moved if location[0] != "part"
     )

@@ -10,12 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
 from active_surface.views.prints.sheet import MM, Picture, put_keys
 from coupling.pictures import (
-    NOTHING,
     Curves,
-    FloatArray,
     Portrait,
     curves_of,
     draw_over_time,
@@ -24,11 +23,13 @@ from coupling.pictures import (
     draw_surface,
     draw_window,
     is_visible,
-    label_places,
+    map_axes,
     path_window,
-    readable,
 )
+from meshes import NOTHING, unit_for
 from particle import EventKind, State, shade, shade_keys, stretches
+
+FloatArray = NDArray[np.float64]
 
 SHARE = 0.75  # of the width is a map's, about
 PANEL, STRIP, REST = 27.0, 3.5, 16.0  # mm: the height of a panel, of the strip of events, of labels and keys
@@ -65,8 +66,9 @@ def run_pictures(portrait: Portrait) -> list[Picture]:
 
 
 def _draw_all(figure: Figure, portrait: Portrait, window: FloatArray | None) -> None:
-    unit = readable(portrait.box, "m")
-    axes = _map_axes(figure, portrait, unit)
+    unit = unit_for(portrait.box, "m")
+    axes = figure.add_subplot()
+    map_axes(axes, unit, portrait.where)
     keys = draw_surface(figure, axes, portrait, unit, width=SHARE * 72 * figure.get_figwidth())
     if window is not None:
         draw_window(axes, unit, window)
@@ -75,17 +77,12 @@ def _draw_all(figure: Figure, portrait: Portrait, window: FloatArray | None) -> 
 
 
 def _draw_window(figure: Figure, portrait: Portrait, window: FloatArray) -> None:
-    unit = readable(window, "m")
-    axes = _map_axes(figure, portrait, unit)
+    unit = unit_for(window, "m")
+    axes = figure.add_subplot()
+    map_axes(axes, unit, portrait.where)
     assert portrait.relief
     keys = draw_plate(figure, axes, portrait.relief, unit, window, width=SHARE * 72 * figure.get_figwidth())
     put_keys(figure, draw_path(axes, portrait.rows, portrait.samples.position, unit, True) + keys)
-
-
-def _map_axes(figure: Figure, portrait: Portrait, unit: Any) -> Axes:
-    axes = figure.add_subplot()
-    label_places(axes, portrait, unit)
-    return axes
 
 
 def courses(portrait: Portrait) -> list[Curves]:
@@ -108,7 +105,7 @@ def courses(portrait: Portrait) -> list[Curves]:
 def _draw_course(figure: Figure, portrait: Portrait) -> None:
     shown, rows, times = courses(portrait), portrait.rows, portrait.samples.time
     figure.set_figheight((PANEL * len(shown) + STRIP + REST) * MM)
-    unit = readable(times, "s")
+    unit = unit_for(times, "s")
     grid = figure.add_gridspec(len(shown) + 1, 1, height_ratios=[STRIP, *[PANEL] * len(shown)])
     strip = figure.add_subplot(grid[0])
     panels = [figure.add_subplot(grid[k + 1], sharex=strip) for k in range(len(shown))]

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicHermiteSpline
 from coupling import silent
 from coupling.case import PlateCase
 from coupling.display import most_deflected
-from coupling.pictures import Patch, Portrait, Relief, cut_out, divided
+from coupling.pictures import Piece, Portrait, Relief, cut_out, refined
 from coupling.results import SavedRun
 from coupling.scene import platform_scene
 from meshes import rim_curves
@@ -89,9 +89,9 @@ def _spread(run: SavedRun) -> FloatArray:
 def _relief(run: SavedRun, plate: PlateCase, step: int) -> Relief:
     deflection = run.plate_field("deflection", step).astype(float)
 
-    def within(frame: FloatArray) -> Patch:
+    def within(frame: FloatArray) -> Piece:
         points, triangles, used = cut_out(run.points, run.triangles, frame)
-        fine = divided(points, triangles)
+        fine = refined(points, triangles)
         if fine is None:
             return points, triangles, deflection[used]
         between = CubicTriInterpolator(Triangulation(*points.T, triangles), deflection[used], kind="geom")

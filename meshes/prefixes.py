@@ -1,0 +1,34 @@
+"""SI prefixes: the unit in which numbers are easiest to read."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
+NOTHING = 1e-12  # SI units: smaller numbers are rounding errors
+ROUNDING = 1e-9  # relative
+
+
+class Unit(NamedTuple):
+    """A unit of the same dimension as an SI unit."""
+
+    name: str
+    per_si: float  # how many of it make up the SI unit
+
+
+def unit_for(values: ArrayLike, si: str) -> Unit:
+    """The largest unit of which the largest of some values [si] is at least one; `si` itself where all are 0."""
+    extent = float(np.abs(values).max())
+    if extent < NOTHING:
+        return Unit(si, 1.0)
+    size, prefix = next((pair for pair in PREFIXES if extent >= pair[0] * (1 - ROUNDING)), PREFIXES[-1])
+    return Unit(prefix + si, 1 / size)
+
+
+def quantity_text(value: float, si: str, digits: int = 3) -> str:
+    """A value [si] with so many digits and its unit, such as "12.3 µm"."""
+    unit = unit_for(value, si)
+    return f"{float(f'{value * unit.per_si:.{digits}g}'):g} {unit.name}"  # `g` alone turns 250 into 2.5e+02
