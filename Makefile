@@ -5,8 +5,9 @@ BIN := .venv/bin
 # Small dense systems gain nothing from BLAS threads and lose much where cores are busy.
 export OPENBLAS_NUM_THREADS ?= 1
 
-# Tests run on all processors, those of a file on one, as they share what is made for them.
-PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --cov
+# Tests run on all processors, those of a file on one, as they share what is made for them. tests/conftest.py puts files
+# that take long first.
+PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-reorder --cov
 # Only the kernels of `particle` are compiled: what marches them runs in plain Python, too, which shows the lines covered.
 MARCHES := tests/particle tests/physics tests/regression
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from pathlib import Path
 
 import numba
 import numpy as np
@@ -13,6 +14,7 @@ from fem_plate import PlateSection
 from fem_plate.analytic import DiscShapes
 
 RADIUS = 300e-6  # m
+TABLE = Path(__file__).parent / "slowest.md"
 
 # A shell starts what runs in the background deaf to Ctrl-C, and so would be the commands that tests interrupt.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
@@ -28,9 +30,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    # Files with slow tests first, so that no process ends long after the others.
-    slow = {item.path for item in items if "slow" in item.keywords}
-    items.sort(key=lambda item: item.path not in slow)
+    # Files that take long first, so that no process ends long after the others.
+    seconds = slowest.seconds_by_file(TABLE)
+    items.sort(key=lambda item: -seconds[item.nodeid.split("::")[0]])
     if numba.config.DISABLE_JIT:
         skip = pytest.mark.skip(reason="NUMBA_DISABLE_JIT is set: this march takes too long in plain Python")
         for item in items:

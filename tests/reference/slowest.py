@@ -7,6 +7,7 @@ side. What a shared fixture takes counts for the first test that uses it.
 from __future__ import annotations
 
 import os
+import re
 from collections import Counter
 from pathlib import Path
 
@@ -59,6 +60,15 @@ class Stopwatch:
             self.config.getoption("slowest").write_text(
                 table(self.seconds, self.config.getoption("slowest_count"), command), encoding="utf-8"
             )
+
+
+def seconds_by_file(path: Path) -> Counter[str]:
+    """Processor time of the tests in such a table, summed by their files; nothing if there is no table."""
+    seconds: Counter[str] = Counter()
+    if path.exists():
+        for time, file in re.findall(r"^\| ([\d.]+) \|.*`(.*?)::", path.read_text(encoding="utf-8"), re.MULTILINE):
+            seconds[file] += float(time)
+    return seconds
 
 
 def spent() -> float:

@@ -2,51 +2,12 @@
 
 import numpy as np
 import pytest
+from lattice_cases import DRIVE, FIRST, FRAME, PLACES, problems, python_case, read
 
-from coupling.case.case import ActuatorCase, Case, CaseError, ConstantCase, LatticeCase, PartCase, RunCase, read_case
+from coupling.case.case import ActuatorCase, Case, CaseError, LatticeCase, read_case
 from coupling.case.input_error import InputError
-from coupling.case.plate import DiscCase
 from coupling.run import build_drives
 from particle.drives.drive import drive_table
-
-FRAME = """\
-[plate]
-shape = "rectangle"
-width = "1 mm"
-height = "0.8 mm"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "50 um"
-[part]
-mass = "2e-9 kg"
-position = ["10 um", "20 um"]
-[friction]
-model = "constant"
-limit = "1 uN"
-[run]
-duration = "50 ms"
-"""
-PLACES = '[lattice]\nrows = 3\ncolumns = 4\npitch = ["150 um", "120 um"]\n'
-DRIVE = 'stroke = "5 um"\nfrequency = "300 Hz"\n'
-FIRST = 1 + (FRAME + PLACES).count("\n")  # the line after the lattice's places
-
-
-def read(folder, lattice) -> Case:
-    file = folder / "test.toml"
-    file.write_text(FRAME + lattice)
-    return read_case(file)
-
-
-def problems(folder, lattice):
-    with pytest.raises(CaseError) as caught:
-        read(folder, lattice)
-    return [f"{p.line} {p.field} {p.message}" for p in caught.value.problems]
-
-
-def python_case(**tables) -> Case:
-    plate = DiscCase(shape="disc", radius=300e-6, youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6)
-    rest = {"part": PartCase(mass=2e-9, position=(0, 0)), "friction": ConstantCase(limit=1), "run": RunCase(duration=1)}
-    return Case(plate=plate, **rest, **tables)
 
 
 def test_rows_run_along_y_and_columns_along_x_around_the_centre(tmp_path):
@@ -231,47 +192,6 @@ def test_every_key_is_judged_as_far_as_it_can_be(tmp_path, keys, expected):
     found = problems(tmp_path, "[lattice]\n" + keys)
     assert len(found) == len(expected), found
     assert all(sum(part in line for line in found) == 1 for part in expected), found
-
-
-def test_where_leaves_out(tmp_path):
-    near = 'where = "not (row == 1 and column == 2) and hypot(x, y) < 200e-6"\n'
-    case = read(tmp_path, PLACES + near + DRIVE)
-    assert len(case.actuators) == 5
-    assert all(np.hypot(*a.position) < 200e-6 and a.position != pytest.approx((75e-6, 0)) for a in case.actuators)
-    # Formulas need a value only where there is an actuator, and only an actuator must be on the plate.
-    delay = 'delay = "0.1 / abs(column - 1) ms"\n'
-    assert len(read(tmp_path, PLACES + 'where = "column != 1"\n' + DRIVE + delay).actuators) == 9
-    wide = '[lattice]\nrows = 9\ncolumns = 9\npitch = "0.3 mm"\nwhere = "x*x + y*y < 1e-7"\n'
-    assert len(read(tmp_path, wide + DRIVE).actuators) == 5
-    lattice = LatticeCase(rows=3, columns=3, pitch=9e-5, where="row > 0", stroke=0, frequency=1)
-    assert len(python_case(lattice=lattice).actuators) == 6
-
-
-def test_where_and_margin_leave_out_together(tmp_path):
-    places = '[lattice]\nrows = 21\ncolumns = 21\npitch = "100 um"\nmargin = "50 um"\n'
-    case = read(tmp_path, places + 'where = "sqrt(4.6e-4 - abs(x)) > 0 and row != 10"\n' + DRIVE)
-    assert len(case.actuators) == 9 * 6
-    assert all(abs(a.position[0]) < 450e-6 and 0 < abs(a.position[1]) < 350e-6 for a in case.actuators)
-
-
-@pytest.mark.parametrize(
-    ("where", "expected"),
-    [
-        ('"row > 5"', 'lattice.where must be true for one actuator or more; "row > 5" is true for none'),
-        ('"column"', 'true or false for each actuator; "column" is a number and not a comparison at row 0, column 0'),
-        ('"1 / column > 2"', '"1 / column > 2" divides by zero at row 0, column 0'),
-        (
-            '"rwo > 2"',
-            'must be an expression that is true or false; got "rwo > 2": there is no rwo; did you mean row?',
-        ),
-        ('"x > 10 um"', '"um" is too much; it has no unit'),
-        ('""', "lattice.where must be an expression that is true or false, such as"),
-        ("true", "lattice.where must be an expression that is true or false, such as"),
-    ],
-)
-def test_mistakes_in_where(tmp_path, where, expected):
-    found = problems(tmp_path, PLACES + f"where = {where}\n" + DRIVE)
-    assert len(found) == 1 and expected in found[0], found
 
 
 def test_lengths_in_messages_have_the_units_that_were_written(tmp_path):
