@@ -32,10 +32,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result:
-    """What a run found.
+    """The result of a run.
 
-    case: what was run.  scene: what the part moved over.  trajectory: the part's path.
-    summary: its figures, and how exact they are.  files: those that were written.
+    Parameters
+    ----------
+    case : Case
+        What was run.
+    scene : PlateScene or PlatformScene
+        What the part moved over.
+    trajectory : Trajectory
+        The part's path.
+    summary : Summary
+        Its figures, and how exact they are.
+    files : tuple of path
+        Files that were written.
     """
 
     case: Case
@@ -80,12 +90,32 @@ def run_case(
     csv: bool = False,
     save_surface: bool = False,
 ) -> Result:
-    """Run a case; with `output`, a folder, also write NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png there.
+    """Run a case.
 
-    csv: whether to write the trajectory to NAME.csv as well.  save_surface: whether to write the moving surface, with
-    the cells that the part came to, to NAME.surface.h5 (`read_surface`).
-    Raises ValueError when the case cannot be run, and before any work when NAME.csv or NAME.surface.h5 is a file of
-    something else; OSError when a file that the case reads is gone.
+    Parameters
+    ----------
+    case : Case
+        The case.
+    output : path, optional
+        Folder for NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png.
+    csv : bool
+        Also write the trajectory to NAME.csv.
+    save_surface : bool
+        Also write the moving surface, with the cells that the part came to, to NAME.surface.h5 (`read_surface`).
+    progress : Progress, optional
+        Reports the progress of a stage, for progress bars.
+
+    Returns
+    -------
+    result : Result
+        Trajectory, summary and files.
+
+    Raises
+    ------
+    ValueError
+        The case cannot be run or, before any work, NAME.csv or NAME.surface.h5 holds something else.
+    OSError
+        A file that the case reads is gone.
     """
     if output is not None and csv:
         check_csv(Path(output) / f"{case.name}.csv")

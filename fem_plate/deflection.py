@@ -58,9 +58,26 @@ class Deflection(Estimated):
         return np.asarray(-rigid @ mean)  # the motions are orthonormal
 
     def evaluate(self, xy: ArrayLike) -> Fields:
-        """w (n,) m, gradient (n, 2), Hessian (n, 2, 2) 1/m at points (n, 2) [m].
+        """The deflection at points.
 
-        Raises ValueError when a point lies beyond the rim.
+        Parameters
+        ----------
+        xy : array (n, 2)
+            Points, m.
+
+        Returns
+        -------
+        w : array (n,)
+            Deflection, m.
+        gradient : array (n, 2)
+            Its gradient.
+        hessian : array (n, 2, 2)
+            Its Hessian, 1/m.
+
+        Raises
+        ------
+        ValueError
+            A point lies beyond the rim.
         """
         xy = np.asarray(xy, dtype=float)
         check_on_plate(self.model.mesh.outline, xy, self.size)

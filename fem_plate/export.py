@@ -17,10 +17,25 @@ TOGETHER = 64  # shapes evaluated at once, to bound memory
 
 
 def neighbour_coupling(shapes: InfluenceShapes | PatchedShapes) -> FloatArray:
-    """Each shape's deflection at the nearest other actuator, over that at its own: (N,).
+    """Each shape's deflection at the nearest other actuator, over that at its own.
 
-    Zero where all are rigid; the figure that deformable mirrors are described by where they yield or float. Raises
-    ValueError when there is only one actuator.
+    It is zero where all actuators are rigid. Deformable mirrors whose actuators yield or float are described by this
+    figure.
+
+    Parameters
+    ----------
+    shapes : InfluenceShapes or PatchedShapes
+        The shapes.
+
+    Returns
+    -------
+    coupling : array (N,)
+        The ratio, for each actuator.
+
+    Raises
+    ------
+    ValueError
+        There is only one actuator.
     """
     points = shapes.points
     if len(points) < 2:
@@ -37,11 +52,23 @@ def neighbour_coupling(shapes: InfluenceShapes | PatchedShapes) -> FloatArray:
 def save_influence(path: str | PathLike[str], shapes: InfluenceShapes | PatchedShapes, across: int = 101) -> None:
     """Write the influence functions on a square grid over the plate to an .npz file.
 
-    across: points of the grid along the plate's longer side.
-    Arrays: x (nx,), y (ny,) m; shapes (N, nx, ny), NaN off the plate, in metres per metre of a held actuator's stroke
-    or per newton on a floating one; points (N, 2) m; stiffness (N, N) N/m; coupling (N,), of nearest neighbours;
-    pitch, m, the distance of neighbours in the median.
-    Raises ValueError when there are fewer than two points across.
+    Its arrays are `x` (nx,) and `y` (ny,) in m; `shapes` (N, nx, ny), NaN off the plate, in metres per metre of a
+    held actuator's stroke or per newton on a floating one; `points` (N, 2) in m; `stiffness` (N, N) in N/m;
+    `coupling` (N,) of nearest neighbours; and `pitch`, the median distance of neighbours, in m.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    shapes : InfluenceShapes or PatchedShapes
+        The shapes.
+    across : int
+        Points of the grid along the plate's longer side.
+
+    Raises
+    ------
+    ValueError
+        There are fewer than two points across.
     """
     if across < 2:
         raise ValueError(f"Input across of save_influence must be at least 2; got {across!r}")

@@ -63,10 +63,28 @@ class Shapes(ABC):
     def evaluate(self, xy: ArrayLike, weights: ArrayLike | None = None) -> Fields:
         """The shapes, or their weighted sum.
 
-        xy: (n, 2) m.  weights: (N,), for instance the strokes [m].
-        Returns value (n, N), gradient (n, N, 2) 1/m and Hessian (n, N, 2, 2) 1/m^2; with weights (n,), (n, 2) and
-        (n, 2, 2), times the weights' unit. At an actuator the Hessian is infinite (a point load bends without bound).
-        Raises ValueError when a point lies beyond the rim or there is not one weight an actuator.
+        At an actuator the Hessian is infinite: a point load bends without bound.
+
+        Parameters
+        ----------
+        xy : array (n, 2)
+            Points, m.
+        weights : array (N,), optional
+            Weights, for instance the strokes, m.
+
+        Returns
+        -------
+        value : array (n, N)
+            Shapes; with weights (n,), times their unit.
+        gradient : array (n, N, 2)
+            Their gradients, 1/m; with weights (n, 2).
+        hessian : array (n, N, 2, 2)
+            Their Hessians, 1/m^2; with weights (n, 2, 2).
+
+        Raises
+        ------
+        ValueError
+            A point lies beyond the rim, or there is not one weight an actuator.
         """
         xy = np.asarray(xy, dtype=float)
         check_on_plate(self.outline, xy, self.size)
@@ -130,9 +148,12 @@ class InfluenceShapes(Shapes, Estimated):
 
     @property
     def compliance(self) -> FloatArray:
-        """Deflection at i under a unit force at j, (N, N) [m/N], with no actuator holding the plate.
+        """Deflection at i under a unit force at j, (N, N) m/N, with no actuator holding the plate.
 
-        Raises ValueError when the plate's supports leave it a rigid motion.
+        Raises
+        ------
+        ValueError
+            The supports leave the plate a rigid motion.
         """
         if self.model.rigid.size:
             raise ValueError("Input supports of Plate must hold it without actuators for a compliance; they do not")
@@ -151,9 +172,19 @@ class InfluenceShapes(Shapes, Estimated):
         return field.values(np.asarray(xy, dtype=float) / self.size)
 
     def laplacians(self, xy: ArrayLike, floor: float) -> FloatArray:
-        """The shapes' Laplacians at points (n, 2) [m], (n, N) [1/m^2].
+        """The Laplacians of the shapes.
 
-        floor: m, the radius around an actuator within which it grows no more (a point load bends without bound).
+        Parameters
+        ----------
+        xy : array (n, 2)
+            Points, m.
+        floor : float
+            Radius around an actuator within which the Laplacian grows no more, m; a point load bends without bound.
+
+        Returns
+        -------
+        laplacians : array (n, N)
+            1/m^2 for each unit of the shapes' weights.
         """
         return self.field.laplacians(np.asarray(xy, dtype=float) / self.size, floor / self.size) / self.size**2
 

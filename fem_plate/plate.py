@@ -34,12 +34,23 @@ REFINEMENT_GAIN = 2.0**5  # halving the cells divides the error of w by this at 
 class Plate:
     """A Kirchhoff-Love plate.
 
-    mesh: its outline.  section: its material and thickness.
-    supports: of the whole rim or by boundary, "clamped", "simply-supported" or "free"; boundaries left out are free.
-    tolerance: with one, shapes and deflections are refined until their own error estimate (relative to the largest
-    deflection) meets it, or until 100 000 unknowns; their `error_estimate` says what was reached. Shapes on patches
-    have somewhat finer cells then, and modes heed none.
-    Raises ValueError, naming every support and boundary that is not known, or a tolerance that is not positive.
+    Parameters
+    ----------
+    mesh : PlateMesh
+        Its outline.
+    section : PlateSection
+        Its material and thickness.
+    supports : str or dict of str to str
+        `"clamped"`, `"simply-supported"` or `"free"`, for the whole rim or by boundary. Boundaries left out are free.
+    tolerance : float, optional
+        Shapes and deflections are refined until their error estimate, relative to the largest deflection, meets it,
+        or until 100 000 unknowns; `error_estimate` states what was reached. Shapes on patches get somewhat finer
+        cells. Modes ignore it.
+
+    Raises
+    ------
+    ValueError
+        A support or boundary is not known, or the tolerance is not positive; names each.
     """
 
     def __init__(
@@ -78,15 +89,31 @@ class Plate:
         truncation: float | None = None,
         tell: Tell = lambda done, of: None,
     ) -> InfluenceShapes | PatchedShapes:
-        """The influence shapes of actuators at points (N, 2) [m].
+        """The influence shapes of actuators.
 
-        truncation: with one, shapes are found on patches and end where they are below it; more than 2 000 actuators
-        are always taken so, with a truncation of 1e-6 unless given.
-        stiffness: (N,) N/m or one for all, of springs in series with the actuators; inf is a rigid one (the default),
-        0 one that floats and is driven by a force.
-        tell: called with how many tiles of patches are done, and of how many.
-        Raises ValueError, naming every point that is not inside the rim or stands on another and every stiffness below
-        0, or when supports and actuators leave the plate a rigid motion.
+        Parameters
+        ----------
+        points : array (N, 2)
+            Places of the actuators, m.
+        stiffness : float or array (N,), optional
+            Stiffness of springs in series with the actuators, N/m. inf (the default) is a rigid actuator, 0 one that
+            floats and is driven by a force.
+        truncation : float, optional
+            With one, shapes are solved on patches and end where they are below it. More than 2 000 actuators are
+            always solved so, with 1e-6 by default.
+        tell : callable
+            Called with the number of finished tiles of patches, and of all.
+
+        Returns
+        -------
+        shapes : InfluenceShapes or PatchedShapes
+            The shapes.
+
+        Raises
+        ------
+        ValueError
+            A point is not inside the rim or coincides with another, a stiffness is below 0 (names each), or supports
+            and actuators leave the plate a rigid motion.
         """
         points = _places(points, "points of influence")
         springs = np.full(len(points), np.inf)
@@ -104,11 +131,29 @@ class Plate:
         return self._estimated(points, lambda model: InfluenceShapes(model, points, rigidity, springs))
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
-        """The plate under forces (N,) [N] at points (N, 2) [m] and a uniform pressure [Pa], positive up.
+        """The plate under point forces and a uniform pressure, positive up.
 
         Where supports leave the plate a rigid motion, the answer is the one without mean deflection and slope.
-        Raises ValueError as `influence` does, when there is not one force a point, and when the loads on a plate that
-        can move rigidly are not in balance.
+
+        Parameters
+        ----------
+        points : array (N, 2)
+            Places of the forces, m.
+        forces : array (N,)
+            Forces, N.
+        pressure : float
+            Pressure, Pa.
+
+        Returns
+        -------
+        deflection : Deflection
+            The deflected plate.
+
+        Raises
+        ------
+        ValueError
+            As for `influence`; there is not one force a point; or the loads on a plate that can move rigidly do not
+            balance.
         """
         points = _places(points, "points of deflection")
         loads = _one_each(forces, points, "forces of deflection")
@@ -128,12 +173,27 @@ class Plate:
         return self.modes(count, held, stiffness).frequencies
 
     def modes(self, count: int, held: ArrayLike | None = None, stiffness: ArrayLike | None = None) -> Modes:
-        """The lowest `count` modes of vibration, motions left out in which nothing bends and no spring yields.
+        """The lowest modes of vibration, without motions in which nothing bends and no spring yields.
 
-        held: points (N, 2) [m] that actuators hold still.
-        stiffness: (N,) N/m or one for all, of springs between those and the plate; inf is a rigid hold (the default).
-        Raises ValueError when the section has no density, the count or a stiffness is not positive, or a held point is
-        not inside the rim or stands on another, and for more than 2 000 of them.
+        Parameters
+        ----------
+        count : int
+            Number of modes.
+        held : array (N, 2), optional
+            Points that actuators hold still, m.
+        stiffness : float or array (N,), optional
+            Stiffness of springs between those and the plate, N/m; inf (the default) is a rigid hold.
+
+        Returns
+        -------
+        modes : Modes
+            The modes.
+
+        Raises
+        ------
+        ValueError
+            The section has no density, the count or a stiffness is not positive, a held point is not inside the rim
+            or coincides with another, or there are more than 2 000 of them.
         """
         density = self.section.density
         if density is None:

@@ -10,7 +10,10 @@ from dataclasses import dataclass
 class PlateSection:
     """A homogeneous, isotropic plate of constant thickness.
 
-    Raises ValueError, naming every field that is wrong.
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     youngs_modulus: float  # Pa

@@ -28,7 +28,10 @@ RIGID_SHIFT = 1e12  # the dimensionless squared frequency that rigid motions are
 class Modes:
     """Modes of vibration, each with a largest deflection of 1 over the mesh.
 
-    frequencies: (count,) Hz, ascending, repeated ones repeated.
+    Parameters
+    ----------
+    frequencies : array (count,)
+        Natural frequencies, Hz, ascending, repeated ones repeated.
     """
 
     frequencies: FloatArray
@@ -36,9 +39,26 @@ class Modes:
     field: Field
 
     def evaluate(self, xy: ArrayLike) -> Fields:
-        """The shapes at points (n, 2) [m]: value (n, count), gradient (..., 2) 1/m, Hessian (..., 2, 2) 1/m^2.
+        """The modes at points.
 
-        Raises ValueError when a point lies beyond the rim.
+        Parameters
+        ----------
+        xy : array (n, 2)
+            Points, m.
+
+        Returns
+        -------
+        value : array (n, count)
+            Mode shapes.
+        gradient : array (n, count, 2)
+            Their gradients, 1/m.
+        hessian : array (n, count, 2, 2)
+            Their Hessians, 1/m^2.
+
+        Raises
+        ------
+        ValueError
+            A point lies beyond the rim.
         """
         xy, size = np.asarray(xy, dtype=float), self.model.mesh.size
         check_on_plate(self.model.mesh.outline, xy, size)

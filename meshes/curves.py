@@ -14,9 +14,14 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Circle:
-    """A circle.
+    """A circular boundary.
 
-    radius: m.  centre: m.
+    Parameters
+    ----------
+    radius : float
+        Radius, m.
+    centre : tuple of float
+        Centre, m.
     """
 
     radius: float
@@ -35,18 +40,33 @@ class Circle:
         return np.asarray(self.centre) + self.radius * offset / distance
 
     def arc(self, start: FloatArray, end: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The shorter arcs between points on the circle, by a parameter s from 0 (start) to 1 (end).
+        """The shorter arcs between points on the circle.
 
-        start, end: (k, 2) m.  s: (n,).  Returns the points (k, n, 2) m and their derivative with respect to s.
+        Parameters
+        ----------
+        start, end : array (k, 2)
+            Ends of the arcs, m.
+        s : array (n,)
+            Parameter, from 0 at the start to 1 at the end.
+
+        Returns
+        -------
+        points : array (k, n, 2)
+            Points of the arcs, m.
+        derivatives : array (k, n, 2)
+            Their derivative with respect to s, m.
         """
         return _elliptic_arc((self.radius, self.radius), np.asarray(self.centre), start, end, s)
 
 
 @dataclass(frozen=True)
 class Ellipse:
-    """An ellipse around the origin.
+    """An elliptic boundary around the origin.
 
-    semi_axis_x, semi_axis_y: m.
+    Parameters
+    ----------
+    semi_axis_x, semi_axis_y : float
+        Semi-axes, m.
     """
 
     semi_axis_x: float
@@ -64,18 +84,33 @@ class Ellipse:
         return nearest_on_ellipse(xy.reshape(-1, 2), (self.semi_axis_x, self.semi_axis_y)).reshape(xy.shape)
 
     def arc(self, start: FloatArray, end: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The shorter arcs between points on the ellipse; s (n,) runs from 0 to 1 with the eccentric angle.
+        """The shorter arcs between points on the ellipse.
 
-        start, end: (k, 2) m.  Returns the points (k, n, 2) m and their derivative with respect to s.
+        Parameters
+        ----------
+        start, end : array (k, 2)
+            Ends of the arcs, m.
+        s : array (n,)
+            Parameter from 0 to 1, linear in the eccentric angle.
+
+        Returns
+        -------
+        points : array (k, n, 2)
+            Points of the arcs, m.
+        derivatives : array (k, n, 2)
+            Their derivative with respect to s, m.
         """
         return _elliptic_arc((self.semi_axis_x, self.semi_axis_y), np.zeros(2), start, end, s)
 
 
 @dataclass(frozen=True, eq=False)
 class Parabolas:
-    """Quadratic edges, as second-order meshes have them.
+    """A boundary of quadratic edges, as second-order meshes have them.
 
-    pieces: (k, 3, 2) m, start, middle and end of each: its points at parameter 0, 1/2 and 1.
+    Parameters
+    ----------
+    pieces : array (k, 3, 2)
+        Start, middle and end of each edge, its points at parameter 0, 1/2 and 1, m.
     """
 
     pieces: FloatArray
@@ -86,9 +121,21 @@ class Parabolas:
         return nearest_on_edges(xy.reshape(-1, 2), self.pieces)[0].reshape(xy.shape)
 
     def arc(self, start: FloatArray, end: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The arcs between points on the same edge; s (n,) runs from 0 to 1 with the edge's parameter.
+        """The arcs between points on the same edge.
 
-        start, end: (k, 2) m.  Returns the points (k, n, 2) m and their derivative with respect to s.
+        Parameters
+        ----------
+        start, end : array (k, 2)
+            Ends of the arcs, m.
+        s : array (n,)
+            Parameter from 0 to 1, linear in the edge's own.
+
+        Returns
+        -------
+        points : array (k, n, 2)
+            Points of the arcs, m.
+        derivatives : array (k, n, 2)
+            Their derivative with respect to s, m.
         """
         pieces = self.pieces[nearest_on_edges((start + end) / 2, self.pieces)[1]]
         first, last = nearest_parameter(start, pieces), nearest_parameter(end, pieces)

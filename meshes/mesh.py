@@ -22,8 +22,14 @@ CUT = "cut"  # the boundary along which a part was cut out
 class Corner:
     """A boundary point where the rim turns sharply or the boundary's name changes.
 
-    row: of the mesh's points.  angle: between the true tangents, through the plate [rad].
-    sides: the names of the boundaries before and after it, walking with the plate on the left.
+    Parameters
+    ----------
+    row : int
+        Row of the mesh's points.
+    angle : float
+        Angle between the true tangents, through the plate, rad.
+    sides : tuple of str
+        Names of the boundaries before and after it, walking with the plate on the left.
     """
 
     row: int
@@ -35,11 +41,23 @@ class Corner:
 class PlateMesh:
     """A conforming triangulation of a plate.
 
-    points: (n, 2) m.  triangles: (m, 3) rows of points, counter-clockwise.
-    boundaries: name -> (k, 2) rows of points, the edges on that boundary; turned to have the plate on their left.
-    curves: name -> the curve that those edges approximate; the edges of other boundaries are straight.
-    outline: the plate's true rim; by default made of boundaries and curves.
-    Raises ValueError when a Circle or Ellipse is not all of a rim; arcs of it can be `Parabolas`.
+    Parameters
+    ----------
+    points : array (n, 2)
+        Corners of the triangles, m.
+    triangles : array (m, 3)
+        Rows of points, counter-clockwise.
+    boundaries : dict of str to array (k, 2)
+        For each boundary, its edges as rows of points; turned to have the plate on their left.
+    curves : dict of str to curve, optional
+        For each boundary, the curve that its edges approximate. Other boundaries have straight edges.
+    outline : Outline, optional
+        The plate's true rim; by default made of boundaries and curves.
+
+    Raises
+    ------
+    ValueError
+        A Circle or Ellipse is not all of a rim. Use `Parabolas` for arcs of it.
     """
 
     points: FloatArray
@@ -122,10 +140,20 @@ class PlateMesh:
         )
 
     def refined(self, marked: NDArray[np.bool_] | None = None) -> PlateMesh:
-        """The mesh with marked triangles (m,) cut in four, all by default, and their neighbours cut to fit.
+        """The mesh with marked triangles cut in four, and their neighbours cut to fit.
 
-        Cells cut in four keep their angles, their neighbours are cut along their longest edge. New boundary points lie
-        on the true curve.
+        Triangles cut in four keep their angles; their neighbours are cut along their longest edge. New boundary
+        points lie on the true curve.
+
+        Parameters
+        ----------
+        marked : array (m,) of bool, optional
+            The triangles to cut; by default all.
+
+        Returns
+        -------
+        mesh : PlateMesh
+            The refined mesh.
         """
         points, triangles, boundaries = refine(self.points, self.triangles, self.boundaries, self.curves, marked)
         return PlateMesh(points, triangles, boundaries, self.curves, self.outline)

@@ -21,11 +21,16 @@ NEAREST = 16
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The boundaries of a plate: whole ellipses and edges that close, crossing neither themselves nor each other.
+    """The boundaries of a plate: whole ellipses and closed chains of edges, which neither cross themselves nor each
+    other.
 
-    conics: (k, 4) m, centre x, y and semi-axes in x, y.
-    edges: (m, 3, 2) m, start, middle and end of quadratic edges (their points at parameter 0, 1/2, 1); straight edges
-    have their middle in the middle.
+    Parameters
+    ----------
+    conics : array (k, 4)
+        Centre x, y and semi-axes in x, y of each ellipse, m.
+    edges : array (m, 3, 2)
+        Start, middle and end of each quadratic edge, its points at parameter 0, 1/2 and 1, m. The middle of a
+        straight edge is half-way.
     """
 
     conics: FloatArray = field(default_factory=lambda: np.empty((0, 4)))

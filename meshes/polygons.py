@@ -18,12 +18,27 @@ GROWTH = 0.5  # of cells away from a short side, per length
 
 
 def polygon(corners: ArrayLike, cell_size: float, names: Sequence[str] | None = None) -> PlateMesh:
-    """A simple polygon; re-entrant corners are allowed, and so are corners in either sense of rotation.
+    """A simple polygon, with corners in either sense of rotation; corners may be re-entrant.
 
-    corners: (k, 2) m.  cell_size: m, about the longest edge of a cell.
-    names: the boundary of each side, the first one from the first corner to the second; by default "rim" for all.
-    Raises ValueError, naming everything that is wrong, for fewer than three corners, repeated ones, sides that cross or
-    touch, a cell size that is not a positive length, and another number of names than sides.
+    Parameters
+    ----------
+    corners : array (k, 2)
+        Corners, m.
+    cell_size : float
+        Approximate longest edge of a cell, m.
+    names : sequence of str, optional
+        Boundary of each side, the first from the first corner to the second; by default `rim` for all.
+
+    Returns
+    -------
+    mesh : PlateMesh
+        The mesh.
+
+    Raises
+    ------
+    ValueError
+        There are fewer than three corners or repeated ones, sides cross or touch, the cell size is not a positive
+        length, or there is not one name a side; names everything that is wrong.
     """
     try:
         xy = np.asarray(corners, dtype=float)

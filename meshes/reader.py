@@ -23,13 +23,28 @@ BENT = 1e-6  # of the chord: inner edges must not be bent more
 
 
 def read(path: str | Path, unit: float = 1.0) -> PlateMesh:
-    """A mesh file: .msh of gmsh 2 and 4, .vtu or .xdmf, with triangles of first or, but for .xdmf, second order.
+    """Read a mesh file: .msh of gmsh 2 and 4, .vtu or .xdmf, with triangles of first or (except .xdmf) second order.
 
-    unit: metres in one unit of the file's lengths; places stay where they are in the file.
-    Boundaries are the file's lines, by the names of their physical curves in gmsh, or by their number where the format
-    has no names. Curved rims of second-order cells are kept. Points that no triangle uses are dropped.
-    Raises ValueError for a file that cannot be read, and, with counts and the first places in the file's unit, for
-    everything in it that is not a plane conforming mesh with named boundaries.
+    Boundaries are the file's lines, by the names of their physical curves in gmsh, or by their number where the
+    format has no names. Curved rims of second-order cells stay curved. Points that no triangle uses are dropped.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    unit : float
+        Metres in one unit of the file's lengths. Places stay where they are in the file.
+
+    Returns
+    -------
+    mesh : PlateMesh
+        The mesh.
+
+    Raises
+    ------
+    ValueError
+        The file cannot be read, or is not a plane conforming mesh with named boundaries; gives counts and the first
+        places at fault, in the file's unit.
     """
     refuse(check_lengths("read", unit=unit))
     mesh = load(Path(path))

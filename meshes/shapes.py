@@ -33,9 +33,22 @@ def refuse(wrong: list[str]) -> None:
 def disc(radius: float, cell_size: float) -> PlateMesh:
     """A disc around the origin, in rings: ring k has 6 k points, so that all triangles are nearly equilateral.
 
-    radius, cell_size: m; rings are at most `cell_size` wide (a cell's longest edge 1.45 times
-    that), and at least two are made.
-    Raises ValueError when either is not positive and finite.
+    Parameters
+    ----------
+    radius : float
+        Radius, m.
+    cell_size : float
+        Largest width of a ring, m; a cell's longest edge is up to 1.45 times that. There are at least two rings.
+
+    Returns
+    -------
+    mesh : PlateMesh
+        The mesh, with the boundary `rim`.
+
+    Raises
+    ------
+    ValueError
+        Either length is not positive and finite.
     """
     refuse(check_lengths("disc", radius=radius, cell_size=cell_size))
     rings = max(2, math.ceil(radius / cell_size * (1 - 1e-12)))
@@ -55,9 +68,25 @@ def disc(radius: float, cell_size: float) -> PlateMesh:
 def rectangle(width: float, height: float, cell_size: float) -> PlateMesh:
     """A rectangle around the origin, in an even number of nearly square boxes either way, each cut along a diagonal.
 
-    The diagonals alternate, so that the mesh has the rectangle's symmetries.
-    width (along x), height, cell_size: m; boxes are at most `cell_size` wide and high, and at least two by two.
-    Boundaries: left, right, bottom, top.  Raises ValueError, naming each, for lengths that are not positive and finite.
+    The diagonals alternate, so that the mesh has the rectangle's symmetries. Its boundaries are `left`, `right`,
+    `bottom` and `top`.
+
+    Parameters
+    ----------
+    width, height : float
+        Lengths along x and y, m.
+    cell_size : float
+        Largest width and height of a box, m. There are at least two by two.
+
+    Returns
+    -------
+    mesh : PlateMesh
+        The mesh.
+
+    Raises
+    ------
+    ValueError
+        A length is not positive and finite; names each.
     """
     refuse(check_lengths("rectangle", width=width, height=height, cell_size=cell_size))
     lengths = np.array([width, height])
@@ -80,11 +109,25 @@ def rectangle(width: float, height: float, cell_size: float) -> PlateMesh:
 def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> PlateMesh:
     """A ring around the origin, of nearly equilateral cells that grow outwards with the radius.
 
-    It is the image of a hexagonal lattice under the exponential function, which keeps angles.
-    inner_radius, outer_radius, cell_size: m; cells are at most `cell_size` high (a side 1.15 times that). At least two
-    rings are made, of at least twelve cells.
-    Boundaries: inner, outer.  Raises ValueError, naming each, for lengths that are not positive and finite, and for an
-    inner radius that is not smaller than the outer one.
+    The mesh is the image of a hexagonal lattice under the exponential function, which keeps angles. It has at least
+    two rings of at least twelve cells. Its boundaries are `inner` and `outer`.
+
+    Parameters
+    ----------
+    inner_radius, outer_radius : float
+        Radii, m.
+    cell_size : float
+        Largest height of a cell, m; its sides are up to 1.15 times that.
+
+    Returns
+    -------
+    mesh : PlateMesh
+        The mesh.
+
+    Raises
+    ------
+    ValueError
+        A length is not positive and finite, or the inner radius is not smaller than the outer one; names each.
     """
     lengths = {"inner_radius": inner_radius, "outer_radius": outer_radius, "cell_size": cell_size}
     wrong = check_lengths("annulus", **lengths)
@@ -116,8 +159,22 @@ def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> Plate
 def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMesh:
     """An ellipse around the origin; cells get smaller towards its sharper ends.
 
-    semi_axis_x, semi_axis_y, cell_size: m; cells are about `cell_size` large, at most half of the smaller semi-axis.
-    Raises ValueError, naming each, for lengths that are not positive and finite.
+    Parameters
+    ----------
+    semi_axis_x, semi_axis_y : float
+        Semi-axes, m.
+    cell_size : float
+        Approximate size of the cells, m; at most half of the smaller semi-axis is used.
+
+    Returns
+    -------
+    mesh : PlateMesh
+        The mesh, with the boundary `rim`.
+
+    Raises
+    ------
+    ValueError
+        A length is not positive and finite; names each.
     """
     lengths = {"semi_axis_x": semi_axis_x, "semi_axis_y": semi_axis_y, "cell_size": cell_size}
     refuse(check_lengths("ellipse", **lengths))

@@ -41,15 +41,39 @@ def simulate_many(
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> list[Trajectory]:
-    """One path for each part, by located events: the same bits as from `simulate`, for any number of threads.
+    """Follow many parts by located events, with the same bits as from `simulate` for any number of threads.
 
-    friction: one law, or one for each part.  drives: for each part one for each actuator; None: the surface's own.
-    The rest is as for `simulate`.
-    threads: how many paths are found at a time, by default one on each processor.
-    progress: called with the paths done and how many there are, whenever more are done.
-    Raises ValueError, naming every input that makes no sense and the part's number, and Interrupted, a
-    KeyboardInterrupt that has the paths found so far, upon Ctrl-C: within a second, but each thread finishes the
-    cells that it is building.
+    Other parameters are those of `simulate`. Ctrl-C takes effect within a second, but each thread finishes the cells
+    that it is building.
+
+    Parameters
+    ----------
+    surface : SurfaceMotion
+        The moving surface.
+    parts : sequence of Micropart
+        The parts.
+    friction : friction law or sequence of them
+        One for all, or one for each part.
+    duration : float
+        Length of each run, s.
+    drives : sequence, optional
+        For each part one drive for each actuator; by default the surface's own.
+    threads : int, optional
+        Number of paths at a time, by default one on each processor.
+    progress : callable, optional
+        Called with the number of finished paths, and of all.
+
+    Returns
+    -------
+    trajectories : list of Trajectory
+        One for each part.
+
+    Raises
+    ------
+    ValueError
+        An input makes no sense; names each, with the part's number.
+    Interrupted
+        Ctrl-C, a KeyboardInterrupt whose `found` has the finished paths.
     """
     frictions, wrong = _laws(friction, len(parts))
     if drives is not None:

@@ -12,9 +12,12 @@ from particle.checks import finite, not_negative, positive, refuse
 
 @dataclass(frozen=True)
 class Micropart:
-    """A part, taken as a point on the surface.
+    """A part, modelled as a point on the surface.
 
-    Raises ValueError, naming every field that is wrong.
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     mass: float  # kg

@@ -31,15 +31,41 @@ def simulate(
     after_detachment: str = "stop",
     time_step: float | None = None,
 ) -> Trajectory:
-    """The part's path over the moving surface, by the equations of `particle.events.equations`.
+    """Follow one part over the moving surface, by the equations of motion (3.1) to (3.4) in docs/motion.md.
 
-    duration: s.  gravity: m/s^2 towards the plate, or a vector along x, y, z for a tilted device: (0, 0, -9.80665) is
-    the same as 9.80665.  tolerance: error of one step, relative to the surface's size.
-    scheme: "events" locates every event.  For comparison, of first order in steps of time_step: "fixed", Moreau's time
-    stepping by the same equations, and "paper", the paper's own scheme, which tends to others (docs/motion.md).
-    after_detachment: "stop" ends the run where the part comes off, "fly" follows it to where it lands ("events" only).
-    time_step: s, of the schemes "fixed" and "paper", which heed no tolerance; by default 1e-4 of the shortest stroke.
-    Raises ValueError, naming every input that makes no sense, as a start beyond the rim.
+    Parameters
+    ----------
+    surface : SurfaceMotion
+        The moving surface.
+    part : Micropart
+        The part and its start.
+    friction : friction law
+        The contact between them.
+    duration : float
+        Length of the run, s.
+    gravity : float or sequence of 3 floats
+        m/s^2 towards the plate, or a vector along x, y, z for a tilted device; (0, 0, -9.80665) is the same as
+        9.80665.
+    tolerance : float
+        Error of one step, relative to the surface's size.
+    after_detachment : str
+        `"stop"` ends the run where the part comes off; `"fly"` follows it to where it lands (scheme `"events"` only).
+    scheme : str
+        `"events"` locates every event. For comparison, of first order in `time_step`: `"fixed"`, Moreau's time
+        stepping by the same equations, and `"paper"`, the paper's own scheme, which tends to others (docs/motion.md).
+    time_step : float, optional
+        Step of the schemes `"fixed"` and `"paper"`, which ignore the tolerance, s; by default 1e-4 of the shortest
+        stroke.
+
+    Returns
+    -------
+    trajectory : Trajectory
+        The part's path.
+
+    Raises
+    ------
+    ValueError
+        An input makes no sense, such as a start beyond the rim; names each.
     """
     wrong = []
     if scheme != "events" and scheme not in _FIXED_STEPS:

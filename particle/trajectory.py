@@ -178,10 +178,25 @@ class Trajectory:
         return float(np.diff(self.time)[self.state[:-1] == state].sum())
 
     def at(self, times: ArrayLike) -> Samples:
-        """The part at times (k,) [s]; those before the start or after the end count as these, nan raises ValueError.
+        """The part at times; those before the start or after the end count as these.
 
-        Scheme "events" integrates from the row before to each time, so that samples are as good as rows. Those with
+        Scheme `"events"` integrates to each time from the row before it, so samples are as good as rows. Schemes with
         fixed steps take the cubic through the places and velocities of the rows around it.
+
+        Parameters
+        ----------
+        times : array (k,)
+            Times, s.
+
+        Returns
+        -------
+        samples : Samples
+            The part at these times.
+
+        Raises
+        ------
+        ValueError
+            A time is nan.
         """
         if np.isnan(np.asarray(times, dtype=float)).any():
             raise ValueError("Input times of at must be numbers; got nan")

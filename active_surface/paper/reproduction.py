@@ -43,10 +43,25 @@ def reproduce(
     parameters: Parameters = PARAMETERS,
     progress: Progress = silent,
 ) -> Reproduction:
-    """Reproduce figures by name, or all.
+    """Reproduce figures of the paper.
 
-    output: a folder; there FOLDER gets a picture and a JSON file for each, and PAGE is written when all were asked for.
-    Raises ValueError for a name that there is no figure of.
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the figures; empty: all.
+    output : path, optional
+        Folder for a picture and a JSON file of each figure, and for the page when all are reproduced.
+    effort : Effort
+        Numbers of starts, frequencies and places: `QUICK` or `FULL`.
+    parameters : Parameters
+        What the paper states, and what it leaves open.
+    progress : Progress, optional
+        Reports the progress of each figure, for progress bars.
+
+    Raises
+    ------
+    ValueError
+        There is no figure of a name.
     """
     modules = modules_of(names)
     begun, bench = perf_counter(), Bench(parameters)

@@ -14,9 +14,13 @@ from active_surface.steering.task import Task
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Aimed(Found):
-    """The case with the drives that were found, its path, and how far it ends from the target.
+    """The case with the drives of an aim, its path, and how far it ends from the target.
 
-    legs: in which it comes there, one after the other; the drives of a single one are cycles, of several segments.
+    Parameters
+    ----------
+    legs : tuple
+        The legs of the way, one after the other. The drives of a single leg are cycles, those of several are
+        segments.
     """
 
     task: Task

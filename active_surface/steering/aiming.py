@@ -27,13 +27,34 @@ def aim(
     tell: Tell = untold,
     overwrite: bool = False,
 ) -> Aimed:
-    """Find the drives that bring a part to a target; with `output`, a folder, write NAME_aimed.toml and NAME_aim.png.
+    """Find the drives that bring a part to a target.
 
-    threads: how many paths are found at a time, by default one on each processor; the result is the same for any.
-    tell: gets how many paths have been found, and of how many at most.  overwrite: whether to replace those files.
     Upon Ctrl-C the best drives so far count, if there are any.
-    Raises ValueError when the case cannot be run or those files are there and not to be replaced, and KeyboardInterrupt
-    upon Ctrl-C before there are any drives.
+
+    Parameters
+    ----------
+    task : Task
+        The case and its target.
+    output : path, optional
+        Folder for NAME_aimed.toml and NAME_aim.png.
+    threads : int, optional
+        Number of paths at a time, by default one on each processor; the result is the same for any.
+    tell : callable
+        Called with the number of paths so far, and the largest number of paths.
+    overwrite : bool
+        Replace those files.
+
+    Returns
+    -------
+    aimed : Aimed
+        The drives, and how near the part comes.
+
+    Raises
+    ------
+    ValueError
+        The case cannot be run, or those files exist and are not to be replaced.
+    KeyboardInterrupt
+        Ctrl-C before there are any drives.
     """
     if output is None:
         return aim_over(prepared(task.case), task, threads, tell)

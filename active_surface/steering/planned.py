@@ -11,11 +11,16 @@ from active_surface.steering.route import Place, Route
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Planned(Found):
-    """The case with the schedule that was found, its path, and what became of each leg.
+    """The case with the schedule of a plan, its path, and how each leg ended.
 
-    arrivals: s, when the part rests for good at each way-point, or beside it.  tried: for how many way-points there are
-    drives, which counts one on whose way the path failed.  failure: why there are less arrivals than way-points; "":
-    there are not, or Ctrl-C came.
+    Parameters
+    ----------
+    arrivals : tuple of float
+        When the part comes to rest for good at each way-point, or beside it, s.
+    tried : int
+        Number of way-points with drives, including one on whose way the path failed.
+    failure : str
+        Why there are fewer arrivals than way-points; empty if there are not, or if Ctrl-C came.
     """
 
     route: Route

@@ -30,13 +30,34 @@ def plan(
     tell: Tell = untold,
     overwrite: bool = False,
 ) -> Planned:
-    """Find the drives that carry a part over way-points; with `output`, write NAME_planned.toml and NAME_plan.png.
+    """Find the drives that carry a part over way-points.
 
-    threads: how many paths are found at a time, by default one on each processor; the result is the same for any.
-    tell: gets how many paths have been found, and of how many at most.  overwrite: whether to replace those files.
     Upon Ctrl-C the legs so far count, if there are any.
-    Raises ValueError when the case cannot be run or those files are there and not to be replaced, and KeyboardInterrupt
-    upon Ctrl-C before there are any legs.
+
+    Parameters
+    ----------
+    route : Route
+        The case and its way-points.
+    output : path, optional
+        Folder for NAME_planned.toml and NAME_plan.png.
+    threads : int, optional
+        Number of paths at a time, by default one on each processor; the result is the same for any.
+    tell : callable
+        Called with the number of paths so far, and the largest number of paths.
+    overwrite : bool
+        Replace those files.
+
+    Returns
+    -------
+    planned : Planned
+        The schedule, and how each leg ended.
+
+    Raises
+    ------
+    ValueError
+        The case cannot be run, or those files exist and are not to be replaced.
+    KeyboardInterrupt
+        Ctrl-C before there are any legs.
     """
     if output is None:
         return plan_over(prepared(route.case), route, threads, tell)

@@ -18,10 +18,28 @@ Place = tuple[float, float]
 
 
 def read_task(path: str | os.PathLike[str], target: Place | None = None, quantile: float | None = None) -> Task:
-    """The task in the file at `path`, which is an aim file or a case file.
+    """Read an aim file or a case file as a task.
 
-    target: m, in place of the file's.  quantile: likewise.
-    Raises CaseError with every mistake in the file, and ValueError for a target that does not suit the case.
+    Parameters
+    ----------
+    path : path
+        The file.
+    target : point, optional
+        The target, m; replaces the file's.
+    quantile : float, optional
+        Share of disturbed runs that must end near; replaces the file's.
+
+    Returns
+    -------
+    task : Task
+        The task.
+
+    Raises
+    ------
+    CaseError
+        The file has mistakes; has every one.
+    ValueError
+        The target does not suit the case.
     """
     case, settings, told = read_settings(path, target is None)
     goal = target or told
@@ -33,9 +51,26 @@ def read_task(path: str | os.PathLike[str], target: Place | None = None, quantil
 
 
 def read_route(path: str | os.PathLike[str], through: Sequence[Place]) -> Route:
-    """The route through way-points [m] that the file at `path`, an aim file or a case file, is to be followed along.
+    """Read an aim file or a case file as a route.
 
-    Raises CaseError with every mistake in the file, and ValueError for way-points that do not suit the case.
+    Parameters
+    ----------
+    path : path
+        The file.
+    through : sequence of points
+        The way-points, m.
+
+    Returns
+    -------
+    route : Route
+        The route.
+
+    Raises
+    ------
+    CaseError
+        The file has mistakes; has every one.
+    ValueError
+        The way-points do not suit the case.
     """
     case, settings, _ = read_settings(path, False)
     return Route(case, tuple(through), settings, Path(path).stem)

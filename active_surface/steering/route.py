@@ -14,10 +14,12 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Route:
-    """A case whose part is to be carried over way-points (x, y) [m], to each within the case's duration.
+    """A case whose part is to be carried over way-points (x, y) in m, to each within the case's duration.
 
-    Raises ValueError with all that makes no sense, as a way-point that is off the plate, or a first one that cannot be
-    reached.
+    Raises
+    ------
+    ValueError
+        An input makes no sense, such as a way-point off the plate or a first one that cannot be reached; has all.
     """
 
     case: Case

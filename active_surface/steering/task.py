@@ -31,9 +31,12 @@ Mistake = tuple[str, str]
 
 @dataclass(frozen=True)
 class Task:
-    """A case whose part is to be brought to a target (x, y) [m] within its duration.
+    """A case whose part is to be brought to a target (x, y) in m within its duration.
 
-    Raises ValueError with all that makes no sense, as a target that is off the plate or cannot be reached.
+    Raises
+    ------
+    ValueError
+        An input makes no sense, such as a target that is off the plate or cannot be reached; has all.
     """
 
     case: Case

@@ -21,9 +21,24 @@ Mistake = tuple[Location, str]
 
 
 def read_study(path: str | os.PathLike[str], case: Case | None = None) -> Study:
-    """Read the study file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read.
+    """Read a study file.
 
-    case: its base case; None: that of the file that it names.
+    Parameters
+    ----------
+    path : path
+        The file.
+    case : Case, optional
+        Its base case; by default that of the file that it names.
+
+    Returns
+    -------
+    study : Study
+        The study.
+
+    Raises
+    ------
+    CaseError
+        The file cannot be read or has mistakes; has every one.
     """
     text, data = load(path)
     errors: list[Any] = []

@@ -70,17 +70,41 @@ def run_study(
     scheduler: str | None = None,
     overwrite: bool = False,
 ) -> Sweep:
-    """Find all paths of a study; with `output`, a folder, write NAME.nc and NAME.sweep.png there.
+    """Follow all paths of a study.
 
-    With a folder, chunks of finished paths are kept in NAME.sweep there until all are done, and a sweep that was
-    interrupted goes on from them. If NAME.nc is of the same study, nothing is done again.
-    threads: how many paths are found at a time, by default one on each processor.
-    tell: gets how many paths are done, and of how many.
-    scheduler: the address of a dask scheduler whose workers find the paths, each with all of its own threads.
-    overwrite: whether to replace the results of another study, or of other versions, in NAME.nc.
-    Raises ValueError when NAME.nc or NAME.sweep is something else, RuntimeError when another process sweeps in the
-    folder by that name, OSError when the disk is full, KeyboardInterrupt upon Ctrl-C, and with a scheduler what
-    `records_on` raises.
+    Chunks of finished paths are kept in NAME.sweep of the output folder until all are done; an interrupted sweep
+    resumes from them. If NAME.nc is of the same study, nothing is computed again.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    output : path, optional
+        Folder for NAME.nc and NAME.sweep.png.
+    threads : int, optional
+        Number of paths at a time, by default one on each processor.
+    tell : callable
+        Called with the number of finished paths, and of all.
+    scheduler : str, optional
+        Address of a dask scheduler whose workers compute the paths, each with all of its own threads.
+    overwrite : bool
+        Replace the results of another study, or of other versions, in NAME.nc.
+
+    Returns
+    -------
+    sweep : Sweep
+        The labelled results.
+
+    Raises
+    ------
+    ValueError
+        NAME.nc or NAME.sweep holds something else.
+    RuntimeError
+        Another process sweeps in the folder by that name.
+    OSError
+        The disk is full.
+    KeyboardInterrupt
+        Ctrl-C.
     """
     if output is None:
         with tempfile.TemporaryDirectory() as folder:

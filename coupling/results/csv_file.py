@@ -20,12 +20,31 @@ HEADER = ",".join(COLUMNS)
 
 
 def write_csv(trajectory: Trajectory, path: str | os.PathLike[str], times: ArrayLike | None = None) -> Path:
-    """Write a trajectory at times (k,) [s] and at its events, or at all its rows, to the file at `path`; return that.
+    """Write a trajectory at given times and its events, or at all its rows, as CSV.
 
-    Times before its start or after its end count as these. Each time comes once, at an event as it is from then on.
-    Numbers are written so that reading them gives the same floats; the state is stick, slip or flight.
-    Raises ValueError when a time is not finite or the file at `path` holds something else; OSError if it cannot be
-    written.
+    Each time comes once, at an event with the values from then on. Reading the numbers gives the same floats. The
+    state is stick, slip or flight.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The path.
+    path : path
+        The file.
+    times : array (k,), optional
+        Times, s; those before its start or after its end count as these.
+
+    Returns
+    -------
+    path : path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        A time is not finite, or the file holds something else.
+    OSError
+        The file cannot be written.
     """
     path = Path(path)
     check_csv(path)

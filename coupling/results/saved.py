@@ -72,9 +72,26 @@ class SavedRun:
             return case_of(CaseRecord(text, files), self.name, None if source == text else source)
 
     def plate_field(self, name: str, steps: int | slice | Sequence[int] | NDArray[np.int64] = slice(None)) -> NDArray:
-        """A field of the plate at steps: (k', n) or, of a vector, (k', n, 3); at a single step without the first axis.
+        """A field of the plate at stored steps.
 
-        Raises ValueError for a field that the file lacks, or has damaged, IndexError for a step that it lacks.
+        Parameters
+        ----------
+        name : str
+            Name of the field.
+        steps : int or slice
+            The steps.
+
+        Returns
+        -------
+        values : array (k', n) or, of a vector, (k', n, 3)
+            Values at the points; at a single step without the first axis.
+
+        Raises
+        ------
+        ValueError
+            The file lacks the field or has it damaged.
+        IndexError
+            The file lacks the step.
         """
         if name not in self.plate_fields:
             known = ", ".join(self.plate_fields)
@@ -91,9 +108,22 @@ class SavedRun:
 
 
 def read_run(path: str | os.PathLike[str]) -> SavedRun:
-    """Read a run from its files: `path` is either of the two, finished or partial, or FOLDER/NAME without the endings.
+    """Read a run back from its files.
 
-    Raises ValueError when there is no such file, when it is no result of a run, is damaged, or has no other beside it.
+    Parameters
+    ----------
+    path : path
+        Either of the two files, finished or partial, or FOLDER/NAME without the endings.
+
+    Returns
+    -------
+    run : SavedRun
+        The run.
+
+    Raises
+    ------
+    ValueError
+        There is no such file, or it is no result of a run, is damaged, or has no other beside it.
     """
     paths = _pair(Path(path))
     with _opened(paths["plate"]) as plate, _opened(paths["part"]) as part:

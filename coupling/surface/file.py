@@ -18,10 +18,28 @@ KIND, VERSION = "active-surface surface motion", 1
 
 
 def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
-    """Write a surface, with the cells that are built so far, to the HDF5 file at `path`; return that.
+    """Write a surface, with the cells built so far, to an HDF5 file.
 
-    `surface.evaluate` at points all over the plate first makes sure that there are cells everywhere.
-    Raises ValueError when the file at `path` holds something else; OSError if it cannot be written.
+    To have cells everywhere, call `surface.evaluate` at points all over the plate first.
+
+    Parameters
+    ----------
+    surface : SurfaceMotion
+        The surface.
+    path : path
+        The file.
+
+    Returns
+    -------
+    path : path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        The file holds something else.
+    OSError
+        The file cannot be written.
     """
     path = Path(path)
     check_surface(path)
@@ -43,10 +61,26 @@ def check_surface(path: Path) -> None:
 
 
 def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
-    """The surface that `write_surface` wrote: the same bits, with the cells that were built then and no others.
+    """Read the surface that `write_surface` wrote: the same bits, with the cells built then and no others.
 
-    A path that comes to a place without one raises ValueError.
-    Raises ValueError when the file at `path` is no such file; OSError if it cannot be read.
+    A path that comes to a place without a cell raises ValueError.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Returns
+    -------
+    surface : SurfaceMotion
+        The surface.
+
+    Raises
+    ------
+    ValueError
+        The file holds something else.
+    OSError
+        The file cannot be read.
     """
     path = Path(path)
     if path.exists() and not is_surface(path):

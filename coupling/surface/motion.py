@@ -19,11 +19,26 @@ FLOOR = 1e-6  # of the plate's size: the radius below which a point load's Hessi
 def surface_motion(
     shapes: Shapes, drives: Sequence[AnyDrive], surface_tolerance: float = SURFACE_TOLERANCE
 ) -> SurfaceMotion:
-    """The surface over time, w(x, t) = sum_i h_i(t) phi_i(x).
+    """Combine influence shapes and drives into the surface over time, w(x, t) = sum_i h_i(t) phi_i(x).
 
-    shapes: influence shapes of N actuators, from finite elements or in closed form.  drives: one for each.
-    surface_tolerance: largest error of a unit shape's fit in w; the surface's `error` says what was measured.
-    Raises ValueError when there is not one drive for each actuator, or the tolerance is not within [1e-13, 1e-3].
+    Parameters
+    ----------
+    shapes : Shapes
+        Influence shapes of N actuators, from finite elements or in closed form.
+    drives : sequence of drives
+        One for each actuator.
+    surface_tolerance : float
+        Largest error of a unit shape's fit in w; the surface's `error` states what was measured.
+
+    Returns
+    -------
+    surface : SurfaceMotion
+        The surface.
+
+    Raises
+    ------
+    ValueError
+        There is not one drive for each actuator, or the tolerance is not within [1e-13, 1e-3].
     """
     wrong = []
     if len(drives) != len(shapes.points):

@@ -25,7 +25,7 @@ def add_fields(app: Sphinx, what: str, name: str, obj: Any, options: Any, lines:
     if not isinstance(obj, type):
         return
     text = "\n".join(lines)
-    rows = [row for row in fields.of(obj) if not re.search(rf"(?:``|\*\*){row.name}(?:``|\*\*)", text)]
+    rows = [row for row in fields.of(obj) if not re.search(rf"\*\*[\w, ]*\b{row.name}\b[\w, ]*\*\*", text)]
     if rows:
         items = (f"* `{row.name}`{row.described}: {escaped(row.comment)}".rstrip(": ") for row in rows)
         lines += ["", "Values:" if rows[0].is_member else "Fields:", "", *items, ""]

@@ -100,18 +100,41 @@ class PatchedShapes(Shapes):
         return value
 
     def matrix(self, xy: ArrayLike, least: float = 0.0) -> csr_matrix:
-        """The shapes at points (n, 2) [m] as a sparse matrix (n, N).
+        """The shapes at points as a sparse matrix.
 
-        least: entries below this, relative to what a shape has at its own actuator, are left out.
-        Where patches are alike and points lie alike on them, as those of a grid in step with the array, one answer
-        serves all.
+        Where patches are alike and points lie alike on them, such as a grid in step with the array, one answer serves
+        all.
+
+        Parameters
+        ----------
+        xy : array (n, 2)
+            Points, m.
+        least : float
+            Entries below this, relative to the shape at its own actuator, are left out.
+
+        Returns
+        -------
+        shapes : sparse array (n, N)
+            The shapes.
         """
         return self._sparse(xy, lambda patch, x: patch.field.values(x), least)
 
     def laplacians(self, xy: ArrayLike, floor: float, least: float = 0.0) -> csr_matrix:
-        """The shapes' Laplacians at points (n, 2) [m] as a sparse matrix (n, N) [1/m^2].
+        """The shapes' Laplacians at points as a sparse matrix.
 
-        floor: m, as in `InfluenceShapes.laplacians`.  least: as in `matrix`.
+        Parameters
+        ----------
+        xy : array (n, 2)
+            Points, m.
+        floor : float
+            As in `InfluenceShapes.laplacians`, m.
+        least : float
+            As in `matrix`.
+
+        Returns
+        -------
+        laplacians : sparse array (n, N)
+            1/m^2 for each unit of the shapes' weights.
         """
         return self._sparse(xy, lambda patch, x: patch.field.laplacians(x, floor / patch.size) / patch.size**2, least)
 

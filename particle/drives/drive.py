@@ -29,16 +29,25 @@ SINE_ERROR = (2 * math.pi / PIECES) ** 6 / 46080
 
 @dataclass(frozen=True)
 class Drive(Evaluated):
-    """The stroke h(t) of one actuator, the same over and over or once.
+    """The stroke h(t) of one actuator, repeated or once.
 
-    cycle "up-down": up in half of 1/frequency, down in the other half, each followed by `dwell` at rest.
-    cycle "up": up once in 1/frequency, then held.
-    Both follow the quintic 10 s^3 - 15 s^4 + 6 s^5, at rest and unaccelerated at both ends.
-    cycle "sine": stroke sin(2 pi f t), which begins and ends with a jump of velocity.
-    cycle "cosine": stroke (1 - cos(2 pi f t)) / 2, from 0 up and back, which begins and ends with one of acceleration.
-    These two are quintics through 128 points a period, C2 between them; `error` says how far off.
-    All but "up" go on without end or for `cycles` periods.
-    Raises ValueError, naming every field that is wrong.
+    Strokes follow the quintic 10 s^3 - 15 s^4 + 6 s^5, at rest and unaccelerated at both ends. Sines and cosines are
+    quintics through 128 points a period, C2 between them; `error` states how far off they are.
+
+    Parameters
+    ----------
+    cycle : str
+        `"up-down"`: up in half of 1/frequency, down in the other half, each followed by `dwell` at rest. `"up"`: up
+        once in 1/frequency, then held. `"sine"`: stroke sin(2 pi f t), which begins and ends with a jump of velocity.
+        `"cosine"`: stroke (1 - cos(2 pi f t)) / 2, from 0 up and back, which begins and ends with one of
+        acceleration.
+    cycles : int, optional
+        Number of periods, by default without end; not for `"up"`.
+
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     stroke: float  # m

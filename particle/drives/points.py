@@ -19,11 +19,19 @@ TIMES = "two or more times in s that increase from 0"
 
 @dataclass(frozen=True, eq=False)
 class TableDrive(Evaluated):
-    """Heights at given times, at rest and unaccelerated at each; from one to the next the quintic of a stroke.
+    """Heights at given times, at rest and unaccelerated at each, joined by the quintic of a stroke.
 
-    repeats: how often the table is run through, None: without end; more than once only if it ends where it began.
     Before the delay the first height is held, after the end the last.
-    Raises ValueError, naming every field that is wrong.
+
+    Parameters
+    ----------
+    repeats : int or None
+        Number of passes, None: without end; more than one only if the table ends where it began.
+
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     times: FloatArray  # (n,) s, increasing from 0
@@ -72,11 +80,15 @@ class TableDrive(Evaluated):
 
 @dataclass(frozen=True, eq=False)
 class HermiteDrive(Evaluated):
-    """A motion given by its height, velocity and acceleration at points in time: between two the quintic through both.
+    """A motion by its height, velocity and acceleration at points in time, joined by quintics.
 
-    It is twice continuously differentiable from the first point to the last; the first height is held before, the last
-    afterwards, so that a motion that is not at rest there begins and ends with a jump.
-    Raises ValueError, naming every field that is wrong.
+    It is twice continuously differentiable from the first point to the last. The first height is held before, the
+    last afterwards, so a motion that is not at rest there begins and ends with a jump.
+
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     times: FloatArray  # (n,) s, increasing from 0
@@ -104,10 +116,23 @@ class HermiteDrive(Evaluated):
 
     @classmethod
     def of(cls, function: Callable[[FloatArray], Any], end: float, pieces: int, delay: float = 0.0) -> HermiteDrive:
-        """The motion h(t) from 0 to `end` [s] as so many pieces of equal length.
+        """The motion h(t) from 0 to `end` in pieces of equal length.
 
-        function: of times (n,) [s], returns h [m], h' [m/s] and h'' [m/s^2], each (n,) or one number.
-        `error` is the largest difference from h that was found at seven points inside each piece.
+        Parameters
+        ----------
+        function : callable
+            Of times (n,) in s, returns h in m, h' in m/s and h'' in m/s^2, each (n,) or one number.
+        end : float
+            End of the motion, s.
+        pieces : int
+            Number of pieces.
+        delay : float
+            Rest before the motion, s.
+
+        Returns
+        -------
+        drive : HermiteDrive
+            The motion. Its `error` is the largest difference from h at seven points inside each piece.
         """
         refuse(
             "HermiteDrive.of",

@@ -18,13 +18,21 @@ MOST_STROKES = 1_000_000
 
 @dataclass(frozen=True)
 class Segment:
-    """One part of a schedule, from the height where the part before it ended.
+    """One part of a schedule, from the height where the previous one ended.
 
-    cycle "up-down": up by the stroke in half of 1/frequency, down in the other half; it ends where it began.
-    cycle "up": up by the stroke in 1/frequency; a negative stroke goes down.
-    cycle "hold": stays where it is for the time `dwell`; it has no stroke, frequency and cycles.
-    The first two come `cycles` times, and each of their strokes is followed by `dwell` at rest.
-    Raises ValueError, naming every field that is wrong.
+    Parameters
+    ----------
+    cycle : str
+        `"up-down"`: up by the stroke in half of 1/frequency, down in the other half. `"up"`: up by the stroke in
+        1/frequency; a negative stroke goes down. `"hold"`: stay for the time `dwell`, without stroke, frequency and
+        cycles.
+    cycles : int
+        Number of strokes up and down, or up, each followed by `dwell` at rest.
+
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     stroke: float | None = None  # m, needed but for "hold"
@@ -98,11 +106,19 @@ class Segment:
 
 @dataclass(frozen=True)
 class SegmentDrive(Evaluated):
-    """A schedule: segments one after the other from height 0, each from where the one before it ended.
+    """A schedule: segments one after the other from height 0, each from where the previous one ended.
 
-    repeats: how often the schedule is run through, None: without end; more than once only if it ends at height 0.
     Afterwards the last height is held.
-    Raises ValueError, naming every field that is wrong.
+
+    Parameters
+    ----------
+    repeats : int or None
+        Number of passes, None: without end; more than one only if the schedule ends at height 0.
+
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     schedule: Sequence[Segment]

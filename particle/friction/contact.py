@@ -139,9 +139,12 @@ def new_law(
 
 @dataclass(frozen=True)
 class ConstantFriction:
-    """Q = limit whatever the load; the part never comes off.
+    """A constant friction limit, Q = limit whatever the load; the part never comes off.
 
-    Raises ValueError when the limit is negative.
+    Raises
+    ------
+    ValueError
+        The limit is negative.
     """
 
     limit: float  # N
@@ -164,10 +167,17 @@ class ConstantFriction:
 
 @dataclass(frozen=True)
 class CoulombAdhesion:
-    """Q = max(0, coefficient (N + adhesion)), the part comes off below N = -adhesion.
+    """Coulomb friction with adhesion: Q = max(0, coefficient (N + adhesion)); the part comes off below N = -adhesion.
 
-    static_coefficient, at least the (kinetic) coefficient, holds a part that is stuck.
-    Raises ValueError, naming every field that is wrong.
+    Parameters
+    ----------
+    static_coefficient : float, optional
+        Coefficient of a stuck part, at least the (kinetic) coefficient.
+
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     coefficient: float

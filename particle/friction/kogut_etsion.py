@@ -44,10 +44,18 @@ SHEAR_POWERS = (4.425, 3.425, 2.425, 1.425)
 
 @dataclass(frozen=True)
 class KogutEtsion:
-    """The contact of two rough surfaces under a normal load; the defaults are the paper's Table 1.
+    """The contact of two rough surfaces under a normal load, equations (3) to (5) of the paper; the defaults are its
+    Table 1.
 
-    coefficients: "printed" as in the paper's equation (5), "unrounded" as in the fit that it was rounded from.
-    Raises ValueError, naming every field that is wrong.
+    Parameters
+    ----------
+    coefficients : str
+        `"printed"` as in the paper's equation (5), `"unrounded"` as in the fit behind it.
+
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     roughness: float = 20e-9  # m, standard deviation of surface heights
@@ -153,9 +161,22 @@ class KogutEtsion:
         return float(self.net_load(self.branch[0]))
 
     def separation(self, net_load: ArrayLike) -> FloatArray:
-        """The stable separation d / sigma under net loads [N] of any shape.
+        """The stable separation d / sigma.
 
-        Raises ValueError for a load below -pull_off or above the peak of the friction limit.
+        Parameters
+        ----------
+        net_load : float or array
+            Net loads, N, of any shape.
+
+        Returns
+        -------
+        separation : array
+            Of the same shape.
+
+        Raises
+        ------
+        ValueError
+            A load is below -pull_off or above the peak of the friction limit.
         """
         loads = np.asarray(net_load, dtype=float)
         check_loads(loads, self.pull_off, self.largest_load)
@@ -170,9 +191,22 @@ class KogutEtsion:
         return np.reshape([solve(load) for load in loads.ravel().tolist()], loads.shape)
 
     def friction_limit(self, net_load: ArrayLike) -> FloatArray:
-        """Q [N] under net loads [N] of any shape, from the table that the integrator uses.
+        """The friction limit Q, from the table that the integrator uses.
 
-        Raises ValueError as `separation` does.
+        Parameters
+        ----------
+        net_load : float or array
+            Net loads, N, of any shape.
+
+        Returns
+        -------
+        limit : array
+            Q, N, of the same shape.
+
+        Raises
+        ------
+        ValueError
+            As for `separation`.
         """
         return friction_limits(self.law, net_load)
 

@@ -29,10 +29,19 @@ FLAT = 1e-14  # of the largest limit: rounding is no fall
 class FrictionTable:
     """Q through measured points; the part comes off below the first load, and the law ends at the last.
 
-    loads: N, ascending; the first is minus the pull-off force, so it is 0 or negative.
-    limits: N, the largest friction while sliding at each load; 0 or positive, not falling.
-    static_ratio: limit of a part that is stuck over that of one that slides.
-    Raises ValueError, naming every field that is wrong.
+    Parameters
+    ----------
+    loads : sequence of float
+        Net loads, N, ascending. The first is minus the pull-off force, so it is 0 or negative.
+    limits : sequence of float
+        Largest friction while sliding at each load, N; 0 or positive, not falling.
+    static_ratio : float
+        Limit of a stuck part over that of a sliding one.
+
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
     """
 
     loads: Sequence[float]  # N

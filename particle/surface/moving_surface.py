@@ -98,9 +98,22 @@ class SurfaceMotion:
         return self.store.error
 
     def driven_by(self, drives: Sequence[AnyDrive]) -> SurfaceMotion:
-        """The same surface, its cells shared, with other drives, one for each actuator.
+        """The same surface with other drives, sharing its cells.
 
-        Raises ValueError when there is not one drive for each, and for a surface on a moving base, as a platform.
+        Parameters
+        ----------
+        drives : sequence of drives
+            One for each actuator.
+
+        Returns
+        -------
+        surface : SurfaceMotion
+            The surface.
+
+        Raises
+        ------
+        ValueError
+            There is not one drive for each actuator, or the surface is on a moving base, such as a platform.
         """
         wrong = self.drive_faults({"drives": drives})
         if wrong:
@@ -119,9 +132,24 @@ class SurfaceMotion:
         return [f"Input {name} must be one an actuator, {count}; got {n}" for name, n in sizes.items() if n != count]
 
     def evaluate(self, xy: ArrayLike, time: float) -> SurfaceState:
-        """The surface at points (n, 2) [m] and a time [s].
+        """The surface at points and one time.
 
-        Raises ValueError when a point lies beyond the rim, or the time is not finite.
+        Parameters
+        ----------
+        xy : array (n, 2)
+            Points, m.
+        time : float
+            Time, s.
+
+        Returns
+        -------
+        state : SurfaceState
+            Height, velocity, slopes and curvatures.
+
+        Raises
+        ------
+        ValueError
+            A point lies beyond the rim, or the time is not finite.
         """
         if not math.isfinite(time):
             raise ValueError(f"Input time of evaluate must be a finite number of seconds; got {time}")
@@ -147,11 +175,27 @@ class SurfaceMotion:
 def polynomial_surface(
     coefficients: ArrayLike, base: Sequence[AnyDrive] | None = None, size: float = 1.0
 ) -> SurfaceMotion:
-    """A surface without rim and actuators, w = sum c[i, j, k] x^i y^j t^k in SI units: bowls, inclines, tests.
+    """A polynomial surface without rim and actuators, w = sum c[i, j, k] x^i y^j t^k in SI units: bowls, inclines,
+    tests.
 
-    coefficients: (I, J) for a surface at rest or (I, J, K) with K <= 6.  base: two drives that move it along x and y.
-    size: m, the length that the integrator's tolerance refers to.
-    Raises ValueError for any other shape.
+    Parameters
+    ----------
+    coefficients : array (I, J) or (I, J, K)
+        c, for a surface at rest or a moving one with K <= 6.
+    size : float
+        Length that the integrator's tolerance refers to, m.
+    base : pair of drives, optional
+        Motion of the base along x and y.
+
+    Returns
+    -------
+    surface : SurfaceMotion
+        The surface.
+
+    Raises
+    ------
+    ValueError
+        The coefficients have any other shape.
     """
     c = np.asarray(coefficients, dtype=float)
     c = c[:, :, None] if c.ndim == 2 else c
@@ -178,11 +222,26 @@ def polynomial_surface(
 def platform_surface(
     x: AnyDrive | None = None, y: AnyDrive | None = None, z: AnyDrive | None = None, size: float = 1.0
 ) -> SurfaceMotion:
-    """A flat rigid surface without rim that drives move along x, y and z; None: not at all.
+    """A flat rigid surface without rim that drives move along x, y and z.
 
-    Positions on it are counted from the platform.
-    size: m, the length that the integrator's tolerance refers to; the platform's largest travel suits.
-    Raises ValueError when the size is not positive.
+    Positions on it are relative to the platform.
+
+    Parameters
+    ----------
+    x, y, z : drive, optional
+        Motion along each axis; None: no motion.
+    size : float
+        Length that the integrator's tolerance refers to, m; the platform's largest travel suits.
+
+    Returns
+    -------
+    surface : SurfaceMotion
+        The surface.
+
+    Raises
+    ------
+    ValueError
+        The size is not positive.
     """
     if not (math.isfinite(size) and size > 0):
         raise ValueError(f"Input size of platform_surface must be a positive length in m; got {size!r}")

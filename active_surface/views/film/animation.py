@@ -75,16 +75,42 @@ def animate(
 ) -> Animation:
     """Make a film of a run.
 
-    result: one of its files, FOLDER/NAME, or what `read_run` gives.  output: file of the film, or folder of its
-    pictures; without one NAME.mp4 beside the result.  kind: "mp4", "gif" or "png"; without one as `output` ends.
-    camera: a name in `CAMERAS`, "azimuth,elevation" in degrees, or a camera.  fps: frames a second.  slow_motion:
-    seconds of film for each second of the run; without it the film lasts about 8 s.  exaggeration: of heights;
-    without it a round number that shows them.  size: "WIDTHxHEIGHT" in pixels, or the two numbers.  renderer:
-    "pyvista", "matplotlib", or "auto", pyvista where it can draw.  tell: gets how many frames are done, and of how
-    many.
-
     Between stored steps heights are interpolated linearly. An older film of that name is replaced.
-    Raises ValueError when the result cannot be read or an input is refused, OSError when the film cannot be written.
+
+    Parameters
+    ----------
+    result : path or SavedRun
+        One of the run's files, FOLDER/NAME, or what `read_run` returns.
+    output : path, optional
+        File of the film, or folder of its pictures; by default NAME.mp4 beside the result.
+    kind : str, optional
+        `"mp4"`, `"gif"` or `"png"`; by default the ending of `output`.
+    camera : str or camera
+        A name in `CAMERAS`, `"azimuth,elevation"` in degrees, or a camera.
+    fps : float, optional
+        Frames a second.
+    slow_motion : float, optional
+        Seconds of film for each second of the run; by default the film lasts about 8 s.
+    exaggeration : float, optional
+        Factor on heights; by default a round number that shows them.
+    size : str or pair of int, optional
+        `"WIDTHxHEIGHT"` in pixels, or the two numbers.
+    renderer : str
+        `"pyvista"`, `"matplotlib"`, or `"auto"`: pyvista where it can draw.
+    tell : callable
+        Called with the number of finished frames, and of all.
+
+    Returns
+    -------
+    animation : Animation
+        The film.
+
+    Raises
+    ------
+    ValueError
+        The result cannot be read, or an input is refused.
+    OSError
+        The film cannot be written.
     """
     tries = _Tries()
     form = tries(format_of, None if output is None else Path(output), kind) or "mp4"

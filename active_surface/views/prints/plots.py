@@ -32,12 +32,34 @@ def plot(
     y: str | None = None,
     value: str | None = None,
 ) -> list[Plotted]:
-    """Draw a run or a sweep into a folder, by default that of the result: NAME.path.pdf, NAME.time.pdf and so on.
+    """Draw a run or a sweep into a folder as NAME.path.pdf, NAME.time.pdf and so on.
 
-    path: a file that a run or sweep left, or FOLDER/NAME of a run.  formats: of "pdf", "svg", "png".
-    width: mm.  x, y: of a sweep, the names of the axes that are shown.  value: a column of its results, only that.
-    Raises ValueError for a path to anything else, a format, width or name that there is not, OSError when a picture
-    cannot be written.
+    Parameters
+    ----------
+    path : path
+        A file of a run or sweep, or FOLDER/NAME of a run.
+    output : path, optional
+        The folder; by default that of the result.
+    formats : sequence of str
+        Of `"pdf"`, `"svg"`, `"png"`.
+    width : float
+        Width of the pictures, mm.
+    x, y : str, optional
+        Names of the axes of a sweep to draw over.
+    value : str, optional
+        The only column of a sweep's results to draw.
+
+    Returns
+    -------
+    pictures : dict
+        Captions, by file.
+
+    Raises
+    ------
+    ValueError
+        The path leads to anything else, or a format, width or name is refused.
+    OSError
+        A picture cannot be written.
     """
     unknown = [kind for kind in formats if kind not in FORMATS]
     if unknown:
