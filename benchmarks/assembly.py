@@ -13,8 +13,7 @@ from skfem.helpers import dd, ddot, trace
 
 from fem_plate.elements import forms
 from fem_plate.elements.argyris import Triangles
-from fem_plate.elements.assembly import sum_up
-from fem_plate.elements.space import _entities
+from fem_plate.elements.assembly import number_entities, sum_up
 from meshes import PlateMesh, disc
 
 CELLS_FROM_CENTRE = (4, 8, 16)
@@ -30,7 +29,7 @@ def bending(u, v, _):  # type: ignore[no-untyped-def]
 
 
 def ours(mesh: PlateMesh) -> csc_matrix:
-    entities, first = _entities(mesh.triangles, mesh.triangles)
+    entities, first = number_entities(mesh.triangles, mesh.triangles)
     return sum_up(forms.bending(Triangles(mesh.points, mesh.triangles), POISSON_RATIO), entities, first)
 
 

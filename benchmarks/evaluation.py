@@ -57,7 +57,7 @@ def lattice(side: int) -> Lattice:
 
 def check(one: Lattice) -> None:
     """The surface is the sum of its shapes."""
-    rows, values = one.shapes.nearby(one.xy)
+    rows, values = one.shapes.nonzero_values(one.xy)
     heights = one.surface.drives.delay[rows]
     stroke = np.array([Drive(STROKE, FREQUENCY, delay=delay).evaluate(MOMENT)[0] for delay in heights.tolist()])
     wrong = np.abs(ours.evaluations(one.surface, one.xy, MOMENT, 1)[:, 0] - values @ stroke).max() / STROKE

@@ -139,7 +139,7 @@ def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: 
     if np.hypot(*(shapes.points - start).T).min() < SAME_PLACE * shapes.size:
         return 0.0  # the part stands on an actuator, which does not give
     if isinstance(shapes, PatchedShapes):
-        return shapes.give(start[0]) * force
+        return shapes.compliance_at(start[0]) * force
     springs = np.append(shapes.springs, 0.0)
     coarse = Plate(plate.mesh, plate.section, plate.supports)  # three digits are enough
     with_part = coarse.influence(np.concatenate([shapes.points, start]), springs)

@@ -2,9 +2,10 @@ from . import analytic as analytic
 from .arrays.patched import PatchedShapes as PatchedShapes, PlateShapes as PlateShapes
 from .deflection import Deflection as Deflection
 from .export import neighbour_coupling as neighbour_coupling, save_influence as save_influence
-from .influence import InfluenceShapes as InfluenceShapes, Shapes as Shapes
+from .influence import InfluenceShapes as InfluenceShapes
 from .plate import Plate as Plate
 from .section import PlateSection as PlateSection
+from .shapes import Shapes as Shapes
 from .vibration import Modes as Modes
 
 # Not public: for the packages that build on this one.

@@ -10,29 +10,65 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_plate.elements import Fields, point_load, point_value
-from fem_plate.influence import Shapes, check_points
+from fem_plate.elements import Derivatives, point_load, point_value
+from fem_plate.inputs import check_points
+from fem_plate.shapes import Shapes
 from meshes import Outline
 
 FloatArray = NDArray[np.float64]
 
 
 def central_load(r: ArrayLike, radius: float, rigidity: float, force: float) -> FloatArray:
-    """Deflection [m] of a clamped disc under a central force, at the distance r [m] (any shape) from the centre.
+    """Deflection of a clamped disc under a central force: equation (2).
 
-    radius: m.  rigidity: N m.  force: N.
+    Parameters
+    ----------
+    r : array_like
+        Distance from the centre [m], of any shape.
+    radius : float
+        [m].
+    rigidity : float
+        Flexural rigidity [N m].
+    force : float
+        [N].
+
+    Returns
+    -------
+    array of the shape of r
+        [m].
     """
     r = np.asarray(r, dtype=float)
     logarithm = np.log(np.where(r > 0, r, radius) / radius)
     return np.asarray(force / (16 * np.pi * rigidity) * (2 * r**2 * logarithm + radius**2 - r**2))
 
 
-def disc_green(xy: ArrayLike, source: ArrayLike, radius: float, rigidity: float) -> Fields:
-    """Deflection of a clamped disc around the origin under a unit force at `source`.
+def disc_green(xy: ArrayLike, source: ArrayLike, radius: float, rigidity: float) -> Derivatives:
+    """Deflection of a clamped disc around the origin under a unit force, with first and second derivatives.
 
-    xy: (n, 2) m.  source: (2,) m, inside the disc.  radius: m.  rigidity: N m.
-    Returns w (n,) m/N, gradient (n, 2) 1/N, Hessian (n, 2, 2) 1/(m N); the Hessian is -inf at the source.
-    Raises ValueError when the source does not lie inside the disc.
+    Parameters
+    ----------
+    xy : (n, 2) array_like
+        Points [m].
+    source : (2,) array_like
+        Where the force acts, inside the disc [m].
+    radius : float
+        [m].
+    rigidity : float
+        Flexural rigidity [N m].
+
+    Returns
+    -------
+    w : (n,) array
+        [m/N].
+    gradient : (n, 2) array
+        [1/N].
+    hessian : (n, 2, 2) array
+        [1/(m N)]; -inf on its diagonal at the source.
+
+    Raises
+    ------
+    ValueError
+        The source does not lie inside the disc.
     """
     x, y = np.asarray(xy, dtype=float) / radius, np.asarray(source, dtype=float)[None] / radius
     if not np.sum(y**2) < 1:
@@ -42,24 +78,24 @@ def disc_green(xy: ArrayLike, source: ArrayLike, radius: float, rigidity: float)
     return factor * value, factor / radius * gradient, factor / radius**2 * hessian
 
 
-def smooth_part(x: FloatArray, sources: FloatArray) -> Fields:
+def smooth_part(x: FloatArray, sources: FloatArray) -> Derivatives:
     """Boggio's function without its singular part: (-R ln S + S - R) / (16 pi), on the unit disc with rigidity 1.
 
-    x: (n, 2).  sources: (N, 2).  Returns the value (n, N), gradient (n, N, 2) and Hessian (n, N, 2, 2); it is smooth
-    up to the rim and somewhat beyond.
+    x: (n, 2).  sources: (N, 2).
+    Returns the value (n, N), gradient (n, N, 2) and Hessian (n, N, 2, 2), smooth up to the rim and somewhat beyond it.
     """
-    offset = x[:, None] - sources  # half the gradient of R
+    half_grad_r = x[:, None] - sources
     square = (sources**2).sum(axis=1)
-    image = x[:, None] * square[:, None] - sources  # half the gradient of S
-    big_r = (offset**2).sum(axis=-1)
-    big_s = (x**2).sum(axis=1)[:, None] * square - 2 * x @ sources.T + 1
-    logarithm, ratio = np.log(big_s), big_r / big_s
-    by_r, by_s = -logarithm - 1, 1 - ratio
-    value = -big_r * logarithm + big_s - big_r
-    gradient = 2 * (by_r[..., None] * offset + by_s[..., None] * image)
-    cross = offset[..., :, None] * image[..., None, :]
-    both = image[..., :, None] * image[..., None, :]
-    hessian = 4 / big_s[..., None, None] * (ratio[..., None, None] * both - cross - np.swapaxes(cross, -1, -2))
+    half_grad_s = x[:, None] * square[:, None] - sources
+    R = (half_grad_r**2).sum(axis=-1)
+    S = (x**2).sum(axis=1)[:, None] * square - 2 * x @ sources.T + 1
+    logarithm, ratio = np.log(S), R / S
+    by_r, by_s = -logarithm - 1, 1 - ratio  # derivatives of -R ln S + S - R
+    value = -R * logarithm + S - R
+    gradient = 2 * (by_r[..., None] * half_grad_r + by_s[..., None] * half_grad_s)
+    rs = half_grad_r[..., :, None] * half_grad_s[..., None, :]
+    ss = half_grad_s[..., :, None] * half_grad_s[..., None, :]
+    hessian = 4 / S[..., None, None] * (ratio[..., None, None] * ss - rs - np.swapaxes(rs, -1, -2))
     for axis in range(2):
         hessian[..., axis, axis] += 2 * (by_r + by_s * square)
     return value / (16 * np.pi), gradient / (16 * np.pi), hessian / (16 * np.pi)
@@ -67,16 +103,25 @@ def smooth_part(x: FloatArray, sources: FloatArray) -> Fields:
 
 def smooth_value(x: FloatArray, sources: FloatArray) -> FloatArray:
     """The value (n, N) of `smooth_part` alone, in a twentieth of its memory."""
-    near, far, product = (x**2).sum(axis=1)[:, None], (sources**2).sum(axis=1), 2 * x @ sources.T
-    big_r, big_s = near + far - product, near * far - product + 1
-    return np.asarray((big_s - big_r * (np.log(big_s) + 1)) / (16 * np.pi))
+    x_square, y_square, product = (x**2).sum(axis=1)[:, None], (sources**2).sum(axis=1), 2 * x @ sources.T
+    R, S = x_square + y_square - product, x_square * y_square - product + 1
+    return np.asarray((S - R * (np.log(S) + 1)) / (16 * np.pi))
 
 
 class DiscShapes(Shapes):
-    """The influence functions of a clamped disc in closed form (Boggio): what `Plate.influence` computes, exactly.
+    """The influence functions of rigid actuators under a clamped disc around the origin, by Boggio's function.
 
-    points: (N, 2) m, inside the radius [m], around the origin.
-    Raises ValueError when a point does not lie inside the disc or two coincide.
+    Parameters
+    ----------
+    points : (N, 2) array_like
+        Places of the actuators, inside the disc [m].
+    radius : float
+        [m].
+
+    Raises
+    ------
+    ValueError
+        A point does not lie inside the disc, or two coincide.
     """
 
     def __init__(self, points: ArrayLike, radius: float) -> None:
@@ -88,18 +133,18 @@ class DiscShapes(Shapes):
         compliance = point_value(x, x) + smooth_value(x, x)
         self.strengths = np.asarray(np.linalg.inv((compliance + compliance.T) / 2))
 
-    def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:
-        strengths = self.strengths if weights is None else self.strengths @ weights
+    def derivatives(self, x: FloatArray, weights: FloatArray | None) -> Derivatives:
+        forces = self.strengths if weights is None else self.strengths @ weights
         sources = self.points / self.size
         parts = zip(smooth_part(x, sources), point_load(x, sources), strict=True)
         value, gradient, hessian = (smooth + singular for smooth, singular in parts)
         return (
-            value @ strengths,
-            np.einsum("njd,jk->nkd", gradient, strengths),
-            np.einsum("njde,jk->nkde", hessian, strengths),
+            value @ forces,
+            np.einsum("njd,jk->nkd", gradient, forces),
+            np.einsum("njde,jk->nkde", hessian, forces),
         )
 
-    def nearby(self, xy: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+    def nonzero_values(self, xy: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
         return np.arange(len(self.points)), self._values(xy / self.size)
 
     def own_heights(self) -> FloatArray:

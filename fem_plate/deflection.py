@@ -5,18 +5,24 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_plate.elements import Estimated, Field, Fields, PlateModel
-from fem_plate.influence import check_on_plate
+from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
+from fem_plate.estimated import Estimated
+from fem_plate.inputs import check_on_plate
 
 FloatArray = NDArray[np.float64]
 
-BALANCE = 1e-9  # of the loads: a larger sum of them moves a plate that is not held
+BALANCE = 1e-9  # of the loads: a larger resultant moves a plate that is not held
 
 
 class Deflection(Estimated):
-    """The plate under forces (N,) [N] at points (N, 2) [m] and a uniform pressure [Pa]; made by `Plate.deflection`.
+    """The plate under forces and a uniform pressure; made by `Plate.deflection`.
 
-    rigidity: N m.
+    Attributes
+    ----------
+    forces : (N,) array
+        [N].
+    load : float
+        Pressure [Pa].
     """
 
     def __init__(
@@ -25,54 +31,55 @@ class Deflection(Estimated):
         self.model, self.forces, self.load = model, forces, pressure
         self.size = model.mesh.size
         x = points / self.size
-        loads = forces[:, None] * self.size**2 / rigidity  # in metres of deflection
-        load = pressure * self.size**4 / rigidity
-        self._check_balance(x, loads, load)
-        unknowns = load * model.under_pressure() if pressure else np.zeros((model.unknowns, 1))
+        scaled_forces = forces[:, None] * self.size**2 / rigidity  # in metres of deflection
+        scaled_pressure = pressure * self.size**4 / rigidity
+        self._check_balance(x, scaled_forces, scaled_pressure)
+        unknowns = scaled_pressure * model.under_pressure() if pressure else np.zeros((model.unknowns, 1))
         if len(x):
-            unknowns = unknowns + model.under_forces(x) @ loads
-        still = Field(model.space, unknowns, x, loads, np.zeros((3, 1)), np.array([load]))
-        self.field = Field(model.space, unknowns, x, loads, self._without_motion(still), still.pressure)
+            unknowns = unknowns + model.under_forces(x) @ scaled_forces
+        pressures = np.array([scaled_pressure])
+        unmoved = PlateFunctions(model.space, unknowns, x, scaled_forces, np.zeros((3, 1)), pressures)
+        self.functions = PlateFunctions(model.space, unknowns, x, scaled_forces, self._levelling(unmoved), pressures)
 
     def _check_balance(self, x: FloatArray, forces: FloatArray, pressure: float) -> None:
         model = self.model
         if not model.rigid.size:
             return
         points, weights = model.space.quadrature
-        total = model.motions(x).T @ forces[:, 0] + pressure * (weights @ model.motions(points))
+        resultant = model.motions(x).T @ forces[:, 0] + pressure * (weights @ model.motions(points))
         scale = np.abs(forces).sum() + abs(pressure) * weights.sum()
-        if np.any(np.abs(total) > BALANCE * scale):
+        if np.any(np.abs(resultant) > BALANCE * scale):
             raise ValueError(
                 "Input loads of a plate whose supports leave it a rigid motion must be in balance; forces and moments "
-                f"do not vanish (by {np.abs(total).max() / scale:.1e} of all loads)"
+                f"do not vanish (by {np.abs(resultant).max() / scale:.1e} of all loads)"
             )
 
-    def _without_motion(self, field: Field) -> FloatArray:
-        """The rigid motion (3, 1) that takes away mean deflection and slope, as far as the supports allow it."""
+    def _levelling(self, functions: PlateFunctions) -> FloatArray:
+        """The rigid motion (3, 1) that removes mean deflection and slope, as far as the supports allow it."""
         rigid = self.model.rigid
         if not rigid.size:
             return np.zeros((3, 1))
         points, weights = self.model.space.quadrature
         motions = self.model.motions(points)
-        mean = motions.T @ (weights[:, None] * field.values(points))
+        mean = motions.T @ (weights[:, None] * functions.values(points))
         return np.asarray(-rigid @ mean)  # the motions are orthonormal
 
-    def evaluate(self, xy: ArrayLike) -> Fields:
-        """The deflection at points.
+    def evaluate(self, xy: ArrayLike) -> Derivatives:
+        """The deflection with first and second derivatives.
 
         Parameters
         ----------
-        xy : array (n, 2)
-            Points, m.
+        xy : (n, 2) array_like
+            Points on the plate [m].
 
         Returns
         -------
-        w : array (n,)
-            Deflection, m.
-        gradient : array (n, 2)
-            Its gradient.
-        hessian : array (n, 2, 2)
-            Its Hessian, 1/m.
+        w : (n,) array
+            [m].
+        gradient : (n, 2) array
+            [1].
+        hessian : (n, 2, 2) array
+            [1/m].
 
         Raises
         ------
@@ -81,5 +88,5 @@ class Deflection(Estimated):
         """
         xy = np.asarray(xy, dtype=float)
         check_on_plate(self.model.mesh.outline, xy, self.size)
-        value, gradient, hessian = self.field.evaluate(xy / self.size)
+        value, gradient, hessian = self.functions.evaluate(xy / self.size)
         return value[:, 0], gradient[:, 0] / self.size, hessian[:, 0] / self.size**2

@@ -1,4 +1,4 @@
-"""Influence functions as arrays: what designers of deformable mirrors and other programs read."""
+"""Influence functions as arrays, for designers of deformable mirrors and for other programs."""
 
 from __future__ import annotations
 
@@ -13,24 +13,22 @@ from fem_plate.influence import InfluenceShapes
 
 FloatArray = NDArray[np.float64]
 
-TOGETHER = 64  # shapes evaluated at once, to bound memory
+CHUNK = 64  # shapes evaluated at a time, to bound memory
 
 
 def neighbour_coupling(shapes: InfluenceShapes | PatchedShapes) -> FloatArray:
     """Each shape's deflection at the nearest other actuator, over that at its own.
 
-    It is zero where all actuators are rigid. Deformable mirrors whose actuators yield or float are described by this
-    figure.
+    This ratio describes deformable mirrors whose actuators yield or float. It is zero where all are rigid.
 
     Parameters
     ----------
     shapes : InfluenceShapes or PatchedShapes
-        The shapes.
+        Shapes of N actuators.
 
     Returns
     -------
-    coupling : array (N,)
-        The ratio, for each actuator.
+    (N,) array
 
     Raises
     ------
@@ -41,10 +39,10 @@ def neighbour_coupling(shapes: InfluenceShapes | PatchedShapes) -> FloatArray:
     if len(points) < 2:
         raise ValueError("Input shapes of neighbour_coupling must have at least two actuators; got one")
     nearest = cKDTree(points).query(points, k=2)[1][:, 1]
-    coupling = [np.empty(0)]
-    for rows in _blocks(len(points)):
-        at = np.concatenate([points[rows], points[nearest[rows]]])
-        own, other = np.split(_some(shapes, at, rows), 2)
+    coupling = []
+    for rows in _chunks(len(points)):
+        xy = np.concatenate([points[rows], points[nearest[rows]]])
+        own, other = np.split(_values(shapes, xy, rows), 2)
         coupling.append(np.diagonal(other) / np.diagonal(own))
     return np.concatenate(coupling)
 
@@ -52,18 +50,24 @@ def neighbour_coupling(shapes: InfluenceShapes | PatchedShapes) -> FloatArray:
 def save_influence(path: str | PathLike[str], shapes: InfluenceShapes | PatchedShapes, across: int = 101) -> None:
     """Write the influence functions on a square grid over the plate to an .npz file.
 
-    Its arrays are `x` (nx,) and `y` (ny,) in m; `shapes` (N, nx, ny), NaN off the plate, in metres per metre of a
-    held actuator's stroke or per newton on a floating one; `points` (N, 2) in m; `stiffness` (N, N) in N/m;
-    `coupling` (N,) of nearest neighbours; and `pitch`, the median distance of neighbours, in m.
+    Its arrays are
+
+    - x (nx,) and y (ny,): the grid [m];
+    - shapes (N, nx, ny): metres per metre of a held actuator's stroke, or per newton on a floating one; NaN off the
+      plate;
+    - points (N, 2): places of the actuators [m];
+    - stiffness (N, N) [N/m];
+    - coupling (N,): `neighbour_coupling`, 0 for a single actuator;
+    - pitch: median distance of neighbours [m].
 
     Parameters
     ----------
-    path : path
+    path : path-like
         The file.
     shapes : InfluenceShapes or PatchedShapes
-        The shapes.
+        Shapes of N actuators.
     across : int
-        Points of the grid along the plate's longer side.
+        Points of the grid along the plate's longer side, at least 2.
 
     Raises
     ------
@@ -78,28 +82,27 @@ def save_influence(path: str | PathLike[str], shapes: InfluenceShapes | PatchedS
     grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     on_plate = shapes.outline.gap(grid) >= 0
     values = np.full((len(shapes.points), len(grid)), np.nan)
-    for rows in _blocks(len(shapes.points)):
-        values[np.ix_(rows, on_plate)] = _some(shapes, grid[on_plate], rows).T
+    for rows in _chunks(len(shapes.points)):
+        values[np.ix_(rows, on_plate)] = _values(shapes, grid[on_plate], rows).T
     several = len(shapes.points) > 1
-    stiffness = shapes.stiffness.toarray() if isinstance(shapes, PatchedShapes) else shapes.stiffness
     np.savez_compressed(
         path,
         x=x,
         y=y,
         shapes=values.reshape(-1, len(x), len(y)),
         points=shapes.points,
-        stiffness=stiffness,
+        stiffness=shapes.stiffness.toarray() if isinstance(shapes, PatchedShapes) else shapes.stiffness,
         coupling=neighbour_coupling(shapes) if several else np.zeros(1),
         pitch=np.median(cKDTree(shapes.points).query(shapes.points, k=2)[0][:, 1]) if several else np.nan,
     )
 
 
-def _some(shapes: InfluenceShapes | PatchedShapes, xy: FloatArray, rows: NDArray[np.int64]) -> FloatArray:
-    """The shapes of some actuators at points (n, 2): (n, rows)."""
+def _values(shapes: InfluenceShapes | PatchedShapes, xy: FloatArray, rows: NDArray[np.int64]) -> FloatArray:
+    """The shapes of some actuators at points (n, 2) [m]: (n, rows)."""
     weights = np.zeros((len(shapes.points), len(rows)))
     weights[rows, np.arange(len(rows))] = 1.0
-    return shapes.fields(xy / shapes.size, weights)[0]
+    return shapes.derivatives(xy / shapes.size, weights)[0]
 
 
-def _blocks(count: int) -> list[NDArray[np.int64]]:
-    return [np.arange(start, min(start + TOGETHER, count)) for start in range(0, count, TOGETHER)]
+def _chunks(count: int) -> list[NDArray[np.int64]]:
+    return [np.arange(start, min(start + CHUNK, count)) for start in range(0, count, CHUNK)]

@@ -1,4 +1,4 @@
-"""What the plate is made of."""
+"""The plate's material and thickness."""
 
 from __future__ import annotations
 
@@ -10,10 +10,21 @@ from dataclasses import dataclass
 class PlateSection:
     """A homogeneous, isotropic plate of constant thickness.
 
+    Parameters
+    ----------
+    youngs_modulus : float
+        Young's modulus [Pa].
+    poisson_ratio : float
+        Poisson's ratio, in [0, 0.5).
+    thickness : float
+        Thickness [m].
+    density : float, optional
+        Mass per volume [kg/m^3]; only frequencies need it.
+
     Raises
     ------
     ValueError
-        A field is wrong; names each.
+        Names every field that is out of range.
     """
 
     youngs_modulus: float  # Pa
@@ -22,15 +33,15 @@ class PlateSection:
     density: float | None = None  # kg/m^3; only frequencies need it
 
     def __post_init__(self) -> None:
-        wrong = []
+        mistakes = []
         for name in ("youngs_modulus", "thickness", "density"):
             value = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0):
-                wrong.append(f"Input {name} of PlateSection must be positive; got {value!r}")
+                mistakes.append(f"Input {name} of PlateSection must be positive; got {value!r}")
         if not 0 <= self.poisson_ratio < 0.5:
-            wrong.append(f"Input poisson_ratio of PlateSection must be in [0, 0.5); got {self.poisson_ratio!r}")
-        if wrong:
-            raise ValueError("; ".join(wrong))
+            mistakes.append(f"Input poisson_ratio of PlateSection must be in [0, 0.5); got {self.poisson_ratio!r}")
+        if mistakes:
+            raise ValueError("; ".join(mistakes))
 
     @property
     def rigidity(self) -> float:

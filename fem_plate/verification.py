@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_plate import analytic
+from fem_plate.elements import Derivatives
 from fem_plate.plate import Plate
 from fem_plate.section import PlateSection
 from meshes import disc
@@ -26,7 +27,7 @@ QUANTITIES = ("w", "gradient", "hessian")
 ERROR_BOUNDS = (1e-8, 2e-7, 1e-5)  # relative largest errors on the finest mesh
 ORDER_BOUNDS = (5.0, 4.0, 3.0)
 ROUNDING = 1e-9  # errors below this come from rounding and have no order
-MOST_UNKNOWNS = 6000
+MAX_UNKNOWNS = 6000
 
 
 @dataclass(frozen=True)
@@ -34,9 +35,9 @@ class Check:
     """One case of the verification."""
 
     name: str
-    unknowns: tuple[int, ...]
+    unknowns: tuple[int, ...]  # on each mesh
     errors: dict[str, tuple[float, ...]]  # relative largest error of each quantity on each mesh
-    orders: dict[str, float | None]  # None: the errors are rounding
+    orders: dict[str, float | None]  # of each quantity; None where the errors are rounding
     failures: tuple[str, ...]
 
     @property
@@ -48,20 +49,19 @@ class Check:
 
 
 def verify() -> list[Check]:
-    """Equation (2) and an off-centre layout by Boggio's function, each on three meshes."""
+    """Check a central load by equation (2) and an off-centre layout by Boggio's function, each on three meshes."""
     plates = [Plate(disc(RADIUS, RADIUS / cells), SECTION) for cells in CELLS_FROM_CENTRE]
     return [_central_load(plates), _off_centre(plates)]
 
 
 def _central_load(plates: list[Plate]) -> Check:
     centre = np.zeros((1, 2))
-    xy = _points(centre)
-    exact = _equation_2(xy)
-    found = [plate.deflection(centre, [FORCE]).evaluate(xy) for plate in plates]
-    return _check("central load, equation (2)", plates, found, exact)
+    xy = _sample_points(centre)
+    computed = [plate.deflection(centre, [FORCE]).evaluate(xy) for plate in plates]
+    return _check("central load, equation (2)", plates, computed, _equation_2(xy))
 
 
-def _equation_2(xy: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _equation_2(xy: FloatArray) -> Derivatives:
     """Equation (2) with its derivatives, w' = P r ln(r/a) / (4 pi D)."""
     r = np.hypot(*xy.T)
     unit = xy / r[:, None]
@@ -74,30 +74,31 @@ def _equation_2(xy: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _off_centre(plates: list[Plate]) -> Check:
-    xy = _points(LAYOUT)
+    xy = _sample_points(LAYOUT)
+    computed = [plate.influence(LAYOUT).evaluate(xy, STROKES) for plate in plates]
     exact = analytic.DiscShapes(LAYOUT, RADIUS).evaluate(xy, STROKES)
-    found = [plate.influence(LAYOUT).evaluate(xy, STROKES) for plate in plates]
-    return _check("two off-centre actuators, Boggio", plates, found, exact)
+    return _check("two off-centre actuators, Boggio", plates, computed, exact)
 
 
-def _points(actuators: FloatArray) -> FloatArray:
-    """A fixed cloud of points on the disc, off the actuators."""
+def _sample_points(actuators: FloatArray) -> FloatArray:
+    """The same random points (n, 2) [m] of the disc every time, clear of the actuators."""
     xy = RADIUS * np.random.default_rng(2).uniform(-1, 1, (12_000, 2))
     xy = xy[np.hypot(*xy.T) < RADIUS]
     return xy[np.min(np.linalg.norm(xy[:, None] - actuators, axis=2), axis=1) > CLEARANCE * RADIUS]
 
 
-def _check(name: str, plates: list[Plate], found: list[Any], exact: tuple[FloatArray, ...]) -> Check:
+def _check(name: str, plates: list[Plate], computed: list[Derivatives], exact: Derivatives) -> Check:
     unknowns = tuple(plate.model().unknowns for plate in plates)
     errors, orders, failures = {}, {}, []
-    if max(unknowns) > MOST_UNKNOWNS:
-        failures.append(f"{max(unknowns)} unknowns, more than {MOST_UNKNOWNS}")
+    if max(unknowns) > MAX_UNKNOWNS:
+        failures.append(f"{max(unknowns)} unknowns, more than {MAX_UNKNOWNS}")
     for k, quantity in enumerate(QUANTITIES):
-        errors[quantity] = tuple(float(np.abs(f[k] - exact[k]).max() / np.abs(exact[k]).max()) for f in found)
-        order = -np.polyfit(np.log(CELLS_FROM_CENTRE), np.log(errors[quantity]), 1)[0]
-        orders[quantity] = None if max(errors[quantity]) < ROUNDING else float(order)
-        if not errors[quantity][-1] <= ERROR_BOUNDS[k]:
-            failures.append(f"error of {quantity} {errors[quantity][-1]:.1e}, more than {ERROR_BOUNDS[k]:.0e}")
+        of_meshes = tuple(float(np.abs(c[k] - exact[k]).max() / np.abs(exact[k]).max()) for c in computed)
+        errors[quantity] = of_meshes
+        order = float(-np.polyfit(np.log(CELLS_FROM_CENTRE), np.log(of_meshes), 1)[0])
+        orders[quantity] = None if max(of_meshes) < ROUNDING else order
+        if not of_meshes[-1] <= ERROR_BOUNDS[k]:
+            failures.append(f"error of {quantity} {of_meshes[-1]:.1e}, more than {ERROR_BOUNDS[k]:.0e}")
         if orders[quantity] is not None and not order >= ORDER_BOUNDS[k]:
             failures.append(f"order of {quantity} {order:.2f}, less than {ORDER_BOUNDS[k]:g}")
     return Check(name, unknowns, errors, orders, tuple(failures))

@@ -1,59 +1,60 @@
 """Natural frequencies and modes, also of a plate that actuators hold at points, rigidly or through springs.
 
-At a held point a mode bends as under a point force, which polynomials follow badly. So trial functions are
-w = v + sum_j c_j psi_j with psi_j the static answer to a unit force at held point j. A spring's force on it is
-c_j = -k_j w(x_j), which makes c = -(G + 1/k)^-1 v(x_j), with 1/k = 0 where the hold is rigid. In the energy, with that
-of the springs, where a(v, psi_j) = v(x_j) and a(psi_i, psi_j) = G_ij, this leaves the stiffness K - B^T (G + 1/k)^-1 B
-(B takes v at the held points): K with a few rows of correction, as is its inverse.
+At a held point a mode bends as under a point force, which polynomials follow badly. So the trial functions are
+w = v + sum_j c_j psi_j, with psi_j the static response to a unit force at held point j. A spring pushes with
+c_j = -k_j w(x_j), so that c = -(G + 1/k)^-1 v(x_j), with 1/k = 0 where the hold is rigid. With a(v, psi_j) = v(x_j) and
+a(psi_i, psi_j) = G_ij, the energy of plate and springs has the stiffness K - B^T (G + 1/k)^-1 B, where B takes v at the
+held points: K with a correction of low rank, and so is its inverse.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from fem_plate.elements import Field, Fields, PlateModel, point_value
-from fem_plate.influence import check_on_plate
+from fem_plate.elements import Derivatives, PlateFunctions, PlateModel, point_value
+from fem_plate.inputs import check_on_plate
 
 FloatArray = NDArray[np.float64]
 
-TOGETHER = 20_000  # quadrature points taken at once, to bound memory
-RIGID_SHIFT = 1e12  # the dimensionless squared frequency that rigid motions are moved out to
+CHUNK = 20_000  # quadrature points evaluated at a time, to bound memory
+RIGID_SHIFT = 1e12  # the dimensionless squared frequency that rigid motions are moved to, out of the way
 
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Modes of vibration, each with a largest deflection of 1 over the mesh.
+    """Modes of vibration, each with a largest deflection of 1 over the mesh; made by `Plate.modes`.
 
-    Parameters
+    Attributes
     ----------
-    frequencies : array (count,)
-        Natural frequencies, Hz, ascending, repeated ones repeated.
+    frequencies : (count,) array
+        Natural frequencies [Hz], ascending, repeated ones repeated.
     """
 
     frequencies: FloatArray
     model: PlateModel
-    field: Field
+    functions: PlateFunctions
 
-    def evaluate(self, xy: ArrayLike) -> Fields:
-        """The modes at points.
+    def evaluate(self, xy: ArrayLike) -> Derivatives:
+        """The modes' shapes with first and second derivatives.
 
         Parameters
         ----------
-        xy : array (n, 2)
-            Points, m.
+        xy : (n, 2) array_like
+            Points on the plate [m].
 
         Returns
         -------
-        value : array (n, count)
-            Mode shapes.
-        gradient : array (n, count, 2)
-            Their gradients, 1/m.
-        hessian : array (n, count, 2, 2)
-            Their Hessians, 1/m^2.
+        value : (n, count) array
+        gradient : (n, count, 2) array
+            [1/m].
+        hessian : (n, count, 2, 2) array
+            [1/m^2].
 
         Raises
         ------
@@ -62,81 +63,95 @@ class Modes:
         """
         xy, size = np.asarray(xy, dtype=float), self.model.mesh.size
         check_on_plate(self.model.mesh.outline, xy, size)
-        value, gradient, hessian = self.field.evaluate(xy / size)
+        value, gradient, hessian = self.functions.evaluate(xy / size)
         return value, gradient / size, hessian / size**2
 
 
-def modes(model: PlateModel, held: FloatArray, give: FloatArray, count: int, unit: float) -> Modes:
+def modes(model: PlateModel, held: FloatArray, compliance: FloatArray, count: int, unit: float) -> Modes:
     """The lowest modes of a plate held at points (N, 2) [m].
 
-    give: (N,) dimensionless, of the springs there under a unit force; 0 where it is held rigidly.
+    compliance: (N,) dimensionless, of the springs there, 1/k; 0 where the hold is rigid.
     unit: 1/s^2, the squared angular frequency that makes eigenvalues dimensionless.
     """
     space, x = model.space, held / model.mesh.size
     mass = space.mass()
-    answers = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))
-    take = space.point_values(x)  # B
-    green = point_value(x, x) + take @ answers
-    yielding = (green + green.T) / 2 + np.diag(give)
-    to_forces = -np.linalg.solve(yielding, take.toarray())  # v -> c, (N, unknowns)
-    cross, inner = _masses(model, x, answers, mass)
+    responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without its singular part
+    at_held = space.point_values(x)  # B
+    green = point_value(x, x) + at_held @ responses
+    yielding = (green + green.T) / 2 + np.diag(compliance)  # G + 1/k
+    to_forces = -np.linalg.solve(yielding, at_held.toarray())  # v -> c, (N, unknowns)
+    cross, inner = _masses(model, x, responses, mass)
 
     def with_mass(v: FloatArray) -> FloatArray:
         c = to_forces @ v
         return np.asarray(mass @ v + cross @ c + to_forces.T @ (cross.T @ v + inner @ c))
 
-    # K's inverse knows the springs and not the held points; rows of correction with their weights turn it into the
-    # inverse of the stiffness wanted, in which rigid motions are moved out of the way. The springs bear a unit force:
-    # that is what psi_j weighs on each motion.
-    sprung = model.mean.T + model.motions(x).T @ to_forces
-    rigid = space.linear() @ model.rigid
+    rigid = _free_motions(model, at_held)
+    inertia = with_mass(rigid)
     if rigid.size:
-        free = np.linalg.svd(take @ rigid)[2] if len(x) else np.eye(rigid.shape[1])
-        keep = np.linalg.matrix_rank(take @ rigid, tol=1e-9) if len(x) else 0
-        rigid = rigid @ free[keep:].T
-    moved = with_mass(rigid)
-    if rigid.size:
-        moved = moved @ np.linalg.inv(np.linalg.cholesky(rigid.T @ moved)).T
-    rows = np.concatenate([take.toarray(), sprung, moved.T])
-    shares = np.concatenate([np.ones(len(sprung)), np.full(moved.shape[1], -1 / RIGID_SHIFT)])
-    inverse_weights = np.zeros((len(rows), len(rows)))
-    inverse_weights[: len(x), : len(x)] = yielding
-    inverse_weights[len(x) :, len(x) :] = np.diag(shares)
-    solved = model.solve(np.ascontiguousarray(rows.T))
-    correction = np.linalg.inv(inverse_weights - rows @ solved)
-
-    def solve(load: FloatArray) -> FloatArray:
-        plain = model.solve(load)
-        return np.asarray(plain + solved @ (correction @ (rows @ plain)))
-
-    shape = mass.shape
+        inertia = inertia @ np.linalg.inv(np.linalg.cholesky(rigid.T @ inertia)).T
+    # K's inverse knows the springs spread under the plate and not the held points. Rows of correction turn it into the
+    # inverse of the stiffness wanted: the held points, the load that their forces put on the spread springs (what psi_j
+    # weighs on each motion), and the rigid motions, moved out of the way.
+    on_springs = model.mean.T + model.motions(x).T @ to_forces
+    rows = np.concatenate([at_held.toarray(), on_springs, inertia.T])
+    weights = np.zeros((len(rows), len(rows)))
+    weights[: len(x), : len(x)] = yielding
+    weights[len(x) :, len(x) :] = np.diag(
+        np.concatenate([np.ones(len(on_springs)), np.full(inertia.shape[1], -1 / RIGID_SHIFT)])
+    )
+    mass_operator = LinearOperator(mass.shape, matvec=with_mass, dtype=float)
     squares, vectors = eigsh(
-        LinearOperator(shape, matvec=with_mass, dtype=float),
+        mass_operator,  # only its shape is used: with sigma = 0 all that is solved with is OPinv
         count,
-        M=LinearOperator(shape, matvec=with_mass, dtype=float),
+        M=mass_operator,
         sigma=0,
-        OPinv=LinearOperator(shape, matvec=solve, dtype=float),
-        v0=np.ones(len(mass.indptr) - 1),  # a start of its own would make results differ from run to run
+        OPinv=LinearOperator(mass.shape, matvec=_corrected(model.solve, rows, weights), dtype=float),
+        v0=np.ones(model.unknowns),  # eigsh would start from a random vector, and differ from run to run
     )
     order = np.argsort(squares)
     squares, vectors = squares[order], vectors[:, order]
     forces = to_forces @ vectors
-    field = Field(space, vectors + answers @ forces, x, forces, np.zeros((3, count)), np.zeros(count))
-    scale = 1 / np.abs(field.values(space.points)).max(axis=0)
-    return Modes(np.sqrt(squares * unit) / (2 * np.pi), model, field.weighted(np.diag(scale)))
+    functions = PlateFunctions(space, vectors + responses @ forces, x, forces, np.zeros((3, count)), np.zeros(count))
+    scale = 1 / np.abs(functions.values(space.points)).max(axis=0)
+    return Modes(np.sqrt(squares * unit) / (2 * np.pi), model, functions.weighted(np.diag(scale)))
 
 
-def _masses(model: PlateModel, x: FloatArray, answers: FloatArray, mass) -> tuple[FloatArray, FloatArray]:  # type: ignore[no-untyped-def]
-    """int q psi_j (unknowns, N) and int psi_i psi_j (N, N) for psi = F + answers, F by quadrature."""
+def _masses(model: PlateModel, x: FloatArray, responses: FloatArray, mass: csc_matrix) -> tuple[FloatArray, FloatArray]:
+    """int q psi_j (unknowns, N) and int psi_i psi_j (N, N) for psi = F + responses, F by quadrature."""
     space = model.space
     points, weights = space.quadrature
     with_singular, of_singular = np.zeros((space.unknowns, len(x))), np.zeros((len(x), len(x)))
-    for start in range(0, len(points), TOGETHER):
-        part = slice(start, start + TOGETHER)
+    for start in range(0, len(points), CHUNK):
+        part = slice(start, start + CHUNK)
         value = point_value(points[part], x)
         weighted = weights[part, None] * value
         with_singular += space.point_values(points[part]).T @ weighted  # int q F
-        of_singular += value.T @ weighted
-    cross = mass @ answers + with_singular
-    inner = answers.T @ (mass @ answers) + answers.T @ with_singular + with_singular.T @ answers
+        of_singular += value.T @ weighted  # int F F
+    cross = mass @ responses + with_singular
+    inner = responses.T @ (mass @ responses) + responses.T @ with_singular + with_singular.T @ responses
     return cross, inner + of_singular
+
+
+def _free_motions(model: PlateModel, at_held: csc_matrix) -> FloatArray:
+    """The rigid motions (unknowns, f) that neither the supports nor the held points stop."""
+    rigid = model.space.linear() @ model.rigid
+    if not rigid.size or not at_held.shape[0]:
+        return np.asarray(rigid)
+    moved = at_held @ rigid
+    directions = np.linalg.svd(moved)[2]
+    return np.asarray(rigid @ directions[np.linalg.matrix_rank(moved, tol=1e-9) :].T)
+
+
+def _corrected(
+    solve: Callable[[FloatArray], FloatArray], rows: FloatArray, weights: FloatArray
+) -> Callable[[FloatArray], FloatArray]:
+    """The inverse of A - rows^T weights^-1 rows from that of A (Sherman-Morrison-Woodbury)."""
+    solved = solve(np.ascontiguousarray(rows.T))
+    correction = np.linalg.inv(weights - rows @ solved)
+
+    def corrected(load: FloatArray) -> FloatArray:
+        plain = solve(load)
+        return np.asarray(plain + solved @ (correction @ (rows @ plain)))
+
+    return corrected

@@ -16,7 +16,7 @@ from .drawing import (
     notebook_html as notebook_html,
     plotted as plotted,
 )
-from .fill import delaunay as delaunay, sides as sides
+from .fill import delaunay as delaunay
+from .outline import rim_curves as rim_curves
 from .prefixes import NOTHING as NOTHING, Unit as Unit, quantity_text as quantity_text, unit_for as unit_for
-from .refine import edge_numbers as edge_numbers
-from .rim_points import rim_curves as rim_curves
+from .triangles import areas as areas, cross as cross, edge_numbers as edge_numbers, sides as sides

@@ -1,15 +1,13 @@
-"""The true curves of plate rims: a mesh only has chords, integrals and the part need the curve itself."""
+"""The true curves of plate rims: a mesh has only their chords, but integrals and parts need the curve."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from meshes.nearest import nearest_on_edges, nearest_on_ellipse, nearest_parameter, on_edges, powers
-
-FloatArray = NDArray[np.float64]
+from meshes.nearest import FloatArray, nearest_on_edges, nearest_on_ellipse, nearest_parameter, on_edges, powers
 
 
 @dataclass(frozen=True)
@@ -19,9 +17,9 @@ class Circle:
     Parameters
     ----------
     radius : float
-        Radius, m.
+        [m].
     centre : tuple of float
-        Centre, m.
+        [m].
     """
 
     radius: float
@@ -44,17 +42,15 @@ class Circle:
 
         Parameters
         ----------
-        start, end : array (k, 2)
-            Ends of the arcs, m.
-        s : array (n,)
-            Parameter, from 0 at the start to 1 at the end.
+        start, end : (k, 2) array
+            [m].
+        s : (n,) array
+            Parameters, from 0 at the start to 1 at the end, linear in the angle.
 
         Returns
         -------
-        points : array (k, n, 2)
-            Points of the arcs, m.
-        derivatives : array (k, n, 2)
-            Their derivative with respect to s, m.
+        points, tangents : (k, n, 2) array
+            Points on the arcs [m] and their derivatives with respect to s.
         """
         return _elliptic_arc((self.radius, self.radius), np.asarray(self.centre), start, end, s)
 
@@ -66,7 +62,7 @@ class Ellipse:
     Parameters
     ----------
     semi_axis_x, semi_axis_y : float
-        Semi-axes, m.
+        [m].
     """
 
     semi_axis_x: float
@@ -88,29 +84,27 @@ class Ellipse:
 
         Parameters
         ----------
-        start, end : array (k, 2)
-            Ends of the arcs, m.
-        s : array (n,)
-            Parameter from 0 to 1, linear in the eccentric angle.
+        start, end : (k, 2) array
+            [m].
+        s : (n,) array
+            Parameters, from 0 at the start to 1 at the end, linear in the eccentric angle.
 
         Returns
         -------
-        points : array (k, n, 2)
-            Points of the arcs, m.
-        derivatives : array (k, n, 2)
-            Their derivative with respect to s, m.
+        points, tangents : (k, n, 2) array
+            Points on the arcs [m] and their derivatives with respect to s.
         """
         return _elliptic_arc((self.semi_axis_x, self.semi_axis_y), np.zeros(2), start, end, s)
 
 
 @dataclass(frozen=True, eq=False)
 class Parabolas:
-    """A boundary of quadratic edges, as second-order meshes have them.
+    """Quadratic edges, as in second-order meshes.
 
     Parameters
     ----------
-    pieces : array (k, 3, 2)
-        Start, middle and end of each edge, its points at parameter 0, 1/2 and 1, m.
+    pieces : (k, 3, 2) array
+        Start, middle and end of each edge, its points at parameters 0, 1/2 and 1 [m].
     """
 
     pieces: FloatArray
@@ -125,17 +119,15 @@ class Parabolas:
 
         Parameters
         ----------
-        start, end : array (k, 2)
-            Ends of the arcs, m.
-        s : array (n,)
-            Parameter from 0 to 1, linear in the edge's own.
+        start, end : (k, 2) array
+            [m].
+        s : (n,) array
+            Parameters, from 0 at the start to 1 at the end, linear in the edge's parameter.
 
         Returns
         -------
-        points : array (k, n, 2)
-            Points of the arcs, m.
-        derivatives : array (k, n, 2)
-            Their derivative with respect to s, m.
+        points, tangents : (k, n, 2) array
+            Points on the arcs [m] and their derivatives with respect to s.
         """
         pieces = self.pieces[nearest_on_edges((start + end) / 2, self.pieces)[1]]
         first, last = nearest_parameter(start, pieces), nearest_parameter(end, pieces)
@@ -151,7 +143,7 @@ Curve = Circle | Ellipse | Parabolas
 def _elliptic_arc(
     axes: tuple[float, float], centre: FloatArray, start: FloatArray, end: FloatArray, s: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    # y / b over x / a, so that a circle's angles have no more rounding than they must
+    # y / b over x / a, scaled so that a circle's angles get no extra rounding.
     first, last = (np.arctan2(p[:, 1] * (axes[0] / axes[1]), p[:, 0]) for p in (start - centre, end - centre))
     sweep = (last - first + np.pi) % (2 * np.pi) - np.pi
     angle = first[:, None] + sweep[:, None] * s

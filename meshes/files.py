@@ -1,4 +1,4 @@
-"""What meshio finds in a mesh file."""
+"""Mesh files, as meshio reads them."""
 
 from __future__ import annotations
 
@@ -10,44 +10,46 @@ from typing import Any
 
 def load(path: Path) -> Any:
     """The file as a meshio.Mesh; raises ValueError, naming the file, when it cannot be read."""
-    import meshio  # slow to load, and only files need it
+    import meshio  # here, because it is slow to import
 
     if not path.is_file():
         raise ValueError(f"Input path of read must be a mesh file; there is no {path}")
-    said = io.StringIO()  # meshio prints what it cannot read and leaves the interpreter
+    printed = io.StringIO()  # meshio prints its complaint and calls sys.exit
     try:
-        with redirect_stdout(said), redirect_stderr(said):
+        with redirect_stdout(printed), redirect_stderr(printed):
             return meshio.read(path)
     except (Exception, SystemExit) as error:
         text = "" if isinstance(error, SystemExit) else f"{type(error).__name__}: {error}"
-        reason = " ".join(f"{said.getvalue()} {text}".split())
+        reason = " ".join(f"{printed.getvalue()} {text}".split())
         raise ValueError(
             f"Input path of read must be a .msh, .vtu or first-order .xdmf file; {path} cannot be read as one: {reason}"
         ) from error
 
 
 def line_names(mesh: Any) -> list[set[str]]:
-    """The names of each line of the file, in its order: of its physical curves, or else its number."""
+    """The names of each line of the file, in file order: its physical curves, or else its number."""
     blocks = [k for k, block in enumerate(mesh.cells) if block.type in ("line", "line3")]
     names: list[set[str]] = []
     for k in blocks:
         own: list[set[str]] = [set() for _ in mesh.cells[k].data]
-        for name, parts in mesh.cell_sets.items():
-            for row in parts[k].astype(int) if not name.startswith("gmsh:") else ():
+        for name, rows in mesh.cell_sets.items():
+            for row in rows[k].astype(int) if not name.startswith("gmsh:") else ():
                 own[row].add(name)
         names += own
     key = _number_key(mesh.cell_data)
     if key is not None:
-        known = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 1}
+        curves = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 1}
         tags = [int(tag) for k in blocks for tag in mesh.cell_data[key][k]]
-        for given, tag in zip(names, tags, strict=True):
-            if not given and not (tag == 0 and key == "gmsh:physical"):  # there, 0 is for no physical curve
-                given.add(known.get(tag, str(tag)))
+        for own_names, tag in zip(names, tags, strict=True):
+            if not own_names and not (tag == 0 and key == "gmsh:physical"):  # gmsh's 0 means no physical curve
+                own_names.add(curves.get(tag, str(tag)))
     return names
 
 
 def _number_key(data: dict[str, Any]) -> str | None:
-    """The cell data that number boundaries: those of gmsh, those called so, or the only integers."""
+    """The cell data that number boundaries: gmsh's, those called "boundary", or the only integers."""
     integers = [name for name, parts in data.items() if all(part.dtype.kind in "iu" for part in parts)]
-    known = [name for name in ("gmsh:physical", "boundary") if name in integers]
-    return known[0] if known else integers[0] if len(integers) == 1 else None
+    for name in ("gmsh:physical", "boundary"):
+        if name in integers:
+            return name
+    return integers[0] if len(integers) == 1 else None

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from meshes.curves import Circle, Curve, Ellipse, Parabolas
 from meshes.nearest import FloatArray, IntArray
 from meshes.outline import Outline, straight
-from meshes.refine import edge_numbers, refine
+from meshes.refine import refine
+from meshes.triangles import edge_numbers, sides
 
 CORNER = np.deg2rad(15)  # a tangent that turns by more than this turns at a corner
 CUT = "cut"  # the boundary along which a part was cut out
@@ -22,14 +23,14 @@ CUT = "cut"  # the boundary along which a part was cut out
 class Corner:
     """A boundary point where the rim turns sharply or the boundary's name changes.
 
-    Parameters
+    Attributes
     ----------
     row : int
-        Row of the mesh's points.
+        The point's row in the mesh.
     angle : float
-        Angle between the true tangents, through the plate, rad.
+        Between the true tangents, through the plate [rad].
     sides : tuple of str
-        Names of the boundaries before and after it, walking with the plate on the left.
+        The boundaries before and after the corner, walking with the plate on the left.
     """
 
     row: int
@@ -43,21 +44,21 @@ class PlateMesh:
 
     Parameters
     ----------
-    points : array (n, 2)
-        Corners of the triangles, m.
-    triangles : array (m, 3)
+    points : (n, 2) array
+        [m].
+    triangles : (m, 3) integer array
         Rows of points, counter-clockwise.
-    boundaries : dict of str to array (k, 2)
-        For each boundary, its edges as rows of points; turned to have the plate on their left.
-    curves : dict of str to curve, optional
-        For each boundary, the curve that its edges approximate. Other boundaries have straight edges.
+    boundaries : mapping of str to (k, 2) integer array
+        Rows of points of the edges on each boundary, in either direction; kept with the plate on their left.
+    curves : mapping of str to Circle, Ellipse or Parabolas, optional
+        The true curve of a boundary; the edges of other boundaries are straight.
     outline : Outline, optional
-        The plate's true rim; by default made of boundaries and curves.
+        The plate's true rim; by default made from boundaries and curves.
 
     Raises
     ------
     ValueError
-        A Circle or Ellipse is not all of a rim. Use `Parabolas` for arcs of it.
+        A Circle or Ellipse is only part of a rim; arcs of it can be `Parabolas`.
     """
 
     points: FloatArray
@@ -73,15 +74,30 @@ class PlateMesh:
 
     @cached_property
     def size(self) -> float:
-        """Half of the larger side of the box around the plate [m]: the length that makes equations dimensionless."""
+        """Half of the longer side of the box around the plate [m]; it makes the equations dimensionless."""
         return float(np.max(np.ptp(self.points, axis=0)) / 2)
 
     def mirrored(self, xy: ArrayLike) -> FloatArray:
-        """Points (n, 2) [m] reflected at every boundary of the outline: (r, 2), all off the plate."""
+        """Points (n, 2) [m] reflected at every boundary of the outline, (r, 2) [m], all off the plate."""
         return self.outline.mirrored(xy)
 
     def arcs(self, name: str, s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """A boundary's edges along its true curve at s (n,) in [0, 1]: points (k, n, 2) m and derivatives in s."""
+        """A boundary's edges along its true curve.
+
+        Parameters
+        ----------
+        name : str
+            The boundary, of k edges.
+        s : (n,) array
+            Parameters in [0, 1], from the start to the end of each edge.
+
+        Returns
+        -------
+        points : (k, n, 2) array
+            [m].
+        tangents : (k, n, 2) array
+            Derivatives with respect to s [m].
+        """
         start, end = self.points[self.boundaries[name].T]
         if name in self.curves:
             return self.curves[name].arc(start, end, s)
@@ -109,9 +125,9 @@ class PlateMesh:
             # Where cells touch only in a point, the edge that arrives next counter-clockwise bounds the same cells.
             angles = (direction[arriving, 1] + np.pi - direction[leaving, 0]) % (2 * np.pi)
             k = int(np.argmin(angles))
-            sides = (names[arriving[k]], names[leaving])
-            if abs(angles[k] - np.pi) > CORNER or sides[0] != sides[1]:
-                corners.append(Corner(int(after[leaving]), float(angles[k]), sides))
+            before_and_after = (names[arriving[k]], names[leaving])
+            if abs(angles[k] - np.pi) > CORNER or before_and_after[0] != before_and_after[1]:
+                corners.append(Corner(int(after[leaving]), float(angles[k]), before_and_after))
         return tuple(corners)
 
     def part(self, keep: NDArray[np.bool_]) -> PlateMesh:
@@ -120,14 +136,14 @@ class PlateMesh:
         The outline stays that of the whole plate.
         """
         triangles = self.triangles[keep]
-        sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-        number = edge_numbers(sides, len(self.points))
-        _, where, count = np.unique(number, return_index=True, return_counts=True)
-        rim = np.sort(where[count == 1])
+        pairs = sides(triangles)
+        number = edge_numbers(pairs, len(self.points))
+        _, first, count = np.unique(number, return_index=True, return_counts=True)
+        rim = np.sort(first[count == 1])
         kept = {name: np.isin(edge_numbers(p, len(self.points)), number[rim]) for name, p in self.boundaries.items()}
-        boundaries = {name: self.boundaries[name][there] for name, there in kept.items() if there.any()}
-        known = [edge_numbers(pairs, len(self.points)) for pairs in boundaries.values()]
-        cut = sides[rim[~np.isin(number[rim], np.concatenate([np.empty(0, np.int64), *known]))]]
+        boundaries = {name: self.boundaries[name][which] for name, which in kept.items() if which.any()}
+        named = [edge_numbers(p, len(self.points)) for p in boundaries.values()]
+        cut = pairs[rim[~np.isin(number[rim], np.concatenate([np.empty(0, np.int64), *named]))]]
         if len(cut):
             boundaries[CUT] = np.concatenate([boundaries.get(CUT, np.empty((0, 2), dtype=np.int64)), cut])
         used, rows = np.unique(triangles, return_inverse=True)
@@ -140,20 +156,15 @@ class PlateMesh:
         )
 
     def refined(self, marked: NDArray[np.bool_] | None = None) -> PlateMesh:
-        """The mesh with marked triangles cut in four, and their neighbours cut to fit.
+        """The mesh with marked triangles cut in four and their neighbours cut to fit.
 
-        Triangles cut in four keep their angles; their neighbours are cut along their longest edge. New boundary
-        points lie on the true curve.
+        Cells cut in four keep their angles; their neighbours are cut through their longest edge. New boundary points
+        lie on the true curve.
 
         Parameters
         ----------
-        marked : array (m,) of bool, optional
-            The triangles to cut; by default all.
-
-        Returns
-        -------
-        mesh : PlateMesh
-            The refined mesh.
+        marked : (m,) boolean array, optional
+            By default all triangles.
         """
         points, triangles, boundaries = refine(self.points, self.triangles, self.boundaries, self.curves, marked)
         return PlateMesh(points, triangles, boundaries, self.curves, self.outline)
@@ -161,9 +172,9 @@ class PlateMesh:
 
 def _turned(triangles: IntArray, boundaries: Mapping[str, IntArray], points: int) -> dict[str, IntArray]:
     """Boundaries whose edges run as the sides of the counter-clockwise triangles do."""
-    sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]) @ [points, 1]
+    numbers = sides(triangles) @ [points, 1]
     return {
-        name: np.where(np.isin(pairs @ [points, 1], sides)[:, None], pairs, pairs[:, ::-1])
+        name: np.where(np.isin(pairs @ [points, 1], numbers)[:, None], pairs, pairs[:, ::-1])
         for name, pairs in boundaries.items()
     }
 
@@ -175,8 +186,8 @@ def _outline(points: FloatArray, boundaries: Mapping[str, IntArray], curves: Map
     def sweep(conic: tuple[float, ...], pairs: IntArray) -> None:
         centre, axes = np.array(conic).reshape(2, 2)
         angle = np.arctan2(*np.moveaxis((points[pairs] - centre) / axes, 2, 0)[::-1])
-        turn = (np.diff(angle, axis=1) + np.pi) % (2 * np.pi) - np.pi
-        swept[conic] = swept.get(conic, 0.0) + abs(float(turn.sum()))
+        turns = (np.diff(angle, axis=1) + np.pi) % (2 * np.pi) - np.pi
+        swept[conic] = swept.get(conic, 0.0) + abs(float(turns.sum()))
 
     for name, pairs in boundaries.items():
         match curves.get(name):

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-CHUNK = 200_000  # pairs of point and edge looked at together: about 50 MB
+CHUNK = 200_000  # pairs of point and edge compared at a time: about 50 MB
 
 
 def nearest_on_ellipse(xy: FloatArray, semi_axes: tuple[float, float]) -> FloatArray:
@@ -68,7 +68,7 @@ def _nearest_on_edges(xy: FloatArray, edges: FloatArray) -> tuple[FloatArray, In
     # An edge stays within `reach` of its middle: (1-t)|1-2t| + t|1-2t| <= 1.
     reach = np.linalg.norm(edges - edges[:, 1:2], axis=-1).max(axis=1)
     distance = np.linalg.norm(xy[:, None] - edges[:, 1], axis=-1)
-    # Written so that a point that is not a number keeps its edges.
+    # "not >" rather than "<=", so that a NaN point keeps its edges.
     row, edge = np.nonzero(~(distance - reach > distance.min(axis=1, keepdims=True)))
     t = nearest_parameter(xy[row], edges[edge])
     foot = on_edges(edges[edge], t[:, None])[:, 0]
@@ -101,7 +101,7 @@ def _parabola_parameter(xy: FloatArray, edges: FloatArray) -> FloatArray:
     t = vertex + _outer_roots(
         (_dot(tangent, tangent) - 2 * _dot(bend, offset)) / (2 * square), -_dot(tangent, offset) / (2 * square)
     )
-    # The vertex of a nearly straight edge is far away, and its root inexact.
+    # Polish by Newton's method: the vertex of a nearly straight edge is far away, and its root inexact.
     for _ in range(3):
         from_x = start - xy + t[..., None] * (slope + t[..., None] * bend)
         along = slope + 2 * t[..., None] * bend

@@ -1,4 +1,4 @@
-"""Outline: the true rim of a plate, whatever the mesh; distances from it and reflections at it."""
+"""Outline: the true rim of a plate, whatever its mesh; distances from it and reflections at it."""
 
 from __future__ import annotations
 
@@ -10,34 +10,44 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshes.curves import Circle, Ellipse
-from meshes.nearest import CHUNK, IntArray, nearest_on_edges, nearest_parameter, on_edges, powers
+from meshes.nearest import CHUNK, FloatArray, IntArray, nearest_on_edges, nearest_parameter, on_edges, powers
 
-FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-REFLECTED = 64  # with no more edges than this, points are reflected at each; else at the NEAREST ones
+MAX_MIRRORS = 64  # with more edges than this, points are reflected at the NEAREST ones only
 NEAREST = 16
+FINE = 1 / 200  # of the longer side of the outline, to draw it
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The boundaries of a plate: whole ellipses and closed chains of edges, which neither cross themselves nor each
-    other.
+    """The boundaries of a plate: whole ellipses and closed loops of edges that do not cross.
 
     Parameters
     ----------
-    conics : array (k, 4)
-        Centre x, y and semi-axes in x, y of each ellipse, m.
-    edges : array (m, 3, 2)
-        Start, middle and end of each quadratic edge, its points at parameter 0, 1/2 and 1, m. The middle of a
-        straight edge is half-way.
+    conics : (k, 4) array
+        Centre x, y and semi-axes in x, y of each ellipse [m].
+    edges : (m, 3, 2) array
+        Start, middle and end of each quadratic edge, its points at parameters 0, 1/2 and 1 [m]. A straight edge has
+        its middle half-way.
     """
 
     conics: FloatArray = field(default_factory=lambda: np.empty((0, 4)))
     edges: FloatArray = field(default_factory=lambda: np.empty((0, 3, 2)))
 
     def gap(self, xy: ArrayLike) -> FloatArray:
-        """Distance [m] of points (..., 2) from the nearest boundary, positive on the plate and negative off it."""
+        """Distance from the nearest boundary.
+
+        Parameters
+        ----------
+        xy : (..., 2) array_like
+            Points [m].
+
+        Returns
+        -------
+        (...) array
+            [m], positive on the plate and negative off it.
+        """
         points = np.asarray(xy, dtype=float)
         flat = points.reshape(-1, 2)
         distance, inside = np.full(len(flat), np.inf), self._inside_edges(flat)
@@ -61,7 +71,7 @@ class Outline:
     def mirrored(self, xy: ArrayLike) -> FloatArray:
         """Points (n, 2) [m] reflected at every boundary, each at its nearest point there: (r, 2), all off the plate.
 
-        A reflection across a hole or a slot is moved half-way to the rim until it is off the plate and no nearer to the
+        A reflection across a hole or a slot is moved half-way to the rim until it is off the plate and no closer to the
         far side than to this one; across a re-entrant corner there is none. Of more than 64 edges the nearest 16 count.
         """
         xy = np.asarray(xy, dtype=float)
@@ -87,12 +97,11 @@ class Outline:
     def box(self) -> FloatArray:
         """The lower left and the upper right corner of the smallest box around the plate, (2, 2) m."""
         start, slope, bend = powers(self.edges)
-        turn = np.clip(-slope / np.where(bend == 0, np.inf, 2 * bend), 0.0, 1.0)  # where x and where y stand still
+        turn = np.clip(-slope / np.where(bend == 0, np.inf, 2 * bend), 0.0, 1.0)  # where x, and where y, is extreme
         extremes = start + turn * (slope + turn * bend)
-        low = np.concatenate([self.conics[:, :2] - self.conics[:, 2:], extremes, *self.edges[:, [0, 2]].swapaxes(0, 1)])
-        high = np.concatenate(
-            [self.conics[:, :2] + self.conics[:, 2:], extremes, *self.edges[:, [0, 2]].swapaxes(0, 1)]
-        )
+        of_edges = np.concatenate([extremes, self.edges[:, 0], self.edges[:, 2]])
+        low = np.concatenate([self.conics[:, :2] - self.conics[:, 2:], of_edges])
+        high = np.concatenate([self.conics[:, :2] + self.conics[:, 2:], of_edges])
         return np.stack([low.min(axis=0), high.max(axis=0)])
 
     @cached_property
@@ -103,11 +112,11 @@ class Outline:
     def _feet(self, xy: FloatArray) -> list[FloatArray]:
         """The nearest points (n, 2) of each edge, or of the nearest ones, to points (n, 2)."""
         count = len(self.edges)
-        if count <= REFLECTED:
-            chosen = np.tile(np.arange(count), (len(xy), 1))
+        if count <= MAX_MIRRORS:
+            rows = np.tile(np.arange(count), (len(xy), 1))
         else:
-            chosen = _chunked(self._nearest_edges, xy, count)
-        edges = [self.edges[column] for column in chosen.T]
+            rows = _chunked(self._nearest_edges, xy, count)
+        edges = [self.edges[row] for row in rows.T]
         return [on_edges(edge, nearest_parameter(xy, edge)[:, None])[:, 0] for edge in edges]
 
     def _nearest_edges(self, xy: FloatArray) -> IntArray:
@@ -122,8 +131,8 @@ class Outline:
 
     def _odd_crossings(self, xy: FloatArray) -> BoolArray:
         edge, first, last, low, high = self._monotone
-        # A piece counts from its lower end, which it has, to its upper one, which it has not: so a ray through a
-        # vertex crosses one of two pieces that go on upwards, and none or two of pieces that turn back there.
+        # A piece includes its lower end and excludes its upper one. So a ray through a vertex crosses one of two pieces
+        # that both rise there, and none or both of two that turn back.
         row, piece = np.nonzero((low > xy[:, 1:]) != (high > xy[:, 1:]))
         start, slope, bend = powers(self.edges[edge[piece]])
         width = (last - first)[piece]
@@ -159,7 +168,25 @@ def straight(start: FloatArray, end: FloatArray) -> FloatArray:
     return np.stack([start, (start + end) / 2, end], axis=1)
 
 
+def rim_curves(outline: Outline, spacing: float | None = None) -> list[FloatArray]:
+    """Points (n, 2) [m] along each ellipse and each edge of the rim, at most about `spacing` [m] apart.
+
+    spacing: None is fine enough to draw the whole rim.
+    """
+    if spacing is None:
+        spacing = FINE * float(np.ptp(outline.box, axis=0).max())
+    curves = []
+    for x, y, a, b in outline.conics.tolist():
+        angle = np.linspace(0, 2 * np.pi, int(np.ceil(2 * np.pi * max(a, b) / spacing)) + 4)
+        curves.append(np.stack([x + a * np.cos(angle), y + b * np.sin(angle)], axis=1))
+    for start, middle, end in outline.edges:
+        length = np.linalg.norm(middle - start) + np.linalg.norm(end - middle)
+        s = np.linspace(0, 1, int(np.ceil(length / spacing)) + 1)[:, None]
+        curves.append((1 - s) * (1 - 2 * s) * start + 4 * s * (1 - s) * middle + s * (2 * s - 1) * end)
+    return curves
+
+
 def _chunked(function: Callable[[FloatArray], NDArray], xy: FloatArray, edges: int) -> NDArray:
-    """A function of points (n, 2), applied to so many at once that pairs with edges stay below CHUNK."""
+    """A function of points (n, 2), applied to few enough at a time that their pairs with edges stay below CHUNK."""
     step = max(1, CHUNK // edges)
     return np.concatenate([function(xy[i : i + step]) for i in range(0, max(1, len(xy)), step)])

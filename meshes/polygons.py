@@ -7,46 +7,44 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshes.fill import Rim, fill
+from meshes.fill import RimEdges, fill
 from meshes.mesh import PlateMesh
 from meshes.nearest import FloatArray, IntArray
 from meshes.outline import Outline, straight
-from meshes.shapes import check_lengths
+from meshes.shapes import check_lengths, refuse
+from meshes.triangles import cross
 
-SHARP = np.deg2rad(60)  # towards sharper corners cells become as small as the plate is wide
+SHARP = np.deg2rad(60)  # towards sharper corners cells shrink with the plate's width
 GROWTH = 0.5  # of cells away from a short side, per length
 
 
 def polygon(corners: ArrayLike, cell_size: float, names: Sequence[str] | None = None) -> PlateMesh:
-    """A simple polygon, with corners in either sense of rotation; corners may be re-entrant.
+    """A simple polygon; corners in either sense of rotation, re-entrant ones allowed.
 
     Parameters
     ----------
-    corners : array (k, 2)
-        Corners, m.
+    corners : (k, 2) array_like
+        [m].
     cell_size : float
-        Approximate longest edge of a cell, m.
+        About the longest edge of a cell [m].
     names : sequence of str, optional
-        Boundary of each side, the first from the first corner to the second; by default `rim` for all.
+        The boundary of each side, the first from the first corner to the second; by default "rim" for all.
 
     Returns
     -------
-    mesh : PlateMesh
-        The mesh.
+    PlateMesh
 
     Raises
     ------
     ValueError
-        There are fewer than three corners or repeated ones, sides cross or touch, the cell size is not a positive
-        length, or there is not one name a side; names everything that is wrong.
+        Names everything that is wrong: fewer than three corners, repeated ones, sides that cross or touch, a cell size
+        that is not a positive length, another number of names than sides.
     """
     try:
         xy = np.asarray(corners, dtype=float)
     except (TypeError, ValueError):
         xy = np.empty(0)
-    wrong = _mistakes(xy, corners, cell_size, names)
-    if wrong:
-        raise ValueError("\n".join(wrong))
+    refuse(_mistakes(xy, corners, cell_size, names))
     side_names = ["rim"] * len(xy) if names is None else list(names)
     if _area(xy) < 0:
         xy, side_names = xy[::-1], side_names[-2::-1] + side_names[-1:]
@@ -57,10 +55,10 @@ def polygon(corners: ArrayLike, cell_size: float, names: Sequence[str] | None = 
     row = np.arange(sum(map(len, points)))
     side = np.repeat(np.arange(len(xy)), [len(p) for p in points])
 
-    def least(start: FloatArray, end: FloatArray, sides: IntArray) -> FloatArray:
-        return np.array([sizes[k].least(a, b) for a, b, k in zip(start, end, sides, strict=True)])
+    def min_length(start: FloatArray, end: FloatArray, sides: IntArray) -> FloatArray:
+        return np.array([sizes[k].min_length(a, b) for a, b, k in zip(start, end, sides, strict=True)])
 
-    rim = Rim(np.stack([row, np.roll(row, -1)], axis=1), side, lambda middle, _: middle, least)
+    rim = RimEdges(np.stack([row, np.roll(row, -1)], axis=1), side, lambda middle, _: middle, min_length)
     mesh_points, triangles = fill(np.concatenate(points), rim, outline, cell_size)
     boundaries = {
         name: rim.edges[np.isin(rim.sides, [k for k, other in enumerate(side_names) if other == name])]
@@ -81,12 +79,12 @@ class _Sizes:
 
     def _end(self, corner: FloatArray, before: FloatArray, after: FloatArray) -> tuple[float, float, float]:
         a, b = after - corner, before - corner
-        angle = np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b) % (2 * np.pi)
+        angle = np.arctan2(cross(a, b), a @ b) % (2 * np.pi)
         short = float(min(np.hypot(*a), np.hypot(*b)))
         return (2 * float(np.sin(angle / 2)) if angle < SHARP else 0.0), min(self.cell_size, short / 3), short
 
     def at(self, distance: FloatArray) -> FloatArray:
-        """The wanted length [m] of edges at distances (n,) [m] from the side's start."""
+        """The length [m] that edges should have at distances (n,) [m] from the side's start."""
         size = np.full(len(distance), self.cell_size)
         for (width, tip, short), x in zip(self.ends, (distance, self.length - distance), strict=True):
             size = np.minimum(size, short + GROWTH * x)
@@ -102,39 +100,43 @@ class _Sizes:
         place = np.interp(np.arange(count) * number[-1] / count, number, x)[:, None]
         return np.asarray(self.start + place / self.length * (self.end - self.start))
 
-    def least(self, start: FloatArray, end: FloatArray) -> float:
-        """The length [m] below which the edge between two points is not cut: near a sharp corner, the plate's width."""
+    def min_length(self, start: FloatArray, end: FloatArray) -> float:
+        """The length [m] below which the edge between two points is not cut: at a sharp corner, the plate's width."""
         x = sorted([np.hypot(*(start - self.start)), np.hypot(*(end - self.start))])
-        least = 0.0
+        longest = 0.0
         for (width, tip, _), distance in zip(self.ends, (x[0], self.length - x[1]), strict=True):
             if width:
                 at_tip = distance < 1e-9 * self.length
-                least = max(least, tip if at_tip else min(self.cell_size, width * distance))
-        return 0.7 * least
+                longest = max(longest, tip if at_tip else min(self.cell_size, width * distance))
+        return 0.7 * longest
 
 
 def _mistakes(xy: FloatArray, corners: ArrayLike, cell_size: float, names: Sequence[str] | None) -> list[str]:
-    wrong = check_lengths("polygon", cell_size=cell_size)
+    mistakes = check_lengths("polygon", cell_size=cell_size)
     if xy.ndim != 2 or xy.shape[1] != 2 or len(xy) < 3 or not np.isfinite(xy).all():
-        wrong.append(f"Input corners of polygon must be at least three points (x, y) in m; got {corners!r}")
-        return wrong
+        mistakes.append(f"Input corners of polygon must be at least three points (x, y) in m; got {corners!r}")
+        return mistakes
     if names is not None and (isinstance(names, str) or len(names) != len(xy)):
-        wrong.append(f"Input names of polygon must be one for each of its {len(xy)} sides; got {names!r}")
-    same = [(i, j) for i in range(len(xy)) for j in range(i) if (xy[i] == xy[j]).all()]
-    for i, j in same:
-        wrong.append(f"Input corners of polygon must differ; got corner {i + 1} at corner {j + 1}, {xy[i].tolist()} m")
-    if not same:
+        mistakes.append(f"Input names of polygon must be one for each of its {len(xy)} sides; got {names!r}")
+    repeated = [(i, j) for i in range(len(xy)) for j in range(i) if (xy[i] == xy[j]).all()]
+    for i, j in repeated:
+        mistakes.append(
+            f"Input corners of polygon must differ; got corner {i + 1} at corner {j + 1}, {xy[i].tolist()} m"
+        )
+    if not repeated:
         ends = np.roll(xy, -1, axis=0)
         low, high = np.minimum(xy, ends), np.maximum(xy, ends)
-        near = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)  # only these can
-        crossed = [(j, i) for i, j in np.argwhere(np.tril(near, -1)).tolist() if _touch(xy, ends, i, j)]
+        overlap = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)  # of boxes: no other sides can cross
+        crossed = [(j, i) for i, j in np.argwhere(np.tril(overlap, -1)).tolist() if _touch(xy, ends, i, j)]
         for one, other in crossed:
-            wrong.append(f"Input corners of polygon must give sides that do not cross; got {one + 1} and {other + 1}")
-    return wrong
+            mistakes.append(
+                f"Input corners of polygon must give sides that do not cross; got {one + 1} and {other + 1}"
+            )
+    return mistakes
 
 
 def _touch(start: FloatArray, end: FloatArray, i: int, j: int) -> bool:
-    """Whether sides i > j have more in common than the corner of neighbours."""
+    """Whether sides i > j share more than the corner of neighbours."""
     if i == j + 1 or (j == 0 and i == len(start) - 1):
         corner, one, other = (end[j], start[j], end[i]) if i == j + 1 else (start[j], end[j], start[i])
         return bool(_turn(corner, one, other) == 0 and (one - corner) @ (other - corner) > 0)
@@ -147,7 +149,7 @@ def _touch(start: FloatArray, end: FloatArray, i: int, j: int) -> bool:
 
 def _turn(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
     """The sign of the area of abc."""
-    return float(np.sign((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])))
+    return float(np.sign(cross(b - a, c - a)))
 
 
 def _area(xy: FloatArray) -> float:

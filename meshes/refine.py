@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from meshes.curves import Curve
 from meshes.nearest import FloatArray, IntArray
+from meshes.triangles import edge_numbers, sides
 
 
 def refine(
@@ -18,18 +19,17 @@ def refine(
     curves: Mapping[str, Curve],
     marked: NDArray[np.bool_] | None,
 ) -> tuple[FloatArray, IntArray, dict[str, IntArray]]:
-    """Points, triangles and boundaries once marked triangles (m,), all by default, are cut in four (see `PlateMesh`).
+    """Points, triangles and boundaries after cutting marked triangles (m,), all by default, in four.
 
-    An edge is only cut along with the longest edge of its triangles, so that angles stay as they are (red, green and
+    An edge is cut only if the longest edges of its triangles are cut too, so that angles do not shrink (red, green and
     blue refinement: R. Verfuerth, A Posteriori Error Estimation Techniques, 2013, section 2.1).
     """
-    sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)  # side k: corners k, k+1
-    length = np.linalg.norm(np.diff(points[sides], axis=2)[:, :, 0], axis=2)
-    # Every triangle starts at its longest side.
+    start, end = np.moveaxis(points[sides(triangles)], 1, 0)
+    length = np.linalg.norm(end - start, axis=1).reshape(-1, 3)
+    # Turn every triangle to start at its longest side.
     order = (np.argmax(length, axis=1)[:, None] + np.arange(3)) % 3
     triangles = np.take_along_axis(triangles, order, axis=1)
-    sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
-    edges, edge_of = np.unique(edge_numbers(sides.reshape(-1, 2), len(points)), return_inverse=True)
+    edges, edge_of = np.unique(edge_numbers(sides(triangles), len(points)), return_inverse=True)
     edge_of = edge_of.reshape(-1, 3)
     cut = np.zeros(len(edges), dtype=bool)
     cut[edge_of if marked is None else edge_of[marked]] = True
@@ -46,16 +46,11 @@ def refine(
     for name, pairs in boundaries.items():
         between = middle[np.searchsorted(edges, edge_numbers(pairs, len(points)))]
         if name in curves:
-            new = between[between >= 0] - len(points)
-            new_points[new] = curves[name].project(new_points[new])
+            on_curve = between[between >= 0] - len(points)
+            new_points[on_curve] = curves[name].project(new_points[on_curve])
         whole, halves = pairs[between < 0], np.insert(pairs, 1, between, axis=1)[between >= 0]
         halved[name] = np.concatenate([whole, halves[:, :2], halves[:, 1:]])
     return np.concatenate([points, new_points]), _cut(triangles, middle[edge_of]), halved
-
-
-def edge_numbers(pairs: IntArray, count: int) -> IntArray:
-    """One number (k,) for each undirected edge (k, 2) between `count` points, in the order of its sorted ends."""
-    return np.asarray(pairs.min(axis=1).astype(np.int64) * count + pairs.max(axis=1))
 
 
 def _cut(triangles: IntArray, middle: IntArray) -> IntArray:

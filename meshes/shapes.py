@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from meshes.curves import Circle, Ellipse
-from meshes.fill import Rim, fill
+from meshes.fill import RimEdges, fill
 from meshes.mesh import PlateMesh
 from meshes.nearest import FloatArray, nearest_on_ellipse
 from meshes.outline import Outline, straight
@@ -16,7 +16,7 @@ LONGEST_ARC = 2 / 3  # rim edges of an ellipse are at most this long in radii of
 
 
 def check_lengths(shape: str, **lengths: float) -> list[str]:
-    """What is wrong with the lengths of a shape: one line for each that is not positive and finite."""
+    """One message for each length that is not positive and finite."""
     return [
         f"Input {name} of {shape} must be a positive length in m; got {value!r}"
         for name, value in lengths.items()
@@ -24,31 +24,32 @@ def check_lengths(shape: str, **lengths: float) -> list[str]:
     ]
 
 
-def refuse(wrong: list[str]) -> None:
-    """Raises ValueError with everything that is wrong, if anything is."""
-    if wrong:
-        raise ValueError("\n".join(wrong))
+def refuse(mistakes: list[str]) -> None:
+    """Raise ValueError with all mistakes, if there are any."""
+    if mistakes:
+        raise ValueError("\n".join(mistakes))
 
 
 def disc(radius: float, cell_size: float) -> PlateMesh:
-    """A disc around the origin, in rings: ring k has 6 k points, so that all triangles are nearly equilateral.
+    """A disc around the origin, in rings of nearly equilateral triangles: ring k has 6 k points.
+
+    Its boundary is "rim".
 
     Parameters
     ----------
     radius : float
-        Radius, m.
+        [m].
     cell_size : float
-        Largest width of a ring, m; a cell's longest edge is up to 1.45 times that. There are at least two rings.
+        The largest width of a ring [m]; a cell's longest edge is at most 1.45 times that. There are at least two rings.
 
     Returns
     -------
-    mesh : PlateMesh
-        The mesh, with the boundary `rim`.
+    PlateMesh
 
     Raises
     ------
     ValueError
-        Either length is not positive and finite.
+        A length is not positive and finite.
     """
     refuse(check_lengths("disc", radius=radius, cell_size=cell_size))
     rings = max(2, math.ceil(radius / cell_size * (1 - 1e-12)))
@@ -68,25 +69,24 @@ def disc(radius: float, cell_size: float) -> PlateMesh:
 def rectangle(width: float, height: float, cell_size: float) -> PlateMesh:
     """A rectangle around the origin, in an even number of nearly square boxes either way, each cut along a diagonal.
 
-    The diagonals alternate, so that the mesh has the rectangle's symmetries. Its boundaries are `left`, `right`,
-    `bottom` and `top`.
+    The diagonals alternate, so that the mesh has the rectangle's symmetries. Its boundaries are "left", "right",
+    "bottom" and "top".
 
     Parameters
     ----------
     width, height : float
-        Lengths along x and y, m.
+        Along x and y [m].
     cell_size : float
-        Largest width and height of a box, m. There are at least two by two.
+        The largest width and height of a box [m]. There are at least two by two.
 
     Returns
     -------
-    mesh : PlateMesh
-        The mesh.
+    PlateMesh
 
     Raises
     ------
     ValueError
-        A length is not positive and finite; names each.
+        Names every length that is not positive and finite.
     """
     refuse(check_lengths("rectangle", width=width, height=height, cell_size=cell_size))
     lengths = np.array([width, height])
@@ -109,33 +109,32 @@ def rectangle(width: float, height: float, cell_size: float) -> PlateMesh:
 def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> PlateMesh:
     """A ring around the origin, of nearly equilateral cells that grow outwards with the radius.
 
-    The mesh is the image of a hexagonal lattice under the exponential function, which keeps angles. It has at least
-    two rings of at least twelve cells. Its boundaries are `inner` and `outer`.
+    It is the image of a hexagonal lattice under the exponential function, which keeps angles. Its boundaries are
+    "inner" and "outer".
 
     Parameters
     ----------
     inner_radius, outer_radius : float
-        Radii, m.
+        [m].
     cell_size : float
-        Largest height of a cell, m; its sides are up to 1.15 times that.
+        The largest height of a cell [m]; its sides are 1.15 times that. There are at least two rings of twelve cells.
 
     Returns
     -------
-    mesh : PlateMesh
-        The mesh.
+    PlateMesh
 
     Raises
     ------
     ValueError
-        A length is not positive and finite, or the inner radius is not smaller than the outer one; names each.
+        Names every length that is not positive and finite; or the inner radius is not smaller than the outer one.
     """
     lengths = {"inner_radius": inner_radius, "outer_radius": outer_radius, "cell_size": cell_size}
-    wrong = check_lengths("annulus", **lengths)
-    if not wrong and inner_radius >= outer_radius:
-        wrong.append(
+    mistakes = check_lengths("annulus", **lengths)
+    if not mistakes and inner_radius >= outer_radius:
+        mistakes.append(
             f"Input inner_radius of annulus must be less than its outer_radius, {outer_radius!r}; got {inner_radius!r}"
         )
-    refuse(wrong)
+    refuse(mistakes)
     growth = math.log(outer_radius / inner_radius)
     around = max(12.0, math.sqrt(3) * math.pi * outer_radius / cell_size * (1 - 1e-12))
     per_ring = math.sqrt(3) * math.pi  # log of a ring's radii times the cells around, for equilateral cells
@@ -157,35 +156,36 @@ def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> Plate
 
 
 def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMesh:
-    """An ellipse around the origin; cells get smaller towards its sharper ends.
+    """An ellipse around the origin, with smaller cells towards its sharper ends.
+
+    Its boundary is "rim".
 
     Parameters
     ----------
     semi_axis_x, semi_axis_y : float
-        Semi-axes, m.
+        [m].
     cell_size : float
-        Approximate size of the cells, m; at most half of the smaller semi-axis is used.
+        About the longest edge of a cell [m]; cells are at most half of the shorter semi-axis.
 
     Returns
     -------
-    mesh : PlateMesh
-        The mesh, with the boundary `rim`.
+    PlateMesh
 
     Raises
     ------
     ValueError
-        A length is not positive and finite; names each.
+        Names every length that is not positive and finite.
     """
     lengths = {"semi_axis_x": semi_axis_x, "semi_axis_y": semi_axis_y, "cell_size": cell_size}
     refuse(check_lengths("ellipse", **lengths))
     axes = np.array([semi_axis_x, semi_axis_y])
     size = min(cell_size, axes.min() / 2)
-    # A quarter is divided by the wanted length of edges, and the others mirror it.
+    # Divide a quarter into edges of the length wanted at each place, and mirror it.
     angle = np.linspace(0, np.pi / 2, 4001)
     middle = (angle[1:] + angle[:-1]) / 2
     speed = np.hypot(axes[0] * np.sin(middle), axes[1] * np.cos(middle))
-    wanted = np.minimum(size, LONGEST_ARC * speed**3 / axes.prod())
-    number = np.concatenate([[0], np.cumsum(speed * np.diff(angle) / wanted)])
+    length = np.minimum(size, LONGEST_ARC * speed**3 / axes.prod())
+    number = np.concatenate([[0], np.cumsum(speed * np.diff(angle) / length)])
     count = math.ceil(number[-1])
     quarter = np.interp(np.arange(count) * number[-1] / count, number, angle)
     angle = np.concatenate([quarter, np.pi - np.append(quarter[1:], np.pi / 2)[::-1]])
@@ -193,7 +193,7 @@ def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMe
     rim_points = axes * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     row = np.arange(len(angle))
 
-    rim = Rim(
+    rim = RimEdges(
         np.stack([row, np.roll(row, -1)], axis=1),
         np.zeros(len(row), dtype=np.int64),
         lambda middle, _: nearest_on_ellipse(middle, (semi_axis_x, semi_axis_y)),
@@ -210,5 +210,5 @@ def _ring(k: int, radius: float) -> FloatArray:
 
 
 def _row(ring: int, place: int) -> int:
-    """Row of a point in `points` from its ring and its place on it (counted round and round)."""
+    """Row of a point in `points` from its ring and its place there, counted round and round."""
     return 0 if ring == 0 else 1 + 3 * ring * (ring - 1) + place % (6 * ring)

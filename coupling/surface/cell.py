@@ -38,7 +38,7 @@ def misfit(cell: Cell, local: FloatArray, shapes: Shapes, heights: FloatArray) -
     fit = cell.fit
     assert fit
     at = cell.centre + local * cell.half
-    rows, values = shapes.nearby(at)
+    rows, values = shapes.nonzero_values(at)
     column = np.full(len(shapes.points), len(rows))  # of zeros, for those that are not near
     column[rows] = np.arange(len(rows))
     exact = np.concatenate([values, np.zeros((len(at), 1))], axis=1)[:, column[fit.drive]]

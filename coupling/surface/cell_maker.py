@@ -115,7 +115,7 @@ class CellMaker:
         at = np.concatenate([cell.centre + points * half for cell, points in zip(cells, local, strict=True)])
         if not len(at):
             return
-        rows, values = self.shapes.nearby(at)
+        rows, values = self.shapes.nonzero_values(at)
         for k, cell in enumerate(cells):
             if len(samples[k]):
                 here = slice(first[k], first[k + 1])

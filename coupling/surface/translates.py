@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, minimum_filter
 
 from fem_plate import InfluenceShapes, PatchedShapes, Shapes
-from fem_plate.arrays import SAME, spacing
+from fem_plate.arrays import PITCH_DIGITS, spacing
 from particle.surface import CellFit
 
 FloatArray = NDArray[np.float64]
@@ -94,6 +94,6 @@ def lattice_of(shapes: Shapes) -> Lattice | None:
         return None
     pitch = spacing(shapes.points)
     sites = (shapes.points - shapes.points.min(axis=0)) / pitch
-    if np.abs(sites - np.round(sites)).max() > 10.0**-SAME * np.ptp(sites):
+    if np.abs(sites - np.round(sites)).max() > 10.0**-PITCH_DIGITS * np.ptp(sites):
         return None
     return Lattice(shapes, pitch)

@@ -2,4 +2,4 @@
 
 from fem_plate.arrays.cutting import CELL, FINER_CELL, Cutter
 from fem_plate.arrays.patched import PatchedShapes
-from fem_plate.arrays.patches import SAME, Array, Tell, spacing
+from fem_plate.arrays.patches import PITCH_DIGITS, ActuatorArray, ProgressCallback, spacing

@@ -11,37 +11,32 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from fem_plate.elements import CLAMPED, Fineness, Singular, corner_rows, graded
+from fem_plate.elements import CLAMPED, Fineness, SingularCorner, corner_rows, graded
 from meshes import Outline, PlateMesh, rectangle
 
 FloatArray = NDArray[np.float64]
 
-CELL = 1.0  # pitches, the largest cell: shapes are then good to 4e-6, by their estimate
-FINER_CELL = 0.8  # which makes that 5e-7, in twice the time
-CUT = "cut"  # the boundary, clamped, along which a patch was cut out
+CELL = 1.0  # pitches, the largest cell: the estimated error of shapes is then 4e-6
+FINER_CELL = 0.8  # pitches: 5e-7, in twice the time
+CUT = "cut"  # the boundary along which a patch is cut out; it is clamped
 SIDES = {"left": (0, 0), "right": (1, 0), "bottom": (0, 1), "top": (1, 1)}  # row and axis of a box
 
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Where a patch lies.
+    """Where a patch lies."""
 
-    origin: (2,) m.  box: (2, 2) m from the origin.  edge: (n, 2) m from the origin, close-set points along the cut.
-    name: what tells it from patches whose box and actuators look the same.
-    sides: for a rectangle, the boundary on each side; empty for a part of the plate's mesh.
-    """
-
-    origin: FloatArray
-    box: FloatArray
-    edge: FloatArray
-    name: bytes
-    sides: Mapping[str, str]
+    origin: FloatArray  # (2,) m
+    box: FloatArray  # (2, 2) m, from the origin
+    edge: FloatArray  # (n, 2) m, from the origin: closely spaced points along the cut
+    name: bytes  # differs for patches with equal boxes and actuators that are not alike
+    sides: Mapping[str, str]  # of a rectangle, the boundary on each side; empty for a part of the plate's mesh
 
 
 class Cutter:
     """Cuts patches out of a plate for an array of actuators.
 
-    fine, corners: as in `grading.graded`.  points: (N, 2) m.  pitch: (2,) m.  cell: pitches, the largest cell.
+    fine, corners: as in `graded`.  points: (N, 2) m.  pitch: (2,) m.  cell: pitches, the largest cell.
     """
 
     def __init__(
@@ -49,7 +44,7 @@ class Cutter:
         mesh: PlateMesh,
         supports: Mapping[str, str],
         fine: Fineness,
-        corners: list[Singular],
+        corners: list[SingularCorner],
         points: FloatArray,
         pitch: FloatArray,
         cell: float = CELL,
@@ -61,17 +56,17 @@ class Cutter:
         self._sides = _rectangle_sides(self.plate)
 
     def halved(self) -> Cutter:
-        """One with cells of half the size."""
+        """The same with cells of half the size."""
         cell = self.cell / float(self.pitch.min()) / 2
         return Cutter(self.plate, self.supports, self.fine.halved(), self.corners, self.points, self.pitch, cell)
 
     def cut(self, middle: FloatArray, reach: FloatArray) -> Cut:
-        """The patch that reaches from `middle` (2,) along x and y by `reach` (2,) [m], as far as there is plate."""
+        """The patch around `middle` (2,) [m] that reaches `reach` (2,) [m] along x and y, as far as there is plate."""
         whole = np.stack([middle - reach, middle + reach])
         limits = self.plate.outline.box
         box = np.clip(whole, limits[0], limits[1])
         if self._sides or self._inside(box):
-            # A side that falls short of the plate's is a cut, except where hardly any plate is left beyond it.
+            # A side short of the plate's is a cut, unless less than half a cell of plate is left beyond it.
             beyond = np.array([box[0] - limits[0], limits[1] - box[1]])
             box = np.where(beyond < 0.5 * self.cell, limits, box)
             names = {
@@ -118,12 +113,12 @@ class Cutter:
     def _supports(self, mesh: PlateMesh) -> dict[str, str]:
         return {name: self.supports.get(name, CLAMPED) for name in mesh.boundaries}
 
-    def _corners_in(self, box: FloatArray) -> list[Singular]:
+    def _corners_in(self, box: FloatArray) -> list[SingularCorner]:
         slack = 1e-6 * self.cell
         return [c for c in self.corners if ((c.point > box[0] - slack) & (c.point < box[1] + slack)).all()]
 
     def _inside(self, box: FloatArray) -> bool:
-        """Whether the rim keeps off a box."""
+        """Whether the rim stays clear of a box."""
         count = np.ceil((box[1] - box[0]) / self.cell).astype(int) + 1
         x, y = (np.linspace(box[0, axis], box[1, axis], count[axis]) for axis in range(2))
         grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
@@ -140,13 +135,13 @@ class Cutter:
         return np.concatenate(points)
 
     def _part(self, box: FloatArray) -> PlateMesh:
-        # Every triangle that may reach into the box, so that no actuator there is off the part.
+        # Every triangle that may reach into the box, so that the part holds all actuators there.
         corners = self._fine_mesh.points[self._fine_mesh.triangles]
         return self._fine_mesh.part(((corners.max(axis=1) > box[0]) & (corners.min(axis=1) < box[1])).all(axis=1))
 
     @cached_property
     def _fine_mesh(self) -> PlateMesh:
-        """The plate's mesh with cells as small as patches need them."""
+        """The plate's mesh with cells as small as patches need."""
         mesh, tree = self.plate, cKDTree(self.points)
         while True:
             centre = mesh.points[mesh.triangles].mean(axis=1)
@@ -159,7 +154,7 @@ class Cutter:
 
 
 def _without_cuts(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[PlateMesh, dict[str, str]]:
-    """A plate and its supports with no boundary of the name that cuts have."""
+    """The plate and its supports, with boundaries renamed that are called as cuts are."""
     names = {name: name + "'" if name.startswith(CUT) else name for name in mesh.boundaries}
     boundaries = {names[name]: edges for name, edges in mesh.boundaries.items()}
     curves = {names[name]: curve for name, curve in mesh.curves.items()}
@@ -168,7 +163,7 @@ def _without_cuts(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[PlateMe
 
 
 def _rectangle_sides(mesh: PlateMesh) -> dict[str, str]:
-    """The boundary on each side of a plate that is a rectangle along x and y; empty where it is not."""
+    """The boundary on each side of a plate that is a rectangle along x and y; empty for any other plate."""
     outline, box = mesh.outline, mesh.outline.box
     if len(outline.conics) or len(outline.edges) != 4:
         return {}

@@ -1,4 +1,4 @@
-"""The influence shapes of a large array, put together from patches."""
+"""PatchedShapes: the influence shapes of a large array, put together from patches."""
 
 from __future__ import annotations
 
@@ -10,33 +10,42 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
-from fem_plate.arrays.patches import Array, Patch, Tell, Tile
-from fem_plate.elements import Field, Fields
-from fem_plate.influence import MOST_DENSE, InfluenceShapes, Shapes
+from fem_plate.arrays.patches import ActuatorArray, Patch, ProgressCallback, Tile
+from fem_plate.elements import Derivatives, PlateFunctions
+from fem_plate.influence import MAX_DENSE, InfluenceShapes
+from fem_plate.shapes import Shapes
 from fem_plate.vibration import modes
 from meshes import Outline
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+PatchFunction = Callable[[Patch, FloatArray], FloatArray]  # values (n, c) of a patch's shapes at points (n, 2)
 
-SAME = 9  # digits of a patch's size to which points must lie alike
-AT_ONCE = 4096  # points
+PLACE_DIGITS = 9  # of a patch's size, to which points lie alike
+CHUNK = 4096  # points evaluated at a time
 SLACK = 1e-8  # of a patch's size: points on the rim may seem to lie beyond it
-MOST_VALUES = 20_000_000  # points times actuators of which all shapes may be asked for at once
+MAX_VALUES = 20_000_000  # points times actuators for which all shapes are evaluated at once
 
 
 class PatchedShapes(Shapes):
     """Influence shapes of many actuators, each 0 beyond its patch; made by `Plate.influence`.
 
-    strengths: (N, N) sparse.  truncation_error: the largest deflection left out of a shape, over its largest, measured.
+    Attributes
+    ----------
+    strengths : (N, N) sparse matrix
+        Dimensionless force at i in the shape of actuator j.
+    truncation_error : float
+        The largest deflection left out of a shape, over its largest, as measured.
     """
 
-    def __init__(self, array: Array, truncation: float, size: float, outline: Outline, tell: Tell) -> None:
+    def __init__(
+        self, array: ActuatorArray, truncation: float, size: float, outline: Outline, tell: ProgressCallback
+    ) -> None:
         self.tiles = array.tiles(truncation, tell)
-        self.points, self.springs = np.ascontiguousarray(array.points), array.springs
+        self.points, self.springs = np.ascontiguousarray(array.points), array.actuator_stiffness
         self.size, self.outline = size, outline
         self._array = array
-        self._force_unit = array.rigidity / size**2
+        self._stiffness_unit = array.rigidity / size**2
         self.truncation_error = max(tile.patch.truncation for tile in self.tiles)
         self.strengths: csr_matrix = self._strengths()
 
@@ -44,7 +53,7 @@ class PatchedShapes(Shapes):
         data, rows, columns = [], [], []
         for tile in self.tiles:
             patch = tile.patch
-            forces = patch.field.forces * (self.size / patch.size) ** 2  # of the same dimensionless unit
+            forces = patch.functions.forces * (self.size / patch.size) ** 2  # in the same dimensionless unit
             core = tile.rows[patch.core]
             data.append(forces.ravel())
             rows.append(np.repeat(tile.rows, len(core)))
@@ -54,186 +63,193 @@ class PatchedShapes(Shapes):
 
     @property
     def unknowns(self) -> int:
-        """How many unknowns the largest patch has."""
-        return max(tile.patch.field.space.unknowns for tile in self.tiles)
+        """Number of unknowns of the largest patch."""
+        return max(tile.patch.functions.space.unknowns for tile in self.tiles)
 
     @cached_property
     def error_estimate(self) -> float:
-        """Largest error in w over a shape's largest: of what is left out, or of what cells of half the size change."""
+        """Largest error of w over a shape's largest deflection: what is left out, or what halving the cells changes."""
         inner = max(self.tiles, key=lambda tile: len(tile.rows))
-        outer = max(self.tiles, key=lambda tile: tile.patch.field.space.unknowns)
+        outer = max(self.tiles, key=lambda tile: tile.patch.functions.space.unknowns)
         return max(self.truncation_error, self._array.difference(inner), self._array.difference(outer))
 
     @property
     def stiffness(self) -> csr_matrix:
-        """Force at i that a unit stroke of j takes, (N, N) sparse [N/m]; of a floating one, per unit of its force."""
-        return self.strengths * self._force_unit
+        """Force at i for a unit stroke of actuator j, (N, N) sparse [N/m]; for a floating one, for a unit force."""
+        return self.strengths * self._stiffness_unit
 
     @property
     def compliance(self) -> FloatArray:
-        """Raises ValueError: every entry counts, and patches know only those nearby."""
+        """Raises ValueError: patches do not give a compliance, whose entries all count, however far apart."""
         raise ValueError(
-            f"Input points of influence must be at most {MOST_DENSE}, and without a truncation, for a compliance; got "
+            f"Input points of influence must be at most {MAX_DENSE}, and without a truncation, for a compliance; got "
             f"{len(self.points)} on patches"
         )
 
-    def fields(self, x: FloatArray, weights: FloatArray | None) -> Fields:
+    def derivatives(self, x: FloatArray, weights: FloatArray | None) -> Derivatives:
         width = self._width(x, weights)
         value, gradient, hessian = (
             np.zeros((len(x), width)),
             np.zeros((len(x), width, 2)),
             np.zeros((len(x), width, 2, 2)),
         )
-        for field, at, local, ratio in self._pieces(x, weights):
-            w, slope, bend = field.evaluate(local)  # at actuators the Hessians are infinite
-            value[at] += w
-            gradient[at] += slope * ratio
+        for functions, entries, x_patch, ratio in self._pieces(x, weights):
+            w, w_grad, w_hess = functions.evaluate(x_patch)  # at actuators the Hessians are infinite
+            value[entries] += w
+            gradient[entries] += w_grad * ratio
             with np.errstate(invalid="ignore"):  # infinities of either sign meet at an actuator
-                hessian[at] += bend * ratio**2
+                hessian[entries] += w_hess * ratio**2
         return value, gradient, hessian
 
     def values(self, xy: ArrayLike, weights: FloatArray | None = None) -> FloatArray:
         x = np.asarray(xy, dtype=float) / self.size
         value = np.zeros((len(x), self._width(x, weights)))
-        for field, at, local, _ in self._pieces(x, weights):
-            value[at] += field.values(local)
+        for functions, entries, x_patch, _ in self._pieces(x, weights):
+            value[entries] += functions.values(x_patch)
         return value
 
     def matrix(self, xy: ArrayLike, least: float = 0.0) -> csr_matrix:
-        """The shapes at points as a sparse matrix.
+        """The shapes' values as a sparse matrix.
 
-        Where patches are alike and points lie alike on them, such as a grid in step with the array, one answer serves
-        all.
+        Like patches with points in like places, as on a grid in step with the array, are evaluated once.
 
         Parameters
         ----------
-        xy : array (n, 2)
-            Points, m.
+        xy : (n, 2) array_like
+            Points [m].
         least : float
-            Entries below this, relative to the shape at its own actuator, are left out.
+            Leave out entries below this fraction of the shape's value at its own actuator.
 
         Returns
         -------
-        shapes : sparse array (n, N)
-            The shapes.
+        (n, N) sparse matrix
         """
-        return self._sparse(xy, lambda patch, x: patch.field.values(x), least)
+        return self._sparse(xy, _values, least)
 
     def laplacians(self, xy: ArrayLike, floor: float, least: float = 0.0) -> csr_matrix:
-        """The shapes' Laplacians at points as a sparse matrix.
+        """The shapes' Laplacians as a sparse matrix.
 
         Parameters
         ----------
-        xy : array (n, 2)
-            Points, m.
+        xy : (n, 2) array_like
+            Points [m].
         floor : float
-            As in `InfluenceShapes.laplacians`, m.
+            Radius around an actuator within which its Laplacian grows no more [m]; under a point load it has no bound.
         least : float
-            As in `matrix`.
+            Leave out entries below this fraction of the shape's Laplacian at its own actuator.
 
         Returns
         -------
-        laplacians : sparse array (n, N)
-            1/m^2 for each unit of the shapes' weights.
+        (n, N) sparse matrix
+            [1/m^2].
         """
-        return self._sparse(xy, lambda patch, x: patch.field.laplacians(x, floor / patch.size) / patch.size**2, least)
+        return self._sparse(
+            xy, lambda patch, x: patch.functions.laplacians(x, floor / patch.size) / patch.size**2, least
+        )
 
-    def _sparse(self, xy: ArrayLike, of: Callable[[Patch, FloatArray], FloatArray], least: float) -> csr_matrix:
-        """What a patch's shapes give at points (n, 2) of it, dimensionless, as a matrix (n, N) for points [m]."""
+    def _sparse(self, xy: ArrayLike, function: PatchFunction, least: float) -> csr_matrix:
+        """A function of a patch's shapes at points (n, 2) [m], as a matrix (n, N)."""
         xy = np.asarray(xy, dtype=float)
-        known: dict[tuple[int, bytes], tuple[IntArray, IntArray, FloatArray]] = {}
-        found = []
+        cache: dict[tuple[int, bytes], tuple[IntArray, IntArray, FloatArray]] = {}
+        entries = []
         for tile in self.tiles:
             patch, core = tile.patch, tile.rows[tile.patch.core]
-            local, near = self._within(tile, xy)
-            key = id(patch), np.round(local[near], SAME).tobytes()
-            if key not in known:
-                known[key] = _entries(partial(of, patch), local[near], least * _at_own(of, patch))
-            row, column, value = known[key]
-            found.append((value, near[row].astype(np.int32), core[column].astype(np.int32)))
-        flat = [np.concatenate(parts) for parts in zip(*found, strict=True)]
-        known.clear()
-        found.clear()
+            x, on_patch = self._within(tile, xy)
+            key = id(patch), np.round(x[on_patch], PLACE_DIGITS).tobytes()
+            if key not in cache:
+                cache[key] = _entries(partial(function, patch), x[on_patch], least * _at_own(function, patch))
+            row, column, value = cache[key]
+            entries.append((value, on_patch[row].astype(np.int32), core[column].astype(np.int32)))
+        flat = [np.concatenate(parts) for parts in zip(*entries, strict=True)]
+        cache.clear()  # there is not always room for these and the matrix
+        entries.clear()
         return coo_matrix((flat[0], (flat[1], flat[2])), shape=(len(xy), len(self.points))).tocsr()
 
-    def give(self, place: ArrayLike) -> float:
-        """How far [m/N] the plate, its actuators held, gives at a place (2,) [m] under a unit force; three digits."""
-        return self._array.give(np.asarray(place, dtype=float))
+    def compliance_at(self, place: ArrayLike) -> float:
+        """The deflection [m/N] at a place (2,) [m] under a unit force there, with actuators held; three digits."""
+        return self._array.compliance_at(np.asarray(place, dtype=float))
 
     def first_frequency(self, inertia: float) -> float:
-        """The first frequency [Hz] of the piece of plate around the widest gap between actuators, with them held.
+        """The first frequency [Hz] of the piece of plate around the widest gap between held actuators.
 
-        It is clamped where it is cut out, and so no lower than that of the plate. inertia: kg/m^2, mass per area.
+        The piece is clamped where it is cut out, so its frequency is no lower than the plate's.
+        inertia: kg/m^2, mass per area.
         """
         cut, rows = self._array.sparsest()
         held = self.points[rows] - cut.origin
         model, rigidity = self._array.model(self._array.cutter, cut, held), self._array.rigidity
-        give = rigidity / model.mesh.size**2 / self.springs[rows]
-        return float(modes(model, held, give, 1, rigidity / (inertia * model.mesh.size**4)).frequencies[0])
+        compliance = rigidity / model.mesh.size**2 / self.springs[rows]
+        return float(modes(model, held, compliance, 1, rigidity / (inertia * model.mesh.size**4)).frequencies[0])
 
     def _width(self, x: FloatArray, weights: FloatArray | None) -> int:
-        """How many functions are asked for; ValueError when they are too many for the points."""
+        """The number of functions to evaluate; ValueError when they are too many for the points."""
         n, count = len(x), len(self.points)
-        if weights is None and n * count > MOST_VALUES:
+        if weights is None and n * count > MAX_VALUES:
             raise ValueError(
-                f"Input xy of evaluate must be at most {MOST_VALUES // count} points for all {count} shapes at once; "
+                f"Input xy of evaluate must be at most {MAX_VALUES // count} points for all {count} shapes at once; "
                 f"got {n}; give weights for their sum"
             )
         return count if weights is None else int(weights.shape[1])
 
-    def _pieces(self, x: FloatArray, weights: FloatArray | None) -> Iterator[tuple[Field, Any, FloatArray, float]]:
-        """Yield what each tile adds at x (n, 2): a field, to which entries, at its points, and the ratio of lengths."""
+    def _pieces(
+        self, x: FloatArray, weights: FloatArray | None
+    ) -> Iterator[tuple[PlateFunctions, Any, FloatArray, float]]:
+        """Yield what each tile adds at x (n, 2): functions, entries to add to, points, and the ratio of sizes."""
         for tile in self.tiles:
             patch = tile.patch
             ratio, core = self.size / patch.size, tile.rows[patch.core]
             if weights is not None and not weights[core].any():
                 continue
-            local, near = self._within(tile, x * self.size)
-            if near.size and weights is None:
-                yield patch.field, np.ix_(near, core), local[near], ratio
-            elif near.size and weights is not None:
-                yield patch.field.weighted(weights[core]), near, local[near], ratio
+            x_patch, on_patch = self._within(tile, x * self.size)
+            if on_patch.size and weights is None:
+                yield patch.functions, np.ix_(on_patch, core), x_patch[on_patch], ratio
+            elif on_patch.size and weights is not None:
+                yield patch.functions.weighted(weights[core]), on_patch, x_patch[on_patch], ratio
 
-    def nearby(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
+    def nonzero_values(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
         rows, values = [np.zeros(0, dtype=np.int64)], [np.zeros((len(xy), 0))]
         for tile in self.tiles:
-            local, near = self._within(tile, xy)
-            if near.size:
+            x, on_patch = self._within(tile, xy)
+            if on_patch.size:
                 rows.append(tile.rows[tile.patch.core])
                 values.append(np.zeros((len(xy), len(rows[-1]))))
-                values[-1][near] = tile.patch.field.values(local[near])
+                values[-1][on_patch] = tile.patch.functions.values(x[on_patch])
         return np.concatenate(rows), np.concatenate(values, axis=1)
 
     def own_heights(self) -> FloatArray:
         heights = np.empty(len(self.points))
         for tile in self.tiles:
-            heights[tile.rows[tile.patch.core]] = _at_own(lambda patch, x: patch.field.values(x), tile.patch)
+            heights[tile.rows[tile.patch.core]] = _at_own(_values, tile.patch)
         return heights
 
     def _within(self, tile: Tile, xy: FloatArray) -> tuple[FloatArray, IntArray]:
-        """Points (n, 2) [m] in the dimensionless coordinates of a tile's patch, and which of them lie on it."""
+        """Points (n, 2) [m] in the dimensionless coordinates of a tile's patch, and the rows of those on it."""
         patch = tile.patch
-        local, box = (xy - tile.cut.origin) / patch.size, patch.box / patch.size
-        near = np.flatnonzero(((local >= box[0] - SLACK) & (local <= box[1] + SLACK)).all(axis=1))
-        return local, near[patch.field.space.holds(local[near])] if near.size else near
+        x, box = (xy - tile.cut.origin) / patch.size, patch.box / patch.size
+        in_box = np.flatnonzero(((x >= box[0] - SLACK) & (x <= box[1] + SLACK)).all(axis=1))
+        return x, in_box[patch.functions.space.holds(x[in_box])] if in_box.size else in_box
 
 
 PlateShapes = InfluenceShapes | PatchedShapes
 
 
-def _at_own(of: Callable[[Patch, FloatArray], FloatArray], patch: Patch) -> FloatArray:
-    """What a patch's shapes (c,) give at their own actuators, without its sign."""
-    return np.abs(np.diag(of(patch, patch.actuators[patch.core] / patch.size)))
+def _values(patch: Patch, x: FloatArray) -> FloatArray:
+    return patch.functions.values(x)
+
+
+def _at_own(function: PatchFunction, patch: Patch) -> FloatArray:
+    """The magnitude (c,) of a function of a patch's shapes at their own actuators."""
+    return np.abs(np.diag(function(patch, patch.actuators[patch.core] / patch.size)))
 
 
 def _entries(
-    of: Callable[[FloatArray], FloatArray], x: FloatArray, least: FloatArray
+    function: Callable[[FloatArray], FloatArray], x: FloatArray, floor: FloatArray
 ) -> tuple[IntArray, IntArray, FloatArray]:
-    """Rows, columns and values of functions (k,) at points (n, 2) that are larger than the least (k,)."""
-    found = [(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))]
-    for start in range(0, len(x), AT_ONCE):
-        values = of(x[start : start + AT_ONCE])
-        row, column = np.nonzero(np.abs(values) > least)
-        found.append((row + start, column, values[row, column]))
-    row, column, value = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    """Rows, columns and values of k functions at points (n, 2) that exceed the floor (k,)."""
+    entries = [(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))]
+    for start in range(0, len(x), CHUNK):
+        values = function(x[start : start + CHUNK])
+        row, column = np.nonzero(np.abs(values) > floor)
+        entries.append((row + start, column, values[row, column]))
+    row, column, value = (np.concatenate(parts) for parts in zip(*entries, strict=True))
     return row, column, value

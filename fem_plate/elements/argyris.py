@@ -24,7 +24,6 @@ DERIVATIVES = [[(order - k, k) for k in range(order + 1)] for order in range(4)]
 # The reference triangle, its centroid at the origin; edge k runs from corner k to corner k + 1.
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]) - 1 / 3
 EDGES = ((0, 1), (1, 2), (2, 0))
-VALUE, SLOPES, CURVATURES = 0, slice(1, 3), slice(3, 6)  # a corner's six unknowns
 
 
 def monomials(x: FloatArray, y: FloatArray, dx: int = 0, dy: int = 0) -> FloatArray:
@@ -60,9 +59,9 @@ REFERENCE = _reference_coefficients()
 
 
 class Triangles:
-    """The geometry of m triangles and the functions on them.
+    """The geometry of m triangles and their Argyris functions.
 
-    points: (n, 2).  corners: (m, 3) rows of points, counter-clockwise.
+    points: (n, 2).  corners: (m, 3), rows of points, counter-clockwise.
     """
 
     def __init__(self, points: FloatArray, corners: IntArray) -> None:
@@ -71,16 +70,14 @@ class Triangles:
         self.centre = self.points.mean(axis=1)
         self.jacobian = np.stack([self.points[:, 1] - self.points[:, 0], self.points[:, 2] - self.points[:, 0]], axis=2)
         self.determinant = np.linalg.det(self.jacobian)
-        self.inverse = np.asarray(
-            np.linalg.inv(self.jacobian), dtype=float
-        )  # rows are the gradients of the reference coordinates
+        self.inverse = np.asarray(np.linalg.inv(self.jacobian))  # rows: the gradients of the reference coordinates
         self.normals = self._normals()
         self.transform = self._transform()
 
     def _normals(self) -> FloatArray:
-        """The direction across each edge in which its unknown counts, (m, 3, 2).
+        """The unit normal along which each edge's unknown counts, (m, 3, 2).
 
-        Both triangles of an edge see one: to the right from the lower to the higher point.
+        Both triangles of an edge share it: it points to the right, seen from the lower to the higher point number.
         """
         start, end = np.array(EDGES).T
         along = self.points[:, end] - self.points[:, start]
@@ -88,7 +85,7 @@ class Triangles:
         return np.stack([along[..., 1], -along[..., 0]], axis=-1) / np.linalg.norm(along, axis=-1, keepdims=True)
 
     def _transform(self) -> FloatArray:
-        """The reference unknowns (rows) by the triangle's own (columns): (m, 21, 21)."""
+        """The reference unknowns (rows) from the triangle's own (columns): (m, 21, 21)."""
         m, J = len(self.points), self.jacobian
         matrix = np.zeros((m, FUNCTIONS, FUNCTIONS))
         second = np.empty((m, 3, 3))  # J^T H J for H = (xx, xy, yy)
@@ -123,8 +120,8 @@ class Triangles:
     def derivatives(self, x: FloatArray, triangle: IntArray, order: int) -> FloatArray:
         """All derivatives of one order of the 21 functions.
 
-        x: (t, n, 2) points, n on each of the triangles (t,).  Returns (derivatives, t, n, 21) in the sequence of
-        DERIVATIVES[order].
+        x: (t, n, 2), n points on each of the triangles (t,).
+        Returns (derivatives, t, n, 21) in the order of DERIVATIVES[order].
         """
         u, v = np.moveaxis(self.reference(x, triangle), 2, 0)
         table = np.stack([monomials(u, v, *d) @ REFERENCE for d in DERIVATIVES[order]])
@@ -133,7 +130,7 @@ class Triangles:
 
 
 def chain_rule(inverse: FloatArray, order: int) -> FloatArray:
-    """Derivatives in x (rows) by those in the reference coordinates (columns): (t, order + 1, order + 1).
+    """Derivatives in x (rows) from those in the reference coordinates (columns): (t, order + 1, order + 1).
 
     inverse: (t, 2, 2), d xi / d x.
     """

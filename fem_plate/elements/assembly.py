@@ -1,6 +1,6 @@
-"""Element matrices into one sparse matrix, by blocks: an entity (a point with 6 unknowns, an edge with 1) at a time.
+"""Assembly of element matrices into a sparse matrix, by blocks between entities: points (6 unknowns) and edges (1).
 
-Sorting pairs of entities instead of pairs of unknowns makes this several times cheaper than summing up triplets.
+Sorting pairs of entities rather than pairs of unknowns makes this several times cheaper than summing triplets.
 """
 
 from __future__ import annotations
@@ -9,12 +9,26 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
+from meshes import edge_numbers, sides
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-CHUNK = 20_000  # triangles scattered at once, to bound memory
+CHUNK = 20_000  # triangles scattered at a time, to bound memory
 LOCAL_ENTITY = np.array([0] * 6 + [1] * 6 + [2] * 6 + [3, 4, 5])  # of a triangle's 21 unknowns
 WITHIN_ENTITY = np.array([*range(6), *range(6), *range(6), 0, 0, 0])
+
+
+def number_entities(points: IntArray, corners: IntArray) -> tuple[IntArray, IntArray]:
+    """The entities of each triangle (m, 6), its corners and then its edges, and the first unknown of each entity.
+
+    points: (m, 3), the mesh points of each triangle, which identify its edges.  corners: (m, 3), numbered from 0.
+    """
+    edges, edge = np.unique(edge_numbers(sides(points), points.max() + 1), return_inverse=True)
+    count = int(corners.max()) + 1
+    entities = np.concatenate([corners, count + edge.reshape(-1, 3)], axis=1)
+    first = np.concatenate([6 * np.arange(count), 6 * count + np.arange(len(edges) + 1)])
+    return entities, first
 
 
 def sum_up(matrices: FloatArray, entities: IntArray, first: IntArray) -> csc_matrix:
@@ -44,7 +58,7 @@ def sum_up(matrices: FloatArray, entities: IntArray, first: IntArray) -> csc_mat
 
 
 def _rows(row: IntArray, column: IntArray, sizes: IntArray, first: IntArray, height: IntArray) -> IntArray:
-    """The row of every stored number: an entity's columns all list the same rows."""
+    """The row of every stored number: all columns of an entity list the same rows."""
     lengths = sizes[row]
     ends = np.cumsum(lengths)
     listed = np.arange(ends[-1]) + np.repeat(first[row] - (ends - lengths), lengths)  # once for each column entity

@@ -1,7 +1,7 @@
-"""Corners of the plate, where its deflection is singular and Argyris' common second derivatives are too much to ask.
+"""Corners of the plate, where its deflection is singular and Argyris' common second derivatives are too strict.
 
-Near a corner of angle omega w = r^(lambda + 1) f(theta) (Williams, 1952), and both sides' supports admit only some
-exponents. Where lambda < 1 the second derivatives are unbounded.
+Near a corner of angle omega the deflection is w = r^(lambda + 1) f(theta) (Williams, 1952), where the supports of both
+sides admit only some exponents lambda. Where lambda < 1 the second derivatives are unbounded.
 """
 
 from __future__ import annotations
@@ -19,38 +19,39 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 Copies = list[tuple[int, int, int, int]]
 
-MOST = 4.0  # exponents above this are smooth for all that polynomials of degree five can tell
-STEP = 0.02
+MAX_EXPONENT = 4.0  # to polynomials of degree five, larger exponents are smooth
+STEP = 0.02  # of the grid on which exponents are searched
 
 
 @lru_cache
 def exponent(angle: float, before: str, after: str, poisson_ratio: float) -> float:
-    """The smallest positive real part of lambda at a corner between two supports, integers apart; at most MOST.
+    """The smallest positive real part of lambda, other than integers, at a corner between two supports.
 
-    angle: rad, of the plate inside the corner.
+    angle: rad, of the plate inside the corner.  Returns at most MAX_EXPONENT.
     """
-    real, imaginary = np.meshgrid(np.arange(STEP, MOST + STEP, STEP), np.arange(0, 1.5, STEP), indexing="ij")
-    grid = _least(real + 1j * imaginary, angle, before, after, poisson_ratio)
+    real, imaginary = np.meshgrid(np.arange(STEP, MAX_EXPONENT + STEP, STEP), np.arange(0, 1.5, STEP), indexing="ij")
+    grid = _singular_value(real + 1j * imaginary, angle, before, after, poisson_ratio)
     padded = np.pad(grid, 1, constant_values=np.inf)
     padded[:, 0] = padded[:, 2]  # conjugates mirror each other
     around = [np.roll(padded, shift, (0, 1))[1:-1, 1:-1] for shift in ((1, 0), (-1, 0), (0, 1), (0, -1))]
     for i, j in np.argwhere((grid <= np.min(around, axis=0)) & (grid < 0.05)).tolist():
         start = np.array([real[i, j], imaginary[i, j]])
-        found = minimize(
-            lambda p: _least(np.array(p[0] + 1j * p[1]), angle, before, after, poisson_ratio).item(),
+        minimum = minimize(
+            lambda p: _singular_value(np.array(p[0] + 1j * p[1]), angle, before, after, poisson_ratio).item(),
             start,
             method="Nelder-Mead",
-            bounds=[(STEP / 2, MOST + 1), (0.0, 2.0)],
-            # Small enough for exponents close to each other.
+            bounds=[(STEP / 2, MAX_EXPONENT + 1), (0.0, 2.0)],
+            # Small enough to separate close exponents.
             options={"initial_simplex": start + STEP / 2 * np.eye(3, 2, -1), "xatol": 1e-9, "fatol": 1e-12},
         )
-        whole = np.hypot(found.x[0] - round(found.x[0]), found.x[1]) < 1e-5  # w is a polynomial
-        if found.fun < 1e-6 and found.x[0] > STEP / 2 and not whole:
-            return float(found.x[0])
-    return MOST
+        real_part, imaginary_part = minimum.x
+        integer = np.hypot(real_part - round(real_part), imaginary_part) < 1e-5  # w is a polynomial
+        if minimum.fun < 1e-6 and real_part > STEP / 2 and not integer:
+            return float(real_part)
+    return MAX_EXPONENT
 
 
-def _least(exponents: NDArray, angle: float, before: str, after: str, poisson_ratio: float) -> FloatArray:
+def _singular_value(exponents: NDArray, angle: float, before: str, after: str, poisson_ratio: float) -> FloatArray:
     """The smallest singular value of the four conditions on f, which vanishes at the admissible exponents."""
     rows = [*_conditions(exponents, 0.0, before, poisson_ratio), *_conditions(exponents, angle, after, poisson_ratio)]
     matrix = np.moveaxis(np.array(rows), (0, 1), (-2, -1))
@@ -60,10 +61,11 @@ def _least(exponents: NDArray, angle: float, before: str, after: str, poisson_ra
 
 def _conditions(exponents: NDArray, angle: float, support: str, poisson_ratio: float) -> list[list[NDArray]]:
     """Two rows of four coefficients: of cos and sin of (lambda + 1) theta and of (lambda - 1) theta."""
-    s, nu = exponents.astype(complex), poisson_ratio
+    s, nu = exponents.astype(complex), poisson_ratio  # s is lambda
     a, b = (s + 1) * angle, (s - 1) * angle
     b = np.where(np.abs(s - 1) < 1e-12, 1e-12 * angle, b)
     d = np.where(np.abs(s - 1) < 1e-12, 1e-12, s - 1)  # the last function is sin((lambda - 1) theta) / (lambda - 1)
+    # The functions and their derivatives in theta.
     f = [np.cos(a), np.sin(a), np.cos(b), np.sin(b) / d]
     f1 = [-(s + 1) * np.sin(a), (s + 1) * np.cos(a), -d * np.sin(b), np.cos(b)]
     f2 = [-((s + 1) ** 2) * f[0], -((s + 1) ** 2) * f[1], -(d**2) * f[2], -(d**2) * f[3]]
@@ -79,9 +81,9 @@ def _conditions(exponents: NDArray, angle: float, support: str, poisson_ratio: f
 def split(triangles: IntArray, rows: list[int], points: int) -> tuple[IntArray, Copies]:
     """Give every triangle at the points `rows` a point of its own.
 
-    triangles: (m, 3).  points: how many there are.  Returns the new triangles, and for every new point (new, first,
-    neighbour, end): the corner it copies, the copy in the next triangle around the corner (first itself at the start),
-    and the other end of the edge between them.
+    triangles: (m, 3).  points: their number.
+    Returns the new triangles, and for every new point (new, first, neighbour, end): the corner it copies, the copy in
+    the next triangle around the corner (first itself at the start), and the other end of the edge between them.
     """
     triangles, copies = triangles.copy(), []
     for row in rows:
@@ -106,10 +108,12 @@ def split(triangles: IntArray, rows: list[int], points: int) -> tuple[IntArray, 
 
 
 def continuity(xy: FloatArray, copies: Copies, edges: int) -> csc_matrix:
-    """All unknowns of a mesh with split corners by those that leave it continuous with its gradient.
+    """The matrix that gives all unknowns of a mesh with split corners from those that keep it C1.
 
-    xy: (n, 2) points before the split.  copies: of `split`.  edges: how many.  A copy shares value and gradient with
-    its corner; second derivatives may jump by a multiple of n n^T across each edge with normal n.
+    A copy shares value and gradient with its corner; second derivatives may jump by a multiple of n n^T across each
+    edge with normal n.
+
+    xy: (n, 2), points before the split.  copies: from `split`.  edges: their number.
     """
     n, new = len(xy), len(copies)
     total = 6 * (n + new) + edges

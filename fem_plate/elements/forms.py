@@ -1,67 +1,55 @@
 """Element matrices of a Kirchhoff-Love plate, in dimensionless variables (lengths by the plate's size, rigidity 1).
 
-Bending energy with moments M(v) = (1 - nu) H(v) + nu tr H(v) I, and on the rim Nitsche's method (Nitsche, 1971): for a
-biharmonic v, integrating by parts,
+The bending moments are M(v) = (1 - nu) H(v) + nu tr H(v) I. For a biharmonic v, integration by parts gives
 
     int M(v):H(q) = rim[ (M(v) n).grad q - (div M(v).n) q ]        for every q,    div M(v) = grad(laplace v).
 
-A support prescribes T grad v and c v there: clamped T = I, c = 1; simply supported T = t t^T (t along the rim), c = 1;
-free T = 0, c = 0. With v to be g where it is prescribed and the moments and shears of v to be those of g where not,
+A support prescribes T grad v and c v on the rim: clamped T = I, c = 1; simply supported T = t t^T (t along the rim),
+c = 1; free T = 0, c = 0. Nitsche's method (Nitsche, 1971) seeks the v that equals g where the support prescribes it,
+and has the moments and shears of g where it does not:
 
-    int M(v):H(q) - R(v; q) - R(q; v - g) + rim[ gamma1/h T grad(v - g).grad q + gamma2/h^3 c (v - g) q ]
-        = rim[ (M(g) n).(1 - T) grad q - (1 - c)(div M(g).n) q ],
+    int M(v):H(q) - R(v; q) - R(q; v - g) + S(v - g; q) = L(q)     for every q,    with
 
-where R(v; q) = rim[ (M(v) n).T grad q - c (div M(v).n) q ] + ends[ +-(t.M(v) n) q ].
+    R(v; q) = rim[ (M(v) n).T grad q - c (div M(v).n) q ] + ends[ +-(t.M(v) n) q ]
+    S(v; q) = rim[ gamma1/h T grad v.grad q + gamma2/h^3 c v q ]
+    L(q)    = rim[ (M(g) n).(I - T) grad q - (1 - c) (div M(g).n) q ] - ends[ +-(t.M(g) n) q ].
 
-The ends are those of free edges at held ones, + where such an edge ends and - where it starts, along t: what a free
-edge lacks is not the twist t.M n itself but the shear (d/dt)(t.M n) + div M.n, and integrating by parts along the edge
-leaves the twist at its ends, a force on the corner. On the right side the ends count for g too, with a minus.
+The ends are those of free edges at held ones, + where such an edge ends and - where it starts, along t. On a free edge
+not the twist t.M n vanishes but the shear (d/dt)(t.M n) + div M.n; integrating by parts along the edge leaves the twist
+at its ends, as a force on the corner.
 
 The rim is its true curve: only there does a curved clamped plate have no slope.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from fem_plate.elements.argyris import DERIVATIVES, FUNCTIONS, REFERENCE, Triangles, chain_rule, monomials
+from fem_plate.elements.rim import RimQuadrature, unit_gauss
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 # Anything within (100..2000, 5000..4e5) gives the same digits; far less loses definiteness.
-NITSCHE_SLOPE = 400.0
-NITSCHE_VALUE = 40000.0
-CHANNELS = 6  # of rim data: value, gradient (2), moments on the rim (2), div M.n
-PAIRS = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
-
-
-class Rim(NamedTuple):
-    """Quadrature on the rim, n points on each of k edges; dimensionless."""
-
-    triangle: IntArray  # (k,)
-    points: FloatArray  # (k, n, 2), on the true curve
-    weights: FloatArray  # (k, n), arc length included
-    normal: FloatArray  # (k, n, 2), outward
-    slope: FloatArray  # (k, n, 2, 2), T
-    value: FloatArray  # (k, n), c
-    size: FloatArray  # (k,), h, the length of the edge or less where its cell is flat
-    twist: FloatArray  # (k, n, 2), t at the end of a free edge at a held one, -t at its start, 0 elsewhere
+GAMMA_1 = 400.0
+GAMMA_2 = 40000.0
+# The channels of a function on the rim: value, gradient, M n, div M.n.
+VALUE, GRADIENT, MOMENT, SHEAR = 0, slice(1, 3), slice(3, 5), 5
+CHANNELS = 6
+PAIRS = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]  # of the second derivatives xx, xy, yy
 
 
 def bending_law(poisson_ratio: float) -> FloatArray:
-    """M:H as a quadratic form of (xx, xy, yy), (3, 3)."""
+    """The matrix (3, 3) of M(v):H(q) as a bilinear form of the second derivatives (xx, xy, yy) of v and q."""
     nu = poisson_ratio
     return np.array([[1.0, 0.0, nu], [0.0, 2 * (1 - nu), 0.0], [nu, 0.0, 1.0]])
 
 
-def square(points: int) -> tuple[FloatArray, FloatArray]:
-    """Quadrature of the reference triangle, exact to degree 2 points - 2: points (n, 2) and weights (n,)."""
-    x, w = np.polynomial.legendre.leggauss(points)
-    x, w = (x + 1) / 2, w / 2
+def triangle_quadrature(count: int) -> tuple[FloatArray, FloatArray]:
+    """Quadrature of the reference triangle, exact to degree 2 count - 2: points (count^2, 2) and weights (count^2,)."""
+    x, w = unit_gauss(count)
     ray, along = np.meshgrid(x, x, indexing="ij")
     xy = np.stack([ray * (1 - along), ray * along], axis=-1).reshape(-1, 2) - 1 / 3
     return xy, np.outer(x * w, w).reshape(-1)
@@ -69,7 +57,7 @@ def square(points: int) -> tuple[FloatArray, FloatArray]:
 
 def _reference_matrices() -> tuple[FloatArray, FloatArray]:
     """int h_a h_b of the reference functions' second derivatives, symmetrised (6, 21, 21); int v q (21, 21)."""
-    xy, weights = square(7)
+    xy, weights = triangle_quadrature(7)
     x, y = xy.T
     second = np.stack([monomials(x, y, *d) @ REFERENCE for d in DERIVATIVES[2]])
     value = monomials(x, y) @ REFERENCE
@@ -100,7 +88,7 @@ def _to_unknowns(triangles: Triangles, matrices: FloatArray) -> FloatArray:
 
 def bending_at(hessian: FloatArray, weights: FloatArray, poisson_ratio: float) -> FloatArray:
     """int M(v):H(q) by quadrature: second derivatives (3, k, n, 21) and weights (k, n) give (k, 21, 21)."""
-    moments = np.einsum("ab,bknj->aknj", bending_law(poisson_ratio), hessian)
+    moments = np.einsum("ab,bknj->aknj", bending_law(poisson_ratio), hessian)  # M(v)
     return np.einsum("kn,aknj,aknl->kjl", weights, moments, hessian, optimize=True)
 
 
@@ -121,19 +109,23 @@ def rim_traces(derivatives: list[FloatArray], normal: FloatArray, poisson_ratio:
     return np.stack([value, x, y, *moments, (xxx + xyy) * nx + (xxy + yyy) * ny])
 
 
-def rim_forms(at: Rim) -> tuple[FloatArray, FloatArray]:
-    """What couples the channels of q (rows) with those of v and of g (columns): two arrays (k, n, 6, 6)."""
-    k, n = at.weights.shape
-    reaction, penalty, natural = np.zeros((3, k, n, CHANNELS, CHANNELS))
-    reaction[..., 1:3, 3:5] = at.slope
-    reaction[..., 0, 5] = -at.value
-    natural[..., 1:3, 3:5] = np.eye(2) - at.slope
-    natural[..., 0, 5] = at.value - 1
-    penalty[..., 1:3, 1:3] = NITSCHE_SLOPE / at.size[:, None, None, None] * at.slope
-    penalty[..., 0, 0] = NITSCHE_VALUE / at.size[:, None] ** 3 * at.value
-    weights = at.weights[..., None, None]
-    corner = np.zeros_like(reaction)
-    corner[..., 0, 3:5] = at.twist
-    reaction = weights * reaction + corner
-    turned = np.swapaxes(reaction, -1, -2)
-    return weights * penalty - reaction - turned, weights * (penalty + natural) - turned - corner
+def rim_forms(rim: RimQuadrature) -> tuple[FloatArray, FloatArray]:
+    """The rim's terms, as what couples the channels of q (rows) with those of v or g (columns).
+
+    Returns two arrays (k, n, 6, 6), weights included, for the left and the right side of
+
+        S(v; q) - R(v; q) - R(q; v) = S(g; q) - R(q; g) + L(q).
+    """
+    k, n = rim.weights.shape
+    R, S, L, ends = np.zeros((4, k, n, CHANNELS, CHANNELS))
+    R[..., GRADIENT, MOMENT] = rim.T
+    R[..., VALUE, SHEAR] = -rim.c
+    S[..., GRADIENT, GRADIENT] = GAMMA_1 / rim.h[:, None, None, None] * rim.T
+    S[..., VALUE, VALUE] = GAMMA_2 / rim.h[:, None] ** 3 * rim.c
+    L[..., GRADIENT, MOMENT] = np.eye(2) - rim.T
+    L[..., VALUE, SHEAR] = rim.c - 1
+    ends[..., VALUE, MOMENT] = rim.twist
+    weights = rim.weights[..., None, None]
+    R = weights * R + ends
+    R_swapped = np.swapaxes(R, -1, -2)  # R(q; v)
+    return weights * S - R - R_swapped, weights * (S + L) - R_swapped - ends

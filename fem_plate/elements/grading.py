@@ -1,4 +1,4 @@
-"""Where cells must be small: towards corners, and where an actuator is near the rim."""
+"""Where cells must be small: towards corners, and where an actuator is close to the rim."""
 
 from __future__ import annotations
 
@@ -9,87 +9,88 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from fem_plate.elements.corners import MOST, exponent
-from meshes import PlateMesh
+from fem_plate.elements.corners import MAX_EXPONENT, exponent
+from meshes import PlateMesh, areas
 
 FloatArray = NDArray[np.float64]
 
 FAR = 0.7  # of the plate's half width: an actuator that far from the rim needs no smaller cells there
-CORNER_SLOPE = 4.0  # how much of its distance a cell at a corner may be, against the plate's cells of its size
-CORNER_ERROR = 1e-2  # of the error that cells of the plate's fineness leave anyhow
-LEAST = 1e-6  # of the plate's size: cells any smaller add more rounding than accuracy
+CORNER_GROWTH = 4.0  # of cells with the distance from a corner, times the plate's cells over its size
+CORNER_ERROR = 1e-2  # of the error of the plate's other cells
+MIN_CELL = 1e-6  # of the plate's size: smaller cells add more rounding than accuracy
 
 
 @dataclass(frozen=True)
-class Singular:
+class SingularCorner:
     """A corner of the plate where w ~ r^(exponent + 1)."""
 
     point: FloatArray  # (2,) m
     exponent: float
 
 
-def singular_corners(mesh: PlateMesh, supports: Mapping[str, str], poisson_ratio: float) -> list[Singular]:
+def singular_corners(mesh: PlateMesh, supports: Mapping[str, str], poisson_ratio: float) -> list[SingularCorner]:
     """The corners where the deflection is not smooth."""
-    found = []
+    singular = []
     for corner in mesh.corners:
         before, after = (supports[name] for name in corner.sides)
         smallest = exponent(round(corner.angle, 9), before, after, poisson_ratio)
-        if smallest < MOST:
-            found.append(Singular(mesh.points[corner.row], smallest))
-    return found
+        if smallest < MAX_EXPONENT:
+            singular.append(SingularCorner(mesh.points[corner.row], smallest))
+    return singular
 
 
 @dataclass(frozen=True)
 class Fineness:
     """How fine a plate's cells are before any grading."""
 
-    cell: float  # m, their mean size over the area
-    half_width: float  # m, how far the plate reaches from its rim at most
-    size: float  # m, what corners are measured by: the plate's size, or three half widths of a slender one
+    cell: float  # m, mean size over the area
+    half_width: float  # m, the largest distance of the plate from its rim
+    size: float  # m, the scale of corners: the plate's size, or three half widths of a slender plate
 
     @staticmethod
     def of(mesh: PlateMesh) -> Fineness:
+        area = np.abs(areas(mesh.points, mesh.triangles))
         a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
-        area = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
         half_width = mesh.outline.gap(np.concatenate([mesh.points, (a + b + c) / 3])).max()
         size = min(mesh.size, 3 * half_width)
         return Fineness(float(np.average(mesh.cell_sizes, weights=area)), float(half_width), float(size))
 
     def halved(self, times: int = 1) -> Fineness:
-        """That of cells halved some times."""
+        """The fineness of cells halved so many times."""
         return replace(self, cell=self.cell / 2**times)
 
 
-def graded(mesh: PlateMesh, fine: Fineness, corners: list[Singular], points: FloatArray | None = None) -> PlateMesh:
-    """The mesh with smaller cells at corners, and at the rim where actuators at points (N, 2) [m] are near it.
+def graded(
+    mesh: PlateMesh, fine: Fineness, corners: list[SingularCorner], points: FloatArray | None = None
+) -> PlateMesh:
+    """The mesh with smaller cells at corners, and at the rim where actuators at points (N, 2) [m] are close to it.
 
-    The smooth part of a force's answer varies over the distance to its mirror images beyond the rim: cells stay as
-    small in comparison as the plate's are for an actuator at FAR of the half width from the rim. Towards a corner they
-    shrink in proportion to their distance, until what is left there changes w by less than the plate's cells do.
+    The smooth part of the response to a force varies over the distance to its mirror images beyond the rim: cells are
+    as small in proportion as the plate's are for an actuator at FAR of the half width from the rim. Towards a corner
+    they shrink in proportion to their distance, until they change w there by less than the plate's other cells do.
     """
     images, nearest = None, 0.0
     if points is not None and len(points):
-        # An image across a hole may come to lie on the plate's other rim. None is nearer to the plate than its point.
+        # An image across a hole may lie on the plate's other rim. None is closer to the plate than its actuator.
         images, nearest = cKDTree(mesh.mirrored(points)), mesh.outline.gap(points).min()
     share = fine.cell / fine.size
     error = CORNER_ERROR * share**6
-    least = np.array([fine.size * max(error ** (1 / (2 * c.exponent)), LEAST) for c in corners])
-    places = np.array([c.point for c in corners]).reshape(-1, 2)
+    smallest = [fine.size * max(error ** (1 / (2 * corner.exponent)), MIN_CELL) for corner in corners]
     while True:
         centre = mesh.points[mesh.triangles].mean(axis=1)
         allowed = np.full(len(centre), np.inf)
         if images is not None:
             allowed = fine.cell / (FAR * fine.half_width) * np.maximum(images.query(centre)[0], nearest)
-        for place, smallest in zip(places, least, strict=True):
-            distance = np.hypot(*(centre - place).T)
-            allowed = np.minimum(allowed, np.maximum(min(CORNER_SLOPE * share, 1.0) * distance, smallest))
+        for corner, floor in zip(corners, smallest, strict=True):
+            distance = np.hypot(*(centre - corner.point).T)
+            allowed = np.minimum(allowed, np.maximum(min(CORNER_GROWTH * share, 1.0) * distance, floor))
         large = mesh.cell_sizes > allowed
         if not large.any():
             return mesh
         mesh = mesh.refined(large)
 
 
-def corner_rows(mesh: PlateMesh, corners: list[Singular]) -> list[int]:
+def corner_rows(mesh: PlateMesh, corners: list[SingularCorner]) -> list[int]:
     """The rows of the mesh's points at corners."""
     rows = [int(np.argmin(((mesh.points - corner.point) ** 2).sum(axis=1))) for corner in corners]
     return list(dict.fromkeys(rows))

@@ -1,4 +1,4 @@
-"""The discrete plate: a graded mesh, its stiffness factorised, and its answers to unit loads; all dimensionless."""
+"""The discrete plate: a graded mesh, its factorised stiffness, and its responses to unit loads; all dimensionless."""
 
 from __future__ import annotations
 
@@ -11,21 +11,20 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
 from fem_plate.elements.forms import rim_traces
+from fem_plate.elements.rim import rigid_motions
 from fem_plate.elements.singular import point_derivatives, potential, pressure_derivatives
 from fem_plate.elements.space import PlateSpace
-from fem_plate.elements.supports import rigid_modes
 from meshes import PlateMesh
 
 FloatArray = NDArray[np.float64]
 
-
-TOGETHER = 128  # forces answered at once, to bound memory
+CHUNK = 128  # forces solved for at a time, to bound memory
 
 
 class PlateModel:
     """A plate on one mesh.
 
-    supports: that of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
+    supports: of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
     """
 
     def __init__(
@@ -34,14 +33,14 @@ class PlateModel:
         self.mesh = mesh
         self.poisson_ratio = poisson_ratio
         self.space = PlateSpace(mesh, supports, list(free_corners))
-        self.rigid = self._orthonormal(rigid_modes(self.space.rim))  # (3, r), coefficients of 1, x, y
+        self.rigid = self._orthonormal(rigid_motions(self.space.rim))  # (3, r), coefficients of 1, x, y
 
     @property
     def unknowns(self) -> int:
         return self.space.unknowns
 
     def _orthonormal(self, rigid: FloatArray) -> FloatArray:
-        """The same rigid motions, combined so that their products have the integrals 1 and 0 over the plate."""
+        """The same rigid motions, orthonormal over the plate."""
         if not rigid.size:
             return rigid
         points, weights = self.space.quadrature
@@ -50,14 +49,14 @@ class PlateModel:
 
     @cached_property
     def mean(self) -> FloatArray:
-        """(unknowns, r), what turns a function's unknowns into its integrals with the rigid motions."""
+        """(unknowns, r), whose product with a function's unknowns is its integrals with the rigid motions."""
         if not self.rigid.size:
             return np.zeros((self.unknowns, 0))
         return np.asarray(self.space.mass() @ (self.space.linear() @ self.rigid))
 
     @cached_property
     def _pins(self) -> csc_matrix:
-        """(r, unknowns), the deflections at points that, held, would stop every rigid motion."""
+        """(r, unknowns), the deflections at r points that would stop every rigid motion if held."""
         xy = self.mesh.points / self.mesh.size
         chosen: list[int] = []
         motions = np.column_stack([np.ones(len(xy)), xy]) @ self.rigid
@@ -70,14 +69,14 @@ class PlateModel:
 
     @cached_property
     def solve(self) -> Callable[[FloatArray], FloatArray]:
-        """The plate's answer (unknowns, ...) to a load (unknowns, ...).
+        """Solves for the plate's response (unknowns, ...) to a load (unknowns, ...).
 
-        A plate that can move rigidly rests on springs spread evenly under all of it, the reactions of which are as
-        smooth as they can be; loads in balance do not feel them.
+        A plate that can move rigidly rests on springs spread evenly under all of it, whose reactions are rigid motions
+        too; balanced loads do not feel them.
         """
         matrix = self.space.stiffness(self.poisson_ratio) + self._pins.T @ self._pins
-        # Unknowns of small and large cells differ by many powers of ten until they are scaled alike. Symmetric
-        # ordering without pivoting: the matrix is positive definite, and rounding stays at 1e-11.
+        # Scaled, because unknowns of small and large cells differ by many powers of ten. Symmetric ordering without
+        # pivoting: the matrix is positive definite, and rounding stays at 1e-11.
         scale = 1 / np.sqrt(matrix.diagonal())
         scaled = (diags(scale) @ matrix @ diags(scale)).tocsc()
         factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -90,31 +89,34 @@ class PlateModel:
             return pinned
         motions, mean = self.space.linear() @ self.rigid, self.mean
 
-        def sprung(load: FloatArray) -> FloatArray:
-            # The springs take the load's part that is out of balance. The pins do not feel the rest.
-            moved = motions.T @ load
-            answer = pinned(load - mean @ moved)
-            return np.asarray(answer + motions @ (moved - mean.T @ answer))
+        def on_springs(load: FloatArray) -> FloatArray:
+            # The springs take the unbalanced part of the load. The pins do not feel the rest.
+            unbalanced = motions.T @ load
+            response = pinned(load - mean @ unbalanced)
+            return np.asarray(response + motions @ (unbalanced - mean.T @ response))
 
-        return sprung
+        return on_springs
 
     @cached_property
     def _load(self) -> csc_matrix:
         return self.space.load(self.poisson_ratio)
 
-    def _answer(self, known: list[list[FloatArray]]) -> FloatArray:
-        """The smooth parts (unknowns, k) that make k known functions, by their derivatives at the rim, hold there."""
-        traces = [rim_traces(one, self.space.rim.normal, self.poisson_ratio).ravel() for one in known]
+    def _smooth_parts(self, known: list[list[FloatArray]]) -> FloatArray:
+        """The parts (unknowns, k) that make k known functions, by their derivatives at the rim, meet the supports."""
+        traces = [rim_traces(derivatives, self.space.rim.normal, self.poisson_ratio).ravel() for derivatives in known]
         return self.solve(-(self._load @ np.stack(traces, axis=1)))
 
     def under_forces(self, sources: FloatArray) -> FloatArray:
-        """The smooth parts (unknowns, N) of the answers to unit forces at sources (N, 2)."""
-        answers = np.empty((self.unknowns, len(sources)), order="F")
-        for start in range(0, len(sources), TOGETHER):
-            part = slice(start, start + TOGETHER)
-            answers[:, part] = self._answer([point_derivatives(self.space.rim.points, at) for at in sources[part]])
-        # The springs answer to the known functions too, by a rigid motion.
-        return answers - self.space.linear() @ (self.rigid @ self._known_means(sources)) if self.rigid.size else answers
+        """The smooth parts (unknowns, N) of the responses to unit forces at sources (N, 2)."""
+        responses = np.empty((self.unknowns, len(sources)), order="F")
+        for start in range(0, len(sources), CHUNK):
+            part = slice(start, start + CHUNK)
+            known = [point_derivatives(self.space.rim.points, source) for source in sources[part]]
+            responses[:, part] = self._smooth_parts(known)
+        if not self.rigid.size:
+            return responses
+        # The springs respond to the known functions too, by a rigid motion.
+        return responses - self.space.linear() @ (self.rigid @ self._known_means(sources))
 
     def _known_means(self, sources: FloatArray) -> FloatArray:
         """The integrals of F around sources (N, 2) with the rigid motions, (r, N).
@@ -133,8 +135,8 @@ class PlateModel:
         return np.stack(integrals, axis=1)
 
     def under_pressure(self) -> FloatArray:
-        """The smooth part (unknowns, 1) of the answer to a unit pressure."""
-        return self._answer([pressure_derivatives(self.space.rim.points - self.space.middle)])
+        """The smooth part (unknowns, 1) of the response to a unit pressure."""
+        return self._smooth_parts([pressure_derivatives(self.space.rim.points - self.space.middle)])
 
     def motions(self, xy: FloatArray) -> FloatArray:
         """The rigid motions at points (n, 2): (n, r)."""

@@ -18,28 +18,24 @@ from fem_plate.elements.argyris import Triangles
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-REACH = 0.2  # of the plate's size, or of the distance to the next corner
-NEXT = 0.45
+REACH = 0.2  # of the plate's size: how far from a corner unknowns count from it,
+NEXT = 0.45  # or of the distance to the next corner, if that is less
 
 
 class Relative(NamedTuple):
-    """Unknowns counted from the planes of the corners they are near.
+    """Unknowns counted from the planes of nearby corners."""
 
-    inside: (m,), the triangles all of whose unknowns count from one corner.  absolute: (n, n), the unknowns of the
-    mesh from those.  bent: (n, n), the same without the planes.  planes: the unknowns of the mesh that lie on them.
-    """
-
-    inside: NDArray[np.bool_]
-    absolute: csr_matrix
-    bent: csr_matrix
-    planes: IntArray
+    inside: NDArray[np.bool_]  # (m,), the triangles all of whose unknowns count from one corner
+    absolute: csr_matrix  # (n, n), gives the mesh's unknowns from relative ones
+    bent: csr_matrix  # (n, n), the same without the planes
+    planes: IntArray  # the unknowns of the mesh that count from a plane
 
 
 def relative(triangles: Triangles, points: IntArray, edges: IntArray, corners: Sequence[int], count: int) -> Relative:
-    """Around corners, rows of the mesh's points.
+    """The relative unknowns around corners.
 
-    points: (m, 3), rows of each triangle's corners.  edges: (m, 3), the unknowns of their edges.  count: how many
-    unknowns there are; point i has 6 i and the five after it.
+    points: (m, 3), rows of each triangle's corners.  edges: (m, 3), the unknowns of their edges.
+    corners: rows of points.  count: number of unknowns; point i has 6 i and the five after it.
     """
     at = np.zeros((points.max() + 1, 2))
     at[points] = triangles.points
@@ -55,11 +51,11 @@ def relative(triangles: Triangles, points: IntArray, edges: IntArray, corners: S
 
     for corner, place, nearest in zip(corners, places, apart.min(axis=1, initial=np.inf), strict=True):
         reach = min(REACH, NEXT * nearest)
-        near = (np.linalg.norm(triangles.points - place, axis=2) < reach).all(axis=1)
-        inside |= near
-        of_point = np.setdiff1d(points[near], [corner])
-        first = np.flatnonzero(near[:, None].repeat(3, 1))
-        of_edge, which = np.unique(edges[near].reshape(-1), return_index=True)
+        around = (np.linalg.norm(triangles.points - place, axis=2) < reach).all(axis=1)
+        inside |= around
+        of_point = np.setdiff1d(points[around], [corner])
+        first = np.flatnonzero(around[:, None].repeat(3, 1))
+        of_edge, which = np.unique(edges[around].reshape(-1), return_index=True)
         normal = triangles.normals.reshape(-1, 2)[first[which]]
         dx, dy = (at[of_point] - place).T
         add(6 * of_point, 6 * corner, 1.0)

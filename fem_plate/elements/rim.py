@@ -8,15 +8,28 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate.elements.forms import Rim
 from fem_plate.elements.supports import prescribed
-from meshes import PlateMesh
+from meshes import PlateMesh, areas, cross, edge_numbers, sides
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 # A rim triangle's integrands are polynomials along a curve: this many points a side leave rounding errors only.
 RIM_POINTS = 8
+BULGE = 1e-14  # of the plate's size: less between chord and rim is rounding
+
+
+class RimQuadrature(NamedTuple):
+    """Quadrature on the rim, n points on each of k edges; dimensionless."""
+
+    triangle: IntArray  # (k,)
+    points: FloatArray  # (k, n, 2), on the true curve
+    weights: FloatArray  # (k, n), arc length included
+    normal: FloatArray  # (k, n, 2), outward
+    T: FloatArray  # (k, n, 2, 2), what the support prescribes of the gradient
+    c: FloatArray  # (k, n), and of the value
+    h: FloatArray  # (k,), the length of the edge, or less where its cell is flat
+    twist: FloatArray  # (k, n, 2), t at the end of a free edge at a held one, -t at its start, 0 elsewhere
 
 
 class Slivers(NamedTuple):
@@ -27,13 +40,13 @@ class Slivers(NamedTuple):
     weights: FloatArray  # (k, n)
 
 
-def rim_of(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[Rim, Slivers]:
-    """The rim of a mesh and what its triangles lack of the plate, both dimensionless."""
-    gauss, weights = _unit_gauss(RIM_POINTS)
-    s = np.concatenate([[0.0], gauss, [1.0]])  # the ends have no weight, but see `Rim.twist`
+def rim_quadrature(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[RimQuadrature, Slivers]:
+    """Quadrature on the rim of a mesh and on what its triangles miss of the plate, both dimensionless."""
+    gauss, weights = unit_gauss(RIM_POINTS)
+    s = np.concatenate([[0.0], gauss, [1.0]])  # the ends have no weight, but carry `twist`
     edges = np.concatenate(list(mesh.boundaries.values()))
     triangle = _owners(mesh, edges)
-    start, end = mesh.points[edges.T] / mesh.size
+    chords = mesh.points[edges] / mesh.size  # (k, 2, 2)
     arcs = [mesh.arcs(name, s) for name in mesh.boundaries]
     points = np.concatenate([points for points, _ in arcs]) / mesh.size
     tangents = np.concatenate([tangents for _, tangents in arcs]) / mesh.size
@@ -41,46 +54,57 @@ def rim_of(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[Rim, Slivers]:
     normal = np.stack([tangents[..., 1], -tangents[..., 0]], axis=-1) / speed[..., None]
     length = np.pad(weights, 1) * speed
     kinds = np.repeat([supports[name] for name in mesh.boundaries], [len(e) for e in mesh.boundaries.values()])
-    slope, value = np.empty((*points.shape, 2)), np.empty(length.shape)
+    T, c = np.empty((*points.shape, 2)), np.empty(length.shape)
     for kind in set(kinds.tolist()):
-        slope[kinds == kind], value[kinds == kind] = prescribed(kind, normal[kinds == kind])
-    held, twist = value[:, 0] > 0, np.zeros(points.shape)
-    for side, at, sign in ((0, 0, -1.0), (1, -1, 1.0)):
-        meets = ~held & np.isin(edges[:, side], edges[held])
-        twist[meets, at] = sign * tangents[meets, at] / speed[meets, at, None]
-    # What a trace can be against the energy goes by the cell's height over the edge: 0.87 of it where equilateral.
-    a, b, c = np.moveaxis(mesh.points[mesh.triangles[triangle]] / mesh.size, 1, 0)
-    height = np.abs(_cross(b - a, c - a)) / np.linalg.norm(end - start, axis=1)
+        T[kinds == kind], c[kinds == kind] = prescribed(kind, normal[kinds == kind])
+    held, twist = c[:, 0] > 0, np.zeros(points.shape)
+    for end, at, sign in ((0, 0, -1.0), (1, -1, 1.0)):
+        at_held = ~held & np.isin(edges[:, end], edges[held])
+        twist[at_held, at] = sign * tangents[at_held, at] / speed[at_held, at, None]
+    # A trace is bounded by the energy over the cell's height. An equilateral cell has 0.87 of its edge.
+    height = (
+        2
+        * np.abs(areas(mesh.points / mesh.size, mesh.triangles[triangle]))
+        / np.linalg.norm(chords[:, 1] - chords[:, 0], axis=1)
+    )
     h = np.minimum(length.sum(axis=1), 2 / np.sqrt(3) * height)
-    rim = Rim(triangle, points, length, normal, slope, value, h, twist)
+    rim = RimQuadrature(triangle, points, length, normal, T, c, h, twist)
+    return rim, _slivers(triangle, chords, points[:, 1:-1], tangents[:, 1:-1])
 
-    chord = start[:, None] + gauss[:, None] * (end - start)[:, None]
-    bulge, growth = points[:, 1:-1] - chord, tangents[:, 1:-1] - (end - start)[:, None]
-    curved = np.abs(bulge).max(axis=(1, 2)) > 1e-14
+
+def _slivers(triangle: IntArray, chords: FloatArray, points: FloatArray, tangents: FloatArray) -> Slivers:
+    """Quadrature between chords (k, 2, 2) and the rim's Gauss points (k, n, 2) with tangents (k, n, 2)."""
+    gauss, weights = unit_gauss(RIM_POINTS)
+    start, along = chords[:, 0, None], (chords[:, 1] - chords[:, 0])[:, None]
+    chord = start + gauss[:, None] * along
+    bulge, growth = points - chord, tangents - along
+    curved = np.abs(bulge).max(axis=(1, 2)) > BULGE
     chord, bulge, growth = chord[curved, None], bulge[curved, None], growth[curved, None]  # (k, 1, along, 2)
     across = gauss[:, None, None]
-    area = _cross(bulge, (end - start)[curved, None, None] + across * growth)
+    area = cross(bulge, along[curved, None] + across * growth)
     inside = (chord + across * bulge).reshape(len(bulge), RIM_POINTS**2, 2)
-    return rim, Slivers(
-        triangle[curved], inside, (np.outer(weights, weights) * area).reshape(len(bulge), RIM_POINTS**2)
-    )
+    return Slivers(triangle[curved], inside, (np.outer(weights, weights) * area).reshape(len(bulge), RIM_POINTS**2))
 
 
-def _owners(mesh: PlateMesh, edges: IntArray) -> IntArray:
-    """The triangle that each boundary edge (k, 2) belongs to."""
-    count = len(mesh.points)
-    sides = np.sort(np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2), axis=2)
-    keys = (sides[..., 0] * count + sides[..., 1]).reshape(-1)
-    order = np.argsort(keys)
-    lower, upper = np.sort(edges, axis=1).T
-    return np.asarray(order[np.searchsorted(keys, lower * count + upper, sorter=order)] // 3)
+def rigid_motions(rim: RimQuadrature) -> FloatArray:
+    """The rigid motions that the supports allow, as columns of coefficients of (1, x, y): (3, r)."""
+    x, y = rim.points.reshape(-1, 2).T
+    values = rim.c.reshape(-1)[:, None] * np.stack([np.ones_like(x), x, y], axis=1)
+    gradients = rim.T.reshape(-1, 2)
+    rows = np.concatenate([values, np.concatenate([np.zeros((len(gradients), 1)), gradients], axis=1)])
+    _, scale, directions = np.linalg.svd(rows.T @ rows)
+    return np.asarray(directions[scale <= 1e-10 * len(rows)].T)
 
 
-def _unit_gauss(count: int) -> tuple[FloatArray, FloatArray]:
+def unit_gauss(count: int) -> tuple[FloatArray, FloatArray]:
     """Gauss-Legendre points and weights on [0, 1]."""
     x, w = np.polynomial.legendre.leggauss(count)
     return (x + 1) / 2, w / 2
 
 
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+def _owners(mesh: PlateMesh, edges: IntArray) -> IntArray:
+    """The triangle that each boundary edge (k, 2) belongs to."""
+    count = len(mesh.points)
+    numbers = edge_numbers(sides(mesh.triangles), count)
+    order = np.argsort(numbers)
+    return np.asarray(order[np.searchsorted(numbers, edge_numbers(edges, count), sorter=order)] // 3)

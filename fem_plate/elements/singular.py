@@ -1,7 +1,7 @@
-"""Known answers to a plate's loads: what finite elements need not find.
+"""Responses of an infinite plate to loads, in closed form: what finite elements need not approximate.
 
-Under a unit force a plate without rim deflects as F(r) = r^2 ln(r) / (8 pi), which no polynomial can follow, and under
-a unit pressure as r^4 / 64, in dimensionless variables (laplace^2 F = delta, laplace^2 r^4 / 64 = 1).
+In dimensionless variables a unit force deflects it by F(r) = r^2 ln(r) / (8 pi), which no polynomial can follow, and a
+unit pressure by r^4 / 64 (laplace^2 F = delta, laplace^2 r^4 / 64 = 1).
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ UNIT_STRENGTH = 1 / (8 * np.pi)
 def point_load(xy: FloatArray, sources: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """F around each source.
 
-    xy: (n, 2).  sources: (N, 2).  Returns the value (n, N), gradient (n, N, 2) and Hessian (n, N, 2, 2). At a source
-    value and gradient are 0 and the Hessian is -inf on its diagonal.
+    xy: (n, 2).  sources: (N, 2).  Returns the value (n, N), gradient (n, N, 2) and Hessian (n, N, 2, 2). At a source,
+    value and gradient are 0 and the diagonal of the Hessian is -inf.
     """
     offset = xy[:, None] - sources
     square = (offset**2).sum(axis=-1)
@@ -42,14 +42,14 @@ def point_value(xy: FloatArray, sources: FloatArray) -> FloatArray:
 
 
 def point_laplacian(xy: FloatArray, sources: FloatArray, floor: float) -> FloatArray:
-    """The Laplacian of F, (n, N), that of a parabola in r^2 within the floor: there F goes on with two derivatives."""
+    """The Laplacian of F, (n, N); within the radius `floor`, of the parabola in r^2 that continues F there (C2)."""
     square = (xy[:, :1] - sources[:, 0]) ** 2 + (xy[:, 1:] - sources[:, 1]) ** 2
     bounded = np.maximum(square, floor**2)
     return UNIT_STRENGTH * (2 * np.log(bounded) + 4 * square / bounded)
 
 
 def point_derivatives(xy: FloatArray, source: FloatArray) -> list[FloatArray]:
-    """F around one source (2,) at points (k, n, 2) off it: its derivatives of orders 0 to 3, each (d, k, n)."""
+    """The derivatives of orders 0 to 3, each (d, k, n), of F around one source (2,) at points (k, n, 2) off it."""
     x, y = np.moveaxis(xy - source, -1, 0)
     square = x**2 + y**2
     logarithm = np.log(square) + 1
@@ -68,7 +68,7 @@ def point_derivatives(xy: FloatArray, source: FloatArray) -> list[FloatArray]:
 
 
 def potential(xy: FloatArray, source: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """P = (2 r^4 ln r - r^4) / (256 pi) at points (..., 2) off the source, laplace P = F: value and gradient."""
+    """P = (2 r^4 ln r - r^4) / (256 pi), with laplace P = F, and its gradient at points (..., 2) off the source."""
     offset = xy - source
     square = (offset**2).sum(axis=-1)
     logarithm = np.log(square)  # 2 ln r
@@ -78,7 +78,7 @@ def potential(xy: FloatArray, source: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 def pressure_derivatives(xy: FloatArray) -> list[FloatArray]:
-    """r^4 / 64 at points (..., 2): its derivatives of orders 0 to 3, each (d, ...)."""
+    """The derivatives of orders 0 to 3, each (d, ...), of r^4 / 64 at points (..., 2)."""
     x, y = np.moveaxis(xy, -1, 0)
     square = x**2 + y**2
     orders = [

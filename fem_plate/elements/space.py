@@ -1,4 +1,4 @@
-"""The discrete plate: Argyris functions on a mesh, its matrices up to the true rim, and evaluation at points."""
+"""Argyris functions on a mesh: their matrices up to the true rim, and their values at points."""
 
 from __future__ import annotations
 
@@ -12,34 +12,34 @@ from scipy.spatial import cKDTree
 
 from fem_plate.elements import forms
 from fem_plate.elements.argyris import Triangles
-from fem_plate.elements.assembly import sum_up
+from fem_plate.elements.assembly import number_entities, sum_up
 from fem_plate.elements.corners import Copies, continuity, split
 from fem_plate.elements.relative import Relative, relative
-from fem_plate.elements.rim import rim_of
+from fem_plate.elements.rim import rim_quadrature
 from meshes import PlateMesh
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-CHUNK = 100_000  # points times functions evaluated at once, to bound memory
-QUADRATURE = 6  # points a side of a triangle, where integrands are not polynomials
-BEYOND = 0.1  # of a triangle: points this far beyond the mesh still count as on it, as between chord and rim
-# Triangles searched for a point, first few and then more, while it lies further beyond the nearest than this.
-NEAREST = ((12, 1e-9), (200, 0.02), (2000, np.inf))
+CHUNK = 100_000  # points times functions evaluated at a time, to bound memory
+QUADRATURE = 6  # points along each side of a triangle, for integrands that are not polynomials
+BEYOND = 0.1  # of a triangle: points up to this far beyond the mesh, as between chord and rim, count as on it
+# How many of the closest triangles are searched for a point: more while it lies further outside the best than this.
+SEARCHES = ((12, 1e-9), (200, 0.02), (2000, np.inf))
 
 
 class PlateSpace:
     """Argyris functions on a mesh whose lengths are divided by the plate's size.
 
-    supports: that of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
+    supports: of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
     """
 
     def __init__(self, mesh: PlateMesh, supports: Mapping[str, str], free_corners: Sequence[int] = ()) -> None:
         self.triangles = Triangles(mesh.points / mesh.size, mesh.triangles)
         self.middle = (mesh.points.min(axis=0) + mesh.points.max(axis=0)) / 2 / mesh.size
-        self.rim, self.slivers = rim_of(mesh, supports)
+        self.rim, self.slivers = rim_quadrature(mesh, supports)
         corners, copies = split(mesh.triangles, list(free_corners), len(mesh.points))
-        self._entities, self._first = _entities(mesh.triangles, corners)
+        self._entities, self._first = number_entities(mesh.triangles, corners)
         points, edges = self._first[self._entities[:, :3]], self._first[self._entities[:, 3:]]
         self.dofs = np.concatenate([(points[:, :, None] + np.arange(6)).reshape(-1, 18), edges], axis=1)
         self._points = len(mesh.points)
@@ -50,33 +50,32 @@ class PlateSpace:
             self._join(mesh.points, mesh.triangles, copies, free_corners)
 
     def _join(self, xy: FloatArray, triangles: IntArray, copies: Copies, corners: Sequence[int]) -> None:
-        """Express the unknowns of every triangle by independent ones, near corners counted from these."""
+        """Express the unknowns of every triangle by independent ones, counted from the corners they are close to."""
         joined = continuity(xy, copies, self._edges)
         self.unknowns = joined.shape[1]
-        # An edge's unknown comes behind those of points, which have copies, and of points, which have none.
+        # The unknowns of edges follow those of points; the copies of points are not independent.
         edges = self.dofs[:, 18:] - 6 * len(copies)
         self._relative = relative(self.triangles, triangles, edges, corners, self.unknowns)
         self._absolute, self._bent = joined @ self._relative.absolute, joined @ self._relative.bent
 
     def stiffness(self, poisson_ratio: float) -> csc_matrix:
-        """The symmetric matrix of the bending energy and the supports; what rigid motions are left have no energy."""
+        """The symmetric matrix of int M(v):H(q) - R(v; q) - R(q; v) + S(v; q), see `forms`.
+
+        The rigid motions that the supports allow have no energy.
+        """
         matrices = forms.bending(self.triangles, poisson_ratio)
-        sliver, (triangle, points, weights) = self.triangles, self.slivers
-        np.add.at(
-            matrices,
-            triangle,
-            forms.bending_at(sliver.derivatives(points, triangle, 2), weights, poisson_ratio),
-        )
-        coupling, _ = forms.rim_forms(self.rim)
-        traces = self._traces(poisson_ratio)
-        at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)
+        triangle, points, weights = self.slivers
+        hessian = self.triangles.derivatives(points, triangle, 2)
+        np.add.at(matrices, triangle, forms.bending_at(hessian, weights, poisson_ratio))
+        traces, (coupling, _) = self._traces(poisson_ratio), forms.rim_forms(self.rim)
+        at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)  # c: of q, d: of v
         if self._relative is None:
             np.add.at(matrices, self.rim.triangle, at_rim)
             return self._assemble(matrices)
-        near = np.where(self._relative.inside[:, None, None], matrices, 0.0)
-        matrices -= near
+        at_corners = np.where(self._relative.inside[:, None, None], matrices, 0.0)
+        matrices -= at_corners
         np.add.at(matrices, self.rim.triangle, at_rim)
-        bent = sum_up(near, self._entities, self._first)
+        bent = sum_up(at_corners, self._entities, self._first)
         return (self._bent.T @ bent @ self._bent + self._assemble(matrices)).tocsc()
 
     def mass(self) -> csc_matrix:
@@ -90,11 +89,11 @@ class PlateSpace:
         return self._to_independent(self._to_independent(sum_up(matrices, self._entities, self._first)).T).tocsc()
 
     def _to_independent(self, matrix: csc_matrix) -> csc_matrix:
-        """Rows for the unknowns of every triangle summed up for those that are independent."""
+        """Sum the rows of every triangle's own unknowns into those of the independent ones."""
         return matrix if self._relative is None else self._absolute.T @ matrix
 
     def all_unknowns(self, unknowns: FloatArray) -> FloatArray:
-        """Those of every triangle's own points, from the independent ones (unknowns, ...)."""
+        """The unknowns of every triangle's own points from the independent ones (unknowns, ...)."""
         return unknowns if self._relative is None else np.asarray(self._absolute @ unknowns)
 
     def _traces(self, poisson_ratio: float) -> FloatArray:
@@ -102,7 +101,7 @@ class PlateSpace:
         return forms.rim_traces(derivatives, self.rim.normal, poisson_ratio)
 
     def load(self, poisson_ratio: float) -> csc_matrix:
-        """The matrix (unknowns, 6 points) that turns the traces (6, points) of given rim data into a right side."""
+        """The matrix (unknowns, 6 points) of S(g; q) - R(q; g) + L(q) for the traces (6, points) of g, see `forms`."""
         traces, (_, coupling) = self._traces(poisson_ratio), forms.rim_forms(self.rim)
         data = np.einsum("ckni,kncd->dkni", traces, coupling, optimize=True)  # (6, k, n, 21)
         columns = np.arange(data[..., 0].size).reshape(data.shape[:3])
@@ -125,35 +124,35 @@ class PlateSpace:
     def evaluate(self, xy: FloatArray, unknowns: FloatArray, orders: int) -> list[FloatArray]:
         """Functions given by their unknowns (unknowns, k) at points (n, 2).
 
-        Returns the first `orders` of value (n, k), gradient (n, k, 2), Hessian (n, k, 2, 2). Beyond a rim triangle's
-        chord its polynomial goes on, as in the integrals.
+        Returns the first `orders` of value (n, k), gradient (n, k, 2) and Hessian (n, k, 2, 2). A rim triangle's
+        polynomial continues beyond its chord, as in the integrals.
         """
         n, k = len(xy), unknowns.shape[1]
         unknowns = self.all_unknowns(unknowns)
-        fields = [np.empty((n, k, *[2] * order)) for order in range(orders)]
+        results = [np.empty((n, k, *[2] * order)) for order in range(orders)]
         step = max(1, CHUNK // k)
         for start in range(0, n, step):
             part = slice(start, start + step)
             triangle = self._locate(xy[part])
-            local = unknowns[self.dofs[triangle]]  # (n, 21, k)
-            for order, into in enumerate(fields):
+            of_triangle = unknowns[self.dofs[triangle]]  # (n, 21, k)
+            for order, result in enumerate(results):
                 table = self.triangles.derivatives(xy[part, None], triangle, order)[:, :, 0]
-                values = [row[:, None] @ local for row in table]  # (n, 1, k) each
-                for place in np.ndindex(*into.shape[2:]):
-                    into[(part, slice(None), *place)] = values[sum(place)][:, 0]
-        return fields
+                values = [row[:, None] @ of_triangle for row in table]  # (n, 1, k) each
+                for axes in np.ndindex(*result.shape[2:]):
+                    result[(part, slice(None), *axes)] = values[sum(axes)][:, 0]
+        return results
 
     def laplacians(self, xy: FloatArray, unknowns: FloatArray) -> FloatArray:
         """The Laplacians (n, k) of functions given by their unknowns (unknowns, k) at points (n, 2), as `evaluate`."""
-        found = np.empty((len(xy), unknowns.shape[1]))
+        result = np.empty((len(xy), unknowns.shape[1]))
         unknowns = self.all_unknowns(unknowns)
-        step = max(1, CHUNK // found.shape[1])
+        step = max(1, CHUNK // result.shape[1])
         for start in range(0, len(xy), step):
             part = slice(start, start + step)
             triangle = self._locate(xy[part])
             xx, _, yy = self.triangles.derivatives(xy[part, None], triangle, 2)
-            found[part] = ((xx + yy) @ unknowns[self.dofs[triangle]])[:, 0]
-        return found
+            result[part] = ((xx + yy) @ unknowns[self.dofs[triangle]])[:, 0]
+        return result
 
     def linear(self) -> FloatArray:
         """The unknowns of 1, x and y, (unknowns, 3)."""
@@ -165,7 +164,7 @@ class PlateSpace:
         functions[self.dofs[:, 18:], 1:] = self.triangles.normals
         if self._relative is None:
             return functions
-        # Independent are those of the mesh's points and edges, then the jumps, of which these functions have none.
+        # Independent are the unknowns of the mesh's points and edges, and the jumps, which vanish for these functions.
         points, edges = functions[: 6 * self._points], functions[-self._edges :]
         jumps = np.zeros((self.unknowns - len(points) - len(edges), 3))
         independent = np.concatenate([points, edges, jumps])
@@ -175,7 +174,7 @@ class PlateSpace:
     @cached_property
     def quadrature(self) -> tuple[FloatArray, FloatArray]:
         """Points (n, 2) and weights (n,) over the plate, up to its true rim."""
-        xy, weights = forms.square(QUADRATURE)
+        xy, weights = forms.triangle_quadrature(QUADRATURE)
         inside = self.triangles.centre[:, None] + np.einsum("mij,nj->mni", self.triangles.jacobian, xy)
         area = self.triangles.determinant[:, None] * weights
         points = np.concatenate([inside.reshape(-1, 2), self.slivers.points.reshape(-1, 2)])
@@ -191,40 +190,27 @@ class PlateSpace:
         return cKDTree(self.triangles.centre)
 
     def holds(self, xy: FloatArray) -> NDArray[np.bool_]:
-        """Whether points (n, 2) lie in the mesh or hardly beyond it, (n,)."""
+        """Whether points (n, 2) lie in the mesh or just beyond it, (n,)."""
         return self._find(xy)[1] > -BEYOND
 
     def _locate(self, xy: FloatArray) -> IntArray:
-        """The triangle that holds each point (n, 2), or the nearest one for a point between a chord and the rim."""
+        """The triangle of each point (n, 2), the closest one for a point between a chord and the rim."""
         return self._find(xy)[0]
 
     def _find(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
-        """The triangle of each point (n, 2) and the smallest of the barycentric coordinates there."""
-        found, inside = np.empty(len(xy), dtype=np.int64), np.empty(len(xy))
+        """The triangle of each point (n, 2) and the smallest of its barycentric coordinates there."""
+        triangle, inside = np.empty(len(xy), dtype=np.int64), np.empty(len(xy))
         missing = np.arange(len(xy))
-        for nearest, beyond in NEAREST:
-            count = min(nearest, len(self.triangles.centre))
+        for closest, beyond in SEARCHES:
+            count = min(closest, len(self.triangles.centre))
             _, candidates = self._tree.query(xy[missing], k=range(1, count + 1))
             x = self.triangles.reference(xy[missing].repeat(count, 0)[:, None], candidates.reshape(-1)) + 1 / 3
             u, v = x.reshape(-1, count, 2).transpose(2, 0, 1)
             smallest = np.minimum(np.minimum(u, v), 1 - u - v)
             best = np.argmax(smallest, axis=1)
-            found[missing] = candidates[np.arange(len(missing)), best]
+            triangle[missing] = candidates[np.arange(len(missing)), best]
             inside[missing] = smallest.max(axis=1)
             missing = missing[inside[missing] < -beyond]
             if not missing.size:
                 break
-        return found, inside
-
-
-def _entities(points: IntArray, corners: IntArray) -> tuple[IntArray, IntArray]:
-    """What carries the unknowns of each triangle, its corners and then its edges (m, 6), and their first unknowns.
-
-    points: (m, 3), the mesh points of each triangle, which tell edges apart.  corners: (m, 3), numbered from 0.
-    """
-    sides = np.sort(np.stack([points, np.roll(points, -1, axis=1)], axis=2), axis=2)
-    edges, edge = np.unique(sides[..., 0] * (points.max() + 1) + sides[..., 1], return_inverse=True)
-    count = int(corners.max()) + 1
-    entities = np.concatenate([corners, count + edge.reshape(-1, 3)], axis=1)
-    first = np.concatenate([6 * np.arange(count), 6 * count + np.arange(len(edges) + 1)])
-    return entities, first
+        return triangle, inside

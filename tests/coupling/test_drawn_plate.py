@@ -7,7 +7,7 @@ import pytest
 
 import meshes
 from coupling.display.mesh import CELLS, MAX_POINTS, display_mesh
-from meshes.fill import angles, sides
+from meshes.triangles import angles, sides
 
 MESH = Path(__file__).parents[1] / "data" / "l_with_hole.msh"
 SPOTS = np.random.default_rng(0).uniform(-1, 1, (600, 2))

@@ -109,7 +109,7 @@ def test_balanced_forces_bend_a_free_plate(free):
 def test_mean_deflection_and_slope_of_a_free_plate_are_taken_away(free):
     deflection = free.deflection(FOUR, balanced())
     xy, weights = deflection.model.space.quadrature
-    w = deflection.field.values(xy)[:, 0]
+    w = deflection.functions.values(xy)[:, 0]
     for function in (np.ones(len(xy)), *xy.T):
         assert abs(weights @ (w * function)) < 1e-12 * weights.sum() * np.abs(w).max()
 

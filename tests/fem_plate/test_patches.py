@@ -166,7 +166,7 @@ def test_forces_are_sparse_and_there_is_no_compliance(row, shapes):
 
 
 def test_all_shapes_at_too_many_points_are_refused_and_sums_are_not(shapes, monkeypatch):
-    monkeypatch.setattr(patched, "MOST_VALUES", 600)
+    monkeypatch.setattr(patched, "MAX_VALUES", 600)
     spots = np.stack([np.linspace(-20, 20, 11), np.full(11, 0.4)], axis=1) * PITCH
     every = shapes.evaluate(spots[:10])
     with pytest.raises(ValueError, match=re.escape("must be at most 10 points for all 60 shapes at once; got 11")):
@@ -180,7 +180,7 @@ def test_the_shapes_nearby_are_all_that_are_not_zero_there(row):
     points, springs = lattice(60, 1), np.where(np.arange(60) % 3, np.inf, 0.0)
     shapes = row.influence(points, springs, truncation=1e-4)
     spots = np.array([[0.3, 0.2], [7.6, -1.2]]) * PITCH
-    rows, values = shapes.nearby(spots)
+    rows, values = shapes.nonzero_values(spots)
     every = shapes.evaluate(spots)[0]
     assert len(rows) < 60 and len(set(rows.tolist())) == len(rows)
     assert np.array_equal(values, every[:, rows])

@@ -42,11 +42,11 @@ def test_frequencies_go_with_the_thickness_over_the_square_of_the_size(section):
 def test_modes_are_1_at_most_and_orthogonal_over_the_plate(supports, held):
     modes = Plate(disc(1.0, 0.2), UNIT, supports).modes(5, held)
     xy, weights = modes.model.space.quadrature
-    shapes = modes.field.values(xy)
+    shapes = modes.functions.values(xy)
     products = shapes.T @ (weights[:, None] * shapes)
     scale = np.sqrt(np.diag(products))
     assert np.abs(products / scale / scale[:, None] - np.eye(5)).max() < 1e-6
-    assert np.abs(modes.field.values(modes.model.space.points)).max(axis=0) == pytest.approx(np.ones(5), abs=1e-12)
+    assert np.abs(modes.functions.values(modes.model.space.points)).max(axis=0) == pytest.approx(np.ones(5), abs=1e-12)
     if held is not None:
         assert np.abs(modes.evaluate(held)[0]).max() < 1e-7
 
@@ -56,7 +56,7 @@ def test_free_modes_are_in_balance():
     modes = Plate(rectangle(2.0, 1.4, 0.4), UNIT, "free").modes(4)
     xy, weights = modes.model.space.quadrature
     for function in (np.ones(len(xy)), *xy.T):
-        assert np.abs((weights * function) @ modes.field.values(xy)).max() < 1e-8
+        assert np.abs((weights * function) @ modes.functions.values(xy)).max() < 1e-8
 
 
 def test_derivatives_of_modes_are_those_of_their_values(plate):

@@ -25,15 +25,15 @@ class Bumps(Shapes):
         self.points, self.size, self.outline = xy[[np.argmax(outline.gap(xy))]], 1.0, outline
         self.strengths, self.function = np.zeros((1, 1)), function
 
-    def fields(self, x, weights):
+    def derivatives(self, x, weights):
         value = self.function(*x.T)[:, None]
         return value, np.zeros((len(x), 1, 2)), np.zeros((len(x), 1, 2, 2))
 
-    def nearby(self, xy):
-        return np.arange(1), self.fields(xy, None)[0]
+    def nonzero_values(self, xy):
+        return np.arange(1), self.derivatives(xy, None)[0]
 
     def own_heights(self):
-        return np.abs(self.fields(self.points, None)[0][:, 0])
+        return np.abs(self.derivatives(self.points, None)[0][:, 0])
 
 
 def ripples(x, y):

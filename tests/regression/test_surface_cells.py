@@ -70,8 +70,8 @@ def test_roughness_of_the_shapes_is_not_divided_for_ever():
     """What finite elements are off by does not become less in smaller cells."""
 
     class Rough(DiscShapes):
-        def nearby(self, points):
-            rows, values = super().nearby(points)
+        def nonzero_values(self, points):
+            rows, values = super().nonzero_values(points)
             x, y = 1e3 * points.T / RADIUS
             return rows, values + 1e-6 * self.own_heights()[rows] * np.sin(7 * x + np.cos(3 * y))[:, None]
 

@@ -113,7 +113,7 @@ def test_values_alone_are_those_of_the_fields_and_the_drawn_plate_follows_the_wh
     heights = np.random.default_rng(1).uniform(0, 1, (5, len(points)))
     for one in (dense, shapes):
         assert np.allclose(one.values(xy), one.evaluate(xy)[0], atol=1e-12)
-        sums = one.fields(xy / one.size, heights.T)[0]
+        sums = one.derivatives(xy / one.size, heights.T)[0]
         assert np.allclose(one.values(xy, heights.T), sums, atol=1e-12)
         assert np.allclose(deflections(one, xy)(heights), sums.T, atol=100 * TRUNCATED_HEIGHT)
     left_out = np.abs(deflections(dense, xy)(heights) - deflections(shapes, xy)(heights)).max()
@@ -142,7 +142,7 @@ def test_what_a_part_feels_and_the_first_frequency_are_found_from_a_piece_of_pla
     shapes = plate.influence(points, truncation=TRUNCATION)
     for spot in np.array([[0.3, 0.2], [5.7, -5.2], [-2.5, 1.5]]) * PITCH:
         whole = plate.influence(np.vstack([points, spot]), [*[np.inf] * len(points), 0.0])
-        assert shapes.give(spot) == pytest.approx(whole.evaluate(spot[None])[0][0, -1], rel=1e-3)
+        assert shapes.compliance_at(spot) == pytest.approx(whole.evaluate(spot[None])[0][0, -1], rel=1e-3)
     found, truth = shapes.first_frequency(section.density * section.thickness), plate.frequencies(1, points)[0]
     assert truth * (1 - 1e-3) < found < 1.1 * truth
     sparse = points[np.hypot(*(points - 2 * PITCH).T) > 2.1 * PITCH]

@@ -1,0 +1,81 @@
+"""Functions on the plate: a finite-element part plus parts known in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_plate.elements.singular import point_laplacian, point_load, point_value, pressure_derivatives
+from fem_plate.elements.space import PlateSpace
+
+FloatArray = NDArray[np.float64]
+Derivatives = tuple[FloatArray, FloatArray, FloatArray]  # value, gradient, Hessian
+
+
+@dataclass(frozen=True, eq=False)
+class PlateFunctions:
+    """k functions w = v + sum_j forces_j F(x - sources_j) + pressure r^4 / 64 + rigid . (1, x, y), dimensionless.
+
+    r is the distance from the middle of the plate's box.
+    """
+
+    space: PlateSpace
+    unknowns: FloatArray  # (unknowns, k), of v
+    sources: FloatArray  # (N, 2)
+    forces: FloatArray  # (N, k)
+    rigid: FloatArray  # (3, k)
+    pressure: FloatArray  # (k,)
+
+    def weighted(self, weights: FloatArray) -> PlateFunctions:
+        """The sum of the functions times weights (k,) or (k, m)."""
+        weights = weights.reshape(len(weights), -1)
+        return PlateFunctions(
+            self.space,
+            self.unknowns @ weights,
+            self.sources,
+            self.forces @ weights,
+            self.rigid @ weights,
+            self.pressure @ weights,
+        )
+
+    def values(self, x: FloatArray) -> FloatArray:
+        """The functions' values alone, (n, k)."""
+        (value,) = self.space.evaluate(x, self.unknowns, orders=1)
+        value += np.column_stack([np.ones(len(x)), x]) @ self.rigid
+        if np.any(self.pressure):
+            value += np.outer(pressure_derivatives(x - self.space.middle)[0][0], self.pressure)
+        return value + point_value(x, self.sources) @ self.forces
+
+    def laplacians(self, x: FloatArray, floor: float) -> FloatArray:
+        """The functions' Laplacians, (n, k), bounded within the radius `floor` of each source."""
+        laplacian = self.space.laplacians(x, self.unknowns) + point_laplacian(x, self.sources, floor) @ self.forces
+        if np.any(self.pressure):
+            xx, _, yy = pressure_derivatives(x - self.space.middle)[2]
+            laplacian += np.outer(xx + yy, self.pressure)
+        return laplacian
+
+    def smooth(self, x: FloatArray) -> Derivatives:
+        """All but the forces' part at points (n, 2): value (n, k), gradient (n, k, 2), Hessian (n, k, 2, 2)."""
+        value, gradient, hessian = self.space.evaluate(x, self.unknowns, orders=3)
+        value += np.column_stack([np.ones(len(x)), x]) @ self.rigid
+        gradient += self.rigid[1:].T
+        if np.any(self.pressure):
+            (w,), w_grad, (w_xx, w_xy, w_yy), _ = pressure_derivatives(x - self.space.middle)
+            w_hess = np.stack([np.stack([w_xx, w_xy], -1), np.stack([w_xy, w_yy], -1)], -1)
+            value += np.outer(w, self.pressure)
+            gradient += w_grad.T[:, None] * self.pressure[:, None]
+            hessian += w_hess[:, None] * self.pressure[:, None, None]
+        return value, gradient, hessian
+
+    def evaluate(self, x: FloatArray) -> Derivatives:
+        """The functions at points (n, 2); at a source the Hessian is infinite."""
+        value, gradient, hessian = self.smooth(x)
+        F, F_grad, F_hess = point_load(x, self.sources)
+        with np.errstate(invalid="ignore"):  # inf - inf and 0 inf at sources
+            return (
+                value + F @ self.forces,
+                gradient + np.einsum("njd,jk->nkd", F_grad, self.forces, optimize=True),
+                hessian + np.einsum("njde,jk->nkde", F_hess, self.forces, optimize=True),
+            )

@@ -1,0 +1,69 @@
+"""Error estimates of finite-element solutions, and refinement to a tolerance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Self, TypeVar
+
+import numpy as np
+
+from fem_plate.elements import PlateFunctions
+
+MAX_UNKNOWNS = 100_000  # refinement to a tolerance stops here
+REFINEMENT_GAIN = 2.0**5  # halving the cells divides the error of w by this at least (observed: 2^5.5 and more)
+
+
+class Estimated:
+    """A solution on one mesh that can estimate its own error."""
+
+    functions: PlateFunctions
+    size: float  # m, the length that makes the functions dimensionless
+    refine: Callable[[], Self]  # solves again on cells of half the size
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns of the mesh."""
+        return self.functions.space.unknowns
+
+    @cached_property
+    def error_estimate(self) -> float:
+        """Estimated largest error of w, relative to each function's largest deflection.
+
+        It is the difference from the solution on cells of half the size, which is computed on first use.
+        """
+        return self.refine().difference(self)
+
+    def difference(self, coarser: Estimated) -> float:
+        """The largest difference from a solution on another mesh, at this mesh's points, relative as the estimate."""
+        x = self.functions.space.points
+        w = self.functions.values(x)
+        # New points on a curved rim may make the refined mesh's box, and so its size, a little larger.
+        w_coarser = coarser.functions.values(x * (self.size / coarser.size))
+        largest = np.abs(w).max(axis=0)
+        return float(np.max(np.abs(w - w_coarser) / np.where(largest > 0, largest, 1.0)))
+
+
+Solution = TypeVar("Solution", bound=Estimated)
+
+
+def refined(solve: Callable[[int], Solution], tolerance: float | None) -> Solution:
+    """The solution on cells halved as often as the tolerance requires; without one, on the cells as they are.
+
+    solve: takes the number of halvings.
+    """
+    solution = solve(0)
+    solution.refine = lambda: solve(1)
+    if tolerance is None:
+        return solution
+    change, halvings = np.inf, 0
+    while 4 * solution.unknowns < MAX_UNKNOWNS and (not halvings or solution.error_estimate > tolerance):
+        halvings += 1
+        coarse, solution = solution, solve(halvings)
+        last_change, change = change, solution.difference(coarse)
+        solution.error_estimate = change * max(change / last_change, 1 / REFINEMENT_GAIN)
+        if change > last_change / 2:
+            # Halving gains no more: the rest is rounding, or the estimates were too optimistic.
+            coarse.error_estimate, solution.error_estimate = last_change, change
+            return coarse if last_change < change else solution
+    return solution

@@ -1,0 +1,65 @@
+"""Checks of the points and numbers that a user passes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from meshes import Outline
+
+FloatArray = NDArray[np.float64]
+
+SAME_PLACE = 1e-9  # of the plate's size: points closer than this coincide
+
+
+def as_points(points: ArrayLike, name: str) -> FloatArray:
+    """Points as an array (N, 2); ValueError for any other shape."""
+    array = np.asarray(points, dtype=float)
+    if array.size and (array.ndim not in (1, 2) or array.shape[-1] != 2):
+        raise ValueError(f"Input {name} must have shape (N, 2); got {array.shape}")
+    return array.reshape(-1, 2)
+
+
+def one_per_point(values: ArrayLike, count: int, name: str) -> FloatArray:
+    """One number per point, (count,), from `count` numbers or one for all; ValueError for any other shape."""
+    array = np.asarray(values, dtype=float)
+    if array.shape not in ((), (count,)) or count == 0 < array.size:
+        raise ValueError(f"Input {name} must be one a point, {count}; got shape {array.shape}")
+    return np.broadcast_to(array, count).copy()
+
+
+def stiffness_per_point(stiffness: ArrayLike | None, count: int, caller: str, may_float: bool) -> FloatArray:
+    """The stiffness (count,) [N/m] of the actuators, inf (rigid) by default; ValueError names every wrong one."""
+    if stiffness is None:
+        return np.full(count, np.inf)
+    values = one_per_point(stiffness, count, f"stiffness of {caller}")
+    wrong = np.flatnonzero(~(values >= 0) if may_float else ~(values > 0)).tolist()
+    if wrong:
+        got = ", ".join(f"{values[row]} N/m for point {row + 1}" for row in wrong)
+        raise ValueError(f"Input stiffness of {caller} must be {'0 or more' if may_float else 'positive'}; got {got}")
+    return values
+
+
+def check_points(caller: str, points: FloatArray, gap: FloatArray, size: float) -> None:
+    """Raise ValueError, naming every one of the points (N, 2) [m] that is not inside the rim or coincides with another.
+
+    gap: (N,) m, how far inside the rim they are.  size: m, of the plate.
+    """
+    mistakes = [] if points.size else ["at least one point is needed"]
+    for i in np.flatnonzero(~(gap > SAME_PLACE * size)).tolist():
+        mistakes.append(
+            f"point {i + 1} at {points[i].tolist()} m must lie inside the rim; it is {-gap[i]:.3g} m beyond it"
+        )
+    finite = np.flatnonzero(np.isfinite(points).all(axis=1))
+    for i, j in finite[sorted(cKDTree(points[finite]).query_pairs(SAME_PLACE * size))].tolist():
+        mistakes.append(f"points {i + 1} and {j + 1} must differ; both are at {points[i].tolist()} m")
+    if mistakes:
+        raise ValueError(f"Input points of {caller}: " + "; ".join(mistakes))
+
+
+def check_on_plate(outline: Outline, xy: FloatArray, size: float) -> None:
+    """Raise ValueError when one of the points (n, 2) [m] lies beyond the rim."""
+    beyond = outline.gap(xy) < -SAME_PLACE * size
+    if np.any(beyond):
+        raise ValueError(f"Input xy of evaluate must lie on the plate; got {xy[beyond][0].tolist()} m")
