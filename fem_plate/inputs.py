@@ -30,14 +30,15 @@ def one_per_point(values: ArrayLike, count: int, name: str) -> FloatArray:
 
 
 def stiffness_per_point(stiffness: ArrayLike | None, count: int, caller: str, may_float: bool) -> FloatArray:
-    """The stiffness (count,) [N/m] of the actuators, inf (rigid) by default; ValueError names every wrong one."""
+    """The stiffness (count,) [N/m] of the actuators, inf (rigid) by default; ValueError names the first wrong one."""
     if stiffness is None:
         return np.full(count, np.inf)
     values = one_per_point(stiffness, count, f"stiffness of {caller}")
     wrong = np.flatnonzero(~(values >= 0) if may_float else ~(values > 0)).tolist()
     if wrong:
-        got = ", ".join(f"{values[row]} N/m for point {row + 1}" for row in wrong)
-        raise ValueError(f"Input stiffness of {caller} must be {'0 or more' if may_float else 'positive'}; got {got}")
+        bound = "0 or more" if may_float else "positive"
+        got = f"{values[wrong[0]]} N/m for point {wrong[0] + 1}"
+        raise ValueError(f"Input stiffness of {caller} must be {bound}; got {got}")
     return values
 
 

@@ -17,8 +17,8 @@ from scipy.spatial import cKDTree
 from meshes import Outline, PlateMesh, delaunay, draw_rim, label_axis, label_places, legend_below, rim_curves
 
 if TYPE_CHECKING:
-    from fem_plate.shapes import Shapes
     from fem_plate.plate import Plate
+    from fem_plate.shapes import Shapes
 
 FloatArray = NDArray[np.float64]
 

@@ -106,7 +106,7 @@ class Plate:
         Raises
         ------
         ValueError
-            Names every point that is not inside the rim or coincides with another, and every negative stiffness; or
+            Names every point that is not inside the rim or coincides with another; or a stiffness is negative, or
             supports and actuators leave the plate a rigid motion.
         """
         points = as_points(points, "points of influence")

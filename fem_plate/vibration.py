@@ -91,7 +91,7 @@ def modes(model: PlateModel, held: FloatArray, compliance: FloatArray, count: in
     if rigid.size:
         inertia = inertia @ np.linalg.inv(np.linalg.cholesky(rigid.T @ inertia)).T
     # K's inverse knows the springs spread under the plate and not the held points. Rows of correction turn it into the
-    # inverse of the stiffness wanted: the held points, the load that their forces put on the spread springs (what psi_j
+    # inverse of the modes' stiffness: the held points, the load that their forces put on the spread springs (what psi_j
     # weighs on each motion), and the rigid motions, moved out of the way.
     on_springs = model.mean.T + model.motions(x).T @ to_forces
     rows = np.concatenate([at_held.toarray(), on_springs, inertia.T])

@@ -180,7 +180,7 @@ def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMe
     refuse(check_lengths("ellipse", **lengths))
     axes = np.array([semi_axis_x, semi_axis_y])
     size = min(cell_size, axes.min() / 2)
-    # Divide a quarter into edges of the length wanted at each place, and mirror it.
+    # Divide a quarter into edges of the length due at each place, and mirror it.
     angle = np.linspace(0, np.pi / 2, 4001)
     middle = (angle[1:] + angle[:-1]) / 2
     speed = np.hypot(axes[0] * np.sin(middle), axes[1] * np.cos(middle))

@@ -33,7 +33,7 @@ class PatchedShapes(Shapes):
     Attributes
     ----------
     strengths : (N, N) sparse matrix
-        Dimensionless force at i in the shape of actuator j.
+        As of `Shapes`.
     truncation_error : float
         The largest deflection left out of a shape, over its largest, as measured.
     """
@@ -131,12 +131,10 @@ class PatchedShapes(Shapes):
 
         Parameters
         ----------
-        xy : (n, 2) array_like
-            Points [m].
+        xy, least
+            As for `matrix`.
         floor : float
-            Radius around an actuator within which its Laplacian grows no more [m]; under a point load it has no bound.
-        least : float
-            Leave out entries below this fraction of the shape's Laplacian at its own actuator.
+            As for `InfluenceShapes.laplacians` [m].
 
         Returns
         -------
@@ -161,7 +159,7 @@ class PatchedShapes(Shapes):
             row, column, value = cache[key]
             entries.append((value, on_patch[row].astype(np.int32), core[column].astype(np.int32)))
         flat = [np.concatenate(parts) for parts in zip(*entries, strict=True)]
-        cache.clear()  # there is not always room for these and the matrix
+        cache.clear()  # to make room for the matrix
         entries.clear()
         return coo_matrix((flat[0], (flat[1], flat[2])), shape=(len(xy), len(self.points))).tocsr()
 
