@@ -108,13 +108,13 @@ class Bench:
             one = partial(_by_steps, surface, law, duration, p.gravity, p.time_step)
             with ThreadPoolExecutor(processors()) as pool:
                 try:
-                    found = list(pool.map(one, parts))
+                    results = list(pool.map(one, parts))
                 except BaseException:  # Ctrl-C: each path takes a fraction of a second, all together long
                     pool.shutdown(wait=True, cancel_futures=True)
                     raise
         else:
-            found = simulate_many(surface, parts, law, duration, p.gravity, tolerance or p.tolerance)
-        return [Path(trajectory, ground.offset) for trajectory in found]
+            results = simulate_many(surface, parts, law, duration, p.gravity, tolerance or p.tolerance)
+        return [Path(trajectory, ground.offset) for trajectory in results]
 
     def starts(self, place: Place, count: int) -> FloatArray:
         """The place itself and others around it, (count, 2) m; the same ones for every model."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from math import sqrt
 from typing import Final, NamedTuple
 
-MOST, FEW = 0.9, 0.1  # what so many do is what the model says; what so few do is not
+NEARLY_ALL, HARDLY_ANY = 0.9, 0.1  # what so many do is what the model says; what so few do is not
 NORMAL: Final = 1.959964  # standard deviations on either side that hold 95 % of a normal distribution
 
 
@@ -33,7 +33,7 @@ class Share(NamedTuple):
     def met(self) -> float:
         """1 or 0 where the whole interval says so, a half where it does not decide."""
         low, high = self.interval
-        return 1.0 if low >= MOST else 0.0 if high <= FEW else 0.5
+        return 1.0 if low >= NEARLY_ALL else 0.0 if high <= HARDLY_ANY else 0.5
 
     def __str__(self) -> str:
         low, high = self.interval

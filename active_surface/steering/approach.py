@@ -36,7 +36,7 @@ class Approach:
         self._surface, self._task, self._threads, self._tell = surface, task, threads, tell
         self._horizon, self._cost, self._before, self._searches = task.case.run.duration, math.inf, 0, 0
         self._search: tuple[LegSearch, float] | None = None
-        self._found: tuple[Case, Trajectory] | None = None
+        self._best: tuple[Case, Trajectory] | None = None
         self.legs: tuple[Leg, ...] = ()
 
     def run(self) -> None:
@@ -65,9 +65,9 @@ class Approach:
     def close(self) -> tuple[Case, Trajectory]:
         """The case with the drives of all legs and its path; KeyboardInterrupt where there are none."""
         self._end_leg()
-        if self._found is None:
+        if self._best is None:
             raise KeyboardInterrupt
-        return self._found
+        return self._best
 
     def _try(self, task: Task, start: float, most: int) -> None:
         """Search for the drives of a leg that begins at a time [s]."""
@@ -83,7 +83,7 @@ class Approach:
             return
         search, start = self._search
         self._before, self._search = self.paths, None
-        if not search.found:
+        if not search.has_drives:
             return
         leg, task = search.leg(start), self._task
         legs = (*self.legs, leg) if start > 0 else (leg,)
@@ -92,16 +92,16 @@ class Approach:
         else:
             case = task.case.model_copy(update={"actuators": leg.actuators, "source": None})
         path = path_of(Paths(case, self._surface, self._threads), case)
-        value = cost(path, task.target, self._horizon, self._surface.size, task.settings.tolerance)
-        if value <= max(NEARER * self._cost, task.settings.tolerance) or self._found is None:
-            self.legs, self._cost, self._found = legs, value, (case, path)
+        distance = cost(path, task.target, self._horizon, self._surface.size, task.settings.tolerance)
+        if distance <= max(NEARER * self._cost, task.settings.tolerance) or self._best is None:
+            self.legs, self._cost, self._best = legs, distance, (case, path)
 
     def _next(self) -> tuple[Task | None, float]:
         """The task of the next leg, None where there is none, and when it begins [s]."""
-        if self._found is None or not settled(self._found[1]):
+        if self._best is None or not settled(self._best[1]):
             return None, 0.0
-        start = next_start(self.legs, self._found[1])
-        x, y = self._found[1].position[-1].tolist()
+        start = next_start(self.legs, self._best[1])
+        x, y = self._best[1].position[-1].tolist()
         try:
             task = self._task.within(self._horizon - start, (x, y))
         except ValueError:  # there is no way on from here, as from above the only actuator

@@ -58,13 +58,13 @@ class Knobs:
 
     def actuators(self, values: FloatArray) -> tuple[ActuatorCase, ...]:
         """All actuators with the knobs (n,) turned so; drives end within the case's duration where they can."""
-        found = {k: dict(fixed) for k, fixed in self._fixed.items()}
+        tables = {k: dict(fixed) for k, fixed in self._fixed.items()}
         for knob, value in zip(self.knobs, values.tolist(), strict=True):
-            found[knob.actuator][knob.key] = (
+            tables[knob.actuator][knob.key] = (
                 round(value, DIGITS[knob.key]) if knob.smooth else min(math.floor(value), knob.high)
             )
         actuators = list(self.still)
-        for k, keys in found.items():
+        for k, keys in tables.items():
             period = 1 / keys["frequency"] + 2 * actuators[k].dwell
             fit = math.floor((self.case.run.duration - keys["delay"]) / period * (1 + 1e-12))
             keys["cycles"] = int(max(1, min(keys["cycles"], fit)))

@@ -39,10 +39,10 @@ class LegSearch:
     @property
     def paths(self) -> int:
         """How many have been followed."""
-        return self._paths.found
+        return self._paths.count
 
     @property
-    def found(self) -> bool:
+    def has_drives(self) -> bool:
         """Whether there are drives."""
         return bool(np.isfinite(self._objective.best.cost))
 

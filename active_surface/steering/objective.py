@@ -23,7 +23,7 @@ class Best(NamedTuple):
 
     cost: float = np.inf  # m
     values: FloatArray = np.zeros(0)  # of the knobs
-    off: FloatArray = np.zeros(2)  # (2,) m, from the target to the end
+    offset: FloatArray = np.zeros(2)  # (2,) m, from the target to the end
 
 
 class Objective:
@@ -53,7 +53,7 @@ class Objective:
     @property
     def exhausted(self) -> bool:
         """Whether fewer paths are left than one trial takes."""
-        return self._paths.found + len(self._ways) > self._most
+        return self._paths.count + len(self._ways) > self._most
 
     def of(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """How far off the ends are (m, 2) [m], and the costs (m,) [m], of trials (m, n).
@@ -61,22 +61,22 @@ class Objective:
         Of disturbed runs the ends' mean counts. Trials beyond the paths that are left cost more than any other.
         """
         case, target = self._task.case, self._task.target
-        room = max((self._most - self._paths.found) // len(self._ways), 0 if np.isfinite(self.best.cost) else 1)
+        room = max((self._most - self._paths.count) // len(self._ways), 0 if np.isfinite(self.best.cost) else 1)
         if not room:
             return np.zeros((len(values), 2)), np.full(len(values), np.inf)
-        turned = [self._knobs.actuators(row) for row in values[:room]]
-        found = self._paths.of([(actuators, way) for actuators in turned for way in self._ways])
+        trials = [self._knobs.actuators(row) for row in values[:room]]
+        trajectories = self._paths.of([(actuators, way) for actuators in trials for way in self._ways])
         size, tolerance = self._paths.surface.size, self._task.settings.tolerance
-        ends = np.array([path.position[-1] for path in found]).reshape(len(turned), len(self._ways), 2)
-        each = np.array([cost(path, target, case.run.duration, size, tolerance) for path in found]).reshape(
+        ends = np.array([path.position[-1] for path in trajectories]).reshape(len(trials), len(self._ways), 2)
+        each = np.array([cost(path, target, case.run.duration, size, tolerance) for path in trajectories]).reshape(
             ends.shape[:2]
         )
         costs = each[:, 0] if self._quantile is None else np.quantile(each, self._quantile, axis=1)
-        off = ends.mean(axis=1) - target
-        least = int(np.argmin(costs))
-        if costs[least] < self.recent.cost:
-            self.recent = Best(float(costs[least]), values[least].copy(), off[least])
+        offsets = ends.mean(axis=1) - target
+        nearest = int(np.argmin(costs))
+        if costs[nearest] < self.recent.cost:
+            self.recent = Best(float(costs[nearest]), values[nearest].copy(), offsets[nearest])
             self.best = min(self.best, self.recent, key=lambda one: one.cost)
-        self._tell(min(self._paths.found, self._most), self._most)
-        beyond = len(values) - len(turned)
-        return np.pad(off, ((0, beyond), (0, 0))), np.pad(costs, (0, beyond), constant_values=np.inf)
+        self._tell(min(self._paths.count, self._most), self._most)
+        beyond = len(values) - len(trials)
+        return np.pad(offsets, ((0, beyond), (0, 0))), np.pad(costs, (0, beyond), constant_values=np.inf)

@@ -36,18 +36,18 @@ class Paths:
 
     def __init__(self, case: Case, surface: SurfaceMotion, threads: int | None = None) -> None:
         self.case, self.surface, self._threads = case, surface, threads
-        self.found = 0
+        self.count = 0
         self._friction = build_friction(case)
 
     def of(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
         """The path of each run: its actuators, and how it is disturbed. The same bits as from the case itself."""
-        found: list[Trajectory] = []
+        trajectories: list[Trajectory] = []
         # Many small systems: BLAS threads would only wait for each other.
         with threadpool_limits(limits=1, user_api="blas"):
             for start in range(0, len(runs), AT_ONCE):
-                found += self._chunk(runs[start : start + AT_ONCE])
-        self.found += len(found)
-        return found
+                trajectories += self._chunk(runs[start : start + AT_ONCE])
+        self.count += len(trajectories)
+        return trajectories
 
     def _chunk(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
         run = self.case.run

@@ -129,8 +129,8 @@ def _newton(knobs: Knobs, objective: Objective) -> None:
         off, _ = objective.of(moved)
         if objective.exhausted:
             return
-        slopes = ((off - start.off) / side[:, None]).T  # (2, smooth) m, over the ranges of the knobs
-        step = -np.linalg.pinv(slopes) @ start.off * width[smooth]
+        slopes = ((off - start.offset) / side[:, None]).T  # (2, smooth) m, over the ranges of the knobs
+        step = -np.linalg.pinv(slopes) @ start.offset * width[smooth]
         steps = np.repeat(start.values[None], len(SHARES), axis=0)
         steps[:, smooth] = np.clip(steps[:, smooth] + np.outer(SHARES, step), low[smooth], high[smooth])
         objective.of(steps)

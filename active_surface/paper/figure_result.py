@@ -24,7 +24,7 @@ MICRO, MILLI = 1e6, 1e3
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class FigureResult:
     """One figure, or a group of them that share a picture."""
 
     name: str
