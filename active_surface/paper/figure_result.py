@@ -1,4 +1,4 @@
-"""Found: what a figure's module hands back: data, verdicts, and how its picture is drawn."""
+"""Figure result: what a figure's module returns: data, verdicts, and how its picture is drawn."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ SAID = {REPRODUCED: "**reproduced**", PARTLY: "partly", NOT: "**not**", BEYOND: 
 def page_of(results: Sequence[FigureResult], effort: Effort, parameters: Parameters, folder: str) -> str:
     """The page in Markdown; pictures are in a folder beside it."""
     verdicts = [verdict for one in results for verdict in one.verdicts]
-    counts = {text: sum(verdict.verdict == text for verdict in verdicts) for text in (REPRODUCED, PARTLY, NOT)}
+    counts = {kind: sum(verdict.verdict == kind for verdict in verdicts) for kind in (REPRODUCED, PARTLY, NOT)}
     parts = [
         "# The paper, figure by figure\n",
         '"Micropart Motion on a Surface Due to Controlled Surface Excitation": what it states, and what this '

@@ -81,19 +81,19 @@ def reproduce(
     return Reproduction(tuple(results), tuple(files), seconds)
 
 
-def write(results: FigureResult, folder: Path) -> list[Path]:
+def write(result: FigureResult, folder: Path) -> list[Path]:
     """Writes NAME.png and NAME.json into a folder; returns them."""
     folder.mkdir(parents=True, exist_ok=True)
-    picture = folder / f"{results.name}.png"
-    figure = Figure(figsize=results.size)
+    picture = folder / f"{result.name}.png"
+    figure = Figure(figsize=result.size)
     FigureCanvasAgg(figure)
     figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
-    results.draw(figure)
+    result.draw(figure)
     with whole_file(picture) as partial:
         figure.savefig(partial, dpi=90)
-    data = folder / f"{results.name}.json"
-    verdicts = [verdict.as_dict() for verdict in results.verdicts]
-    whole = {"title": results.title, "verdicts": verdicts, "data": results.data}
+    data = folder / f"{result.name}.json"
+    verdicts = [verdict.as_dict() for verdict in result.verdicts]
+    whole = {"title": result.title, "verdicts": verdicts, "data": result.data}
     _replace(data, json.dumps(rounded(whole), allow_nan=False) + "\n")
     return [picture, data]
 
