@@ -1,4 +1,4 @@
-"""What was found in words and in numbers: what the commands print."""
+"""Results in words and in numbers: what the commands print."""
 
 from __future__ import annotations
 
