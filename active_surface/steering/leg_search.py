@@ -21,11 +21,8 @@ class LegSearch:
         self, surface: SurfaceMotion, task: Task, threads: int | None, tell: Tell, max_paths: int, number: int = 0
     ) -> None:
         """number: of the search; each number has its own stream of random numbers."""
-        self._newton_range, self._movers, self._seed = (
-            NEWTON_RANGE * surface.size,
-            task.movers,
-            (task.settings.seed, number),
-        )
+        self._newton_range, self._movers = NEWTON_RANGE * surface.size, task.movers
+        self._seed = task.settings.seed, number
         self._paths, self._knobs = Paths(task.case, surface, threads), Knobs(task.case, task.settings, self._movers)
         self._robust: Objective | None = None
         if task.settings.quantile is not None:
