@@ -39,7 +39,7 @@ def table(head, rows) -> str:
 
 
 def told(split: Split) -> str:
-    return "none" if math.isnan(split.frequency) else f"{split.frequency:.0f} ({100 * split.told:.0f} %)"
+    return "none" if math.isnan(split.frequency) else f"{split.frequency:.0f} ({100 * split.predicted:.0f} %)"
 
 
 def number(value: float, form: str, none: str) -> str:

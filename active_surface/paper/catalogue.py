@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Final
 
-from active_surface.paper.found import Found
+from active_surface.paper.figure_result import FigureResult
 from active_surface.paper.models import Bench
 from active_surface.paper.parameters import Effort
 from coupling import near
@@ -29,7 +29,7 @@ MODULES: Final[dict[str, tuple[str, ...]]] = {
 ALL: Final = "all"
 DRAWINGS: Final = (1, 2, 7, 8, 9, 10)
 
-Finder = Callable[[Bench, Effort], Found]
+Finder = Callable[[Bench, Effort], FigureResult]
 
 
 def modules_of(names: Sequence[str]) -> list[str]:

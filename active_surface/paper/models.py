@@ -45,7 +45,7 @@ class Ground(NamedTuple):
 
 @dataclass(eq=False)
 class Bench:
-    """Finds paths in every model; surfaces are made once."""
+    """Computes paths in every model; surfaces are made once."""
 
     parameters: Parameters = PARAMETERS
     _grounds: dict[tuple[str, str], Ground] = field(default_factory=dict)
@@ -75,12 +75,12 @@ class Bench:
         return Ground(surface, profile_outline(p.pitch, p.radius), np.zeros(2))
 
     def drive(self, frequency: float, stroke: float | None = None, cycles: int | None = None) -> Drive:
-        """An up-down drive, continuous or of so many cycles."""
+        """An up-down drive, continuous or with a number of cycles."""
         p = self.parameters
         return Drive(p.stroke if stroke is None else stroke, frequency * p.period_share, cycles=cycles)
 
     def duration(self, *drives: Drive) -> float:
-        """How long [s] continuous drives run: so many cycles of the slowest."""
+        """How long [s] continuous drives run, by cycles of the slowest."""
         return self.parameters.cycles / min(drive.frequency for drive in drives)
 
     def paths(
@@ -108,13 +108,13 @@ class Bench:
             one = partial(_by_steps, surface, law, duration, p.gravity, p.time_step)
             with ThreadPoolExecutor(processors()) as pool:
                 try:
-                    found = list(pool.map(one, parts))
+                    results = list(pool.map(one, parts))
                 except BaseException:  # Ctrl-C: each path takes a fraction of a second, all together long
                     pool.shutdown(wait=True, cancel_futures=True)
                     raise
         else:
-            found = simulate_many(surface, parts, law, duration, p.gravity, tolerance or p.tolerance)
-        return [Path(trajectory, ground.offset) for trajectory in found]
+            results = simulate_many(surface, parts, law, duration, p.gravity, tolerance or p.tolerance)
+        return [Path(trajectory, ground.offset) for trajectory in results]
 
     def starts(self, place: Place, count: int) -> FloatArray:
         """The place itself and others around it, (count, 2) m; the same ones for every model."""

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from active_surface.paper.figure_result import FigureResult
 from active_surface.paper.figures import paragraph
-from active_surface.paper.found import Found
 from active_surface.paper.models import MODELS, PAPER, PLATE
 from active_surface.paper.parameters import Effort, Parameters
-from active_surface.paper.share import FEW, MOST
+from active_surface.paper.share import HARDLY_ANY, NEARLY_ALL
 from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Verdict
 
 MICRO = 1e6
 SAID = {REPRODUCED: "**reproduced**", PARTLY: "partly", NOT: "**not**", BEYOND: "-"}
 
 
-def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, folder: str) -> str:
+def page_of(results: Sequence[FigureResult], effort: Effort, parameters: Parameters, folder: str) -> str:
     """The page in Markdown; pictures are in a folder beside it."""
-    verdicts = [verdict for one in found for verdict in one.verdicts]
-    counts = {said: sum(verdict.verdict == said for verdict in verdicts) for said in (REPRODUCED, PARTLY, NOT)}
+    verdicts = [verdict for one in results for verdict in one.verdicts]
+    counts = {kind: sum(verdict.verdict == kind for verdict in verdicts) for kind in (REPRODUCED, PARTLY, NOT)}
     parts = [
         "# The paper, figure by figure\n",
         '"Micropart Motion on a Surface Due to Controlled Surface Excitation": what it states, and what this '
@@ -33,7 +33,7 @@ def page_of(found: Sequence[Found], effort: Effort, parameters: Parameters, fold
         _table(verdicts),
         "## Figures\n",
     ]
-    for one in found:
+    for one in results:
         parts.append(f"### {one.title}\n")
         parts.append(f"![{one.title}]({folder}/{one.name}.png)\n")
         parts.append(one.caption.rstrip(".").replace(" um", " µm") + f". [Data]({folder}/{one.name}.json)\n")
@@ -72,8 +72,8 @@ def _how(effort: Effort, p: Parameters) -> str:
         f"Where paths are chaotic each model is asked from many starts, displaced by up to {MICRO * p.jitter:g} µm "
         f"along x and y, as the paper states places in µm: {effort.starts} ({effort.starts_by_steps} with the paper's "
         'scheme). "87 % (76-93)" has Wilson\'s interval of 95 %. A statement is met when that interval lies above '
-        f"{100 * MOST:.0f} %, and not met when it lies below {100 * FEW:.0f} %; else it is undecided, and counts "
-        "half. A verdict is "
+        f"{100 * NEARLY_ALL:.0f} %, and not met when it lies below {100 * HARDLY_ANY:.0f} %; else it is undecided, and "
+        "counts half. A verdict is "
         '"reproduced" when every model meets all of a statement, "not" when none meets any of it, else "partly".\n',
     ])  # fmt: skip
 

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from active_surface.paper.catalogue import MODULES, finder, modules_of
-from active_surface.paper.found import Found
+from active_surface.paper.figure_result import FigureResult
 from active_surface.paper.models import Bench
 from active_surface.paper.page import page_of
 from active_surface.paper.parameters import PARAMETERS, QUICK, Effort, Parameters
@@ -26,14 +26,14 @@ FOLDER, PAGE = "paper", "paper.md"
 class Reproduction(NamedTuple):
     """What was found, and where it was written."""
 
-    found: tuple[Found, ...]
+    results: tuple[FigureResult, ...]
     files: tuple[Path, ...]
     seconds: float
 
     @property
     def verdicts(self) -> list[Verdict]:
         """Of all figures."""
-        return [verdict for one in self.found for verdict in one.verdicts]
+        return [verdict for one in self.results for verdict in one.verdicts]
 
 
 def reproduce(
@@ -65,35 +65,35 @@ def reproduce(
     """
     modules = modules_of(names)
     begun, bench = perf_counter(), Bench(parameters)
-    found: list[Found] = []
+    results: list[FigureResult] = []
     files: list[Path] = []
     for module in modules:
         with progress(f"Reproducing {', '.join(MODULES[module])}"):
             one = finder(module)(bench, effort)
-        found.append(one)
+        results.append(one)
         if output is not None:
             files += write(one, Path(output) / FOLDER)
     seconds = perf_counter() - begun
     if output is not None and len(modules) == len(MODULES):
         page = Path(output) / PAGE
-        _replace(page, page_of(found, effort, parameters, FOLDER))
+        _replace(page, page_of(results, effort, parameters, FOLDER))
         files.append(page)
-    return Reproduction(tuple(found), tuple(files), seconds)
+    return Reproduction(tuple(results), tuple(files), seconds)
 
 
-def write(found: Found, folder: Path) -> list[Path]:
+def write(result: FigureResult, folder: Path) -> list[Path]:
     """Writes NAME.png and NAME.json into a folder; returns them."""
     folder.mkdir(parents=True, exist_ok=True)
-    picture = folder / f"{found.name}.png"
-    figure = Figure(figsize=found.size)
+    picture = folder / f"{result.name}.png"
+    figure = Figure(figsize=result.size)
     FigureCanvasAgg(figure)
     figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
-    found.draw(figure)
+    result.draw(figure)
     with whole_file(picture) as partial:
         figure.savefig(partial, dpi=90)
-    data = folder / f"{found.name}.json"
-    verdicts = [verdict.as_dict() for verdict in found.verdicts]
-    whole = {"title": found.title, "verdicts": verdicts, "data": found.data}
+    data = folder / f"{result.name}.json"
+    verdicts = [verdict.as_dict() for verdict in result.verdicts]
+    whole = {"title": result.title, "verdicts": verdicts, "data": result.data}
     _replace(data, json.dumps(rounded(whole), allow_nan=False) + "\n")
     return [picture, data]
 

@@ -125,12 +125,12 @@ def threshold(bench: Bench, model: str, count: int) -> Split:
 
 def steps_of_the_scheme(count: int) -> dict[float, tuple[Share, Split]]:
     """By step [s] of the paper's scheme: the share that converges in figure 17a, and the threshold of figure 18."""
-    found = {}
+    results = {}
     for step in STEPS:
         bench = Bench(replace(PARAMETERS, time_step=step))
         share = converge(bench, from_start(bench, PAPER, LOW, count), LOW)
-        found[step] = share, threshold(bench, PAPER, max(count // 2, 1))
-    return found
+        results[step] = share, threshold(bench, PAPER, max(count // 2, 1))
+    return results
 
 
 READINGS: Final = {
@@ -148,8 +148,8 @@ LOW_AND_HIGH: Final = 250.0, 450.0  # Hz
 def readings(effort: Effort = QUICK) -> dict[str, dict[str, Share]]:
     """By reading of figure 20 and by surface the share of starts that arrive; the first also without pull-off."""
     bench, loose = Bench(), Bench(variants()[NO_PULL_OFF])
-    found = {name: _arrivals(bench, effort, one) for name, one in READINGS.items()}
-    return found | {f"the first, {NO_PULL_OFF}": _arrivals(loose, effort, HANDOVERS["20"])}
+    results = {name: _arrivals(bench, effort, one) for name, one in READINGS.items()}
+    return results | {f"the first, {NO_PULL_OFF}": _arrivals(loose, effort, HANDOVERS["20"])}
 
 
 def _arrivals(bench: Bench, effort: Effort, one: Handover) -> dict[str, Share]:
@@ -160,8 +160,8 @@ def _arrivals(bench: Bench, effort: Effort, one: Handover) -> dict[str, Share]:
 def beginnings(effort: Effort = QUICK) -> dict[str, dict[str, Trend]]:
     """By start of figure 16 and by surface what becomes of parts at a low and a high frequency; the first as above."""
     bench, loose = Bench(), Bench(variants()[NO_PULL_OFF])
-    found = {f"({1e6 * x:g}, {1e6 * y:g}) um": _trends(bench, effort, (x, y)) for x, y in BEGINNINGS}
-    return found | {f"the first, {NO_PULL_OFF}": _trends(loose, effort, BEGINNINGS[0])}
+    results = {f"({1e6 * x:g}, {1e6 * y:g}) um": _trends(bench, effort, (x, y)) for x, y in BEGINNINGS}
+    return results | {f"the first, {NO_PULL_OFF}": _trends(loose, effort, BEGINNINGS[0])}
 
 
 def _trends(bench: Bench, effort: Effort, start: Place) -> dict[str, Trend]:

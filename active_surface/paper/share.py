@@ -1,4 +1,4 @@
-"""Share: how many of so many starts do something, with the interval in which chance leaves the true share."""
+"""Share: how many of all starts do something, with the confidence interval of the true share."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from math import sqrt
 from typing import Final, NamedTuple
 
-MOST, FEW = 0.9, 0.1  # what so many do is what the model says; what so few do is not
+NEARLY_ALL, HARDLY_ANY = 0.9, 0.1  # shares of starts at which a statement is met, or not met
 NORMAL: Final = 1.959964  # standard deviations on either side that hold 95 % of a normal distribution
 
 
 class Share(NamedTuple):
-    """So many of so many, with Wilson's interval of 95 %."""
+    """`hits` of `of`, with Wilson's interval of 95 %."""
 
     hits: int
     of: int
@@ -31,9 +31,9 @@ class Share(NamedTuple):
 
     @property
     def met(self) -> float:
-        """1 or 0 where the whole interval says so, a half where it does not decide."""
+        """1 or 0 where the whole interval lies above or below those shares, else a half."""
         low, high = self.interval
-        return 1.0 if low >= MOST else 0.0 if high <= FEW else 0.5
+        return 1.0 if low >= NEARLY_ALL else 0.0 if high <= HARDLY_ANY else 0.5
 
     def __str__(self) -> str:
         low, high = self.interval

@@ -1,4 +1,4 @@
-"""Split: the frequency that tells best what becomes of parts below it and above it, and curves through such ones."""
+"""Split: the frequency that best predicts what parts do below it and above it, and curves through such frequencies."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Split(NamedTuple):
     """A frequency, and which share of (frequency, start) pairs do below it the one and from it on the other thing."""
 
     frequency: float  # Hz, half-way between two that were looked at, half a step beyond the outer ones, or nan
-    told: float  # of all pairs
+    predicted: float  # of all pairs
     below: float  # of those below; nan: there are none
     above: float
 
@@ -67,8 +67,8 @@ def best_split(frequencies: FloatArray, low: BoolArray, high: BoolArray) -> Spli
     best = np.flatnonzero(right == right.max())
     k = int(best[(len(best) - 1) // 2])
     step = float(frequencies[1] - frequencies[0])
-    told = [float(rows.mean()) if rows.size else float("nan") for rows in (low[:k], high[k:])]
-    return Split(float(frequencies[0] + (k - 0.5) * step), float(right.max() / low.size), *told)
+    shares = [float(rows.mean()) if rows.size else float("nan") for rows in (low[:k], high[k:])]
+    return Split(float(frequencies[0] + (k - 0.5) * step), float(right.max() / low.size), *shares)
 
 
 def first_loss(frequencies: FloatArray, lost: BoolArray) -> float:

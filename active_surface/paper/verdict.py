@@ -10,7 +10,7 @@ REPRODUCED, PARTLY, NOT, BEYOND = "reproduced", "partly", "not", "beyond the pap
 
 
 class Answer(NamedTuple):
-    """What one model says: in words, and which share of the paper's statement it meets."""
+    """The answer of one model: a text, and the share of the paper's statement that it meets."""
 
     text: str
     met: float  # 0 to 1
@@ -49,5 +49,5 @@ class Verdict:
 
 
 def of_checks(text: str, checks: Sequence[bool]) -> Answer:
-    """An answer that meets as much of the statement as it passes checks."""
+    """An answer whose share of the statement is that of the checks it passes."""
     return Answer(text, sum(map(bool, checks)) / len(checks))

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from active_surface.steering.found import Found
 from active_surface.steering.paths import settled
+from active_surface.steering.result import SteeringResult
 from active_surface.steering.schedule import Leg
 from active_surface.steering.task import Task
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Aimed(Found):
+class Aimed(SteeringResult):
     """The case with the drives of an aim, its path, and how far it ends from the target.
 
     Parameters

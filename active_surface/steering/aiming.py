@@ -11,9 +11,9 @@ from pathlib import Path
 
 from active_surface.steering.aimed import Aimed
 from active_surface.steering.approach import Approach
-from active_surface.steering.found import check_free, drawn, prepared, with_scatter
 from active_surface.steering.paths import Paths
 from active_surface.steering.picture import draw_aim
+from active_surface.steering.result import check_free, drawn, prepared, with_scatter
 from active_surface.steering.task import Task
 from coupling import Tell, untold
 from coupling.case import shown_length, write_case
@@ -60,8 +60,8 @@ def aim(
         return aim_over(prepared(task.case), task, threads, tell)
     file, picture = Path(output) / f"{task.name}_aimed.toml", Path(output) / f"{task.name}_aim.png"
     check_free((file, picture), overwrite)
-    found = aim_over(prepared(task.case), task, threads, tell, file)
-    return drawn(found, draw_aim, picture)
+    result = aim_over(prepared(task.case), task, threads, tell, file)
+    return drawn(result, draw_aim, picture)
 
 
 def aim_over(
@@ -73,7 +73,7 @@ def aim_over(
 ) -> Aimed:
     """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
     approach, interrupted = Approach(surface, task, threads, tell), False
-    found: Aimed | None = None
+    result: Aimed | None = None
     try:
         with ExitStack() as shield:
             try:
@@ -85,7 +85,7 @@ def aim_over(
                 shield.enter_context(unbroken())
             case, path = approach.close()
             case = case.model_copy(update={"name": f"{task.name}_aimed"})
-            found = Aimed(
+            result = Aimed(
                 task=task,
                 case=case,
                 trajectory=path,
@@ -95,10 +95,10 @@ def aim_over(
             )
             if file is not None:
                 x, y = (shown_length(place) for place in task.target)
-                said = f"The drives bring the part to ({x}, {y}), but for {shown_length(found.distance)}."
-                found = replace(found, files=(write_case(case, file, said),))
+                said = f"The drives bring the part to ({x}, {y}), but for {shown_length(result.distance)}."
+                result = replace(result, files=(write_case(case, file, said),))
     except KeyboardInterrupt:  # what was found before it stays
-        if found is None:
+        if result is None:
             raise
-        return replace(found, interrupted=True)
-    return with_scatter(found, Paths(case, surface, threads), task.target, task.settings)
+        return replace(result, interrupted=True)
+    return with_scatter(result, Paths(case, surface, threads), task.target, task.settings)

@@ -1,7 +1,7 @@
-"""Approach: the way to a target, in as few legs as it takes.
+"""Approach: the way to a target in as few legs as possible.
 
-A short leg is found by few paths. Where the first one misses, the part goes on from where it rests, which is nearer; at
-last all of the time is tried as one leg.
+A short leg takes few paths to find. If it misses, another starts where the part rests, nearer to the target. As a last
+resort one leg takes the whole duration.
 """
 
 from __future__ import annotations
@@ -22,35 +22,35 @@ Place = tuple[float, float]
 
 PAUSE: Final = 5e-4  # s, at rest between legs
 STEP: Final = 1e-6  # s, of which times of legs are multiples
-PATHS: Final = (1000, 1500, 2500, 2500)  # of each leg, at most
-FIRST: Final = 0.5  # of the duration, at most, for the first leg
-CYCLES: Final = 3  # of the fastest that there may be, which a leg has time for
-NEARER: Final = 0.95  # times as far, or less: else a leg is not worth it
+MAX_PATHS: Final = (1000, 1500, 2500, 2500)  # for each leg
+FIRST: Final = 0.5  # of the duration: longest first leg
+CYCLES: Final = 3  # of the fastest drive allowed: shortest leg
+NEARER: Final = 0.95  # of the distance before: a leg must leave less to be kept
 
 
 class Approach:
-    """The legs that bring the part of a task to its target, as they are found."""
+    """Collects the legs that bring the part of a task to its target."""
 
     def __init__(self, surface: SurfaceMotion, task: Task, threads: int | None, tell: Tell) -> None:
-        """tell: gets how many paths have been found, and of how many at most."""
+        """tell: is called with the number of paths so far and its maximum."""
         self._surface, self._task, self._threads, self._tell = surface, task, threads, tell
         self._horizon, self._cost, self._before, self._searches = task.case.run.duration, math.inf, 0, 0
         self._search: tuple[LegSearch, float] | None = None
-        self._found: tuple[Case, Trajectory] | None = None
+        self._best: tuple[Case, Trajectory] | None = None
         self.legs: tuple[Leg, ...] = ()
 
     def run(self) -> None:
         """Search; after Ctrl-C `close` has the best so far."""
-        most, first = self._task.settings.most, FIRST * self._horizon
-        if self._task.settings.quantile is None and first >= self._least(self._task):
-            self._try(self._task.within(first), 0.0, min(PATHS[0], most))
-            for paths in PATHS[1:]:
+        max_paths, first = self._task.settings.most, FIRST * self._horizon
+        if self._task.settings.quantile is None and first >= self._min_duration(self._task):
+            self._try(self._task.within(first), 0.0, min(MAX_PATHS[0], max_paths))
+            for paths in MAX_PATHS[1:]:
                 task, start = self._next()
-                if self.reached or task is None or self.paths >= most:
+                if self.reached or task is None or self.paths >= max_paths:
                     break
-                self._try(task, start, min(paths, most - self.paths))
-        if not self.reached and self.paths < most:
-            self._try(self._task, 0.0, most - self.paths)
+                self._try(task, start, min(paths, max_paths - self.paths))
+        if not self.reached and self.paths < max_paths:
+            self._try(self._task, 0.0, max_paths - self.paths)
 
     @property
     def paths(self) -> int:
@@ -59,31 +59,31 @@ class Approach:
 
     @property
     def reached(self) -> bool:
-        """Whether the part comes to rest for good within the tolerance."""
+        """Whether the part comes to rest within the tolerance and no drive moves it again."""
         return self._cost <= self._task.settings.tolerance
 
     def close(self) -> tuple[Case, Trajectory]:
         """The case with the drives of all legs and its path; KeyboardInterrupt where there are none."""
         self._end_leg()
-        if self._found is None:
+        if self._best is None:
             raise KeyboardInterrupt
-        return self._found
+        return self._best
 
-    def _try(self, task: Task, start: float, most: int) -> None:
+    def _try(self, task: Task, start: float, max_paths: int) -> None:
         """Search for the drives of a leg that begins at a time [s]."""
-        search = LegSearch(self._surface, task, self._threads, self._count, most, self._searches)
+        search = LegSearch(self._surface, task, self._threads, self._count, max_paths, self._searches)
         self._searches += 1
         self._search = search, start
         search.run()
         self._end_leg()
 
     def _end_leg(self) -> None:
-        """Keep the leg that is under way, if it is worth it."""
+        """Keep the current leg if it brings the part near enough."""
         if self._search is None:
             return
         search, start = self._search
         self._before, self._search = self.paths, None
-        if not search.found:
+        if not search.has_drives:
             return
         leg, task = search.leg(start), self._task
         legs = (*self.legs, leg) if start > 0 else (leg,)
@@ -92,28 +92,28 @@ class Approach:
         else:
             case = task.case.model_copy(update={"actuators": leg.actuators, "source": None})
         path = path_of(Paths(case, self._surface, self._threads), case)
-        value = cost(path, task.target, self._horizon, self._surface.size, task.settings.tolerance)
-        if value <= max(NEARER * self._cost, task.settings.tolerance) or self._found is None:
-            self.legs, self._cost, self._found = legs, value, (case, path)
+        distance = cost(path, task.target, self._horizon, self._surface.size, task.settings.tolerance)
+        if distance <= max(NEARER * self._cost, task.settings.tolerance) or self._best is None:
+            self.legs, self._cost, self._best = legs, distance, (case, path)
 
     def _next(self) -> tuple[Task | None, float]:
         """The task of the next leg, None where there is none, and when it begins [s]."""
-        if self._found is None or not settled(self._found[1]):
+        if self._best is None or not settled(self._best[1]):
             return None, 0.0
-        start = next_start(self.legs, self._found[1])
-        x, y = self._found[1].position[-1].tolist()
+        start = next_start(self.legs, self._best[1])
+        x, y = self._best[1].position[-1].tolist()
         try:
             task = self._task.within(self._horizon - start, (x, y))
-        except ValueError:  # there is no way on from here, as from above the only actuator
+        except ValueError:  # no way leads on from here, as from above the only actuator
             return None, start
-        return (task if self._horizon - start >= self._least(task) else None), start
+        return (task if self._horizon - start >= self._min_duration(task) else None), start
 
-    def _least(self, task: Task) -> float:
+    def _min_duration(self, task: Task) -> float:
         return CYCLES * shortest(task.case, task.settings, task.movers)
 
     def _count(self, done: int, _: int) -> None:
-        most = self._task.settings.most
-        self._tell(min(self._before + done, most), most)
+        max_paths = self._task.settings.most
+        self._tell(min(self._before + done, max_paths), max_paths)
 
 
 def next_start(legs: tuple[Leg, ...], path: Trajectory) -> float:

@@ -1,4 +1,4 @@
-"""Knobs: the numbers of a drive that a search turns, and the case that they make."""
+"""Knobs: the numbers of a drive that a search varies, and the case with their values."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ FloatArray = NDArray[np.float64]
 
 SLOWEST, FASTEST = 0.2, 2.0  # of an actuator's own frequency
 LATEST = 2.0  # of its own delay
-DIGITS = {"frequency": 6, "stroke": 12, "delay": 12}  # after the point, in SI units: as many as a file shows
+DIGITS = {"frequency": 6, "stroke": 12, "delay": 12}  # decimals in SI units, as many as a file shows
 
 
 class Knob(NamedTuple):
-    """A number between two bounds; cycles are whole, and turned as numbers below `high`."""
+    """A number between two bounds; cycles are whole, and varied as numbers below `high`."""
 
     actuator: int
     key: str
@@ -29,7 +29,7 @@ class Knob(NamedTuple):
 
     @property
     def smooth(self) -> bool:
-        """Whether a little turn of it makes a little difference."""
+        """Whether the end point changes smoothly with it."""
         return self.key != "cycles"
 
 
@@ -48,23 +48,23 @@ class Knobs:
 
     @property
     def bounds(self) -> list[tuple[float, float]]:
-        """The least and the largest value of each."""
+        """The smallest and the largest value of each."""
         return [(knob.low, knob.high + (not knob.smooth)) for knob in self.knobs]
 
     @property
     def smooth(self) -> NDArray[np.int64]:
-        """The places of those of which a little turn makes a little difference."""
+        """The indices of the smooth knobs."""
         return np.array([k for k, knob in enumerate(self.knobs) if knob.smooth], dtype=np.int64)
 
     def actuators(self, values: FloatArray) -> tuple[ActuatorCase, ...]:
-        """All actuators with the knobs (n,) turned so; drives end within the case's duration where they can."""
-        found = {k: dict(fixed) for k, fixed in self._fixed.items()}
+        """All actuators with these values (n,) of the knobs; drives end within the case's duration where they can."""
+        tables = {k: dict(fixed) for k, fixed in self._fixed.items()}
         for knob, value in zip(self.knobs, values.tolist(), strict=True):
-            found[knob.actuator][knob.key] = (
+            tables[knob.actuator][knob.key] = (
                 round(value, DIGITS[knob.key]) if knob.smooth else min(math.floor(value), knob.high)
             )
         actuators = list(self.still)
-        for k, keys in found.items():
+        for k, keys in tables.items():
             period = 1 / keys["frequency"] + 2 * actuators[k].dwell
             fit = math.floor((self.case.run.duration - keys["delay"]) / period * (1 + 1e-12))
             keys["cycles"] = int(max(1, min(keys["cycles"], fit)))
@@ -72,7 +72,7 @@ class Knobs:
         return tuple(actuators)
 
     def turned(self, values: FloatArray) -> Case:
-        """The case with the knobs (n,) turned so."""
+        """The case with these values (n,) of the knobs."""
         return self.case.model_copy(update={"actuators": self.actuators(values), "source": None})
 
 
@@ -101,7 +101,7 @@ def _bounds(actuator: ActuatorCase, settings: Settings, duration: float) -> dict
 
 
 def at_rest(actuator: ActuatorCase) -> ActuatorCase:
-    """An actuator that holds its place at height 0, or floats without a force."""
+    """An actuator held at height 0, or floating without a force."""
     once: dict[str, object] = {"frequency": actuator.frequency or 1.0, "cycle": "up-down", "cycles": 1}
     without = dict.fromkeys(("table", "segments")) | {"repeats": 1, "delay": 0.0, "dwell": 0.0}
     pushed = {"force": 0.0} if actuator.force is not None else {"stroke": 0.0}

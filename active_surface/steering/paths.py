@@ -1,4 +1,4 @@
-"""Paths: where a part goes under each of many drives, over one plate whose cells they share."""
+"""Paths: where a part goes under each of many drives, over one plate with shared cells."""
 
 from __future__ import annotations
 
@@ -17,37 +17,37 @@ from particle.friction import Contact, ScaledFriction
 
 FloatArray = NDArray[np.float64]
 
-AT_ONCE = 256  # paths: handing out more at a time costs more
-SETTLING = 1e-3  # s: a part on the move counts as that much farther away, at its speed
-NOT_FOR_GOOD = 0.1  # of the surface's size: no nearer counts a part that does not rest for good
-LOST = 3.0  # of the surface's size: so much farther away counts a part that is lost, than which no other can be
+AT_ONCE = 256  # paths in a batch; larger ones are slower
+SETTLING = 1e-3  # s: times its speed, the extra distance of a part that still moves
+UNSETTLED = 0.1  # of the surface's size: smallest distance of a part that the drives will move again
+LOST = 3.0  # of the surface's size: extra distance of a lost part, beyond all others
 
 
 class Disturbance(NamedTuple):
     """How a run differs from its case."""
 
-    friction: float = 1.0  # times as much
-    strokes: tuple[float, ...] | None = None  # times as much, of each actuator; None: all as they are
+    friction: float = 1.0  # factor
+    strokes: tuple[float, ...] | None = None  # factor of each actuator; None: unchanged
     shift: tuple[float, float] = (0.0, 0.0)  # m, of the start
 
 
 class Paths:
-    """Finds the paths of a case's part."""
+    """Computes the paths of a case's part."""
 
     def __init__(self, case: Case, surface: SurfaceMotion, threads: int | None = None) -> None:
         self.case, self.surface, self._threads = case, surface, threads
-        self.found = 0
+        self.count = 0
         self._friction = build_friction(case)
 
     def of(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
         """The path of each run: its actuators, and how it is disturbed. The same bits as from the case itself."""
-        found: list[Trajectory] = []
+        trajectories: list[Trajectory] = []
         # Many small systems: BLAS threads would only wait for each other.
         with threadpool_limits(limits=1, user_api="blas"):
             for start in range(0, len(runs), AT_ONCE):
-                found += self._chunk(runs[start : start + AT_ONCE])
-        self.found += len(found)
-        return found
+                trajectories += self._chunk(runs[start : start + AT_ONCE])
+        self.count += len(trajectories)
+        return trajectories
 
     def _chunk(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
         run = self.case.run
@@ -68,7 +68,7 @@ class Paths:
         return self._friction if factor == 1.0 else ScaledFriction(self._friction, factor)
 
     def _parts(self, shifts: FloatArray) -> list[Micropart]:
-        """Parts with shifted starts (n, 2) [m]: the other way where that is off the plate, not at all if both are."""
+        """Parts with starts shifted by (n, 2) [m]; the other way if that is off the plate, not at all if both are."""
         part = self.case.part
         starts = np.repeat(np.array([part.position]), len(shifts), axis=0)
         left = shifts.any(axis=1)
@@ -86,12 +86,12 @@ def path_of(paths: Paths, case: Case) -> Trajectory:
 
 
 def settled(trajectory: Trajectory) -> bool:
-    """Whether the part rests for good at the end."""
+    """Whether the part has come to rest at the end and the drives will not move it again."""
     return trajectory.outcome is Outcome.STUCK and bool(trajectory.stays)
 
 
 def driven(case: Case, actuators: tuple[ActuatorCase, ...], factors: Sequence[float] | None = None) -> Case:
-    """A case with other actuators, whose strokes are so many times as high."""
+    """A case with other actuators, their strokes multiplied by factors."""
     if factors is not None:
         actuators = tuple(_raised(one, factor) for one, factor in zip(actuators, factors, strict=True))
     return case.model_copy(update={"actuators": actuators, "source": None})
@@ -110,14 +110,14 @@ def _raised(actuator: ActuatorCase, factor: float) -> ActuatorCase:
 
 
 def cost(trajectory: Trajectory, target: tuple[float, float], duration: float, size: float, tolerance: float) -> float:
-    """How far [m] the end is from a target [m], more for a part that does not rest there at the end of the duration.
+    """The distance [m] of the end from a target [m], and more for a part that has not come to rest there.
 
-    size: m, of the surface.  tolerance: m, which only a part that rests for good is within.
+    size: m, of the surface.  tolerance: m, which only a settled part can reach.
     """
     away = float(np.hypot(*(trajectory.position[-1] - target)))
     if trajectory.outcome is Outcome.MOVING:
         away += min(SETTLING * float(np.hypot(*trajectory.velocity[-1])), size)
     elif trajectory.outcome is not Outcome.STUCK:
         return away + size * (LOST + 1 - float(trajectory.time[-1]) / duration)  # the later it was lost, the better
-    least = max(NOT_FOR_GOOD * size, 2 * tolerance)
-    return away if away > least or settled(trajectory) else least
+    minimum = max(UNSETTLED * size, 2 * tolerance)
+    return away if away > minimum or settled(trajectory) else minimum

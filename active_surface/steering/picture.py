@@ -13,8 +13,8 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from active_surface.steering.aimed import Aimed
-from active_surface.steering.found import Found
 from active_surface.steering.planned import Planned
+from active_surface.steering.result import SteeringResult
 from active_surface.steering.scatter import Scatter
 from coupling.case import Case, PlateCase
 from coupling.pictures import draw_path, is_visible, map_axes, save_picture
@@ -61,7 +61,7 @@ def draw_plan(found: Planned, path: Path) -> Path:
     return _draw(found, f"{route.name}: {count}; the part ends {_off(found, targets[-1], which)}", targets, path)
 
 
-def _draw(found: Found, title: str, targets: Sequence[Place], path: Path) -> Path:
+def _draw(found: SteeringResult, title: str, targets: Sequence[Place], path: Path) -> Path:
     """Draw a path over its plate with the targets [m] in their order, and the ends of disturbed runs, into a file."""
     assert found.scatter is not None
     case, trajectory, scatter = found.case, found.trajectory, found.scatter
@@ -143,7 +143,7 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
     return keys
 
 
-def _off(found: Found, target: Place, name: str = "the target") -> str:
+def _off(found: SteeringResult, target: Place, name: str = "the target") -> str:
     """How far from a target [m] the part ends, in words."""
     away = float(np.hypot(*(found.trajectory.position[-1] - target)))
     return f"{quantity_text(away, 'm')} from {name}" if away > 0 else f"at {name}"

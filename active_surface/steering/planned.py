@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from active_surface.steering.found import Found
+from active_surface.steering.result import SteeringResult
 from active_surface.steering.route import Place, Route
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Planned(Found):
+class Planned(SteeringResult):
     """The case with the schedule of a plan, its path, and how each leg ended.
 
     Parameters

@@ -12,10 +12,10 @@ from functools import partial
 from pathlib import Path
 
 from active_surface.steering.approach import Approach, next_start
-from active_surface.steering.found import check_free, drawn, prepared, with_scatter
 from active_surface.steering.paths import Paths, path_of, settled
 from active_surface.steering.picture import draw_plan
 from active_surface.steering.planned import Planned
+from active_surface.steering.result import check_free, drawn, prepared, with_scatter
 from active_surface.steering.route import Route
 from active_surface.steering.schedule import Leg, scheduled
 from coupling import Tell, untold
@@ -63,8 +63,8 @@ def plan(
         return plan_over(prepared(route.case), route, threads, tell)
     file, picture = Path(output) / f"{route.name}_planned.toml", Path(output) / f"{route.name}_plan.png"
     check_free((file, picture), overwrite)
-    found = plan_over(prepared(route.case), route, threads, tell, file)
-    return drawn(found, draw_plan, picture)
+    result = plan_over(prepared(route.case), route, threads, tell, file)
+    return drawn(result, draw_plan, picture)
 
 
 def plan_over(
@@ -76,7 +76,7 @@ def plan_over(
 ) -> Planned:
     """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
     work, interrupted = _Work(surface, route, threads, tell), False
-    found: Planned | None = None
+    result: Planned | None = None
     try:
         with ExitStack() as shield:
             try:
@@ -86,14 +86,14 @@ def plan_over(
                 interrupted = True
             else:
                 shield.enter_context(unbroken())
-            found = replace(work.close(), interrupted=interrupted)
+            result = replace(work.close(), interrupted=interrupted)
             if file is not None:
-                found = replace(found, files=(write_case(found.case, file, _comment(found)),))
+                result = replace(result, files=(write_case(result.case, file, _comment(result)),))
     except KeyboardInterrupt:  # what was found before it stays
-        if found is None:
+        if result is None:
             raise
-        return replace(found, interrupted=True)
-    return with_scatter(found, Paths(found.case, surface, threads), found.targets[-1], route.settings)
+        return replace(result, interrupted=True)
+    return with_scatter(result, Paths(result.case, surface, threads), result.targets[-1], route.settings)
 
 
 class _Work:
@@ -171,12 +171,12 @@ class _Work:
         return path
 
 
-def _comment(found: Planned) -> str:
+def _comment(result: Planned) -> str:
     """What a file of the drives begins with: how near they bring the part to each way-point, and why no farther."""
-    legs = zip(found.route.through, found.distances, strict=False)
+    legs = zip(result.route.through, result.distances, strict=False)
     places = [f"({shown_length(x)}, {shown_length(y)}) but for {shown_length(off)}" for (x, y), off in legs]
     said = [f"The drives carry the part over {', '.join(places)}."] if places else []
-    return "\n".join([*said, found.failure] if found.failure else said)
+    return "\n".join([*said, result.failure] if result.failure else said)
 
 
 def _tell_leg(tell: Tell, leg: int, legs: int, done: int, of: int) -> None:

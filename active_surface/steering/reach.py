@@ -1,4 +1,4 @@
-"""Reach: the line that a part cannot leave, because all that can push it is the same on both sides of it."""
+"""Reach: the line that a part cannot leave, because everything that can push it is symmetric about it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from coupling.case import AnnulusCase, Case, DiscCase, EllipseCase, PlateCase, R
 FloatArray = NDArray[np.float64]
 Direction = tuple[float, float]
 
-ON_LINE: Final = 1e-12  # of the farthest place: nearer counts as on the line
+ON_LINE: Final = 1e-12  # of the largest distance from the centre: tolerance of lying on the line
 ALONG: Final = ((1.0, 0.0), (0.0, 1.0))
 DIAGONAL: Final = ((math.sqrt(0.5), math.sqrt(0.5)), (math.sqrt(0.5), -math.sqrt(0.5)))
 
@@ -23,9 +23,9 @@ DIAGONAL: Final = ((math.sqrt(0.5), math.sqrt(0.5)), (math.sqrt(0.5), -math.sqrt
 def off_the_line(
     case: Case, plate: PlateCase, target: tuple[float, float], tolerance: float, movers: Sequence[int]
 ) -> Iterator[str]:
-    """Yield that a target [m] is farther than a tolerance [m] off a line that the part cannot leave, if there is one.
+    """Yield a message if a target [m] lies off a line that the part cannot leave by more than a tolerance [m].
 
-    movers: the numbers of the actuators that take part; all others are at rest.
+    movers: the numbers of the actuators that take part; all others rest.
     """
     lines = [line for line in _mirrors(case, plate, movers) if _keeps(case, line, movers)]
     if len(lines) > 1:
@@ -48,44 +48,44 @@ def off_the_line(
 
 
 def _keeps(case: Case, line: Direction, movers: Sequence[int]) -> bool:
-    """Whether the part stands on a line through the centre, and nothing pushes it aside."""
+    """Whether the part lies on a line through the centre and nothing pushes it off."""
     gravity = case.run.gravity if isinstance(case.run.gravity, tuple) else (0.0, 0.0, 0.0)
     every = np.array([actuator.position for actuator in case.actuators])
-    most = float(np.hypot(*np.array([case.part.position, *every]).T).max())
+    farthest = float(np.hypot(*np.array([case.part.position, *every]).T).max())
     moving = np.isin(np.arange(len(every)), movers)
     standing = np.array([case.part.position, *every[moving]])
     pushes = np.array([case.part.velocity, gravity[:2]])
-    if (_aside(line, standing) > ON_LINE * most).any():
+    if (_across(line, standing) > ON_LINE * farthest).any():
         return False
-    if (_aside(line, pushes) > ON_LINE * np.hypot(*pushes.T)).any():
+    if (_across(line, pushes) > ON_LINE * np.hypot(*pushes.T)).any():
         return False
     held = [(actuator.force is None, actuator.stiffness) for actuator in case.actuators]
-    return _same_on_both_sides(every[~moving], [held[k] for k in np.flatnonzero(~moving)], line, ON_LINE * most)
+    return _is_symmetric(every[~moving], [held[k] for k in np.flatnonzero(~moving)], line, ON_LINE * farthest)
 
 
-def _aside(line: Direction, vectors: FloatArray) -> FloatArray:
-    """How far vectors (n, 2) point aside of a line."""
+def _across(line: Direction, vectors: FloatArray) -> FloatArray:
+    """The components of vectors (n, 2) across a line."""
     return np.asarray(np.abs(line[0] * vectors[:, 1] - line[1] * vectors[:, 0]))
 
 
-def _same_on_both_sides(places: FloatArray, kinds: Sequence[object], line: Direction, least: float) -> bool:
-    """Whether the mirror image of each place (n, 2) [m] is, within `least` [m], a place of the same kind."""
+def _is_symmetric(places: FloatArray, kinds: Sequence[object], line: Direction, tolerance: float) -> bool:
+    """Whether the mirror image of each place (n, 2) [m] is, within `tolerance` [m], a place of the same kind."""
     if not len(places):
         return True
     along = np.array(line)
     away, other = cKDTree(places).query(2 * np.outer(places @ along, along) - places)
-    return bool((away <= least).all()) and all(kinds[k] == kinds[j] for k, j in enumerate(other))
+    return bool((away <= tolerance).all()) and all(kinds[k] == kinds[j] for k, j in enumerate(other))
 
 
 def _mirrors(case: Case, plate: PlateCase, movers: Sequence[int]) -> Iterator[Direction]:
-    """Yield the axes, as directions, about which a plate is the same on both sides; of a round one those that count."""
+    """Yield the directions of the axes of symmetry of a plate; for a round one those that matter."""
     if isinstance(plate, (DiscCase, AnnulusCase)) or (
         isinstance(plate, EllipseCase) and plate.semi_axis_x == plate.semi_axis_y
     ):
         places = np.array([case.part.position, *(case.actuators[k].position for k in movers)])
         x, y = places[np.argmax(np.hypot(*places.T))].tolist()
         radius = math.hypot(x, y)
-        # In the centre itself a part at rest stays: on every line.
+        # In the centre a part at rest stays, on every line.
         yield from [(x / radius, y / radius)] if radius > 0 else (*ALONG, *DIAGONAL)
     elif isinstance(plate, EllipseCase):
         yield from ALONG

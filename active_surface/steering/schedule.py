@@ -9,8 +9,8 @@ from active_surface.steering.knobs import at_rest
 from coupling import build_drive
 from coupling.case import ActuatorCase, Case, SegmentCase
 
-SHORTEST = 1e-9  # s: a shorter wait is none
-DIGITS = 12  # of times in s, after the point: as many as a file shows
+SHORTEST = 1e-9  # s: shorter waits are left out
+DIGITS = 12  # decimals of times in s, as many as a file shows
 
 
 class Leg(NamedTuple):
@@ -54,6 +54,6 @@ def _over_time(k: int, actuator: ActuatorCase, legs: Sequence[Leg]) -> ActuatorC
 
 
 def _end(actuator: ActuatorCase) -> float:
-    """When a drive of so many cycles has ended [s]."""
+    """When a drive with a number of cycles ends [s]."""
     start, scale, _, repeats = build_drive(actuator).segments()
     return actuator.delay + float(start[-1] + scale[-1]) * repeats

@@ -1,6 +1,6 @@
-"""Cluster: the chunks of a study, found by the workers of a dask scheduler.
+"""Cluster: the chunks of a study, computed by the workers of a dask scheduler.
 
-A worker finds one chunk at a time, with as many threads as it has, and solves each plate itself.
+A worker computes one chunk at a time, on all of its threads, and solves each plate itself.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from coupling import interruptible
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-PATIENCE: Final = 5  # s that a scheduler may take to answer
-ARRIVAL: Final = 30  # s that the first worker may take to come
+PATIENCE: Final = 5  # s to wait for a scheduler's answer
+ARRIVAL: Final = 30  # s to wait for the first worker
 AHEAD: Final = 2  # chunks handed out for each thread of the workers
 
 _ONE_AT_A_TIME = threading.Lock()
@@ -34,14 +34,14 @@ def records_on(scheduler: str, engine: Engine, chunks: Iterable[int]) -> Generat
     """Yield chunks of an engine's study and their records as they come in from the workers of a scheduler.
 
     scheduler: its address.
-    A chunk whose worker dies is found by another one. Only a few chunks at a time are under way.
+    When a worker dies, another one takes over its chunk. Only a few chunks at a time are under way.
     Raises ValueError when there is no scheduler at the address, or when a worker has other versions or files than this
     process; RuntimeError when dask is not installed, no worker comes, or scheduler or workers are lost.
     """
     with _connected(scheduler) as client:
         from distributed import as_completed
 
-        pickled, key, wanted = pickle.dumps(engine.study), engine.study.key, versions()
+        pickled, key, ours = pickle.dumps(engine.study), engine.study.key, versions()
         left = iter(chunks)
         numbers: dict[Future, int] = {}
         running = as_completed([], loop=client.loop)
@@ -49,7 +49,7 @@ def records_on(scheduler: str, engine: Engine, chunks: Iterable[int]) -> Generat
         def hand_out() -> None:
             threads = sum(client.nthreads().values())
             for chunk in islice(left, max(AHEAD * max(threads, 1) - len(numbers), 0)):
-                future = client.submit(_records_there, pickled, key, wanted, *engine.span(chunk), pure=False)
+                future = client.submit(_records_on_worker, pickled, key, ours, *engine.span(chunk), pure=False)
                 numbers[future] = chunk
                 running.add(future)
 
@@ -63,7 +63,7 @@ def records_on(scheduler: str, engine: Engine, chunks: Iterable[int]) -> Generat
 
 @contextmanager
 def _connected(scheduler: str) -> Iterator[Client]:
-    """A client of a scheduler that has workers; what goes wrong with it is said in words."""
+    """A client of a scheduler that has workers; its failures become errors of one line."""
     try:
         from distributed import Client, KilledWorker
     except ImportError:
@@ -74,8 +74,8 @@ def _connected(scheduler: str) -> Iterator[Client]:
         try:
             client.wait_for_workers(1, timeout=ARRIVAL)
         except TimeoutError:
-            said = f"Input scheduler must have workers; the one at {scheduler} got none in {ARRIVAL} s"
-            raise RuntimeError(f"{said}; dask worker {scheduler} starts one") from None
+            message = f"Input scheduler must have workers; the one at {scheduler} got none in {ARRIVAL} s"
+            raise RuntimeError(f"{message}; dask worker {scheduler} starts one") from None
         try:
             yield client
         except KilledWorker as error:
@@ -97,12 +97,12 @@ def _check_address(scheduler: str) -> None:
     except (ValueError, TypeError) as error:
         wrong = str(error)
     if wrong:
-        wanted = "the address of a running dask scheduler such as tcp://127.0.0.1:8786"
-        raise ValueError(f"Input scheduler must be {wanted}; got {scheduler!r}: {wrong}")
+        expected = "the address of a running dask scheduler such as tcp://127.0.0.1:8786"
+        raise ValueError(f"Input scheduler must be {expected}; got {scheduler!r}: {wrong}")
 
 
 async def _kind_of(address: str) -> str:
-    """What of dask there is at an address."""
+    """The kind of dask process at an address."""
     from distributed import Security
     from distributed.core import rpc
 
@@ -111,13 +111,13 @@ async def _kind_of(address: str) -> str:
         return str((await asyncio.wait_for(there.identity(), PATIENCE))["type"])
 
 
-def _records_there(pickled: bytes, key: str, wanted: Mapping[str, str], start: int, stop: int) -> Records:
-    """The records of the paths from one to before another, found by the worker that this runs on."""
+def _records_on_worker(pickled: bytes, key: str, ours: Mapping[str, str], start: int, stop: int) -> Records:
+    """The records of paths `start` to `stop` - 1, computed by the worker that runs this."""
     from distributed import get_worker
 
-    worker, found = get_worker(), versions()
+    worker, theirs = get_worker(), versions()
     here = f"the worker at {worker.address} must have"
-    if others := [f"{name} {found[name]} in place of {wanted[name]}" for name in wanted if found[name] != wanted[name]]:
+    if others := [f"{name} {theirs[name]} in place of {ours[name]}" for name in ours if theirs[name] != ours[name]]:
         raise ValueError(f"{here} the same versions as the command; it has {', '.join(others)}")
     with _ONE_AT_A_TIME:
         engine = _engine(pickled, key, worker.state.nthreads)

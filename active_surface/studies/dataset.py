@@ -25,22 +25,22 @@ from meshes import rim_curves
 if TYPE_CHECKING:
     import xarray
 
-SORT: Final = "active-surface sweep"
+KIND_ATTRIBUTE: Final = "active-surface sweep"
 ENGINE: Final = "h5netcdf"
 LOGARITHMIC: Final = "logarithmic"
 LABELS: Final = ("axes", "study", "case")  # attributes that say how the numbers are labelled and described
 RIM_PIECES: Final = 200  # of the longer side of the plate's box: how fine the rim is
 AT_ONCE: Final = 65536  # points whose coordinates are written together
-ROOM: Final = 1_000_000  # bytes, for all that does not grow with the points
+ROOM: Final = 1_000_000  # bytes, for what does not grow with the points
 
 
 def write_dataset(
     study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str] = ()
 ) -> Path:
-    """Writes the records of a study to the file at `path`, chunk by chunk, and returns that.
+    """Write the records of a study to the file at `path`, chunk by chunk; returns that path once it is safe on disk.
 
-    chunks: the number of each chunk's first path, and the records.  warnings: what a user must know, kept with them.
-    Returns once the file is safe on disk. Raises OSError when it has no room.
+    chunks: the number of each chunk's first path, and the records.  warnings: texts for the user, kept with them.
+    Raises OSError when the disk has no room.
     """
     _check_room(study, path.parent)
     with whole_file(path, path.with_suffix(f".partial{path.suffix}"), synced=True) as partial:
@@ -101,7 +101,7 @@ def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warn
 
 
 def _check_room(study: Study, folder: Path) -> None:
-    """Raises OSError unless a folder has room for the results: HDF5 does not survive a full disk."""
+    """Raise OSError unless a folder has room for the results: HDF5 does not survive a full disk."""
     count = len(study.points)
     coordinates = 0 if study.points.sampling == "grid" else 8 * len(study.points.axes) * count // study.points.repeats
     needed, free = KIND.itemsize * count + coordinates + ROOM, shutil.disk_usage(folder).free
@@ -116,7 +116,7 @@ def _fill(kind: str) -> float | None:
 
 def _about(study: Study) -> dict[str, Any]:
     return {
-        "kind": SORT,
+        "kind": KIND_ATTRIBUTE,
         "key": study.key,
         "traits": json.dumps(study.traits),
         "study": study.source,
@@ -170,7 +170,7 @@ def key_of(path: Path) -> str | None:
         return None
     try:
         with h5netcdf.File(path, "r") as file:
-            return str(file.attrs["key"]) if file.attrs.get("kind") == SORT else None
+            return str(file.attrs["key"]) if file.attrs.get("kind") == KIND_ATTRIBUTE else None
     except OSError:
         return None
 

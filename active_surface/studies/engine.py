@@ -1,7 +1,7 @@
-"""The engine: the records of a study's paths, a chunk of about a second of work at a time.
+"""The engine: the records of a study's paths, in chunks of about a second of work.
 
-What a chunk is depends on the study alone, and its records on nothing but the study and the chunk's number: neither on
-threads nor on which chunks came before.
+Chunks depend on the study alone, and their records on the study and the chunk's number alone: neither on threads nor
+on earlier chunks.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from coupling.scene import platform_scene
 from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact
 
-AT_ONCE: Final = 1.0  # s, about, that a chunk takes
-A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about, that a path takes, and each cycle of its fastest drive
-A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about, that these take
+AT_ONCE: Final = 1.0  # s, about, of work in a chunk
+A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about: of work for a path, and for each cycle of its fastest drive
+A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about: of work for one of these
 SURFACES: Final = 16  # kept at most: each takes some 5 MB
 HELD: Final = 256  # trajectories in memory at a time: each takes 0.13 MB, however short
-TOGETHER: Final = 64  # paths found side by side when some are asked for
+TOGETHER: Final = 64  # paths that `follow` computes side by side
 FAILURES: Final = (ValueError, ArithmeticError, RuntimeError)
 
 
 class _Path(NamedTuple):
-    """A path that is to be found."""
+    """A path to compute."""
 
     row: int
     case: Case
@@ -43,12 +43,12 @@ class _Path(NamedTuple):
     friction: Contact
 
 
-Seen = Callable[[int, Trajectory], object]  # gets the number of a path among those found together, and the path
+Visit = Callable[[int, Trajectory], object]  # is called with the number of a path and the path
 _Group = tuple[list[_Path], SurfaceMotion, RunCase]
 
 
 class Engine:
-    """Finds the records of a study."""
+    """Computes the records of a study."""
 
     def __init__(self, study: Study, threads: int | None = None) -> None:
         self.study, self._threads = study, threads
@@ -86,44 +86,44 @@ class Engine:
             yield chunk, self.records(*self.span(chunk))
 
     def records(self, start: int, stop: int) -> Records:
-        """The records of the paths from one to before another."""
-        return self._found(start, stop)[0]
+        """The records of paths `start` to `stop` - 1."""
+        return self._computed(start, stop)[0]
 
     def faults(self, k: int) -> list[str]:
-        """Why path k was refused, which is found out anew; nothing: it was not."""
-        return self._found(k, k + 1)[1].get(0, [])
+        """Why path k was refused, computed anew; empty: it was not."""
+        return self._computed(k, k + 1)[1].get(0, [])
 
-    def follow(self, numbers: Iterable[int], seen: Seen) -> None:
-        """Find the paths of these ascending numbers once more; seen: gets each but the refused, with its number."""
+    def follow(self, numbers: Iterable[int], visit: Visit) -> None:
+        """Compute the paths of these ascending numbers again and visit each but the refused, with its number."""
         together: list[int] = []
         for k in numbers:
             if together and (k != together[-1] + 1 or len(together) == TOGETHER):
-                self._show(together, seen)
+                self._visit(together, visit)
                 together = []
             together.append(k)
         if together:
-            self._show(together, seen)
+            self._visit(together, visit)
 
-    def _show(self, together: list[int], seen: Seen) -> None:
-        """The same for numbers that follow each other."""
+    def _visit(self, together: list[int], visit: Visit) -> None:
+        """The same for consecutive numbers."""
         first = together[0]
-        self._found(first, together[-1] + 1, lambda row, path: seen(first + row, path))
+        self._computed(first, together[-1] + 1, lambda row, path: visit(first + row, path))
 
-    def _found(self, start: int, stop: int, seen: Seen | None = None) -> tuple[Records, dict[int, list[str]]]:
-        """The records, and by row what is wrong with those that were refused."""
+    def _computed(self, start: int, stop: int, visit: Visit | None = None) -> tuple[Records, dict[int, list[str]]]:
+        """The records, and by row what is wrong with the refused."""
         records = new_records(stop - start)
         wrong: dict[int, list[str]] = {}
         # Many small systems: BLAS threads would only wait for each other.
         with threadpool_limits(limits=1, user_api="blas"):
             for paths, surface, run in self._groups(start, stop, records, wrong):
                 for first in range(0, len(paths), HELD):
-                    self._follow(records, wrong, paths[first : first + HELD], surface, run, seen)
-        for row, said in wrong.items():
-            records["mistakes"][row] = len(said)
+                    self._follow(records, wrong, paths[first : first + HELD], surface, run, visit)
+        for row, messages in wrong.items():
+            records["mistakes"][row] = len(messages)
         return records, wrong
 
     def _groups(self, start: int, stop: int, records: Records, wrong: dict[int, list[str]]) -> Iterator[_Group]:
-        """Yield paths that can be followed side by side; of the others it is noted what is wrong with them."""
+        """Yield paths that can be computed side by side; note in `wrong` what is wrong with the others."""
         points = self.study.points
         displaced = points.displacements(start, stop)
         grounds: dict[str, list[tuple[int, Case, Base]]] = defaultdict(list)
@@ -141,11 +141,11 @@ class Engine:
             surface = self._surface(several[0][2])
             starts = np.array([case.part.position for _, case, _ in several]) + displaced[[row for row, *_ in several]]
             faults = start_faults(several[0][2].case, starts)
-            for (row, case, _), place, said in zip(several, starts.tolist(), faults, strict=True):
+            for (row, case, _), place, messages in zip(several, starts.tolist(), faults, strict=True):
                 records["start_x"][row], records["start_y"][row] = place
                 law = contact_of(case.friction)
-                if said := said + [fault for fault in (law, surface) if isinstance(fault, str)]:
-                    wrong[row] = said
+                if messages := messages + [fault for fault in (law, surface) if isinstance(fault, str)]:
+                    wrong[row] = messages
                 elif not isinstance(law, str):
                     part = Micropart(case.part.mass, (place[0], place[1]), case.part.velocity, case.part.squeeze)
                     groups[case.run].append(_Path(row, case, part, law))
@@ -159,10 +159,10 @@ class Engine:
         paths: Sequence[_Path],
         surface: SurfaceMotion,
         run: RunCase,
-        seen: Seen | None,
+        visit: Visit | None,
     ) -> None:
         try:
-            found = simulate_many(
+            trajectories = simulate_many(
                 surface,
                 [path.part for path in paths],
                 [path.friction for path in paths],
@@ -178,17 +178,17 @@ class Engine:
                 wrong[paths[0].row] = [f"its path cannot be found: {error}"]
             else:
                 for path in paths:
-                    self._follow(records, wrong, [path], surface, run, seen)
+                    self._follow(records, wrong, [path], surface, run, visit)
         else:
-            for path, trajectory in zip(paths, found, strict=True):
+            for path, trajectory in zip(paths, trajectories, strict=True):
                 put(records, path.row, path.part.position, trajectory)
-                if seen is not None:
-                    seen(path.row, trajectory)
+                if visit is not None:
+                    visit(path.row, trajectory)
 
     def _surface(self, base: Base) -> SurfaceMotion | str:
         """The moving surface, or why there is none.
 
-        It is made on this thread, where those that are no longer kept are given up: elsewhere their memory would leak.
+        It is made on this thread, which also drops those no longer kept: elsewhere their memory would leak.
         """
         if base.ground not in self._surfaces:
             if len(self._surfaces) == self._kept:
@@ -201,6 +201,6 @@ class Engine:
 
 
 def _largest(points: Points, path: str) -> list[float]:
-    """The largest value of each axis over a field whose path ends so."""
+    """The largest value of each axis over a field whose path ends with this one."""
     axes = [axis for axis in points.axes if f".{axis.field.path}".endswith(f".{path}")]
     return [max(axis.values or (axis.low, axis.high)) for axis in axes]

@@ -15,7 +15,7 @@ from active_surface.studies.axis import Axis
 FloatArray = NDArray[np.float64]
 
 Sampling = Literal["grid", "list", "random", "sobol"]
-SAMPLED, JITTERED = 0, 1  # streams of random numbers, which do not depend on each other
+SAMPLED, JITTERED = 0, 1  # independent streams of random numbers
 
 
 @dataclass(frozen=True)
@@ -36,10 +36,10 @@ class Points:
     def dimensions(self) -> dict[str, int]:
         """The dimensions of the results and their lengths."""
         if self.sampling == "grid":
-            found = {axis.name: len(axis.values) for axis in self.axes}
+            sizes = {axis.name: len(axis.values) for axis in self.axes}
         else:
-            found = {"point": self.count if self.sampling in ("random", "sobol") else len(self.axes[0].values)}
-        return found | ({"repeat": self.repeats} if self.repeats > 1 else {})
+            sizes = {"point": self.count if self.sampling in ("random", "sobol") else len(self.axes[0].values)}
+        return sizes | ({"repeat": self.repeats} if self.repeats > 1 else {})
 
     @property
     def longest(self) -> tuple[Axis, ...]:
@@ -51,14 +51,14 @@ class Points:
         return math.prod(self.dimensions.values())
 
     def values(self, start: int, stop: int) -> list[tuple[Any, ...]]:
-        """The values of the axes, in SI units, for each path from one to before another."""
+        """The values of the axes, in SI units, for paths `start` to `stop` - 1."""
         first, last = start // self.repeats, -(-stop // self.repeats)
         columns = self.columns(first, last)
         rows = list(zip(*(column.tolist() for column in columns), strict=True))
         return [rows[k // self.repeats - first] for k in range(start, stop)]
 
     def columns(self, first: int, last: int) -> list[NDArray[Any]]:
-        """The values of each axis (n,) at the points from one to before another."""
+        """The values of each axis (n,) at points `first` to `last` - 1."""
         at = np.arange(first, last)
         if self.sampling == "grid":
             indices = np.unravel_index(at, [len(axis.values) for axis in self.axes])
@@ -69,7 +69,7 @@ class Points:
         return [axis.spread(units[:, k]) for k, axis in enumerate(self.axes)]
 
     def displacements(self, start: int, stop: int) -> FloatArray:
-        """How far (n, 2) [m] the start of each path is displaced, uniformly on a disc."""
+        """Displacements (n, 2) [m] of the starts of paths, uniform on a disc."""
         if self.jitter == 0:
             return np.zeros((stop - start, 2))
         draws = np.array([np.random.default_rng((self.seed, JITTERED, k)).random(2) for k in range(start, stop)])

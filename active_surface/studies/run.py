@@ -35,9 +35,9 @@ AT_ONCE = 65536  # paths whose records are written together, at least
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """What a sweep found; `files` are those it wrote.
+    """The results of a sweep; `files` are those it wrote.
 
-    With files, `dataset` reads from the first of them what is asked for, until `dataset.close()`.
+    With files, `dataset` reads from the first of them on demand, until `dataset.close()`.
     """
 
     study: Study
@@ -52,12 +52,12 @@ class Sweep:
 
     @property
     def warnings(self) -> list[str]:
-        """Where the model stops holding, at the base case and a few corners of the axes."""
+        """Where the model stops holding: at the base case and a few corners of the axes."""
         return str(self.dataset.attrs["warnings"]).splitlines()
 
     @property
     def first_refused(self) -> list[str]:
-        """What is wrong with the first point that was refused; nothing: none was."""
+        """What is wrong with the first refused point; empty: there is none."""
         refused = np.flatnonzero(self.dataset["mistakes"].values.ravel())
         return Engine(self.study).faults(int(refused[0])) if len(refused) else []
 
@@ -73,7 +73,7 @@ def run_study(
     """Follow all paths of a study.
 
     Chunks of finished paths are kept in NAME.sweep of the output folder until all are done; an interrupted sweep
-    resumes from them. If NAME.nc is of the same study, nothing is computed again.
+    resumes from them. If NAME.nc holds the same numbers, no path is computed again; other labels rewrite the file.
 
     Parameters
     ----------
@@ -108,11 +108,11 @@ def run_study(
     """
     if output is None:
         with tempfile.TemporaryDirectory() as folder:
-            file = _found(study, Path(folder), threads, tell, scheduler)
+            file = _results_file(study, Path(folder), threads, tell, scheduler)
             with read_dataset(file) as dataset:
                 return Sweep(study, dataset.load())
     _check_output(study, Path(output), overwrite)
-    file = _found(study, Path(output), threads, tell, scheduler)
+    file = _results_file(study, Path(output), threads, tell, scheduler)
     dataset = read_dataset(file)
     picture = draw_sweep(study, dataset, file.with_suffix(".sweep.png"))
     return Sweep(study, dataset, (file, picture))
@@ -139,14 +139,14 @@ def _files(study: Study, folder: Path) -> tuple[Path, Path]:
     return folder / f"{study.name}{ENDING}", folder / f"{study.name}.sweep"
 
 
-def _found(study: Study, folder: Path, threads: int | None, tell: Tell, scheduler: str | None) -> Path:
-    """The file of all results in a folder."""
+def _results_file(study: Study, folder: Path, threads: int | None, tell: Tell, scheduler: str | None) -> Path:
+    """Compute what is missing in a folder; returns the file of all results there."""
     (file, chunks), key = _files(study, folder), study.key
     store = ChunkStore(chunks / key[:16], key)
     with alone_in(chunks):
         if key_of(file) != key:
             engine = Engine(study, threads)
-            _find(engine, store, tell, scheduler)
+            _compute(engine, store, tell, scheduler)
             write_dataset(study, _chunks(engine, store), file, model_warnings(study))
         else:
             renew_labels(study, file)
@@ -154,28 +154,28 @@ def _found(study: Study, folder: Path, threads: int | None, tell: Tell, schedule
     return file
 
 
-def _find(engine: Engine, store: ChunkStore, tell: Tell, scheduler: str | None) -> None:
-    """Find the chunks that the store does not have yet."""
+def _compute(engine: Engine, store: ChunkStore, tell: Tell, scheduler: str | None) -> None:
+    """Compute the chunks that the store does not have yet."""
     missing = [chunk for chunk in range(engine.chunks) if store.load(*engine.span(chunk)) is None]
     done = engine.paths - sum(stop - start for start, stop in map(engine.span, missing))
     if done:
         tell(done, engine.paths)
-    found = engine.records_of(missing) if scheduler is None else records_on(scheduler, engine, missing)
-    with closing(found):
-        for chunk, records in found:
+    finished = engine.records_of(missing) if scheduler is None else records_on(scheduler, engine, missing)
+    with closing(finished):
+        for chunk, records in finished:
             store.save(engine.span(chunk)[0], records)
             done += len(records)
             tell(done, engine.paths)
 
 
 def _chunks(engine: Engine, store: ChunkStore) -> Iterator[tuple[int, Records]]:
-    """Yield the records of all chunks, of many at once, and the number of the first path of each such lot."""
+    """Yield lots of chunks: the number of the first path of each lot, and its records."""
     first, lot = 0, []
     for chunk in range(engine.chunks):
         start, stop = engine.span(chunk)
         records = store.load(start, stop)
         if records is None:
-            raise OSError(f"{store.folder}: paths {start} to {stop - 1} are gone; the same command finds them again")
+            raise OSError(f"{store.folder}: paths {start} to {stop - 1} are gone; the same command computes them again")
         lot.append(records)
         if stop - first >= AT_ONCE or stop == engine.paths:
             yield first, np.concatenate(lot)

@@ -14,30 +14,30 @@ from coupling.case import CaseError, read_case
 if TYPE_CHECKING:
     import xarray
 
-WANTED = "Input path must be a result of `active-surface sweep`"
+EXPECTED = "Input path must be a result of `active-surface sweep`"
 VERSIONS = "versions"  # the trait that may differ
 
 
 def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Dataset]:
-    """The study whose results a netCDF file holds, and these, which are read when they are needed until closed.
+    """The study whose results a netCDF file holds, and these, read on demand until closed.
 
-    study: that study, if its file is at hand; None: it is read from what the results say of it.
-    Raises ValueError when there is no such file or it holds something else, when it is of another study, and when its
-    case reads files that are not there.
+    study: that study, if its file is at hand; None: it is read from the text in the results.
+    Raises ValueError when there is no such file or it holds something else or another study, and when its case
+    reads files that do not exist.
     """
     if not path.is_file():
-        raise ValueError(f"{WANTED}; got {path}, and there is no such file")
+        raise ValueError(f"{EXPECTED}; got {path}, and there is no such file")
     if key_of(path) is None:
-        raise ValueError(f"{WANTED}; got {path}, which is something else")
+        raise ValueError(f"{EXPECTED}; got {path}, which is something else")
     if study is not None:
         others = [name for name in differences(study, path) if name != VERSIONS]
         if others:
-            raise ValueError(f"{WANTED} of {study.name}; got {path}, which is of other {' and '.join(others)}")
+            raise ValueError(f"{EXPECTED} of {study.name}; got {path}, which is of other {' and '.join(others)}")
         return study, read_dataset(path, [axis.name for axis in study.points.axes])
     with read_dataset(path) as dataset:
         texts = {name: str(dataset.attrs[name]) for name in ("study", "case")}
     if not texts["study"]:
-        raise ValueError(f"{WANTED}; got {path}, whose study was made without a file")
+        raise ValueError(f"{EXPECTED}; got {path}, whose study was made without a file")
     with tempfile.TemporaryDirectory() as folder:
         files = {name: Path(folder, name, f"{path.stem}.toml") for name in texts}
         for name, file in files.items():
@@ -47,5 +47,5 @@ def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Da
             return read_study(files["study"], read_case(files["case"])), read_dataset(path)
         except CaseError as error:
             raise ValueError(
-                f"{path}: what it says of its study cannot be read; give the study file in its place\n{error}"
+                f"{path}: the study in it cannot be read; give the study file in its place\n{error}"
             ) from error

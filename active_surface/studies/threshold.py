@@ -20,49 +20,49 @@ BoolArray = NDArray[np.bool_]
 
 EXAMPLES: Final = {"m": "1 um", "s": "1 ms", "N": "1 uN"}
 OF_REFUSED: Final = ("outcome", "mistakes")
-"""Columns that say something of a refused point."""
-WANTED: Final = 'a condition such as "distance > 1 um" or "outcome = stuck"'
+"""Columns with a meaning at refused points."""
+EXPECTED: Final = 'a condition such as "distance > 1 um" or "outcome = stuck"'
 
 
 class Threshold(NamedTuple):
-    """A column of the results, how it compares, and with what: an SI value, or the number of an outcome."""
+    """A column of the results, a comparison, and the level: an SI value, or the number of an outcome."""
 
     column: str
     sign: str  # <, > or =
     level: float
-    said: str
+    text: str
 
     def holds(self, dataset: xarray.Dataset, repeats: int) -> BoolArray:
         """Whether the condition holds at each point, or for at least half of its repeats, the last dimension."""
         values: NDArray[Any] = dataset[self.column].values
         compare = {"<": np.less, ">": np.greater, "=": np.equal}[self.sign]
-        found: BoolArray = compare(values, self.level)
-        if self.column not in OF_REFUSED:  # though other counts of a refused point are numbers, too
-            found &= dataset["outcome"].values != OUTCOMES.index(REFUSED)
-        return found.mean(axis=-1) >= 0.5 if repeats > 1 else found
+        holds: BoolArray = compare(values, self.level)
+        if self.column not in OF_REFUSED:  # whose other counts are numbers, too
+            holds &= dataset["outcome"].values != OUTCOMES.index(REFUSED)
+        return holds.mean(axis=-1) >= 0.5 if repeats > 1 else holds
 
 
 def read_threshold(text: object) -> Threshold:
-    """The condition that a text states; ValueError, saying what is wrong with it."""
+    """The condition in a text; raises ValueError with what is wrong with it."""
     match = re.fullmatch(r"\s*(\w+)\s*([<>=])\s*(\S.*?)\s*", text) if isinstance(text, str) else None
     if match is None:
-        raise ValueError(f"must be {WANTED}; got {shown(text)}")
+        raise ValueError(f"must be {EXPECTED}; got {shown(text)}")
     column, sign, value = match.groups()
-    said = f"{column} {sign} {value}"
+    condition = f"{column} {sign} {value}"
     if column not in COLUMNS:
-        raise ValueError(f"must be {WANTED}; the results have no {column}, but {_named(column, COLUMNS)}")
+        raise ValueError(f"must be {EXPECTED}; the results have no {column}, but {_named(column, COLUMNS)}")
     if (sign == "=") != (column == "outcome"):
         raise ValueError(f"must have < or > for a figure, and = for the outcome; got {shown(text)}")
     if column == "outcome":
         if value not in OUTCOMES:
-            raise ValueError(f"must be {WANTED}; there is no outcome {value}, but {_named(value, OUTCOMES)}")
-        return Threshold(column, sign, OUTCOMES.index(value), said)
+            raise ValueError(f"must be {EXPECTED}; there is no outcome {value}, but {_named(value, OUTCOMES)}")
+        return Threshold(column, sign, OUTCOMES.index(value), condition)
     unit = COLUMNS[column].unit
     if unit in EXAMPLES:
-        return Threshold(column, sign, Quantity(unit, EXAMPLES[unit]).parse(value), said)
+        return Threshold(column, sign, Quantity(unit, EXAMPLES[unit]).parse(value), condition)
     if not re.fullmatch(r"[+-]?\d+(\.\d*)?(e[+-]?\d{1,2})?", value, re.IGNORECASE):
         raise ValueError(f"must compare {column} with a number; got {shown(value)}")
-    return Threshold(column, sign, float(value), said)
+    return Threshold(column, sign, float(value), condition)
 
 
 def _named(word: str, known: Any) -> str:
@@ -77,9 +77,9 @@ def lowest(up: FloatArray, holds: BoolArray) -> tuple[FloatArray, FloatArray]:
     not yet, nan where it holds from the first value on.
     """
     order = np.argsort(up)
-    values, found = up[order], holds[:, order]
-    first = np.argmax(found, axis=1)
-    anywhere = found.any(axis=1)
+    values, ordered = up[order], holds[:, order]
+    first = np.argmax(ordered, axis=1)
+    anywhere = ordered.any(axis=1)
     return (
         np.where(anywhere, values[first], np.nan),
         np.where(anywhere & (first > 0), values[first - 1], np.nan),

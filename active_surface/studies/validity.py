@@ -1,4 +1,4 @@
-"""Validity: where the model of a sweep's plates stops holding, as a run would say it of a few of its points."""
+"""Validity: where the model of a sweep's plates stops holding, by the checks of a run at a few of its points."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from coupling import PlateSummary, report, run_case
 from coupling.case import Case, PlatformCase
 
 CHECKED: Final = 4  # corners, besides the base case
-SEEN: Final = 4096  # points among which the corners of other samplings than a grid are looked for
+SEARCHED: Final = 4096  # points searched for corners, unless they form a grid
 FIGURES: Final = (
     "plate_error",
     "surface_error",
@@ -33,10 +33,10 @@ FIGURES: Final = (
 
 
 def model_warnings(study: Study) -> tuple[str, ...]:
-    """What a run warns about, each with the worst figure of the base case and a few corners of the study's axes.
+    """The warnings of a run, each with the worst figure of the base case and a few corners of the study's axes.
 
-    Those that cannot be run are left out, and what a run says of its own files and of the digits of its path. A rigid
-    platform has nothing to be warned about.
+    Points that cannot be run are left out, and so are warnings about a run's files and the digits of its path. A rigid
+    platform has no warnings.
     """
     if isinstance(study.case.plate, PlatformCase):
         return ()
@@ -67,19 +67,19 @@ def _cases(study: Study) -> Iterator[Case]:
 
 
 def corners(points: Points) -> list[int]:
-    """A few points at which axes have their least or greatest value."""
+    """A few points at which axes have their smallest or largest value."""
     if points.sampling == "grid":
         ends = [_ends(np.array(axis.values, axis.kind)) for axis in points.axes]
-        found = [int(np.ravel_multi_index(at, [len(axis.values) for axis in points.axes])) for at in product(*ends)]
+        numbers = [int(np.ravel_multi_index(at, [len(axis.values) for axis in points.axes])) for at in product(*ends)]
     else:
-        count = min(points.dimensions["point"], SEEN)
-        found = [end for column in points.columns(0, count) for end in _ends(column)]
-    found = list(dict.fromkeys(found))
-    return [found[k] for k in sorted({*np.linspace(0, len(found) - 1, CHECKED).astype(int).tolist()})]
+        count = min(points.dimensions["point"], SEARCHED)
+        numbers = [end for column in points.columns(0, count) for end in _ends(column)]
+    numbers = list(dict.fromkeys(numbers))
+    return [numbers[k] for k in sorted({*np.linspace(0, len(numbers) - 1, CHECKED).astype(int).tolist()})]
 
 
 def _ends(values: np.ndarray[tuple[int], np.dtype[np.generic]]) -> tuple[int, int]:
-    """Where values (n,) are least and greatest; texts: the first and the last."""
+    """Where values (n,) are smallest and largest; texts: the first and the last."""
     if values.dtype == object:
         return 0, len(values) - 1
     return int(np.argmin(values)), int(np.argmax(values))

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
-from active_surface.paper.found import MICRO, Found, finish, look
+from active_surface.paper.figure_result import MICRO, FigureResult, finish, look
 from active_surface.paper.models import MODELS, Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import FloatArray
@@ -28,7 +28,7 @@ NAMED: Final = ((0, 250.0), (2, 300.0))  # states and Hz for which it states les
 FEWER_STARTS: Final = 4
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """Distances from the actuator, (frequencies, states, starts) in every model; nan: the part is gone."""
     away = {model: distances(bench, model, max(bench.starts_of(model, effort) // FEWER_STARTS, 1)) for model in MODELS}
     named = {model: named_distances(bench, model, bench.starts_of(model, effort)) for model in MODELS}
@@ -55,7 +55,7 @@ def find(bench: Bench, effort: Effort) -> Found:
     data: dict[str, Any] = {"frequencies": FREQUENCIES.tolist(), "states": [list(map(list, state)) for state in STATES]}
     data |= {model: np.where(np.isnan(rows), -1.0, rows).tolist() for model, rows in away.items()}
     verdicts = (_band(bench, away), _fine(away), _named(named))
-    return Found("fig22", "Accuracy of placement", verdicts, data, draw, (11.5, 4.6),
+    return FigureResult("fig22", "Accuracy of placement", verdicts, data, draw, (11.5, 4.6),
                  f"Where parts lie after {bench.parameters.cycles} cycles, 240 to 320 Hz, five states with displaced "
                  "starts; grey: the paper's 5 µm; -1 in the data: the part is gone.")  # fmt: skip
 

@@ -7,8 +7,8 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.paper.figure_result import MICRO, MILLI, FigureResult, finish, look
 from active_surface.paper.figures.coming_off import end_said, off_numbers, off_said
-from active_surface.paper.found import MICRO, MILLI, Found, finish, look
 from active_surface.paper.models import CLOSED, MODELS, Bench
 from active_surface.paper.parameters import Effort
 from active_surface.paper.path import FloatArray, Path
@@ -22,16 +22,16 @@ DRAWN: Final = 8  # paths of figure 19
 ACTUATOR: Final = ((0.0, 0.0),)  # m
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """All three pictures."""
-    found: dict[str, dict[str, list[Path]]] = {"17a": {}, "17b": {}, "19": {}}
+    results: dict[str, dict[str, list[Path]]] = {"17a": {}, "17b": {}, "19": {}}
     for model in MODELS:
         count = bench.starts_of(model, effort)
-        found["17a"][model], found["17b"][model] = (from_start(bench, model, f, count) for f in (LOW, HIGH))
-        found["19"][model] = from_states(bench, model, count)
-    verdicts = (_converges(bench, found["17a"]), _leaves(bench, found["17b"]), _all_converge(bench, found["19"]))
-    drawn = {f: {m: paths[0].drawn(800) for m, paths in rows.items()} for f, rows in found.items() if f != "19"}
-    several = [path.drawn() for path in found["19"][CLOSED][:DRAWN]]
+        results["17a"][model], results["17b"][model] = (from_start(bench, model, f, count) for f in (LOW, HIGH))
+        results["19"][model] = from_states(bench, model, count)
+    verdicts = (_converges(bench, results["17a"]), _leaves(bench, results["17b"]), _all_converge(bench, results["19"]))
+    drawn = {f: {m: paths[0].drawn(800) for m, paths in rows.items()} for f, rows in results.items() if f != "19"}
+    several = [path.drawn() for path in results["19"][CLOSED][:DRAWN]]
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots(2, 3)
@@ -57,7 +57,7 @@ def find(bench: Bench, effort: Effort) -> Found:
 
     data: dict[str, Any] = {f"{f}_{m}": rows.tolist() for f, both in drawn.items() for m, rows in both.items()}
     data |= {"19_closed": [rows.tolist() for rows in several]}
-    return Found("fig17-19", "Convergence to one actuator", verdicts, data, draw, (13.0, 7.4),
+    return FigureResult("fig17-19", "Convergence to one actuator", verdicts, data, draw, (13.0, 7.4),
                  "Continuous cycles of 150 µm: the paper's start (paths of all three models), and other "
                  "states.")  # fmt: skip
 
@@ -116,10 +116,10 @@ def _convergence(bench: Bench, paths: list[Path], frequency: float, what: str) -
     return Answer(text, share.met), numbers
 
 
-def _converges(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
+def _converges(bench: Bench, results: dict[str, list[Path]]) -> Verdict:
     p = bench.parameters
     answers, numbers = {}, {}
-    for model, paths in found.items():
+    for model, paths in results.items():
         answer, numbers[model] = _convergence(bench, paths, LOW, "starts")
         stated = bool(converge(bench, paths[:1], LOW).hits)
         numbers[model]["stated_start_converges"] = stated
@@ -132,11 +132,11 @@ def _converges(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
     )  # fmt: skip
 
 
-def _leaves(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
+def _leaves(bench: Bench, results: dict[str, list[Path]]) -> Verdict:
     p = bench.parameters
     answers: dict[str, Answer] = {}
     numbers: dict[str, Any] = {}
-    for model, paths in found.items():
+    for model, paths in results.items():
         leaves, soon = leave(bench, paths), leave(bench, paths, STROKES_TO_LEAVE)
         first = paths[0].leaves_at(p.far) * bench.drive(HIGH).frequency
         numbers[model] = {
@@ -157,9 +157,9 @@ def _leaves(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
     )  # fmt: skip
 
 
-def _all_converge(bench: Bench, found: dict[str, list[Path]]) -> Verdict:
+def _all_converge(bench: Bench, results: dict[str, list[Path]]) -> Verdict:
     answers, numbers = {}, {}
-    for model, paths in found.items():
+    for model, paths in results.items():
         answers[model], numbers[model] = _convergence(bench, paths, ANY, "states")
     return Verdict(
         "19", "At 250 Hz parts converge from various places and velocities.", answers,

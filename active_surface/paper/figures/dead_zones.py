@@ -13,11 +13,11 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
-from active_surface.paper.found import MICRO, Found, finish
+from active_surface.paper.figure_result import MICRO, FigureResult, finish
 from active_surface.paper.models import PLATE, Bench
 from active_surface.paper.parameters import Effort
 from active_surface.paper.path import FloatArray
-from active_surface.paper.share import FEW, MOST, share_of
+from active_surface.paper.share import HARDLY_ANY, NEARLY_ALL, share_of
 from active_surface.paper.verdict import Answer, Verdict
 from coupling import surface_motion
 from fem_plate import Plate, PlateSection
@@ -30,11 +30,11 @@ STROKES: Final = (50e-6, 100e-6, 150e-6)  # m
 NEAR: Final = 10e-6  # m
 FEWER: Final = 3  # times fewer starts than elsewhere
 CELLS: Final = 3.0  # of the mesh in a pitch
-ROUGH: Final = 1e-6  # tolerance of a plate of which only shares of starts are wanted
+COARSE: Final = 1e-6  # tolerance of a plate of which only shares of starts are wanted
 TOLERANCE: Final = 1e-6  # of paths
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """The shares of starts that are served, over the pitch."""
     pitches = np.geomspace(*PITCHES, effort.pitches) if effort.pitches > 1 else np.array([150e-6])
     count = max(effort.starts // FEWER, 1)
@@ -59,7 +59,7 @@ def find(bench: Bench, effort: Effort) -> Found:
 
     data: dict[str, Any] = {"pitch": pitches.tolist(), "reached": reached.tolist(), "touching": touching.tolist()}
     verdict = _verdict(bench, pitches, reached, touching)
-    return Found("deadzones", "Dead zones (beyond the paper)", (verdict,), data, draw, (7.5, 4.6),
+    return FigureResult("deadzones", "Dead zones (beyond the paper)", (verdict,), data, draw, (7.5, 4.6),
                  "Share of starts from which the part is brought to its nearest actuator, and of places where a part "
                  "would touch actuators; bars: 95 % intervals of so many starts.")  # fmt: skip
 
@@ -82,7 +82,7 @@ def nine(bench: Bench, pitch: float) -> SurfaceMotion:
     side = [-pitch, 0.0, pitch]
     points = [(x, y) for x in side for y in side]
     section = PlateSection(p.youngs_modulus, p.poisson_ratio, p.thickness, 2330.0)
-    plate = Plate(rectangle(4 * pitch, 4 * pitch, pitch / CELLS), section, tolerance=ROUGH)
+    plate = Plate(rectangle(4 * pitch, 4 * pitch, pitch / CELLS), section, tolerance=COARSE)
     return surface_motion(plate.influence(points), [Drive(0.0, 1.0)] * len(points), 1e-6)
 
 
@@ -98,31 +98,31 @@ def _reached(bench: Bench, effort: Effort, pitch: float, starts: FloatArray) -> 
             drives = [drive if k == middle else Drive(0.0, 1.0) for k in range(9)]
             parts = [Micropart(p.mass, (float(x), float(y))) for x, y in starts[left]]
             duration = bench.duration(drive)
-            found = simulate_many(surface.driven_by(drives), parts, p.friction, duration, p.gravity, TOLERANCE)
-            for k, path in zip(left, found, strict=True):
+            results = simulate_many(surface.driven_by(drives), parts, p.friction, duration, p.gravity, TOLERANCE)
+            for k, path in zip(left, results, strict=True):
                 reached[k] = path.outcome.value in ("stuck", "moving") and np.hypot(*path.position[-1]) <= NEAR
     return reached
 
 
 def widest_served(pitches: FloatArray, reached: FloatArray) -> float:
-    """The largest of pitches (P,) [m] up to which at least MOST of the starts (P, n) are served at each; 0: none."""
+    """The largest pitch [m] of (P,) up to which NEARLY_ALL of the starts (P, n) are served at each; 0: none."""
     order = np.argsort(pitches)
-    served = np.cumprod(reached[order].mean(axis=1) >= MOST) > 0
+    served = np.cumprod(reached[order].mean(axis=1) >= NEARLY_ALL) > 0
     return float(pitches[order][served].max(initial=0.0))
 
 
 def _verdict(bench: Bench, pitches: FloatArray, reached: FloatArray, touching: FloatArray) -> Verdict:
     p, widest = bench.parameters, widest_served(pitches, reached)
-    alone = pitches[touching[:, 1] < FEW]
+    alone = pitches[touching[:, 1] < HARDLY_ANY]
     numbers = {
         "pitch": pitches.tolist(), "reached": reached.mean(axis=1).tolist(),
         "touches_one": touching[:, 0].tolist(), "touches_two": touching[:, 1].tolist(), "widest_served": widest,
     }  # fmt: skip
     row = int(np.argmin(np.abs(pitches - widest)))
-    text = f"at least {100 * MOST:.0f} % of the starts at every pitch up to {MICRO * widest:.0f} um"
+    text = f"at least {100 * NEARLY_ALL:.0f} % of the starts at every pitch up to {MICRO * widest:.0f} um"
     text = f"{text}, there {share_of(reached[row])}" if widest else "at no pitch looked at"
-    text += f"; without an active surface fewer than {100 * FEW:.0f} % of the places touch two actuators or more "
-    text += f"from {MICRO * alone.min():.0f} um on" if len(alone) else "at no pitch looked at"
+    text += f"; without an active surface fewer than {100 * HARDLY_ANY:.0f} % of the places touch two actuators or "
+    text += f"more from {MICRO * alone.min():.0f} um on" if len(alone) else "more at no pitch looked at"
     return Verdict(
         "beyond: dead zones", "From how many places around an actuator a part is brought to it. The paper claims that "
         "there are no dead zones, and gives no number.", {PLATE: Answer(text, 0.0)},

@@ -8,8 +8,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.paper.figure_result import MILLI, FigureResult, finish, look
 from active_surface.paper.figures.radial import FREQUENCY, OFF_DIAGONAL, START, one_cycle
-from active_surface.paper.found import MILLI, Found, finish, look
 from active_surface.paper.models import CLOSED, MODELS, Bench
 from active_surface.paper.parameters import Effort
 from active_surface.paper.path import Path
@@ -32,13 +32,13 @@ class Slowing(NamedTuple):
     most: float
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """Both figures, with the preset, and what other readings and the friction of Table 1 give."""
     p = bench.parameters
     drive = one_cycle(bench)
     paths = {model: slowing_paths(bench, model, drive) for model in MODELS}
-    found = {model: [slowing(path, p.mass, drive) for path in both] for model, both in paths.items()}
-    verdicts = (_straight(bench, found), _value(bench))
+    results = {model: [slowing(path, p.mass, drive) for path in both] for model, both in paths.items()}
+    verdicts = (_straight(bench, results), _value(bench))
     drawn = {model: [path.drawn() for path in both] for model, both in paths.items()}
 
     def draw(figure: Figure) -> None:
@@ -52,7 +52,7 @@ def find(bench: Bench, effort: Effort) -> Found:
 
     data: dict[str, Any] = {"starts": {name: list(start) for name, start in STARTS.items()}}
     data |= {model: [rows.tolist() for rows in both] for model, both in drawn.items()}
-    return Found("fig13-14", "Friction during motion", verdicts, data, draw, (11.0, 4.2),
+    return FigureResult("fig13-14", "Friction during motion", verdicts, data, draw, (11.0, 4.2),
                  "Speed over time after one cycle at 1.6 kHz, which ends at the grey line.")  # fmt: skip
 
 
@@ -84,13 +84,13 @@ def _held_up(bench: Bench, gravity: float) -> list[Slowing]:
     return [slowing(path, bench.parameters.mass, held) for path in slowing_paths(own, CLOSED, held)]
 
 
-def _straight(bench: Bench, found: dict[str, list[Slowing]]) -> Verdict:
+def _straight(bench: Bench, results: dict[str, list[Slowing]]) -> Verdict:
     answers: dict[str, Answer] = {}
     held, weightless = (_held_up(bench, gravity) for gravity in (bench.parameters.gravity, 0.0))
     numbers: dict[str, Any] = {
         "held_up": [one._asdict() for one in held], "held_up_without_gravity": [one._asdict() for one in weightless],
     }  # fmt: skip
-    for model, both in found.items():
+    for model, both in results.items():
         numbers[model] = [one._asdict() for one in both]
         first, second = (one.rate for one in both)
         straight = min(one.straight for one in both)
@@ -104,8 +104,8 @@ def _straight(bench: Bench, found: dict[str, list[Slowing]]) -> Verdict:
     )  # fmt: skip
 
 
-def _both(found: list[Slowing]) -> str:
-    return " and ".join(f"{one.rate:.2f}" for one in found)
+def _both(results: list[Slowing]) -> str:
+    return " and ".join(f"{one.rate:.2f}" for one in results)
 
 
 def _value(bench: Bench) -> Verdict:

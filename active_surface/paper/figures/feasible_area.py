@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from active_surface.paper.found import COLOURS, MICRO, Found, finish
+from active_surface.paper.figure_result import COLOURS, MICRO, FigureResult, finish
 from active_surface.paper.models import CLOSED, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort
 from active_surface.paper.path import FloatArray
@@ -37,17 +37,17 @@ class Curve(NamedTuple):
     half: tuple[float, float]  # Hz, between which it is at least half as large
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """Both figures, with both meanings of the feasible area."""
     p = bench.parameters
     factors = np.geomspace(1.0, HIGHEST / LOWEST, effort.frequencies)
-    found: dict[str, dict[float, Feasible]] = {}
+    results: dict[str, dict[float, Feasible]] = {}
     onsets: dict[str, list[float]] = {}
     for model in (CLOSED, PLATE):
-        found[model] = {stroke: areas(bench, model, stroke, factors, effort.across) for stroke in p.strokes}
+        results[model] = {stroke: areas(bench, model, stroke, factors, effort.across) for stroke in p.strokes}
         onsets[model] = [onset(bench, model, stroke, effort.across) for stroke in p.strokes]
     data: dict[str, Any] = {"strokes": list(p.strokes), "frequency": (LOWEST * factors).tolist()}
-    for model, rows in found.items():
+    for model, rows in results.items():
         data[model] = [
             {
                 "stroke": stroke,
@@ -62,13 +62,13 @@ def find(bench: Bench, effort: Effort) -> Found:
 
     def draw(figure: Figure) -> None:
         peak, integral = figure.subplots(1, 2)
-        _draw(peak, integral, found)
+        _draw(peak, integral, results)
         finish(peak, "frequency [Hz]", "largest feasible area [µm²]", "figure 5")
         finish(integral, "frequency [Hz]", "time integral [µm² ms]", "figure 6", legend=False)
         peak.set_ylim(0, 1.35 * peak.get_ylim()[1])
 
-    verdicts = (_five(found, onsets), _six(found), _range(found))
-    return Found("fig5-6", "Feasible area", verdicts, data, draw, (11.5, 4.6),
+    verdicts = (_five(results, onsets), _six(results), _range(results))
+    return FigureResult("fig5-6", "Feasible area", verdicts, data, draw, (11.5, 4.6),
                  "Largest feasible area over a cycle, and its time integral. Places where the part comes off at some "
                  "moment of the cycle do not count; dashed: they do, at moments when it is attached.")  # fmt: skip
 
@@ -103,10 +103,10 @@ def curve_of(frequencies: FloatArray, area: FloatArray) -> Curve:
     return Curve(float(frequencies[k]), grows, falls, (float(wide[0]), float(wide[1])))
 
 
-def _five(found: dict[str, dict[float, Feasible]], onsets: dict[str, list[float]]) -> Verdict:
+def _five(results: dict[str, dict[float, Feasible]], onsets: dict[str, list[float]]) -> Verdict:
     answers: dict[str, Answer] = {}
     numbers: dict[str, Any] = {}
-    for model, rows in found.items():
+    for model, rows in results.items():
         frequencies = LOWEST * next(iter(rows.values())).factors
         texts, checks = [], [THRESHOLD[0] <= f <= THRESHOLD[1] for f in onsets[model]]
         meanings = {
@@ -125,7 +125,7 @@ def _five(found: dict[str, dict[float, Feasible]], onsets: dict[str, list[float]
             )
             numbers[f"{meaning}, {model}"] = [one._asdict() for one in curves]
         answers[model] = of_checks(f"from {_list(onsets[model])} Hz; {'; '.join(texts)}", checks)
-    strokes = _list([MICRO * stroke for stroke in found[CLOSED]])
+    strokes = _list([MICRO * stroke for stroke in results[CLOSED]])
     return Verdict(
         "5", "Below about 200 Hz nothing moves, for three strokes alike; the area grows with frequency, peaks, and "
         "falls because the part comes off.", _with_paper(answers),
@@ -145,10 +145,10 @@ def _fall(curves: list[Curve], falls: list[bool]) -> str:
     return f"then falls as it comes off with {sum(falls)} of {len(falls)} strokes"
 
 
-def _six(found: dict[str, dict[float, Feasible]]) -> Verdict:
+def _six(results: dict[str, dict[float, Feasible]]) -> Verdict:
     answers: dict[str, Answer] = {}
     numbers: dict[str, Any] = {}
-    for model, rows in found.items():
+    for model, rows in results.items():
         most = [float(LOWEST * row.factors[row.feasible.integral.argmax()]) for row in rows.values()]
         other = [float(LOWEST * row.factors[row.slipping.integral.argmax()]) for row in rows.values()]
         numbers |= {f"never coming off, {model}": most, f"attached at that moment, {model}": other}
@@ -160,10 +160,10 @@ def _six(found: dict[str, dict[float, Feasible]]) -> Verdict:
     )  # fmt: skip
 
 
-def _range(found: dict[str, dict[float, Feasible]]) -> Verdict:
+def _range(results: dict[str, dict[float, Feasible]]) -> Verdict:
     answers: dict[str, Answer] = {}
     numbers: dict[str, Any] = {}
-    for model, rows in found.items():
+    for model, rows in results.items():
         halves = [curve_of(LOWEST * row.factors, row.feasible.peak).half for row in rows.values()]
         numbers[model] = halves
         ends = list(zip(*halves, strict=True))
@@ -186,14 +186,14 @@ def _list(values: list[float]) -> str:
     return ", ".join(f"{value:.0f}" for value in values)
 
 
-def _draw(peak: Axes, integral: Axes, found: dict[str, dict[float, Feasible]]) -> None:
-    for (stroke, row), colour in zip(found[CLOSED].items(), COLOURS, strict=False):
-        frequency, said = LOWEST * row.factors, f"{MICRO * stroke:g} µm"
-        peak.plot(frequency, 1e12 * row.feasible.peak, color=colour, label=said)
-        integral.plot(frequency, 1e15 * row.feasible.integral, color=colour, label=said)
+def _draw(peak: Axes, integral: Axes, results: dict[str, dict[float, Feasible]]) -> None:
+    for (stroke, row), colour in zip(results[CLOSED].items(), COLOURS, strict=False):
+        frequency, text = LOWEST * row.factors, f"{MICRO * stroke:g} µm"
+        peak.plot(frequency, 1e12 * row.feasible.peak, color=colour, label=text)
+        integral.plot(frequency, 1e15 * row.feasible.integral, color=colour, label=text)
         peak.plot(frequency, 1e12 * row.slipping.peak, "--", color=colour, linewidth=0.8)
         integral.plot(frequency, 1e15 * row.slipping.integral, "--", color=colour, linewidth=0.8)
-    for row, colour in zip(found[PLATE].values(), COLOURS, strict=False):
+    for row, colour in zip(results[PLATE].values(), COLOURS, strict=False):
         marks: dict[str, Any] = {"linestyle": "", "marker": "x", "markersize": 4, "color": colour}
         peak.plot(LOWEST * row.factors, 1e12 * row.feasible.peak, **marks)
         integral.plot(LOWEST * row.factors, 1e15 * row.feasible.integral, **marks)

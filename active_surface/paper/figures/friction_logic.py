@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from active_surface.paper.found import LOOK, Found, finish
+from active_surface.paper.figure_result import LOOK, FigureResult, finish
 from active_surface.paper.models import CLOSED, PAPER, Bench
 from active_surface.paper.parameters import Effort
 from active_surface.paper.path import FloatArray
@@ -27,7 +27,7 @@ RAMP_END = 1e-2  # s
 RAMP: Final = 3.0  # times the limit that the load along the surface rises to
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """Both figures."""
     ramps = {model: _ramp(bench, scheme) for model, scheme in SCHEMES.items()}
     swings = {model: _swing(bench, scheme) for model, scheme in SCHEMES.items()}
@@ -54,7 +54,7 @@ def find(bench: Bench, effort: Effort) -> Found:
         finish(right, "time [s]", "velocity [m/s]", "figure 4")
 
     verdicts = (_logic(bench, ramps), *_swinging(swings, p.platform_rate))
-    return Found("fig3-4", "Friction logic", verdicts, data, draw, (11.5, 4.2),
+    return FigureResult("fig3-4", "Friction logic", verdicts, data, draw, (11.5, 4.2),
                  "Friction against the load along the surface, and velocities on a swinging platform.")  # fmt: skip
 
 
@@ -111,17 +111,17 @@ def _swinging(swings: dict[str, Trajectory], rate: float) -> tuple[Verdict, Verd
     fastest = float(np.abs(_motion(rate)(np.linspace(0, END, 4001))[1]).max())
     numbers: dict[str, Any] = {"reversals": times.tolist()}
     for model, swing in swings.items():
-        found = slips_of(swing)
-        pause = found.again - found.sticks
+        results = slips_of(swing)
+        pause = results.again - results.sticks
         relative = swing.at(times).velocity[:, 0]
-        numbers |= {f"slips_{model}": found._asdict(), f"relative_velocity_{model}": relative.tolist()}
-        text = f"slips {found.slips:.3f} s, sticks {found.sticks:.3f} s, for {pause:.2f} s, then goes on "
-        text += "the other way" if found.turns else "the same way"
-        near = [abs(found.slips - SLIP) < WITHIN, abs(found.sticks - STICK) < WITHIN]
-        slides[model] = of_checks(text, [*near, pause < WITHIN, found.turns])
+        numbers |= {f"slips_{model}": results._asdict(), f"relative_velocity_{model}": relative.tolist()}
+        text = f"slips {results.slips:.3f} s, sticks {results.sticks:.3f} s, for {pause:.2f} s, then goes on "
+        text += "the other way" if results.turns else "the same way"
+        near = [abs(results.slips - SLIP) < WITHIN, abs(results.sticks - STICK) < WITHIN]
+        slides[model] = of_checks(text, [*near, pause < WITHIN, results.turns])
         zero = np.abs(relative) < STILL * fastest
-        said = [f"{v:.2f} m/s at {t:.2f} s" for t, v in zip(times.tolist(), relative.tolist(), strict=True)]
-        turns[model] = of_checks(", ".join(said), [bool(zero.all())])
+        turning = [f"{v:.2f} m/s at {t:.2f} s" for t, v in zip(times.tolist(), relative.tolist(), strict=True)]
+        turns[model] = of_checks(", ".join(turning), [bool(zero.all())])
     return (
         Verdict(
             "4", "The part slips from 2.41 s; at 2.87 s it sticks for a moment, and then slides the other way.", slides,

@@ -7,16 +7,16 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.paper.figure_result import LOOK, MICRO, MILLI, FigureResult, finish
 from active_surface.paper.figures.coming_off import end_said, off_numbers, off_said
 from active_surface.paper.figures.pairs import JUMPS, SURFACES, WIDTHS, Paths, draw_plane, joined, paths_of, reaches
-from active_surface.paper.found import LOOK, MICRO, MILLI, Found, finish
 from active_surface.paper.models import Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import Path
 from active_surface.paper.share import share_of
 from active_surface.paper.verdict import Answer, Verdict
 
-SHOWN: Final = 40.0  # ms
+PLOTTED: Final = 40.0  # ms
 OSCILLATIONS, WITHIN = 5.0, 1.0  # of the fast actuator, after which figure 20's part is with the slow one
 
 
@@ -46,7 +46,7 @@ LEFT_OPEN: Final = (
 )
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """Both figures."""
     p = bench.parameters
     paths = {figure: paths_of(bench, effort, *one, p.cycles) for figure, one in HANDOVERS.items()}
@@ -62,7 +62,7 @@ def find(bench: Bench, effort: Effort) -> Found:
             for place in (0.0, p.pitch):
                 over_time.axhline(MICRO * place, color="#8a8a8a", linewidth=0.7)
             finish(over_time, "time [ms]", "x [µm]", f"figure {name}", legend=False)
-            over_time.set_xlim(0, SHOWN)
+            over_time.set_xlim(0, PLOTTED)
             draw_plane(plane, rows, p.pitch)
             finish(plane, "x [µm]", "y [µm]", legend=False)
         handles, names = axes[0, 0].get_legend_handles_labels()
@@ -73,7 +73,7 @@ def find(bench: Bench, effort: Effort) -> Found:
     }
     verdicts = [_arrives(bench, figure, paths[figure]) for figure in HANDOVERS]
     verdicts.insert(1, _in_five(bench, paths["20"]))
-    return Found("fig20-21", "From a high to a low frequency", tuple(verdicts), data, draw, (12.5, 8.0),
+    return FigureResult("fig20-21", "From a high to a low frequency", tuple(verdicts), data, draw, (12.5, 8.0),
                  "The paths from the stated starts; crosses: their ends.")  # fmt: skip
 
 

@@ -7,9 +7,9 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.paper.figure_result import MICRO, FigureResult, finish
 from active_surface.paper.figures.coming_off import length, off_numbers
 from active_surface.paper.figures.pairs import JUMPS, Paths, draw_plane, joined, paths_of, reaches
-from active_surface.paper.found import MICRO, Found, finish
 from active_surface.paper.models import Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import Path
@@ -39,7 +39,7 @@ class Trend(NamedTuple):
         return (self.returns.met + apart) / 2
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """Paths at every frequency, from jittered starts."""
     p = bench.parameters
     paths = {frequency: paths_of(bench, effort, [frequency] * 2, START, CYCLES) for frequency in FREQUENCIES}
@@ -54,7 +54,7 @@ def find(bench: Bench, effort: Effort) -> Found:
 
     data: dict[str, Any] = {"frequencies": list(FREQUENCIES), "start": list(START)}
     data |= {f"{f:g} Hz, {name}": rows.tolist() for f, both in drawn.items() for name, rows in both.items()}
-    return Found("fig16", "Two actuators at one frequency", (_verdict(paths, p.pitch),), data, draw, (12.5, 6.6),
+    return FigureResult("fig16", "Two actuators at one frequency", (_verdict(paths, p.pitch),), data, draw, (12.5, 6.6),
                  f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycles; "
                  "crosses: their ends.")  # fmt: skip
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.axes import Axes
 
-from active_surface.paper.found import LOOK, MICRO
+from active_surface.paper.figure_result import LOOK, MICRO
 from active_surface.paper.models import CLOSED, MODELS, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import FloatArray, Path
@@ -52,11 +52,11 @@ def reaches(path: Path, actuator: Place, pitch: float) -> float:
     return float(path.time[near[0]]) if len(near) else np.inf
 
 
-def joined(found: dict[str, Answer]) -> dict[str, Answer]:
+def joined(results: dict[str, Answer]) -> dict[str, Answer]:
     """The answers of all surfaces as answers of the three models."""
     answers = {}
     for model in MODELS:
-        own = {name: answer for name, answer in found.items() if SURFACES[name][0] == model}
+        own = {name: answer for name, answer in results.items() if SURFACES[name][0] == model}
         texts = [
             answer.text if model == PLATE else f"{SURFACES[name][1]}: {answer.text}" for name, answer in own.items()
         ]

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
-from active_surface.paper.found import MICRO, MILLI, Found, finish, look
+from active_surface.paper.figure_result import MICRO, MILLI, FigureResult, finish, look
 from active_surface.paper.models import MODELS, Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import FloatArray, Path
@@ -22,7 +22,7 @@ TOLERANCE: Final = 1e-12
 SLOW: Final = 1e-3  # of the largest speed, below which no ratio is taken
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """Both figures, and the same from a start that is not on the diagonal."""
     drive = one_cycle(bench)
     paths: dict[str, Path] = {}
@@ -61,7 +61,7 @@ def find(bench: Bench, effort: Effort) -> Found:
         Verdict("12", "The path from (170.08, 170.08) um is a straight line through the actuator.", lines,
                 "The distance from the line through start and actuator, over the way gone, from both starts.", numbers),
     )  # fmt: skip
-    return Found("fig11-12", "Transformation of the state", verdicts, data, draw, (13.0, 4.2),
+    return FigureResult("fig11-12", "Transformation of the state", verdicts, data, draw, (13.0, 4.2),
                  "One cycle of 150 µm at 1.6 kHz: velocities and path.")  # fmt: skip
 
 

@@ -7,12 +7,12 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.paper.figure_result import MICRO, FigureResult, finish, percent
 from active_surface.paper.figures.threshold_picture import draw_ends, draw_thresholds
-from active_surface.paper.found import MICRO, Found, finish, percent
 from active_surface.paper.models import MODELS, Bench
 from active_surface.paper.parameters import Effort
 from active_surface.paper.path import FloatArray
-from active_surface.paper.share import MOST
+from active_surface.paper.share import NEARLY_ALL
 from active_surface.paper.split import BoolArray, Ends, Fits, Split, Thresholds, best_split, first_loss, fits_of
 from active_surface.paper.verdict import Answer, Verdict, of_checks
 
@@ -24,32 +24,32 @@ FEWER_STARTS: Final = 3  # times fewer starts than elsewhere, as each is followe
 PERCENTILES: Final = (10, 90)
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """Ends of every start at every frequency and stroke, and the thresholds that follow."""
     p = bench.parameters
     frequencies = np.arange(LOWEST, HIGHEST + 1, effort.step)
     strokes = np.linspace(p.strokes[0], p.strokes[-1], effort.strokes)
     strokes = np.unique(np.round(np.append(strokes, STATED_STROKE), NANOMETRES))
     row = int(np.argmin(np.abs(strokes - STATED_STROKE)))
-    found = {}
+    results = {}
     for model in MODELS:
         count = max(bench.starts_of(model, effort) // FEWER_STARTS, 1)
-        found[model] = thresholds(strokes, frequencies, ends_of(bench, model, strokes, frequencies, count))
+        results[model] = thresholds(strokes, frequencies, ends_of(bench, model, strokes, frequencies, count))
 
     def draw(figure: Figure) -> None:
         left, right = figure.subplots(1, 2, width_ratios=(1.1, 1))
-        draw_thresholds(left, strokes, frequencies, found)
-        draw_ends(right, frequencies, {model: [ends[row] for ends in one.ends] for model, one in found.items()})
+        draw_thresholds(left, strokes, frequencies, results)
+        draw_ends(right, frequencies, {model: [ends[row] for ends in one.ends] for model, one in results.items()})
         left.plot(MICRO * STATED_STROKE, STATED, "*", color="#b8862d", markersize=13, label="the paper's 320 Hz")
         finish(left, "stroke [µm]", "threshold frequency [Hz]", "figure 18")
         right.axvline(STATED, color="#b8862d", linewidth=0.9)
         finish(right, "frequency [Hz]", "share of the starts [%]", f"stroke {MICRO * STATED_STROKE:g} µm")
 
     data: dict[str, Any] = {"strokes": strokes.tolist(), "frequencies": frequencies.tolist()}
-    for model, one in found.items():
+    for model, one in results.items():
         data[f"converge_{model}"], data[f"lost_{model}"] = (ends.mean(axis=2).tolist() for ends in one.ends)
-    verdicts = _verdicts(strokes, frequencies, found, row)
-    return Found("fig18", "Threshold of convergence", verdicts, data, draw, (13.0, 5.2),
+    verdicts = _verdicts(strokes, frequencies, results, row)
+    return FigureResult("fig18", "Threshold of convergence", verdicts, data, draw, (13.0, 5.2),
                  "Left: the frequency that tells best between converging below and being lost above, with 10 and 90 % "
                  "of what single starts give; dots: our equations on the closed form, frequencies above it at which "
                  "some starts converge all the same, circles: below it, and some are lost, the larger the more. "
@@ -85,8 +85,8 @@ def thresholds(strokes: FloatArray, frequencies: FloatArray, ends: Ends) -> Thre
         for row, frequency in zip(others.values(), (*both, first_loss(frequencies, lost)), strict=True):
             row.append(frequency)
     levels = np.array([one.frequency for one in split])
-    found = {name: np.array(row) for name, row in others.items()}
-    return Thresholds(ends, split, scatter, fits_of(strokes, levels, STATED_STROKE), found)
+    results = {name: np.array(row) for name, row in others.items()}
+    return Thresholds(ends, split, scatter, fits_of(strokes, levels, STATED_STROKE), results)
 
 
 def mixed(frequencies: FloatArray, converges: BoolArray, lost: BoolArray) -> tuple[float, float] | None:
@@ -105,12 +105,12 @@ def exceptions(frequencies: FloatArray, ends: Ends, split: Split) -> tuple[list[
 
 
 def _verdicts(
-    strokes: FloatArray, frequencies: FloatArray, found: dict[str, Thresholds], row: int
+    strokes: FloatArray, frequencies: FloatArray, results: dict[str, Thresholds], row: int
 ) -> tuple[Verdict, Verdict]:
     at_stated: dict[str, Answer] = {}
     curves: dict[str, Answer] = {}
     numbers: dict[str, Any] = {"strokes": strokes.tolist()}
-    for model, one in found.items():
+    for model, one in results.items():
         ends = Ends(*(every[row] for every in one.ends))
         split, both = one.split[row], mixed(frequencies, *ends)
         early, again = exceptions(frequencies, ends, split)
@@ -119,7 +119,7 @@ def _verdicts(
             f"threshold_{model}": split._asdict(), f"scatter_{model}": list(one.scatter[row]), f"mixed_{model}": both,
             f"lost_below_{model}": early, f"converge_above_{model}": again, f"starts_{model}": ends.lost.shape[1],
             f"thresholds_{model}": [other.frequency for other in one.split],
-            f"told_{model}": [other.told for other in one.split],
+            f"told_{model}": [other.predicted for other in one.split],
             f"others_{model}": {name: levels.tolist() for name, levels in one.others.items()},
             f"fits_{model}": {name: fit and fit._asdict() for name, fit in ({"": one.fits} | fits).items()},
         }  # fmt: skip
@@ -135,7 +135,7 @@ def _verdicts(
             "17b, or off the surface. Some are neither: they do not move, or go to and fro. By losses alone: "
             "lost or not; by convergence alone: converged or not; the median first loss: the lowest frequency at which "
             "a start is lost, whatever it does above. Met: within "
-            f"{WITHIN:g} Hz, {percent(MOST)} converge below, {percent(MOST)} are lost above.", numbers,
+            f"{WITHIN:g} Hz, {percent(NEARLY_ALL)} converge below, {percent(NEARLY_ALL)} are lost above.", numbers,
         ),
         Verdict(
             "18 (curve)", "The threshold is a quadratic function of the stroke from 100 to 200 um.", curves,
@@ -158,13 +158,15 @@ def _at_stated(
         return Answer(f"none of {starts} starts converges or is lost at any frequency", 0.0)
     text = (
         f"{split.frequency:.0f} Hz ({scatter[0]:.0f} to {scatter[1]:.0f} by single ones of {starts} starts): it tells "
-        f"{percent(split.told)}; below {percent(split.below)} converge, above {percent(split.above)} are lost"
+        f"{percent(split.predicted)}; below {percent(split.below)} converge, above {percent(split.above)} are lost"
     )
     text += f"; both happen from {both[0]:.0f} to {both[1]:.0f} Hz" if both else "; nowhere do both happen"
     for frequencies, what in zip(wrong, ("are lost already", "converge again"), strict=True):
         text += f"; most {what} at {', '.join(f'{f:.0f}' for f in frequencies)} Hz" if frequencies else ""
     text += "; by " + ", by ".join(f"{name} {frequency:.0f} Hz" for name, frequency in others.items())
-    return of_checks(text, [abs(split.frequency - STATED) <= WITHIN, split.below >= MOST, split.above >= MOST])
+    return of_checks(
+        text, [abs(split.frequency - STATED) <= WITHIN, split.below >= NEARLY_ALL, split.above >= NEARLY_ALL]
+    )
 
 
 def _curve(fits: Fits | None, others: dict[str, Fits | None]) -> Answer:

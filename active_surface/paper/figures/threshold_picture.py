@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from active_surface.paper.found import LOOK, MICRO, look
+from active_surface.paper.figure_result import LOOK, MICRO, look
 from active_surface.paper.models import CLOSED, PAPER, PLATE
 from active_surface.paper.path import FloatArray
 from active_surface.paper.split import BoolArray, Thresholds
@@ -16,9 +16,9 @@ from active_surface.paper.split import BoolArray, Thresholds
 GREY, SHIFT = "#707070", 1.2  # um, by which the models' marks stand apart
 
 
-def draw_thresholds(axes: Axes, strokes: FloatArray, frequencies: FloatArray, found: dict[str, Thresholds]) -> None:
+def draw_thresholds(axes: Axes, strokes: FloatArray, frequencies: FloatArray, results: dict[str, Thresholds]) -> None:
     """Thresholds over strokes (S,) [m] with their scatter, and where single starts do not heed them."""
-    for k, (model, one) in enumerate(found.items()):
+    for k, (model, one) in enumerate(results.items()):
         across = MICRO * strokes + SHIFT * (k - 1)
         style = look(model)
         axes.plot(across, [split.frequency for split in one.split], **style, marker="o", markersize=4)
@@ -27,7 +27,7 @@ def draw_thresholds(axes: Axes, strokes: FloatArray, frequencies: FloatArray, fo
             fine = np.linspace(strokes[0], strokes[-1], 100)
             law = one.fits.level * (fine / one.fits.unit) ** one.fits.exponent
             axes.plot(MICRO * fine, law, color=style["color"], linewidth=0.6, label="power law through it")
-    one = found[CLOSED]
+    one = results[CLOSED]
     for stroke, split, converges, lost in zip(strokes.tolist(), one.split, *one.ends, strict=True):
         for ends, wrong, hollow in (
             (converges, frequencies > split.frequency, False),
@@ -43,7 +43,7 @@ def draw_thresholds(axes: Axes, strokes: FloatArray, frequencies: FloatArray, fo
 def draw_ends(axes: Axes, frequencies: FloatArray, ends: dict[str, Sequence[BoolArray]]) -> None:
     """The shares of starts that converge and that are lost over frequencies (F,) [Hz], of each model."""
     for model, (converges, lost) in ends.items():
-        for rows, mark, said in ((converges, "o", "converge"), (lost, "x", "are lost")):
+        for rows, mark, text in ((converges, "o", "converge"), (lost, "x", "are lost")):
             style: dict[str, Any] = LOOK[model] | {"marker": mark, "markersize": 4, "linewidth": 0.9}
             style |= {"marker": ""} if model == PLATE else {}
-            axes.plot(frequencies, 100 * rows.mean(axis=1), **style, label=f"{model}: {said}")
+            axes.plot(frequencies, 100 * rows.mean(axis=1), **style, label=f"{model}: {text}")

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from active_surface.paper.found import COLOURS, MICRO, Found, finish
+from active_surface.paper.figure_result import COLOURS, MICRO, FigureResult, finish
 from active_surface.paper.models import CLOSED, MODELS, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import FloatArray
@@ -28,28 +28,28 @@ class Ends(NamedTuple):
     outcome: NDArray[Any]  # (S, F) texts
 
 
-def find(bench: Bench, effort: Effort) -> Found:
+def find(bench: Bench, effort: Effort) -> FigureResult:
     """Distances in every model."""
     p = bench.parameters
     frequencies = np.geomspace(LOWEST, HIGHEST, effort.frequencies)
     strokes = np.linspace(p.strokes[0], p.strokes[-1], effort.strokes)
-    found = {model: _ends(bench, model, strokes, frequencies) for model in MODELS}
+    results = {model: _ends(bench, model, strokes, frequencies) for model in MODELS}
 
     def draw(figure: Figure) -> None:
         axes = figure.add_subplot()
         for i, stroke in enumerate(strokes.tolist()):
-            for model, ends in found.items():
-                said = f"{MICRO * stroke:.4g} µm" if model == CLOSED else None
+            for model, ends in results.items():
+                text = f"{MICRO * stroke:.4g} µm" if model == CLOSED else None
                 colour = COLOURS[i % len(COLOURS)]
-                axes.plot(frequencies, MICRO * moving(ends.distance)[i], STYLES[model], color=colour, label=said)
+                axes.plot(frequencies, MICRO * moving(ends.distance)[i], STYLES[model], color=colour, label=text)
         for model in MODELS:
             axes.plot([], [], STYLES[model], color="black", label=MODELS[model])
         finish(axes, "frequency [Hz]", "distance [µm]", "figure 15")
 
     data: dict[str, Any] = {"frequencies": frequencies.tolist(), "strokes": strokes.tolist()}
-    data |= {model: np.where(np.isnan(ends.distance), -1.0, ends.distance).tolist() for model, ends in found.items()}
-    verdict = _verdict(frequencies, found, p.start)
-    return Found("fig15", "Distance over frequency and stroke", (verdict,), data, draw, (8.5, 4.8),
+    data |= {model: np.where(np.isnan(ends.distance), -1.0, ends.distance).tolist() for model, ends in results.items()}
+    verdict = _verdict(frequencies, results, p.start)
+    return FigureResult("fig15", "Distance over frequency and stroke", (verdict,), data, draw, (8.5, 4.8),
                  "Distance from the start after one cycle, from the frequency at which the part "
                  "first moves to that at which it is lost; -1 in the data: it came off or left.")  # fmt: skip
 
@@ -101,10 +101,10 @@ def beyond(distance: FloatArray, outcome: NDArray[Any]) -> str:
     return str(outcome[holds[-1] + 1])
 
 
-def _verdict(frequencies: FloatArray, found: dict[str, Ends], start: Place) -> Verdict:
+def _verdict(frequencies: FloatArray, results: dict[str, Ends], start: Place) -> Verdict:
     answers: dict[str, Answer] = {}
     numbers: dict[str, Any] = {}
-    for model, (distance, outcome) in found.items():
+    for model, (distance, outcome) in results.items():
         first, last = zip(*[ends_of(frequencies, row) for row in distance], strict=True)
         share, wide = grows(distance), farther(distance)
         after = [beyond(*rows) for rows in zip(distance, outcome, strict=True)]

@@ -31,8 +31,8 @@ BoolArray = NDArray[np.bool_]
 
 ACROSS: Final = 120  # places along the longer side of the plate
 PER_STROKE: Final = 48  # moments in the shortest stroke
-MOST_STROKES: Final = 85  # of the shortest, in a window
-KEPT: Final = 20_000_000  # numbers of the surface that are kept from the search for losses to that for slips
+MAX_STROKES: Final = 85  # of the shortest, in a window
+MAX_KEPT: Final = 20_000_000  # numbers of the surface that are kept from the search for losses to that for slips
 
 
 class Curves(NamedTuple):
@@ -82,7 +82,7 @@ def find_feasible(
     """The feasible areas of a part at rest on a surface within an outline, over a window [s] from the start.
 
     factors: (F,) what the drives' frequencies are multiplied with, the base's drives among them.
-    window: no more of it is looked at than MOST_STROKES of the shortest strokes of drives that move.
+    window: no more of it is looked at than MAX_STROKES of the shortest strokes of drives that move.
     gravity: as for `particle.simulate`.  across: places along the longer side.
     The part's place and velocity do not matter.
     """
@@ -90,7 +90,7 @@ def find_feasible(
     every = np.append(factors, 1.0)
     points, spacing = places(outline, across)
     stroke_time = float(surface.drives.stroke_time[moving(surface.drives)].min(initial=window))
-    window = min(window, MOST_STROKES * stroke_time)
+    window = min(window, MAX_STROKES * stroke_time)
     count = max(int(np.ceil(PER_STROKE * window / stroke_time)), PER_STROKE)
     moments = window * (np.arange(count) + 0.5) / count
     vector = np.array([0.0, 0.0, -gravity]) if isinstance(gravity, (int, float)) else np.array(gravity, dtype=float)
@@ -131,7 +131,7 @@ def _states(
             state = surface.evaluate(points, time)
             yield state.w_tt, state.gradient, surface.base_acceleration(time)
 
-    if 3 * len(points) * len(moments) > KEPT:
+    if 3 * len(points) * len(moments) > MAX_KEPT:
         return find
     kept = list(find())
     return lambda: kept

@@ -35,7 +35,7 @@ class Feasibility:
     """
 
     case: Case
-    found: Feasible
+    areas: Feasible
     frequency: float  # Hz, of the fastest drive in the case
     whole_window: float  # s, what the drives do until they repeat themselves, at most the run's duration
     outline: Outline
@@ -44,51 +44,51 @@ class Feasibility:
     @property
     def frequencies(self) -> FloatArray:
         """Hz, of the fastest drive: (F,)."""
-        return self.found.factors * self.frequency
+        return self.areas.factors * self.frequency
 
     def figures(self) -> dict[str, Any]:
         """The figures by name, in SI units; None: there is no such frequency."""
-        found = self.found
+        areas = self.areas
         return {
             "frequency": self.frequency,
             "frequencies": self.frequencies[[0, -1]].tolist(),
-            "window": found.window,
+            "window": areas.window,
             "whole_window": self.whole_window,
-            "peak_area": found.own.peak,
-            "time_integral": found.own.integral,
-            "area_where_it_comes_off": found.own.lost_area,
-            "frequency_of_largest_peak_area": _top(self.frequencies, found.feasible.peak),
-            "largest_peak_area": float(found.feasible.peak.max()),
-            "frequency_of_largest_time_integral": _top(self.frequencies, found.feasible.integral),
-            "largest_time_integral": float(found.feasible.integral.max()),
-            "moves_it_from_between": _begins(self.frequencies, found.slipping.peak > 0),
-            "loses_it_from_between": _begins(self.frequencies, found.lost_area > 0),
+            "peak_area": areas.own.peak,
+            "time_integral": areas.own.integral,
+            "area_where_it_comes_off": areas.own.lost_area,
+            "frequency_of_largest_peak_area": _top(self.frequencies, areas.feasible.peak),
+            "largest_peak_area": float(areas.feasible.peak.max()),
+            "frequency_of_largest_time_integral": _top(self.frequencies, areas.feasible.integral),
+            "largest_time_integral": float(areas.feasible.integral.max()),
+            "moves_it_from_between": _begins(self.frequencies, areas.slipping.peak > 0),
+            "loses_it_from_between": _begins(self.frequencies, areas.lost_area > 0),
         }
 
     def dataset(self) -> xarray.Dataset:
         """All of it with labels."""
         import xarray
 
-        found, own = self.found, self.found.own
-        slipping: Curves = found.slipping
+        areas, own = self.areas, self.areas.own
+        slipping: Curves = areas.slipping
         return xarray.Dataset(
             {
-                "peak_area": ("frequency", found.feasible.peak, {"units": "m^2"}),
-                "time_integral": ("frequency", found.feasible.integral, {"units": "m^2 s"}),
+                "peak_area": ("frequency", areas.feasible.peak, {"units": "m^2"}),
+                "time_integral": ("frequency", areas.feasible.integral, {"units": "m^2 s"}),
                 "slipping_peak_area": ("frequency", slipping.peak, {"units": "m^2"}),
                 "slipping_time_integral": ("frequency", slipping.integral, {"units": "m^2 s"}),
-                "lost_area": ("frequency", found.lost_area, {"units": "m^2"}),
+                "lost_area": ("frequency", areas.lost_area, {"units": "m^2"}),
                 "area": ("time", own.over_time, {"units": "m^2"}),
                 "share": ("place", own.shares, {"units": "1", "long_name": "share of the window in which it slips"}),
                 "lost": ("place", own.lost.astype(np.int8), {"long_name": "whether the part comes off at some time"}),
-                "x": ("place", found.points[:, 0], {"units": "m"}),
-                "y": ("place", found.points[:, 1], {"units": "m"}),
+                "x": ("place", areas.points[:, 0], {"units": "m"}),
+                "y": ("place", areas.points[:, 1], {"units": "m"}),
             },
             {
                 "frequency": ("frequency", self.frequencies, {"units": "Hz", "long_name": "of the fastest drive"}),
-                "time": ("time", found.moments, {"units": "s"}),
+                "time": ("time", areas.moments, {"units": "s"}),
             },
-            {"case": self.case.source or "", "window": found.window, "spacing": found.spacing},
+            {"case": self.case.source or "", "window": areas.window, "spacing": areas.spacing},
         )
 
     def write(self, folder: Path) -> tuple[Path, ...]:
@@ -156,11 +156,11 @@ def feasibility(
         part = Micropart(case.part.mass, case.part.position, squeeze=case.part.squeeze)
         factors = np.geomspace(low, high, COUNT) / frequency
         with progress("Looking where the part slips"):
-            found = interruptible(
+            areas = interruptible(
                 find_feasible, scene.surface, scene.shapes.outline, part, build_friction(case), whole, factors,
                 case.run.gravity, across,
             )  # fmt: skip
-    return Feasibility(case, found, frequency, whole, scene.shapes.outline, scene.shapes.points)
+    return Feasibility(case, areas, frequency, whole, scene.shapes.outline, scene.shapes.points)
 
 
 def _movers(case: Case) -> list[AnyDrive]:

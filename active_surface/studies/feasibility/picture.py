@@ -33,14 +33,14 @@ def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
     _draw_map(figure, figure.add_subplot(grid[:, 0]), feasibility)
     _draw_curves(figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1]), feasibility)
     said = (
-        f"{feasibility.case.name}: fastest drive {feasibility.frequency:g} Hz, {1e3 * feasibility.found.window:.4g} ms"
+        f"{feasibility.case.name}: fastest drive {feasibility.frequency:g} Hz, {1e3 * feasibility.areas.window:.4g} ms"
     )
     figure.suptitle(said, parse_math=False)
     return save_picture(figure, path)
 
 
 def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
-    found, box = feasibility.found, feasibility.outline.box
+    found, box = feasibility.areas, feasibility.outline.box
     unit = unit_for(box, "m")
     x, y, share = _grid(found, np.where(found.own.lost, np.nan, 100 * found.own.shares))
     half = found.spacing / 2
@@ -71,7 +71,7 @@ def _grid(found: Feasible, values: FloatArray) -> tuple[FloatArray, FloatArray, 
 
 
 def _draw_curves(peak: Axes, integral: Axes, feasibility: Feasibility) -> None:
-    found, frequencies = feasibility.found, feasibility.frequencies
+    found, frequencies = feasibility.areas, feasibility.frequencies
     unit, side = unit_for(frequencies, "Hz"), unit_for(max(float(found.slipping.peak.max()) ** 0.5, SMALLEST), "m")
     per_si, area, square = unit.per_si, side.per_si**2, f"{side.name}²"
     across = frequencies * per_si

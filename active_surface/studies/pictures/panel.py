@@ -36,7 +36,7 @@ def panels(shown: Shown) -> list[Panel]:
         found = [value_panel(shown), outcome_panel(shown)]
     holds, threshold = shown.holds, shown.findings.threshold
     if holds is not None and threshold and len(shown.axes) > 1:
-        said = threshold.said
+        said = threshold.text
         found.append(
             Panel("threshold", f"where {said} begins", lambda figure, axes: draw_threshold(axes, shown, holds, said))
         )

@@ -41,7 +41,7 @@ def study_data(study: Study, shown: Shown, starts: FloatArray, paths: Paths) -> 
         "axes": [_axis(scale, not shown.findings.scattered) for scale in shown.axes],
         "others": [_axis(scale, False) for scale in _others(study, shown)],
         "outline": outline(*shown.axes, shown.holds) if shown.holds is not None and len(shown.axes) == 2 else [],
-        "threshold": study.threshold.said if study.threshold else "",
+        "threshold": study.threshold.text if study.threshold else "",
         "units": {"length": along.name, "distance": unit.name},
         "distance": packed(lengths.ravel() * unit.per_si, "f4"),
         "outcome": packed(shown.usual_outcome.ravel(), "u1"),

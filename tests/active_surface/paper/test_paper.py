@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 
 from active_surface.cli.program import main
 from active_surface.paper.catalogue import MODULES, finder, modules_of
+from active_surface.paper.figure_result import FigureResult
 from active_surface.paper.figures.dead_zones import touched
-from active_surface.paper.found import Found
 from active_surface.paper.models import Bench
 from active_surface.paper.page import page_of
 from active_surface.paper.parameters import PARAMETERS, TINY
@@ -78,7 +78,7 @@ def test_checks_and_what_is_beyond_the_paper():
 
 def test_what_is_beyond_the_paper_is_not_counted():
     rows = [Verdict(str(k), "", {"plate": Answer("", 1.0)}, "", beyond=k == 0) for k in range(3)]
-    found = Found("x", "", tuple(rows), {}, lambda _: None)
+    found = FigureResult("x", "", tuple(rows), {}, lambda _: None)
     assert "Of 2 statements 2 are reproduced, 0 partly" in page_of([found], TINY, PARAMETERS, "paper")
 
 

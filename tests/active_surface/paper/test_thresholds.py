@@ -27,7 +27,7 @@ def test_a_band_in_which_all_converge_again_is_seen_and_costs():
     """The first loss at 240 Hz is not the end of it: at 260 Hz all converge."""
     bands = ends("cc", "cc", "ll", "cc", "ll")
     split = best_split(FREQUENCIES, *bands)
-    assert split.told == pytest.approx(0.8) and mixed(FREQUENCIES, *bands) == (240.0, 260.0)
+    assert split.predicted == pytest.approx(0.8) and mixed(FREQUENCIES, *bands) == (240.0, 260.0)
     assert exceptions(FREQUENCIES, bands, split._replace(frequency=230.0)) == ([], [260.0])
     assert exceptions(FREQUENCIES, bands, split._replace(frequency=270.0)) == ([240.0], [])
     assert first_loss(FREQUENCIES, bands.lost) == 230.0
@@ -38,7 +38,7 @@ def test_the_first_loss_counts_a_start_that_is_never_lost():
 
 
 def test_to_and_fro_is_told_by_no_threshold():
-    assert best_split(FREQUENCIES, *ends("oo", "cc", "co", "ll", "ll")).told == pytest.approx(0.7)
+    assert best_split(FREQUENCIES, *ends("oo", "cc", "co", "ll", "ll")).predicted == pytest.approx(0.7)
     assert np.isnan(best_split(FREQUENCIES, *ends("oo", "oo", "oo", "oo", "oo")).frequency)
     assert best_split(FREQUENCIES, *ends("cc", "cc", "cc", "cc", "cc")).frequency == 290.0
     assert best_split(FREQUENCIES, *ends("ll", "ll", "ll", "ll", "ll")).frequency == 190.0

@@ -15,7 +15,7 @@ from active_surface.steering.aiming import aim_over
 from active_surface.steering.knobs import Knobs
 from active_surface.steering.objective import SAMPLES
 from active_surface.steering.paths import Disturbance, Paths, cost
-from active_surface.steering.scatter import SEARCHED, TOLD, disturbances
+from active_surface.steering.scatter import REPORTED, SEARCHED, disturbances
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
@@ -108,7 +108,7 @@ def test_a_robust_aim_makes_the_quantile_small_that_is_asked_for(case, surface):
 @pytest.mark.compiled
 def test_the_scatter_is_of_disturbed_runs_of_the_found_case(case, surface):
     found = aim_over(surface, Task(case, TARGET, Settings(**QUICK)))
-    way = disturbances(7, 2, 0, TOLD)[6]
+    way = disturbances(7, 2, 0, REPORTED)[6]
     actuators = tuple(
         actuator.model_copy(update={"stroke": actuator.stroke * factor})
         for actuator, factor in zip(found.case.actuators, way.strokes, strict=True)
@@ -122,8 +122,8 @@ def test_the_scatter_is_of_disturbed_runs_of_the_found_case(case, surface):
 
 
 def test_disturbances_are_within_their_bounds_and_a_function_of_their_number():
-    many = disturbances(2000, 3, 5, TOLD)
-    assert disturbances(10, 3, 5, TOLD) == many[:10] != disturbances(10, 3, 5, SEARCHED)
+    many = disturbances(2000, 3, 5, REPORTED)
+    assert disturbances(10, 3, 5, REPORTED) == many[:10] != disturbances(10, 3, 5, SEARCHED)
     friction = np.array([way.friction for way in many])
     strokes = np.array([way.strokes for way in many])
     shifts = np.hypot(*np.array([way.shift for way in many]).T)

@@ -110,9 +110,9 @@ def test_the_fastest_drive_is_one_that_moves_of_any_kind(tmp_path, drives, frequ
     text = PLATE.replace(FIRST, "FIRST").replace(SECOND, drives[1]).replace("FIRST", drives[0])
     (tmp_path / "base.toml").write_text(text)
     found = feasibility(read_case(tmp_path / "base.toml"), across=10)
-    assert found.frequency == pytest.approx(frequency) and found.found.factors[0] == pytest.approx(0.25)
-    assert found.whole_window == found.found.window == pytest.approx(whole)
-    assert len(found.found.moments) == pytest.approx(96 * frequency * whole, abs=1)
+    assert found.frequency == pytest.approx(frequency) and found.areas.factors[0] == pytest.approx(0.25)
+    assert found.whole_window == found.areas.window == pytest.approx(whole)
+    assert len(found.areas.moments) == pytest.approx(96 * frequency * whole, abs=1)
 
 
 def test_drives_of_which_none_moves_are_refused(tmp_path):
@@ -221,7 +221,7 @@ def test_only_the_frequencies_asked_for_are_in_the_curves():
     found = feasibility(read_case(CASE), 1000.0, 2000.0, 12)
     assert found.frequencies[[0, -1]] == pytest.approx([1000, 2000]) and len(found.frequencies) == 31
     assert found.figures()["moves_it_from_between"] == [None, pytest.approx(1000)]
-    assert found.found.own.integral > 0
+    assert found.areas.own.integral > 0
 
 
 def test_a_platform_is_refused():

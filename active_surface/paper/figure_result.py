@@ -1,4 +1,4 @@
-"""Found: what a figure's module hands back: data, verdicts, and how its picture is drawn."""
+"""Figure result: what a figure's module returns: data, verdicts, and how its picture is drawn."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MICRO, MILLI = 1e6, 1e3
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class FigureResult:
     """One figure, or a group of them that share a picture."""
 
     name: str
