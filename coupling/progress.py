@@ -5,12 +5,10 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from typing import Any, TypeVar
+from typing import Any
 
 Tell = Callable[[int, int], object]  # gets how many of the stage's pieces are done, and of how many
 Progress = Callable[[str], AbstractContextManager[Tell]]
-
-Answer = TypeVar("Answer")
 
 PATIENCE = 2.0  # s of silence
 
@@ -22,32 +20,6 @@ def untold(done: int, of: int) -> None:
 def silent(stage: str) -> AbstractContextManager[Tell]:
     """No progress."""
     return nullcontext(untold)
-
-
-def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
-    """work(*arguments) on another thread, so that Ctrl-C ends the wait for it.
-
-    A signal that arrives inside a compiled kernel, or while one is compiled, would otherwise be handled late or never.
-    """
-    from particle import wait  # here, because it comes with the kernels
-
-    done: list[Answer] = []
-    failed: list[BaseException] = []
-    ended = threading.Event()
-
-    def run() -> None:
-        try:
-            done.append(work(*arguments))
-        except BaseException as error:  # handed to the caller below
-            failed.append(error)
-        finally:
-            ended.set()
-
-    threading.Thread(target=run, daemon=True).start()
-    wait(ended.wait)
-    if failed:
-        raise failed[0]
-    return done[0]
 
 
 class _Bar:

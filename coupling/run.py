@@ -15,13 +15,13 @@ from threadpoolctl import threadpool_limits
 import particle
 from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, PlatformCase, TableCase
 from coupling.drives import build_drives as build_drives
-from coupling.progress import Progress, interruptible, silent
+from coupling.progress import Progress, silent
 from coupling.results import check_csv, record_of, write_results
 from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
 from coupling.surface import check_surface, write_surface
 from fem_plate import PlateShapes
-from particle import SurfaceMotion, Trajectory
+from particle import SurfaceMotion, Trajectory, interruptible
 from particle.fixed import default_step
 from particle.friction import Contact
 

@@ -11,7 +11,8 @@ from typing import Any, TypeVar
 import click
 
 from active_surface.cli import options
-from active_surface.cli.group import DEFAULT_OUTPUT, INTERRUPTED, Command, main, refusing
+from active_surface.cli.ctrl_c import INTERRUPTED
+from active_surface.cli.group import DEFAULT_OUTPUT, Command, main, refusing
 
 Found = TypeVar("Found")
 QUANTILE = click.FloatRange(min=0, max=1, min_open=True)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import copy
 import os
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from active_surface.cli.ctrl_c import heard_again
+from active_surface.cli import ctrl_c
 from active_surface.cli.refusal import refusal, refusal_of
 from active_surface.cli.usage import mistakes_in, unknown
 
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
 Answer = TypeVar("Answer")
 
 DEFAULT_OUTPUT = Path("results")
-INTERRUPTED = 130  # 128 and the number of the signal
 JSON = "--json"
 KINDS = {"study": ("study", "sweep"), "aim": ("aim", "aim"), "case": ("plate", "run")}
 """Kinds of files: the table that only they have, and the command that takes them."""
@@ -60,6 +58,11 @@ class Group(Command, click.Group):
 
     command_class = Command
 
+    def main(self, args: Sequence[str] | None = None, *more: Any, **extra: Any) -> Any:
+        if args is None:  # this process is a command, not one that calls commands
+            ctrl_c.ends_soon()
+        return super().main(args, *more, **extra)
+
     def make_context(self, *arguments: Any, **extra: Any) -> click.Context:
         context = super().make_context(*arguments, **extra)
         if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
@@ -74,11 +77,10 @@ class Group(Command, click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
-            with heard_again():
+            with ctrl_c.heard_again():
                 return super().invoke(ctx)
         except KeyboardInterrupt:
-            click.echo("interrupted", err=True)
-            sys.exit(INTERRUPTED)
+            ctrl_c.end()
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})

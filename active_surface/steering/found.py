@@ -12,9 +12,9 @@ import numpy as np
 from active_surface.steering.paths import Paths
 from active_surface.steering.scatter import TOLD, Scatter, disturbances
 from active_surface.steering.tables import Settings
-from coupling import build_friction, build_scene, follow_part, interruptible, run_case, warnings
+from coupling import build_friction, build_scene, follow_part, run_case, warnings
 from coupling.case import Case
-from particle import SurfaceMotion, Trajectory
+from particle import SurfaceMotion, Trajectory, interruptible
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
