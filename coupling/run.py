@@ -129,7 +129,7 @@ def run_case(
 def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_surface: bool) -> Result:
     record = None if output is None else record_of(case)  # its files may be others when the path is found
     scene = build_scene(case, progress)
-    with progress("Following the part (the first run compiles: half a minute)"):
+    with progress("Following the part"):
         friction = build_friction(case)
         trajectory = interruptible(follow_part, case, scene.surface, friction)
         tighter = interruptible(follow_part, case, scene.surface, friction, True)

@@ -24,6 +24,7 @@ from .trajectory import (
 )
 
 # Not public: for the packages that build on this one.
+from .compilation import compilation_heard as compilation_heard
 from .cores import processors as processors
 from .interrupt import (
     interruptible as interruptible,
