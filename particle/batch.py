@@ -21,7 +21,7 @@ from particle.simulation import faults, new_request
 from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
 
-PATIENCE = 1.0  # s that threads have to stop
+PATIENCE = 0.5  # s that threads have to stop
 
 
 class Interrupted(KeyboardInterrupt):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
@@ -10,8 +9,7 @@ from typing import Any, TypeVar
 
 import click
 
-from active_surface.cli import options
-from active_surface.cli.ctrl_c import INTERRUPTED
+from active_surface.cli import ctrl_c, options
 from active_surface.cli.group import DEFAULT_OUTPUT, Command, main, refusing
 
 Found = TypeVar("Found")
@@ -110,4 +108,4 @@ def _found(
 def _tell(interrupted: bool, figures: dict[str, Any], lines: list[tuple[str, str]], quiet: bool, as_json: bool) -> None:
     options.tell(figures, lines, quiet, as_json)
     if interrupted:
-        sys.exit(INTERRUPTED)
+        ctrl_c.end(None)

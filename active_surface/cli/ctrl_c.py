@@ -13,6 +13,7 @@ import signal
 import socket
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, NoReturn
@@ -24,15 +25,17 @@ from particle import is_held_back
 
 INTERRUPTED = 130  # exit code: 128 and the number of the signal
 SOON = 0.05  # s
-PATIENCE = 2.0  # s that a command has to end by itself
+PATIENCE = 1.5  # s that a command has to end by itself
+EXIT = 0.5  # s that Python has to exit, which waits for threads that compile
 SHOW_CURSOR = "\033[?25h"  # which a bar hides
 _announced = threading.Event()
 
 
-def end(message: str = "interrupted") -> NoReturn:
-    """End the command that Ctrl-C broke off."""
+def end(message: str | None = "interrupted") -> NoReturn:
+    """End the command that Ctrl-C broke off; None: what it kept is announcement enough."""
+    if message is not None:
+        click.echo(message, err=True)
     _announced.set()
-    click.echo(message, err=True)
     sys.exit(INTERRUPTED)
 
 
@@ -53,12 +56,10 @@ def _end_soon(receiver: socket.socket, _: socket.socket) -> None:
     """The second socket is only kept open."""
     while signal.SIGINT not in receiver.recv(64):
         pass
-    pause = threading.Event()
-    pause.wait(PATIENCE)
-    while is_held_back():
-        while is_held_back():
-            pause.wait(SOON)
-        pause.wait(PATIENCE)  # to print what was kept
+    while not _announced.wait(PATIENCE) and is_held_back():
+        pass
+    if _announced.is_set():
+        time.sleep(EXIT)
     remove_partial_files()
     if not _announced.is_set():
         text = f"{SHOW_CURSOR if sys.stderr.isatty() else ''}interrupted\n"

@@ -125,7 +125,7 @@ class CellMaker:
     def _inverse(self, degree: int) -> FloatArray:
         """What turns values at the nodes into the polynomial that fits them best."""
         if degree not in self._inverses:
-            self._inverses[degree] = np.linalg.pinv(monomials(self._nodes, degree))
+            self._inverses[degree] = np.asarray(np.linalg.pinv(monomials(self._nodes, degree)), np.float64)
         return self._inverses[degree]
 
     def _fit_one(
