@@ -47,6 +47,8 @@ def prepared(case: Case) -> SurfaceMotion:
 
 def with_scatter(found: Kind, paths: Paths, target: Place, settings: Settings) -> Kind:
     """What was found with its scatter about a target [m]; without after Ctrl-C."""
+    if found.interrupted:
+        return found
     try:
         return replace(found, scatter=scattered(paths, found.case, target, settings.scatter, settings.seed))
     except KeyboardInterrupt:
@@ -55,6 +57,8 @@ def with_scatter(found: Kind, paths: Paths, target: Place, settings: Settings) -
 
 def drawn(found: Kind, draw: Callable[[Kind, Path], Path], picture: Path) -> Kind:
     """What was found with its picture, and with what a run of it warns of; without after Ctrl-C."""
+    if found.interrupted:
+        return found
     try:
         said = tuple(warnings(interruptible(run_case, found.case).summary))
         found = replace(found, warnings=said)
