@@ -65,8 +65,8 @@ class Result:
         return self.scene.shapes
 
     def __repr__(self) -> str:
-        said = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."
-        return f"Result of {self.case!r}. {said}"
+        text = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."
+        return f"Result of {self.case!r}. {text}"
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the path over the surface as it is when it is deflected most, and the motion over time.

@@ -33,12 +33,12 @@ class Command(click.Command):
     def make_context(
         self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
     ) -> click.Context:
-        given = list(args)
+        words = list(args)
 
         def again(params: Sequence[click.Parameter]) -> None:
             other = copy.copy(self)
             other.params = list(params)
-            click.Command.make_context(other, info_name, list(given), parent, **extra)
+            click.Command.make_context(other, info_name, list(words), parent, **extra)
 
         try:
             return super().make_context(info_name, args, parent, **extra)
@@ -46,7 +46,7 @@ class Command(click.Command):
             raise  # which shows the help
         except click.UsageError as error:
             command = " ".join([*([parent.command_path] if parent else []), info_name or ""])
-            raise refusal(command, mistakes_in(error, again), JSON in given) from None
+            raise refusal(command, mistakes_in(error, again), JSON in words) from None
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
@@ -100,17 +100,17 @@ def read(path: Path) -> Case:
     return refusing(read_case, path)
 
 
-def check_kind(path: Path, wanted: str) -> None:
+def check_kind(path: Path, expected: str) -> None:
     """Refuse a file of another of the KINDS, in which nearly all would be a mistake."""
     from coupling.case import load
 
     _, tables = refusing(load, path)
-    kind = next((kind for kind, (table, _) in KINDS.items() if table in tables), wanted)
-    if kind != wanted:
+    kind = next((kind for kind, (table, _) in KINDS.items() if table in tables), expected)
+    if kind != expected:
         table, command = KINDS[kind]
-        said = f"must be a {wanted}; got {path}, whose table [{table}] is for `active-surface {command}`"
+        text = f"must be a {expected}; got {path}, whose table [{table}] is for `active-surface {command}`"
         context = click.get_current_context()
-        raise refusal(context.command_path, [(wanted.upper(), said)], bool(context.params.get("as_json")))
+        raise refusal(context.command_path, [(expected.upper(), text)], bool(context.params.get("as_json")))
 
 
 def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:

@@ -46,9 +46,9 @@ def sweep(
     refusing(check_folder, folder)
     try:
         with nullcontext(untold) if quiet else CountBar("paths") as tell:
-            found = refusing(run_study, read, folder, threads, tell, scheduler, overwrite)
+            result = refusing(run_study, read, folder, threads, tell, scheduler, overwrite)
     except KeyboardInterrupt:
         ctrl_c.end("interrupted; the same command goes on where this one stopped")
-    options.tell(figures(found), lines(found), quiet, as_json, found.warnings)
-    if set(found.outcomes) == {REFUSED}:
+    options.tell(figures(result), lines(result), quiet, as_json, result.warnings)
+    if set(result.outcomes) == {REFUSED}:
         sys.exit(1)

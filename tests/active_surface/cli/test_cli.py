@@ -98,7 +98,7 @@ main()
 
 
 def pressed(command, cache):
-    """Ctrl-C for a command once it has printed a line: what that is, exit code, output, errors after it, and s it took."""
+    """Ctrl-C for a command once it has printed a line: that line, exit code, output, further errors, s to its end."""
     environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
     command = [sys.executable, "-m", "active_surface", *map(str, command)]
     pipe = subprocess.PIPE
