@@ -29,15 +29,21 @@ from coupling import SavedRun, read_run
 
 ROOT = Path(__file__).parents[1]
 KINDS = ("plate", "part")
-# What the command runs, with a line for each flush: the kind of file and how many steps it holds.
+LONGEST = 0.5  # s of steps that a kill may lose
+# What the command runs, with a line for each write and flush: the kind of file, its steps, what it was, and when.
 SPY = """
-import os
+import os, time
 from coupling.results import steps_file
-plain = steps_file.StepsFile.flush
-def flush(self):
-    plain(self)
-    os.write(1, f"{type(self).__name__[:-4].lower()} {self.count}\\n".encode())
-steps_file.StepsFile.flush = flush
+def spied(name):
+    plain = getattr(steps_file.StepsFile, name)
+    def call(self, *arguments):
+        begun = time.monotonic()
+        plain(self, *arguments)
+        kind, when = type(self).__name__[:-4].lower(), begun if name == "_append" else time.monotonic()
+        os.write(1, f"{kind} {self.count} {name} {when}\\n".encode())
+    setattr(steps_file.StepsFile, name, call)
+spied("flush")
+spied("_append")
 from active_surface.cli.program import main
 main()
 """
@@ -70,11 +76,30 @@ tolerance = 1e-5
 """
 
 
+class Report(NamedTuple):
+    """What the command says of a write or flush."""
+
+    kind: str
+    steps: int  # in the file from then on
+    what: str
+    when: float  # s, on the clock that processes share
+
+    @classmethod
+    def of(cls, line: str) -> Report:
+        kind, steps, what, when = line.split()
+        return cls(kind, int(steps), what, float(when))
+
+    def is_lost(self, kind: str, found: dict[str, int]) -> bool:
+        """Whether it is of a write of steps that a file of this kind lacks."""
+        return self.kind == kind and self.what == "_append" and self.steps > found[kind]
+
+
 class Kill(NamedTuple):
     """What a killed run left."""
 
     flushed: dict[str, int]  # steps that it had reported as flushed
     found: dict[str, int]  # steps that VTK reads, all of them right
+    lost: dict[str, float]  # s, between the write of the first step that is lost and the kill
 
 
 def started(folder: Path, frames: int) -> subprocess.Popen:
@@ -100,9 +125,13 @@ def killed(folder: Path, frames: int, delay: float, expected: SavedRun) -> Kill:
         lines = [child.stdout.readline()]
         time.sleep(delay)
         os.kill(child.pid, signal.SIGKILL)
+        end = time.monotonic()
         lines += child.stdout.readlines()
-    reported = [line.split() for line in lines if line.endswith("\n")]
-    flushed = {kind: max((int(steps) for one, steps in reported if one == kind), default=0) for kind in KINDS}
+    reported = [Report.of(line) for line in lines if line.endswith("\n")]
+    flushed = {
+        kind: max((one.steps for one in reported if (one.kind, one.what) == (kind, "flush")), default=0)
+        for kind in KINDS
+    }
     found = {kind: read_by_vtk(folder, kind, expected) for kind in KINDS if flushed[kind]}
     for kind, steps in found.items():
         assert steps >= flushed[kind], f"{kind}: {steps} steps of {flushed[kind]}"
@@ -110,7 +139,10 @@ def killed(folder: Path, frames: int, delay: float, expected: SavedRun) -> Kill:
         saved = read_run(folder / "killed")
         assert len(saved.time) == min(found.values())
         assert saved.case == expected.case
-    return Kill(flushed, found)
+    lost = {kind: max((end - one.when for one in reported if one.is_lost(kind, found)), default=0.0) for kind in found}
+    for kind, seconds in lost.items():
+        assert seconds <= LONGEST, f"{kind}: {seconds:.2f} s of steps are lost"
+    return Kill(flushed, found, lost)
 
 
 def read_by_vtk(folder: Path, kind: str, expected: SavedRun) -> int:
@@ -148,10 +180,10 @@ def kills(count: int, frames: int, seed: int = 1) -> Iterator[Kill]:
 def main() -> None:
     parser = argparse.ArgumentParser(description="Kill runs while they write.")
     parser.add_argument("--count", type=int, default=10)
-    parser.add_argument("--frames", type=int, default=1000)
+    parser.add_argument("--frames", type=int, default=20_000)
     given = parser.parse_args()
     for k, kill in enumerate(kills(given.count, given.frames), 1):
-        told = ", ".join(f"{kind} {kill.found[kind]} steps read, {kill.flushed[kind]} flushed" for kind in kill.found)
+        told = ", ".join(f"{kind} {kill.found[kind]} steps read, {kill.lost[kind]:.2f} s lost" for kind in kill.found)
         print(f"kill {k}: {told}", flush=True)
 
 

@@ -9,13 +9,12 @@ from .surface.motion import surface_motion as surface_motion
 # Not public: for the packages that build on this one.
 from .drives import build_drive as build_drive, build_drives as build_drives
 from .environment import PACKAGES as PACKAGES, versions as versions
-from .files import whole_file as whole_file
+from .files import remove_partial_files as remove_partial_files, whole_file as whole_file
 from .progress import (
     CountBar as CountBar,
     Progress as Progress,
     StageBar as StageBar,
     Tell as Tell,
-    interruptible as interruptible,
     silent as silent,
     untold as untold,
 )

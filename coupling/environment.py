@@ -1,4 +1,4 @@
-"""Versions: those of what a path is found by."""
+"""Versions of the packages that compute a path."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ PACKAGES = ("meshes", "fem_plate", "particle", "coupling")
 
 
 def versions(packages: Sequence[str] = PACKAGES) -> dict[str, str]:
-    """The versions of what a path is found by; that of active-surface has a hash of these of its packages' sources."""
-    found = {name: version(name) for name in (OURS, *OTHERS)}
-    return found | {OURS: f"{found[OURS]}+{_sources(tuple(packages))}"}
+    """The versions of what computes a path; that of active-surface has a hash of the sources of these packages."""
+    numbers = {name: version(name) for name in (OURS, *OTHERS)}
+    return numbers | {OURS: f"{numbers[OURS]}+{_sources(tuple(packages))}"}
 
 
 @cache

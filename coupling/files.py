@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -12,13 +12,20 @@ _open: set[Path] = set()
 
 
 @contextmanager
-def whole_file(path: Path, partial: Path | None = None, keep: bool = False, synced: bool = False) -> Iterator[Path]:
+def whole_file(
+    path: Path,
+    partial: Path | None = None,
+    keep: bool = False,
+    synced: bool = False,
+    replace: Callable[[Path, Path], object] = os.replace,
+) -> Iterator[Path]:
     """A path to write to; its file or folder replaces that at `path` when the `with` block ends well.
 
     If it does not, the partial file is removed.
 
     partial: the path to write to, by default beside `path` and of this process alone.
     keep: whether to leave the partial file when the block fails.  synced: whether to return once all is safe on disk.
+    replace: puts the partial file or folder in place.
     """
     partial = partial or path.with_name(f"{path.stem}.{os.getpid()}.partial{path.suffix}")
     if not keep:
@@ -27,7 +34,7 @@ def whole_file(path: Path, partial: Path | None = None, keep: bool = False, sync
         yield partial
         if synced:
             _sync(partial)
-        os.replace(partial, path)
+        replace(partial, path)
         if synced and os.name != "nt":  # which syncs no folders
             _sync(path.parent)
     finally:

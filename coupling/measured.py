@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import UnivariateSpline, make_interp_spline
+from scipy import interpolate  # loaded when it is used
 
 from particle import HermiteDrive
 
@@ -35,12 +35,12 @@ def fit_motion(
     """
     t, h = np.asarray(times, dtype=float), np.asarray(positions, dtype=float)
     if smoothing is None:
-        through = make_interp_spline(t, h, DEGREE)
+        through = interpolate.make_interp_spline(t, h, DEGREE)
         knots, derivatives = np.unique(through.t), [through.derivative(k) if k else through for k in range(3)]
     else:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that the noise was not met: the residual says so
-            close = UnivariateSpline(t, h, w=np.full(len(t), 1 / smoothing), k=DEGREE, s=len(t))
+            close = interpolate.UnivariateSpline(t, h, w=np.full(len(t), 1 / smoothing), k=DEGREE, s=len(t))
         knots, derivatives = close.get_knots(), [close.derivative(k) if k else close for k in range(3)]
     drive = HermiteDrive(knots, *(derivative(knots) for derivative in derivatives))
     difference = drive.evaluate(t)[0] - h

@@ -1,18 +1,21 @@
-"""Progress: stages with a clock, or a count with its rate, shown only once the work has taken two seconds."""
+"""Progress: stages with a clock, or a count with its rate, on a terminal once the work has taken two seconds.
+
+Where there is no terminal only the compilation of kernels is announced, on one line.
+"""
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
-from typing import Any, TypeVar
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from typing import Any
 
 Tell = Callable[[int, int], object]  # gets how many of the stage's pieces are done, and of how many
 Progress = Callable[[str], AbstractContextManager[Tell]]
 
-Answer = TypeVar("Answer")
-
 PATIENCE = 2.0  # s of silence
+COMPILING = "Compiling the kernels (once, up to a minute)"
 
 
 def untold(done: int, of: int) -> None:
@@ -24,74 +27,74 @@ def silent(stage: str) -> AbstractContextManager[Tell]:
     return nullcontext(untold)
 
 
-def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
-    """work(*arguments) on another thread, so that Ctrl-C ends the wait for it.
-
-    A signal that arrives inside a compiled kernel, or while one is compiled, would otherwise be handled late or never.
-    """
-    from particle import wait  # here, because it comes with the kernels
-
-    done: list[Answer] = []
-    failed: list[BaseException] = []
-    ended = threading.Event()
-
-    def run() -> None:
-        try:
-            done.append(work(*arguments))
-        except BaseException as error:  # handed to the caller below
-            failed.append(error)
-        finally:
-            ended.set()
-
-    threading.Thread(target=run, daemon=True).start()
-    wait(ended.wait)
-    if failed:
-        raise failed[0]
-    return done[0]
-
-
 class _Bar:
-    """A bar on the terminal's error stream after a while of silence; nothing where that cannot show one."""
+    """A bar on the terminal's error stream after a while of silence; None where that cannot show one."""
 
-    def __init__(self, *columns: Any, total: int | None = None) -> None:
-        from rich.console import Console
-        from rich.progress import Progress as Bar
+    def __init__(self, total: int | None = None) -> None:
+        self._bar = _bar(self._columns()) if sys.stderr.isatty() else None
+        self._task = self._bar.add_task("", total=total) if self._bar else None
+        self._announcing = ExitStack()
 
-        console = Console(stderr=True)
-        self._bar = Bar(
-            *columns, console=console, transient=True, disable=not console.is_terminal or console.is_dumb_terminal
-        )
-        self._task = self._bar.add_task("", total=total)
-        self._timer = threading.Timer(PATIENCE, self._bar.start)
-        self._timer.daemon = True
+    def _columns(self) -> list[Any]:
+        raise NotImplementedError
 
     def _start(self) -> None:
-        self._timer.start()
+        from particle import compilation_heard
+
+        self._announcing.enter_context(compilation_heard(self._announce))
+        if self._bar:
+            self._timer = threading.Timer(PATIENCE, self._bar.start)
+            self._timer.daemon = True
+            self._timer.start()
+
+    def _announce(self) -> None:
+        if self._bar:
+            self._bar.console.print(COMPILING, highlight=False)
+        else:
+            print(COMPILING, file=sys.stderr, flush=True)
 
     def __exit__(self, *_: object) -> None:
-        self._timer.cancel()
-        self._timer.join()
-        self._bar.stop()
+        self._announcing.close()
+        if self._bar:
+            self._timer.cancel()
+            self._timer.join()
+            self._bar.stop()
+
+
+def _bar(columns: list[Any]) -> Any:
+    """A bar of rich, which is slow to load; None where the terminal is too dumb for one."""
+    from rich.console import Console
+    from rich.progress import Progress as Bar
+
+    console = Console(stderr=True)
+    return None if console.is_dumb_terminal else Bar(*columns, console=console, transient=True)
 
 
 class StageBar(_Bar):
     """A bar over known stages."""
 
     def __init__(self, stages: int) -> None:
+        super().__init__(stages)
+
+    def _columns(self) -> list[Any]:
         from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-        columns = (BarColumn(bar_width=20), MofNCompleteColumn(), TimeElapsedColumn())
-        super().__init__(SpinnerColumn(), *columns, TextColumn("{task.description}"), total=stages)
+        columns = [BarColumn(bar_width=20), MofNCompleteColumn(), TimeElapsedColumn()]
+        return [SpinnerColumn(), *columns, TextColumn("{task.description}")]
 
-    def __enter__(self) -> StageBar:
+    def __enter__(self) -> Progress:
         self._start()
-        return self
+        return self._stage
 
     @contextmanager
-    def __call__(self, stage: str) -> Iterator[Tell]:
-        self._bar.update(self._task, description=stage)
-        yield lambda done, of: self._bar.update(self._task, description=f"{stage}: {done} of {of}")
-        self._bar.advance(self._task)
+    def _stage(self, stage: str) -> Iterator[Tell]:
+        if not self._bar:
+            yield untold
+            return
+        bar, task = self._bar, self._task
+        bar.update(task, description=stage)
+        yield lambda done, of: bar.update(task, description=f"{stage}: {done} of {of}")
+        bar.advance(task)
 
 
 class CountBar(_Bar):
@@ -101,21 +104,25 @@ class CountBar(_Bar):
     """
 
     def __init__(self, pieces: str) -> None:
+        self._pieces, self._begun = pieces, False
+        super().__init__()
+
+    def _columns(self) -> list[Any]:
         from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeRemainingColumn
 
-        self._pieces, self._begun = pieces, False
-        columns = (BarColumn(bar_width=30), MofNCompleteColumn(), TextColumn("{task.description}"))
-        super().__init__(SpinnerColumn(), *columns, TimeRemainingColumn(), TextColumn("left"))
+        columns = [BarColumn(bar_width=30), MofNCompleteColumn(), TextColumn("{task.description}")]
+        return [SpinnerColumn(), *columns, TimeRemainingColumn(), TextColumn("left")]
 
     def __enter__(self) -> Tell:
         self._start()
-        return self._tell
+        return self._tell if self._bar else untold
 
     def _tell(self, done: int, of: int) -> None:
+        assert self._bar
         if not self._begun:
             self._bar.reset(self._task, completed=done, total=of)
             self._begun = True
         speed = self._bar.tasks[0].speed
         rate = f"{self._pieces}, {speed:.0f}/s" if speed else self._pieces
-        said = f"{self._pieces}; writing all" if done == of else rate
-        self._bar.update(self._task, completed=done, description=said)
+        text = f"{self._pieces}; writing all" if done == of else rate
+        self._bar.update(self._task, completed=done, description=text)

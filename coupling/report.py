@@ -9,21 +9,24 @@ from coupling.summary import PlateSummary, Summary
 
 MICRO, MILLI = 1e6, 1e3
 
-# Where the model stops holding to about a per cent.
-MOST_THICKNESSES, STEEPEST, MOST_CURVED = 0.2, 0.2, 0.1
-MOST_RINGING, FASTEST = 0.01, 0.003  # of the acceleration; of the first frequency, where strokes up and down reach that
-NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
-FEWEST_FRAMES = 8  # to a cycle
+# The model holds to about a per cent up to these.
+MAX_DEFLECTION = 0.2  # of the thickness
+MAX_SLOPE = 0.2
+MAX_CURVATURE = 0.1  # of one over the part's size
+MAX_QUASI_STATIC_ERROR = 0.01  # of the acceleration
+MAX_FREQUENCY = 0.003  # of the first one: strokes up and down reach that error there
+MAX_NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
+MIN_STEPS_PER_CYCLE = 8
 GROWTH = 100  # of the error of one step, that is no sign of chaos
 
 
 def lines(summary: Summary) -> list[tuple[str, str]]:
     """Rows (label, text) to print."""
     s = summary
-    rest = "" if s.at_rest_since is None else f" It has rested since {s.at_rest_since * MILLI:.3f} ms."
+    rest = "" if s.at_rest_since is None else f" At rest since {s.at_rest_since * MILLI:.3f} ms."
     unit, per_metre = _unit(s)
     x, y = (c * per_metre for c in s.end_position)
-    cut = "" if s.end_time >= s.duration else f", of {s.duration * MILLI:g} ms asked for"
+    cut = "" if s.end_time >= s.duration else f", of {s.duration * MILLI:g} ms"
     where = "" if s.origin == "the plate" else f", counted from {s.origin}"
     rows = [
         ("outcome", f"{s.outcome}. {s.sentence}{rest}"),
@@ -71,11 +74,11 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
             "model",
             f"deflection {s.deflection_over_thickness:.3g} times the thickness (path error of linear theory "
             f"{_percent(s.linear_path_error)}), slope {s.largest_slope:.3g}, "
-            f"in-plane motion left out {s.in_plane_motion * MICRO:.3g} um",
+            f"neglected in-plane motion {s.in_plane_motion * MICRO:.3g} um",
         ),
         ("", _dynamics(s)),
         *([("", _drives(s))] if s.drives_over_first else []),
-        ("", f"the plate gives {s.part_sag * MICRO:.1e} um under the part's own force"),
+        ("", f"the part's own force deflects the plate by {s.part_sag * MICRO:.1e} um"),
     ]
     if s.part_curvature is not None:
         rows.append(("", f"part size times curvature {s.part_curvature:.2g}"))
@@ -83,95 +86,93 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
 
 
 def warnings(summary: Summary) -> list[str]:
-    """What a user must know before trusting the numbers."""
+    """The limits of the model and of the numerics that the run passes."""
     s = summary
-    said = _of_solver(s) if isinstance(s, PlateSummary) else []
+    texts = _of_solver(s) if isinstance(s, PlateSummary) else []
     finer = "run.tolerance" if s.scheme == "events" else "run.time_step"
-    least = max(NUMERICAL_ERROR * s.path_length, GROWTH * s.path_resolution)
-    if s.path_error is None or s.path_error > least:
-        said.append(
+    resolved = max(MAX_NUMERICAL_ERROR * s.path_length, GROWTH * s.path_resolution)
+    if s.path_error is None or s.path_error > resolved:
+        texts.append(
             "The path magnifies small errors: trust the statistics of many starts more than the digits of one."
             if s.scheme == "events"
-            else "Fixed steps follow the path to few digits; a smaller run.time_step gives more, in proportion."
+            else "Fixed steps give the path to few digits; the error falls in proportion to run.time_step."
         )
-    if s.frames_per_cycle is not None and s.frames_per_cycle < FEWEST_FRAMES:
-        said.append(
-            f"The result files hold {s.frames_per_cycle:.2g} steps to a cycle of the fastest drive: what "
-            "moves fast looks slow or still in them; a larger run.frames shows it."
+    if s.frames_per_cycle is not None and s.frames_per_cycle < MIN_STEPS_PER_CYCLE:
+        texts.append(
+            f"The result files hold {s.frames_per_cycle:.2g} steps per cycle of the fastest drive: fast motion looks "
+            "slow or frozen in them; a larger run.frames shows it."
         )
     jump = None if s.scheme == "events" else s.drive_jump
-    if s.energy_balance > NUMERICAL_ERROR and jump is None:
-        said.append(
+    if s.energy_balance > MAX_NUMERICAL_ERROR and jump is None:
+        texts.append(
             f"The energy ledger closes only to {s.energy_balance:.1e} of its largest entry; "
-            + (
-                f"a smaller {finer} follows the path more closely."
-                if s.scheme != "paper"
-                else "so it does at any step."
-            )
+            + (f"reduce {finer}." if s.scheme != "paper" else "no step improves that.")
         )
     if s.scheme == "paper":
-        said.append(
+        texts.append(
             'The paper\'s scheme drops terms of the equations of motion: its path is not that of scheme = "events", '
             "however small the step."
         )
     if jump is not None:
-        said.append(
-            f"A drive's velocity jumps at {jump * MILLI:g} ms. With fixed steps the part goes on there as if its own "
-            'velocity jumped as well: the impact is left out, also of the energy ledger; scheme = "events" has it.'
+        texts.append(
+            f"A drive's velocity jumps at {jump * MILLI:g} ms. Fixed steps leave out the impact, also in the energy "
+            'ledger: the part\'s velocity jumps with the surface; scheme = "events" has the impact.'
         )
-    return said + (_of_model(s) if isinstance(s, PlateSummary) else [])
+    return texts + (_of_model(s) if isinstance(s, PlateSummary) else [])
 
 
 def _of_solver(s: PlateSummary) -> list[str]:
-    said = []
-    if s.plate_error > NUMERICAL_ERROR:
-        said.append(
-            f"The plate's shapes are only good to {s.plate_error:.1e} of a stroke; a smaller plate.cell_size, or "
-            "actuators further from the rim, make them better."
+    texts = []
+    if s.plate_error > MAX_NUMERICAL_ERROR:
+        texts.append(
+            f"The plate's shapes are accurate to {s.plate_error:.1e} of a stroke only; reduce plate.cell_size, or move "
+            "actuators away from the rim."
         )
-    if s.surface_error > max(NUMERICAL_ERROR, s.plate_error):
-        said.append(
-            f"The surface that the part sees follows the plate's shapes only to {s.surface_error:.1e} of a stroke: so "
-            "it is at re-entrant corners and those where supports change, in narrow slots, at actuators near the rim."
+    if s.surface_error > max(MAX_NUMERICAL_ERROR, s.plate_error):
+        texts.append(
+            f"The fitted surface follows the plate's shapes to {s.surface_error:.1e} of a stroke only, as happens at "
+            "re-entrant corners, where supports change, in narrow slots, and at actuators near the rim."
         )
-    return said
+    return texts
 
 
 def _of_model(s: PlateSummary) -> list[str]:
-    said = []
-    if s.deflection_over_thickness > MOST_THICKNESSES:
-        said.append(
+    texts = []
+    if s.deflection_over_thickness > MAX_DEFLECTION:
+        texts.append(
             f"The plate deflects by {s.deflection_over_thickness:.3g} times its thickness; small-deflection theory "
-            f"holds to about {MOST_THICKNESSES}. Expect a path error of {_percent(s.linear_path_error)}."
+            f"holds to about {MAX_DEFLECTION}. Expect a path error of {_percent(s.linear_path_error)}."
         )
-    if s.largest_slope > STEEPEST:
-        said.append(f"The surface is as steep as {s.largest_slope:.2g}; small-slope theory holds to about {STEEPEST}.")
-    if s.quasi_static_error is not None and s.quasi_static_error > MOST_RINGING:
-        said.append(
-            f"The drive is at {s.drive_over_first:.2g} of the plate's first frequency; the plate follows at once up to "
-            f"about {FASTEST}. Expect its acceleration to be off by {_percent(s.quasi_static_error)}."
+    if s.largest_slope > MAX_SLOPE:
+        texts.append(
+            f"The surface is as steep as {s.largest_slope:.2g}; small-slope theory holds to about {MAX_SLOPE}."
+        )
+    if s.quasi_static_error is not None and s.quasi_static_error > MAX_QUASI_STATIC_ERROR:
+        texts.append(
+            f"The drive is at {s.drive_over_first:.2g} of the plate's first frequency; the quasi-static model holds up "
+            f"to about {MAX_FREQUENCY}. Expect an acceleration error of {_percent(s.quasi_static_error)}."
         )
     if s.plate_rings:
-        said.append(
-            "A drive's velocity or acceleration jumps, as that of a sine or cosine does where it begins: a plate rings "
-            "from then on, by as much as its acceleration jumps, until damping ends it. The model leaves that out."
+        texts.append(
+            "A drive's velocity or acceleration jumps, as at the start of a sine or cosine. A plate then rings, by as "
+            "much as its acceleration jumps, until damping ends it. The model leaves that out."
         )
-    if s.part_curvature is not None and s.part_curvature > MOST_CURVED:
-        said.append(
-            f"Part size times curvature reaches {s.part_curvature:.2g}; a part stands for a point up to about "
-            f"{MOST_CURVED}."
+    if s.part_curvature is not None and s.part_curvature > MAX_CURVATURE:
+        texts.append(
+            f"Part size times curvature reaches {s.part_curvature:.2g}; the point-part model holds up to about "
+            f"{MAX_CURVATURE}."
         )
-    return said
+    return texts
 
 
 def _loads(s: Summary) -> list[str]:
-    """What else pulls and presses than gravity towards the plate."""
-    said = []
+    """The loads other than gravity towards the plate."""
+    texts = []
     if isinstance(s.gravity, tuple):
-        said.append(f"gravity ({', '.join(f'{g:g}' for g in s.gravity)}) m/s^2")
+        texts.append(f"gravity ({', '.join(f'{g:g}' for g in s.gravity)}) m/s^2")
     if s.squeeze:
-        said.append(f"squeezed by {s.squeeze * MICRO:g} uN")
-    return said
+        texts.append(f"squeezed by {s.squeeze * MICRO:g} uN")
+    return texts
 
 
 def _fit(fit: MotionFit) -> str:
@@ -182,35 +183,33 @@ def _fit(fit: MotionFit) -> str:
 def _path_error(s: Summary) -> str:
     closer = "100 times tighter" if s.scheme == "events" else "with half the time step"
     if s.path_error is None:
-        return f"a run {closer} sees other events"
+        return f"a run {closer} has other events"
     unit, per_metre = _unit(s)
     return f"the end point moves by {s.path_error * per_metre:.1e} {unit} in a run {closer}"
 
 
 def _unit(s: Summary) -> tuple[str, float]:
-    """The unit of length, with how many make a metre, in which the path has numbers of a usual size."""
+    """The unit of length in which the path has handy numbers, and how many make a metre."""
     return ("um", MICRO) if s.path_length < 0.01 else ("mm", 1e3) if s.path_length < 1 else ("m", 1.0)
 
 
 def _dynamics(s: PlateSummary) -> str:
     if s.first_frequency is None or s.drive_over_first is None:
-        return "drive over the plate's first frequency not known: plate.density is not given"
+        return "first frequency unknown: plate.density is not given"
     error = None if s.quasi_static_error is None else _percent(s.quasi_static_error)
-    return (
-        f"drive {s.drive_over_first:.2g} of the plate's first frequency with the actuators held, "
-        f"{s.first_frequency / 1e3:.4g} kHz "
-        + (f"(quasi-static error of the acceleration {error})" if error else "(it rings where a drive jumps)")
+    return f"first frequency, actuators held: {s.first_frequency / 1e3:.4g} kHz; " + (
+        f"quasi-static error of the acceleration {error}" if error else "it rings where a drive jumps"
     )
 
 
 def _drives(s: PlateSummary) -> str:
     drives, strokes = (_range(ratios or ()) for ratios in (s.drives_over_first, s.strokes_over_first))
-    return f"drives over it {drives}; their strokes, at one over the time from rest to rest, {strokes}"
+    return f"drive frequency / first frequency: {drives}; stroke rate / first frequency: {strokes}"
 
 
 def _range(ratios: Sequence[float]) -> str:
-    """The smallest and the largest ratio, or both at once."""
-    return " to ".join(dict.fromkeys(f"{ratio:.2g}" for ratio in ratios))
+    """The smallest and the largest ratio, or one where they are equal."""
+    return "-".join(dict.fromkeys(f"{ratio:.2g}" for ratio in ratios))
 
 
 def _percent(share: float) -> str:

@@ -15,13 +15,13 @@ from threadpoolctl import threadpool_limits
 import particle
 from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, PlatformCase, TableCase
 from coupling.drives import build_drives as build_drives
-from coupling.progress import Progress, interruptible, silent
+from coupling.progress import Progress, silent
 from coupling.results import check_csv, record_of, write_results
 from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
 from coupling.surface import check_surface, write_surface
 from fem_plate import PlateShapes
-from particle import SurfaceMotion, Trajectory
+from particle import SurfaceMotion, Trajectory, interruptible
 from particle.fixed import default_step
 from particle.friction import Contact
 
@@ -65,8 +65,8 @@ class Result:
         return self.scene.shapes
 
     def __repr__(self) -> str:
-        said = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."
-        return f"Result of {self.case!r}. {said}"
+        text = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."
+        return f"Result of {self.case!r}. {text}"
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the path over the surface as it is when it is deflected most, and the motion over time.
@@ -129,7 +129,7 @@ def run_case(
 def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_surface: bool) -> Result:
     record = None if output is None else record_of(case)  # its files may be others when the path is found
     scene = build_scene(case, progress)
-    with progress("Following the part (the first run compiles: half a minute)"):
+    with progress("Following the part"):
         friction = build_friction(case)
         trajectory = interruptible(follow_part, case, scene.surface, friction)
         tighter = interruptible(follow_part, case, scene.surface, friction, True)

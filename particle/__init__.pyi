@@ -24,8 +24,14 @@ from .trajectory import (
 )
 
 # Not public: for the packages that build on this one.
+from .compilation import compilation_heard as compilation_heard
 from .cores import processors as processors
-from .interrupt import unbroken as unbroken, wait as wait
+from .interrupt import (
+    interruptible as interruptible,
+    is_held_back as is_held_back,
+    unbroken as unbroken,
+    wait as wait,
+)
 from .pictures import (
     HALO as HALO,
     PATH_COLOUR as PATH_COLOUR,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from concurrent import futures
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from queue import Empty, SimpleQueue
@@ -19,6 +20,8 @@ from particle.path import find_path
 from particle.simulation import faults, new_request
 from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
+
+PATIENCE = 0.5  # s that threads have to stop
 
 
 class Interrupted(KeyboardInterrupt):
@@ -43,8 +46,8 @@ def simulate_many(
 ) -> list[Trajectory]:
     """Follow many parts by located events, with the same bits as from `simulate` for any number of threads.
 
-    Other parameters are those of `simulate`. Ctrl-C takes effect within a second, but each thread finishes the cells
-    that it is building.
+    Other parameters are those of `simulate`. Ctrl-C takes effect within a second, whatever the threads still compile
+    or build.
 
     Parameters
     ----------
@@ -97,22 +100,23 @@ def simulate_many(
         request = new_request(driven, parts[k], frictions[k], duration, gravity, tolerance, after_detachment == "fly")
         found[k] = find_path(driven, request, tolerance, stop)
 
+    pool, handed_out = ThreadPoolExecutor(threads or processors()), []
     try:
-        with ThreadPoolExecutor(threads or processors()) as pool:
-            try:
-                ended: SimpleQueue[Future[None]] = SimpleQueue()
-                for k in range(len(parts)):
-                    pool.submit(path, k).add_done_callback(ended.put)
-                for done in range(1, len(parts) + 1):
-                    _next(ended).result()
-                    if progress:
-                        progress(done, len(parts))
-            except BaseException:
-                stop[0] = 1
-                pool.shutdown(wait=True, cancel_futures=True)
-                raise
+        try:
+            ended: SimpleQueue[Future[None]] = SimpleQueue()
+            for k in range(len(parts)):
+                handed_out.append(pool.submit(path, k))
+                handed_out[-1].add_done_callback(ended.put)
+            for done in range(1, len(parts) + 1):
+                _next(ended).result()
+                if progress:
+                    progress(done, len(parts))
+        finally:
+            stop[0] = 1
+            pool.shutdown(wait=False, cancel_futures=True)
+            futures.wait(handed_out, PATIENCE)
     except KeyboardInterrupt:
-        raise Interrupted(found) from None
+        raise Interrupted(list(found)) from None
     return [trajectory for trajectory in found if trajectory is not None]
 
 

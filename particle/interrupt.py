@@ -1,4 +1,4 @@
-"""Ctrl-C: heard for sure while one thread waits for others, and not at all where something must not be broken off."""
+"""Ctrl-C: heard for sure while one thread waits for others, and held back where work must not be broken off."""
 
 from __future__ import annotations
 
@@ -6,17 +6,20 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Final
+from typing import Final, TypeVar
+
+Answer = TypeVar("Answer")
 
 AWAKE: Final = 0.1  # s between looks
+_held_back: list[object] = []  # a note of each `unbroken` block that is running
 
 
 def wait(ended: Callable[[float], bool]) -> None:
-    """Wait until `ended`, which itself waits for so many seconds, says so; KeyboardInterrupt upon Ctrl-C.
+    """Wait until `ended`, which itself waits for so many seconds, is true; KeyboardInterrupt upon Ctrl-C.
 
-    An exception that a signal raises is lost where Python has nowhere to pass it on to, as in a finaliser that happens
-    to run then. So Ctrl-C only leaves a note here, and the loop looks for it. Where somebody else handles the signal,
-    or this is not the main thread, it is left to them.
+    An exception that a signal raises is lost where Python cannot pass it on, as in a finaliser that happens to run
+    then. So Ctrl-C only leaves a note here, and the loop looks for it. Where somebody else handles the signal, or this
+    is not the main thread, it is left to them.
     """
     noted = threading.Event()
     with _handled(lambda *_: noted.set(), signal.default_int_handler):
@@ -26,23 +29,56 @@ def wait(ended: Callable[[float], bool]) -> None:
         raise KeyboardInterrupt
 
 
+def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
+    """work(*arguments) on another thread, so that Ctrl-C ends the wait for it.
+
+    A signal that arrives inside a compiled kernel, or while one is compiled, would otherwise be handled late or never.
+    """
+    results: list[Answer] = []
+    errors: list[BaseException] = []
+    ended = threading.Event()
+
+    def run() -> None:
+        try:
+            results.append(work(*arguments))
+        except BaseException as error:  # raised in the caller below
+            errors.append(error)
+        finally:
+            ended.set()
+
+    threading.Thread(target=run, daemon=True).start()
+    wait(ended.wait)
+    if errors:
+        raise errors[0]
+    return results[0]
+
+
 @contextmanager
 def unbroken() -> Iterator[None]:
-    """Lets no Ctrl-C into its block, so that what was found is not lost; one that came is raised after it.
+    """Holds Ctrl-C back during its block, so that results are not lost; it is raised after the block.
 
     Does nothing on a thread that gets none, and where none is heard anyway.
     """
     noted = threading.Event()
-    # A handler, not SIG_IGN: Ctrl-C that somebody sends once more, as it was dropped, does nothing while that is set.
-    with _handled(lambda *_: noted.set()):
-        yield
+    _held_back.append(noted)
+    try:
+        # A handler, not SIG_IGN: Ctrl-C that is sent again because it was dropped does nothing while that is set.
+        with _handled(lambda *_: noted.set()):
+            yield
+    finally:
+        _held_back.remove(noted)
     if noted.is_set():
         signal.raise_signal(signal.SIGINT)
 
 
+def is_held_back() -> bool:
+    """Whether a block of `unbroken` is running."""
+    return bool(_held_back)
+
+
 @contextmanager
 def _handled(handler: Callable[..., object], instead_of: object = None) -> Iterator[None]:
-    """Has Ctrl-C handled so, on the main thread, in place of the handler given, or of any that Python can put back."""
+    """Has Ctrl-C handled so, on the main thread, in place of a given handler, or of any that Python can put back."""
     before = signal.getsignal(signal.SIGINT)
     ours = before is instead_of if instead_of else before not in (None, signal.SIG_IGN)
     if threading.current_thread() is not threading.main_thread() or not ours:

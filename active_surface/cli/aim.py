@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
@@ -10,10 +9,10 @@ from typing import Any, TypeVar
 
 import click
 
-from active_surface.cli import options
-from active_surface.cli.group import DEFAULT_OUTPUT, INTERRUPTED, Command, main, refusing
+from active_surface.cli import ctrl_c, options
+from active_surface.cli.group import DEFAULT_OUTPUT, Command, main, refusing
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 QUANTILE = click.FloatRange(min=0, max=1, min_open=True)
 
 
@@ -64,8 +63,8 @@ def aim(
 
     place = None if target is None else refusing(read_place, target, "--target")
     task = refusing(read_task, file, place, robust)
-    found = _found(find, task, output, threads, overwrite, quiet)
-    _tell(found.interrupted, report.figures(found), report.lines(found), quiet, as_json)
+    result = _search(find, task, output, threads, overwrite, quiet)
+    _print(result.interrupted, report.figures(result), report.lines(result), quiet, as_json)
 
 
 @main.command(cls=_Through)
@@ -89,13 +88,13 @@ def plan(
 
     places = [refusing(read_place, text, "--through") for text in through]
     route = refusing(read_route, file, places)
-    found = _found(find, route, output, threads, overwrite, quiet)
-    _tell(found.interrupted, report.plan_figures(found), report.plan_lines(found), quiet, as_json)
+    result = _search(find, route, output, threads, overwrite, quiet)
+    _print(result.interrupted, report.plan_figures(result), report.plan_lines(result), quiet, as_json)
 
 
-def _found(
-    find: Callable[..., Found], wanted: Any, output: Path | None, threads: int | None, overwrite: bool, quiet: bool
-) -> Found:
+def _search(
+    find: Callable[..., Result], task: Any, output: Path | None, threads: int | None, overwrite: bool, quiet: bool
+) -> Result:
     """What a search finds, with a bar meanwhile."""
     from coupling import CountBar, untold
     from coupling.results import check_folder
@@ -103,10 +102,12 @@ def _found(
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
     with nullcontext(untold) if quiet else CountBar("paths") as tell:
-        return refusing(find, wanted, folder, threads, tell, overwrite)
+        return refusing(find, task, folder, threads, tell, overwrite)
 
 
-def _tell(interrupted: bool, figures: dict[str, Any], lines: list[tuple[str, str]], quiet: bool, as_json: bool) -> None:
+def _print(
+    interrupted: bool, figures: dict[str, Any], lines: list[tuple[str, str]], quiet: bool, as_json: bool
+) -> None:
     options.tell(figures, lines, quiet, as_json)
     if interrupted:
-        sys.exit(INTERRUPTED)
+        ctrl_c.end(None)

@@ -19,6 +19,6 @@ def completion(shell: str) -> None:
     In ~/.bashrc or ~/.zshrc: eval "$(active-surface completion bash)", or zsh. For fish: active-surface completion fish
     > ~/.config/fish/completions/active-surface.fish
     """
-    found = get_completion_class(shell)
-    assert found
-    click.echo(found(main, {}, NAME, VARIABLE).source())
+    kind = get_completion_class(shell)
+    assert kind
+    click.echo(kind(main, {}, NAME, VARIABLE).source())

@@ -35,7 +35,7 @@ def feasibility(
     Writes a map of the plate, and the area where slip starts while the part stays attached over the drives' frequency:
     its largest value and its time integral. All drives keep their ratios.
     """
-    wanted = read(case)
+    parsed = read(case)
     from active_surface.studies.feasibility import feasibility as find
     from active_surface.studies.feasibility import lines, warnings
     from coupling import StageBar, silent
@@ -45,12 +45,12 @@ def feasibility(
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
     with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
-        found = refusing(find, wanted, *ends, across, bar)
-        files = refusing(found.write, folder)
-    figures = found.figures()
+        result = refusing(find, parsed, *ends, across, bar)
+        files = refusing(result.write, folder)
+    figures = result.figures()
     warned = warnings(figures)
-    told = figures | {"warnings": warned, "files": list(map(str, files))}
-    options.tell(told, lines(figures), quiet, as_json, warned, files)
+    summary = figures | {"warnings": warned, "files": list(map(str, files))}
+    options.tell(summary, lines(figures), quiet, as_json, warned, files)
 
 
 def _frequency(text: str | None, option: str) -> float | None:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import copy
+import gc
 import os
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from active_surface.cli.ctrl_c import heard_again
+from active_surface.cli import ctrl_c
 from active_surface.cli.refusal import refusal, refusal_of
 from active_surface.cli.usage import mistakes_in, unknown
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 Answer = TypeVar("Answer")
 
 DEFAULT_OUTPUT = Path("results")
-INTERRUPTED = 130  # 128 and the number of the signal
 JSON = "--json"
+GARBAGE = 100_000  # objects between collections: looking through what imports make takes a tenth of a short command
 KINDS = {"study": ("study", "sweep"), "aim": ("aim", "aim"), "case": ("plate", "run")}
 """Kinds of files: the table that only they have, and the command that takes them."""
 
@@ -33,12 +33,12 @@ class Command(click.Command):
     def make_context(
         self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
     ) -> click.Context:
-        given = list(args)
+        words = list(args)
 
         def again(params: Sequence[click.Parameter]) -> None:
             other = copy.copy(self)
             other.params = list(params)
-            click.Command.make_context(other, info_name, list(given), parent, **extra)
+            click.Command.make_context(other, info_name, list(words), parent, **extra)
 
         try:
             return super().make_context(info_name, args, parent, **extra)
@@ -46,7 +46,7 @@ class Command(click.Command):
             raise  # which shows the help
         except click.UsageError as error:
             command = " ".join([*([parent.command_path] if parent else []), info_name or ""])
-            raise refusal(command, mistakes_in(error, again), JSON in given) from None
+            raise refusal(command, mistakes_in(error, again), JSON in words) from None
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
@@ -59,6 +59,12 @@ class Group(Command, click.Group):
     """The commands: errors in one style, colours only where they are wanted, and the exit code of Ctrl-C."""
 
     command_class = Command
+
+    def main(self, args: Sequence[str] | None = None, *more: Any, **extra: Any) -> Any:
+        if args is None:  # this process is a command, not one that calls commands
+            ctrl_c.ends_soon()
+            gc.set_threshold(GARBAGE)
+        return super().main(args, *more, **extra)
 
     def make_context(self, *arguments: Any, **extra: Any) -> click.Context:
         context = super().make_context(*arguments, **extra)
@@ -74,11 +80,10 @@ class Group(Command, click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
-            with heard_again():
+            with ctrl_c.heard_again():
                 return super().invoke(ctx)
         except KeyboardInterrupt:
-            click.echo("interrupted", err=True)
-            sys.exit(INTERRUPTED)
+            ctrl_c.end()
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
@@ -95,17 +100,17 @@ def read(path: Path) -> Case:
     return refusing(read_case, path)
 
 
-def check_kind(path: Path, wanted: str) -> None:
+def check_kind(path: Path, expected: str) -> None:
     """Refuse a file of another of the KINDS, in which nearly all would be a mistake."""
     from coupling.case import load
 
     _, tables = refusing(load, path)
-    kind = next((kind for kind, (table, _) in KINDS.items() if table in tables), wanted)
-    if kind != wanted:
+    kind = next((kind for kind, (table, _) in KINDS.items() if table in tables), expected)
+    if kind != expected:
         table, command = KINDS[kind]
-        said = f"must be a {wanted}; got {path}, whose table [{table}] is for `active-surface {command}`"
+        text = f"must be a {expected}; got {path}, whose table [{table}] is for `active-surface {command}`"
         context = click.get_current_context()
-        raise refusal(context.command_path, [(wanted.upper(), said)], bool(context.params.get("as_json")))
+        raise refusal(context.command_path, [(expected.upper(), text)], bool(context.params.get("as_json")))
 
 
 def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:

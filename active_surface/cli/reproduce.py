@@ -34,10 +34,10 @@ def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: 
     with nullcontext(silent) if quiet else StageBar(len(modules)) as bar:
         done = refusing(lambda: run(figures, folder, FULL if full else QUICK, progress=bar))
     verdicts = [verdict.as_dict() for verdict in done.verdicts]
-    said = {"verdicts": verdicts, "seconds": done.seconds, "files": list(map(str, done.files))}
+    summary = {"verdicts": verdicts, "seconds": done.seconds, "files": list(map(str, done.files))}
     lines: list[tuple[str, str]] = []
     for verdict in done.verdicts:
         lines += [(f"figure {verdict.figure}", verdict.verdict), ("  the paper", verdict.statement)]
         lines += [(f"  {model}", answer.text) for model, answer in verdict.answers.items()]
     lines.append(("time", f"{done.seconds:.0f} s"))
-    options.tell(rounded(said), lines, quiet, as_json, files=done.files)
+    options.tell(rounded(summary), lines, quiet, as_json, files=done.files)

@@ -46,7 +46,7 @@ def _lines(done: Rerun) -> list[tuple[str, str]]:
     x, y = (1e6 * place for place in done.result.summary.end_position)
     same = "the same, bit for bit" if done.same_end else f"{done.moved * 1e6:.3g} um from that of the result"
     changed = [f"{name} {now} in place of {then}" for name, (then, now) in done.changed.items()]
-    partial = [("partial", "The files were not written to the end; the case and the end point are in them.")]
+    partial = [("partial", "The files lack the last steps; the case and the end point are complete.")]
     return [
         *([] if done.saved.complete else partial),
         ("end", f"({x:.4f}, {y:.4f}) um at {done.result.summary.end_time * 1e3:.4f} ms: {same}"),

@@ -22,14 +22,14 @@ STAGES = 5
 @click.option("--save-surface", is_flag=True, help="Also write the moving surface to NAME.surface.h5.")
 def run(case: Path, output: Path | None, quiet: bool, as_json: bool, csv: bool, save_surface: bool) -> None:
     """Run CASE and write its results."""
-    wanted = read(case)
+    parsed = read(case)
     from coupling import StageBar, report, run_case, silent
     from coupling.results import check_folder
 
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
     with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
-        result = refusing(run_case, wanted, folder, bar, csv, save_surface)
+        result = refusing(run_case, parsed, folder, bar, csv, save_surface)
     warnings = report.warnings(result.summary)
     figures = result.summary.as_dict() | {"warnings": warnings, "files": [str(file) for file in result.files]}
     options.tell(figures, report.lines(result.summary), quiet, as_json, warnings, result.files)

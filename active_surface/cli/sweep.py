@@ -8,8 +8,8 @@ from pathlib import Path
 
 import click
 
-from active_surface.cli import options
-from active_surface.cli.group import DEFAULT_OUTPUT, INTERRUPTED, check_kind, main, refusing
+from active_surface.cli import ctrl_c, options
+from active_surface.cli.group import DEFAULT_OUTPUT, check_kind, main, refusing
 
 
 @main.command()
@@ -46,10 +46,9 @@ def sweep(
     refusing(check_folder, folder)
     try:
         with nullcontext(untold) if quiet else CountBar("paths") as tell:
-            found = refusing(run_study, read, folder, threads, tell, scheduler, overwrite)
+            result = refusing(run_study, read, folder, threads, tell, scheduler, overwrite)
     except KeyboardInterrupt:
-        click.echo("interrupted; the same command goes on where this one stopped", err=True)
-        sys.exit(INTERRUPTED)
-    options.tell(figures(found), lines(found), quiet, as_json, found.warnings)
-    if set(found.outcomes) == {REFUSED}:
+        ctrl_c.end("interrupted; the same command goes on where this one stopped")
+    options.tell(figures(result), lines(result), quiet, as_json, result.warnings)
+    if set(result.outcomes) == {REFUSED}:
         sys.exit(1)

@@ -64,9 +64,9 @@ def _mistake(error: click.UsageError) -> Mistake:
     param = getattr(error, "param", None)
     if isinstance(error, click.MissingParameter) and param is not None:
         like = f", as in {_usage(error.ctx)}" if isinstance(param, click.Argument) and error.ctx else ""
-        return _named(param), f"is missing; it must be {_wanted(param)}{like}"
+        return _named(param), f"is missing; it must be {_expected(param)}{like}"
     if isinstance(error, click.BadParameter) and param is not None:
-        return _named(param), f"must be {_wanted(param)}; got {_got(error.message)}"
+        return _named(param), f"must be {_expected(param)}; got {_got(error.message)}"
     if isinstance(error, click.BadParameter) and isinstance(error.param_hint, str):
         return error.param_hint, error.message
     extra = re.fullmatch(r"Got unexpected extra arguments? \((.*)\)", error.message)
@@ -88,15 +88,15 @@ def _named(param: click.Parameter) -> str:
 
 def _got(message: str) -> str:
     """The value that click complains about in a message, and of a path why."""
-    found = re.match(rf"(?:\w+ )?({TEXT})(.*)|(\S+)", message)
-    assert found
-    if found[1] is None:
-        return found[3]
-    why = next((f", which{end}" for end in PATHS if found[2] == f"{end}."), "")
-    return json.dumps(ast.literal_eval(found[1]), ensure_ascii=False) + why
+    match = re.match(rf"(?:\w+ )?({TEXT})(.*)|(\S+)", message)
+    assert match
+    if match[1] is None:
+        return match[3]
+    why = next((f", which{end}" for end in PATHS if match[2] == f"{end}."), "")
+    return json.dumps(ast.literal_eval(match[1]), ensure_ascii=False) + why
 
 
-def _wanted(param: click.Parameter) -> str:
+def _expected(param: click.Parameter) -> str:
     """What a value of a parameter must be, in words."""
     kind: Any = param.type
     if isinstance(kind, click.Choice):

@@ -12,9 +12,9 @@ import numpy as np
 from active_surface.steering.paths import Paths
 from active_surface.steering.scatter import REPORTED, Scatter, disturbances
 from active_surface.steering.tables import Settings
-from coupling import build_friction, build_scene, follow_part, interruptible, run_case, warnings
+from coupling import build_friction, build_scene, follow_part, run_case, warnings
 from coupling.case import Case
-from particle import SurfaceMotion, Trajectory
+from particle import SurfaceMotion, Trajectory, interruptible
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -47,6 +47,8 @@ def prepared(case: Case) -> SurfaceMotion:
 
 def with_scatter(result: Kind, paths: Paths, target: Place, settings: Settings) -> Kind:
     """The result with its scatter about a target [m]; without it after Ctrl-C."""
+    if result.interrupted:
+        return result
     try:
         return replace(result, scatter=scattered(paths, result.case, target, settings.scatter, settings.seed))
     except KeyboardInterrupt:
@@ -55,6 +57,8 @@ def with_scatter(result: Kind, paths: Paths, target: Place, settings: Settings) 
 
 def drawn(result: Kind, draw: Callable[[Kind, Path], Path], picture: Path) -> Kind:
     """The result with its picture and the warnings of a run; without them after Ctrl-C."""
+    if result.interrupted:
+        return result
     try:
         cautions = tuple(warnings(interruptible(run_case, result.case).summary))
         result = replace(result, warnings=cautions)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 from active_surface.studies.engine import Engine
 from active_surface.studies.record import Records
 from active_surface.studies.study import versions
-from coupling import interruptible
+from particle import interruptible
 
 if TYPE_CHECKING:
     from distributed import Client, Future

@@ -67,15 +67,15 @@ def _with_heavy(path: Path) -> dict[str, bytes]:
     kept: dict[Path, str] = {}
     contents: dict[str, bytes] = {path.name: b""}
 
-    def renamed(found: re.Match[str]) -> str:
-        file = path.resolve().parent / found[2].strip()  # as meshio finds it
+    def renamed(match: re.Match[str]) -> str:
+        file = path.resolve().parent / match[2].strip()  # as meshio finds it
         if file not in kept:
             name = file.name if file.name not in contents else f"{len(kept)}.{file.name}"
             kept[file], contents[name] = name, file.read_bytes()
-        return found[1] + kept[file]
+        return match[1] + kept[file]
 
-    said = _HEAVY.sub(renamed, path.read_bytes().decode("utf-8", "surrogateescape"))
-    contents[path.name] = said.encode("utf-8", "surrogateescape")
+    text = _HEAVY.sub(renamed, path.read_bytes().decode("utf-8", "surrogateescape"))
+    contents[path.name] = text.encode("utf-8", "surrogateescape")
     return contents
 
 

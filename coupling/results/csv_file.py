@@ -48,11 +48,11 @@ def write_csv(trajectory: Trajectory, path: str | os.PathLike[str], times: Array
     """
     path = Path(path)
     check_csv(path)
-    wanted = trajectory.time if times is None else np.asarray(times, dtype=float).ravel()
-    if not np.isfinite(wanted).all():
-        raise ValueError(f"Input times of write_csv must be finite times in s; got {wanted[~np.isfinite(wanted)][0]}")
-    wanted = np.concatenate([wanted, [event.time for event in trajectory.events]])
-    samples = trajectory.at(np.unique(np.clip(wanted, trajectory.time[0], trajectory.time[-1])))
+    at = trajectory.time if times is None else np.asarray(times, dtype=float).ravel()
+    if not np.isfinite(at).all():
+        raise ValueError(f"Input times of write_csv must be finite times in s; got {at[~np.isfinite(at)][0]}")
+    at = np.concatenate([at, [event.time for event in trajectory.events]])
+    samples = trajectory.at(np.unique(np.clip(at, trajectory.time[0], trajectory.time[-1])))
     with whole_file(path) as partial:
         partial.write_text("\n".join([HEADER, *_rows(samples), ""]), encoding="utf-8")
     return path

@@ -51,7 +51,7 @@ def export_run(saved: SavedRun, folder: str | Path, form: str, tell: Tell = unto
     if form == "vtkhdf" and folder.resolve() == saved.part_path.parent.resolve():
         raise ValueError(f"Input folder of export_run must be another than that of the run's own files; got {folder}")
     folder.mkdir(parents=True, exist_ok=True)
-    frames = _told(_plate_frames(saved), tell, len(saved.time))
+    frames = _counted(_plate_frames(saved), tell, len(saved.time))
     if form == "vtkhdf":
         return _plate_anew(saved, folder, frames), _part_anew(saved, folder)
     write = write_pvd if form == "pvd" else write_xdmf
@@ -72,7 +72,7 @@ def _part_frames(saved: SavedRun) -> Iterator[Frame]:
         yield Frame(time, saved.position[k : k + 1], {name: getattr(saved, name)[k : k + 1] for name in OF_PART})
 
 
-def _told(frames: Iterator[Frame], tell: Tell, count: int) -> Iterator[Frame]:
+def _counted(frames: Iterator[Frame], tell: Tell, count: int) -> Iterator[Frame]:
     for k, frame in enumerate(frames):
         tell(k, count)
         yield frame
@@ -109,8 +109,8 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
             if place not in file:
                 file.create_dataset(place, data=array, **({"chunks": array.shape, **GZIP} if array.size > 1 else {}))
             size = " ".join(map(str, array.shape))
-            told = {"Format": "HDF", "DataType": XDMF_TYPES[array.dtype.kind], "Precision": str(array.dtype.itemsize)}
-            data = ET.SubElement(ET.SubElement(grid, element, what), "DataItem", told, Dimensions=size)
+            form = {"Format": "HDF", "DataType": XDMF_TYPES[array.dtype.kind], "Precision": str(array.dtype.itemsize)}
+            data = ET.SubElement(ET.SubElement(grid, element, what), "DataItem", form, Dimensions=size)
             data.text = f"{name}.h5:/{place}"
 
         first: NDArray | None = None

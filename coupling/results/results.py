@@ -111,15 +111,15 @@ def write_results(
 def _fields(ground: DisplaySurface, heights: FloatArray, speeds: FloatArray) -> dict[str, NDArray[np.float32]]:
     """The fields (k, n) of the surface as drawn under heights [m] and speeds [m/s] (k, N) of its drives."""
     single = np.float32
-    found = {
+    fields = {
         "deflection": ground.deflection(heights).astype(single),
         "velocity": ground.deflection(speeds).astype(single),
     }
     if ground.curvature is not None:
-        found["curvature"] = ground.curvature(heights).astype(single)
-        found["drive"] = np.zeros_like(found["curvature"])
-        found["drive"][:, : heights.shape[1]] = heights  # the actuators are the first of the points
-    return found
+        fields["curvature"] = ground.curvature(heights).astype(single)
+        fields["drive"] = np.zeros_like(fields["curvature"])
+        fields["drive"][:, : heights.shape[1]] = heights  # the actuators are the first of the points
+    return fields
 
 
 def _arrays(record: CaseRecord, trajectory: Trajectory) -> dict[str, dict[str, NDArray]]:

@@ -30,7 +30,7 @@ ENDINGS = tuple(f"{part}.{kind}{SUFFIX}" for part in ("", PARTIAL) for kind in K
 EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
 OF_PART = ("velocity", "state", "normal_force", "friction_force")
 OVER_TIME = ("time", "position", *OF_PART)
-WANTED = "Input path must be a result of `active-surface run`"
+EXPECTED = "Input path must be a result of `active-surface run`"
 UNREADABLE = (AttributeError, IndexError, KeyError, OSError, RuntimeError, TypeError, ValueError)
 """What reading raises where something is not there, or not as a run writes it."""
 
@@ -96,15 +96,15 @@ class SavedRun:
         if name not in self.plate_fields:
             known = ", ".join(self.plate_fields)
             raise ValueError(f"Input name of plate_field must be one of {known}; got {name!r}")
-        wanted = np.arange(len(self.time))[steps]
+        rows = np.arange(len(self.time))[steps]
         n = len(self.points)
         with _opened(self.plate_path) as file, _readable(self.plate_path, f"whose field {name} is damaged"):
             data = file[f"VTKHDF/PointData/{name}"]
-            found = np.empty((wanted.size, n, *data.shape[1:]), data.dtype)
-            for row, step in zip(found, np.atleast_1d(wanted).tolist(), strict=True):
+            values = np.empty((rows.size, n, *data.shape[1:]), data.dtype)
+            for row, step in zip(values, np.atleast_1d(rows).tolist(), strict=True):
                 row[...] = data[step * n : (step + 1) * n]
-            _check_finite(**{name: found})
-        return found.reshape(*wanted.shape, *found.shape[1:])
+            _check_finite(**{name: values})
+        return values.reshape(*rows.shape, *values.shape[1:])
 
 
 def read_run(path: str | os.PathLike[str]) -> SavedRun:
@@ -130,7 +130,7 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
         with _readable(path):
             k = min(int(file["VTKHDF/Steps"].attrs["NSteps"]) for file in (plate, part))
         if k == 0:
-            raise ValueError(f"{WANTED}; got {paths['part']}, to which no step was written")
+            raise ValueError(f"{EXPECTED}; got {paths['part']}, to which no step was written")
         with _readable(path):
             run = _read(plate, part, paths, k)
             _check(run, k)
@@ -191,14 +191,14 @@ def _pair(path: Path) -> dict[str, Path]:
         found[one] = [file for file in both if file.is_file()]
         if not found[one] and (kind in (None, one) or path.is_file()):
             beside = "" if kind in (None, one) else ", the other file of this run"
-            raise ValueError(f"{WANTED}; got {path}, but there is no {both[0]}{beside}")
+            raise ValueError(f"{EXPECTED}; got {path}, but there is no {both[0]}{beside}")
     for plate, part in product(*found.values()):
         if _run(plate) == _run(part):
             return {"plate": plate, "part": part}
-    raise ValueError(f"{WANTED}; got {path}, but {found['plate'][0]} and {found['part'][0]} are of different runs")
+    raise ValueError(f"{EXPECTED}; got {path}, but {found['plate'][0]} and {found['part'][0]} are of different runs")
 
 
-def _told(error: Exception) -> str:
+def _message(error: Exception) -> str:
     """What is wrong, on one line."""
     if isinstance(error, ValidationError):
         return ", ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
@@ -211,7 +211,7 @@ def _readable(path: str | os.PathLike[str], but: str = "which is damaged") -> It
     try:
         yield
     except UNREADABLE as error:
-        raise ValueError(f"{WANTED}; got {path}, {but}: {_told(error)}") from error
+        raise ValueError(f"{EXPECTED}; got {path}, {but}: {_message(error)}") from error
 
 
 def name_of(path: Path) -> str:
@@ -243,14 +243,14 @@ def _run(path: Path) -> str:
 @contextmanager
 def _opened(path: Path) -> Iterator[h5py.File]:
     if not h5py.is_hdf5(path):
-        raise ValueError(f"{WANTED}; got {path}, which is no HDF5 file")
+        raise ValueError(f"{EXPECTED}; got {path}, which is no HDF5 file")
     try:
         file = h5py.File(path, "r")
     except BlockingIOError as error:  # its writer keeps others out
-        raise ValueError(f"{WANTED}; got {path}, which is being written: its run has not ended") from error
+        raise ValueError(f"{EXPECTED}; got {path}, which is being written: its run has not ended") from error
     except OSError as error:
-        raise ValueError(f"{WANTED}; got {path}, which is damaged: {error}") from error
+        raise ValueError(f"{EXPECTED}; got {path}, which is damaged: {error}") from error
     with file:
         if "VTKHDF" not in file or "run" not in getattr(file.get("active_surface"), "attrs", ()):
-            raise ValueError(f"{WANTED}; got {path}, which is HDF5 but holds something else")
+            raise ValueError(f"{EXPECTED}; got {path}, which is HDF5 but holds something else")
         yield file

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 Metadata = Mapping[str, str | float | int]
 
-FLUSH_AFTER = 0.25  # s, of which a kill of the process can lose the steps, and those of one `append` before
+FLUSH_AFTER = 0.1  # s, of which a kill of the process can lose the steps, and those of the block before
 Filters = Mapping[str, Any]
 GZIP: Filters = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
 

@@ -60,7 +60,7 @@ class CellMaker:
         self._reach = REACH * (REACHED / self._aim) ** (1 / REACH_ORDER)
         nodes = OVERHANG * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
         self._nodes = np.stack(np.meshgrid(nodes, nodes, indexing="ij"), axis=-1).reshape(-1, 2)
-        self._inverses = {degree: np.linalg.pinv(monomials(self._nodes, degree)) for degree in DEGREES}
+        self._inverses: dict[int, FloatArray] = {}
         self.checks = np.random.default_rng(0).uniform(-1, 1, (CHECKS, 2))
 
     def make(self, cells: Sequence[Cell]) -> None:
@@ -122,6 +122,12 @@ class CellMaker:
                 clear = float(gap[k]) - OVERHANG * radius if inside[k] else 0.0
                 self._fit_one(cell, local[k], len(samples[k]), rows, values[here], clear)
 
+    def _inverse(self, degree: int) -> FloatArray:
+        """What turns values at the nodes into the polynomial that fits them best."""
+        if degree not in self._inverses:
+            self._inverses[degree] = np.asarray(np.linalg.pinv(monomials(self._nodes, degree)), np.float64)
+        return self._inverses[degree]
+
     def _fit_one(
         self, cell: Cell, local: FloatArray, samples: int, rows: IntArray, values: FloatArray, clear: float
     ) -> None:
@@ -148,7 +154,7 @@ class CellMaker:
         for degree in reversed(DEGREES):
             table = highest[:, total <= degree]
             if clear > 0:
-                fitted: FloatArray = self._inverses[degree] @ target[:samples]
+                fitted: FloatArray = self._inverse(degree) @ target[:samples]
             else:
                 fitted = np.asarray(np.linalg.lstsq(table[:samples], target[:samples], rcond=RCOND)[0])
             wrong = np.abs(table[samples:] @ fitted - target[samples:]) / self.heights[rows]

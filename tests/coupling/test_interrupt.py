@@ -7,8 +7,7 @@ import time
 import pytest
 
 from active_surface.cli.ctrl_c import SOON, heard_again
-from coupling.progress import interruptible
-from particle.interrupt import unbroken, wait
+from particle.interrupt import interruptible, unbroken, wait
 
 
 class Swallower:

@@ -46,10 +46,11 @@ def test_the_slowest_and_fastest_drive_and_stroke_are_stated_over_the_first_freq
     assert s.drives_over_first == pytest.approx((200 / s.first_frequency, 400 / s.first_frequency))
     assert s.strokes_over_first == pytest.approx((300 / s.first_frequency, 800 / s.first_frequency))
     assert s.drive_over_first == max(s.drives_over_first)
-    (said,) = [text for _, text in report.lines(s) if "drives over it" in text]
-    assert said.count(" to ") == 3 and said.endswith("{:.2g} to {:.2g}".format(*s.strokes_over_first))
+    (text,) = [text for _, text in report.lines(s) if "drive frequency" in text]
+    ranges = ["{:.2g}-{:.2g}".format(*ratios) for ratios in (s.drives_over_first, s.strokes_over_first)]
+    assert text == "drive frequency / first frequency: {}; stroke rate / first frequency: {}".format(*ranges)
     alike = replace(s, drives_over_first=(0.25, 0.25))
-    assert any("drives over it 0.25; their strokes" in text for _, text in report.lines(alike))
+    assert any("drive frequency / first frequency: 0.25; stroke rate" in text for _, text in report.lines(alike))
 
 
 def test_springs_give_and_the_residual_says_how_well_the_rest_is_held(result):
@@ -151,7 +152,7 @@ def test_long_runs_say_that_their_files_strobe():
     summary = run_case(case).summary
     assert summary.deflection_over_thickness == pytest.approx(2.0, rel=1e-6)
     assert summary.frames_per_cycle == pytest.approx(999 / 600)
-    assert any("1.7 steps to a cycle" in warning for warning in report.warnings(summary))
+    assert any("1.7 steps per cycle" in warning for warning in report.warnings(summary))
 
 
 def test_a_run_keeps_blas_on_one_thread_and_gives_the_others_back():

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from active_surface.studies.feasibility.area import ACROSS, Curves, Feasible, find_feasible, moving
-from coupling import Progress, build_drives, build_friction, build_scene, interruptible, silent, whole_file
+from coupling import Progress, build_drives, build_friction, build_scene, silent, whole_file
 from coupling.case import Case
 from meshes import Outline
-from particle import AnyDrive, Micropart
+from particle import AnyDrive, Micropart, interruptible
 from particle.drives import drive_table
 from particle.events import horizon
 

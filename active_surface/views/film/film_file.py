@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from subprocess import DEVNULL, PIPE, Popen
@@ -16,16 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image as Pictures
 
+from coupling import whole_file
+
 Image = NDArray[np.uint8]
 
 FORMATS = ("mp4", "gif", "png")
-PARTIAL, OLDER = ".partial", ".older"
 # Settings of ffmpeg: H.264 as every viewer plays it, with no loss that is seen; a GIF whose 256 colours are chosen for
 # the whole film.
 H264 = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-preset", "medium", "-movflags", "+faststart"]
 COLOURS = "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=sierra2_4a"
-ENCODERS = {".mp4": H264, ".gif": ["-filter_complex", COLOURS]}
-FASTEST_GIF, MOST_GIF = 50, 600  # frames a second, which viewers slow down above, and frames, which are all in memory
+ENCODERS = {"mp4": H264, "gif": ["-filter_complex", COLOURS]}
+MAX_GIF_FPS = 50  # viewers slow down faster films
+MAX_GIF_FRAMES = 600  # which are all in memory
 PICTURE = re.compile(r"\d{5}\.png")
 
 
@@ -42,21 +44,21 @@ class Writer(Protocol):
         """Let go of what is open; what was written will be thrown away."""
 
 
-def format_of(output: Path | None, wanted: str | None) -> str:
-    """The format that is asked for, or that of a name.
+def format_of(output: Path | None, requested: str | None) -> str:
+    """The requested format, or that of a name.
 
     Raises ValueError when there is none, or when the two differ.
     """
     ending = output.suffix.lower().removeprefix(".") if output else ""
-    if wanted not in (None, *FORMATS):
-        raise ValueError(f"Input format must be {', '.join(FORMATS)}; got {wanted!r}")
+    if requested not in (None, *FORMATS):
+        raise ValueError(f"Input format must be {', '.join(FORMATS)}; got {requested!r}")
     if ending in FORMATS:
-        if wanted not in (None, ending):
-            raise ValueError(f"Input format must be that of output; got {wanted} for {output}")
+        if requested not in (None, ending):
+            raise ValueError(f"Input format must be that of output; got {requested} for {output}")
         return ending
-    if output and wanted != "png":
+    if output and requested != "png":
         raise ValueError(f"Input output must end with {', '.join('.' + name for name in FORMATS)}; got {output}")
-    return wanted or "mp4"
+    return requested or "mp4"
 
 
 def check_film(path: Path, kind: str, size: tuple[int, int], fps: float, frames: int) -> None:
@@ -64,10 +66,10 @@ def check_film(path: Path, kind: str, size: tuple[int, int], fps: float, frames:
     mistakes = []
     if kind == "mp4" and any(side % 2 for side in size):
         mistakes.append(f"Input size must be even numbers for mp4; got {size[0]}x{size[1]}")
-    if kind == "gif" and fps > FASTEST_GIF:
-        mistakes.append(f"Input fps must be at most {FASTEST_GIF} for gif; got {fps:g}")
-    if kind == "gif" and frames > MOST_GIF:
-        mistakes.append(f"Input slow-motion must make at most {MOST_GIF} frames of a gif; got {frames}")
+    if kind == "gif" and fps > MAX_GIF_FPS:
+        mistakes.append(f"Input fps must be at most {MAX_GIF_FPS} for gif; got {fps:g}")
+    if kind == "gif" and frames > MAX_GIF_FRAMES:
+        mistakes.append(f"Input slow-motion must make at most {MAX_GIF_FRAMES} frames of a gif; got {frames}")
     if kind == "png" and path.exists() and not _ours(path):
         mistakes.append(f"Input output must be a new folder or one of frames; got {path}, which has something else")
     if kind != "png" and path.is_dir():
@@ -78,32 +80,26 @@ def check_film(path: Path, kind: str, size: tuple[int, int], fps: float, frames:
 
 @contextmanager
 def film_file(path: Path, kind: str, size: tuple[int, int], fps: float) -> Iterator[Writer]:
-    """Write a film under a partial name; it replaces `path` when the `with` block ends well, and is removed if not.
+    """Write a film that replaces `path` as a whole when the `with` block ends well.
 
     Raises RuntimeError when there is no ffmpeg, OSError when the film cannot be written.
     """
-    place = path.resolve()
-    partial = place.with_name(f"{place.stem}.{os.getpid()}{PARTIAL}{place.suffix.lower()}")
-    _remove(partial)
-    writers: dict[str, Callable[[Path, tuple[int, int], float], Writer]]
-    writers = {"mp4": _Film, "gif": _Film, "png": _Folder}
-    writer = writers[kind](partial, size, fps)
-    try:
-        yield writer
-        writer.end()
-        if kind == "png" and place.exists():
-            _replace_folder(place, partial)
-        else:
-            partial.replace(place)
-    except BaseException:
-        writer.drop()
-        _remove(partial)
-        raise
+    with whole_file(path.resolve(), replace=_replace_folder if kind == "png" else os.replace) as partial:
+        writer: Writer = _Folder(partial) if kind == "png" else _Film(partial, kind, size, fps)
+        try:
+            yield writer
+            writer.end()
+        except BaseException:
+            writer.drop()
+            raise
 
 
-def _replace_folder(path: Path, partial: Path) -> None:
-    """Put a folder of frames in place of an older one; raises OSError where that has got something else meanwhile."""
-    older = path.with_name(f"{path.name}.{os.getpid()}{OLDER}")
+def _replace_folder(partial: Path, path: Path) -> None:
+    """Put a folder of frames in place of an older one; raises OSError if others put something else there meanwhile."""
+    if not path.exists():
+        partial.replace(path)
+        return
+    older = path.with_name(f"{path.name}.{os.getpid()}.older")
     path.rename(older)
     if not _ours(older):
         older.rename(path)
@@ -119,14 +115,14 @@ def _replace_folder(path: Path, partial: Path) -> None:
 class _Film:
     """A film by ffmpeg; its path is absolute, as ffmpeg would take others for options or protocols."""
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
+    def __init__(self, path: Path, kind: str, size: tuple[int, int], fps: float) -> None:
         from imageio_ffmpeg import get_ffmpeg_exe
 
         frames = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps!r}", "-i", "-"]
-        command = [get_ffmpeg_exe(), "-y", "-v", "error", *frames, *ENCODERS[path.suffix], f"file:{path}"]
-        self._said = TemporaryFile()  # noqa: SIM115
+        command = [get_ffmpeg_exe(), "-y", "-v", "error", *frames, *ENCODERS[kind], "-f", kind, f"file:{path}"]
+        self._errors = TemporaryFile()  # noqa: SIM115
         # In a session of its own: Ctrl-C is for us, who then end it.
-        self._ffmpeg = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=self._said, start_new_session=True)
+        self._ffmpeg = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=self._errors, start_new_session=True)
 
     def add(self, image: Image) -> None:
         try:
@@ -138,18 +134,18 @@ class _Film:
         with suppress(BrokenPipeError):
             self._pipe.close()
         self._ffmpeg.wait()
-        self._said.seek(0)
-        said = self._said.read().decode(errors="replace").strip()
-        self._said.close()
+        self._errors.seek(0)
+        text = self._errors.read().decode(errors="replace").strip()
+        self._errors.close()
         if self._ffmpeg.returncode != 0:
-            raise OSError(f"ffmpeg cannot write the film: {said or f'exit code {self._ffmpeg.returncode}'}")
+            raise OSError(f"ffmpeg cannot write the film: {text or f'exit code {self._ffmpeg.returncode}'}")
 
     def drop(self) -> None:
         self._ffmpeg.kill()
         self._ffmpeg.wait()
         with suppress(BrokenPipeError):
             self._pipe.close()
-        self._said.close()
+        self._errors.close()
 
     @property
     def _pipe(self) -> IO[bytes]:
@@ -160,8 +156,8 @@ class _Film:
 class _Folder:
     """Numbered pictures."""
 
-    def __init__(self, path: Path, size: tuple[int, int], fps: float) -> None:
-        path.mkdir()
+    def __init__(self, path: Path) -> None:
+        path.mkdir(exist_ok=True)
         self._path, self._count = path, 0
 
     def add(self, image: Image) -> None:
@@ -177,10 +173,3 @@ class _Folder:
 def _ours(path: Path) -> bool:
     """Whether this is a folder that has nothing but frames."""
     return path.is_dir() and all(PICTURE.fullmatch(entry.name) for entry in path.iterdir())
-
-
-def _remove(partial: Path) -> None:
-    if _ours(partial):
-        shutil.rmtree(partial)
-    else:
-        partial.unlink(missing_ok=True)

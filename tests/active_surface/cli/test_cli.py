@@ -1,6 +1,7 @@
 """The command line: exit codes, messages, and what is left behind when a case is refused."""
 
 import json
+import os
 import re
 import signal
 import subprocess
@@ -11,10 +12,24 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from active_surface.cli import ctrl_c
 from active_surface.cli.program import main
 from fem_plate import verification
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
+LATEST = 10.0  # s after Ctrl-C that a command ends on a busy machine; on an idle one PATIENCE and EXIT
+MARCHING = """
+import sys
+import particle.simulation as simulation
+plain = simulation.find_path
+def find_path(*arguments):
+    print("marching", flush=True)
+    return plain(*arguments)
+simulation.find_path = find_path
+from active_surface.cli.program import main
+sys.argv[1:] = {words!r}
+main()
+"""
 BROKEN = """\
 [plate]
 shape = "disc"
@@ -76,9 +91,41 @@ def spied(*arguments):
     os.write(1, b"begins\\n")
     return follow(*arguments)
 run.follow_part = spied
+from active_surface.cli import ctrl_c
 from active_surface.cli.program import main
 main()
 """
+
+
+def pressed(command, cache):
+    """Ctrl-C for a command once it has printed a line: that line, exit code, output, further errors, s to its end."""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
+    command = [sys.executable, "-m", "active_surface", *map(str, command)]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, env=environment) as process:
+        line = process.stderr.readline()
+        begun = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate(timeout=60)
+        return line, process.returncode, output, errors, time.monotonic() - begun
+
+
+@pytest.mark.compiled
+@pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
+@pytest.mark.parametrize(
+    ("command", "file", "end"),
+    [
+        ("run", "two_actuators.toml", "interrupted\n"),
+        ("sweep", "studies/starts.toml", "interrupted; the same command goes on where this one stopped\n"),
+    ],
+)
+def test_ctrl_c_ends_a_command_that_compiles(command, file, end, tmp_path):
+    words = [command, EXAMPLES / file, "--output", tmp_path / "out"]
+    line, code, output, errors, seconds = pressed(words, tmp_path / "cache")
+    assert line == "Compiling the kernels (once, up to a minute)\n"
+    assert (code, output, errors) == (130, "", end) and seconds < LATEST
+    assert ctrl_c.PATIENCE + ctrl_c.EXIT < 3
+    assert not list((tmp_path / "out").glob("*.*"))
 
 
 @pytest.mark.compiled
@@ -87,13 +134,15 @@ def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
     text = (EXAMPLES / "one_actuator.toml").read_text()
     case = tmp_path / "long.toml"
     case.write_text(re.sub('duration = "[^"]*"', 'duration = "1000 s"', text))
-    command = [sys.executable, "-c", SPY, "run", str(case), "--output", str(tmp_path / "out")]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stdout.readline() == "begins\n"
-        time.sleep(1)  # so that compiled code runs
-        process.send_signal(signal.SIGINT)
-        output, errors = process.communicate(timeout=60)
-    assert (process.returncode, output, errors) == (130, "", "interrupted\n")
+    code = MARCHING.format(words=["run", str(case), "--output", str(tmp_path / "out")])
+    pipe = subprocess.PIPE
+    with subprocess.Popen([sys.executable, "-c", code], stdout=pipe, stderr=pipe, text=True) as run:
+        assert run.stdout.readline() == "marching\n"
+        run.send_signal(signal.SIGINT)
+        begun = time.monotonic()
+        output, errors = run.communicate(timeout=60)
+    assert (run.returncode, output) == (130, "") and errors.endswith("interrupted\n") and "Traceback" not in errors
+    assert time.monotonic() < begun + LATEST
     assert not (tmp_path / "out").exists()
 
 

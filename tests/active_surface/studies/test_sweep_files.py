@@ -216,6 +216,8 @@ def test_plain_xarray_knows_the_coordinates(tmp_path, sampling):
 
 def test_the_rate_of_a_resumed_sweep_leaves_out_what_was_there(monkeypatch):
     clock = [0.0]
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     counted = CountBar("paths")
     monkeypatch.setattr(counted._bar, "get_time", lambda: clock[0])
     monkeypatch.setattr(counted, "_start", lambda: None)

@@ -130,7 +130,7 @@ def test_two_processes_that_make_a_film_of_one_name_leave_each_other_alone(tmp_p
 
 
 def test_a_film_that_ffmpeg_cannot_write_is_an_error_and_leaves_nothing(tmp_path, monkeypatch):
-    monkeypatch.setitem(ENCODERS, ".mp4", ["-c:v", "no-such-codec"])
+    monkeypatch.setitem(ENCODERS, "mp4", ["-c:v", "no-such-codec"])
     wrong = pytest.raises(OSError, match="ffmpeg cannot write the film: .*no-such-codec")
     with wrong, film_file(tmp_path / "film.mp4", "mp4", SIZE, 10.0) as film:
         for _ in range(50):

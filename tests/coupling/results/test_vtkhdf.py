@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
-from coupling.results import vtkhdf
+from coupling.results import steps_file, vtkhdf
 
 N_STEPS = 20  # neither flushed by count at the end nor fewer than one flush
 TIMES = [0.1 * k**1.5 for k in range(N_STEPS)]
@@ -161,6 +161,7 @@ CHILD = """
 import sys
 sys.path[:0] = sys.argv[2:]
 from test_vtkhdf import *
+steps_file.FLUSH_AFTER = 0.0
 with vtkhdf.plate_file(sys.argv[1], "run", POINTS, TRIANGLES, {"case": "text"}) as plate, \\
         vtkhdf.part_file(sys.argv[1], "run") as part:
     for k in range(N_STEPS - 1):
@@ -179,13 +180,70 @@ def test_a_kill_leaves_partial_files_with_the_flushed_steps(tmp_path: Path) -> N
     assert child.returncode == -signal.SIGKILL
     plate, part = tmp_path / "run.partial.plate.vtkhdf", tmp_path / "run.partial.part.vtkhdf"
     assert names(tmp_path) == [part.name, plate.name]
-    flushed = (N_STEPS - 1) // vtkhdf.FLUSH_EVERY * vtkhdf.FLUSH_EVERY
     for path, assert_step in ((plate, assert_plate_step), (part, assert_part_step)):
-        assert times_in_vtk(path) == TIMES[:flushed]
-        for step in range(flushed):
+        assert times_in_vtk(path) == TIMES[:-1]
+        for step in range(N_STEPS - 1):
             assert_step(path, step)
     with h5py.File(plate) as file:
         assert file["active_surface"].attrs["case"] == "text"
+
+
+def test_steps_are_flushed_at_least_every_half_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [100.0]
+    monkeypatch.setattr(steps_file.time, "monotonic", lambda: clock[0])
+    flushed = 0.0
+    with vtkhdf.part_file(tmp_path, "run") as part:
+        for k in range(N_STEPS):
+            part.append(TIMES[k], position(k))
+            with h5py.File(tmp_path / "run.partial.part.vtkhdf") as file:
+                if file["VTKHDF/Steps"].attrs["NSteps"] == k + 1:
+                    flushed = clock[0]
+            assert clock[0] - flushed < 0.5
+            clock[0] += 0.1
+
+
+@pytest.mark.parametrize("block", [1, 3, N_STEPS])
+def test_steps_written_together_are_those_written_one_by_one(tmp_path: Path, block: int) -> None:
+    write_plate(tmp_path)
+    write_part(tmp_path)
+    steps = range(N_STEPS)
+    together = tmp_path / "together"
+    together.mkdir()
+    with (
+        vtkhdf.plate_file(together, "run", POINTS, TRIANGLES) as plate,
+        vtkhdf.part_file(together, "run") as part,
+    ):
+        for some in (steps[first : first + block] for first in range(0, N_STEPS, block)):
+            times = [TIMES[k] for k in some]
+            fields = [part_fields(k) for k in some]
+            plate.append(times, deflection=[bump(k) for k in some], gradient=[gradient(k) for k in some])
+            part.append(times, [position(k) for k in some], **{n: [one[n] for one in fields] for n in fields[0]})
+    for name in ("run.plate.vtkhdf", "run.part.vtkhdf"):
+        with h5py.File(tmp_path / name) as one, h5py.File(together / name) as other:
+            assert everything(one) == everything(other)
+
+
+def everything(file: h5py.File) -> dict[str, object]:
+    """All attributes and datasets by their places: types, shapes and bytes."""
+    found: dict[str, object] = {}
+
+    def note(name: str, what: h5py.HLObject) -> None:
+        found.update({f"{name}@{key}": np.array(value).tobytes() for key, value in what.attrs.items()})
+        if isinstance(what, h5py.Dataset):
+            found[name] = (what.dtype, what.shape, what.chunks, what[()].tobytes())
+
+    file.visititems(note)
+    return found
+
+
+@pytest.mark.parametrize("times", [[0.1, 0.3, 0.2], [0.1, 0.1], [0.1, float("nan")], [0.05, 0.2]])
+def test_a_refused_block_leaves_no_trace(tmp_path: Path, times: list[float]) -> None:
+    with vtkhdf.part_file(tmp_path, "run") as part:
+        part.append(0.05, position(0))
+        with pytest.raises(ValueError, match=r"time \S+ s is refused"):
+            part.append(times, np.zeros((len(times), 3)))
+        part.append(0.4, position(1))
+    assert times_in_vtk(tmp_path / "run.part.vtkhdf") == [0.05, 0.4]
 
 
 def test_there_are_as_many_times_as_steps_between_flushes_too(tmp_path: Path) -> None:
