@@ -35,13 +35,14 @@ CONTENTS = {  # the pages below a page, by caption
 NUMBERED = {"theory"}  # whose pages have the numbers that their equations begin with
 COPIES = {"changes": "CHANGELOG.md", "contributing": "CONTRIBUTING.md"}  # pages that show a file of the root folder
 LISTING = re.compile(r"^Source: \[`[^`]+`\]\(([^)]+)\)$", re.MULTILINE)
+LINK = re.compile(r"\[([^\]]+)\]\(([^)]+)\)")
 LANGUAGES = {".py": "python", ".geo": "c"}
 
 
 def with_directives(page: str, text: str) -> str:
     """The text of a page with the directives that only the site needs."""
     if page in COPIES:
-        return f"```{{include}} ../{COPIES[page]}\n:relative-docs: docs/\n```\n"
+        return LINK.sub(_link, (DOCS.parent / COPIES[page]).read_text())
     text = LISTING.sub(_listing, text)
     directives = REFERENCE / f"{page.removeprefix('api/')}.rst"
     if page.startswith("api/") and directives.exists():
@@ -55,6 +56,13 @@ def with_directives(page: str, text: str) -> str:
 def _listing(line: re.Match[str]) -> str:
     language = LANGUAGES[Path(line[1]).suffix]
     return f"{line[0]}\n\n```{{literalinclude}} {line[1]}\n:language: {language}\n```"
+
+
+def _link(link: re.Match[str]) -> str:
+    """A link of a file in the root folder as one of a page; what the site has no page for stays text."""
+    if "://" in link[2]:
+        return link[0]
+    return f"[{link[1]}]({link[2].removeprefix('docs/')})" if link[2].startswith("docs/") else link[1]
 
 
 def add_directives(app: Sphinx, page: str, source: list[str]) -> None:
