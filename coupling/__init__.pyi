@@ -1,5 +1,4 @@
-from .case.case import Case as Case, CaseError as CaseError, read_case as read_case
-from .case.input_error import InputError as InputError
+from .case import Case as Case, CaseError as CaseError, InputError as InputError, read_case as read_case
 from .results.csv_file import write_csv as write_csv
 from .results.saved import SavedRun as SavedRun, read_run as read_run
 from .run import Result as Result, build_surface as build_surface, run_case as run_case

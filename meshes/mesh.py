@@ -77,6 +77,11 @@ class PlateMesh:
         """Half of the longer side of the box around the plate [m]; it makes the equations dimensionless."""
         return float(np.max(np.ptp(self.points, axis=0)) / 2)
 
+    def spans(self, places: ArrayLike) -> bool:
+        """Whether places (n, 2) [m] are three or more that are not in a line."""
+        points = np.reshape(np.asarray(places, dtype=float), (-1, 2)) / self.size
+        return len(points) >= 3 and bool(np.linalg.matrix_rank(np.insert(points, 0, 1.0, axis=1), tol=1e-6) == 3)
+
     def mirrored(self, xy: ArrayLike) -> FloatArray:
         """Points (n, 2) [m] reflected at every boundary of the outline, (r, 2) [m], all off the plate."""
         return self.outline.mirrored(xy)

@@ -26,6 +26,12 @@ from .trajectory import (
 # Not public: for the packages that build on this one.
 from .compilation import compilation_heard as compilation_heard
 from .cores import processors as processors
+from .friction_input import (
+    KogutEtsionInput as KogutEtsionInput,
+    MIN_POINTS as MIN_POINTS,
+    PAPER_PLASTICITY_INDEX as PAPER_PLASTICITY_INDEX,
+    point_mistakes as point_mistakes,
+)
 from .interrupt import (
     interruptible as interruptible,
     is_held_back as is_held_back,

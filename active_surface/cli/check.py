@@ -18,34 +18,35 @@ from active_surface.cli.group import main, read, refusing
 @options.as_json
 def check(file: Path, quiet: bool, as_json: bool) -> None:
     """Report every mistake in FILE: a case, a study or an aim."""
-    from coupling.case import load
+    from coupling.case import has_known_law, parse
 
-    _, tables = refusing(load, file)
+    tables = refusing(parse, file).tables
     figures: dict[str, Any]
     if "study" in tables:
         from active_surface.studies import read_study
 
         study = refusing(read_study, file)
         figures = {"paths": len(study.points)}
-        said = f"a study of {_counted(len(study.points), 'path')}"
+        summary = f"a study of {_counted(len(study.points), 'path')}"
     elif "aim" in tables:
         from active_surface.steering import read_settings
 
         case, _, target = refusing(read_settings, file, True)
         figures = {"actuators": len(case.actuators), "target": target}
-        said = f"an aim of {case.name}, {_counted(len(case.actuators), 'actuator')}"
+        summary = f"an aim of {case.name}, {_counted(len(case.actuators), 'actuator')}"
     else:
-        wanted = read(file)
-        from coupling import build_friction
+        case = read(file)
+        if not has_known_law(case.friction):
+            from coupling import build_friction  # takes a second to load
 
-        refusing(lambda: build_friction(wanted).law)
-        count = len(wanted.actuators)
-        figures = {"actuators": count, "duration": wanted.run.duration}
-        said = f"{_counted(count, 'actuator') if count else 'a platform'}, {wanted.run.duration * 1e3:g} ms"
+            refusing(lambda: build_friction(case).law)
+        count = len(case.actuators)
+        figures = {"actuators": count, "duration": case.run.duration}
+        summary = f"{_counted(count, 'actuator') if count else 'a platform'}, {case.run.duration * 1e3:g} ms"
     if as_json:
         click.echo(json.dumps({"file": str(file), "mistakes": [], **figures}, indent=2))
     elif not quiet:
-        click.echo(f"{file}: fine; {said}")
+        click.echo(f"{file}: fine; {summary}")
 
 
 def _counted(count: int, what: str) -> str:

@@ -102,9 +102,9 @@ def read(path: Path) -> Case:
 
 def check_kind(path: Path, expected: str) -> None:
     """Refuse a file of another of the KINDS, in which nearly all would be a mistake."""
-    from coupling.case import load
+    from coupling.case import parse
 
-    _, tables = refusing(load, path)
+    tables = refusing(parse, path).tables
     kind = next((kind for kind, (table, _) in KINDS.items() if table in tables), expected)
     if kind != expected:
         table, command = KINDS[kind]

@@ -25,14 +25,14 @@ def schema(kind: str, template: bool) -> None:
 
     Editors that know TOML schemas complete fields by it and show what they mean.
     """
-    from coupling.case import schema as schemas
+    from coupling.case import json_schema
     from coupling.case import template as template_of
 
     model = _model(kind)
     if template:
         click.echo(template_of(model), nl=False)
     else:
-        click.echo(json.dumps(schemas.json_schema(model, f"A {kind} of active-surface"), indent=2, ensure_ascii=False))
+        click.echo(json.dumps(json_schema(model, f"A {kind} of active-surface"), indent=2, ensure_ascii=False))
 
 
 def _model(kind: str) -> type[Table]:

@@ -40,8 +40,8 @@ from active_surface.paper.models import CLOSED, PAPER, Bench
 from active_surface.paper.parameters import PARAMETERS, QUICK, Effort, Parameters, Place
 from active_surface.paper.share import Share, share_of
 from active_surface.paper.split import Split
+from particle import PAPER_PLASTICITY_INDEX as INDEX
 from particle import ConstantFriction, KogutEtsion
-from particle.friction import PAPER_PLASTICITY_INDEX as INDEX
 
 STARTS: Final = 20  # of our equations
 STATES_STARTS: Final = 2

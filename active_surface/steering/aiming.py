@@ -16,7 +16,7 @@ from active_surface.steering.picture import draw_aim
 from active_surface.steering.result import check_free, drawn, prepared, with_scatter
 from active_surface.steering.task import Task
 from coupling import Tell, untold
-from coupling.case import shown_length, write_case
+from coupling.case import length_text, write_case
 from particle import SurfaceMotion, unbroken
 
 
@@ -94,8 +94,8 @@ def aim_over(
                 interrupted=interrupted,
             )
             if file is not None:
-                x, y = (shown_length(place) for place in task.target)
-                said = f"The drives bring the part to ({x}, {y}), but for {shown_length(result.distance)}."
+                x, y = (length_text(place) for place in task.target)
+                said = f"The drives bring the part to ({x}, {y}), but for {length_text(result.distance)}."
                 result = replace(result, files=(write_case(case, file, said),))
     except KeyboardInterrupt:  # what was found before it stays
         if result is None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from coupling.case import Quantity, shown
+from coupling.case import Quantity, quoted
 
 LENGTH = Quantity("m", "150 um")
 
 
 def read_place(text: str, option: str) -> tuple[float, float]:
     """The place [m] in a text such as 100,-50; ValueError, naming the option, where that is none."""
-    wanted = f'{option} must be two lengths, x and y, such as 100,-50 (um) or "0.1 mm,-50 um"; got {shown(text)}'
+    wanted = f'{option} must be two lengths, x and y, such as 100,-50 (um) or "0.1 mm,-50 um"; got {quoted(text)}'
     parts = text.split(",")
     if len(parts) != 2:
         raise ValueError(wanted)

@@ -19,7 +19,7 @@ from active_surface.steering.result import check_free, drawn, prepared, with_sca
 from active_surface.steering.route import Route
 from active_surface.steering.schedule import Leg, scheduled
 from coupling import Tell, untold
-from coupling.case import Case, shown_length, write_case
+from coupling.case import Case, length_text, write_case
 from particle import SurfaceMotion, Trajectory, unbroken
 
 
@@ -174,7 +174,7 @@ class _Work:
 def _comment(result: Planned) -> str:
     """What a file of the drives begins with: how near they bring the part to each way-point, and why no farther."""
     legs = zip(result.route.through, result.distances, strict=False)
-    places = [f"({shown_length(x)}, {shown_length(y)}) but for {shown_length(off)}" for (x, y), off in legs]
+    places = [f"({length_text(x)}, {length_text(y)}) but for {length_text(off)}" for (x, y), off in legs]
     said = [f"The drives carry the part over {', '.join(places)}."] if places else []
     return "\n".join([*said, result.failure] if result.failure else said)
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from coupling.case import AnnulusCase, Case, DiscCase, EllipseCase, PlateCase, RectangleCase, shown_length
+from coupling.case import AnnulusCase, Case, DiscCase, EllipseCase, PlateCase, RectangleCase, length_text
 
 FloatArray = NDArray[np.float64]
 Direction = tuple[float, float]
@@ -33,7 +33,7 @@ def off_the_line(
         if away > tolerance:
             yield (
                 "cannot be reached: nothing moves the part, which stands in the plate's centre with the same on all "
-                f"sides, and the target is {shown_length(away)} off it"
+                f"sides, and the target is {length_text(away)} off it"
             )
         return
     for x, y in lines:
@@ -43,7 +43,7 @@ def off_the_line(
             who = "one actuator moves" if len(movers) == 1 else f"these {len(movers)} actuators move"
             yield (
                 f"cannot be reached: from this start {who} the part only along the line through the plate's centre at "
-                f"{angle:.4g} degrees from x, and the target is {shown_length(away)} off it"
+                f"{angle:.4g} degrees from x, and the target is {length_text(away)} off it"
             )
 
 

@@ -7,12 +7,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from active_surface.steering.route import Route
-from active_surface.steering.tables import TABLES, AimTable, AimTables, Settings
+from active_surface.steering.tables import AimTable, AimTables, Settings
 from active_surface.steering.task import Mistake, Task, misplaced, mistakes
-from coupling.case import UNITS_REQUIRED, Case, CaseError, adapter, find_problems, load, read_case
+from coupling.case import UNITS_REQUIRED, Case, CaseError, errors_of, parse, read_case, right_value, validate
 
 Place = tuple[float, float]
 
@@ -81,30 +79,23 @@ def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Setti
 
     aims: whether its target counts.
     """
-    text, data = load(path)
-    if "aim" not in data:
+    file = parse(path)
+    if "aim" not in file.tables:
         return read_case(path), Settings(), None
-    errors: list[Any] = []
-    table: AimTable | None = None
-    try:
-        table = AimTables.model_validate(data, context=UNITS_REQUIRED).aim
-    except ValidationError as error:
-        errors += error.errors()
-    written = data["aim"] if isinstance(data["aim"], dict) else {}
+    tables, errors = validate(AimTables, file.tables, UNITS_REQUIRED)
+    table: AimTable | None = tables.aim if tables else None
+    written = file.tables["aim"] if isinstance(file.tables["aim"], dict) else {}
     case, wrong = _case(Path(path), written)
     if case and table:
         wrong += mistakes(case, table, table.target if aims else None)
     elif case:
         # What depends on the target depends on the other keys, too, of which some are wrong.
         wrong += mistakes(case, _right(written), None)
-        place = _valid(written, "target") if aims else None
+        place = right_value(AimTable, "target", written, UNITS_REQUIRED) if aims else None
         wrong += [("target", message) for message in misplaced(case, place)] if place else []
-    for key, message in wrong:
-        context = {"error": ValueError(message)}
-        errors.append({"type": "value_error", "loc": ("aim", key), "input": None, "ctx": context})
+    errors += errors_of((("aim", key), message) for key, message in wrong)
     if errors:
-        found = ValidationError.from_exception_data("AimTables", errors)
-        raise CaseError(os.fspath(path), find_problems(found, text, data, TABLES))
+        raise file.error(errors, AimTables)
     assert case and table
     own = {key: getattr(table, key) for key in Settings.model_fields}
     return case, Settings.model_construct(**own), table.target
@@ -112,7 +103,7 @@ def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Setti
 
 def _case(path: Path, table: Mapping[str, Any]) -> tuple[Case | None, list[Mistake]]:
     """The case that an aim file names, and what is wrong with it."""
-    name = _valid(table, "case")
+    name = right_value(AimTable, "case", table, UNITS_REQUIRED)
     if name is None:
         return None, []
     try:
@@ -123,14 +114,6 @@ def _case(path: Path, table: Mapping[str, Any]) -> tuple[Case | None, list[Mista
 
 def _right(table: Mapping[str, Any]) -> Settings:
     """The settings of a table in which anything may be wrong, without what is; strokes count as given even then."""
-    valid = {key: _valid(table, key) for key in Settings.model_fields}
+    valid = {key: right_value(AimTable, key, table, UNITS_REQUIRED) for key in Settings.model_fields}
     known = {key: value for key, value in valid.items() if value is not None}
     return Settings.model_construct(**({"stroke": (0.0, 0.0)} if "stroke" in table else {}) | known)
-
-
-def _valid(table: Mapping[str, Any], key: str) -> Any:
-    """The value of a key in such a table; None where it is wrong, or there is none."""
-    try:
-        return adapter(AimTable, key).validate_python(table.get(key), context=UNITS_REQUIRED)
-    except ValidationError:
-        return None

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictFloat, StrictInt, StrictStr
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictFloat, StrictInt, StrictStr
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case import Frequency, Length, Point, Table, Time, shown
+from coupling.case import Frequency, Length, Point, Table, Time, quoted
 
 
 @dataclass(frozen=True)
@@ -18,15 +18,15 @@ class _Bounds:
     example: str
 
     @property
-    def wanted(self) -> str:
+    def expected(self) -> str:
         return f"the least and the largest value, such as {self.example}"
 
     def validate(self, value: object, handler: Any) -> object:
         if not isinstance(value, (list, tuple)) or len(value) != 2:
-            raise ValueError(f"must be {self.wanted}; got {shown(value)}")
+            raise ValueError(f"must be {self.expected}; got {quoted(value)}")
         low, high = handler(value)
         if low > high:
-            raise ValueError(f"must be {self.wanted}, in that order; got {shown(value)}")
+            raise ValueError(f"must be {self.expected}, in that order; got {quoted(value)}")
         return low, high
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -37,12 +37,12 @@ class _Bounds:
 class _Numbers:
     """Marks a tuple as numbers of actuators, each once."""
 
-    wanted = "a list of numbers of actuators, counted from 0, such as [0, 4]"
+    expected = "a list of numbers of actuators, counted from 0, such as [0, 4]"
 
     def validate(self, value: object) -> object:
         good = isinstance(value, (list, tuple)) and value and all(type(k) is int and k >= 0 for k in value)
         if not good or not isinstance(value, (list, tuple)) or len(set(value)) < len(value):
-            raise ValueError(f"must be {self.wanted}, each once; got {shown(value)}")
+            raise ValueError(f"must be {self.expected}, each once; got {quoted(value)}")
         return tuple(value)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -53,7 +53,7 @@ class _Numbers:
         return {"type": "array", "items": whole, "minItems": 1, "uniqueItems": True}
 
 
-MOST_PATHS, MOST_PATHS_DISTURBED = 10_000, 40_000
+MAX_PATHS, MAX_PATHS_DISTURBED = 10_000, 40_000
 
 Positive = Annotated[Frequency, Field(gt=0)]
 Waiting = Annotated[Time, Field(ge=0)]
@@ -89,17 +89,17 @@ class Settings(Table):
     @property
     def most(self) -> int:
         """How many paths are found at most."""
-        return self.paths or (MOST_PATHS if self.quantile is None else MOST_PATHS_DISTURBED)
+        return self.paths or (MAX_PATHS if self.quantile is None else MAX_PATHS_DISTURBED)
 
 
-class _File:
-    wanted = 'the name of a case file such as "array_3x3.toml"'
+class _FileName:
+    expected = 'the name of a case file such as "array_3x3.toml"'
 
 
 class AimTable(Settings):
     """The file of the `case`, beside this one; where the part is to go, unless that is told elsewhere; `Settings`."""
 
-    case: Annotated[StrictStr, _File()] = Field(examples=["array_3x3.toml"])
+    case: Annotated[StrictStr, _FileName()] = Field(examples=["array_3x3.toml"])
     """The case whose part is to be moved, a file beside this one."""
     target: Point | None = Field(default=None, examples=[["100 um", "-50 um"]])
     """Where the part is to go, unless the command tells it."""
@@ -108,9 +108,7 @@ class AimTable(Settings):
 class AimTables(Table):
     """All that an aim file holds."""
 
+    whole_file: ClassVar[bool] = True
+
     aim: AimTable
     """What may be varied, and how long to search."""
-
-
-TABLES: Final[dict[str, type[BaseModel]]] = {"": AimTables, "aim": AimTable}
-"""The models by the names of their tables."""

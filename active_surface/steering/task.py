@@ -21,7 +21,7 @@ from coupling.case import (
     beyond,
     gaps,
     half_size,
-    shown_length,
+    length_text,
 )
 
 FloatArray = NDArray[np.float64]
@@ -105,8 +105,8 @@ def mistakes(case: Case, settings: Settings, target: tuple[float, float] | None)
     if away <= settings.tolerance and not any(case.part.velocity):
         yield (
             "target",
-            f"must be farther from the part than the tolerance, {shown_length(settings.tolerance)}; "
-            f"got a point {shown_length(away)} from where it starts: it is there already",
+            f"must be farther from the part than the tolerance, {length_text(settings.tolerance)}; "
+            f"got a point {length_text(away)} from where it starts: it is there already",
         )
     elif not placed:
         wrong = off_the_line(case, case.plate, target, settings.tolerance, chosen)
@@ -148,8 +148,8 @@ def misplaced(case: Case, target: tuple[float, float]) -> Iterator[str]:
         yield f"must be inside the rim; got a point {beyond(gap, least, 'um')}"
     elif gap < room:
         yield (
-            f"must be at least {shown_length(room)} inside the rim, half of the part's diagonal, for the part to fit; "
-            f"got a point {shown_length(gap)} inside it"
+            f"must be at least {length_text(room)} inside the rim, half of the part's diagonal, for the part to fit; "
+            f"got a point {length_text(gap)} inside it"
         )
 
 

@@ -9,9 +9,7 @@ from typing import Any
 from active_surface.studies.axis import Axis, counted, spaced
 from active_surface.studies.field import Field, Value, find_field
 from active_surface.studies.variants import is_deep, lattice_of
-from coupling.case import WRONG, Case, Location, shown
-
-Mistake = tuple[Location, str]
+from coupling.case import WRONG, Case, Location, Mistake, quoted
 
 
 class Axes:
@@ -71,7 +69,7 @@ class Axes:
         if key == "values":
             doubled = next((value for value, count in Counter(values).items() if count > 1), None)
             if doubled is not None and self._sampling == "grid":
-                yield "values", f"must differ from each other; got {counted(shown(doubled), field.unit)} twice"
+                yield "values", f"must differ from each other; got {counted(quoted(doubled), field.unit)} twice"
             return
         if field.kind != "number":
             yield "range", f"must not be given for {field.path}, which has no values in between; list its values"
@@ -100,7 +98,7 @@ class Axes:
                     same = f"{at} is varied by the axis {other} already"
                     yield ("axes", k, "field"), f"must be varied by one axis only; {same}"
                 elif name == other:
-                    yield ("axes", k, "name"), f"must differ from that of another axis; got {shown(name)} twice"
+                    yield ("axes", k, "name"), f"must differ from that of another axis; got {quoted(name)} twice"
 
 
 def _within(field: Field, other: Field) -> set[Location]:

@@ -18,12 +18,12 @@ from coupling.case import (
     Location,
     Table,
     adapter,
+    location_text,
     message_of,
     of_kind,
     parts_of,
     quantity_of,
-    shown,
-    shown_location,
+    quoted,
 )
 
 Value = float | int | str
@@ -53,13 +53,13 @@ class Field:
         try:
             read: Any = self.reader.validate_python(value, context=UNITS_REQUIRED)
         except ValidationError as error:
-            raise ValueError("; ".join(message_of(detail, value, {}) for detail in error.errors())) from None
+            raise ValueError("; ".join(message_of(detail, value, Case) for detail in error.errors())) from None
         if self.kind == "text" and isinstance(value, str):
             return value  # also where it is read as an expression
         wanted = {"number": (int, float), "whole": (int,), "text": (str,)}[self.kind]
         if not isinstance(read, wanted):
             said = {"number": "number", "whole": "whole number", "text": "text"}[self.kind]
-            raise ValueError(f"must be one {said}; got {shown(value)}")
+            raise ValueError(f"must be one {said}; got {quoted(value)}")
         return float(read) if self.kind == "number" else read
 
 
@@ -126,7 +126,7 @@ def _inside(keys: list[str], at: Location, value: Any, annotation: Any, metadata
             raise ValueError(f"must be a field of the case; {_unknown(key, at, value)}")
         yield (*at, key), None, key, get_args(of_kind(annotation, dict))[1], []
         return
-    name = shown_location(at)
+    name = location_text(at)
     if not isinstance(value, tuple) or not value:
         has = "is not given" if value is None else "is empty" if value == () else "is a single value"
         raise ValueError(f"must be a field of the case; its {name} {has}")
@@ -149,8 +149,8 @@ def _inside(keys: list[str], at: Location, value: Any, annotation: Any, metadata
 
 def _unknown(key: str, at: Location, known: Iterable[str]) -> str:
     meant = near(key, known)
-    owner = shown_location(at) if at else "the case"
-    return f"{owner} has no {key or shown(key)}; " + (
+    owner = location_text(at) if at else "the case"
+    return f"{owner} has no {key or quoted(key)}; " + (
         f"did you mean {meant}?" if meant else f"it has {', '.join(known)}"
     )
 

@@ -8,16 +8,23 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from active_surface.studies.axes import Axes
 from active_surface.studies.points import Points
 from active_surface.studies.refusal import all_refused
 from active_surface.studies.study import Study
-from active_surface.studies.tables import MOST_PATHS, TABLES, AxisTable, StudyTable, StudyTables
-from coupling.case import UNITS_REQUIRED, WRONG, Case, CaseError, Location, find_problems, load, read_case
-
-Mistake = tuple[Location, str]
+from active_surface.studies.tables import MAX_PATHS, AxisTable, StudyTable, StudyTables
+from coupling.case import (
+    UNITS_REQUIRED,
+    WRONG,
+    Case,
+    CaseError,
+    Location,
+    Mistake,
+    errors_of,
+    parse,
+    read_case,
+    validate,
+)
 
 
 def read_study(path: str | os.PathLike[str], case: Case | None = None) -> Study:
@@ -40,23 +47,17 @@ def read_study(path: str | os.PathLike[str], case: Case | None = None) -> Study:
     CaseError
         The file cannot be read or has mistakes; has every one.
     """
-    text, data = load(path)
-    errors: list[Any] = []
-    threshold = None
-    try:
-        threshold = StudyTables.model_validate(data, context=UNITS_REQUIRED).map.threshold
-    except ValidationError as error:
-        errors += error.errors()
-    study, mistakes = _study(Path(path), text, data, case)
+    file = parse(path)
+    tables, errors = validate(StudyTables, file.tables, UNITS_REQUIRED)
+    threshold = tables.map.threshold if tables else None
+    study, mistakes = _study(Path(path), file.text, file.tables, case)
     if study and threshold and (message := _undrawn(study.points)):
         mistakes.append((("map", "threshold"), message))
     if study and not errors and not mistakes and (message := all_refused(study)):
         mistakes = [(("axes",), message)]
-    for location, message in mistakes:
-        errors.append({"type": "value_error", "loc": location, "input": None, "ctx": {"error": ValueError(message)}})
+    errors += errors_of(mistakes)
     if errors:
-        found = ValidationError.from_exception_data("StudyTables", errors)
-        raise CaseError(os.fspath(path), find_problems(found, text, data, TABLES))
+        raise file.error(errors, StudyTables)
     assert study
     return replace(study, threshold=threshold)
 
@@ -84,8 +85,8 @@ def _study(path: Path, text: str, data: Mapping[str, Any], case: Case | None) ->
         given["jitter"],
         given["seed"],
     )
-    if len(points) > MOST_PATHS:
-        mistakes.append((("axes",), f"must make at most {MOST_PATHS} paths; got {len(points)}"))
+    if len(points) > MAX_PATHS:
+        mistakes.append((("axes",), f"must make at most {MAX_PATHS} paths; got {len(points)}"))
     return Study(case, points, path.stem, text), mistakes
 
 

@@ -12,18 +12,18 @@ from active_surface.studies.study import Study
 from active_surface.studies.variants import Variants
 from coupling import friction_law
 from coupling.case import (
-    LACKS_DEFAULT,
     SAME_PLACE,
-    TABLES,
     Case,
+    CaseTables,
     FrictionCase,
     PlateCase,
     beyond,
     gaps,
     half_size,
     in_file,
+    location_text,
     message_of,
-    shown_location,
+    mistakes_in,
 )
 from particle.friction import Contact
 
@@ -60,8 +60,10 @@ def refusals(study: Study, variants: Variants, k: int) -> list[str]:
 
 def mistakes_of(error: ValidationError) -> list[str]:
     """What is wrong with the tables of a case."""
-    details = [detail for detail in error.errors() if detail["type"] != LACKS_DEFAULT]
-    return [f"{shown_location(in_file(detail))} {message_of(detail, detail['input'], TABLES)}" for detail in details]
+    return [
+        f"{location_text(in_file(detail, CaseTables))} {message_of(detail, detail['input'], CaseTables)}"
+        for detail in mistakes_in(error.errors())
+    ]
 
 
 @lru_cache(LAWS)

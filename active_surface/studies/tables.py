@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BaseModel, BeforeValidator, Field, PlainValidator, StrictInt, StrictStr, WithJsonSchema
+from pydantic import BeforeValidator, Field, PlainValidator, StrictInt, StrictStr, WithJsonSchema
 
 from active_surface.studies.points import Sampling
 from active_surface.studies.record import COLUMNS
 from active_surface.studies.threshold import Threshold, read_threshold
-from coupling.case import WRONG, Contradictions, KeyedTable, Length, Table, shown
+from coupling.case import WRONG, Contradictions, KeyedTable, Length, Table, quoted
 
-MOST_PATHS, MOST_VALUES = 1_000_000_000, 1_000_000
+MAX_PATHS, MAX_VALUES = 1_000_000_000, 1_000_000
 
 
 TAKEN = ("point", "repeat", *COLUMNS)
@@ -22,39 +22,39 @@ TAKEN = ("point", "repeat", *COLUMNS)
 
 def _several(value: object) -> object:
     if not isinstance(value, list) or not value:
-        raise ValueError(f'must be a list of values such as ["300 Hz", "400 Hz"]; got {shown(value)}')
+        raise ValueError(f'must be a list of values such as ["300 Hz", "400 Hz"]; got {quoted(value)}')
     return value
 
 
 def _two(value: object) -> object:
     if not isinstance(value, list) or len(value) != 2:
-        raise ValueError(f'must be the first and the last value, such as ["200 Hz", "600 Hz"]; got {shown(value)}')
+        raise ValueError(f'must be the first and the last value, such as ["200 Hz", "600 Hz"]; got {quoted(value)}')
     return value
 
 
-class _File:
-    wanted = 'the name of a case file such as "two_actuators.toml"'
+class _FileName:
+    expected = 'the name of a case file such as "two_actuators.toml"'
 
 
-class _Path:
-    wanted = 'the path of a field such as "actuators.0.frequency"'
+class _FieldPath:
+    expected = 'the path of a field such as "actuators.0.frequency"'
 
 
 def _name(value: object) -> object:
     if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z][\w.*-]*", value) or value in TAKEN:
         rule = "a letter, followed by letters, digits or any of _ . * -, and none of the results' own names"
-        raise ValueError(f"must be {rule}; got {shown(value)}")
+        raise ValueError(f"must be {rule}; got {quoted(value)}")
     return value
 
 
 class StudyTable(KeyedTable):
     """What is swept, and how points are chosen; jitter in m."""
 
-    case: Annotated[StrictStr, _File()] = Field(examples=["one_actuator.toml"])
+    case: Annotated[StrictStr, _FileName()] = Field(examples=["one_actuator.toml"])
     """The base case, a file beside the study's."""
     sampling: Sampling = "grid"
     """How points are chosen: all of a grid, one for each entry of lists, or drawn."""
-    points: StrictInt | None = Field(default=None, ge=1, le=MOST_PATHS, examples=[1000])
+    points: StrictInt | None = Field(default=None, ge=1, le=MAX_PATHS, examples=[1000])
     """How many, of random and Sobol ones."""
     repeats: StrictInt = Field(default=1, ge=1, le=1_000_000, examples=[10])
     """How many paths there are of each point."""
@@ -77,7 +77,7 @@ class StudyTable(KeyedTable):
 class AxisTable(KeyedTable):
     """An axis: the path of a `field` of the case, and its `values`, or their `range` and `count`."""
 
-    field: Annotated[StrictStr, _Path()] = Field(examples=["actuators.*.frequency"])
+    field: Annotated[StrictStr, _FieldPath()] = Field(examples=["actuators.*.frequency"])
     """The field of the case that is varied; * stands for every actuator."""
     name: Annotated[str, BeforeValidator(_name)] | None = Field(default=None, examples=["frequency"])
     """The axis's name in the results; without it the field's."""
@@ -89,7 +89,7 @@ class AxisTable(KeyedTable):
         default=None, examples=[["200 Hz", "600 Hz"]]
     )
     """In place of values: the first and the last."""
-    count: StrictInt | None = Field(default=None, ge=1, le=MOST_VALUES, examples=[41])
+    count: StrictInt | None = Field(default=None, ge=1, le=MAX_VALUES, examples=[41])
     """How many values a range has."""
     spacing: Literal["linear", "logarithmic"] = "linear"
     """How those of a range lie."""
@@ -117,13 +117,11 @@ class MapTable(Table):
 class StudyTables(Table):
     """All that a study file holds."""
 
+    whole_file: ClassVar[bool] = True
+
     study: StudyTable
     """What is swept, and how."""
     axes: tuple[AxisTable, ...]
     """The axes, one table each."""
     map: MapTable = MapTable()
     """The picture."""
-
-
-TABLES: dict[str, type[BaseModel]] = {"": StudyTables, "study": StudyTable, "axes": AxisTable, "map": MapTable}
-"""The models by the names of their tables."""

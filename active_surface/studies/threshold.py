@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.studies.record import COLUMNS, OUTCOMES, REFUSED
-from coupling.case import Quantity, shown
+from coupling.case import Quantity, quoted
 
 if TYPE_CHECKING:
     import xarray
@@ -46,13 +46,13 @@ def read_threshold(text: object) -> Threshold:
     """The condition in a text; raises ValueError with what is wrong with it."""
     match = re.fullmatch(r"\s*(\w+)\s*([<>=])\s*(\S.*?)\s*", text) if isinstance(text, str) else None
     if match is None:
-        raise ValueError(f"must be {EXPECTED}; got {shown(text)}")
+        raise ValueError(f"must be {EXPECTED}; got {quoted(text)}")
     column, sign, value = match.groups()
     condition = f"{column} {sign} {value}"
     if column not in COLUMNS:
         raise ValueError(f"must be {EXPECTED}; the results have no {column}, but {_named(column, COLUMNS)}")
     if (sign == "=") != (column == "outcome"):
-        raise ValueError(f"must have < or > for a figure, and = for the outcome; got {shown(text)}")
+        raise ValueError(f"must have < or > for a figure, and = for the outcome; got {quoted(text)}")
     if column == "outcome":
         if value not in OUTCOMES:
             raise ValueError(f"must be {EXPECTED}; there is no outcome {value}, but {_named(value, OUTCOMES)}")
@@ -61,7 +61,7 @@ def read_threshold(text: object) -> Threshold:
     if unit in EXAMPLES:
         return Threshold(column, sign, Quantity(unit, EXAMPLES[unit]).parse(value), condition)
     if not re.fullmatch(r"[+-]?\d+(\.\d*)?(e[+-]?\d{1,2})?", value, re.IGNORECASE):
-        raise ValueError(f"must compare {column} with a number; got {shown(value)}")
+        raise ValueError(f"must compare {column} with a number; got {quoted(value)}")
     return Threshold(column, sign, float(value), condition)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from active_surface.studies import ENDING
-from coupling.case import load, read_case
+from coupling.case import parse, read_case
 from coupling.results import ENDINGS, SavedRun, is_run, name_of, record_of
 
 
@@ -42,7 +42,7 @@ def is_of(run: SavedRun, path: Path) -> bool:
 
 
 def _of_file(path: Path, folder: Path) -> Found:
-    _, tables = load(path)
+    tables = parse(path).tables
     wanted = f"a result, or a file whose result is in {folder} or beside it"
     if "aim" in tables:
         its = "whose table [aim] is for `active-surface aim`: name the result of the case file that this writes"

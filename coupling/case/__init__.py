@@ -1,30 +1,39 @@
 """The case: what one run simulates, as a TOML file or in Python."""
 
-from coupling.case import schema
-from coupling.case.annotations import of_kind, parts_of, quantity_of
-from coupling.case.case import (
-    TABLES,
+from coupling.case.case import Case, read_case
+from coupling.case.drive import ENDLESS, ActuatorCase, DriveCase, SegmentCase, amplitude
+from coupling.case.friction import (
     AnyFriction,
-    Case,
-    CaseError,
-    CaseTables,
     ConstantCase,
     CoulombCase,
     FrictionCase,
     KogutEtsionCase,
-    PartCase,
-    RunCase,
     TableCase,
-    read_case,
+    has_known_law,
 )
-from coupling.case.drive import ENDLESS, ActuatorCase, DriveCase, SegmentCase, amplitude
-from coupling.case.keyed_table import WRONG, Contradictions, KeyedTable, adapter
 from coupling.case.lattice import LatticeCase
 from coupling.case.lattice_places import SAME_PLACE, beyond, gaps, half_size
-from coupling.case.lines import LACKS_DEFAULT, Location, find_problems, in_file, load, message_of, shown_location
-from coupling.case.plate import AnnulusCase, DiscCase, EllipseCase, MeshCase, PlateCase, RectangleCase
-from coupling.case.platform import AXES, MotionCase, PlatformCase
-from coupling.case.table import Table
+from coupling.case.messages import InputError, Location, Mistake, in_file, location_text, message_of, mistakes_in
+from coupling.case.plate import AnnulusCase, DiscCase, EllipseCase, MeshCase, PlateCase, PolygonCase, RectangleCase
+from coupling.case.platform import MotionCase, PlatformCase
+from coupling.case.schema import json_schema
+from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, adapter, errors_of, right_value, validate
+from coupling.case.tables import CaseTables, PartCase, RunCase
 from coupling.case.templates import template
 from coupling.case.text import write_case
-from coupling.case.units import UNITS_REQUIRED, Directed, Frequency, Length, Point, Quantity, Time, shown, shown_length
+from coupling.case.toml_file import CaseError, Problem, parse
+from coupling.case.values import (
+    AXES,
+    UNITS_REQUIRED,
+    Directed,
+    Frequency,
+    Length,
+    Point,
+    Quantity,
+    Time,
+    length_text,
+    of_kind,
+    parts_of,
+    quantity_of,
+    quoted,
+)

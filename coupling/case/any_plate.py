@@ -1,15 +1,14 @@
-"""What a case may have for a plate: the plates of `plate_case`, or a platform."""
+"""What a case may have for a plate: one of the plates, or a platform."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import ConfigDict, Discriminator, GetJsonSchemaHandler, Tag, ValidationError
+from pydantic import ConfigDict, Discriminator, GetJsonSchemaHandler, Tag
 from pydantic_core import CoreSchema
 
 from coupling.case.plate import (
-    ONE_SUPPORT,
-    SUPPORT_OF_EACH,
     AnnulusCase,
     DiscCase,
     EllipseCase,
@@ -19,14 +18,15 @@ from coupling.case.plate import (
     RectangleCase,
     ShapeCase,
 )
-from coupling.case.platform import BY_DRIVES, FROM_FILE, PlatformCase
+from coupling.case.platform import PlatformCase
+from coupling.case.table import adapter
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
 
 
-class _Wanted:
-    wanted = (
+class _Shape:
+    expected = (
         '"disc", "rectangle", "annulus", "ellipse", "polygon" or "platform", or have mesh = "file.msh" in its place'
     )
 
@@ -36,7 +36,7 @@ class ShapelessCase(PlateCase):
 
     model_config = ConfigDict(extra="ignore")
 
-    shape: Annotated[Literal["disc", "rectangle", "annulus", "ellipse", "polygon", "platform"], _Wanted()]
+    shape: Annotated[Literal["disc", "rectangle", "annulus", "ellipse", "polygon", "platform"], _Shape()]
     """Which of these it is."""
 
     @classmethod
@@ -70,9 +70,6 @@ def kind(plate: Any) -> str:
     return "a mesh" if "mesh" in keys and "shape" not in keys else "no shape"
 
 
-TAGS: Final = frozenset({*PLATES, ONE_SUPPORT, SUPPORT_OF_EACH, FROM_FILE, BY_DRIVES})
-"""What validation puts into the location of a mistake, but is no key of the file."""
-
 AnyPlate = Annotated[
     Annotated[DiscCase, Tag('shape = "disc"')]
     | Annotated[RectangleCase, Tag('shape = "rectangle"')]
@@ -85,20 +82,18 @@ AnyPlate = Annotated[
     Discriminator(kind),
 ]
 
-_ANY_MATERIAL = {"youngs_modulus": "1 Pa", "poisson_ratio": 0.3, "thickness": "1 m"}
 
+def outline_of(plate: Any, wrong_keys: Collection[Any], context: Any) -> PlateCase | None:
+    """The plate as far as its outline goes, or None where that is wrong or there is a platform.
 
-def outline_of(plate: Any, context: Any) -> PlateCase | None:
-    """The plate as far as its outline goes, whatever else is wrong; None where that is wrong too, and of a platform."""
+    plate: a model, or a table of which `wrong_keys` are not valid.
+    """
     if not isinstance(plate, dict):
         return plate if isinstance(plate, PlateCase) else None
     model = PLATES[kind(plate)]
-    if not issubclass(model, PlateCase):
+    own = model.model_fields.keys() - ShapeCase.model_fields.keys()
+    if not issubclass(model, PlateCase) or not own.isdisjoint(wrong_keys):
         return None
-    own = {
-        key: value for key, value in plate.items() if key in model.model_fields.keys() - ShapeCase.model_fields.keys()
-    }
-    try:
-        return model.model_validate(own | _ANY_MATERIAL, context=context)
-    except ValidationError:
-        return None
+    return model.model_construct(
+        **{key: adapter(model, key).validate_python(plate[key], context=context) for key in own & plate.keys()}
+    )

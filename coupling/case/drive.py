@@ -10,24 +10,23 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictInt
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case import units
-from coupling.case.keyed_table import WRONG, Contradictions, KeyedTable
-from coupling.case.units import Length, Point, shown
+from coupling.case.table import WRONG, Contradictions, KeyedTable
+from coupling.case.values import Force, Frequency, Length, Point, Stiffness, Time, quoted
 
 ENDLESS: Final = "endless"
-CLOSEST: Final = 1e-12  # of the whole time: points of a table must be further apart
+MIN_SPACING: Final = 1e-12  # of points of a table, over its whole time
 
 
 @dataclass(frozen=True)
 class _Passes:
     """Marks how often a table or schedule is run through."""
 
-    wanted = f'a whole number of at least 1, or "{ENDLESS}"'
+    expected = f'a whole number of at least 1, or "{ENDLESS}"'
 
     def validate(self, value: object) -> object:
         if value == ENDLESS or (isinstance(value, int) and not isinstance(value, bool) and value >= 1):
             return value
-        raise ValueError(f"must be {self.wanted}; got {shown(value)}")
+        raise ValueError(f"must be {self.expected}; got {quoted(value)}")
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.validate)
@@ -40,18 +39,21 @@ class _Passes:
 class _Points:
     """Marks a tuple as points in time: at each a time and a height, the times increasing from 0."""
 
-    wanted = 'two or more points, each a time and a height, such as [["0 ms", "0 um"], ["1 ms", "50 um"]]'
+    expected = 'two or more points, each a time and a height, such as [["0 ms", "0 um"], ["1 ms", "50 um"]]'
 
     def validate(self, value: object, handler: Any) -> object:
         if not isinstance(value, (list, tuple)) or len(value) < 2 or not all(map(_is_pair, value)):
-            raise ValueError(f"must be {self.wanted}; got {shown(value)}")
+            raise ValueError(f"must be {self.expected}; got {quoted(value)}")
         points = handler(value)
         times = [time for time, _ in points]
         if times[0] != 0:
-            raise ValueError(f"must begin at the time 0; got {shown(value[0][0])}; a delay is a key of its own")
+            raise ValueError(f"must begin at the time 0; got {quoted(value[0][0])}; a delay is a key of its own")
+        closest = MIN_SPACING * max(times)
         for k in range(1, len(times)):
-            if times[k] - times[k - 1] <= CLOSEST * max(times):
-                raise ValueError(f"must have increasing times; got {shown(value[k][0])} after {shown(value[k - 1][0])}")
+            if times[k] - times[k - 1] <= closest:
+                raise ValueError(
+                    f"must have increasing times; got {quoted(value[k][0])} after {quoted(value[k - 1][0])}"
+                )
         return points
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -63,7 +65,7 @@ def _is_pair(value: object) -> bool:
 
 
 Cycle = Literal["up-down", "up", "sine", "cosine"]
-Points = Annotated[tuple[tuple[units.Time, Length], ...], _Points()]
+Points = Annotated[tuple[tuple[Time, Length], ...], _Points()]
 Repeats = Annotated[int | Literal["endless"], _Passes()]
 
 
@@ -72,13 +74,13 @@ class SegmentCase(KeyedTable):
 
     stroke: Length | None = Field(default=None, examples=["50 um"])
     """How far it rises from where it is; negative: down. Not with "hold"."""
-    frequency: units.Frequency | None = Field(default=None, gt=0)
+    frequency: Frequency | None = Field(default=None, gt=0)
     """A stroke takes half of one over this, with "up" all of it. Not with "hold"."""
     cycle: Literal["up-down", "up", "hold"] = "up-down"
     """Up and down again, up to stay, or a wait of one dwell."""
     cycles: StrictInt = Field(default=1, ge=1, le=1_000_000)
     """How often; several of "up" climb on."""
-    dwell: units.Time = Field(default=0.0, ge=0)
+    dwell: Time = Field(default=0.0, ge=0)
     """The rest after each stroke; with "hold" how long it waits."""
 
     @classmethod
@@ -157,13 +159,13 @@ class DriveCase(Driven):
 
     stroke: Length | None = Field(default=None, examples=["50 um"])
     """How far it rises; 0: it only holds the plate; negative: down."""
-    frequency: units.Frequency | None = Field(default=None, gt=0)
+    frequency: Frequency | None = Field(default=None, gt=0)
     """One cycle takes one over this, and the dwells."""
     cycle: Cycle = "up-down"
     """Up in the first half and down in the second; up once and held; or sines."""
     cycles: StrictInt | None = Field(default=None, ge=1, examples=[5])
     """How many cycles there are, after which it rests at 0; without it they do not end."""
-    dwell: units.Time = Field(default=0.0, ge=0)
+    dwell: Time = Field(default=0.0, ge=0)
     """The rest after each stroke, up and down."""
     table: Points | None = Field(default=None, examples=[[["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "20 um"]]])
     """In place of a stroke: heights at given times, with a smooth stroke from each to the next."""
@@ -171,16 +173,16 @@ class DriveCase(Driven):
     """In place of a stroke: a schedule, one table after the other."""
     repeats: Repeats = 1
     """How often a table or schedule comes."""
-    delay: units.Time = Field(default=0.0, ge=0)
+    delay: Time = Field(default=0.0, ge=0)
     """The rest before all this."""
 
 
 class _Place(KeyedTable):
     position: Point = Field(examples=[["0 um", "0 um"]])
     """Where it stands, inside the rim."""
-    force: units.Force | None = Field(default=None, examples=["1 mN"])
+    force: Force | None = Field(default=None, examples=["1 mN"])
     """In place of a stroke: it floats and pushes with this force; negative: it pulls."""
-    stiffness: units.Stiffness | None = Field(default=None, gt=0)
+    stiffness: Stiffness | None = Field(default=None, gt=0)
     """That of a spring between actuator and plate; without it there is none. Not with a force."""
 
 

@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, NamedTuple
 
 from pydantic import BeforeValidator, TypeAdapter, ValidationError
 
-from coupling.case.csv_columns import unreadable
-from coupling.case.units import Force, Quantity, shown
-
-Location = tuple[int | str, ...]
-Mistakes = list[tuple[Location, str]]
+from coupling.case.messages import Mistake
+from coupling.case.values import Force, Quantity, by_line, name_and_unit, quoted, read_rows, unreadable
+from particle import MIN_POINTS, point_mistakes
 
 EXAMPLE: Final = '["-1 uN", "0 N", "5 uN"]'
 HEADER: Final = "load [uN], limit [nN]"
 FORCE: Final = Quantity("N", "2 uN")
 COLUMNS: Final = {"loads": "load", "limits": "limit"}
 
+Points = Mapping[str, tuple[float, ...]]
+"""The `loads` and `limits` of a law [N]."""
+
 
 def _several(value: object) -> object:
     if not isinstance(value, (list, tuple)):
-        raise ValueError(f"must be a list of forces such as {EXAMPLE}; got {shown(value)}")
+        raise ValueError(f"must be a list of forces such as {EXAMPLE}; got {quoted(value)}")
     return value
 
 
@@ -31,86 +31,95 @@ Forces = Annotated[tuple[Force, ...], BeforeValidator(_several)]
 _forces: Final = TypeAdapter(Forces)
 
 
-def of_table(table: Mapping[str, Any], context: Mapping[str, Any]) -> tuple[dict[str, Any], Mistakes]:
-    """The `loads` and `limits` [N] that a file gives a friction table, and what is wrong with its points.
+def mistakes(table: Mapping[str, Any], context: Any) -> Iterator[Mistake]:
+    """Yield what is wrong with the points in a table, beyond each of its fields by itself.
 
-    What the validation of each field finds is left to that. `context` is that of the validation.
+    context: of the validation.
     """
-    file = table.get("file")
-    if file is None:
-        return {}, list(_given(table, context))
-    mistakes: Mistakes = [
-        ((name,), "must not be given with a file, which holds the points") for name in COLUMNS if name in table
-    ]
-    if not isinstance(file, str):
-        return {}, mistakes
-    points, wrong = _read(Path(context.get("folder", ""), file))
-    where = f"in {Path(file).name}: "
-    told = [message if message.startswith("must be a file") else where + message for message in wrong]
-    return points | {"file": None}, mistakes + [(("file",), message) for message in told]
-
-
-def _given(table: Mapping[str, Any], context: Mapping[str, Any]) -> Iterator[tuple[Location, str]]:
-    """What is wrong with points in the case file itself."""
-    from particle.friction import FEWEST, mistakes  # here, because loading it takes longer than reading a case
-
+    if table.get("file") is not None:
+        yield from (
+            ((name,), "must not be given with a file, which holds the points") for name in COLUMNS if name in table
+        )
+        return
     if table.get("loads") is None:
         yield ("loads",), f'is missing; it must be forces such as {EXAMPLE}, or have file = "friction.csv" in its place'
     elif table.get("limits") is None:
         yield ("limits",), "is missing; it must be as many forces as the loads"
     values = {name: _valid(table.get(name), context) for name in COLUMNS}
     loads, limits = values["loads"], values["limits"]
-    # For one that is wrong or missing stands one that fits the other.
-    length = max(len(loads or limits or ()), FEWEST)
-    whole = loads is not None and limits is not None
-    for name, point, message in mistakes(
+    # In place of those that are wrong or missing stand some that fit the others.
+    length = max(len(loads or limits or ()), MIN_POINTS)
+    both = loads is not None and limits is not None
+    for name, point, message in point_mistakes(
         range(-1, length - 1) if loads is None else loads, [0.0] * length if limits is None else limits
     ):
-        if values[name] is not None and (whole or point is not None):
+        if values[name] is not None and (both or point is not None):
             yield (name,) if point is None else (name, point), message
 
 
-def _valid(value: Any, context: Mapping[str, Any]) -> tuple[float, ...] | None:
+def _valid(value: Any, context: Any) -> tuple[float, ...] | None:
     try:
-        return _forces.validate_python(value, context=dict(context))
+        return _forces.validate_python(value, context=context)
     except ValidationError:
         return None
 
 
-def _read(path: Path) -> tuple[dict[str, Any], list[str]]:
-    """The points of a file and what is wrong with it, by its lines.
+class PointsFile(NamedTuple):
+    """What a file of points holds."""
+
+    points: Points
+    mistakes: list[str]
+
+
+def read_points(path: Path) -> PointsFile:
+    """The points of a CSV file and what is wrong with it, by its lines.
 
     Below a header that names the columns and their units there is a line for each point. Columns of other names, empty
     lines and lines that begin with # are left out.
     """
-    from particle.friction import mistakes
-
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        return {}, ["is not UTF-8 text"]
+        read = read_rows(path, HEADER)
     except (OSError, ValueError) as error:
-        return {}, [unreadable(path.name, error)]
-    rows = [
-        (number, [cell.strip() for cell in line.split(",")])
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not rows:
-        return {}, [f'is empty; it must begin with a header such as "{HEADER}"']
-    (number, header), *rows = rows
-    units, unnamed = _units(header)
-    if unnamed:
-        return {}, [f"line {number} {message}" for message in unnamed]
-    wrong: list[tuple[int, str]] = []
+        return PointsFile({}, [unreadable(path.name, error)])
+    points: Points = {}
+    if isinstance(read, str):
+        wrong = [read]
+    else:
+        columns, wrong = _columns(read.header)
+        wrong = [f"line {read.header_line} {message}" for message in wrong]
+        if not wrong:
+            points, wrong = _points(columns, read.rows, read.mistakes)
+    return PointsFile(points, [f"in {path.name}: {message}" for message in wrong])
+
+
+def _columns(header: list[str]) -> tuple[dict[str, tuple[int, str]], list[str]]:
+    """The place and the unit of each column, and what is wrong with the header."""
+    columns, wrong = {}, []
+    cells = [name_and_unit(cell) for cell in header]
+    for name, column in COLUMNS.items():
+        matches = [(k, unit) for k, (other, unit) in enumerate(cells) if other == column and unit is not None]
+        if len(matches) != 1:
+            named = f'column "{column}" and its unit, as in "{HEADER}"'
+            wrong.append(f"must name one {named}; got {quoted(', '.join(header))}")
+            continue
+        columns[name] = matches[0]
+        try:
+            FORCE.parse(f"1 {matches[0][1]}")
+        except ValueError:
+            wrong.append(f"must give the {column} in a unit of force, such as uN; got [{matches[0][1]}]")
+    return columns, wrong
+
+
+def _points(
+    columns: Mapping[str, tuple[int, str]], rows: list[tuple[int, list[str]]], uneven: list[tuple[int, str]]
+) -> tuple[Points, list[str]]:
+    """The points in rows, and what is wrong with them and with other lines."""
+    wrong = list(uneven)
     points: dict[str, list[float]] = {name: [] for name in COLUMNS}
     lines = []
     for number, cells in rows:
-        if len(cells) != len(header):
-            wrong.append((number, f"must have {len(header)} columns; got {len(cells)}"))
-            continue
         values = {}
-        for name, (k, unit) in units.items():
+        for name, (k, unit) in columns.items():
             try:
                 values[name] = FORCE.parse(f"{cells[k]} {unit}")
             except ValueError as error:
@@ -119,28 +128,9 @@ def _read(path: Path) -> tuple[dict[str, Any], list[str]]:
             lines.append(number)
             for name, value in values.items():
                 points[name].append(value)
-    for name, point, message in mistakes(points["loads"], points["limits"]):
+    for name, point, message in point_mistakes(points["loads"], points["limits"]):
         if point is not None:
             wrong.append((lines[point], f"{COLUMNS[name]} {message}"))
         elif not wrong:
             return {}, [f"has too few points; {name} {message}"]
-    by_line = [f"line {number} {message}" for number, message in sorted(wrong, key=lambda one: one[0])]
-    return {name: tuple(values) for name, values in points.items()}, by_line
-
-
-def _units(header: list[str]) -> tuple[dict[str, tuple[int, str]], list[str]]:
-    """The place and the unit of each column, and what is wrong with the header."""
-    units, wrong = {}, []
-    for name, column in COLUMNS.items():
-        matches = [re.fullmatch(rf"{column}\s*\[(.*)\]", cell) for cell in header]
-        found = [(k, match[1]) for k, match in enumerate(matches) if match]
-        if len(found) != 1:
-            named = f'column "{column}" and its unit, as in "{HEADER}"'
-            wrong.append(f"must name one {named}; got {shown(', '.join(header))}")
-            continue
-        units[name] = found[0]
-        try:
-            FORCE.parse(f"1 {found[0][1]}")
-        except ValueError:
-            wrong.append(f"must give the {column} in a unit of force, such as uN; got [{found[0][1]}]")
-    return units, wrong
+    return {name: tuple(values) for name, values in points.items()}, by_line(wrong)

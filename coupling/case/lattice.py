@@ -10,12 +10,11 @@ from pydantic import Field, GetCoreSchemaHandler, StrictInt, ValidationError, Va
 from pydantic_core import CoreSchema, core_schema
 
 from coupling.case.drive import ActuatorCase, Cycle, Driven, Points, Repeats, SegmentCase
-from coupling.case.formula import Amount, Choice, Condition, Formula
-from coupling.case.keyed_table import WRONG, Contradictions, adapter
-from coupling.case.lines import RULES
-from coupling.case.units import Directed, Length, Point, Quantity, shown
+from coupling.case.messages import RULES
+from coupling.case.table import WRONG, Contradictions, adapter
+from coupling.case.values import Amount, Choice, Condition, Directed, Formula, Length, Point, Quantity, quoted
 
-MOST: Final = 100_000  # actuators
+MAX_PLACES: Final = 100_000  # actuators
 AMOUNTS: Final = {
     "stroke": Amount("m", "150 um"),
     "force": Amount("N", "2 uN"),
@@ -48,7 +47,7 @@ class _Ruled:
     def validate(self, value: object, handler: ValidatorFunctionWrapHandler) -> object:
         amount = handler(value)
         if isinstance(amount, float) and (rule := broken_rule(self.key, amount)):
-            raise ValueError(f"must be {rule}; got {shown(value)}")
+            raise ValueError(f"must be {rule}; got {quoted(value)}")
         return amount
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -62,7 +61,7 @@ class _Apart:
     def validate(self, value: object, handler: ValidatorFunctionWrapHandler) -> object:
         pitch = handler(value)
         if any(length <= 0 for length in (pitch if isinstance(pitch, tuple) else (pitch,))):
-            raise ValueError(f"must be greater than 0; got {shown(value)}")
+            raise ValueError(f"must be greater than 0; got {quoted(value)}")
         return pitch
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -126,10 +125,10 @@ class LatticeCase(Driven):
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         yield from super().contradictions(given)
         counts = {key: count for key in ("rows", "columns") if (count := given.get(key, WRONG)) != WRONG}
-        if counts and size(counts) > MOST:
+        if counts and size(counts) > MAX_PLACES:
             key, *other = sorted(counts, key=counts.__getitem__, reverse=True)
             beside = f" with {other[0]} = {counts[other[0]]}" if other else ""
-            yield key, f"must make at most {MOST} actuators{beside}; got {counts[key]}"
+            yield key, f"must make at most {MAX_PLACES} actuators{beside}; got {counts[key]}"
 
 
 def size(values: Mapping[str, Any]) -> int:

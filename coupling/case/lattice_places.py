@@ -7,12 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
 
 from coupling.case.drive import ActuatorCase
-from coupling.case.formula import Condition
-from coupling.case.keyed_table import WRONG
 from coupling.case.lattice import LatticeCase
-from coupling.case.lattice_values import Grid, Mistake, Spot, actuators_at
-from coupling.case.lines import Location
-from coupling.case.units import shown, shown_length
+from coupling.case.lattice_values import Grid, Spot, actuators_at
+from coupling.case.messages import Location, Mistake
+from coupling.case.table import WRONG
+from coupling.case.values import Condition, length_text, quoted
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -96,11 +95,11 @@ def _chosen(where: Condition, spots: Sequence[Spot], grid: Grid) -> Sequence[Spo
         try:
             chosen += [spot] if where.holds(grid.names(spot)) else []
         except ValueError as error:
-            message = f"must be true or false for each actuator; {shown(where.text)} {error} at {spot}"
+            message = f"must be true or false for each actuator; {quoted(where.text)} {error} at {spot}"
             raise _NotKnownError((("lattice", "where"), message)) from None
     if not chosen:
         counted = {"rows", "columns"} <= grid.known
-        message = f"must be true for one actuator or more; {shown(where.text)} is true for none"
+        message = f"must be true for one actuator or more; {quoted(where.text)} is true for none"
         raise _NotKnownError(*([(("lattice", "where"), message)] if counted else []))
     return chosen
 
@@ -125,14 +124,12 @@ def half_size(mesh: PlateMesh) -> float:
 
 def gaps(mesh: PlateMesh, places: Sequence[Place]) -> list[float]:
     """How far inside the rim places are [m], negative beyond it."""
-    import numpy as np  # here, because reading a case is to be quick
-
-    return [float(gap) for gap in mesh.outline.gap(np.reshape(places, (-1, 2)))] if places else []
+    return mesh.outline.gap(places).tolist() if places else []
 
 
 def beyond(gap: float, least: float, unit: str) -> str:
     """How far beyond the rim a place is, in words, in a unit; on it within `least` [m]."""
-    return f"{shown_length(-gap, unit)} beyond it" if gap < -least else "on it"
+    return f"{length_text(-gap, unit)} beyond it" if gap < -least else "on it"
 
 
 def shared_places(places: Sequence[Place], least: float) -> Iterator[tuple[int, int]]:

@@ -7,13 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Self
 
 from coupling.case.drive import ActuatorCase
-from coupling.case.formula import Condition, Formula
-from coupling.case.keyed_table import WRONG
-from coupling.case.lattice import AMOUNTS, MOST, SHARED, broken_rule, size
-from coupling.case.lines import Location
-from coupling.case.units import DIMENSIONS, shown
-
-Mistake = tuple[Location, str]
+from coupling.case.lattice import AMOUNTS, MAX_PLACES, SHARED, broken_rule, size
+from coupling.case.messages import Mistake
+from coupling.case.table import WRONG
+from coupling.case.values import DIMENSIONS, Condition, Formula, quoted
 
 
 class Spot(NamedTuple):
@@ -38,7 +35,7 @@ class Grid(NamedTuple):
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Self:
         """The places of a lattice with these values of its keys, WRONG for those that are not right."""
-        counted = values if size(values) <= MOST else {}
+        counted = values if size(values) <= MAX_PLACES else {}
         counts = {key: counted[key] for key in ("rows", "columns") if counted.get(key, WRONG) is not WRONG}
         rows, columns = (counts.get(key, 1) for key in ("rows", "columns"))
         known = {"pi", *counts} | {key[:-1] for key in counts}
@@ -99,9 +96,9 @@ def _column(key: str, amount: Any, spots: Sequence[Spot], grid: Grid) -> list[fl
             value = amount.value(grid.names(spot))
         except ValueError as error:
             rule = f"must be {DIMENSIONS[AMOUNTS[key].unit]} for each actuator"
-            raise ValueError(f"{rule}; {shown(amount.text)} {error} at {spot}") from None
+            raise ValueError(f"{rule}; {quoted(amount.text)} {error} at {spot}") from None
         if rule := broken_rule(key, value):
-            got = f"{shown(amount.text)} is {amount.shown(value)} at {spot}"
+            got = f"{quoted(amount.text)} is {amount.text_of(value)} at {spot}"
             raise ValueError(f"must be {rule} for each actuator; {got}")
         found.append(value)
     return found

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, StrictFloat, StrictStr, Tag, ValidationInfo, field_validator
+from pydantic import Discriminator, Field, StrictFloat, StrictStr, Tag, field_validator
 
-from coupling.case import units
-from coupling.case.table import Table
-from coupling.case.units import Length, Point, shown, shown_length
+from coupling.case.table import Contradictions, KeyedTable
+from coupling.case.values import Density, FileBeside, Length, Point, Pressure, length_text, quoted
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -29,7 +28,7 @@ Supports = Annotated[
 ]
 
 
-class PlateCase(Table, ABC):
+class PlateCase(KeyedTable, ABC):
     """The plate, in m, Pa and kg/m^3."""
 
     outlined_by: ClassVar[str] = "shape"
@@ -37,13 +36,13 @@ class PlateCase(Table, ABC):
 
     supports: Supports = "clamped"
     """How the whole rim is held, or a table with how each boundary is; those left out are free."""
-    youngs_modulus: units.Pressure = Field(gt=0)
+    youngs_modulus: Pressure = Field(gt=0)
     """Young's modulus."""
     poisson_ratio: StrictFloat = Field(ge=0, lt=0.5, examples=[0.3])
     """Poisson's ratio."""
     thickness: Length = Field(gt=0, examples=["5 um"])
     """How thick it is."""
-    density: units.Density | None = Field(default=None, gt=0)
+    density: Density | None = Field(default=None, gt=0)
     """With it drives are compared with the plate's first frequency."""
 
     @abstractmethod
@@ -136,13 +135,11 @@ class AnnulusCase(ShapeCase):
     outer_radius: Length = Field(gt=0, examples=["300 um"])
     """The radius of the disc."""
 
-    @field_validator("outer_radius")
     @classmethod
-    def _around_inner(cls, outer: float, info: ValidationInfo) -> float:
-        inner = info.data.get("inner_radius")
-        if inner is not None and outer <= inner:
-            raise ValueError(f"must exceed inner_radius, {shown_length(inner)}; got {shown_length(outer)}")
-        return outer
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        inner, outer = given.get("inner_radius"), given.get("outer_radius")
+        if isinstance(inner, float) and isinstance(outer, float) and outer <= inner:
+            yield "outer_radius", f"must exceed inner_radius, {length_text(inner)}; got {length_text(outer)}"
 
     @property
     def measures(self) -> tuple[float, float]:
@@ -181,17 +178,21 @@ class PolygonCase(ShapeCase):
     def _three_points(cls, corners: Any) -> Any:
         if not isinstance(corners, (list, tuple)) or len(corners) < 3:
             example = '[["0 um", "0 um"], ["2 um", "0 um"], ["0 um", "1 um"]]'
-            raise ValueError(f"must be three points or more, such as {example}; got {shown(corners)}")
+            raise ValueError(f"must be three points or more, such as {example}; got {quoted(corners)}")
         return corners
 
     @field_validator("sides", mode="before")
     @classmethod
-    def _one_a_side(cls, sides: Any, info: ValidationInfo) -> Any:
-        corners = info.data.get("corners")
-        if not isinstance(sides, (list, tuple)) or (corners and len(sides) != len(corners)):
-            count = f"{len(corners)} names" if corners else "a list of names"
-            raise ValueError(f"must be {count}, one a side; got {shown(sides)}")
+    def _names(cls, sides: Any) -> Any:
+        if not isinstance(sides, (list, tuple)):
+            raise ValueError(f"must be a list of names, one a side; got {quoted(sides)}")
         return sides
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        corners, sides = given.get("corners"), given.get("sides")
+        if isinstance(corners, tuple) and isinstance(sides, tuple) and len(sides) != len(corners):
+            yield "sides", f"must be {len(corners)} names, one a side; got {quoted(sides)}"
 
     @property
     def measures(self) -> tuple[float, float]:
@@ -210,17 +211,16 @@ class MeshCase(PlateCase):
 
     outlined_by = "mesh"
 
-    mesh: StrictStr = Field(examples=["plate.msh"])
+    mesh: FileBeside = Field(examples=["plate.msh"])
     """A mesh file of gmsh, VTU or XDMF, beside the case file; its boundaries are the physical curves."""
     mesh_unit: Length = Field(default=1.0, gt=0, examples=["1 um"])
     """What one unit of its coordinates stands for."""
 
-    @field_validator("mesh")
-    @classmethod
-    def _beside_the_case(cls, mesh: str, info: ValidationInfo) -> str:
-        return str(Path((info.context or {}).get("folder", ""), mesh))
-
-    def build_mesh(self) -> PlateMesh:
+    @cached_property
+    def coarse_mesh(self) -> PlateMesh:
         import meshes
 
         return meshes.read(self.mesh, self.mesh_unit)
+
+    def build_mesh(self) -> PlateMesh:
+        return self.coarse_mesh  # the file is read once, with the case

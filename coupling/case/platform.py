@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple
 
-from pydantic import Discriminator, Field, StrictStr, Tag, ValidationInfo, field_validator
+from pydantic import Discriminator, Field, Tag
 
-from coupling.case.csv_columns import Columns, File, read_columns, told, unreadable
-from coupling.case.drive import CLOSEST, DriveCase
-from coupling.case.table import Table
-from coupling.case.units import Length, Quantity
+from coupling.case.drive import MIN_SPACING, DriveCase
+from coupling.case.messages import Mistake
+from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, right_value
+from coupling.case.values import (
+    AXES,
+    Columns,
+    FileBeside,
+    Length,
+    MeasuredColumns,
+    Quantity,
+    first_of,
+    read_columns,
+    unreadable,
+)
 
-AXES: Final = ("x", "y", "z")
 FROM_FILE, BY_DRIVES = "a motion from a file", "a motion by drives"
 HEADER: Final = "time [ms], x [um], z [um]"
 QUANTITIES: Final = {"time": Quantity("s", "50 ms")} | dict.fromkeys(AXES, Quantity("m", "150 um"))
-FEWEST: Final = 6  # rows: as many as a quintic has coefficients
+MIN_ROWS: Final = 6  # rows: as many as a quintic has coefficients
 
 
 class Measured(NamedTuple):
@@ -46,14 +55,14 @@ class MotionCase(Table):
     """The drive along z."""
 
 
-class PlatformCase(Table):
+class PlatformCase(KeyedTable):
     """A flat rigid surface without end; without a motion it stands still."""
 
     shape: Literal["platform"]
     """No plate, but a flat rigid surface without end that moves as a whole."""
     motion: (
         Annotated[
-            Annotated[StrictStr, Tag(FROM_FILE)] | Annotated[MotionCase, Tag(BY_DRIVES)],
+            Annotated[FileBeside, Tag(FROM_FILE)] | Annotated[MotionCase, Tag(BY_DRIVES)],
             Discriminator(lambda value: FROM_FILE if isinstance(value, str) else BY_DRIVES),
         ]
         | None
@@ -62,17 +71,11 @@ class PlatformCase(Table):
     smoothing: Length | None = Field(default=None, gt=0, examples=["0.1 um"])
     """The noise of the positions in the file; without it they are followed exactly."""
 
-    @field_validator("motion")
     @classmethod
-    def _beside_the_case(cls, motion: str | MotionCase | None, info: ValidationInfo) -> str | MotionCase | None:
-        return str(Path((info.context or {}).get("folder", ""), motion)) if isinstance(motion, str) else motion
-
-    @field_validator("smoothing")
-    @classmethod
-    def _of_a_file(cls, smoothing: float | None, info: ValidationInfo) -> float | None:
-        if smoothing is not None and not isinstance(info.data.get("motion", ""), str):
-            raise ValueError('must not be given without motion = "file.csv", the noise of whose positions it is')
-        return smoothing
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        motion = given.get("motion")
+        if "smoothing" in given and motion is not WRONG and not isinstance(motion, str):
+            yield "smoothing", 'must not be given without motion = "file.csv", the noise of whose positions it is'
 
     @cached_property
     def read_motion(self) -> tuple[Measured | None, list[str]]:
@@ -90,7 +93,7 @@ class PlatformCase(Table):
         times = columns.pop("time")
         return Measured(tuple(time - times[0] for time in times), columns), []
 
-    def mistakes(self, duration: float | None) -> Iterator[tuple[tuple[str, ...], str]]:
+    def mistakes(self, duration: float | None) -> Iterator[Mistake]:
         """Yield where its motion is wrong, and why, for a run of a duration [s], None where that is wrong itself."""
         where = ("plate", "motion")
         try:
@@ -100,21 +103,21 @@ class PlatformCase(Table):
             return
         for mistake in mistakes:
             yield where, f"in {Path(str(self.motion)).name}: {mistake}"
-        if measured and duration is not None and duration > measured.time[-1] * (1 + CLOSEST):
+        if measured and duration is not None and duration > measured.time[-1] * (1 + MIN_SPACING):
             message = f"must not exceed the measured motion's, {measured.time[-1]:g} s; got {duration:g} s"
             yield ("run", "duration"), message
 
 
-def _mistakes(file: File) -> Iterator[str]:
-    """What is wrong with columns that are whole by themselves."""
+def _mistakes(file: MeasuredColumns) -> Iterator[str]:
+    """What is wrong with the times of columns that have no mistake by themselves."""
     times = file.columns["time"]
-    if len(times) < FEWEST:
-        yield f"must have at least {FEWEST} rows below its header; got {len(times)}"
+    if len(times) < MIN_ROWS:
+        yield f"must have at least {MIN_ROWS} rows below its header; got {len(times)}"
         return
-    closest = CLOSEST * (max(times) - min(times))
+    closest = MIN_SPACING * (max(times) - min(times))
     late = [k for k in range(1, len(times)) if times[k] - times[k - 1] <= closest]
     rule = "must have a later time than the row before"
-    yield from told([f"line {file.lines[k]} {rule}; got {times[k]:g} s after {times[k - 1]:g} s" for k in late])
+    yield from first_of([f"line {file.lines[k]} {rule}; got {times[k]:g} s after {times[k - 1]:g} s" for k in late])
 
 
 def platform_of(plate: Any, context: Any) -> PlatformCase | None:
@@ -122,8 +125,6 @@ def platform_of(plate: Any, context: Any) -> PlatformCase | None:
     if isinstance(plate, PlatformCase):
         return plate
     if isinstance(plate, dict) and plate.get("shape") == "platform":
-        motion = plate.get("motion")
-        return PlatformCase.model_validate(
-            {"shape": "platform", "motion": motion if isinstance(motion, str) else None}, context=context
-        )
+        motion = right_value(PlatformCase, "motion", plate, context)
+        return PlatformCase.model_construct(motion=motion if isinstance(motion, str) else None)
     return None

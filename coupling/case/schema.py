@@ -8,10 +8,9 @@ from typing import Any, Final
 
 from pydantic.fields import FieldInfo
 
-from coupling.case.field_texts import all_tables, field_texts
-from coupling.case.table import Table
+from coupling.case.table import Table, all_tables
 from coupling.case.text import written
-from coupling.case.units import POSITIVE, WRITTEN
+from coupling.case.values import POSITIVE, WRITTEN
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
@@ -19,8 +18,8 @@ DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 def json_schema(model: type[Table], title: str) -> dict[str, Any]:
     """The schema of a file whose tables are the fields of a model.
 
-    Defaults are as a file states them, and the descriptions those below the fields in the sources. Units and what
-    depends on other fields is left to `active-surface check`.
+    Defaults are as a file states them, and descriptions are the texts below the fields. Units and what depends on other
+    fields are left to `active-surface check`.
     """
     schema = model.model_json_schema()
     tables = {table.__name__: table for table in all_tables(model)}
@@ -31,15 +30,14 @@ def json_schema(model: type[Table], title: str) -> dict[str, Any]:
 
 def _finish(definition: dict[str, Any], table: type[Table]) -> None:
     """Has a table's definition speak of files rather than of Python."""
-    texts = field_texts(table) if "properties" in definition else {}
-    for key, field in table.model_fields.items() if texts else ():
-        known = definition["properties"][key]
-        known.pop("default", None)
-        known = definition["properties"][key] = _without_null(known)
+    properties = definition.get("properties", {})
+    for key in properties:
+        field = table.model_fields[key]
+        properties[key].pop("default", None)
+        known = properties[key] = _without_null(properties[key])
         known.pop("title", None)
         if not field.is_required() and field.default is not None and field.default_factory is None:
             known["default"] = _plain(written(field.default, field.rebuild_annotation()))
-        known["description"] = texts[key]
         if _positive(field):
             _forbid_signs(known)
 

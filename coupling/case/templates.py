@@ -10,12 +10,10 @@ from typing import Any, Final, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from coupling.case.annotations import parts_of
-from coupling.case.field_texts import field_texts, tables_in
-from coupling.case.keyed_table import WRONG, KeyedTable
-from coupling.case.lines import RULES, one_of
-from coupling.case.table import Table
+from coupling.case.messages import RULES, one_of
+from coupling.case.table import WRONG, KeyedTable, Table, tables_in
 from coupling.case.text import written
+from coupling.case.values import parts_of
 
 HEAD: Final = """\
 # A template: every field there is. `active-surface check FILE` tells whether a file is right, and every mistake if not.
@@ -39,13 +37,12 @@ class _Template:
         self._shown: list[type[Table]] = []  # of the tables in tables
 
     def blocks(self) -> Iterator[str]:
-        texts = field_texts(self._model)
         for key, field in self._model.model_fields.items():
             first, *others = [table for table in tables_in(field.annotation) if table.model_config["extra"] == "forbid"]
             mark = "" if field.is_required() else "#"
-            lines = [*_said(texts[key]), mark + _header(key, field), *self._fields(first, mark)]
+            lines = [*_comment(field.description), mark + _header(key, field), *self._fields(first, mark)]
             for other in others:
-                lines += ["", *_said(f"Or: {str(other.__doc__).splitlines()[0]}"), *self._fields(other, "#", first)]
+                lines += ["", *_comment(f"Or: {str(other.__doc__).splitlines()[0]}"), *self._fields(other, "#", first)]
                 lines += self._inner(key, other, short=True)
             yield "\n".join([*lines, *self._inner(key, first)])
 
@@ -56,13 +53,13 @@ class _Template:
 
         short: without those that may be left out, too.
         """
-        texts, needed = field_texts(table), _needed(table)
+        needed = _needed(table)
         for key, field in sorted(table.model_fields.items(), key=lambda one: not _names(one[1])):
             told = beside is not None and key in beside.model_fields and not _names(field)
             if told or (short and key not in needed) or _tables_only(field):
                 continue
             how = "Required" if key in needed else "Optional" if field.default is None else "Default"
-            yield from _said(f"{texts[key]} {how}: {_wanted(field)}.")
+            yield from _comment(f"{field.description} {how}: {_wanted(field)}.")
             yield f"{mark if key in needed else '#'}{key} = {_value(field)}"
 
     def _inner(self, name: str, table: type[Table], short: bool = False) -> Iterator[str]:
@@ -74,7 +71,7 @@ class _Template:
                     continue
                 again, header = inner in self._shown or short, _header(f"{name}.{key}", field)
                 self._shown.append(inner)
-                yield from ["", *_said(field_texts(table)[key]), f"#{header}", *self._fields(inner, "#", short=again)]
+                yield from ["", *_comment(field.description), f"#{header}", *self._fields(inner, "#", short=again)]
 
 
 def _needed(table: type[Table]) -> set[str]:
@@ -99,7 +96,7 @@ def _names(field: FieldInfo) -> bool:
 
 def _wanted_by(metadata: Sequence[Any], annotation: Any) -> list[str]:
     """What marks want of a value, those of the whole before those of its parts."""
-    return [str(mark.wanted) for mark in _marks(metadata, annotation) if hasattr(mark, "wanted")]
+    return [str(mark.expected) for mark in _marks(metadata, annotation) if hasattr(mark, "expected")]
 
 
 def _marks(metadata: Sequence[Any], annotation: Any) -> list[Any]:
@@ -117,9 +114,9 @@ def _header(name: str, field: FieldInfo) -> str:
     return f"[[{name}]]" if several else f"[{name}]"
 
 
-def _said(text: str) -> list[str]:
+def _comment(text: str | None) -> list[str]:
     """A text as lines of a comment, which do not break what is in quotes."""
-    whole = re.sub(r'"[^"]*"', lambda quoted: quoted[0].replace(" ", "\0"), text)
+    whole = re.sub(r'"[^"]*"', lambda quoted: quoted[0].replace(" ", "\0"), text or "")
     lines = textwrap.wrap(whole, WIDTH, initial_indent="# ", subsequent_indent="#   ", break_long_words=False)
     return [line.replace("\0", " ") for line in lines]
 

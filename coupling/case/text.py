@@ -11,9 +11,9 @@ from typing import Any, Final, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from coupling.case.annotations import of_kind, quantity_of
 from coupling.case.case import Case
 from coupling.case.table import Table
+from coupling.case.values import of_kind, quantity_of
 from coupling.files import whole_file
 
 PREFIXED: Final = {"m": ("um", 6), "s": ("ms", 3)}

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -23,10 +23,10 @@ from scipy.optimize import brentq
 
 from particle.friction.contact import TABLE, FrictionLaw, check_loads, friction_limits, new_law
 from particle.friction.quadrature import from_power, on_panels
+from particle.friction_input import PAPER_PLASTICITY_INDEX, KogutEtsionInput
 
 FloatArray = NDArray[np.float64]
 
-PAPER_PLASTICITY_INDEX = 4.9128  # makes the friction limit 20.9 m/s^2 times the paper's mass at zero load
 SAMPLES = 1025  # separations from which the inverse is first found
 INTERVALS = (1024, 2048, 4096, 8192)  # of the table: the first that meets the error wanted
 WANTED_ERROR = 1e-9
@@ -43,7 +43,7 @@ SHEAR_POWERS = (4.425, 3.425, 2.425, 1.425)
 
 
 @dataclass(frozen=True)
-class KogutEtsion:
+class KogutEtsion(KogutEtsionInput):
     """The contact of two rough surfaces under a normal load, equations (3) to (5) of the paper; the defaults are its
     Table 1.
 
@@ -57,31 +57,6 @@ class KogutEtsion:
     ValueError
         A field is wrong; names each.
     """
-
-    roughness: float = 20e-9  # m, standard deviation of surface heights
-    contact_area: float = 1e-8  # m^2, nominal
-    hardness: float = 1.96133e9  # Pa
-    poisson_ratio: float = 0.3  # 1, of the softer surface
-    adhesion_energy: float = 1.0  # J/m^2
-    plasticity_index: float = 2.5  # 1; large where asperities yield early
-    asperity_beta: float = 0.0601  # asperity density times tip radius times roughness
-    intermolecular_distance: float = 0.3e-9  # m
-    coefficients: str = "printed"
-
-    def __post_init__(self) -> None:
-        wrong = []
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name not in ("coefficients", "poisson_ratio") and not (math.isfinite(value) and value > 0):
-                wrong.append(f"Input {field.name} of KogutEtsion must be positive; got {value!r}")
-        if not 0 <= self.poisson_ratio < 0.5:
-            wrong.append(f"Input poisson_ratio of KogutEtsion must be in [0, 0.5); got {self.poisson_ratio!r}")
-        if self.asperity_beta**2 <= 3.717e-4:
-            wrong.append(f"Input asperity_beta of KogutEtsion must exceed 0.01928; got {self.asperity_beta!r}")
-        if self.coefficients not in SHEAR:
-            wrong.append(f"Input coefficients of KogutEtsion must be one of {list(SHEAR)}; got {self.coefficients!r}")
-        if wrong:
-            raise ValueError("; ".join(wrong))
 
     @classmethod
     def paper(cls) -> KogutEtsion:

@@ -18,10 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from particle.friction.contact import POINTS, FrictionLaw, friction_limits, new_law
+from particle.friction_input import point_mistakes
 
 FloatArray = NDArray[np.float64]
 
-FEWEST = 3  # points
 FLAT = 1e-14  # of the largest limit: rounding is no fall
 
 
@@ -49,7 +49,7 @@ class FrictionTable:
     static_ratio: float = 1.0
 
     def __post_init__(self) -> None:
-        wrong = mistakes(self.loads, self.limits, self.static_ratio)
+        wrong = point_mistakes(self.loads, self.limits, self.static_ratio)
         if wrong:
             places = ["" if point is None else f"at point {point + 1} " for _, point, _ in wrong]
             each = zip(wrong, places, strict=True)
@@ -104,36 +104,6 @@ class FrictionTable:
     def friction_limit(self, net_load: ArrayLike) -> FloatArray:
         """Q [N] while sliding under net loads [N] of any shape; ValueError before the first or past the last."""
         return friction_limits(self.law, net_load)
-
-
-def mistakes(
-    loads: Sequence[float], limits: Sequence[float], static_ratio: float = 1.0
-) -> list[tuple[str, int | None, str]]:
-    """What is wrong with a table: the field, the point from 0 or None for all of it, and what it must be."""
-    found: list[tuple[str, int | None, str]] = []
-    count = len(loads)
-    if count < FEWEST:
-        found.append(("loads", None, f"must be {FEWEST} forces in N or more; got {count}"))
-    if len(limits) != count:
-        found.append(("limits", None, f"must be as many as the loads, {count}; got {len(limits)}"))
-    loads, limits = [float(load) for load in loads], [float(limit) for limit in limits]
-    for k, load in enumerate(loads):
-        if not math.isfinite(load):
-            found.append(("loads", k, f"must be finite; got {load!r}"))
-        elif k == 0 and load > 0:
-            found.append(("loads", k, f"must be minus the pull-off force, so 0 or negative; got {load!r} N"))
-        elif k > 0 and load <= loads[k - 1]:
-            found.append(("loads", k, f"must be greater than the one before, {loads[k - 1]!r} N; got {load!r} N"))
-    for k, limit in enumerate(limits):
-        if not math.isfinite(limit):
-            found.append(("limits", k, f"must be finite; got {limit!r}"))
-        elif limit < 0:
-            found.append(("limits", k, f"must be 0 or positive; got {limit!r} N"))
-        elif k > 0 and limit < limits[k - 1]:
-            found.append(("limits", k, f"must not be less than the one before, {limits[k - 1]!r} N; got {limit!r} N"))
-    if not 1 <= static_ratio < math.inf:
-        found.append(("static_ratio", None, f"must be at least 1; got {static_ratio!r}"))
-    return found
 
 
 def _pieces(loads: FloatArray, limits: FloatArray) -> FloatArray:

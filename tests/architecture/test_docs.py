@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import particle
-from coupling.case.case import PartCase
+from coupling.case import PartCase
 
 ROOT = Path(__file__).parents[2]
 DOCS = sorted((ROOT / "docs").rglob("*.md"))

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from coupling.case.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
+from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
 from coupling.display.mesh import display_mesh
 from coupling.display.surface import DisplaySurface, deflections, display_surface, most_deflected
 from coupling.pictures.plate import BOTH_WAYS, UPWARDS, Scale, draw_plate, fine_piece, relief_of

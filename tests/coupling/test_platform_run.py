@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from active_surface.cli.program import main
 from coupling import report, run_case
-from coupling.case.case import Case, CoulombCase, PartCase, RunCase
+from coupling.case import Case, CoulombCase, PartCase, RunCase
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 X = {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}

@@ -8,7 +8,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from coupling import report, run_case
-from coupling.case.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
+from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
 from fem_plate.analytic import DiscShapes
 
 PLATE = {

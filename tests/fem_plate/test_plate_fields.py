@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from coupling import Case, read_run, run_case
-from coupling.case.case import ConstantCase, PartCase, RunCase
+from coupling.case import ConstantCase, PartCase, RunCase
 from coupling.drives import stroke_heights
 from fem_plate import Plate, PlateSection
 from fem_plate.analytic import DiscShapes

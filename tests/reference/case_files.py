@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 
-from coupling.case.case import Case, CaseError, CoulombCase, read_case
-from coupling.case.plate import DiscCase
+from coupling.case import Case, CaseError, CoulombCase, DiscCase, read_case
 
 GOOD = """\
 [plate]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from coupling.case.case import Case
+from coupling.case import Case
 from coupling.results.saved import SavedRun
 from particle import Samples
 

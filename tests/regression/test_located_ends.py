@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coupling import run_case, surface_motion
-from coupling.case.case import Case
+from coupling.case import Case
 from fem_plate.analytic import DiscShapes
 from particle import (
     ConstantFriction,

@@ -24,7 +24,7 @@ from active_surface.views.film.pace import Pace, pace_of, warnings_of
 from active_surface.views.film.painter import chosen, painter
 from active_surface.views.film.stage import Stage, stage_of
 from coupling import Tell, build_drives, untold
-from coupling.case import Case, load
+from coupling.case import Case, parse
 from coupling.results import SavedRun, check_folder, read_run
 
 FloatArray = NDArray[np.float64]
@@ -224,7 +224,7 @@ def _run_of(result: str | Path | SavedRun) -> SavedRun:
 def _kind(path: Path) -> str:
     """Which of the OTHERS a file is."""
     try:
-        _, tables = load(path) if path.suffix == ".toml" else ("", {})
+        tables = parse(path).tables if path.suffix == ".toml" else {}
     except ValueError:  # no TOML
         return path.suffix
     return next((table for table in ("study", "aim") if table in tables), path.suffix)

@@ -77,7 +77,7 @@ def test_an_interrupt_exits_130_with_one_line(command, tmp_path, monkeypatch):
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("coupling.case.read_case", interrupted)
-    monkeypatch.setattr("coupling.case.load", interrupted)
+    monkeypatch.setattr("coupling.case.parse", interrupted)
     done = CliRunner().invoke(main, [command, "any.toml"])
     assert (done.exit_code, done.stdout, done.stderr) == (130, "", "interrupted\n")
 

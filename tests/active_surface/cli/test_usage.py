@@ -149,7 +149,7 @@ def test_ctrl_c_that_python_drops_ends_a_command_all_the_same(after, monkeypatch
             time.sleep(0.01)
 
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    monkeypatch.setattr("coupling.case.load", read)
+    monkeypatch.setattr("coupling.case.parse", read)
     done = CliRunner().invoke(main, ["check", "any.toml"])
     signal.signal(signal.SIGINT, before)
     assert (done.exit_code, done.stderr) == (130, "interrupted\n")
@@ -161,7 +161,7 @@ def test_ctrl_c_that_compiled_code_went_on_after_ends_a_command_as_any(cause, en
     def read(path):
         raise SystemError("<built-in function> returned a result with an exception set") from cause
 
-    monkeypatch.setattr("coupling.case.load", read)
+    monkeypatch.setattr("coupling.case.parse", read)
     done = CliRunner().invoke(main, ["check", "any.toml"])
     assert done.exit_code == ending and (done.stderr == "interrupted\n") == (ending == 130)
 

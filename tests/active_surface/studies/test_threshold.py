@@ -15,7 +15,7 @@ from active_surface.studies.pictures.map import compose
 from active_surface.studies.record import OUTCOMES, new_records
 from active_surface.studies.saved import read_sweep
 from active_surface.studies.threshold import Threshold, lowest, read_threshold
-from coupling.case.case import CaseError
+from coupling.case import CaseError
 
 AXES = """\
 [[axes]]

@@ -18,7 +18,7 @@ from PIL import Image
 
 from active_surface.cli.program import main
 from active_surface.views.film.film_file import ENCODERS, check_film, film_file, format_of
-from coupling.case.case import Case, CoulombCase, PartCase, RunCase
+from coupling.case import Case, CoulombCase, PartCase, RunCase
 from coupling.run import run_case
 
 SIZE = (320, 240)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from case_files import DURATION, FRICTION, GOOD, PART, POISSON, RADIUS, STROKE, changed, plate, read
 
-from coupling.case.case import (
+from coupling.case import (
     ActuatorCase,
     Case,
     CaseError,

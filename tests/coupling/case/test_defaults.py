@@ -1,6 +1,6 @@
 """The case file's defaults are those of the contact itself, which it does not import for the sake of a quick start."""
 
-from coupling.case.case import KogutEtsionCase
+from coupling.case import KogutEtsionCase
 from particle import KogutEtsion
 
 

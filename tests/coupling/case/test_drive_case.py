@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from coupling.case.case import ActuatorCase, Case, CaseError, read_case
-from coupling.case.drive import SegmentCase, amplitude
+from coupling.case import ActuatorCase, Case, CaseError, SegmentCase, amplitude, read_case
 from coupling.run import build_drives
 from particle import Drive, Segment, SegmentDrive, TableDrive
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling.case.expression import FUNCTIONS, LONGEST, NAMES
-from coupling.case.formula import Amount, Choice, Condition, Formula
+from coupling.case.values.expression import FUNCTIONS, LONGEST, NAMES
+from coupling.case.values.formula import Amount, Choice, Condition, Formula
 
 TIME = Amount("s", "50 ms")
 PLACE = {"row": 2.0, "column": 3.0, "rows": 5.0, "columns": 7.0, "x": 1e-4, "y": -2e-4, "pi": math.pi}

@@ -7,7 +7,7 @@ from click.testing import CliRunner
 
 import particle
 from active_surface.cli.program import main
-from coupling.case.case import CaseError, TableCase, read_case
+from coupling.case import CaseError, TableCase, read_case
 from coupling.run import build_friction
 
 EXAMPLE = (Path(__file__).parents[3] / "examples" / "one_actuator.toml").read_text()

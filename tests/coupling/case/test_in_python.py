@@ -9,8 +9,7 @@ import pytest
 from case_files import JARGON, plate, python_case
 from pydantic import ValidationError
 
-from coupling.case.case import ActuatorCase, Case, PartCase
-from coupling.case.input_error import InputError
+from coupling.case import ActuatorCase, Case, InputError, PartCase
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from lattice_cases import DRIVE, FIRST, FRAME, PLACES, problems, python_case, read
 
-from coupling.case.case import ActuatorCase, Case, CaseError, LatticeCase, read_case
-from coupling.case.input_error import InputError
+from coupling.case import ActuatorCase, Case, CaseError, InputError, LatticeCase, read_case
 from coupling.run import build_drives
 from particle.drives.drive import drive_table
 

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from active_surface.cli.program import main
-from coupling.case.case import CaseTables
+from coupling.case import CaseTables
 from coupling.case.schema import json_schema
 
 ROOT = Path(__file__).parents[3]

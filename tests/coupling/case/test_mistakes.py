@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from case_files import ACTUATOR, DURATION, FRICTION, GOOD, PART, POISSON, RADIUS, STROKE, changed, problems, read
 
-from coupling.case.case import CaseError, Problem, read_case
+from coupling.case import CaseError, Problem, read_case
 
 
 def test_five_mistakes_at_once(tmp_path: Path) -> None:

@@ -8,10 +8,20 @@ import numpy as np
 import pytest
 from plate_cases import DRIVE, MESH, SHAPES, problems, read, text
 
+from coupling.case import (
+    ActuatorCase,
+    AnnulusCase,
+    Case,
+    ConstantCase,
+    DiscCase,
+    InputError,
+    MeshCase,
+    PartCase,
+    PolygonCase,
+    RectangleCase,
+    RunCase,
+)
 from coupling.case.any_plate import PLATES
-from coupling.case.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
-from coupling.case.input_error import InputError
-from coupling.case.plate import AnnulusCase, DiscCase, MeshCase, PolygonCase, RectangleCase
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coupling.case.case import Case, CaseError, CoulombCase, PartCase, RunCase, read_case
+from coupling.case import Case, CaseError, CoulombCase, PartCase, RunCase, read_case
 from coupling.run import build_surface
 
 FRAME = """\

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 
 from active_surface.cli.program import main
 from active_surface.cli.schema import AIM, CASE, STUDY, _model
-from coupling.case.field_texts import all_tables, field_texts
+from coupling.case.table import all_tables
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 KINDS = (CASE, STUDY, AIM)
@@ -50,7 +50,7 @@ def test_examples_are_right_by_their_schema(path: Path) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_field_is_without_a_text(kind: str) -> None:
     for table in all_tables(_model(kind)):
-        assert not table.model_fields.keys() - field_texts(table).keys(), table
+        assert all(field.description for field in table.model_fields.values()), table
 
 
 @pytest.mark.parametrize(
@@ -102,9 +102,9 @@ def test_every_field_stands_in_a_template_as_toml_with_its_text(kind: str) -> No
     prose = " ".join(line.removeprefix("#").strip() for line in text.splitlines())
     for table in all_tables(_model(kind)):
         if table.model_config["extra"] == "forbid":
-            for key, said in field_texts(table).items():
+            for key, field in table.model_fields.items():
                 assert f"\n{key} = " in text or f"\n#{key} = " in text or f"{key}]" in text, key
-                assert said in prose
+                assert field.description in prose
     for line in text.splitlines():
         if line.startswith("#") and not line.startswith("# ") and " = " in line and not line.startswith("#   "):
             tomllib.loads(line.removeprefix("#"))

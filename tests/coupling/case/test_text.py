@@ -7,7 +7,7 @@ import pytest
 from sweeps import LATTICE, PLATE
 
 from coupling import read_case
-from coupling.case.case import Case
+from coupling.case import Case
 from coupling.case.text import case_text, write_case
 
 EXAMPLES = Path(__file__).parents[3] / "examples"

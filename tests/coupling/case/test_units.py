@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from case_files import STROKE, changed, problems
 
-from coupling.case.units import Quantity
+from coupling.case import Quantity
 
 
 @pytest.mark.parametrize(
@@ -72,5 +72,5 @@ def test_units(unit: str, text: str, value: float) -> None:
 
 
 def test_import_does_not_load_pint() -> None:
-    code = "import coupling.case.case, sys; sys.exit('pint' in sys.modules)"
+    code = "import coupling.case, sys; sys.exit('pint' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[3]).returncode == 0

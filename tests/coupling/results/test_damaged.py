@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from active_surface.cli.program import main
 from active_surface.cli.refusal import refusal_of
 from coupling import Case, read_run, run_case
-from coupling.case.case import CoulombCase, PartCase, RunCase
+from coupling.case import CoulombCase, PartCase, RunCase
 
 CASE = Case(
     plate={"shape": "platform", "motion": {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}}},

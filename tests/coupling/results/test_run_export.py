@@ -14,7 +14,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 
 from active_surface.cli.program import main
 from coupling import Case, read_run, run_case
-from coupling.case.case import ConstantCase, PartCase, RunCase
+from coupling.case import ConstantCase, PartCase, RunCase
 from coupling.results.export import export_run
 from coupling.results.saved import OF_PART
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from coupling import Case, read_case, read_run, run_case
-from coupling.case.case import CoulombCase, PartCase, RunCase
+from coupling.case import CoulombCase, PartCase, RunCase
 from coupling.display import display_surface
 from coupling.results.case_record import case_of, record_of
 from particle import Samples

@@ -11,8 +11,8 @@ from typing import Any, Final
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case.expression import KEYWORDS, PLACES, Expression, parse, split, unreadable
-from coupling.case.units import Quantity, shown
+from coupling.case.values.expression import KEYWORDS, PLACES, Expression, parse, split, unreadable
+from coupling.case.values.units import Quantity, quoted
 
 FORMULA: Final = "an expression and its unit"
 CONDITION: Final = "an expression that is true or false"
@@ -37,7 +37,7 @@ class Formula:
             raise ValueError("is not finite")
         return value * self.scale
 
-    def shown(self, value: float) -> str:
+    def text_of(self, value: float) -> str:
         """A value in SI units as text in this unit."""
         return f"{value / self.scale:g} {self.unit}"
 
@@ -62,9 +62,9 @@ class Amount(Quantity):
     """Marks a quantity that is the same for every actuator of a lattice, a float, or a `Formula`."""
 
     @property
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """What a value must be, in words: a length such as "150 um" or "2 * (row + column) um"."""
-        return f'{super().wanted} or "2 * (row + column) {self._unit}"'
+        return f'{super().expected} or "2 * (row + column) {self._unit}"'
 
     @property
     def _unit(self) -> str:
@@ -83,7 +83,7 @@ class Amount(Quantity):
             reason = unreadable(rest) if rest else ""
             if not reason and re.search(rf"\b({'|'.join((*KEYWORDS, *PLACES))})\b", rest):
                 example = f"(5 if row > 2 else 3) {self._unit}"
-                reason = f"the unit must come once, at the end, as in {shown(example)}"
+                reason = f"the unit must come once, at the end, as in {quoted(example)}"
             if not reason:
                 raise
             raise _refusal(text, reason, FORMULA) from None
@@ -99,14 +99,14 @@ class Amount(Quantity):
 class Choice:
     """Marks a `Condition`."""
 
-    wanted = f"{CONDITION}, such as {EXAMPLE}"
+    expected = f"{CONDITION}, such as {EXAMPLE}"
 
     def validate(self, value: object) -> Condition:
         """The condition that a text states; ValueError unless it is one."""
         if isinstance(value, Condition):
             return value
         if not isinstance(value, str) or not value.strip():
-            raise ValueError(f"must be {self.wanted}; got {shown(value)}")
+            raise ValueError(f"must be {self.expected}; got {quoted(value)}")
         words, rest = _words(value, CONDITION)
         if rest:
             no_unit = f'"{rest}" is too much; it has no unit, x and y are in metres, as in {EXAMPLE}'
@@ -120,19 +120,19 @@ class Choice:
         return {"type": "string"}
 
 
-def _words(text: str, wanted: str) -> tuple[list[str], str]:
+def _words(text: str, expected: str) -> tuple[list[str], str]:
     try:
         return split(text)
     except ValueError as error:
-        raise _refusal(text, str(error), wanted) from None
+        raise _refusal(text, str(error), expected) from None
 
 
-def _parsed(text: str, words: list[str], wanted: str) -> Expression:
+def _parsed(text: str, words: list[str], expected: str) -> Expression:
     try:
         return parse(words)
     except ValueError as error:
-        raise _refusal(text, str(error), wanted) from None
+        raise _refusal(text, str(error), expected) from None
 
 
-def _refusal(text: str, reason: str, wanted: str) -> ValueError:
-    return ValueError(f"must be {wanted}; got {shown(text)}: {reason}")
+def _refusal(text: str, reason: str, expected: str) -> ValueError:
+    return ValueError(f"must be {expected}; got {quoted(text)}: {reason}")

@@ -1,8 +1,7 @@
 """Quantities with units: text such as "150 um" becomes a float in SI units.
 
-Each alias at the end of this module (`Length`, `Time`, ...) is a float to a type checker. As the type of a pydantic
-field it also accepts text with a unit of the right dimension. A bare number is taken as SI, or is an error where the
-validation context is `UNITS_REQUIRED`, as it is for a case file.
+Units of lengths, times, forces and the like with an SI prefix are read here, to the bit as pint reads them; all others
+are left to pint, which takes longer to load than a case takes to read.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
@@ -53,6 +52,12 @@ _USUAL_UNITS: Final = [
     *("N", "mN", "uN", "nN", "newton", "Pa", "kPa", "MPa", "GPa", "pascal", "J", "mJ", "uJ", "nJ", "joule"),
 ]
 
+_PREFIXES: Final = {"": 0, "k": 3, "M": 6, "G": 9, "c": -2, "m": -3, "u": -6, "\u00b5": -6, "\u03bc": -6, "n": -9}
+_PREFIXED_BASES: Final = {
+    "m": "m", "m^2": "m^2", "m^3": "m^3", "s": "s", "Hz": "Hz", "g": "kg", "N": "N", "Pa": "Pa", "J": "J",
+}  # fmt: skip
+_PREFIXED: Final = re.compile(rf"({'|'.join(_PREFIXES)})(m|s|Hz|g|N|Pa|J)(?:\^([23]))?")
+
 # Other characters are refused here because pint skips them: it would read "1,5 mm" as 15 mm, and a typographic minus
 # sign as nothing at all.
 _NUMBER_AND_UNIT: Final = re.compile(
@@ -64,7 +69,6 @@ _NUMBER_AND_UNIT: Final = re.compile(
 WRITTEN: Final = r"^\s*[+-]?\.?[0-9][0-9_.]*([eE][+-]?[0-9]+)?\s*([^0-9_.,;\s]|[0-9]+/).*$"
 POSITIVE: Final = WRITTEN.replace("[+-]?", "[+]?", 1)
 
-_COUNTS: Final = {2: "two", 3: "three"}
 _NONSENSE: Final = ", which is not a number and a unit"
 _NO_UNIT: Final = ", which has no unit"
 _NOT_FINITE: Final = ", which is not finite"
@@ -78,7 +82,7 @@ class Quantity:
     example: str
 
     @property
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """What a value must be, in words: a length such as "150 um"."""
         return f'{DIMENSIONS[self.unit]} such as "{self.example}"'
 
@@ -90,11 +94,23 @@ class Quantity:
         return self.convert(text, match["number"], match["unit"])
 
     def convert(self, text: str, number: str, unit: str) -> float:
-        """Return so many of a unit, in `unit`; ValueError, which shows the text, as from `parse`."""
-        import pint  # Here, because loading pint takes longer than the rest of the package.
-
+        """Return `number` of a unit, in `self.unit`; raises ValueError as `parse` does, quoting `text`."""
         if not unit:
             raise self.refusal(text, _NO_UNIT)
+        base, exponent = prefixed(unit)
+        if base == self.unit:
+            value = float(Decimal(number).scaleb(exponent))
+        elif base in _PREFIXED_BASES.values():
+            raise self.refusal(text, f", {DIMENSIONS[base]}")
+        else:
+            value = self._convert_by_pint(text, number, unit)
+        if not math.isfinite(value):
+            raise self.refusal(text, _NOT_FINITE)
+        return value
+
+    def _convert_by_pint(self, text: str, number: str, unit: str) -> float:
+        import pint
+
         try:
             fits = self._fits(unit)
             value = float(_registry().Quantity(Decimal(number), unit).m_as(self.unit)) if fits else math.nan
@@ -104,8 +120,6 @@ class Quantity:
             raise self.refusal(text, _NONSENSE) from None
         if not fits:
             raise self.refusal(text, f", {_dimension(unit)}")
-        if not math.isfinite(value):
-            raise self.refusal(text, _NOT_FINITE)
         return value
 
     def validate(self, value: object, info: ValidationInfo) -> float:
@@ -135,7 +149,7 @@ class Quantity:
 
     def refusal(self, value: object, reason: str = "") -> ValueError:
         """The error that says what a value must be, and that this one is not."""
-        return ValueError(f"must be {self.wanted}; got {shown(value)}{reason}")
+        return ValueError(f"must be {self.expected}; got {quoted(value)}{reason}")
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_before_validator_function(self.validate, handler(source))
@@ -144,73 +158,14 @@ class Quantity:
         return {"type": "string", "pattern": WRITTEN, "examples": [self.example]}
 
 
-@dataclass(frozen=True)
-class Pair:
-    """Marks a tuple as the x and y of a point or vector; `name` is what the two are, `example` one of them."""
-
-    name: str
-    example: str
-
-    @property
-    def wanted(self) -> str:
-        """What a value must be, in words: two lengths, x and y, such as ["100 um", "100 um"]."""
-        return f"two {self.name}, x and y, such as {shown([self.example, self.example])}"
-
-    def validate(self, value: object) -> object:
-        """Return `value`; ValueError unless it is a list or tuple of two."""
-        if not isinstance(value, (list, tuple)) or len(value) != 2:
-            raise ValueError(f"must be {self.wanted}; got {shown(value)}")
-        return value
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self.validate, handler(source))
-
-
-@dataclass(frozen=True)
-class Directed:
-    """Marks a quantity that is one number, or one along each of some axes."""
-
-    quantity: Quantity
-    axes: str = "xyz"
-
-    @property
-    def wanted(self) -> str:
-        """What a value must be, in words: an acceleration such as "9.8 m/s^2", or three, along x, y and z."""
-        along = f"{', '.join(self.axes[:-1])} and {self.axes[-1]}"
-        return f"{self.quantity.wanted}, or {_COUNTS[len(self.axes)]}, along {along}"
-
-    def validate(self, value: object, info: ValidationInfo) -> object:
-        """Return the value in SI units; ValueError for what is neither one nor one an axis, or wrong by itself."""
-        if not isinstance(value, (list, tuple)):
-            return self.quantity.validate(value, info)
-        if len(value) != len(self.axes):
-            raise ValueError(f"must be {self.wanted}; got {shown(value)}")
-        parts, wrong = [], []
-        for name, part in zip(self.axes, value, strict=True):
-            try:
-                parts.append(self.quantity.validate(part, info))
-            except ValueError as error:
-                wrong.append(f"its {name} {error}")
-        if wrong:
-            raise ValueError("is wrong: " + "; ".join(wrong))
-        return tuple(parts)
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self.validate)
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        one, count = self.quantity.__get_pydantic_json_schema__(schema, handler), len(self.axes)
-        return {"anyOf": [one, {"type": "array", "items": one, "minItems": count, "maxItems": count}]}
-
-
-def shown(value: object) -> str:
+def quoted(value: object) -> str:
     """Return `value` as a case file would write it, or in words if that is long."""
     if isinstance(value, dict):
         return "a table"
     if isinstance(value, (list, tuple)):
         if any(isinstance(item, dict) for item in value):
             return "a list of tables"
-        text = "[" + ", ".join(shown(item) for item in value) + "]"
+        text = "[" + ", ".join(quoted(item) for item in value) + "]"
     elif isinstance(value, (str, bool)):
         text = json.dumps(value, ensure_ascii=False)
     else:
@@ -218,7 +173,7 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def shown_length(length: float, unit: str = "um") -> str:
+def length_text(length: float, unit: str = "um") -> str:
     """Return a length in m as text in a unit of length."""
     return f"{length / Quantity('m', '150 um').convert('', '1', unit):g} {unit}"
 
@@ -231,6 +186,17 @@ def written_unit(value: object) -> str:
         if match and match["unit"]:
             return match["unit"].strip()
     return "um"
+
+
+@cache
+def prefixed(unit: str) -> tuple[str, int]:
+    """The SI unit that an often used unit is a power of ten of, and that power; "" for any other unit."""
+    if unit in DIMENSIONS:
+        return unit, 0
+    match = _PREFIXED.fullmatch(unit)
+    prefix, name, power = match.groups() if match else ("", "", None)
+    base = _PREFIXED_BASES.get(name + (f"^{power}" if power else ""), "")
+    return base, _PREFIXES[prefix] * int(power or 1) - (3 if base == "kg" else 0)
 
 
 @cache
@@ -250,20 +216,3 @@ def _dimension(unit: str) -> str:
     """Return what a quantity in `unit` is called."""
     root = _root(unit)
     return next((name for si, name in DIMENSIONS.items() if _root(si) == root), f"a quantity in {root:~}")
-
-
-Length = Annotated[float, Quantity("m", "150 um")]
-Area = Annotated[float, Quantity("m^2", "1e4 um^2")]
-Time = Annotated[float, Quantity("s", "50 ms")]
-Frequency = Annotated[float, Quantity("Hz", "300 Hz")]
-Speed = Annotated[float, Quantity("m/s", "0.1 m/s")]
-Acceleration = Annotated[float, Quantity("m/s^2", "9.80665 m/s^2")]
-Gravity = Annotated[float | tuple[float, float, float], Directed(Quantity("m/s^2", "9.80665 m/s^2"))]
-Mass = Annotated[float, Quantity("kg", "2e-9 kg")]
-Density = Annotated[float, Quantity("kg/m^3", "2330 kg/m^3")]
-Force = Annotated[float, Quantity("N", "2 uN")]
-Stiffness = Annotated[float, Quantity("N/m", "1e4 N/m")]
-Pressure = Annotated[float, Quantity("Pa", "169 GPa")]
-SurfaceEnergy = Annotated[float, Quantity("J/m^2", "1 J/m^2")]
-Point = Annotated[tuple[Length, Length], Pair("lengths", "100 um")]
-Velocity = Annotated[tuple[Speed, Speed], Pair("velocities", "0 m/s")]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any, get_args, get_origin
 
-from coupling.case.units import Directed, Quantity
+from coupling.case.values.quantities import Directed
+from coupling.case.values.units import Quantity
 
 
 def parts_of(annotation: Any) -> list[Any]:

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from simpleeval import SimpleEval
 
-from coupling.case.units import shown
+from coupling.case.values.units import quoted
 from coupling.suggestion import near
 
 PLACES: Final = ("row", "column", "rows", "columns")
@@ -143,7 +143,7 @@ def split(text: str) -> tuple[list[str], str]:
 def unreadable(rest: str) -> str:
     """Why what follows an expression is no word of its own, such as a unit; "" if it may be one."""
     if not rest[0].isalnum() and rest[0] not in "(.":
-        return f"{shown(rest[0])} means nothing{'; a power is written **' if rest[0] == '^' else ' in an expression'}"
+        return f"{quoted(rest[0])} means nothing{'; a power is written **' if rest[0] == '^' else ' in an expression'}"
     word = re.match(r"\w*", rest)
     if rest[0] in "(." or (word and word[0] in (*NAMES[:-1], *FUNCTIONS)):
         return f'an operator such as * is missing before "{rest}"'

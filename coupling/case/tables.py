@@ -1,0 +1,99 @@
+"""The tables of a case file: all that it may hold, and [part] and [run]."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Final, Literal
+
+from pydantic import ConfigDict, Field, StrictFloat, StrictInt
+
+from coupling.case.any_plate import AnyPlate
+from coupling.case.drive import ActuatorCase
+from coupling.case.friction import AnyFriction
+from coupling.case.lattice import LatticeCase
+from coupling.case.table import WRONG, Contradictions, KeyedTable, Table
+from coupling.case.values import Force, Gravity, Length, Mass, Point, Time, Velocity
+
+MAX_STEPS: Final = 100_000_000  # of a fixed scheme
+
+
+class PartCase(Table):
+    """The micropart at the start, in kg, m, m/s and N."""
+
+    mass: Mass = Field(gt=0)
+    """Its mass."""
+    position: Point = Field(examples=[["100 um", "50 um"]])
+    """Where it is at the start; on the plate, or counted from the platform."""
+    velocity: Velocity = (0.0, 0.0)
+    """How fast it moves at the start, over the platform if there is one."""
+    size: Length | None = Field(default=None, gt=0, examples=["100 um"])
+    """The side of its footprint, for the check of curvature; without it the root of the contact area."""
+    squeeze: Force = Field(default=0.0, ge=0)
+    """A constant force that presses it onto the surface, along the normal."""
+
+
+class RunCase(KeyedTable):
+    """The run, in s and m/s^2."""
+
+    duration: Time = Field(gt=0, examples=["50 ms"])
+    """How long the part is followed."""
+    gravity: Gravity = 9.80665
+    """Towards the plate; or three, along x, y and z, on a tilted device."""
+    tolerance: StrictFloat = Field(default=1e-9, ge=1e-12, le=1e-2)
+    """The error of one step of the integrator, relative to half of the plate's longer side."""
+    surface_tolerance: StrictFloat = Field(default=1e-8, ge=1e-13, le=1e-3)
+    """The error of the moving surface, relative to a stroke."""
+    frames: StrictInt | None = Field(default=None, ge=2, examples=[200])
+    """The time steps in the result files; without it 20 a cycle, from 100 to 1000."""
+    scheme: Literal["events", "fixed", "paper"] = "events"
+    """How the path is found: by located events, or for comparison by fixed steps."""
+    time_step: Time | None = Field(default=None, gt=0, examples=["0.1 us"])
+    """That of fixed steps; without it 1e-4 of the shortest stroke."""
+    after_detachment: Literal["stop", "fly"] = "stop"
+    """Whether the run ends where the part comes off, or follows its flight."""
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        scheme, step, duration = given.get("scheme", "events"), given.get("time_step"), given.get("duration", WRONG)
+        if "time_step" in given and scheme == "events":
+            yield "time_step", 'must not be given with scheme = "events", which chooses its steps by the tolerance'
+        elif isinstance(step, float) and duration is not WRONG:
+            # Half of it is run as well, as a check of the path.
+            least, most = 2 * duration / MAX_STEPS, duration / 10
+            if not least <= step <= most:
+                yield "time_step", f"must be from {least:g} s to {most:g} s in this run; got {step:g} s"
+        if given.get("after_detachment") == "fly" and scheme not in ("events", WRONG):
+            message = f'must be "stop" with scheme = "{scheme}"; only "events" follows flights'
+            yield "after_detachment", message
+
+
+def _actuators_or(schema: dict[str, Any]) -> None:
+    """Has a JSON schema ask for what a case with that plate needs: actuators, a lattice or neither."""
+    schema["required"].remove("actuators")
+    platform = {"properties": {"shape": {"const": "platform"}}, "required": ["shape"]}
+    schema["anyOf"] = [
+        {"required": ["actuators"]},
+        {"required": ["lattice"]},
+        {"properties": {"plate": platform}},
+    ]
+
+
+class CaseTables(Table):
+    """All that a case file holds; a platform has no actuators."""
+
+    model_config = ConfigDict(json_schema_extra=_actuators_or)
+
+    whole_file: ClassVar[bool] = True
+
+    plate: AnyPlate
+    """The plate, or a platform."""
+    actuators: tuple[ActuatorCase, ...]
+    """The actuators, one table each; none with a platform, and none needed beside a lattice."""
+    lattice: LatticeCase | None = None
+    """Many actuators in rows and columns, which come after those that are given one by one."""
+    part: PartCase
+    """The part, which lies on the surface."""
+    friction: AnyFriction
+    """The friction between part and surface."""
+    run: RunCase
+    """How long the part is followed, and how exactly."""

@@ -1,0 +1,42 @@
+"""What a field of a file may hold: quantities with units, formulas, and columns of numbers in CSV files."""
+
+from coupling.case.values.annotations import of_kind, parts_of, quantity_of
+from coupling.case.values.csv_columns import (
+    Columns,
+    MeasuredColumns,
+    by_line,
+    first_of,
+    name_and_unit,
+    read_columns,
+    read_rows,
+    unreadable,
+)
+from coupling.case.values.formula import Amount, Choice, Condition, Formula
+from coupling.case.values.quantities import (
+    AXES,
+    Area,
+    Density,
+    Directed,
+    FileBeside,
+    Force,
+    Frequency,
+    Gravity,
+    Length,
+    Mass,
+    Point,
+    Pressure,
+    Stiffness,
+    SurfaceEnergy,
+    Time,
+    Velocity,
+)
+from coupling.case.values.units import (
+    DIMENSIONS,
+    POSITIVE,
+    UNITS_REQUIRED,
+    WRITTEN,
+    Quantity,
+    length_text,
+    quoted,
+    written_unit,
+)
