@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import Delaunay, cKDTree
 
 from meshes.nearest import FloatArray, IntArray
 from meshes.outline import BoolArray, Outline
@@ -88,6 +87,8 @@ def _lattice(outline: Outline, cell_size: float) -> FloatArray:
 
 def delaunay(points: FloatArray, outline: Outline) -> IntArray:
     """The counter-clockwise Delaunay triangles (m, 3) inside the outline."""
+    from scipy.spatial import Delaunay  # here, because standard outlines do without it
+
     triangles = Delaunay(points).simplices.astype(np.int64)
     area = areas(points, triangles)
     triangles[area < 0] = triangles[area < 0][:, ::-1]

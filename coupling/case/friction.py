@@ -126,7 +126,7 @@ class TableCase(Table):
 
 
 def has_known_law(friction: FrictionCase) -> bool:
-    """Whether a checked table has a friction law for certain: of Kogut and Etsion's, only those with default numbers."""
+    """Whether a valid table certainly has a friction law; of Kogut and Etsion's only those with default numbers."""
     if not isinstance(friction, KogutEtsionCase):
         return True
     index = _plasticity_index({"preset": friction.preset})
