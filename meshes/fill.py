@@ -127,6 +127,8 @@ def _apart(centres: FloatArray, radii: FloatArray) -> FloatArray:
     if not len(centres):
         return centres
     kept = np.ones(len(centres), dtype=bool)
+    from scipy.spatial import cKDTree
+
     for k, within in enumerate(cKDTree(centres).query_ball_point(centres, radii)):
         if kept[k]:
             kept[[other for other in within if other > k]] = False

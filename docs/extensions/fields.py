@@ -12,11 +12,18 @@ from typing import NamedTuple, get_args
 
 from pydantic import BaseModel
 
-from coupling.case import units as quantities
+from coupling.case.values import quantities
 
 HIDDEN = "_"
 PACKAGES = {"meshes", "fem_plate", "particle", "coupling", "active_surface"}
-PLAIN = {"StrictInt": "int", "StrictFloat": "float", "StrictStr": "str", "Count": "int", "Repeats": "int | str"}
+PLAIN = {
+    "StrictInt": "int",
+    "StrictFloat": "float",
+    "StrictStr": "str",
+    "FileBeside": "str",
+    "Count": "int",
+    "Repeats": "int | str",
+}
 SHAPES = {
     "Point": ("tuple[float, float]", "m"),
     "Place": ("tuple[float, float]", "m"),
@@ -71,7 +78,7 @@ def _own(kind: type) -> list[Row]:
             if not text.startswith("ClassVar"):
                 said = comments.get(line.end_lineno or 0, unit), _text(below)
                 comment = ": ".join(filter(None, said))
-                found.append(Row(line.target.id, text, _default(line.value), comment))
+                found.append(Row(line.target.id, text, _default(line.value, kind, line.target.id), comment))
     return found
 
 
@@ -138,8 +145,10 @@ def _kind(annotation: ast.expr) -> str:
     return ast.unparse(annotation)
 
 
-def _default(value: ast.expr | None) -> str:
+def _default(value: ast.expr | None, kind: type, name: str) -> str:
     if not isinstance(value, ast.Call):
         return ast.unparse(value) if value is not None else ""
-    given = {word.arg: ast.unparse(word.value) for word in value.keywords}
-    return given.get("default", "computed" if "default_factory" in given else "")
+    given = {word.arg: word.value for word in value.keywords}
+    if isinstance(given.get("default"), ast.Attribute):  # of the law that has the number
+        return repr(kind.model_fields[name].default)
+    return ast.unparse(given["default"]) if "default" in given else "computed" if "default_factory" in given else ""

@@ -7,8 +7,8 @@ from click.testing import CliRunner
 
 import particle
 from active_surface.cli.program import main
-from coupling.case import CaseError, TableCase, read_case
-from coupling.run import build_friction
+from coupling.case import CaseError, KogutEtsionCase, TableCase, has_known_law, read_case
+from coupling.run import build_friction, friction_law
 
 EXAMPLE = (Path(__file__).parents[3] / "examples" / "one_actuator.toml").read_text()
 BEFORE, REST = EXAMPLE.split("[friction]")
@@ -189,3 +189,11 @@ def test_a_refused_law_exits_2_and_leaves_nothing(write, command, friction, says
 def test_a_case_with_a_table_is_fine(write, friction):
     done = CliRunner().invoke(main, ["check", str(write(friction, CSV))])
     assert done.exit_code == 0 and "fine" in done.output
+
+
+@pytest.mark.parametrize("preset", [None, "paper"])
+def test_the_default_numbers_have_a_law_that_check_need_not_make(preset):
+    standard = KogutEtsionCase(preset=preset)
+    assert has_known_law(standard) and friction_law(standard).law
+    for key, value in {"roughness": 21e-9, "plasticity_index": 3.0, "coefficients": "unrounded"}.items():
+        assert not has_known_law(standard.model_copy(update={key: value}))

@@ -10,6 +10,7 @@ import pytest
 from case_files import STROKE, changed, problems
 
 from coupling.case import Quantity
+from coupling.case.values import units
 
 
 @pytest.mark.parametrize(
@@ -69,6 +70,28 @@ def test_an_angular_velocity_is_not_a_frequency(tmp_path: Path) -> None:
 )
 def test_units(unit: str, text: str, value: float) -> None:
     assert Quantity(unit, "").parse(text) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize("prefix", units._PREFIXES)
+@pytest.mark.parametrize("base", units._PREFIXED_BASES)
+def test_prefixed_units_are_those_of_pint(prefix: str, base: str) -> None:
+    si, power = units.prefixed(prefix + base)
+    assert si == units._PREFIXED_BASES[base]
+    quantity = Quantity(si, "")
+    assert quantity._fits(prefix + base)
+    for number in ("1", "0.3", "123456.789e-3"):
+        assert quantity.parse(f"{number} {prefix}{base}") == quantity._convert_by_pint("", number, prefix + base)
+
+
+@pytest.mark.parametrize("unit", units.DIMENSIONS)
+def test_si_units_are_those_of_pint(unit: str) -> None:
+    quantity = Quantity(unit, "")
+    assert quantity.parse(f"0.1 {unit}") == quantity._convert_by_pint("", "0.1", unit) == 0.1
+
+
+@pytest.mark.parametrize("unit", ["s^2", "Hz^2", "parsec", "ft", "min", "degC", "", "um2", "cmm"])
+def test_other_units_are_left_to_pint(unit: str) -> None:
+    assert units.prefixed(unit)[0] == ""
 
 
 def test_import_does_not_load_pint() -> None:
