@@ -124,11 +124,11 @@ def _poor_cells(
 
 def _apart(centres: FloatArray, radii: FloatArray) -> FloatArray:
     """Centres (n, 2), without those that lie in the circle of an earlier one."""
+    from scipy.spatial import cKDTree
+
     if not len(centres):
         return centres
     kept = np.ones(len(centres), dtype=bool)
-    from scipy.spatial import cKDTree
-
     for k, within in enumerate(cKDTree(centres).query_ball_point(centres, radii)):
         if kept[k]:
             kept[[other for other in within if other > k]] = False
