@@ -32,10 +32,10 @@ def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
     grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1))
     _draw_map(figure, figure.add_subplot(grid[:, 0]), feasibility)
     _draw_curves(figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1]), feasibility)
-    said = (
+    title = (
         f"{feasibility.case.name}: fastest drive {feasibility.frequency:g} Hz, {1e3 * feasibility.areas.window:.4g} ms"
     )
-    figure.suptitle(said, parse_math=False)
+    figure.suptitle(title, parse_math=False)
     return save_picture(figure, path)
 
 
