@@ -22,8 +22,7 @@ from active_surface.views.film.pace import Pace
 from active_surface.views.film.stage import Stage
 from active_surface.views.rounding import round_below
 from coupling.case import PlatformCase
-from coupling.pictures import STEPS
-from meshes import draw_rim, quantity_text, unit_for
+from meshes import STEPS, draw_rim, quantity_text, unit_for
 from particle import HALO, PATH_COLOUR, SHADES, STICK_COLOUR, State, stretches
 
 Image = NDArray[np.uint8]

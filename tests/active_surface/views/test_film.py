@@ -133,7 +133,7 @@ def test_what_a_film_does_not_show_is_said():
     time = np.linspace(0, 1, 11)
     assert warnings_of(pace_of(time, 10.0, 2.0), time, 0.5) == []
     said = warnings_of(pace_of(time, 10.0, 6.0), time, 0.05)
-    assert "6 frames to each stored step" in said[0] and "3 frames to a cycle" in said[1]
+    assert "6 frames to each stored step" in said[0] and "3 frames per cycle" in said[1]
     assert MIN_FRAMES_PER_CYCLE > 3 and warnings_of(pace_of(time[:1], 10.0, 6.0), time[:1], 0.05) == []
 
 
