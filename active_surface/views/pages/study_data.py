@@ -25,7 +25,7 @@ STOPS = 9  # of the colour scale
 
 
 def study_data(study: Study, shown: Shown, starts: FloatArray, paths: Paths) -> dict[str, Any]:
-    """What the program of the page, `page/study.js`, reads; starts: (..., 2) m, of the first repeat of each cell."""
+    """What the programs of the page read; starts: (..., 2) m, of the first repeat of each cell."""
     ends = shown.end if shown.end[..., 0].size <= MAX_ENDS else shown.end[..., :1, :]
     places = np.concatenate([ends.reshape(-1, 2), starts.reshape(-1, 2)])
     known = places[np.isfinite(places).all(axis=1)]
