@@ -124,7 +124,7 @@ class PlateCells:
     def _is_good(
         self, lattice: Lattice, leaves: Sequence[Cell], max_errors: Sequence[float], pitches: IntArray
     ) -> bool:
-        """Whether no cell, moved some pitches (2,), is off by more than its largest error; keep what they are off by."""
+        """Whether no cell moved some pitches (2,) exceeds its largest error; keep what they are off by."""
         off = [
             misfit(self._moved(lattice, leaf, pitches), self._maker.checks, self.shapes, self._maker.heights)
             for leaf in leaves
