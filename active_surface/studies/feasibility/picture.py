@@ -57,6 +57,9 @@ def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
         keys.append(Patch(facecolor=LOST, label="it comes off at some moment"))
     keys += mark_actuators(axes, feasibility.actuators, frame_around(box), unit.per_si)
     map_axes(axes, unit)
+    low, high = frame_around(box) * unit.per_si
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
     axes.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False, fontsize=9)
 
 
