@@ -1,4 +1,4 @@
-"""From the drives of a case to those of the integrator, and what a run must know of them."""
+"""From the drives of a case to those of the integrator: their heights, extremes, jumps, and the times of frames."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from particle.drives import drive_table, next_kink
 
 FloatArray = NDArray[np.float64]
 
-SAMPLES, KINKS = 201, 101  # moments at which extremes are sought
-MISSED, SEEN = 256, 0.99  # moments added for drives whose own extremes those miss, of which that share is enough
+SAMPLES, MAX_BREAKPOINTS = 201, 101  # moments at which extremes are sought
+MAX_ADDED, ENOUGH = 256, 0.99  # moments added for extremes that lie elsewhere; this share of an extreme is enough
 GOLDEN = (5**0.5 - 1) / 2
 FRAMES_PER_CYCLE = 20
-FRAMES = (100, 1000)  # least and most without a wish in the case
-MOST_HEIGHTS = 3_000_000  # frames times drives, above the least: what the files of a large array can take
-JUMP = 1e-3  # of a stroke over its time: a smaller change of velocity is none
+FRAMES = (100, 1000)  # the fewest and the most unless the case states a number
+MAX_HEIGHTS = 3_000_000  # frames times drives, beyond the fewest frames: it bounds the files of large arrays
+JUMP = 1e-3  # of a stroke over its time: a smaller change of velocity counts as none
 
 
 def build_drives(case: Case) -> list[AnyDrive]:
@@ -48,34 +48,34 @@ def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray, derivative: in
     return np.stack([known[drive] for drive in drives], axis=1)
 
 
-def frame_times(wanted: int | None, drives: Sequence[AnyDrive], end: float) -> FloatArray:
-    """The times [s] of the result files' steps, from 0 to the end: as many as wanted, or enough for the drives."""
+def frame_times(frames: int | None, drives: Sequence[AnyDrive], end: float) -> FloatArray:
+    """The times [s] of the result files' steps, from 0 to the end; frames: how many; None: enough for the drives."""
     fastest = max(drive.frequency for drive in drives)
-    most = min(max(MOST_HEIGHTS // len(drives), FRAMES[0]), FRAMES[1])
-    count = wanted or min(max(math.ceil(end * fastest * FRAMES_PER_CYCLE) + 1, FRAMES[0]), most)
+    most = min(max(MAX_HEIGHTS // len(drives), FRAMES[0]), FRAMES[1])
+    count = frames or min(max(math.ceil(end * fastest * FRAMES_PER_CYCLE) + 1, FRAMES[0]), most)
     return np.linspace(0, end, count)
 
 
 def moments(drives: Sequence[AnyDrive], end: float) -> FloatArray:
     """Moments (k,) from 0 to `end` [s] at which to look for extremes.
 
-    First kinks, some in step with no drive, and for drives that are higher or lower elsewhere the moment where.
+    They are the first breakpoints of the drives, moments spread evenly, and those of extremes that both leave out.
     """
-    kinks, table = [0.0], drive_table(drives)
-    while len(kinks) < KINKS and kinks[-1] < end:
-        kinks.append(min(next_kink(table, kinks[-1]), end))
+    breakpoints, table = [0.0], drive_table(drives)
+    while len(breakpoints) < MAX_BREAKPOINTS and breakpoints[-1] < end:
+        breakpoints.append(min(next_kink(table, breakpoints[-1]), end))
     scattered = end * (np.arange(SAMPLES) * GOLDEN % 1.0)
-    looked_at = np.unique(np.concatenate([kinks, scattered, [end]]))
-    missed = []
+    common = np.unique(np.concatenate([breakpoints, scattered, [end]]))
+    overlooked = []
     for drive in dict.fromkeys(drives):  # many of a lattice are equal
-        seen = drive.evaluate(looked_at)[0]
+        at_common = drive.evaluate(common)[0]
         times, heights = _marks(drive)
-        for signed, of_seen in ((heights, seen), (-heights, -seen)):
+        for signed, known in ((heights, at_common), (-heights, -at_common)):
             signed = np.where(times <= end, signed, -np.inf)
             most = int(np.argmax(signed))
-            if SEEN * signed[most] > max(0.0, of_seen.max()):
-                missed.append((float(signed[most]), float(times[most])))
-    return np.union1d(looked_at, [time for _, time in sorted(missed, reverse=True)[:MISSED]])
+            if ENOUGH * signed[most] > max(0.0, known.max()):
+                overlooked.append((float(signed[most]), float(times[most])))
+    return np.union1d(common, [time for _, time in sorted(overlooked, reverse=True)[:MAX_ADDED]])
 
 
 def _marks(drive: AnyDrive) -> tuple[FloatArray, FloatArray]:

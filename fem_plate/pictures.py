@@ -80,7 +80,7 @@ def mark_actuators(
         inside = places[((places > frame[0]) & (places < frame[1])).all(axis=1)]
         size = marker_size(inside, frame, width) if size is None else size
         if not size:
-            return [Line2D([], [], linestyle="", label=f"{len(places)} actuators, too many to mark")]
+            return [Line2D([], [], linestyle="", label=f"{len(places)} actuators, not marked")]
         reach = size / width * _extent(frame)
         inside = inside[((inside > frame[0] + reach) & (inside < frame[1] - reach)).all(axis=1)]
     size = size or MARKER_SIZES[1]

@@ -9,6 +9,7 @@ from .shapes import annulus as annulus, disc as disc, ellipse as ellipse, rectan
 from .drawing import (
     Drawing as Drawing,
     SIZE as SIZE,
+    STEPS as STEPS,
     draw_rim as draw_rim,
     label_axis as label_axis,
     label_places as label_places,

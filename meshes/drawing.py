@@ -23,6 +23,7 @@ from meshes.prefixes import unit_for
 SIZE = 4.2, 3.6  # inches, of one pair of axes
 DPI = 80  # in a notebook
 MAX_TICKS = 5
+STEPS = (1, 2, 2.5, 5, 10)  # between ticks, times a power of ten
 MINUS = "\N{MINUS SIGN}"
 BELOW = 3.6  # times the font size: room for an axis and its label
 RIM_WIDTH = 1.5  # points
@@ -66,7 +67,7 @@ def label_places(axes: Axes) -> None:
 def label_axis(axis: Axis, name: str, si: str, extent: float | None = None) -> None:
     """Label an axis of numbers in an SI unit as one in a unit with a prefix, which suits an extent or what it shows."""
     unit = unit_for(extent or _extent(axis), si)
-    axis.set_major_locator(MaxNLocator(MAX_TICKS))
+    axis.set_major_locator(MaxNLocator(MAX_TICKS, steps=STEPS))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value * unit.per_si:.6g}".replace("-", MINUS)))
     axis.set_label_text(f"{name} [{unit.name}]")
 

@@ -1,13 +1,13 @@
-"""Round numbers, for lengths, factors and grids that are told in words."""
+"""Round numbers, for lengths, factors and grids."""
 
 from __future__ import annotations
 
 import math
 
 DIGITS = (1, 2, 5)
-WANTED = 0.2  # of a length: about so large are heights drawn
-ALMOST_SEEN = 1.5  # a smaller exaggeration is none
-SLACK = 1e-9  # relative: a number that is round but for rounding is
+DRAWN_HEIGHT = 0.2  # of a length: heights are drawn about so large
+MIN_EXAGGERATION = 1.5  # a smaller one counts as 1
+SLACK = 1e-9  # relative: a number that is round but for rounding errors is round
 
 
 def round_below(value: float) -> float:
@@ -23,8 +23,8 @@ def round_above(value: float) -> float:
 
 
 def exaggeration(height: float, length: float) -> float:
-    """How many times heights [m] of something so long [m] are drawn larger: a round number, 1 where they are seen."""
-    wanted = WANTED * length / height if height > 0 else 1.0
-    if wanted < ALMOST_SEEN:
+    """The factor by which heights [m] of something so long [m] are drawn larger: a round number, or 1."""
+    exact = DRAWN_HEIGHT * length / height if height > 0 else 1.0
+    if exact < MIN_EXAGGERATION:
         return 1.0
-    return min(round_below(wanted), round_above(wanted), key=lambda factor: abs(math.log(factor / wanted)))
+    return min(round_below(exact), round_above(exact), key=lambda factor: abs(math.log(factor / exact)))

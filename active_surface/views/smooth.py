@@ -20,7 +20,7 @@ IntArray = NDArray[np.int64]
 
 AROUND = 12  # points that a slope is fitted to, by a quadratic
 NEAREST = 24  # triangles among which that of a point is sought
-AT_ONCE = 4096  # points that are sought together
+BATCH = 4096  # points that are sought together
 OUTSIDE = 1e-6  # of a triangle's height: a point further out is not on the mesh
 
 
@@ -36,7 +36,7 @@ class Smooth:
 
         A point that is in none has a place near it, on the rim.
         """
-        blocks = [self._locate(xy[first : first + AT_ONCE]) for first in range(0, max(len(xy), 1), AT_ONCE)]
+        blocks = [self._locate(xy[first : first + BATCH]) for first in range(0, max(len(xy), 1), BATCH)]
         triangle, shares, inside = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         return triangle, shares, inside
 
@@ -93,7 +93,7 @@ class Smooth:
         if n <= AROUND:
             return csr_matrix((n, n)), csr_matrix((n, n))
         tree = cKDTree(self.points)
-        blocks = [self._fit(tree, self.points[first : first + AT_ONCE]) for first in range(0, n, AT_ONCE)]
+        blocks = [self._fit(tree, self.points[first : first + BATCH]) for first in range(0, n, BATCH)]
         near, fit = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         rows = np.repeat(np.arange(n), AROUND)
         slopes = [csr_matrix((part.ravel(), (rows, near.ravel())), (n, n)) for part in np.moveaxis(fit, 1, 0)]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-from meshes import Unit
+from meshes import STEPS, Unit
 
-MAX_TICKS, STEPS = 6, (1, 2, 2.5, 5, 10)  # a few ticks, at round numbers
+MAX_TICKS = 6
 
 
 def plain_ticks(axes: Axes) -> None:

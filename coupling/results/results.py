@@ -93,12 +93,12 @@ def write_results(
                 normal_force=samples.normal_force[some],
                 friction_force=samples.friction_force[some],
             )
-    from coupling.pictures import draw_run  # here, because it loads matplotlib
-
     picture = folder / f"{case.name}.png"
     files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
     _clear(folder, case.name)
     try:
+        from coupling.pictures import draw_run  # here, because it loads matplotlib
+
         draw_run(case, scene, trajectory, ground, float(times[most_deflected(np.concatenate(spread))]), picture)
         files.append(picture)
     except Exception as error:  # the run is finished, whatever becomes of its picture

@@ -43,9 +43,9 @@ def misfit(cell: Cell, local: FloatArray, shapes: Shapes, heights: FloatArray) -
     column[rows] = np.arange(len(rows))
     exact = np.concatenate([values, np.zeros((len(at), 1))], axis=1)[:, column[fit.drive]]
     table = monomials(local, fit.degree)
-    polynomial, strengths = np.split(fit.rows, [table.shape[1]], axis=1)
+    polynomial, forces = np.split(fit.rows, [table.shape[1]], axis=1)
     logarithms = point_value(at / shapes.size, shapes.points[fit.near] / shapes.size)
-    fitted = table @ polynomial.T + logarithms @ strengths.T / UNIT_STRENGTH
+    fitted = table @ polynomial.T + logarithms @ forces.T / UNIT_STRENGTH
     out = ~np.isin(rows, fit.drive)
     error = np.abs(fitted - exact) / heights[fit.drive]
     left_out = np.abs(values[:, out]).max(axis=0) / heights[rows[out]]

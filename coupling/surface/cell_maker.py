@@ -29,16 +29,16 @@ OVERHANG = 1.25  # cells are fitted over this many half widths, so that a step m
 NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
 CHECKS = 48  # points between those, at which its error is measured
 FEW = 8  # actuators whose logarithms are kept everywhere: their exact sum is cheaper than smaller cells
-MOST_NEAR = 4  # logarithms in a cell otherwise: each costs as much as 15 monomials
+MAX_NEAR = 4  # logarithms in a cell otherwise: each costs as much as 15 monomials
 RCOND = 1e-12
-DEEPEST = 6  # times that a cell is divided
+MAX_DEPTH = 6  # times that a cell is divided
 LESS = 0.1  # of its error: dividing many cells pays if that is left at most
 # This is enough for those that stand out of their like, as at corners, and where errors are too large to show an order.
 LESS_AT_CORNERS, OUTSTANDING, COARSE = 0.75, 3.0, 1e-3
-MOST_DIVIDED = 128  # at once: where more are not good enough, the shapes are not
+MAX_DIVIDED = 128  # at once: where more are not good enough, the shapes are not
 # The polynomial's error falls with the distance of the nearest logarithm that it takes up, in half widths.
 REACH, REACHED, REACH_ORDER = 8.0, 1e-9, 9
-MOST_VALUES = 4_000_000  # points times shapes that are evaluated at once
+MAX_VALUES = 4_000_000  # points times shapes that are evaluated at once
 
 
 class CellMaker:
@@ -69,14 +69,14 @@ class CellMaker:
         if cells:
             with threadpool_limits(limits=1, user_api="blas"):
                 self._fit(cells)
-                self._divide(cells, DEEPEST)
+                self._divide(cells, MAX_DEPTH)
 
-    def _divide(self, cells: Sequence[Cell], deepest: int) -> None:
+    def _divide(self, cells: Sequence[Cell], depth: int) -> None:
         """Divide those that are not good enough, if it helps: what finite elements are off by stays."""
-        crowded = [cell for cell in cells if not self.few and cell.fit and len(cell.fit.near) > MOST_NEAR]
+        crowded = [cell for cell in cells if not self.few and cell.fit and len(cell.fit.near) > MAX_NEAR]
         poor = [cell for cell in cells if cell.error > self._aim and cell not in crowded]
         tried = crowded + poor
-        if not tried or deepest == 0 or len(tried) > MOST_DIVIDED:
+        if not tried or depth == 0 or len(tried) > MAX_DIVIDED:
             return
         quarters = []
         for cell in tried:
@@ -90,11 +90,11 @@ class CellMaker:
             helps = errors.max() < less * cell.error or (errors <= self._aim).sum() >= 2
             if cell in crowded or helps:
                 cell.quarters, cell.fit = four, None
-        self._divide([quarter for cell in tried for quarter in cell.quarters], deepest - 1)
+        self._divide([quarter for cell in tried for quarter in cell.quarters], depth - 1)
 
     def _fit(self, cells: Sequence[Cell]) -> None:
         """Fit cells of one size."""
-        some = max(1, MOST_VALUES // (len(self.shapes.points) * (len(self._nodes) + CHECKS)))
+        some = max(1, MAX_VALUES // (len(self.shapes.points) * (len(self._nodes) + CHECKS)))
         for start in range(0, len(cells), some):
             self._fit_some(cells[start : start + some])
 
@@ -145,10 +145,10 @@ class CellMaker:
         everything = np.arange(len(self.shapes.points))
         reach = self._reach * float(cell.half.max())
         near = everything if self.few else np.sort(self.tree.query_ball_point(cell.centre, reach)).astype(np.int64)
-        strengths = self.shapes.strengths[near][:, rows]
-        strengths = strengths if isinstance(strengths, np.ndarray) else strengths.toarray()
+        forces = self.shapes.strengths[near][:, rows]
+        forces = forces if isinstance(forces, np.ndarray) else forces.toarray()
         x = (cell.centre + local * cell.half) / self.shapes.size
-        target = target - point_value(x, self.shapes.points[near] / self.shapes.size) @ strengths
+        target = target - point_value(x, self.shapes.points[near] / self.shapes.size) @ forces
         chosen = None
         highest, total = monomials(local, DEGREES[-1]), powers(DEGREES[-1]).sum(axis=1)
         for degree in reversed(DEGREES):
@@ -167,7 +167,7 @@ class CellMaker:
         assert chosen
         degree, fitted, error = chosen
         cell.error, cell.left_out = error, left_out
-        polynomials_and_logarithms = np.concatenate([fitted, UNIT_STRENGTH * strengths]).T.copy()
+        polynomials_and_logarithms = np.concatenate([fitted, UNIT_STRENGTH * forces]).T.copy()
         cell.fit = CellFit(degree, rows, weight[kept], near, polynomials_and_logarithms, clear)
 
     def _at_rim(self, cell: Cell, reach: float, spacing: float) -> FloatArray:

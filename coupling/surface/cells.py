@@ -23,7 +23,7 @@ IntArray = NDArray[np.int64]
 WORSE = 2.0  # times as far off a shared fit may be elsewhere
 ACROSS = 8  # cells along the plate's longer side, at least
 PER_SPACING = 2.0  # cells from one actuator to the next
-MOST_ROOTS = 16.0  # cells for each actuator: where some stand much closer together, these alone are divided
+MAX_ROOTS = 16.0  # cells for each actuator: where some stand much closer together, these alone are divided
 BLOCK = 3  # cells a side that are built together
 BUILDING = Lock()  # one for all surfaces, as the limit of BLAS threads is the process's
 
@@ -59,17 +59,17 @@ class PlateCells:
             first = np.floor((low - self._lattice.origin) / width + 1e-9)
             origin = self._lattice.origin + first * width
             counts = np.ceil((high - origin) / width - 1e-9).astype(int)
-            return origin, width, self._wanted(origin, width, counts)
+            return origin, width, self._on_plate(origin, width, counts)
         if not self._maker.few:
             spacing = float(np.median(self._maker.tree.query(self._maker.tree.data, 2)[0][:, 1]))
-            most = np.sqrt(MOST_ROOTS * len(self.shapes.points) * longest / float((high - low).min()))
-            across = max(across, min(PER_SPACING * longest / spacing, most))
+            limit = np.sqrt(MAX_ROOTS * len(self.shapes.points) * longest / float((high - low).min()))
+            across = max(across, min(PER_SPACING * longest / spacing, limit))
         width = longest / np.ceil(across * (1 - 1e-9))
         counts = np.ceil((high - low) / width * (1 - 1e-9)).astype(int)
         origin = (low + high - counts * width) / 2
-        return origin, np.full(2, width), self._wanted(origin, np.full(2, width), counts)
+        return origin, np.full(2, width), self._on_plate(origin, np.full(2, width), counts)
 
-    def _wanted(self, origin: FloatArray, width: FloatArray, counts: IntArray) -> IntArray:
+    def _on_plate(self, origin: FloatArray, width: FloatArray, counts: IntArray) -> IntArray:
         """Which of the grid's cells (nx, ny) there is to build: those whose circle reaches the plate."""
         centres = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in counts), indexing="ij"), axis=-1) * width + origin
         on_plate = self.shapes.outline.gap(centres) > -np.hypot(*width) / 2
@@ -107,27 +107,29 @@ class PlateCells:
         """The cells in the middle of a lattice by their place there; none where their translates were not as good."""
         half = lattice.pitch / PER_PITCH / 2
         corner = lattice.origin + lattice.middle * lattice.pitch
-        found = {
+        cells = {
             (i, j): Cell(corner + half * (2 * i + 1, 2 * j + 1), half) for i, j in np.ndindex(PER_PITCH, PER_PITCH)
         }
-        self._maker.make(list(found.values()))
-        leaves = [leaf for cell in found.values() for leaf in cell.leaves()]
+        self._maker.make(list(cells.values()))
+        leaves = [leaf for cell in cells.values() for leaf in cell.leaves()]
         fits = [leaf.fit for leaf in leaves if leaf.fit]
-        most = [max(self._maker.worth, WORSE * (leaf.error + leaf.left_out)) for leaf in leaves]
+        max_errors = [max(self._maker.worth, WORSE * (leaf.error + leaf.left_out)) for leaf in leaves]
         farther = 0
         while len(places := lattice.spread(fits, farther)):
-            if all(self._is_good(lattice, leaves, most, pitches) for pitches in places):
-                return found
+            if all(self._is_good(lattice, leaves, max_errors, pitches) for pitches in places):
+                return cells
             farther = 2 * farther + 1
         return {}
 
-    def _is_good(self, lattice: Lattice, leaves: Sequence[Cell], most: Sequence[float], pitches: IntArray) -> bool:
-        """Whether cells moved some pitches (2,) are off by `most` each, at most; what they are off by is kept."""
+    def _is_good(
+        self, lattice: Lattice, leaves: Sequence[Cell], max_errors: Sequence[float], pitches: IntArray
+    ) -> bool:
+        """Whether no cell moved some pitches (2,) exceeds its largest error; keep what they are off by."""
         off = [
             misfit(self._moved(lattice, leaf, pitches), self._maker.checks, self.shapes, self._maker.heights)
             for leaf in leaves
         ]
-        good = all(error + left_out <= bound for (error, left_out), bound in zip(off, most, strict=True))
+        good = all(error + left_out <= bound for (error, left_out), bound in zip(off, max_errors, strict=True))
         for leaf, (error, left_out) in zip(leaves, off, strict=True):
             if good:
                 leaf.error, leaf.left_out = max(leaf.error, error), max(leaf.left_out, left_out)

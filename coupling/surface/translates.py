@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 PER_PITCH = 2  # cells from one actuator of a lattice to the next
-FEWEST = 100  # actuators of a lattice with an inside
+MIN_ACTUATORS = 100  # actuators of a lattice with an inside
 SIDES = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j])  # ways to go from the middle
 NEARER = 1e-9  # of places that are equally far out that way, the one nearest to the middle
 
@@ -88,7 +88,7 @@ class Lattice:
 
 def lattice_of(shapes: Shapes) -> Lattice | None:
     """The lattice on which all actuators stand, if they do, hold the plate alike and are enough for an inside."""
-    if not isinstance(shapes, InfluenceShapes | PatchedShapes) or len(shapes.points) < FEWEST:
+    if not isinstance(shapes, InfluenceShapes | PatchedShapes) or len(shapes.points) < MIN_ACTUATORS:
         return None
     if shapes.springs[0] == 0 or np.any(shapes.springs != shapes.springs[0]):
         return None

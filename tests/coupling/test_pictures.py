@@ -217,4 +217,4 @@ def test_a_map_whose_lines_would_merge_is_shaded_and_its_bar_ends_where_the_heig
     FigureCanvasAgg(figure).draw()
     low, high = figure.axes[1].get_ylim()
     assert -1.3 < low <= -1 + 1e-12 and 2 - 1e-12 <= high < 2.5
-    assert [key.get_label() for key in keys] == ["2 actuators, too many to mark"]
+    assert [key.get_label() for key in keys] == ["2 actuators, not marked"]

@@ -32,10 +32,10 @@ def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
     grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1))
     _draw_map(figure, figure.add_subplot(grid[:, 0]), feasibility)
     _draw_curves(figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1]), feasibility)
-    said = (
+    title = (
         f"{feasibility.case.name}: fastest drive {feasibility.frequency:g} Hz, {1e3 * feasibility.areas.window:.4g} ms"
     )
-    figure.suptitle(said, parse_math=False)
+    figure.suptitle(title, parse_math=False)
     return save_picture(figure, path)
 
 
@@ -57,6 +57,9 @@ def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
         keys.append(Patch(facecolor=LOST, label="it comes off at some moment"))
     keys += mark_actuators(axes, feasibility.actuators, frame_around(box), unit.per_si)
     map_axes(axes, unit)
+    low, high = frame_around(box) * unit.per_si
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
     axes.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False, fontsize=9)
 
 

@@ -19,7 +19,7 @@ from particle import Outcome
 
 STARTS = ("part.position.0", "part.position.1")
 STAYING = (Outcome.STUCK, Outcome.MOVING)
-MOST_ACTUATORS = 20  # with a colour each
+MAX_ACTUATORS = 20  # with a colour each
 SHORT = 0.02  # of the distance between the outermost actuators: less is hardly a way
 NEARNESS = "end to nearest actuator"
 STAYS = "#f2efe6"
@@ -28,8 +28,8 @@ WHITE = withStroke(linewidth=2.0, foreground="white")
 
 def is_over_starts(shown: Shown) -> bool:
     """Whether a sweep's axes are the start's x and y, over a few actuators."""
-    found = {scale.axis.field.path for scale in shown.axes}
-    return found == set(STARTS) and 0 < len(shown.findings.actuators) <= MOST_ACTUATORS
+    paths = {scale.axis.field.path for scale in shown.axes}
+    return paths == set(STARTS) and 0 < len(shown.findings.actuators) <= MAX_ACTUATORS
 
 
 class Basins:

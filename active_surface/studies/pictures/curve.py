@@ -27,8 +27,8 @@ def draw_curve(axes: Axes, shown: Shown) -> None:
         rows = np.isfinite(shown.value).all(axis=-1)
         low, high = np.full((2, len(where)), np.nan)  # with gaps where starts were refused
         low[rows], high[rows] = np.percentile(shown.value[rows], PERCENTILES, axis=-1) * unit.per_si
-        said = f"{PERCENTILES[0]} to {PERCENTILES[1]} % of the starts"
-        axes.fill_between(where, low, high, color="#c6d9e8", label=said)
+        label = f"{PERCENTILES[0]} to {PERCENTILES[1]} % of the starts"
+        axes.fill_between(where, low, high, color="#c6d9e8", label=label)
     line = "." if across.axis.field.kind == "text" else ".-"
     axes.plot(where, shown.mean_value * unit.per_si, line, color="#40719c", linewidth=1.0, label="mean")
     if np.nanmin(shown.value) >= 0:

@@ -69,8 +69,8 @@ def read_findings(path: Path) -> Iterator[Findings]:
     with read_dataset(path) as dataset:
         if not {"axes", "rim"} <= dataset.attrs.keys():
             raise ValueError(f"{path}: must be of a sweep by this version of active-surface; it is of an older one")
-        said = tomllib.loads(dataset.attrs["study"]).get("map", {}).get("threshold")
-        yield Findings.of(path.stem, dataset, read_threshold(said) if said else None)
+        condition = tomllib.loads(dataset.attrs["study"]).get("map", {}).get("threshold")
+        yield Findings.of(path.stem, dataset, read_threshold(condition) if condition else None)
 
 
 def _axis(name: str, array: xarray.DataArray, listed: bool) -> Axis:

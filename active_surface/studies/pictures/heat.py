@@ -25,14 +25,14 @@ COLOURS = ("#40719c", "#e0c368", "#b8862d", "#7d1f0e", "#7a4b94", "#a8a8a8", "#d
 """Of the outcomes, by their number; they differ in grey, too."""
 OUTCOME = "what became of the part"
 NARROW = 5.0  # inches: a figure with one key a line
-MOST_NAMES = 12  # along an axis
+MAX_NAMES = 12  # along an axis
 FEW_DIGITS = 1e-4, 1e7  # numbers between them are written out
 
 
 def draw_value(figure: Figure, axes: Axes, shown: Shown) -> None:
     """Draw a map of a column of the results."""
     across, up = shown.axes
-    draw_field(figure, axes, across, up, shown.mean_value, shown.said, shown.unit)
+    draw_field(figure, axes, across, up, shown.mean_value, shown.meaning, shown.unit)
     draw_outline(axes, across, up, shown.holds)
 
 
@@ -43,13 +43,15 @@ def draw_outcome(axes: Axes, shown: Shown) -> None:
     draw_outline(axes, across, up, shown.holds)
 
 
-def draw_field(figure: Figure, axes: Axes, across: Scale, up: Scale, values: FloatArray, said: str, unit: Unit) -> None:
+def draw_field(
+    figure: Figure, axes: Axes, across: Scale, up: Scale, values: FloatArray, label: str, unit: Unit
+) -> None:
     """Draw values (n, m) in SI units over two scales, with their bar."""
     frame(axes, across, up)
     if np.isfinite(values).any():
         shades = np.ma.masked_invalid(values).T * unit.per_si
         mesh = axes.pcolormesh(edges(across), edges(up), shades, cmap="viridis", rasterized=True)
-        figure.colorbar(mesh, ax=axes).set_label(labelled(said, unit), parse_math=False)
+        figure.colorbar(mesh, ax=axes).set_label(labelled(label, unit), parse_math=False)
 
 
 def draw_classes(
@@ -109,7 +111,7 @@ def _name_ticks(axis: Axis, scale: Scale) -> None:
     """Name a few of a scale's texts, and write numbers with a power of ten where they would have many digits."""
     formatter = axis.get_major_formatter()
     if scale.texts:
-        places = range(0, len(scale.texts), -(-len(scale.texts) // MOST_NAMES))
+        places = range(0, len(scale.texts), -(-len(scale.texts) // MAX_NAMES))
         axis.set_ticks(list(places), list(scale.texts[:: places.step]), parse_math=False)
     elif isinstance(formatter, ScalarFormatter) and not FEW_DIGITS[0] <= np.abs(scale.drawn).max() < FEW_DIGITS[1]:
         formatter.set_scientific(True)
@@ -122,5 +124,5 @@ def edges(scale: Scale) -> FloatArray:
         values = values[0] + np.array([-0.5, 0.5]) * (abs(values[0]) or 1.0)
         return np.exp(values) if scale.logarithmic else values
     middles = (values[1:] + values[:-1]) / 2
-    found = np.concatenate([[2 * values[0] - middles[0]], middles, [2 * values[-1] - middles[-1]]])
-    return np.exp(found) if scale.logarithmic else found
+    borders = np.concatenate([[2 * values[0] - middles[0]], middles, [2 * values[-1] - middles[-1]]])
+    return np.exp(borders) if scale.logarithmic else borders

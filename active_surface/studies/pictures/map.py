@@ -46,7 +46,7 @@ def compose(figure: Figure, findings: Findings) -> None:
 def about(shown: Shown) -> str:
     """What is shown, in words."""
     of, drawn, repeats = shown.findings.dataset["outcome"].size, shown.outcome.size, shown.findings.repeats
-    said = [f"{of} paths" if drawn == of else f"{drawn} of {of} paths"]
+    parts = [f"{of} paths" if drawn == of else f"{drawn} of {of} paths"]
     if repeats > 1:
-        said.append(f"mean of {repeats} starts")
-    return ", ".join(said + [f"{name} = {text}" for name, text in shown.fixed.items()])
+        parts.append(f"mean of {repeats} starts")
+    return ", ".join(parts + [f"{name} = {text}" for name, text in shown.fixed.items()])

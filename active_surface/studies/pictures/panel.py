@@ -28,19 +28,19 @@ def panels(shown: Shown) -> list[Panel]:
     """What tells of a sweep: curves over one axis, maps over two, marks at points, basins over starts."""
     if is_over_starts(shown) and not shown.findings.scattered:
         basins = Basins(shown)
-        found = [
+        chosen = [
             Panel("basins", "where the part is carried", lambda figure, axes: basins.draw_carried(axes)),
             Panel("nearness", NEARNESS, basins.draw_nearness),
         ]
     else:
-        found = [value_panel(shown), outcome_panel(shown)]
+        chosen = [value_panel(shown), outcome_panel(shown)]
     holds, threshold = shown.holds, shown.findings.threshold
     if holds is not None and threshold and len(shown.axes) > 1:
-        said = threshold.text
-        found.append(
-            Panel("threshold", f"where {said} begins", lambda figure, axes: draw_threshold(axes, shown, holds, said))
+        text = threshold.text
+        chosen.append(
+            Panel("threshold", f"where {text} begins", lambda figure, axes: draw_threshold(axes, shown, holds, text))
         )
-    return found
+    return chosen
 
 
 def value_panel(shown: Shown) -> Panel:
@@ -54,7 +54,7 @@ def value_panel(shown: Shown) -> Panel:
         else:
             draw_value(figure, axes, shown)
 
-    return Panel(shown.column, shown.said, draw)
+    return Panel(shown.column, shown.meaning, draw)
 
 
 def outcome_panel(shown: Shown) -> Panel:

@@ -14,7 +14,7 @@ from active_surface.studies.pictures.shown import FloatArray, Shown
 from active_surface.studies.record import OUTCOMES
 
 LARGEST, SMALLEST = 40.0, 3.0  # square points, of a marker
-MOST_VECTORS = 2000  # markers that are not drawn as pixels in files of lines
+MAX_VECTORS = 2000  # markers that are not drawn as pixels in files of lines
 
 
 def draw_points(figure: Figure, axes: Axes, shown: Shown) -> None:
@@ -48,4 +48,4 @@ def _heights(axes: Axes, shown: Shown) -> FloatArray:
 
 def _look(count: int) -> dict[str, Any]:
     size = float(np.clip(2e4 / count, SMALLEST, LARGEST))
-    return {"s": size, "linewidths": 0, "rasterized": count > MOST_VECTORS}
+    return {"s": size, "linewidths": 0, "rasterized": count > MAX_VECTORS}

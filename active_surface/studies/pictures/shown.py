@@ -20,7 +20,7 @@ IntArray = NDArray[np.int64]
 
 DISTANCE = "distance"
 NUMBER = "number of the path"  # with spaces, which no axis has in its name
-MOST_POINTS = 100_000  # of random ones
+MAX_POINTS = 100_000  # of random ones
 NAMED = "m", "s", "N", "Hz", "m/s", "Pa"
 """Units that take a prefix."""
 UNEVEN = 4.0
@@ -55,7 +55,7 @@ class Scale:
             return self
         if self.values[0] > 0 and _even(np.log(self.values)):
             return replace(self, logarithmic=True)
-        names = tuple(said(value, self.drawn, 6) for value in self.drawn)
+        names = tuple(number_text(value, self.drawn, 6) for value in self.drawn)
         return replace(self, unit=Unit(self.unit.name, 1.0), values=np.arange(len(names), dtype=float), texts=names)
 
     @property
@@ -110,7 +110,7 @@ class Shown:
         _check_names(findings, x, y, column)
         axes = _chosen(findings, x, y)
         scattered = findings.scattered
-        picked: dict[str, Any] = {"point": slice(0, MOST_POINTS)} if scattered else {}
+        picked: dict[str, Any] = {"point": slice(0, MAX_POINTS)} if scattered else {}
         fixed = {}
         for axis in () if scattered else findings.axes:
             if axis in axes and axis.field.kind != "text":
@@ -143,7 +143,7 @@ class Shown:
         )
 
     @property
-    def said(self) -> str:
+    def meaning(self) -> str:
         """What the column is."""
         return "distance from the start" if self.column == DISTANCE else COLUMNS[self.column].meaning
 
@@ -156,7 +156,7 @@ class Shown:
     @property
     def label(self) -> str:
         """What the column is, with the unit."""
-        return labelled(self.said, self.unit)
+        return labelled(self.meaning, self.unit)
 
     @property
     def mean_value(self) -> FloatArray:
@@ -175,7 +175,7 @@ class Shown:
         return np.argmax(counts, axis=0)
 
 
-def said(value: float, values: ArrayLike, digits: int) -> str:
+def number_text(value: float, values: ArrayLike, digits: int) -> str:
     """A number with as many digits, and with more where fewer would not tell it from the others of an axis."""
     steps = np.diff(np.unique(values))
     if len(steps) and value:
@@ -185,7 +185,7 @@ def said(value: float, values: ArrayLike, digits: int) -> str:
 
 def _fixed(scale: Scale, values: tuple[Any, ...]) -> str:
     """The only value of a scale in words, beside the other values of its axis [SI]."""
-    text = said(float(scale.drawn[0]), np.asarray(values, dtype=float) * scale.unit.per_si, 4)
+    text = number_text(float(scale.drawn[0]), np.asarray(values, dtype=float) * scale.unit.per_si, 4)
     return counted(text, scale.unit.name)
 
 
@@ -196,9 +196,9 @@ def mean(values: FloatArray) -> FloatArray:
     return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
 
 
-def labelled(said: str, unit: Unit) -> str:
+def labelled(text: str, unit: Unit) -> str:
     """The label of an axis or bar."""
-    return said if unit.name in ("", "1") else f"{said} [{unit.name}]"
+    return text if unit.name in ("", "1") else f"{text} [{unit.name}]"
 
 
 def _chosen(findings: Findings, x: str | None, y: str | None) -> tuple[Axis, ...]:

@@ -16,7 +16,7 @@ from meshes import legend_below
 COLOUR, BAND = "#c8371b", "#f3c9bd"
 
 
-def draw_threshold(axes: Axes, shown: Shown, holds: BoolArray, said: str) -> None:
+def draw_threshold(axes: Axes, shown: Shown, holds: BoolArray, condition: str) -> None:
     """Draw the lowest value of the second axis at which a condition holds over the first axis."""
     across, up = shown.axes
     frame(axes, across, up)
@@ -24,7 +24,7 @@ def draw_threshold(axes: Axes, shown: Shown, holds: BoolArray, said: str) -> Non
     where = across.drawn[order]
     begins, before = (values[order] for values in lowest(up.drawn, holds))
     axes.fill_between(where, before, begins, color=BAND, linewidth=0, label=f"down to the next lower {up.axis.name}")
-    axes.plot(where, begins, ".-", color=COLOUR, linewidth=1.0, label=f"lowest {up.axis.name} with {said}")
+    axes.plot(where, begins, ".-", color=COLOUR, linewidth=1.0, label=f"lowest {up.axis.name} with {condition}")
     from_first = np.isfinite(begins) & np.isnan(before)
     if from_first.any():
         marks: dict[str, Any] = {"marker": "v", "markerfacecolor": "white", "markeredgecolor": COLOUR, "linestyle": ""}
@@ -34,6 +34,6 @@ def draw_threshold(axes: Axes, shown: Shown, holds: BoolArray, said: str) -> Non
     axes.set_ylim(limits[1].min(), limits[1].max())
     axes.grid(alpha=0.3)
     if np.isnan(begins).all():
-        axes.text(0.5, 0.5, f"{said} nowhere", transform=axes.transAxes, ha="center", parse_math=False)
+        axes.text(0.5, 0.5, f"{condition} nowhere", transform=axes.transAxes, ha="center", parse_math=False)
     else:
         legend_below(axes)

@@ -125,21 +125,21 @@ def animate(
     tries(check_folder, path.parent)
     pace = tries(pace_of, run.time, rate, slow_motion)
     tries(check_film, path, form, wanted, rate, len(pace.times) if pace else 0)
-    taken, reason = tries(chosen, renderer) or ("", None)
+    chosen_renderer, reason = tries(chosen, renderer) or ("", None)
     tries.end()
 
     stage = stage_of(run)
     times = exaggeration or stage.exaggeration
     path.parent.mkdir(parents=True, exist_ok=True)
     with film_file(path, form, wanted, rate) as film:
-        for k, image in enumerate(_images(stage, view, wanted, times, pace.times, pace, taken)):
+        for k, image in enumerate(_images(stage, view, wanted, times, pace.times, pace, chosen_renderer)):
             film.add(image)
             tell(k + 1, len(pace.times))
-    said = [] if reason is None else [f"pyvista cannot draw here, so matplotlib has: {reason}. {HELP}"]
-    said += warnings_of(pace, run.time, _cycle(run.case))
+    warnings = [] if reason is None else [f"pyvista cannot draw here, so matplotlib has: {reason}. {HELP}"]
+    warnings += warnings_of(pace, run.time, _cycle(run.case))
     if not run.complete:
-        said.append("The result is partial: its run was interrupted, or has not ended. The film ends where it does.")
-    return Animation(path, len(pace.times), rate, pace.slow_motion, times, taken, tuple(said))
+        warnings.append("The result is partial: its run was interrupted or has not ended. The film ends where it does.")
+    return Animation(path, len(pace.times), rate, pace.slow_motion, times, chosen_renderer, tuple(warnings))
 
 
 def still(
@@ -160,8 +160,8 @@ def still(
     if not run.time[0] <= time <= run.time[-1]:
         raise ValueError(f"Input time must be from {run.time[0]:g} to {run.time[-1]:g} s; got {time!r}")
     stage = stage_of(run)
-    taken, times = chosen(renderer)[0], exaggeration or stage.exaggeration
-    return next(_images(stage, view, pixels, times, np.array([time]), None, taken))
+    chosen_renderer, times = chosen(renderer)[0], exaggeration or stage.exaggeration
+    return next(_images(stage, view, pixels, times, np.array([time]), None, chosen_renderer))
 
 
 def _images(

@@ -22,14 +22,13 @@ from active_surface.views.film.pace import Pace
 from active_surface.views.film.stage import Stage
 from active_surface.views.rounding import round_below
 from coupling.case import PlatformCase
-from coupling.pictures import STEPS
-from meshes import draw_rim, quantity_text, unit_for
+from meshes import STEPS, draw_rim, quantity_text, unit_for
 from particle import HALO, PATH_COLOUR, SHADES, STICK_COLOUR, State, stretches
 
 Image = NDArray[np.uint8]
 
 DPI = 100
-LEAST_LETTER = 9.0  # pixels
+MIN_LETTER = 9.0  # pixels
 WORDS = {State.STICK: "part stuck", State.SLIP: "part slipping", State.FLIGHT: "part in flight"}
 COLOURS = {State.STICK: STICK_COLOUR, State.SLIP: PATH_COLOUR, State.FLIGHT: "#303030"}
 
@@ -40,7 +39,7 @@ class Captions:
     def __init__(self, stage: Stage, layout: Layout, pace: Pace | None) -> None:
         self._figure = Figure(figsize=(layout.width / DPI, layout.height / DPI), dpi=DPI, facecolor="none")
         self._canvas = FigureCanvasAgg(self._figure)
-        self._letter = max(min(layout.height * 0.021, layout.width * 0.0165), LEAST_LETTER) * 72 / DPI  # points
+        self._letter = max(min(layout.height * 0.021, layout.width * 0.0165), MIN_LETTER) * 72 / DPI  # points
         self._stage, self._layout = stage, layout
         self._time_unit = unit_for(stage.run.time, "s")
         self._draw_bar()
@@ -122,7 +121,7 @@ class Captions:
         stage, letter = self._stage, self._letter
         unit = unit_for(stage.mesh_width, "m")
         times = self._layout.exaggeration
-        said = [
+        notes = [
             "flat"
             if stage.flat
             else "heights true to scale"
@@ -131,11 +130,11 @@ class Captions:
             f"squares of {stage.mesh_width * unit.per_si:.6g} {unit.name}",
         ]
         if pace is not None and len(pace.times) > 1:
-            said.append(pace.words)
+            notes.append(pace.words)
         if isinstance(stage.run.case.plate, PlatformCase):
-            said.append("seen from the platform")
+            notes.append("seen from the platform")
         grey: dict[str, Any] = {"fontsize": letter, "color": "#404040"}
-        self._fit(self._figure.text(0.5, 0.012, "   ·   ".join(said), ha="center", va="bottom", **grey), 0.97)
+        self._fit(self._figure.text(0.5, 0.012, "   ·   ".join(notes), ha="center", va="bottom", **grey), 0.97)
         self._fit(self._figure.text(0.975, 0.972, stage.run.name, ha="right", va="top", parse_math=False, **grey), 0.6)
         keys: list[Artist] = []
         look: dict[str, Any] = {"color": "none", "marker": "o", "markeredgecolor": "black", "markersize": letter * 0.6}

@@ -13,7 +13,7 @@ from active_surface.views.film.stage import Stage
 
 FloatArray = NDArray[np.float64]
 
-LEAST, MOST = (320, 240), 8192  # pixels: width and height, either
+MIN_SIZE, MAX_SIDE = (320, 240), 8192  # pixels: width and height, either
 LEFT, RIGHT, BOTTOM, TOP = 0.03, 0.86, 0.17, 0.88  # of the picture: the part of it that the surface fills
 HIGHEST = 0.5  # of the frame's longer side: a part that flies higher may leave the picture
 
@@ -44,34 +44,35 @@ class Layout:
 def layout_of(stage: Stage, camera: Camera, size: tuple[int, int], exaggeration: float) -> Layout:
     """The layout in which the surface fills its part of the picture at all times."""
     width, height = size
-    bare = Layout(width, height, camera, exaggeration, stage.frame.mean(axis=0), stage.size, np.zeros(2), 1.0)
+    unscaled = Layout(width, height, camera, exaggeration, stage.frame.mean(axis=0), stage.size, np.zeros(2), 1.0)
     part = stage.run.position
     top = max(float(stage.reach[1].max()), HIGHEST * stage.size / exaggeration)
-    places = [bare.scene(stage.surface, z) for z in stage.reach]
-    places.append(bare.scene(part[:, :2], np.clip(part[:, 2], None, top)))
+    places = [unscaled.scene(stage.surface, z) for z in stage.reach]
+    places.append(unscaled.scene(part[:, :2], np.clip(part[:, 2], None, top)))
     flat = camera.flat(np.concatenate(places))
     low, high = flat.min(axis=0), flat.max(axis=0)
     room = np.array([(RIGHT - LEFT) * width, (TOP - BOTTOM) * height])
     scale = float((room / np.maximum(high - low, 1e-3)).min())
     offset = np.array([(LEFT + RIGHT - 1) * width, (BOTTOM + TOP - 1) * height]) / 2
     focus = (low + high) / 2 - offset / scale
-    places.append(bare.scene(part[:, :2], part[:, 2]))
+    places.append(unscaled.scene(part[:, :2], part[:, 2]))
     depth = float(np.abs(np.concatenate(places) @ camera.towards).max())
-    return Layout(width, height, camera, exaggeration, bare.middle, bare.size, focus, scale, depth)
+    return Layout(width, height, camera, exaggeration, unscaled.middle, unscaled.size, focus, scale, depth)
 
 
-def size_of(wanted: str | tuple[int, int]) -> tuple[int, int]:
+def size_of(size: str | tuple[int, int]) -> tuple[int, int]:
     """The width and height [pixels] of "1280x720".
 
     Raises ValueError for anything else, and unless a picture of this size can be drawn and read.
     """
-    if isinstance(wanted, str):
-        found = re.fullmatch(r"\s*(\d+)\s*[x×,]\s*(\d+)\s*", wanted)
-        if not found:
-            raise ValueError(f"Input size must be WIDTHxHEIGHT in pixels, as in 1280x720; got {wanted!r}")
-        wanted = int(found[1]), int(found[2])
-    if not all(least <= side <= MOST for least, side in zip(LEAST, wanted, strict=True)):
+    if isinstance(size, str):
+        match = re.fullmatch(r"\s*(\d+)\s*[x×,]\s*(\d+)\s*", size)
+        if not match:
+            raise ValueError(f"Input size must be WIDTHxHEIGHT in pixels, as in 1280x720; got {size!r}")
+        size = int(match[1]), int(match[2])
+    if not all(least <= side <= MAX_SIDE for least, side in zip(MIN_SIZE, size, strict=True)):
         raise ValueError(
-            f"Input size must be from {LEAST[0]}x{LEAST[1]} to {MOST}x{MOST} pixels; got {wanted[0]}x{wanted[1]}"
+            f"Input size must be from {MIN_SIZE[0]}x{MIN_SIZE[1]} to {MAX_SIDE}x{MAX_SIDE} pixels; "
+            f"got {size[0]}x{size[1]}"
         )
-    return wanted
+    return size

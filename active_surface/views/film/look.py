@@ -104,15 +104,15 @@ class Look:
         """
         stage, layout = self.stage, self.layout
         kept: dict[str, Lines] = {"net": stage.net, "cut": stage.cut, "rim": stage.rim}
-        found = {name: (layout.scene(one.xy, frame.heights[name]), one.pieces) for name, one in kept.items()}
+        lines = {name: (layout.scene(one.xy, frame.heights[name]), one.pieces) for name, one in kept.items()}
         along = np.arange(len(frame.trail) - 1)
-        found["trail"] = (layout.scene(frame.trail, frame.heights["trail"]), np.stack([along, along + 1], axis=1))
+        lines["trail"] = (layout.scene(frame.trail, frame.heights["trail"]), np.stack([along, along + 1], axis=1))
         ends = np.array([frame.under, frame.under + frame.flight])
-        found["pole"] = (layout.scene(np.tile(frame.part[:2], (2, 1)), ends), np.array([[0, 1]]))
+        lines["pole"] = (layout.scene(np.tile(frame.part[:2], (2, 1)), ends), np.array([[0, 1]]))
         towards = LIFT * layout.camera.towards
         return {
             name: (points + self.strokes[name].lifts * towards, pieces)
-            for name, (points, pieces) in found.items()
+            for name, (points, pieces) in lines.items()
             if len(pieces)
         }
 

@@ -12,10 +12,10 @@ FloatArray = NDArray[np.float64]
 
 LASTS = 8.0  # s, about, of a film without a wish
 ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
-MOST_FRAMES = 20_000
+MAX_FRAMES = 20_000
 EACH_STORED = 4.0  # frames to a stored step, from which on most of a film is interpolated
 WHOLE = 1e-6  # of a frame: a shorter rest has none of its own
-FEWEST = 6.0  # frames to a cycle, below which it is not seen as one
+MIN_FRAMES_PER_CYCLE = 6.0  # fewer do not show a cycle as one
 
 
 @dataclass(frozen=True)
@@ -49,13 +49,13 @@ def pace_of(time: FloatArray, fps: float, slow_motion: float | None) -> Pace:
     """
     begin, end = float(time[0]), float(time[-1])
     slower = slow_motion or (nearest_round(LASTS / (end - begin)) if end > begin else 1.0)
-    wanted = (end - begin) * slower * fps
-    if wanted >= MOST_FRAMES:
+    frames = (end - begin) * slower * fps
+    if frames >= MAX_FRAMES:
         raise ValueError(
-            f"Input slow-motion must make a film of at most {MOST_FRAMES} frames; got {slower:.6g}, which makes "
-            f"{wanted:.6g} at {fps:g} frames a second of a run of {end - begin:.6g} s"
+            f"Input slow-motion must make a film of at most {MAX_FRAMES} frames; got {slower:.6g}, which makes "
+            f"{frames:.6g} at {fps:g} frames a second of a run of {end - begin:.6g} s"
         )
-    before_end = math.ceil(wanted - WHOLE) if end > begin else 0
+    before_end = math.ceil(frames - WHOLE) if end > begin else 0
     return Pace(fps, slower, np.append(begin + np.arange(before_end) / (fps * slower), end))
 
 
@@ -67,20 +67,20 @@ def nearest_round(value: float) -> float:
 
 def warnings_of(pace: Pace, time: FloatArray, cycle: float | None) -> list[str]:
     """What a film of stored steps at times (k,) [s] does not show; cycle: the time [s] of the fastest drive's."""
-    said = []
+    warnings = []
     frames, steps = len(pace.times) - 1, len(time) - 1
     if steps and (time[-1] - time[0]) * pace.fps * pace.slow_motion < 1 - WHOLE:
-        said.append("The run is shorter than a frame: only its ends are shown; a larger --slow-motion shows more.")
+        warnings.append("The run is shorter than a frame: only its ends are shown. A larger --slow-motion shows more.")
     if steps and frames > EACH_STORED * steps:
-        said.append(
+        warnings.append(
             f"The film has {frames / steps:.3g} frames to each stored step; what is between stored steps is "
             "interpolated linearly. A larger run.frames stores more."
         )
     if frames and cycle:
-        shown = cycle * pace.fps * pace.slow_motion
-        if shown < FEWEST:
-            said.append(
-                f"The film has {shown:.2g} frames to a cycle of the fastest drive: what moves fast looks slow, jumpy "
-                "or still in it; a larger --slow-motion shows it."
+        per_cycle = cycle * pace.fps * pace.slow_motion
+        if per_cycle < MIN_FRAMES_PER_CYCLE:
+            warnings.append(
+                f"The film has {per_cycle:.2g} frames per cycle of the fastest drive: fast motion looks slow, jumpy or "
+                "still in it. A larger --slow-motion shows it."
             )
-    return said
+    return warnings

@@ -24,14 +24,14 @@ from particle import State
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-MOST_TRIANGLES = 40_000  # of a mesh that is made finer to be drawn
+MAX_TRIANGLES = 40_000  # of a mesh that is made finer to be drawn
 ACROSS = 120  # cells along a window
 WIDER = 3.0  # times what the part goes up and down is the least width of a window
-MOST_OF_PLATE = 0.6  # of the plate's longer side: a wider window shows all of it
+MAX_WINDOW = 0.6  # of the plate's longer side: a wider window shows all of it
 FINE = 1 / 200  # of the longer side: the length of a piece of a line
 FLAT, ROUNDING = 1e-11, 1e-5  # m, and of the largest height: a smaller range of heights is none
 AROUND = 0.5  # of the longer side: points further from the frame do not shape what is in it
-AT_ONCE = 16  # steps that are read together
+BATCH = 16  # steps that are read together
 CROWDED = 1 / 60  # of the longer side: actuators nearer to each other are not marked
 
 
@@ -95,8 +95,8 @@ class Stage:
 
     def stored_heights(self) -> Iterator[tuple[int, FloatArray]]:
         """The first step of some, and their deflections (k, n') [m] at the used points, until all steps have been."""
-        for first in range(0, len(self.run.time), AT_ONCE):
-            found = self.run.plate_field("deflection", slice(first, first + AT_ONCE))
+        for first in range(0, len(self.run.time), BATCH):
+            found = self.run.plate_field("deflection", slice(first, first + BATCH))
             yield first, np.asarray(found[:, self.used], dtype=np.float64)
 
     @property
@@ -170,7 +170,7 @@ def _frame(run: SavedRun, path: FloatArray) -> tuple[FloatArray, bool]:
     heights = run.position[run.state != State.FLIGHT, 2]
     rise = float(np.ptp(heights)) if len(heights) else 0.0
     side = max(extent(window), PITCHES * pitch(run.actuators), WIDER * rise)
-    if side > MOST_OF_PLATE * extent(box):
+    if side > MAX_WINDOW * extent(box):
         return box, False
     sides = np.minimum(side, np.ptp(box, axis=0))
     low = np.clip(window.mean(axis=0) - sides / 2, box[0], box[1] - sides)
@@ -188,7 +188,7 @@ def _near(run: SavedRun, frame: FloatArray) -> tuple[IntArray, IntArray]:
 
 def _finer(run: SavedRun) -> tuple[FloatArray, IntArray]:
     """The points and triangles of the run, divided while there are few."""
-    halvings = int(math.log(max(MOST_TRIANGLES / len(run.triangles), 1), 4))
+    halvings = int(math.log(max(MAX_TRIANGLES / len(run.triangles), 1), 4))
     if not halvings:
         return run.points, run.triangles
     plain = Triangulation(*run.points.T, run.triangles)

@@ -21,11 +21,11 @@ from particle import State, stretches
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-MOST_STEPS: Final = 1000  # of a page; of more, as many evenly spread
-MOST_POINTS: Final = 6000  # of its surface; of more, those around the path, or fewer of these
-MOST_ACTUATORS: Final = 1000  # that are marked
+MAX_STEPS: Final = 1000  # of a page; of more, as many evenly spread
+MAX_POINTS: Final = 6000  # of its surface; of more, those around the path, or fewer of these
+MAX_ACTUATORS: Final = 1000  # that are marked
 MARGIN: Final = 0.1  # of the path's extent, of thinned surfaces around it
-AT_ONCE: Final = 64  # steps read together
+BATCH: Final = 64  # steps read together
 LINES, PER_LINE = 16, 64  # drawn on the surface along each side, and points on each
 STRETCHES: Final = {"stuck": State.STICK, "flying": State.FLIGHT}
 PLATE: Final = "the plate"
@@ -34,7 +34,7 @@ COLOURS: Final = 11  # stops of the colour scale
 
 def run_data(run: SavedRun) -> dict[str, Any]:
     """What the programs of the page read."""
-    steps = np.unique(np.linspace(0, len(run.time) - 1, min(len(run.time), MOST_STEPS)).astype(np.int64))
+    steps = np.unique(np.linspace(0, len(run.time) - 1, min(len(run.time), MAX_STEPS)).astype(np.int64))
     points, triangles = _around(run.points, run.triangles, run.position[:, :2])
     heights = _heights(run, steps, points)
     place = run.points[points]
@@ -73,8 +73,8 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "error": modes.error * scale.unit.per_si,
             "rim": packed(outer_edges(triangles), "u2"),
             "lines": [_lines(place, triangles, box) for box in ([box] if window is None else [box, window])],
-            "actuators": packed(marked if shown <= MOST_ACTUATORS else [], "u2"),
-            "unmarked": shown if shown > MOST_ACTUATORS else 0,
+            "actuators": packed(marked if shown <= MAX_ACTUATORS else [], "u2"),
+            "unmarked": shown if shown > MAX_ACTUATORS else 0,
             "whole": len(np.unique(run.triangles)) == len(points),
         },
         "part": {
@@ -116,17 +116,17 @@ def _around(points: FloatArray, triangles: IntArray, path: FloatArray) -> tuple[
     All of the path is on them: where that takes too many, they are thinned.
     """
     used = np.unique(triangles)
-    if len(used) > MOST_POINTS:
+    if len(used) > MAX_POINTS:
         corners = points[triangles]
         apart = np.maximum(corners.min(axis=1) - path.max(axis=0), path.min(axis=0) - corners.max(axis=1))
         away = apart.max(axis=1).clip(0.0)  # of each triangle from the box of the path
         first = np.full(len(points), np.inf)
         np.minimum.at(first, triangles.ravel(), np.repeat(away, 3))
-        limit = np.partition(first[used], MOST_POINTS)[MOST_POINTS]
+        limit = np.partition(first[used], MAX_POINTS)[MAX_POINTS]
         if limit > 0:
             triangles = triangles[away < limit]
         else:
-            triangles = coarse(points, triangles[away <= MARGIN * extent(path)], MOST_POINTS)
+            triangles = coarse(points, triangles[away <= MARGIN * extent(path)], MAX_POINTS)
         used = np.unique(triangles)
     return used, np.searchsorted(used, triangles)
 
@@ -134,8 +134,8 @@ def _around(points: FloatArray, triangles: IntArray, path: FloatArray) -> tuple[
 def _heights(run: SavedRun, steps: IntArray, points: IntArray) -> FloatArray:
     """The deflections (k, n) [m] of points at steps."""
     heights = np.empty((len(steps), len(points)))
-    for start in range(0, len(steps), AT_ONCE):
-        some = slice(start, start + AT_ONCE)
+    for start in range(0, len(steps), BATCH):
+        some = slice(start, start + BATCH)
         heights[some] = run.plate_field("deflection", steps[some])[:, points]
     return heights
 

@@ -18,15 +18,15 @@ from meshes import Unit, rim_curves, unit_for
 
 FloatArray = NDArray[np.float64]
 
-MOST_ENDS = 100_000  # of all starts; of more only the first of each point
-MOST_ACTUATORS = 400  # that are drawn
+MAX_ENDS = 100_000  # of all starts; of more only the first of each point
+MAX_ACTUATORS = 400  # that are drawn
 RIM_STAYS = ("supports", "youngs_modulus", "poisson_ratio", "thickness", "density", "cell_size")  # keys of a plate
 STOPS = 9  # of the colour scale
 
 
 def study_data(study: Study, shown: Shown, starts: FloatArray, paths: Paths) -> dict[str, Any]:
-    """What the program of the page, `page/study.js`, reads; starts: (..., 2) m, of the first repeat of each cell."""
-    ends = shown.end if shown.end[..., 0].size <= MOST_ENDS else shown.end[..., :1, :]
+    """What the programs of the page read; starts: (..., 2) m, of the first repeat of each cell."""
+    ends = shown.end if shown.end[..., 0].size <= MAX_ENDS else shown.end[..., :1, :]
     places = np.concatenate([ends.reshape(-1, 2), starts.reshape(-1, 2)])
     known = places[np.isfinite(places).all(axis=1)]
     along = unit_for(known if len(known) else np.zeros((1, 2)), "m")
@@ -96,5 +96,5 @@ def _drawing(study: Study, along: Unit) -> dict[str, Any]:
         location[0] == "lattice" or "position" in location[1:] for location in moved if location[0] != "part"
     )
     places = [actuator.position for actuator in case.actuators]
-    drawn = places if stay and len(places) <= MOST_ACTUATORS else []
+    drawn = places if stay and len(places) <= MAX_ACTUATORS else []
     return {"rim": rim, "actuators": packed(np.array(drawn).reshape(-1, 2) * along.per_si, "f4")}

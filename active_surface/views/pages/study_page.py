@@ -18,6 +18,8 @@ from coupling import Tell, untold
 if TYPE_CHECKING:
     import xarray
 
+PROGRAMS = "study_map.js", "study_path.js", "study.js"
+
 
 def write_study_page(
     study: Study, dataset: xarray.Dataset, path: Path, paths: int | None = None, tell: Tell = untold
@@ -43,7 +45,7 @@ def write_study_page(
         "study": escape(study.source),
         "case": escape(study.case.source or study.case.model_dump_json(indent=2)),
     }
-    return write_page(path, study.name, "study.html", texts, study_data(study, shown, starts, found), ["study.js"])
+    return write_page(path, study.name, "study.html", texts, study_data(study, shown, starts, found), PROGRAMS)
 
 
 def _sentence(study: Study, shown: Shown, found: Paths) -> str:

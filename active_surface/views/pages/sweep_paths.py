@@ -16,12 +16,12 @@ from particle import Trajectory
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-MOST_PATHS: Final = 2500  # of a page, if no other number is asked for,
+MAX_PATHS: Final = 2500  # of a page, if no other number is asked for,
 PATIENCE: Final = 60.0  # and about as many as are found in so many seconds
 SAMPLES: Final = 400  # of a path
 SEEN: Final = 1 / 400  # of the extent of a path: less is not seen
 SAME: Final = 1e-6  # of that, by which ends may differ that were found twice,
-LEAST: Final = 1e-9  # m, but not of less
+MIN_SIZE: Final = 1e-9  # m, but not of less
 
 
 class Paths(NamedTuple):
@@ -33,7 +33,7 @@ class Paths(NamedTuple):
 
 def usual_count(engine: Engine) -> int:
     """How many paths a page has where no number is asked for."""
-    return min(MOST_PATHS, max(int(engine.chunk_length * PATIENCE / AT_ONCE), 1))
+    return min(MAX_PATHS, max(int(engine.chunk_length * PATIENCE / AT_ONCE), 1))
 
 
 def spread(shape: tuple[int, ...], count: int) -> NDArray[np.bool_]:
@@ -50,9 +50,9 @@ def spread(shape: tuple[int, ...], count: int) -> NDArray[np.bool_]:
 
 def find_paths(engine: Engine, numbers: IntArray, ends: FloatArray, tell: Tell = untold) -> Paths:
     """Find the paths of these numbers (p,), whose ends (p, 2) [m] the sweep knows: nan where they were refused."""
-    wanted = np.isfinite(ends).all(axis=1)
-    order = np.argsort(numbers[wanted])
-    known = dict(zip(numbers[wanted].tolist(), ends[wanted], strict=True))
+    known_ends = np.isfinite(ends).all(axis=1)
+    order = np.argsort(numbers[known_ends])
+    known = dict(zip(numbers[known_ends].tolist(), ends[known_ends], strict=True))
     lines: dict[int, FloatArray] = {}
     strangers = 0
 
@@ -61,8 +61,8 @@ def find_paths(engine: Engine, numbers: IntArray, ends: FloatArray, tell: Tell =
         samples = path.at(np.linspace(0, path.time[-1], SAMPLES)).position
         size = extent(samples)
         lines[number] = thinned(samples, SEEN * size)
-        strangers += float(np.abs(samples[-1] - known[number]).max()) > SAME * max(size, LEAST)
+        strangers += float(np.abs(samples[-1] - known[number]).max()) > SAME * max(size, MIN_SIZE)
         tell(len(lines), len(known))
 
-    engine.follow(numbers[wanted][order].tolist(), keep)
+    engine.follow(numbers[known_ends][order].tolist(), keep)
     return Paths(lines, strangers)

@@ -84,8 +84,8 @@ def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tu
         return run.name, run_pictures(portrait_of_saved(run)), run.complete
     file = path if path.is_file() else path.with_name(path.name + ENDING)
     if key_of(file) is None:
-        wanted = "must be a file that `active-surface run` or `active-surface sweep` left"
-        raise ValueError(f"Input result of plot {wanted}; got {path}, {_instead(path)}")
+        required = "must be a file that `active-surface run` or `active-surface sweep` left"
+        raise ValueError(f"Input result of plot {required}; got {path}, {_instead(path)}")
     with read_findings(file) as findings:
         return findings.name, sweep_pictures(findings, x, y, value), True
 

@@ -18,7 +18,7 @@ from particle import Samples
 
 FloatArray = NDArray[np.float64]
 
-AT_ONCE = 64  # steps whose deflections are read together
+BATCH = 64  # steps whose deflections are read together
 JUMP = ("vertical_velocity", "normal_force", "friction_force")  # with velocities, where the state changes
 BETWEEN = 4  # pieces of a line from one moment to the next
 
@@ -26,7 +26,7 @@ BETWEEN = 4  # pieces of a line from one moment to the next
 def portrait_of_saved(run: SavedRun) -> Portrait:
     """The portrait of a saved run, with its plate as at the step at which it is deflected the most."""
     plate = run.case.plate
-    step = most_deflected(_spread(run))
+    step = most_deflected(_mean_squares(run))
     return Portrait(
         run.name,
         run.summary["sentence"],
@@ -77,13 +77,13 @@ def samples_of(run: SavedRun) -> Samples:
     return Samples(time, line(time) if line else known.position, state=known.state[before], **columns)
 
 
-def _spread(run: SavedRun) -> FloatArray:
+def _mean_squares(run: SavedRun) -> FloatArray:
     """The mean square deflection (k,) [m^2] at each step."""
-    found = []
-    for start in range(0, len(run.time), AT_ONCE):
-        w = run.plate_field("deflection", slice(start, start + AT_ONCE)).astype(float)
-        found.append(np.square(w).mean(axis=1))
-    return np.concatenate(found)
+    mean_squares = []
+    for start in range(0, len(run.time), BATCH):
+        w = run.plate_field("deflection", slice(start, start + BATCH)).astype(float)
+        mean_squares.append(np.square(w).mean(axis=1))
+    return np.concatenate(mean_squares)
 
 
 def _relief(run: SavedRun, plate: PlateCase, step: int) -> Relief:

@@ -32,5 +32,5 @@ def _picture(panel: Panel, shown: Shown) -> Picture:
         if axes.get_aspect() == "auto":
             figure.set_figheight(HEIGHT * figure.get_figwidth())
 
-    said = panel.title[0].upper() + panel.title[1:]
-    return Picture(panel.name, f"{said}: {about(shown)}.", draw)
+    caption = panel.title[0].upper() + panel.title[1:]
+    return Picture(panel.name, f"{caption}: {about(shown)}.", draw)

@@ -198,5 +198,5 @@ def test_near_values_of_an_axis_are_told_apart(tmp_path):
     uneven = axis("actuators.0.stroke", '["20 um", "20.00001 um", "20.001 um", "30 um"]', "stroke")
     study, dataset = made(tmp_path, near + uneven + axis("friction.limit", '["1 nN", "2 nN", "3 nN", "4 nN"]', "limit"))
     shown = Shown.of(Findings.of(study.name, dataset, study.threshold), "stroke", "limit")
-    assert shown.fixed == {"frequency": "10000.5 Hz"}
+    assert shown.fixed == {"frequency": "10.0005 kHz"}
     assert shown.axes[0].texts == ("20", "20.00001", "20.001", "30")

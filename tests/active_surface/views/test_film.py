@@ -10,7 +10,7 @@ from made_runs import SIDE, grid, hill, made_run
 from active_surface.views.film.camera import CAMERAS, Camera, camera_of
 from active_surface.views.film.frames import frames_of
 from active_surface.views.film.layout import BOTTOM, LEFT, RIGHT, TOP, layout_of, size_of
-from active_surface.views.film.pace import FEWEST, MOST_FRAMES, pace_of, warnings_of
+from active_surface.views.film.pace import MAX_FRAMES, MIN_FRAMES_PER_CYCLE, pace_of, warnings_of
 from active_surface.views.film.stage import stage_of
 from active_surface.views.lines import path_points
 from active_surface.views.smooth import Smooth
@@ -125,7 +125,7 @@ def test_a_run_that_is_shorter_than_a_frame_is_said_to_be():
 
 
 def test_films_of_too_many_frames_are_refused():
-    with pytest.raises(ValueError, match=f"at most {MOST_FRAMES} frames"):
+    with pytest.raises(ValueError, match=f"at most {MAX_FRAMES} frames"):
         pace_of(np.array([0.0, 1.0]), 30.0, 1e9)
 
 
@@ -133,8 +133,8 @@ def test_what_a_film_does_not_show_is_said():
     time = np.linspace(0, 1, 11)
     assert warnings_of(pace_of(time, 10.0, 2.0), time, 0.5) == []
     said = warnings_of(pace_of(time, 10.0, 6.0), time, 0.05)
-    assert "6 frames to each stored step" in said[0] and "3 frames to a cycle" in said[1]
-    assert FEWEST > 3 and warnings_of(pace_of(time[:1], 10.0, 6.0), time[:1], 0.05) == []
+    assert "6 frames to each stored step" in said[0] and "3 frames per cycle" in said[1]
+    assert MIN_FRAMES_PER_CYCLE > 3 and warnings_of(pace_of(time[:1], 10.0, 6.0), time[:1], 0.05) == []
 
 
 def rising():

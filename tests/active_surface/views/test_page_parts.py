@@ -94,7 +94,7 @@ def test_a_coarse_surface_covers_the_same_with_fewer_points(hole):
 
 @pytest.mark.parametrize("ends", [[(-0.9, -0.8), (0.9, 0.8)], [(0.5, 0.5), (0.52, 0.5)], [(0.999, -0.9), (0.999, 0.9)]])
 def test_a_large_surface_is_shown_around_the_whole_path(monkeypatch, ends):
-    monkeypatch.setattr("active_surface.views.pages.run_data.MOST_POINTS", 300)
+    monkeypatch.setattr("active_surface.views.pages.run_data.MAX_POINTS", 300)
     x, y = np.meshgrid(np.linspace(-1, 1, 60), np.linspace(-1, 1, 60))
     points = np.stack([x.ravel(), y.ravel()], axis=1)
     triangles = Delaunay(points).simplices.astype(np.int64)

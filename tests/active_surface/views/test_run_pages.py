@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from page_files import CASE, NAME, numbers
 
 from active_surface.cli.program import main
-from active_surface.views.pages.run_data import MOST_POINTS, run_data
+from active_surface.views.pages.run_data import MAX_POINTS, run_data
 from active_surface.views.pages.run_page import write_run_page
 from coupling import read_case, report, run_case
 from coupling.results.saved import read_run
@@ -73,7 +73,7 @@ def test_the_page_of_a_run_is_safe_small_and_alone(folder, run):
 
 
 def test_of_a_large_surface_that_around_the_path_is_shown(run, monkeypatch):
-    monkeypatch.setattr("active_surface.views.pages.run_data.MOST_POINTS", 200)
+    monkeypatch.setattr("active_surface.views.pages.run_data.MAX_POINTS", 200)
     data = run_data(run)
     assert not data["surface"]["whole"]
     assert 100 < len(numbers(data["surface"]["x"])) < 260
@@ -81,11 +81,11 @@ def test_of_a_large_surface_that_around_the_path_is_shown(run, monkeypatch):
     for axis, centre in zip("xy", middle, strict=True):
         values = numbers(data["surface"][axis])
         assert values.min() < centre < values.max()
-    assert MOST_POINTS < 65536  # numbers of points are packed as 16 bits
+    assert MAX_POINTS < 65536  # numbers of points are packed as 16 bits
 
 
 def test_of_many_steps_as_many_are_shown_as_fit(run, monkeypatch):
-    monkeypatch.setattr("active_surface.views.pages.run_data.MOST_STEPS", 5)
+    monkeypatch.setattr("active_surface.views.pages.run_data.MAX_STEPS", 5)
     data = run_data(run)
     assert data["steps"] == {"shown": 5, "stored": 11}
     assert numbers(data["time"])[[0, -1]] == pytest.approx(run.time[[0, -1]] * 1e3)

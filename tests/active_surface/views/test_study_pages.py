@@ -84,7 +84,7 @@ def test_of_many_ends_the_first_are_kept_and_the_repeats_stated(folder, sweep, m
     shown = Shown.of(Findings.of(study.name, sweep, study.threshold))
     shown = replace(shown, end=np.repeat(shown.end, 3, axis=-2))
     for most, kept in ((27, 3), (26, 1)):
-        monkeypatch.setattr("active_surface.views.pages.study_data.MOST_ENDS", most)
+        monkeypatch.setattr("active_surface.views.pages.study_data.MAX_ENDS", most)
         data = study_data(study, shown, np.zeros((3, 3, 2)), Paths({}, 0))
         assert (data["repeats"], data["kept"], len(numbers(data["ends"]))) == (3, kept, 18 * kept)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coupling.drives import FRAMES, MOST_HEIGHTS, frame_times, stroke_heights
+from coupling.drives import FRAMES, MAX_HEIGHTS, frame_times, stroke_heights
 from coupling.progress import silent
 from particle import Drive
 
@@ -10,7 +10,7 @@ from particle import Drive
 def test_many_drives_bound_the_frames_unless_more_are_wanted():
     few, many = [Drive(1e-6, 1e5)], [Drive(1e-6, 1e5, delay=1e-6 * k) for k in range(10_000)]
     assert len(frame_times(None, few, 0.1)) == FRAMES[1]
-    assert len(frame_times(None, many, 0.1)) == MOST_HEIGHTS // 10_000
+    assert len(frame_times(None, many, 0.1)) == MAX_HEIGHTS // 10_000
     assert len(frame_times(None, many * 10, 0.1)) == FRAMES[0]
     assert len(frame_times(1234, many, 0.1)) == 1234
 
