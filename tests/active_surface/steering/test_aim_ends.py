@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from sweeps import PLATE
 
 from active_surface.cli.program import main
-from active_surface.steering import Route, Settings, Task, aim, found, plan
+from active_surface.steering import Route, Settings, Task, aim, plan, result
 from active_surface.steering.aiming import aim_over
 from active_surface.steering.objective import SAMPLES, Objective
 from active_surface.steering.paths import Disturbance, Paths
@@ -62,7 +62,7 @@ def test_a_search_is_not_lost_by_an_interruption_of_its_scatter(tmp_path, monkey
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(found, "scattered", stop)
+    monkeypatch.setattr(result, "scattered", stop)
     aimed = aim(Task(case, TARGET), tmp_path / "out")
     assert aimed.interrupted and aimed.reached and aimed.scatter is None
     assert [file.name for file in aimed.files] == ["base_aimed.toml"]
