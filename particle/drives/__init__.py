@@ -4,11 +4,11 @@ from particle.drives.drive import (
     ORDER,
     AnyDrive,
     accelerations,
-    drive_kink,
+    breakpoint_slack,
+    drive_breakpoint,
     drive_piece,
     drive_table,
-    kink_slack,
     monomial_table,
-    next_kink,
+    next_breakpoint,
 )
 from particle.drives.table import DriveTable

@@ -1,4 +1,4 @@
-"""The drives of all actuators as kernels read them: pieces of degree five, and the kinks between them."""
+"""The drives of all actuators as kernels read them: pieces of degree five, and the breakpoints between them."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.jit import bare, jit
+from particle.jit import jit, jit_no_arrays
 
 FloatArray = NDArray[np.float64]
 Segments = tuple[FloatArray, FloatArray, FloatArray, float]
 """Start (S,) and scale (S,) [s] and coefficients (S, 6) [m] of one pass, and how often it repeats (inf: no end)."""
 
 ORDER = 6  # coefficients of a quintic
-MERGED = 1e-12  # of a stroke: kinks closer than that are taken as one
-ROUNDING = 4 * np.finfo(float).eps  # of the time: nor are kinks told apart that are closer than that
+MERGED = 1e-12  # of a stroke: breakpoints closer than that are taken as one
+ROUNDING = 4 * np.finfo(float).eps  # of the time: nor are breakpoints told apart that are closer than that
 
 
 # What a jump of the fourth and fifth derivative adds, over the time of a bridge, to one of the third (see `span`).
@@ -70,7 +70,7 @@ class DriveTable(NamedTuple):
     span: FloatArray  # (N,) s
     repeats: FloatArray  # (N,)
     stroke_time: FloatArray  # (N,) s, the shortest stroke of each; inf: it has none
-    jump: FloatArray  # (N, 2) m/s, m/s^2, by how much its velocity and acceleration jump at kinks at most
+    jump: FloatArray  # (N, 2) m/s, m/s^2, by how much its velocity and acceleration jump at breakpoints at most
     rough: FloatArray  # (N,) m/s^3, by how much its third derivative does, with the share of those above
 
 
@@ -116,7 +116,7 @@ def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
 
 
 def monomial_table(count: int) -> DriveTable:
-    """Drives that are the powers 1, t, t^2, ... of time [s], without kinks, for surfaces given as polynomials."""
+    """Drives that are the powers 1, t, t^2, ... of time [s], without breakpoints, for surfaces given as polynomials."""
     return DriveTable(
         first=np.arange(count + 1),
         start=np.zeros(count),
@@ -133,9 +133,9 @@ def monomial_table(count: int) -> DriveTable:
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # strokes too fast for numbers fail where they are used
 def _jumps(table: DriveTable) -> FloatArray:
-    """By how much the first five derivatives jump at a drive's kinks at most (N, 5) [m/s, m/s^2, ...]; 0: by rounding.
+    """The largest jumps of the first five derivatives at breakpoints (N, 5) [m/s, m/s^2, ...]; 0: by rounding.
 
-    Kinks are from one segment to the next, at its start and at its end.
+    Breakpoints are from one segment to the next, at its start and at its end.
     """
     if len(table.span) == 0:
         return np.zeros((0, ORDER - 1))
@@ -154,11 +154,11 @@ def _jumps(table: DriveTable) -> FloatArray:
     return np.where((jump > rounding) & np.isfinite(table.span)[:, None], jump, 0.0)
 
 
-@bare
+@jit_no_arrays
 def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatArray) -> None:
     """The quintic of drive i around `time` [s]: its coefficients (6,) [m] in (t - time) / unit, into `out`.
 
-    At a kink it is the piece that begins there.
+    At a breakpoint it is the piece that begins there.
     """
     for k in range(ORDER):
         out[k] = 0.0
@@ -186,18 +186,18 @@ def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatA
         factor *= unit / table.scale[segment]
 
 
-@bare
-def kink_slack(table: DriveTable, i: int, time: float) -> float:
-    """How close [s] to `time` a kink of drive i must be to count as one there: rounding, or 1e-12 of a stroke."""
+@jit_no_arrays
+def breakpoint_slack(table: DriveTable, i: int, time: float) -> float:
+    """How close [s] to `time` a breakpoint of drive i must be to count as one there: rounding, or 1e-12 of a stroke."""
     return MERGED * table.stroke_time[i] + ROUNDING * abs(time) if math.isfinite(table.span[i]) else 0.0
 
 
-@bare
-def drive_kink(table: DriveTable, i: int, time: float) -> float:
-    """The first time [s] after `time` at which drive i has a kink; inf when there is none."""
+@jit_no_arrays
+def drive_breakpoint(table: DriveTable, i: int, time: float) -> float:
+    """The first time [s] after `time` at which drive i has a breakpoint; inf when there is none."""
     if not math.isfinite(table.span[i]):
         return math.inf
-    after = time + kink_slack(table, i, time)
+    after = time + breakpoint_slack(table, i, time)
     if after < table.delay[i]:
         return float(table.delay[i])
     if after >= _edge(table, i, table.repeats[i], table.first[i]):
@@ -208,19 +208,19 @@ def drive_kink(table: DriveTable, i: int, time: float) -> float:
     return _edge(table, i, passes + 1.0, table.first[i])
 
 
-@bare
-def next_kink(table: DriveTable, time: float) -> float:
-    """The first time [s] after `time` at which any drive has a kink; inf when there is none.
+@jit_no_arrays
+def next_breakpoint(table: DriveTable, time: float) -> float:
+    """The first time [s] after `time` at which any drive has a breakpoint; inf when there is none.
 
-    Kinks closer than 1e-12 of a stroke, or than rounding at that time, are taken as one.
+    Breakpoints closer than 1e-12 of a stroke, or than rounding at that time, are taken as one.
     """
     nearest = math.inf
     for i in range(len(table.delay)):
-        nearest = min(nearest, drive_kink(table, i, time))
+        nearest = min(nearest, drive_breakpoint(table, i, time))
     return nearest
 
 
-@bare
+@jit_no_arrays
 def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
     """When [s] a segment of drive i begins after so many passes: the one expression that decides about pieces."""
     if not math.isfinite(table.span[i]):
@@ -228,7 +228,7 @@ def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
     return float(table.delay[i] + (table.span[i] * passes + table.start[segment]))
 
 
-@bare
+@jit_no_arrays
 def _place(table: DriveTable, i: int, time: float) -> tuple[float, int]:
     """The passes that drive i has behind it at `time` [s], from its delay to before its end, and its segment then."""
     low, high = table.first[i], table.first[i + 1]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from particle.checks import finite, not_negative, positive, refuse
-from particle.jit import bare, jit
+from particle.jit import jit, jit_no_arrays
 
 FloatArray = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class Contact(Protocol):
         """Q [N] under net loads [N] of any shape; ValueError for one below -pull_off or above largest_load."""
 
 
-@bare
+@jit_no_arrays
 def friction_limit(law: FrictionLaw, load: float) -> float:
     """Q [N] while sliding under the net normal force `load` [N]; outside the law it goes on, never negative."""
     if law.kind == CONSTANT:

@@ -1,8 +1,8 @@
 """SurfaceMotion: the moving surface w(x, y, t) = sum_i h_i(t) phi_i(x, y), and its record of arrays for kernels.
 
-Each h_i is a drive, between two kinks one quintic in time; each phi_i is the shape of one actuator, on a cell of a
-background grid one polynomial and the logarithms r^2 ln(r) around the actuators close by. So a cell's whole smooth part
-is one polynomial in x, y, t.
+Each h_i is a drive: one quintic in time between two breakpoints. Each phi_i is the shape of one actuator: on a cell of
+a background grid one polynomial, and the logarithms r^2 ln(r) around the actuators close by. So a cell's whole smooth
+part is one polynomial in x, y, t.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from particle.drives import ORDER, AnyDrive, DriveTable, accelerations, drive_table, monomial_table
 from particle.surface.at_point import evaluate_points
-from particle.surface.cells import NOWHERE, Cells, CellStore, OneCell
+from particle.surface.cells import NOWHERE, CellStore, OneCell
+from particle.surface.local import new_local
+from particle.surface.record import Surface
 
 FloatArray = NDArray[np.float64]
 
@@ -32,22 +34,6 @@ class SurfaceState(NamedTuple):
     gradient: FloatArray  # (n, 2)
     gradient_t: FloatArray  # (n, 2) 1/s
     hessian: FloatArray  # (n, 2, 2) 1/m
-
-
-class Surface(NamedTuple):
-    """A moving surface as kernels read it: arrays and numbers only."""
-
-    drives: DriveTable  # `shape_count` drives, then the base's x and y where it moves
-    cells: Cells
-    shape_count: int
-    sources: FloatArray  # (J, 2) m, the centres of the logarithms
-    size: float  # m, the length in the logarithms and that tolerances refer to
-    floor: float  # m, radius below which the Hessian of a logarithm grows no more
-    overhang: float  # a cell's polynomials hold out to this many half widths
-    conics: FloatArray  # (k, 4) m, the rim's whole ellipses: centre x, y and semi-axes
-    edges: FloatArray  # (m, 3, 2) m, its other edges: start, middle and end of parabolas; no rim where both are empty
-    moving_base: bool  # whether two more drives carry the base in its plane
-    unit: float  # s, of time in the polynomials that are made of cells and drives
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -154,16 +140,20 @@ class SurfaceMotion:
         if not math.isfinite(time):
             raise ValueError(f"Input time of evaluate must be a finite number of seconds; got {time}")
         xy = np.atleast_2d(np.asarray(xy, dtype=float))
-        rows, missing = evaluate_points(self.record, xy, float(time))
+        rows, missing = self._points(xy, time)
         if missing.any():
             self.store.build(xy[missing])
-            rows, _ = evaluate_points(self.record, xy, float(time))
+            rows, _ = self._points(xy, time)
         if np.isnan(rows).any():
             beyond = xy[np.isnan(rows).any(axis=1)][0].tolist()
             raise ValueError(f"Input xy of evaluate must lie on the surface; got {beyond} m")
         w, w_t, w_tt, x, y, xt, yt, xx, xy_, yy = rows.T
         hessian = np.stack([np.stack([xx, xy_], axis=-1), np.stack([xy_, yy], axis=-1)], axis=-2)
         return SurfaceState(w, w_t, w_tt, np.stack([x, y], axis=-1), np.stack([xt, yt], axis=-1), hessian)
+
+    def _points(self, xy: FloatArray, time: float) -> tuple[FloatArray, NDArray[np.bool_]]:
+        surface = self.record
+        return evaluate_points(surface, new_local(surface), xy, float(time))
 
     def base_acceleration(self, time: float) -> FloatArray:
         """The acceleration (2,) [m/s^2] of its base along x and y at a time [s]; zero where it does not move."""
