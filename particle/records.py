@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from operator import itemgetter
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+if TYPE_CHECKING:
+    _Row = np.generic  # numpy's stubs forbid subclasses of np.void
+else:
+    _Row = np.void
+
 _KINDS = {"float": np.float64, "int": np.int64}
 
 
-class Record(np.void):
+class Record(_Row):
     """One row. A subclass names its numbers by annotations, `name: float` or `name: int`."""
 
     def __init_subclass__(cls) -> None:
@@ -33,7 +38,7 @@ def new_records(kind: type[AnyRecord], count: int = 1) -> NDArray[AnyRecord]:
 
 
 def _setter(name: str) -> Any:
-    def put(record: Record, value: float) -> None:
+    def put(record: Any, value: float) -> None:
         record[name] = value
 
     return put
