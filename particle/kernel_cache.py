@@ -146,7 +146,7 @@ class KernelCache(Cache):  # type: ignore[misc]
             other._end()
         self._impl.locator.ensure_cache_path()
         lock = FileLock(Path(self.cache_path) / f"{self._impl.filename_base}.lock")
-        with suppress(Timeout):  # then both compile it
+        with suppress(Timeout, OSError, NotImplementedError):  # then both compile it
             lock.acquire(timeout=MAX_WAIT)
         KernelCache._compiling, self._lock = self, lock
         return True

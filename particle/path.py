@@ -16,7 +16,6 @@ from particle.events import (
     Pairs,
     PathRecord,
     Request,
-    Row,
     clear_memory,
     march,
     new_memory,
@@ -31,7 +30,7 @@ from particle.surface import Surface, SurfaceMotion, missing_place
 from particle.trajectory import Event, Outcome, State, Trajectory, energy_of, samples_of
 
 FloatArray = NDArray[np.float64]
-Rows = NDArray[Row]
+Rows = NDArray[Any]  # of `Row`
 
 
 class Computed(NamedTuple):

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.modes import EventKind as EventKind
-from particle.modes import Mode
+from particle.modes import EventKind, Mode
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,17 +9,8 @@ import numpy as np
 
 from particle.checks import finite, not_negative, positive, refuse, whole
 from particle.drives.quintic import QUINTIC, hermite
-from particle.drives.table import ORDER as ORDER
-from particle.drives.table import AnyDrive as AnyDrive
-from particle.drives.table import DriveTable as DriveTable
+from particle.drives.record import ORDER
 from particle.drives.table import Evaluated, FloatArray, Segments
-from particle.drives.table import accelerations as accelerations
-from particle.drives.table import breakpoint_slack as breakpoint_slack
-from particle.drives.table import drive_breakpoint as drive_breakpoint
-from particle.drives.table import drive_piece as drive_piece
-from particle.drives.table import drive_table as drive_table
-from particle.drives.table import monomial_table as monomial_table
-from particle.drives.table import next_breakpoint as next_breakpoint
 
 CYCLES = ("up-down", "up", "sine", "cosine")
 PIECES = 128  # of a period of a sine

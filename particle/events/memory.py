@@ -52,6 +52,6 @@ def new_memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memor
 def clear_memory(surface: Surface, memory: Memory) -> None:
     """Make the scratch memory of another path, over a surface of the same measures, as good as new."""
     prepare(surface, memory.local)
-    memory.step.seen["time"] = math.nan
+    memory.step.seen[0].time = math.nan
     for array in (memory.motion, memory.now, memory.counts):
         array[:] = np.zeros_like(array)

@@ -61,7 +61,7 @@ class Step(NamedTuple):
 def new_step(pairs: Pairs) -> Step:
     stages = len(pairs.long.c)
     rates, stage, seen = new_records(Motion, stages), new_records(Motion), new_records(Seen)
-    seen["time"] = math.nan
+    seen[0].time = math.nan
     return Step(
         rates=rates,
         rate_numbers=as_numbers(rates),

@@ -1,5 +1,6 @@
 """Friction laws: the largest tangential force that a contact transmits under a net normal force."""
 
-from particle.friction.contact import Contact, FrictionLaw, ScaledFriction, friction_limit
+from particle.friction.contact import Contact, FrictionLaw, friction_limit
 from particle.friction.kogut_etsion import PAPER_PLASTICITY_INDEX
+from particle.friction.scaled import ScaledFriction
 from particle.friction.table import FEWEST, mistakes

@@ -7,7 +7,7 @@ import pytest
 from pieces import piece_at
 
 from particle import Drive
-from particle.drives.drive import drive_table, next_breakpoint
+from particle.drives import drive_table, next_breakpoint
 
 
 def quintic(s):

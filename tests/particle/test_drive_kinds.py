@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pieces import piece_at
 
 from particle import Drive, HermiteDrive, Segment, SegmentDrive, TableDrive
-from particle.drives.drive import drive_table, monomial_table, next_breakpoint
+from particle.drives import drive_table, monomial_table, next_breakpoint
 
 POLYNOMIAL = np.polynomial.Polynomial([1e-6, -2e-3, 3.0, 4e2, -5e4, 6e6])
 

@@ -8,7 +8,7 @@ import pytest
 from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import Drive, platform_surface
-from particle.drives.drive import next_breakpoint
+from particle.drives import next_breakpoint
 from particle.surface.at_point import surface_at
 from particle.surface.bridge import allow_bridges
 from particle.surface.cells import NOWHERE, UNBUILT

@@ -16,7 +16,7 @@ from particle import (
     polynomial_surface,
     simulate,
 )
-from particle.drives.drive import drive_table, next_breakpoint
+from particle.drives import drive_table, next_breakpoint
 
 RADIUS = 300e-6
 
