@@ -14,10 +14,13 @@ from particle.kernel_cache import MAX_FOLDERS, PACKAGE, cache_folder, source_dig
 
 ROOMS = ("", "drives", "friction", "surface", "events", "fixed")
 USE = """
+import os
 from particle.events.equations import Part
 from particle.events.slipping import load_and_demand
 from particle import ConstantFriction
 part = Part(1.0, 9.0, 0.0, 0.0, 2.0, ConstantFriction(1.0).law)
+import particle
+assert particle.__file__.startswith(os.getcwd())
 print(load_and_demand(1.0, 0.0, 0.0, 0.0, 0.0, part)[0], sum(load_and_demand.stats.cache_misses.values()))
 """
 
@@ -74,8 +77,10 @@ def test_only_the_folders_used_last_are_kept(package):
 
 
 def start(package: Path, cache: Path) -> subprocess.Popen[str]:
-    paths = {"PYTHONPATH": str(package.parent), "NUMBA_CACHE_DIR": str(cache)}
-    return subprocess.Popen([sys.executable, "-c", USE], env=os.environ | paths, stdout=subprocess.PIPE, text=True)
+    """A process in the folder of the package, so that it imports that."""
+    settings = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
+    command = [sys.executable, "-c", USE]
+    return subprocess.Popen(command, cwd=package.parent, env=settings, stdout=subprocess.PIPE, text=True)
 
 
 def result(process: subprocess.Popen[str]) -> tuple[float, int]:
