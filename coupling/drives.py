@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from coupling.case import ENDLESS, Case, DriveCase, amplitude
 from particle import AnyDrive, Drive, Segment, SegmentDrive, TableDrive
-from particle.drives import drive_table, next_kink
+from particle.drives import drive_table, next_breakpoint
 
 FloatArray = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ def moments(drives: Sequence[AnyDrive], end: float) -> FloatArray:
     """
     breakpoints, table = [0.0], drive_table(drives)
     while len(breakpoints) < MAX_BREAKPOINTS and breakpoints[-1] < end:
-        breakpoints.append(min(next_kink(table, breakpoints[-1]), end))
+        breakpoints.append(min(next_breakpoint(table, breakpoints[-1]), end))
     scattered = end * (np.arange(SAMPLES) * GOLDEN % 1.0)
     common = np.unique(np.concatenate([breakpoints, scattered, [end]]))
     overlooked = []

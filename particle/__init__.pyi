@@ -1,22 +1,19 @@
 from .batch import Interrupted as Interrupted, simulate_many as simulate_many
-from .drives.drive import AnyDrive as AnyDrive, Drive as Drive
+from .drives.drive import Drive as Drive
 from .drives.points import HermiteDrive as HermiteDrive, TableDrive as TableDrive
 from .drives.schedule import Segment as Segment, SegmentDrive as SegmentDrive
+from .drives.table import AnyDrive as AnyDrive
 from .friction.contact import ConstantFriction as ConstantFriction, CoulombAdhesion as CoulombAdhesion
 from .friction.kogut_etsion import KogutEtsion as KogutEtsion
 from .friction.table import FrictionTable as FrictionTable
 from .micropart import Micropart as Micropart
 from .simulation import simulate as simulate
-from .surface.moving_surface import (
-    SurfaceMotion as SurfaceMotion,
-    SurfaceState as SurfaceState,
-    platform_surface as platform_surface,
-    polynomial_surface as polynomial_surface,
-)
+from .modes import EventKind as EventKind
+from .surface.moving_surface import SurfaceMotion as SurfaceMotion, SurfaceState as SurfaceState
+from .surface.simple_surfaces import platform_surface as platform_surface, polynomial_surface as polynomial_surface
 from .trajectory import (
     Energy as Energy,
     Event as Event,
-    EventKind as EventKind,
     Outcome as Outcome,
     Samples as Samples,
     State as State,

@@ -6,43 +6,48 @@ import threading
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from particle.events import (
-    DETACHED,
-    GOES_ON,
-    INTERRUPTED,
-    LACKS_CELL,
-    LEFT_PLATE,
-    OVERLOADED,
-    WORK_LIMIT,
     Memory,
     Pairs,
-    Part,
+    PathRecord,
     Request,
-    X,
-    Y,
-    forget,
+    clear_memory,
     march,
     new_memory,
+    new_record,
     pairs_for,
     resume,
     stays,
 )
-from particle.fixed import between, march_fixed
-from particle.surface import Surface, SurfaceMotion, missing_place, new_local
-from particle.trajectory import Event, EventKind, Outcome, State, Trajectory, energy_of, samples_of
+from particle.fixed import between, march_fixed, new_fixed_memory
+from particle.modes import EventKind, Verdict
+from particle.surface import Surface, SurfaceMotion, missing_place
+from particle.trajectory import Event, Outcome, State, Trajectory, energy_of, samples_of
 
 FloatArray = NDArray[np.float64]
-Found = tuple[FloatArray, FloatArray, int, int]  # rows, events, how it ended, evaluations
+Rows = NDArray[Any]  # of `Row`
+
+
+class Computed(NamedTuple):
+    """What a kernel has made of a request."""
+
+    rows: Rows
+    events: NDArray[Any]  # of `EventRow`
+    verdict: int
+    evaluations: int
+    missing: FloatArray  # (1, 2) m, where a cell is lacking
+
 
 _OUTCOMES = {
-    DETACHED: Outcome.DETACHED,
-    LEFT_PLATE: Outcome.LEFT_PLATE,
-    OVERLOADED: Outcome.OVERLOADED,
-    WORK_LIMIT: Outcome.WORK_LIMIT,
+    Verdict.DETACHED: Outcome.DETACHED,
+    Verdict.LEFT_PLATE: Outcome.LEFT_PLATE,
+    Verdict.OVERLOADED: Outcome.OVERLOADED,
+    Verdict.WORK_LIMIT: Outcome.WORK_LIMIT,
 }
 
 
@@ -56,16 +61,15 @@ class _Scratch(threading.local):
 _scratch = _Scratch()
 
 
-def _memory(record: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
+def _memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
     """Scratch memory for a path over the surface."""
-    cells = record.cells
+    cells = surface.cells
     measures = cells.highest, cells.most_near, cells.most_drives, len(pairs.long.c)
-    if _scratch.measures == measures:
-        memory = _scratch.memory._replace(stop=stop)
-        forget(record, memory)
-        return memory
-    _scratch.measures, _scratch.memory = measures, new_memory(record, pairs, stop)
-    return _scratch.memory
+    if _scratch.measures != measures:
+        _scratch.measures, _scratch.memory = measures, new_memory(surface, pairs, stop)
+        return _scratch.memory
+    clear_memory(surface, _scratch.memory)
+    return _scratch.memory._replace(stop=stop)
 
 
 def find_path(
@@ -77,15 +81,15 @@ def find_path(
     """
     pairs, stop = pairs_for(tolerance), np.zeros(1, dtype=np.int64) if stop is None else stop
 
-    def path(record: Surface) -> tuple[Found, FloatArray]:
+    def path(record: Surface) -> Computed:
         memory = _memory(record, pairs, stop)
-        return march(record, request, pairs, memory), missing_place(memory.local)
+        return _computed(march(record, request, pairs, memory, new_record()), memory)
 
-    found = _with_cells(surface, path)
-    rows, _, verdict, _ = found
-    if verdict == INTERRUPTED:
+    computed = _with_cells(surface, path)
+    if computed.verdict == Verdict.INTERRUPTED:
         return None
-    trajectory = _trajectory(surface, request, found, partial(_by_events, surface, request, pairs, rows))
+    sampler = partial(_by_events, surface, request, pairs, computed.rows)
+    trajectory = _trajectory(surface, request, computed, sampler)
     if trajectory.outcome is Outcome.STUCK:
         x, y = trajectory.position[-1].tolist()
         future = partial(stays, surface, request.part, x, y, request.duration)
@@ -98,53 +102,70 @@ def find_path_by_steps(
 ) -> Trajectory:
     """The path by a scheme of fixed steps [s], of which one in `every` is kept."""
 
-    def path(record: Surface) -> tuple[Found, FloatArray]:
-        local = new_local(record)
-        return march_fixed(record, request, local, kind, step, steps, every), missing_place(local)
+    def path(record: Surface) -> Computed:
+        memory = new_fixed_memory(record)
+        return _computed(march_fixed(record, request, memory, new_record(), kind, step, steps, every), memory)
 
-    found = _with_cells(surface, path)
-    return _trajectory(surface, request, found, partial(_by_steps, surface, request.part, kind, found[0]))
+    computed = _with_cells(surface, path)
+    return _trajectory(surface, request, computed, partial(_by_steps, surface, request, kind, computed.rows))
 
 
-def _by_events(
-    surface: SurfaceMotion, request: Request, pairs: Pairs, rows: FloatArray, times: FloatArray
-) -> FloatArray:
+def _computed(record: PathRecord, memory: Any) -> Computed:
+    lengths, now = record.lengths[0], memory.now[0]
+    return Computed(
+        rows=record.rows[: lengths["rows"]],
+        events=record.events[: lengths["events"]],
+        verdict=int(now.verdict),
+        evaluations=int(memory.counts[0].evaluations),
+        missing=missing_place(memory.local),
+    )
+
+
+def _by_events(surface: SurfaceMotion, request: Request, pairs: Pairs, rows: Rows, times: FloatArray) -> Rows:
     """The rows at ascending times [s]."""
-    return resume(surface.record, request, pairs, rows, times)
+    record = surface.record
+    return resume(record, request, pairs, _memory(record, pairs, np.zeros(1, dtype=np.int64)), rows, times)
 
 
-def _by_steps(surface: SurfaceMotion, part: Part, kind: int, rows: FloatArray, times: FloatArray) -> FloatArray:
+def _by_steps(surface: SurfaceMotion, request: Request, kind: int, rows: Rows, times: FloatArray) -> Rows:
     """The rows at ascending times [s]."""
-    samples, missing = between(surface.record, part, kind, rows, times)
+
+    def sample() -> tuple[Rows, NDArray[np.bool_]]:
+        record = surface.record
+        return between(record, request.part, new_fixed_memory(record), kind, rows, times)
+
+    samples, missing = sample()
     if missing.any():
-        surface.store.build(samples[missing][:, [X, Y]])
-        samples, _ = between(surface.record, part, kind, rows, times)
+        surface.store.build(np.column_stack([samples["x"], samples["y"]])[missing])
+        samples, _ = sample()
     return samples
 
 
-def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], tuple[Found, FloatArray]]) -> Found:
-    """A path over the surface, found anew whenever it has come to a place where a cell was lacking."""
+def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> Computed:
+    """A path over the surface, computed anew whenever it has come to a place where a cell was lacking."""
     while True:
-        found, missing = path(surface.record)
-        if found[2] != LACKS_CELL:
-            return found
-        surface.store.build(missing)
+        computed = path(surface.record)
+        if computed.verdict != Verdict.LACKS_CELL:
+            return computed
+        surface.store.build(computed.missing)
 
 
 def _trajectory(
-    surface: SurfaceMotion, request: Request, found: Found, sampler: Callable[[FloatArray], FloatArray]
+    surface: SurfaceMotion, request: Request, computed: Computed, sampler: Callable[[FloatArray], Rows]
 ) -> Trajectory:
-    rows, events, verdict, evaluations = found
-    samples = samples_of(rows)
-    if verdict == GOES_ON:
+    samples = samples_of(computed.rows)
+    if computed.verdict == Verdict.GOES_ON:
         outcome = Outcome.STUCK if samples.state[-1] == State.STICK else Outcome.MOVING
     else:
-        outcome = _OUTCOMES[verdict]
+        outcome = _OUTCOMES[Verdict(computed.verdict)]
     return Trajectory(
         *samples,
-        events=[Event(EventKind(int(k)), t, (x, y), speed, load) for k, t, x, y, speed, load in events.tolist()],
+        events=[
+            Event(EventKind(kind), time, (x, y), speed, load)
+            for kind, time, x, y, speed, load in computed.events.tolist()
+        ],
         outcome=outcome,
-        evaluations=evaluations,
-        energy=energy_of(rows, request.force * surface.size),
+        evaluations=computed.evaluations,
+        energy=energy_of(computed.rows, request.force * surface.size),
         sampler=sampler,
     )

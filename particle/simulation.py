@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from particle.events import Part, Request
-from particle.fixed import MOREAU, MOST_ROWS, PAPER, default_step, shortest_stroke, step_count
+from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
 from particle.friction import Contact
 from particle.micropart import Micropart
 from particle.path import find_path, find_path_by_steps
@@ -88,7 +88,7 @@ def simulate(
         return found
     step = float(default_step(surface, duration) if time_step is None else time_step)
     steps = step_count(request.duration, step)
-    return find_path_by_steps(surface, request, _FIXED_STEPS[scheme], step, steps, math.ceil(steps / MOST_ROWS))
+    return find_path_by_steps(surface, request, _FIXED_STEPS[scheme], step, steps, math.ceil(steps / MAX_ROWS))
 
 
 def faults(duration: float, gravity: float | Sequence[float], tolerance: float, after_detachment: str) -> list[str]:

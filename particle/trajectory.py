@@ -6,12 +6,12 @@ import enum
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.events import record
+from particle.modes import EventKind, Mode
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-LEAST_ENERGY = 1e-6
+MIN_ENERGY = 1e-6
 
 
 class State(enum.IntEnum):
@@ -28,18 +28,6 @@ class State(enum.IntEnum):
     STICK = 0  # at rest on the surface
     SLIP = 1  # sliding
     FLIGHT = 2  # off the surface
-
-
-class EventKind(enum.IntEnum):
-    """What happens to the part at one moment."""
-
-    SLIPS = 0  # begins to slide
-    STOPS = 1  # comes to rest on the surface
-    REVERSES = 2  # stops sliding and slides on in another direction at once
-    DETACHES = 3  # comes off
-    LEAVES_PLATE = 4  # goes over the rim
-    OVERLOADS = 5  # is pressed on more than the friction law covers
-    LANDS = 6  # touches the surface again after a flight
 
 
 class Outcome(enum.StrEnum):
@@ -116,7 +104,7 @@ class Energy:
         gap = total - total[0] - (self.work - self.dissipated)
         entries = (self.kinetic, self.potential - self.potential[0], self.work, self.dissipated)
         largest = max(float(np.abs(entry).max()) for entry in entries)
-        return float(np.abs(gap).max()) / max(largest, LEAST_ENERGY * self.scale)
+        return float(np.abs(gap).max()) / max(largest, MIN_ENERGY * self.scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -138,7 +126,7 @@ class Trajectory:
     outcome: Outcome
     evaluations: int  # of the surface
     energy: Energy
-    sampler: Callable[[FloatArray], FloatArray]  # rows at ascending times
+    sampler: Callable[[FloatArray], NDArray[Any]]  # rows at ascending times
     future: Callable[[], bool | None] | None = None  # of a part that rests at the end
 
     @cached_property
@@ -202,8 +190,9 @@ class Trajectory:
             raise ValueError("Input times of at must be numbers; got nan")
         within = np.clip(np.asarray(times, dtype=float), self.time[0], self.time[-1])
         order = np.argsort(within, kind="stable")
-        rows = np.empty((len(within), record.COLUMNS))
-        rows[order] = self.sampler(within[order])
+        ordered = self.sampler(within[order])
+        rows = np.empty_like(ordered)
+        rows[order] = ordered
         return samples_of(rows)
 
     def __repr__(self) -> str:
@@ -224,22 +213,21 @@ class Trajectory:
         return notebook_html(self)
 
 
-def samples_of(rows: FloatArray) -> Samples:
-    """The rows (k, COLUMNS) of a record, for people."""
-    mode = rows[:, record.MODE].astype(np.int64)
+def samples_of(rows: NDArray[Any]) -> Samples:
+    """The rows (k,) of a record, for people."""
+    mode = rows["mode"]
     return Samples(
-        time=rows[:, record.TIME],
-        position=rows[:, [record.X, record.Y]],
-        velocity=rows[:, [record.V_X, record.V_Y]],
-        vertical_velocity=rows[:, record.V_Z],
-        height=rows[:, record.Z],
-        normal_force=rows[:, record.LOAD],
-        friction_force=rows[:, record.FRICTION],
-        state=np.where(mode == record.MANIFOLD, State.SLIP, mode),
+        time=rows["time"],
+        position=np.column_stack([rows["x"], rows["y"]]),
+        velocity=np.column_stack([rows["v_x"], rows["v_y"]]),
+        vertical_velocity=rows["v_z"],
+        height=rows["z"],
+        normal_force=rows["load"],
+        friction_force=rows["friction"],
+        state=np.where(mode == Mode.MANIFOLD, State.SLIP, mode),
     )
 
 
-def energy_of(rows: FloatArray, scale: float) -> Energy:
-    """The energy ledger of a record's rows (n, COLUMNS); scale: J, as in `Energy`."""
-    kinetic, potential = rows[:, record.KINETIC], rows[:, record.POTENTIAL]
-    return Energy(kinetic, potential, rows[:, record.WORK], rows[:, record.DISSIPATED], scale)
+def energy_of(rows: NDArray[Any], scale: float) -> Energy:
+    """The energy ledger of a record's rows (n,); scale: J, as in `Energy`."""
+    return Energy(rows["kinetic"], rows["potential"], rows["work"], rows["dissipated"], scale)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from coupling import surface_motion
 from particle import Drive, Micropart, SurfaceMotion, Trajectory, simulate, simulate_many
 from particle.friction import friction_limit
-from particle.surface.at_point import fields
+from particle.surface.at_point import surface_at
 from particle.surface.local import cell_at, new_local, within_cell
 from particle.surface.span import enter
 from rivals.problem import GRAVITY, MASS, PathProblem
@@ -66,8 +66,8 @@ def _evaluations(surface: Any, local: Any, xy: FloatArray, time: float, rounds: 
         if n == 0 or not within_cell(local, xy[n, 0], xy[n, 1]):
             enter(surface, local, xy[n, 0], xy[n, 1], time, np.inf)
         for _ in range(rounds):
-            f = fields(local, xy[n, 0], xy[n, 1], time)
+            f = surface_at(local, xy[n, 0], xy[n, 1], time)
             row = out[n]
-            row[0], row[1], row[2], row[3], row[4] = f.w, f.w_t, f.w_tt, f.x, f.y
-            row[5], row[6], row[7], row[8], row[9] = f.xt, f.yt, f.xx, f.xy, f.yy
+            row[0], row[1], row[2], row[3], row[4] = f.w, f.w_t, f.w_tt, f.w_x, f.w_y
+            row[5], row[6], row[7], row[8], row[9] = f.w_xt, f.w_yt, f.w_xx, f.w_xy, f.w_yy
     return out

@@ -1,14 +1,5 @@
 """Drives: how far an actuator is raised over time."""
 
-from particle.drives.drive import (
-    ORDER,
-    AnyDrive,
-    accelerations,
-    drive_kink,
-    drive_piece,
-    drive_table,
-    kink_slack,
-    monomial_table,
-    next_kink,
-)
-from particle.drives.table import DriveTable
+from particle.drives.pieces import breakpoint_slack, drive_breakpoint, drive_piece, next_breakpoint
+from particle.drives.record import ORDER, DriveTable
+from particle.drives.table import AnyDrive, accelerations, drive_table, monomial_table

@@ -1,4 +1,4 @@
-"""Drives: how far an actuator is raised over time, as polynomials of degree five between kinks."""
+"""Drives: how far an actuator is raised over time, as polynomials of degree five between breakpoints."""
 
 from __future__ import annotations
 
@@ -9,17 +9,8 @@ import numpy as np
 
 from particle.checks import finite, not_negative, positive, refuse, whole
 from particle.drives.quintic import QUINTIC, hermite
-from particle.drives.table import ORDER as ORDER
-from particle.drives.table import AnyDrive as AnyDrive
-from particle.drives.table import DriveTable as DriveTable
+from particle.drives.record import ORDER
 from particle.drives.table import Evaluated, FloatArray, Segments
-from particle.drives.table import accelerations as accelerations
-from particle.drives.table import drive_kink as drive_kink
-from particle.drives.table import drive_piece as drive_piece
-from particle.drives.table import drive_table as drive_table
-from particle.drives.table import kink_slack as kink_slack
-from particle.drives.table import monomial_table as monomial_table
-from particle.drives.table import next_kink as next_kink
 
 CYCLES = ("up-down", "up", "sine", "cosine")
 PIECES = 128  # of a period of a sine

@@ -49,7 +49,7 @@ class TableDrive(Evaluated):
         refuse(
             "TableDrive",
             [
-                (fault is None, "times", TIMES, Said(fault)),
+                (fault is None, "times", TIMES, Text(fault)),
                 row_check("heights", self.heights, self.times, "m"),
                 ((self.repeats is None or whole(self.repeats)) and again, "repeats", wanted, self.repeats),
                 (not_negative(self.delay), "delay", "0 or a positive time in s", self.delay),
@@ -105,7 +105,7 @@ class HermiteDrive(Evaluated):
         refuse(
             "HermiteDrive",
             [
-                (fault is None, "times", TIMES, Said(fault)),
+                (fault is None, "times", TIMES, Text(fault)),
                 row_check("heights", self.heights, self.times, "m"),
                 row_check("velocities", self.velocities, self.times, "m/s"),
                 row_check("accelerations", self.accelerations, self.times, "m/s^2"),
@@ -187,15 +187,15 @@ def _three(function: Callable[[FloatArray], Any], times: FloatArray) -> tuple[Fl
     return h, v, a
 
 
-class Said(str):
-    """What was got, in words."""
+class Text(str):
+    """What was got, in words: shown without quotes."""
 
     def __repr__(self) -> str:
         return str(self)
 
 
-def row_check(name: str, row: FloatArray, times: ArrayLike, unit: str) -> tuple[bool, str, str, Said]:
+def row_check(name: str, row: FloatArray, times: ArrayLike, unit: str) -> tuple[bool, str, str, Text]:
     """The check that a row holds one finite number in `unit` for each time."""
     count, bad = np.size(times), row[~np.isfinite(row)]
     fine = len(row) == count > 0 and not bad.size
-    return fine, name, f"a finite number in {unit} for each time", Said(bad[0] if bad.size else f"{len(row)} numbers")
+    return fine, name, f"a finite number in {unit} for each time", Text(bad[0] if bad.size else f"{len(row)} numbers")

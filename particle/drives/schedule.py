@@ -11,9 +11,10 @@ import numpy as np
 from particle.checks import finite, not_negative, positive, refuse, whole
 from particle.drives.drive import up_down
 from particle.drives.quintic import QUINTIC
-from particle.drives.table import ORDER, Evaluated, FloatArray, Segments
+from particle.drives.record import ORDER
+from particle.drives.table import Evaluated, FloatArray, Segments
 
-MOST_STROKES = 1_000_000
+MAX_STROKES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -131,14 +132,14 @@ class SegmentDrive(Evaluated):
         fine = isinstance(self.schedule, tuple) and all(isinstance(segment, Segment) for segment in self.schedule)
         known = self.schedule if fine else ()
         count = sum(segment.cycles for segment in known)
-        most = f"one Segment or more, with {MOST_STROKES} cycles at most"
+        most = f"one Segment or more, with {MAX_STROKES} cycles at most"
         again = self.repeats == 1 or returns(known)
         wanted = "a whole number or None, and 1 unless the schedule ends at height 0"
         refuse(
             "SegmentDrive",
             [
                 (
-                    len(known) > 0 and count <= MOST_STROKES,
+                    len(known) > 0 and count <= MAX_STROKES,
                     "schedule",
                     most,
                     f"{count} cycles" if known else self.schedule,

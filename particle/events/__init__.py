@@ -1,46 +1,15 @@
 """The event-located integrator: rest, sliding, flight, and what lies between them."""
 
-from particle.events import record
-from particle.events.breakaway import slope
+from particle.events.breakaway import rest_pull
+from particle.events.contact_end import end_reason
 from particle.events.dense_output import resume
 from particle.events.equations import Part, drag, length, margin, pull, push
-from particle.events.integrator import Memory, forget, march, new_memory
-from particle.events.record import (
-    COLUMNS,
-    DISSIPATED,
-    ENDS,
-    FRICTION,
-    LOAD,
-    MODE,
-    RESTING,
-    REVERSES,
-    SLIDING,
-    SLIPS,
-    STOPS,
-    TIME,
-    V_X,
-    V_Y,
-    WORK,
-    Record,
-    X,
-    Y,
-    new_record,
-    note,
-    row_of,
-    write,
-)
-from particle.events.runge_kutta import Pairs, pairs_for
-from particle.events.slide import (
-    DETACHED,
-    GOES_ON,
-    INTERRUPTED,
-    LACKS_CELL,
-    LEFT_PLATE,
-    OVERLOADED,
-    WORK_LIMIT,
-    Request,
-    reason,
-)
+from particle.events.integrator import march
+from particle.events.memory import Memory, clear_memory, new_memory
+from particle.events.motion import Counts, Motion, Now
+from particle.events.record import ROW, EventRow, PathRecord, Row, fill_row, new_record, note, write
+from particle.events.request import Request
 from particle.events.slipping import count_slips, find_lost
 from particle.events.stay import horizon, stays
 from particle.events.stick import ROUNDING
+from particle.events.tableau import Pairs, pairs_for

@@ -7,14 +7,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.jit import bare, jit
+from particle.jit import jit, jit_no_arrays
 
 FloatArray = NDArray[np.float64]
 
-DEEPEST = 44  # halvings: a root is located to 2^-44 of the interval
+MAX_HALVINGS = 44  # halvings: a root is located to 2^-44 of the interval
 
 
-@bare
+@jit_no_arrays
 def to_bernstein(c: FloatArray, out: FloatArray) -> None:
     """Bernstein coefficients (n+1,) of a polynomial c_0 + c_1 s + ...: b_i = sum_k C(i, k) / C(n, k) c_k."""
     n = len(out) - 1
@@ -29,7 +29,7 @@ def to_bernstein(c: FloatArray, out: FloatArray) -> None:
         total *= (n - k) / (k + 1)
 
 
-@bare
+@jit_no_arrays
 def halve(right: FloatArray, left: FloatArray) -> None:
     """de Casteljau at 1/2: `right` holds the whole polynomial before and its right half after."""
     n = len(right) - 1
@@ -43,13 +43,13 @@ def halve(right: FloatArray, left: FloatArray) -> None:
 def first_negative(b: FloatArray) -> float:
     """The first place in [0, 1] where a polynomial of Bernstein coefficients b becomes negative; inf: nowhere."""
     n = len(b)
-    pieces, low, width = np.zeros((DEEPEST + 2, n)), np.zeros(DEEPEST + 2), np.zeros(DEEPEST + 2)
+    pieces, low, width = np.zeros((MAX_HALVINGS + 2, n)), np.zeros(MAX_HALVINGS + 2), np.zeros(MAX_HALVINGS + 2)
     pieces[0], width[0] = b, 1.0
     top = 0
     while top >= 0:
         if pieces[top].min() >= 0.0:
             top -= 1
-        elif width[top] <= 0.5**DEEPEST or pieces[top, 0] < 0.0:
+        elif width[top] <= 0.5**MAX_HALVINGS or pieces[top, 0] < 0.0:
             if pieces[top, n - 1] < 0.0 or pieces[top, 0] < 0.0:
                 return float(low[top])
             top -= 1

@@ -9,177 +9,196 @@ of the tangential one. A surface whose velocity jumps under the part hits it, or
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from particle.events.bernstein import first_negative
 from particle.events.equations import Part
-from particle.events.record import FLYING, RESTING, SLIDING
-from particle.events.slide import GOES_ON, LEFT_PLATE, SHORTEST, WORK_LIMIT, Request
+from particle.events.memory import Memory
+from particle.events.motion import Counts, Motion, Now
+from particle.events.request import Request
+from particle.events.slide import MIN_STEP
 from particle.jit import jit
-from particle.surface import BASE, Fields, fields, first_beyond, rim_gap, within_cell
+from particle.modes import Mode, Verdict
+from particle.surface import LocalSurface, Surface, SurfacePoint, first_beyond, rim_gap, surface_at, within_cell
 
 FloatArray = NDArray[np.float64]
 
 GRAZE = 1e-13  # of the surface's size: rounding of a height
-JUMP = 1e-11  # of the surface's size in a stroke: smaller velocities after an impact, and jumps of them, are rounding
+MIN_JUMP = 1e-11  # of the surface's size in a stroke: smaller velocities after an impact, and jumps, are rounding
 
 
 @jit
-def take_off(local: Any, time: float, state: FloatArray) -> None:
-    """Completes `state` (x, y, v_x, v_y, ...) by the height and the vertical velocity with which a part comes off."""
-    f = fields(local, state[0], state[1], time)
-    state[6], state[7] = f.w, f.w_t + state[2] * f.x + state[3] * f.y
+def take_off(local: LocalSurface, time: float, motion: Motion) -> None:
+    """Completes `motion` by the height and the vertical velocity with which a part comes off."""
+    f = surface_at(local, motion.x, motion.y, time)
+    motion.z, motion.v_z = f.w, f.w_t + motion.v_x * f.w_x + motion.v_y * f.w_y
 
 
 @jit
-def fly(
-    surface: Any,
-    local: Any,
-    request: Request,
-    count: NDArray[np.int64],
-    time: float,
-    h: float,
-    span_end: float,
-    state: FloatArray,
-) -> tuple[int, float, float, int]:
-    """Moves `state` on by one step of about h [s], at most to `span_end`, to the landing or to the rim.
-
-    Returns what the part does then, the time, the next h and how the path ended (GOES_ON: it did not).
-    """
-    part, graze = request.part, GRAZE * surface.size
-    end, middle = state.copy(), state.copy()
-    here = fields(local, state[0], state[1], time)
-    start = _height(here, part, state)
-    remaining = span_end - time
-    while True:
-        h = remaining if h >= 0.9 * remaining else h
-        if h < SHORTEST * request.stroke_time and h < remaining:
-            return FLYING, time, h, WORK_LIMIT
-        count[0] += 3
-        _ahead(local, part, here, time, state, h, end)
-        if not within_cell(local, end[0], end[1]):
-            h *= 0.5
-            continue
-        stop = _height(fields(local, end[0], end[1], time + h), part, end)
-        b = _quintic(start, stop, h)
-        good = True
-        for share in (0.3, 0.6):
-            _ahead(local, part, here, time, state, share * h, middle)
-            if good and within_cell(local, middle[0], middle[1]):
-                truth = fields(local, middle[0], middle[1], time + share * h)
-                miss = middle[6] - truth.w - _at(b, share)
-                good = abs(miss) <= max(0.01 * request.tolerance, graze)
-            else:
-                good = False
-        if not good:
-            h *= 0.5
-            continue
-        break
-    lands = first_negative(b + graze)
-    rates = np.zeros((2, 2))
-    rates[0], rates[1] = state[2:4], end[2:4]
-    beyond = first_beyond(surface, rim_gap(surface, state[0], state[1]), state, end, rates[0], rates[1], h)
-    out = rim_gap(surface, end[0], end[1]) < 0.0
+def fly(surface: Surface, request: Request, memory: Memory) -> None:
+    """Moves the part on by one step of about now.h [s], at most to now.span_end, to the landing or to the rim."""
+    now: Now = memory.now[0]
+    motion: Motion = memory.motion[0]
+    end: Motion = memory.step.end[0]
+    local, part, time, remaining = memory.local, request.part, now.time, now.span_end - now.time
+    here = surface_at(local, motion.x, motion.y, time)
+    heights = _heights(request, memory, here, GRAZE * surface.size)
+    if now.verdict != Verdict.GOES_ON:
+        return
+    h = now.h
+    lands = first_negative(heights + GRAZE * surface.size)
+    start_gap = rim_gap(surface, motion.x, motion.y)
+    places = (motion.x, motion.y), (end.x, end.y)
+    beyond = first_beyond(surface, start_gap, *places, (motion.v_x, motion.v_y), (end.v_x, end.v_y), h)
+    out = rim_gap(surface, end.x, end.y) < 0.0
     if (beyond < 1.0 or out) and not lands <= beyond:
-        low, high = 0.0, beyond
-        while high - low > 1e-15:
-            share = 0.5 * (low + high)
-            _ahead(local, part, here, time, state, share * h, end)
-            if rim_gap(surface, end[0], end[1]) < 0.0:
-                high = share
-            else:
-                low = share
-        _ahead(local, part, here, time, state, high * h, end)
-        state[:] = end
-        return FLYING, time + high * h, h, LEFT_PLATE
-    if lands <= 1.0:
-        _ahead(local, part, here, time, state, lands * h, end)
-        state[:] = end
-        at = span_end if lands == 1.0 and h == remaining else time + lands * h
-        f = fields(local, state[0], state[1], at)
-        if state[7] - f.w_t - state[2] * f.x - state[3] * f.y >= 0.0:
-            state[6] = f.w  # on its way up: cells that differ by their error are no landing
-            return FLYING, at, h, GOES_ON
-        slack = JUMP * surface.size / request.stroke_time
-        return land(f, part, slack, state), at, h, GOES_ON
-    state[:] = end
-    return FLYING, (span_end if h == remaining else time + h), 2 * h, GOES_ON
+        share = _exit_share(surface, memory, part, here, beyond)
+        memory.motion[0] = memory.step.end[0]
+        now.time, now.verdict = time + share * h, Verdict.LEFT_PLATE
+    elif lands <= 1.0:
+        _fly_ahead(local, part, here, time, motion, lands * h, end)
+        memory.motion[0] = memory.step.end[0]
+        now.time = now.span_end if lands == 1.0 and h == remaining else time + lands * h
+        f = surface_at(local, motion.x, motion.y, now.time)
+        if motion.v_z - f.w_t - motion.v_x * f.w_x - motion.v_y * f.w_y >= 0.0:
+            motion.z = f.w  # on its way up: cells that differ by their error are no landing
+        else:
+            now.mode = land(f, part, MIN_JUMP * surface.size / request.stroke_time, motion)
+    else:
+        memory.motion[0] = memory.step.end[0]
+        now.time = now.span_end if h == remaining else time + h
+        now.h = 2 * h
 
 
 @jit
-def land(f: Fields, part: Part, slack: float, state: FloatArray) -> int:
-    """The impact of a part at `state` on the surface, in place; what it does then, should the contact last.
+def _heights(request: Request, memory: Memory, here: SurfacePoint, graze: float) -> FloatArray:
+    """The height over the surface in a step that is short enough for a quintic: its Bernstein coefficients (6,).
+
+    The step goes to now.h, its end to step.end. Where no step is short enough the verdict says so.
+    """
+    now: Now = memory.now[0]
+    counts: Counts = memory.counts[0]
+    motion: Motion = memory.motion[0]
+    end: Motion = memory.step.end[0]
+    middle: Motion = memory.step.stage[0]
+    local, part, time, remaining = memory.local, request.part, now.time, now.span_end - now.time
+    start = _height(here, part, motion)
+    while True:
+        now.h = h = remaining if now.h >= 0.9 * remaining else now.h
+        if h < MIN_STEP * request.stroke_time and h < remaining:
+            now.verdict = Verdict.WORK_LIMIT
+            return np.zeros(6)
+        counts.evaluations += 3
+        _fly_ahead(local, part, here, time, motion, h, end)
+        good = within_cell(local, end.x, end.y)
+        if good:
+            b = _quintic(start, _height(surface_at(local, end.x, end.y, time + h), part, end), h)
+            for share in (0.3, 0.6):
+                _fly_ahead(local, part, here, time, motion, share * h, middle)
+                if good and within_cell(local, middle.x, middle.y):
+                    truth = surface_at(local, middle.x, middle.y, time + share * h)
+                    miss = middle.z - truth.w - _at(b, share)
+                    good = abs(miss) <= max(0.01 * request.tolerance, graze)
+                else:
+                    good = False
+            if good:
+                return b
+        now.h = 0.5 * h
+
+
+@jit
+def _exit_share(surface: Surface, memory: Memory, part: Part, here: SurfacePoint, beyond: float) -> float:
+    """The share of the step at which the part crosses the rim, located by halving; its motion there to step.end."""
+    now: Now = memory.now[0]
+    motion: Motion = memory.motion[0]
+    end: Motion = memory.step.end[0]
+    low, high = 0.0, beyond
+    while high - low > 1e-15:
+        share = 0.5 * (low + high)
+        _fly_ahead(memory.local, part, here, now.time, motion, share * now.h, end)
+        if rim_gap(surface, end.x, end.y) < 0.0:
+            high = share
+        else:
+            low = share
+    _fly_ahead(memory.local, part, here, now.time, motion, high * now.h, end)
+    return high
+
+
+@jit
+def land(f: SurfacePoint, part: Part, slack: float, motion: Motion) -> int:
+    """The impact of a part at `motion` on the surface, in place; what it does then, should the contact last.
 
     A velocity along the surface of up to `slack` [m/s] is none.
     """
-    s = math.sqrt(1 + f.x * f.x + f.y * f.y)
-    v_x, v_y, v_z = state[2], state[3], state[7] - f.w_t
-    into = (v_z - v_x * f.x - v_y * f.y) / s
+    s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
+    v_x, v_y, v_z = motion.v_x, motion.v_y, motion.v_z - f.w_t
+    into = (v_z - v_x * f.w_x - v_y * f.w_y) / s
     # Velocity along the surface, before friction's impulse takes its share.
-    t_x, t_y, t_z = v_x + into * f.x / s, v_y + into * f.y / s, v_z - into / s
+    t_x, t_y, t_z = v_x + into * f.w_x / s, v_y + into * f.w_y / s, v_z - into / s
     speed = math.sqrt(t_x * t_x + t_y * t_y + t_z * t_z)
     kept = max(0.0, 1.0 - part.law.impact_coefficient * abs(into) / speed) if speed > slack else 0.0
     after_x, after_y, after_z = kept * t_x, kept * t_y, kept * t_z
     p_x, p_y, p_z = after_x - v_x, after_y - v_y, after_z - v_z  # impulse per kg
-    state[4] += part.mass * (p_x * f.base_vx + p_y * f.base_vy + p_z * f.w_t)
-    state[5] -= 0.5 * part.mass * (p_x * (v_x + after_x) + p_y * (v_y + after_y) + p_z * (v_z + after_z))
-    state[2], state[3] = after_x, after_y
-    state[6], state[7] = f.w, f.w_t + after_z
-    return SLIDING if kept > 0.0 else RESTING
+    motion.work += part.mass * (p_x * f.base_vx + p_y * f.base_vy + p_z * f.w_t)
+    motion.dissipated -= 0.5 * part.mass * (p_x * (v_x + after_x) + p_y * (v_y + after_y) + p_z * (v_z + after_z))
+    motion.v_x, motion.v_y = after_x, after_y
+    motion.z, motion.v_z = f.w, f.w_t + after_z
+    return Mode.SLIDING if kept > 0.0 else Mode.RESTING
 
 
 @jit
-def jump(before: Fields, after: Fields) -> float:
+def velocity_jump(before: SurfacePoint, after: SurfacePoint) -> float:
     """By how much the surface's velocity [m/s] jumps."""
     x, y, z = after.base_vx - before.base_vx, after.base_vy - before.base_vy, after.w_t - before.w_t
     return math.sqrt(x * x + y * y + z * z)
 
 
 @jit
-def jolt(before: Fields, after: Fields, part: Part, mode: int, slack: float, state: FloatArray) -> int:
-    """What a part does when the surface's velocity jumps, which moves on `state`.
+def cross_jump(before: SurfacePoint, after: SurfacePoint, part: Part, mode: int, slack: float, motion: Motion) -> int:
+    """What a part does when the surface's velocity jumps, which moves on `motion`.
 
     A surface that drops from under a part, by more than `slack` [m/s], lets go of it unless nothing can pull it off.
     """
-    if mode != FLYING:
-        state[6], state[7] = before.w, before.w_t + state[2] * before.x + state[3] * before.y
-    state[2] -= after.base_vx - before.base_vx
-    state[3] -= after.base_vy - before.base_vy
-    away = state[7] - after.w_t - state[2] * after.x - state[3] * after.y
-    if mode == FLYING or (away > slack and math.isfinite(part.law.pull_off)):
-        return FLYING
-    return land(after, part, slack, state)
+    if mode != Mode.FLYING:
+        motion.z, motion.v_z = before.w, before.w_t + motion.v_x * before.w_x + motion.v_y * before.w_y
+    motion.v_x -= after.base_vx - before.base_vx
+    motion.v_y -= after.base_vy - before.base_vy
+    away = motion.v_z - after.w_t - motion.v_x * after.w_x - motion.v_y * after.w_y
+    if mode == Mode.FLYING or (away > slack and math.isfinite(part.law.pull_off)):
+        return Mode.FLYING
+    return land(after, part, slack, motion)
 
 
 @jit
-def _ahead(local: Any, part: Part, here: Fields, time: float, state: FloatArray, h: float, out: FloatArray) -> None:
-    """The state of a flying part h [s] later."""
+def _fly_ahead(
+    local: LocalSurface, part: Part, here: SurfacePoint, time: float, motion: Motion, h: float, out: Motion
+) -> None:
+    """The motion of a flying part h [s] later into `out`."""
     down = part.gravity + part.squeeze / part.mass
-    out[0] = state[0] + h * (state[2] + 0.5 * h * part.tilt_x)
-    out[1] = state[1] + h * (state[3] + 0.5 * h * part.tilt_y)
-    out[2], out[3] = state[2] + h * part.tilt_x, state[3] + h * part.tilt_y
-    if local.counts[BASE] > 0:
+    out.x = motion.x + h * (motion.v_x + 0.5 * h * part.tilt_x)
+    out.y = motion.y + h * (motion.v_y + 0.5 * h * part.tilt_y)
+    out.v_x, out.v_y = motion.v_x + h * part.tilt_x, motion.v_y + h * part.tilt_y
+    if local.frame[0].base_drives > 0:
         # x and y are counted from the base, which moves on under the part.
-        later = fields(local, state[0], state[1], time + h)
-        out[0] -= later.base_px - here.base_px - h * here.base_vx
-        out[1] -= later.base_py - here.base_py - h * here.base_vy
-        out[2] -= later.base_vx - here.base_vx
-        out[3] -= later.base_vy - here.base_vy
-    out[6], out[7] = state[6] + h * (state[7] - 0.5 * h * down), state[7] - h * down
-    out[4], out[5] = state[4] - part.squeeze * (out[6] - state[6]), state[5]
+        later = surface_at(local, motion.x, motion.y, time + h)
+        out.x -= later.base_px - here.base_px - h * here.base_vx
+        out.y -= later.base_py - here.base_py - h * here.base_vy
+        out.v_x -= later.base_vx - here.base_vx
+        out.v_y -= later.base_vy - here.base_vy
+    out.z, out.v_z = motion.z + h * (motion.v_z - 0.5 * h * down), motion.v_z - h * down
+    out.work, out.dissipated = motion.work - part.squeeze * (out.z - motion.z), motion.dissipated
 
 
 @jit
-def _height(f: Fields, part: Part, state: FloatArray) -> tuple[float, float, float]:
+def _height(f: SurfacePoint, part: Part, motion: Motion) -> tuple[float, float, float]:
     """The height [m] over the surface of a flying part and its two derivatives in time."""
-    v_x, v_y = state[2], state[3]
-    bend = v_x * (f.xx * v_x + 2 * f.xy * v_y) + v_y * f.yy * v_y
-    turn = (part.tilt_x - f.base_ax) * f.x + (part.tilt_y - f.base_ay) * f.y
-    falls = part.gravity + part.squeeze / part.mass + f.w_tt + 2 * (v_x * f.xt + v_y * f.yt) + bend + turn
-    return state[6] - f.w, state[7] - f.w_t - v_x * f.x - v_y * f.y, -falls
+    v_x, v_y = motion.v_x, motion.v_y
+    bend = v_x * (f.w_xx * v_x + 2 * f.w_xy * v_y) + v_y * f.w_yy * v_y
+    turn = (part.tilt_x - f.base_ax) * f.w_x + (part.tilt_y - f.base_ay) * f.w_y
+    falls = part.gravity + part.squeeze / part.mass + f.w_tt + 2 * (v_x * f.w_xt + v_y * f.w_yt) + bend + turn
+    return motion.z - f.w, motion.v_z - f.w_t - v_x * f.w_x - v_y * f.w_y, -falls
 
 
 @jit

@@ -1,93 +1,132 @@
-"""What is written down on the way of a part: rows and events, as arrays that grow."""
+"""What is recorded of a path: rows and events, as arrays that grow."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.breakaway import lag, slope, velocity
+from particle.events.breakaway import lag, rest_pull, velocity
 from particle.events.equations import Part, energy, pull
+from particle.events.motion import Motion
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.surface import fields
-
-FloatArray = NDArray[np.float64]
-
-# Columns of a row. The velocity is that in the plane; the load is the contact's net normal force; the energies are
-# those of the part, the work is the surface's on it, and the last what friction and impacts took.
-TIME, X, Y, V_X, V_Y, LOAD, FRICTION, MODE, Z, V_Z, KINETIC, POTENTIAL, WORK, DISSIPATED = range(14)
-COLUMNS = 14
-# Columns of an event.
-KIND, EVENT_TIME, EVENT_X, EVENT_Y, EVENT_SPEED, EVENT_LOAD = range(6)
-EVENT_COLUMNS = 6
-# Kinds of events, as EventKind; the ends of a path follow as ENDS + their number.
-SLIPS, STOPS, REVERSES, ENDS, LANDS = 0, 1, 2, 2, 6
-# What a part does, in the column MODE; MANIFOLD: it slides, in its first moments (`breakaway`).
-RESTING, SLIDING, FLYING, MANIFOLD = range(4)
+from particle.modes import Mode
+from particle.records import Record, new_records, record_type
+from particle.surface import LocalSurface, surface_at
 
 
-class Record(NamedTuple):
-    """Rows and events so far; `counts` says how many of each there are."""
+class Row(Record):
+    """The part at one moment."""
 
-    rows: FloatArray  # (n, COLUMNS)
-    events: FloatArray  # (m, EVENT_COLUMNS)
-    counts: NDArray[np.int64]  # (2,)
+    time: float  # s
+    x: float  # m
+    y: float
+    v_x: float  # m/s, in the plane
+    v_y: float
+    load: float  # N, the contact's net normal force
+    friction: float  # N
+    mode: int  # Mode
+    z: float  # m
+    v_z: float  # m/s
+    kinetic: float  # J, of the part
+    potential: float
+    work: float  # J, done by the surface since the start
+    dissipated: float  # J, by friction and impacts since the start
+
+
+class EventRow(Record):
+    """What happened at one moment."""
+
+    kind: int  # EventKind
+    time: float  # s
+    x: float  # m
+    y: float
+    speed: float  # m/s
+    load: float  # N
+
+
+class Lengths(Record):
+    """How many rows and events there are."""
+
+    rows: int
+    events: int
+
+
+ROW, EVENT = record_type(Row), record_type(EventRow)
+
+
+class PathRecord(NamedTuple):
+    """Rows and events so far."""
+
+    rows: NDArray[Row]
+    events: NDArray[EventRow]
+    lengths: NDArray[Lengths]  # (1,)
+
+
+def new_record() -> PathRecord:
+    return PathRecord(new_records(Row, 1024), new_records(EventRow, 256), new_records(Lengths))
 
 
 @jit
-def new_record() -> Record:
-    return Record(np.zeros((1024, COLUMNS)), np.zeros((256, EVENT_COLUMNS)), np.zeros(2, dtype=np.int64))
-
-
-@jit
-def row_of(local: Any, part: Part, mode: int, time: float, state: FloatArray) -> FloatArray:
-    """The row (COLUMNS,) of a part's state (x, y, v_x, v_y or u, work, dissipation, z, v_z)."""
-    row = np.zeros(COLUMNS)
-    x, y, v_x, v_y = state[0], state[1], state[2], state[3]
-    row[TIME], row[X], row[Y], row[MODE], row[WORK], row[DISSIPATED] = time, x, y, mode, state[4], state[5]
-    f = fields(local, x, y, time)
-    if mode == FLYING:
-        row[V_X], row[V_Y], row[Z], row[V_Z] = v_x, v_y, state[6], state[7]
+def fill_row(local: LocalSurface, part: Part, mode: int, time: float, motion: Motion, row: Row) -> None:
+    """The row of a part's motion into `row`."""
+    x, y, v_x, v_y = motion.x, motion.y, motion.v_x, motion.v_y
+    row.time, row.x, row.y, row.mode = time, x, y, mode
+    row.work, row.dissipated = motion.work, motion.dissipated
+    f = surface_at(local, x, y, time)
+    if mode == Mode.FLYING:
+        row.v_x, row.v_y, row.z, row.v_z, row.load, row.friction = v_x, v_y, motion.z, motion.v_z, 0.0, 0.0
         s_x, s_y = v_x + f.base_vx, v_y + f.base_vy
-        row[KINETIC] = 0.5 * part.mass * (s_x * s_x + s_y * s_y + state[7] * state[7])
-        height = part.gravity * state[6] - part.tilt_x * (x + f.base_px) - part.tilt_y * (y + f.base_py)
-        row[POTENTIAL] = part.mass * height
-        return row
-    a = slope(f, part)
-    if mode == MANIFOLD:
-        v_x, v_y = velocity(state[2], lag(local, part, time, x, y, state[2], f, a), a)
-    elif mode == RESTING:
+        row.kinetic = 0.5 * part.mass * (s_x * s_x + s_y * s_y + motion.v_z * motion.v_z)
+        height = part.gravity * motion.z - part.tilt_x * (x + f.base_px) - part.tilt_y * (y + f.base_py)
+        row.potential = part.mass * height
+        return
+    a = rest_pull(f, part)
+    if mode == Mode.MANIFOLD:
+        v_x, v_y = velocity(motion.v_x, lag(local, part, time, x, y, motion.v_x, f, a), a)
+    elif mode == Mode.RESTING:
         v_x = v_y = 0.0
-    row[V_X], row[V_Y], row[Z], row[V_Z] = v_x, v_y, f.w, f.w_t + v_x * f.x + v_y * f.y
-    row[LOAD] = pull(f, v_x, v_y, part).normal
-    row[FRICTION] = part.mass * a.demand if mode == RESTING else friction_limit(part.law, row[LOAD])
-    row[KINETIC], row[POTENTIAL] = energy(f, x, y, v_x, v_y, part)
-    return row
+    row.v_x, row.v_y, row.z, row.v_z = v_x, v_y, f.w, f.w_t + v_x * f.w_x + v_y * f.w_y
+    row.load = pull(f, v_x, v_y, part).normal
+    row.friction = part.mass * a.demand if mode == Mode.RESTING else friction_limit(part.law, row.load)
+    row.kinetic, row.potential = energy(f, x, y, v_x, v_y, part)
 
 
 @jit
-def write(record: Record, row: FloatArray) -> Record:
+def write(record: PathRecord, row: Row) -> PathRecord:
     """The record with one more row, or with its last row replaced when no time has passed."""
-    place, rows = record.counts[0], record.rows
-    if place > 0 and rows[place - 1, TIME] == row[TIME]:
+    rows, lengths = record.rows, record.lengths[0]
+    place = lengths.rows
+    if place > 0 and rows[place - 1].time == row.time:
         place -= 1
     if place == len(rows):
-        rows = np.concatenate((rows, np.zeros_like(rows)))
+        longer = np.zeros(2 * len(rows), ROW)
+        longer[: len(rows)] = rows
+        rows = longer
     rows[place] = row
-    record.counts[0] = place + 1
-    return Record(rows, record.events, record.counts)
+    lengths.rows = place + 1
+    return PathRecord(rows, record.events, record.lengths)
 
 
 @jit
-def note(record: Record, kind: int, row: FloatArray, speed: float) -> Record:
-    """The record with one more event, at the place and time of a row, at a speed [m/s]."""
-    place, events = record.counts[1], record.events
+def note(record: PathRecord, kind: int, row: Row) -> PathRecord:
+    """The record with one more event, at the place, time and speed of a row."""
+    events, lengths = record.events, record.lengths[0]
+    place = lengths.events
     if place == len(events):
-        events = np.concatenate((events, np.zeros_like(events)))
+        longer = np.zeros(2 * len(events), EVENT)
+        longer[: len(events)] = events
+        events = longer
     event = events[place]
-    event[KIND], event[EVENT_TIME], event[EVENT_X], event[EVENT_Y] = kind, row[TIME], row[X], row[Y]
-    event[EVENT_SPEED], event[EVENT_LOAD] = speed, row[LOAD]
-    record.counts[1] = place + 1
-    return Record(record.rows, events, record.counts)
+    event.kind, event.time, event.x, event.y = kind, row.time, row.x, row.y
+    event.speed, event.load = math.hypot(row.v_x, row.v_y), row.load
+    lengths.events = place + 1
+    return PathRecord(record.rows, events, record.lengths)
+
+
+@jit
+def last_row(record: PathRecord) -> Row:
+    return record.rows[record.lengths[0].rows - 1]

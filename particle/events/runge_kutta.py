@@ -3,182 +3,87 @@
 from __future__ import annotations
 
 import math
-from functools import cache
-from typing import Any, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
-from scipy.integrate import DOP853, RK45
 
 from particle.events.breakaway import manifold_rate
 from particle.events.equations import Part, margin, slide_rate
-from particle.events.record import SLIDING
+from particle.events.memory import Memory
+from particle.events.motion import INTEGRATED, Motion
+from particle.events.step import Step, keep_surface
+from particle.events.tableau import Tableau
 from particle.friction import friction_limit
-from particle.jit import bare, jit
-from particle.surface import CELL, Fields, fields, gap_at, within_cell
-
-FloatArray = NDArray[np.float64]
-
-LOOSE = 1e-6  # tolerances from here on are met most cheaply by the pair of order 5
+from particle.jit import jit_no_arrays
+from particle.modes import Mode
+from particle.surface import LocalSurface, Surface, SurfacePoint, gap_at, surface_at, within_cell
 
 
-class Tableau(NamedTuple):
-    """An embedded pair: coefficients of Dormand and Prince (1980; order 8 by Hairer, Norsett and Wanner, 1993)."""
+@jit_no_arrays
+def motion_rate(
+    f: SurfacePoint, mode: int, local: LocalSurface, part: Part, time: float, motion: Motion, rate: Motion
+) -> float:
+    """The right side, while sliding or on the slow manifold, into `rate`; returns the load [N].
 
-    a: FloatArray  # (stages + 1, stages): the last row is the step itself, evaluated for its error
-    c: FloatArray  # (stages + 1,)
-    error: FloatArray  # (2, stages + 1): error weights; the second row is zero when there is only one
-    order: int
-    between: FloatArray  # (m,), places in the step between its stages
-    blend: FloatArray  # (m, stages + 1): a smooth quantity there, from its values at the stages
-
-
-class Pairs(NamedTuple):
-    """The pairs that a path uses: one for steps as long as the tolerance admits, one where a kink ends them before."""
-
-    long: Tableau
-    short: Tableau
-
-
-@cache
-def tableau(order: int) -> Tableau:
-    """The pair of order 5 or 8."""
-    if order == 5:
-        return _tableau(RK45, np.stack([RK45.E, 0 * RK45.E]), 5)
-    return _tableau(DOP853, np.stack([DOP853.E5, DOP853.E3]), 8)
-
-
-def pairs_for(tolerance: float) -> Pairs:
-    """Order 8 for long steps at tight tolerances, order 5 elsewhere."""
-    return Pairs(long=tableau(5 if tolerance >= LOOSE else 8), short=tableau(5))
-
-
-def _tableau(pair: Any, error: FloatArray, order: int) -> Tableau:
-    stages = len(pair.B)
-    a = np.zeros((stages + 1, stages))
-    a[:stages, : pair.A.shape[1]] = pair.A[:stages, :stages]
-    a[stages] = pair.B
-    c = np.append(pair.C[:stages], 1.0)
-    places = np.unique(c)
-    between = 0.5 * (places[1:] + places[:-1])
-    powers = np.arange(min(len(places), 6))
-    blend = between[:, None] ** powers @ np.linalg.pinv(c[:, None] ** powers)
-    return Tableau(a, c, error, order, between, blend)
-
-
-class Step(NamedTuple):
-    """Scratch memory and result of a step."""
-
-    rates: FloatArray  # (stages + 1, 6)
-    loads: FloatArray  # (stages + 1,) N, normal force at each stage
-    margins: FloatArray  # (stages + 1,) how far each stage is from the end of contact
-    stage: FloatArray  # (6,)
-    end: FloatArray  # (6,)
-    start_gap: FloatArray  # (1,) m, the step's start from the rim
-    moving: FloatArray  # (8,) the state in the plane's coordinates
-    still: FloatArray  # (2,) zeros
-    seen: FloatArray  # (4 + Fields,) the last stage's time, x, y and cell, and the surface there
-
-
-@jit
-def new_step(pairs: Pairs) -> Step:
-    stages = len(pairs.long.c)
-    rates, loads = np.zeros((stages, 6)), np.zeros(stages)
-    return Step(
-        rates,
-        loads,
-        loads.copy(),
-        np.zeros(6),
-        np.zeros(6),
-        np.zeros(1),
-        np.zeros(8),
-        np.zeros(2),
-        np.full(20, math.nan),
-    )
-
-
-@bare
-def fields_at_start(local: Any, step: Step, count: NDArray[np.int64], time: float, state: FloatArray) -> Fields:
-    """The surface where a step starts; the step before may have seen it at its end. count[0] counts evaluations."""
-    s = step.seen
-    if s[0] == time and s[1] == state[0] and s[2] == state[1] and s[3] == local.counts[CELL]:
-        return Fields(
-            s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11], s[12], s[13], s[14], s[15], s[16], s[17], s[18], s[19]
-        )
-    count[0] += 1
-    return fields(local, state[0], state[1], time)
-
-
-@bare
-def keep_fields(local: Any, step: Step, time: float, f: Fields) -> None:
-    """Keep the surface at the end of a step that ends at a time [s]."""
-    s = step.seen
-    s[0], s[1], s[2], s[3] = time, step.stage[0], step.stage[1], local.counts[CELL]
-    s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11] = f.w, f.w_t, f.w_tt, f.x, f.y, f.xt, f.yt, f.xx
-    s[12], s[13], s[14], s[15] = f.xy, f.yy, f.base_px, f.base_py
-    s[16], s[17], s[18], s[19] = f.base_vx, f.base_vy, f.base_ax, f.base_ay
-
-
-@bare
-def rate(f: Fields, mode: int, local: Any, part: Part, time: float, state: FloatArray, out: FloatArray) -> float:
-    """The right side: of (x, y, v_x, v_y, work, dissipation) while sliding, of (x, y, u, -, ...) on the slow manifold.
-
-    f: the surface at `state` and `time`.  Returns the load [N].
+    f: the surface at `motion` and `time`.
     """
-    if mode == SLIDING:
-        return slide_rate(f, part, state, out)
-    return manifold_rate(f, local, part, time, state, out)
+    if mode == Mode.SLIDING:
+        return slide_rate(f, part, motion, rate)
+    return manifold_rate(f, local, part, time, motion, rate)
 
 
-@bare
-def attempt(
-    mode: int, surface: Any, local: Any, part: Part, pair: Tableau, step: Step, time: float, state: FloatArray, h: float
-) -> bool:
-    """Tries a step of h [s] from `state`, whose rate is step.rates[0] and gap step.start_gap; the end goes to step.end.
+@jit_no_arrays
+def attempt(surface: Surface, part: Part, pair: Tableau, memory: Memory, h: float) -> bool:
+    """Tries a step of h [s] from the part's motion, whose rate is step.rates[0]; its end goes to step.end.
 
     False when a stage leaves the cell's polynomials, or turns the velocity back under friction, which would then point
     the wrong way.
     """
+    mode, time, motion, step, local = (
+        memory.now[0].mode,
+        memory.now[0].time,
+        memory.motion[0],
+        memory.step,
+        memory.local,
+    )
     # A part that starts from rest where friction vanishes has no direction to keep.
-    dry = mode == SLIDING and friction_limit(part.law, step.loads[0]) > 0.0 and math.hypot(state[2], state[3]) > 0.0
+    dry = mode == Mode.SLIDING and friction_limit(part.law, step.loads[0]) > 0.0
+    dry = dry and math.hypot(motion.v_x, motion.v_y) > 0.0
     stages = len(pair.c)
+    stage: Motion = step.stage[0]
     for k in range(1, stages):
-        for i in range(6):
+        for i in range(INTEGRATED):
             total = 0.0
             for j in range(k):
-                total += pair.a[k, j] * step.rates[j, i]
-            step.stage[i] = state[i] + h * total
-        if not within_cell(local, step.stage[0], step.stage[1]):
+                total += pair.a[k, j] * step.rate_numbers[j, i]
+            step.stage_numbers[0, i] = memory.motion_numbers[0, i] + h * total
+        if not within_cell(local, stage.x, stage.y):
             return False
-        if dry and step.stage[2] * state[2] + step.stage[3] * state[3] <= 0.0:
+        if dry and stage.v_x * motion.v_x + stage.v_y * motion.v_y <= 0.0:
             return False
         moment = time + pair.c[k] * h
-        f = fields(local, step.stage[0], step.stage[1], moment)
+        f = surface_at(local, stage.x, stage.y, moment)
         if k == stages - 1:
-            keep_fields(local, step, moment, f)
-        load = rate(f, mode, local, part, moment, step.stage, step.rates[k])
+            keep_surface(local, step, moment, f)
+        load = motion_rate(f, mode, local, part, moment, stage, step.rates[k])
         # As far from the rim as the start is, less the way from there: where that does not settle it, look.
-        gap = step.start_gap[0] - math.hypot(step.stage[0] - state[0], step.stage[1] - state[1])
-        gap = gap if gap > 0.0 else gap_at(surface, local, step.stage[0], step.stage[1])
+        gap = step.seen[0].gap - math.hypot(stage.x - motion.x, stage.y - motion.y)
+        gap = gap if gap > 0.0 else gap_at(surface, local, stage.x, stage.y)
         step.loads[k], step.margins[k] = load, margin(local, part, load, gap)
-    for i in range(6):
-        step.end[i] = step.stage[i]
+    step.end[0] = stage
     return True
 
 
-@bare
-def error(pair: Tableau, step: Step, h: float, lasting: float, force: float) -> float:
+@jit_no_arrays
+def step_error(pair: Tableau, step: Step, h: float, lasting: float, force: float) -> float:
     """The step's error as a distance [m].
 
     An error of velocity counts as what it moves the part by in `lasting` [s], one of the ledger as the way on which
     `force` [N] does that work.
     """
     fifth = third = 0.0
-    for i in range(6):
+    for i in range(INTEGRATED):
         e = d = 0.0
         for k in range(len(pair.c)):
-            e += pair.error[0, k] * step.rates[k, i]
-            d += pair.error[1, k] * step.rates[k, i]
+            e += pair.error[0, k] * step.rate_numbers[k, i]
+            d += pair.error[1, k] * step.rate_numbers[k, i]
         weight = h / force if i >= 4 else (h * lasting if i >= 2 else h)
         fifth += (weight * e) ** 2
         third += (weight * d) ** 2
@@ -188,7 +93,7 @@ def error(pair: Tableau, step: Step, h: float, lasting: float, force: float) -> 
     return fifth / math.sqrt(fifth + 0.01 * third)
 
 
-@bare
+@jit_no_arrays
 def first_excursion(part: Part, pair: Tableau, step: Step) -> float:
     """The share of a step at which the load leaves the contact's range between two stages; 1: nowhere.
 

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
 from particle.drives import DriveTable
 from particle.events.equations import Part
-from particle.events.stick import leaves_rest, new_rest
+from particle.events.stick import Rest, leaves_rest, new_rest
 from particle.jit import jit
-from particle.surface import END, SurfaceMotion, enter, new_local
+from particle.surface import LocalSurface, Surface, SurfaceMotion, enter, new_local
 
-MOST_PASSES = 1000  # of any endless drive in the period that all have in common
+MAX_PASSES = 1000  # of any endless drive in the period that all have in common
 ROUNDING = 1e-12
 
 
@@ -29,7 +28,8 @@ def stays(surface: SurfaceMotion, part: Part, x: float, y: float, time: float) -
     after = horizon(surface.drives, time)
     if after is None:
         return None
-    return bool(_rests(surface.record, part, x, y, time, after))
+    record = surface.record
+    return bool(_rests(record, new_local(record), new_rest(), part, x, y, time, after))
 
 
 def horizon(table: DriveTable, time: float) -> float | None:
@@ -43,24 +43,25 @@ def horizon(table: DriveTable, time: float) -> float | None:
     spans = table.span[endless]
     if len(spans) == 0:
         return last
-    ratios = [Fraction(float(span / spans[0])).limit_denominator(MOST_PASSES) for span in spans]
+    ratios = [Fraction(float(span / spans[0])).limit_denominator(MAX_PASSES) for span in spans]
     if any(abs(float(ratio) * spans[0] / span - 1) > ROUNDING for ratio, span in zip(ratios, spans, strict=True)):
         return None
     # The least whole number of passes of the first in which all others make whole numbers of theirs.
     common = math.lcm(*(ratio.numerator for ratio in ratios)) / math.gcd(*(ratio.denominator for ratio in ratios))
-    if common * spans[0] / spans.min() > MOST_PASSES:
+    if common * spans[0] / spans.min() > MAX_PASSES:
         return None
     return last + float(common * spans[0])
 
 
 @jit
-def _rests(surface: Any, part: Part, x: float, y: float, time: float, end: float) -> bool:
+def _rests(
+    surface: Surface, local: LocalSurface, rest: Rest, part: Part, x: float, y: float, time: float, end: float
+) -> bool:
     """Whether a part at rest stays from `time` to `end` [s], and at the end of it all."""
-    local, rest = new_local(surface), new_rest()
     while True:
         if enter(surface, local, x, y, time, math.inf) < 0:
             return False
-        span_end = local.frame[END]
+        span_end = local.frame[0].end
         over = not math.isfinite(span_end)
         span_end = time + 1.0 if over else span_end
         if math.isfinite(leaves_rest(local, part, rest, x, y, time, span_end)):

@@ -11,17 +11,17 @@ prove that the part sticks throughout it. What is not proved is halved, the earl
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER
-from particle.events.bernstein import DEEPEST, halve, to_bernstein
+from particle.events.bernstein import MAX_HALVINGS, halve, to_bernstein
 from particle.events.equations import Part
 from particle.friction import friction_limit
-from particle.jit import bare, jit
-from particle.surface import BASE, TIME, UNIT, standing
+from particle.jit import jit, jit_no_arrays
+from particle.surface import LocalSurface, motion_at
 
 FloatArray = NDArray[np.float64]
 
@@ -34,45 +34,44 @@ SLACK = 1e-15  # of the largest squared force in the span
 class Rest(NamedTuple):
     """Scratch memory of the search: subintervals still to be proved, the earliest on top."""
 
-    polynomials: FloatArray  # (DEEPEST + 2, 3, DEGREE + 1): C, squared force times s^2, s^2, in Bernstein form
-    low: FloatArray  # (DEEPEST + 2,)
-    width: FloatArray  # (DEEPEST + 2,)
+    polynomials: FloatArray  # (MAX_HALVINGS + 2, 3, DEGREE + 1): C, squared force times s^2, s^2, in Bernstein form
+    low: FloatArray  # (MAX_HALVINGS + 2,)
+    width: FloatArray  # (MAX_HALVINGS + 2,)
     motion: FloatArray  # (3, 6), w, w_x and w_y at the place as polynomials of the share of the time
     bounds: FloatArray  # (6,), one of these in Bernstein form
 
 
-@jit
 def new_rest() -> Rest:
     return Rest(
-        np.zeros((DEEPEST + 2, 3, DEGREE + 1)),
-        np.zeros(DEEPEST + 2),
-        np.zeros(DEEPEST + 2),
+        np.zeros((MAX_HALVINGS + 2, 3, DEGREE + 1)),
+        np.zeros(MAX_HALVINGS + 2),
+        np.zeros(MAX_HALVINGS + 2),
         np.zeros((3, ORDER)),
         np.zeros(ORDER),
     )
 
 
 @jit
-def leaves_rest(local: Any, part: Part, rest: Rest, x: float, y: float, begin: float, end: float) -> float:
+def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float, begin: float, end: float) -> float:
     """When [s] a part at rest at (x, y) [m] first slips, comes off or is overloaded; inf when it does not.
 
     The search goes from `begin` to `end` [s], within the prepared span.
     """
-    standing(local, x, y, rest.motion)
-    low, width = (begin - local.frame[TIME]) / local.frame[UNIT], (end - begin) / local.frame[UNIT]
+    motion_at(local, x, y, rest.motion)
+    low, width = (begin - local.frame[0].time) / local.frame[0].unit, (end - begin) / local.frame[0].unit
     for row in range(3):
         _move(rest.motion[row], low, width)
-    straight = local.counts[BASE] == 0 and part.tilt_x == 0.0 and part.tilt_y == 0.0
-    if straight and _plainly_safe(part, rest, end - begin):
+    straight = local.frame[0].base_drives == 0 and part.tilt_x == 0.0 and part.tilt_y == 0.0
+    if straight and _safe_by_extremes(part, rest, end - begin):
         return math.inf
     _polynomials(local, part, rest.motion, begin, end, rest.polynomials[0])
     # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
     slack = SLACK * np.abs(rest.polynomials[0, 1]).max()
     rest.low[0], rest.width[0] = 0.0, 1.0
-    narrowest = 0.5**DEEPEST
+    narrowest = 0.5**MAX_HALVINGS
     top = 0
     while top >= 0:
-        if _proved_safe(part, rest.polynomials[top], slack):
+        if _safe_by_bernstein(part, rest.polynomials[top], slack):
             top -= 1
         elif rest.width[top] <= narrowest:
             # Neither provable nor divisible: a slip if the far end says so, else the limit was only touched.
@@ -91,8 +90,8 @@ def leaves_rest(local: Any, part: Part, rest: Rest, x: float, y: float, begin: f
     return math.inf
 
 
-@bare
-def _plainly_safe(part: Part, rest: Rest, lasting: float) -> bool:
+@jit_no_arrays
+def _safe_by_extremes(part: Part, rest: Rest, lasting: float) -> bool:
     """Whether the largest slope and the extreme accelerations of `lasting` [s] together leave the part at rest.
 
     This costs little and settles most cases, with the base at rest and no tilt.
@@ -120,7 +119,7 @@ def _plainly_safe(part: Part, rest: Rest, lasting: float) -> bool:
     return max(least * least, most * most) * square <= limit * limit
 
 
-@bare
+@jit_no_arrays
 def holds(part: Part, c: float, force: float, square: float) -> bool:
     """Whether the part stays, given C, the squared force along the surface times s^2 (per kg) and s^2."""
     s = math.sqrt(square)
@@ -130,7 +129,7 @@ def holds(part: Part, c: float, force: float, square: float) -> bool:
 
 
 @jit
-def _proved_safe(part: Part, rest: FloatArray, slack: float) -> bool:
+def _safe_by_bernstein(part: Part, rest: FloatArray, slack: float) -> bool:
     c_low, c_high = rest[0].min(), rest[0].max()
     s_low, s_high = math.sqrt(max(1.0, rest[2].min())), math.sqrt(max(1.0, rest[2].max()))
     load_low = part.mass * c_low / (s_high if c_low > 0 else s_low) + part.squeeze
@@ -145,13 +144,15 @@ def _proved_safe(part: Part, rest: FloatArray, slack: float) -> bool:
 
 
 @jit
-def _polynomials(local: Any, part: Part, motion: FloatArray, begin: float, end: float, out: FloatArray) -> None:
+def _polynomials(
+    local: LocalSurface, part: Part, motion: FloatArray, begin: float, end: float, out: FloatArray
+) -> None:
     """C, the squared force along the surface times s^2, and s^2, from `begin` to `end` [s]: Bernstein form (3, 17)."""
     w_tt, g_x, g_y = _second(motion[0], end - begin), motion[1], motion[2]
     b_x, b_y = np.zeros(ORDER - 2), np.zeros(ORDER - 2)
-    if local.counts[BASE] > 0:
+    if local.frame[0].base_drives > 0:
         base = local.base.T.copy()
-        low, width = (begin - local.frame[TIME]) / local.frame[UNIT], (end - begin) / local.frame[UNIT]
+        low, width = (begin - local.frame[0].time) / local.frame[0].unit, (end - begin) / local.frame[0].unit
         _move(base[0], low, width)
         _move(base[1], low, width)
         b_x, b_y = _second(base[0], end - begin), _second(base[1], end - begin)
@@ -174,7 +175,7 @@ def _polynomials(local: Any, part: Part, motion: FloatArray, begin: float, end: 
     to_bernstein(square, out[2])
 
 
-@bare
+@jit_no_arrays
 def _move(c: FloatArray, low: float, width: float) -> None:
     """A polynomial of s on [low, low + width] as one of r on [0, 1], in place."""
     n = len(c) - 1

@@ -14,18 +14,15 @@ Y = r u/(A + 2 Q), which is exact up to lengths of r^2/Q.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from particle.events.breakaway import Slope, slope
+from particle.events.breakaway import RestPull, rest_pull
 from particle.events.equations import Part, drag, pull, push
-from particle.jit import bare
-from particle.surface import Fields, fields
-
-FloatArray = NDArray[np.float64]
-
+from particle.events.motion import Motion
+from particle.jit import jit_no_arrays
+from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 # Gauss's rule on [0, 1], and its end, at which only the load is of interest.
 NODES = np.append(0.5 + 0.5 * np.polynomial.legendre.leggauss(4)[0], 1.0)
@@ -44,11 +41,11 @@ class Stop(NamedTuple):
     loss: float  # m^2/s^2, what friction dissipates on the way, per kg
 
 
-@bare
-def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> Stop:
+@jit_no_arrays
+def frozen_stop(f: SurfacePoint, a: RestPull, v_x: float, v_y: float, small: float) -> Stop:
     """The stop under frozen forces; `small` [m] is a length that does not count, r^2/Q of a part that turns back."""
-    climb = v_x * f.x + v_y * f.y
-    climb_d, climb_n = a.d_x * f.x + a.d_y * f.y, a.n_x * f.x + a.n_y * f.y
+    climb = v_x * f.w_x + v_y * f.w_y
+    climb_d, climb_n = a.d_x * f.w_x + a.d_y * f.w_y, a.n_x * f.w_x + a.n_y * f.w_y
     p = v_x * a.d_x + v_y * a.d_y + climb * climb_d
     r = v_x * a.n_x + v_y * a.n_y + climb * climb_n
     u = math.hypot(p, r)
@@ -68,9 +65,9 @@ def frozen_stop(f: Fields, a: Slope, v_x: float, v_y: float, small: float) -> St
     return Stop(math.inf, 0.0, 0.0, False, 0.0, 0.0, 0.0)
 
 
-@bare
+@jit_no_arrays
 def stop_ahead(
-    now: Stop, local: Any, part: Part, time: float, state: FloatArray, small: float, pace: float, force: float
+    now: Stop, local: LocalSurface, part: Part, time: float, motion: Motion, small: float, pace: float, force: float
 ) -> tuple[Stop, float]:
     """The stop ahead of a sliding part, which would be `now` under forces that do not change; and its error [m].
 
@@ -79,35 +76,35 @@ def stop_ahead(
     The forces are frozen a third of the way, where a change that is linear in time has its mean effect; the error is
     taken as the difference from freezing them now.
     """
-    x, y, v_x, v_y = state[0], state[1], state[2], state[3]
+    x, y, v_x, v_y = motion.x, motion.y, motion.v_x, motion.v_y
     # After a third of the time a straight stop has covered five ninths of its way.
-    g = fields(local, x + 5 / 9 * now.x, y + 5 / 9 * now.y, time + now.time / 3)
-    later = frozen_stop(g, slope(g, part), v_x, v_y, small)
+    g = surface_at(local, x + 5 / 9 * now.x, y + 5 / 9 * now.y, time + now.time / 3)
+    later = frozen_stop(g, rest_pull(g, part), v_x, v_y, small)
     if later.reverses != now.reverses or not math.isfinite(later.time):
         return now, math.inf
     miss = max(math.hypot(later.x - now.x, later.y - now.y), pace * abs(later.time - now.time))
     return later, max(miss, part.mass / force * abs(later.loss - now.loss))
 
 
-@bare
-def come_to_rest(local: Any, part: Part, time: float, state: FloatArray, stop: Stop) -> bool:
-    """Moves `state` (x, y, v_x, v_y, work, dissipation) to a stop; False, and no move, if contact ends on the way.
+@jit_no_arrays
+def come_to_rest(local: LocalSurface, part: Part, time: float, motion: Motion, stop: Stop) -> bool:
+    """Moves `motion` (x, y, v_x, v_y, work, dissipation) to a stop; False, and no move, if contact ends on the way.
 
     The friction's impulse on the way is known, v + A d T per kg. Powers are integrated by Gauss's rule along the way of
     a straight stop, which is quadratic in time.
     """
-    x, y, v_x, v_y = state[0], state[1], state[2], state[3]
+    x, y, v_x, v_y = motion.x, motion.y, motion.v_x, motion.v_y
     slow_x, slow_y = v_x + stop.pull_x * stop.time, v_y + stop.pull_y * stop.time
     work = 0.0
     for k in range(len(NODES)):
         to_go = 1.0 - NODES[k]
         way = 1.0 - to_go * to_go
-        f = fields(local, x + way * stop.x, y + way * stop.y, time + NODES[k] * stop.time)
+        f = surface_at(local, x + way * stop.x, y + way * stop.y, time + NODES[k] * stop.time)
         load = pull(f, to_go * v_x, to_go * v_y, part).normal
         if not -part.law.pull_off <= load <= part.law.largest_load:
             return False
         work += WEIGHTS[k] * (push(f, part, load) * stop.time - part.mass * drag(f, slow_x, slow_y))
-    state[0], state[1], state[2], state[3] = x + stop.x, y + stop.y, 0.0, 0.0
-    state[4] += work
-    state[5] += part.mass * stop.loss
+    motion.x, motion.y, motion.v_x, motion.v_y = x + stop.x, y + stop.y, 0.0, 0.0
+    motion.work += work
+    motion.dissipated += part.mass * stop.loss
     return True

@@ -13,38 +13,34 @@ J.J. Moreau, Unilateral contact and dry friction in finite freedom dynamics, 198
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from particle.events import RESTING, ROUNDING, SLIDING, Part, drag, length, pull, push
+from particle.events import ROUNDING, Motion, Part, drag, length, pull, push
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.surface import Fields
-
-FloatArray = NDArray[np.float64]
+from particle.modes import Mode
+from particle.surface import SurfacePoint
 
 
 @jit
 def moreau_step(
-    f: Fields, part: Part, h: float, mode: int, state: FloatArray, after: FloatArray
+    f: SurfacePoint, part: Part, h: float, mode: int, motion: Motion, after: Motion
 ) -> tuple[int, float, float, float]:
-    """Velocity and energies after h [s] into `after` (places as in `state`: x, y, v_x, v_y, work, dissipation).
+    """Velocity and energies after h [s] into `after`.
 
     f: the surface in the middle of the step.  Returns what the part does then, the normal force [N], and the way [m] in
     x and y over the second half of the step.
     """
-    v_x, v_y = state[2], state[3]
+    v_x, v_y = motion.v_x, motion.v_y
     p = pull(f, v_x, v_y, part)
     limit = friction_limit(part.law, p.normal)
     free_x, free_y = v_x + h * p.x, v_y + h * p.y
-    speed, most = length(f, free_x, free_y), h * limit / part.mass
-    held = most * part.law.static_ratio if mode == RESTING else most
-    kept = 0.0 if speed * speed <= held * held * ROUNDING else 1.0 - most / speed
-    after[2], after[3] = kept * free_x, kept * free_y
+    speed, largest = length(f, free_x, free_y), h * limit / part.mass
+    held = largest * part.law.static_ratio if mode == Mode.RESTING else largest
+    kept = 0.0 if speed * speed <= held * held * ROUNDING else 1.0 - largest / speed
+    after.v_x, after.v_y = kept * free_x, kept * free_y
     # Friction's impulse per kg; it dissipates at the mean velocity.
-    lost_x, lost_y = free_x - after[2], free_y - after[3]
-    mean_x, mean_y = 0.5 * (v_x + after[2]), 0.5 * (v_y + after[3])
-    climb = (lost_x * f.x + lost_y * f.y) * (mean_x * f.x + mean_y * f.y)
-    after[4] = state[4] + h * push(f, part, p.normal) - part.mass * drag(f, lost_x, lost_y)
-    after[5] = state[5] + part.mass * (lost_x * mean_x + lost_y * mean_y + climb)
-    return (SLIDING if kept > 0.0 else RESTING), p.normal, 0.5 * h * after[2], 0.5 * h * after[3]
+    lost_x, lost_y = free_x - after.v_x, free_y - after.v_y
+    mean_x, mean_y = 0.5 * (v_x + after.v_x), 0.5 * (v_y + after.v_y)
+    climb = (lost_x * f.w_x + lost_y * f.w_y) * (mean_x * f.w_x + mean_y * f.w_y)
+    after.work = motion.work + h * push(f, part, p.normal) - part.mass * drag(f, lost_x, lost_y)
+    after.dissipated = motion.dissipated + part.mass * (lost_x * mean_x + lost_y * mean_y + climb)
+    return (Mode.SLIDING if kept > 0.0 else Mode.RESTING), p.normal, 0.5 * h * after.v_x, 0.5 * h * after.v_y

@@ -19,30 +19,31 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events import RESTING, SLIDING, Part, drag, push
+from particle.events import Motion, Part, drag, push
 from particle.friction import friction_limit
 from particle.jit import jit
-from particle.surface import Fields
+from particle.modes import Mode
+from particle.surface import SurfacePoint
 
 FloatArray = NDArray[np.float64]
 
 
 @jit
-def rotation(f: Fields) -> FloatArray:
+def rotation(f: SurfacePoint) -> FloatArray:
     """The matrix (3, 3) of equation (8), from global to local components; beta = 0 where the surface is level."""
-    slope = math.sqrt(f.x * f.x + f.y * f.y)
-    c_b, s_b = (f.x / slope, f.y / slope) if slope > 0.0 else (1.0, 0.0)
+    slope = math.sqrt(f.w_x * f.w_x + f.w_y * f.w_y)
+    c_b, s_b = (f.w_x / slope, f.w_y / slope) if slope > 0.0 else (1.0, 0.0)
     c_t = 1 / math.sqrt(1 + slope * slope)
     s_t = slope * c_t
     return np.array([[c_t * c_b, c_t * s_b, s_t], [-s_b, c_b, 0.0], [-s_t * c_b, -s_t * s_b, c_t]])
 
 
 @jit
-def across(f: Fields, turn: FloatArray, way: float) -> tuple[float, float]:
+def across(f: SurfacePoint, turn: FloatArray, way: float) -> tuple[float, float]:
     """Equations (10b) and (10c): the local Y and Z [m] reached by a way [m] along the arc across the gradient."""
     e_x, e_y = turn[1, 0], turn[1, 1]
     # sin(theta) / R, positive where the surface rises to both sides.
-    curvature = (f.xx * e_x * e_x + 2 * f.xy * e_x * e_y + f.yy * e_y * e_y) * turn[2, 2]
+    curvature = (f.w_xx * e_x * e_x + 2 * f.w_xy * e_x * e_y + f.w_yy * e_y * e_y) * turn[2, 2]
     angle = curvature * way
     if angle == 0.0:
         return way, 0.0
@@ -51,15 +52,15 @@ def across(f: Fields, turn: FloatArray, way: float) -> tuple[float, float]:
 
 @jit
 def paper_step(
-    f: Fields, part: Part, h: float, mode: int, state: FloatArray, after: FloatArray
+    f: SurfacePoint, part: Part, h: float, mode: int, motion: Motion, after: Motion
 ) -> tuple[int, float, float, float]:
-    """Velocity and energies after h [s] into `after`, whose last place holds the velocity's global z component.
+    """Velocity and energies after h [s] into `after`, whose v_z is the velocity's global z component.
 
     f: the surface at the start of the step.  Returns what the part does then, the normal force [N], and the way [m] in
     x and y over the step.
     """
     turn = rotation(f)
-    before = np.array([state[2], state[3], state[7]])
+    before = np.array([motion.v_x, motion.v_y, motion.v_z])
     inertia = np.array([part.tilt_x - f.base_ax, part.tilt_y - f.base_ay, -part.gravity - f.w_tt])
     v_x, v_y, e_x, e_y, e_z = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(3):
@@ -71,7 +72,7 @@ def paper_step(
     load = part.squeeze - part.mass * e_z
     limit = friction_limit(part.law, load) / part.mass  # F_f / m
     speed, external = math.hypot(v_x, v_y), math.hypot(e_x, e_y)
-    held = limit * part.law.static_ratio if mode == RESTING else limit
+    held = limit * part.law.static_ratio if mode == Mode.RESTING else limit
     moves, q_x, q_y = True, 0.0, 0.0
     if speed >= limit * h and speed > 0.0:
         q_x, q_y = -limit * v_x / speed, -limit * v_y / speed
@@ -80,12 +81,12 @@ def paper_step(
     else:
         moves, q_x, q_y = False, -e_x, -e_y
     u_x, u_y = (v_x + h * (e_x + q_x), v_y + h * (e_y + q_y)) if moves else (0.0, 0.0)
-    after[2], after[3] = turn[0, 0] * u_x + turn[1, 0] * u_y, turn[0, 1] * u_x + turn[1, 1] * u_y
-    after[7] = turn[0, 2] * u_x + turn[1, 2] * u_y
+    after.v_x, after.v_y = turn[0, 0] * u_x + turn[1, 0] * u_y, turn[0, 1] * u_x + turn[1, 1] * u_y
+    after.v_z = turn[0, 2] * u_x + turn[1, 2] * u_y
     drags = drag(f, turn[0, 0] * q_x + turn[1, 0] * q_y, turn[0, 1] * q_x + turn[1, 1] * q_y)
-    after[4] = state[4] + h * (push(f, part, load) + part.mass * drags)
-    after[5] = state[5] + h * part.mass * limit * math.hypot(u_x, u_y)
+    after.work = motion.work + h * (push(f, part, load) + part.mass * drags)
+    after.dissipated = motion.dissipated + h * part.mass * limit * math.hypot(u_x, u_y)
     y, z = across(f, turn, h * u_y)
     way_x = turn[0, 0] * h * u_x + turn[1, 0] * y + turn[2, 0] * z
     way_y = turn[0, 1] * h * u_x + turn[1, 1] * y + turn[2, 1] * z
-    return (SLIDING if moves else RESTING), load, way_x, way_y
+    return (Mode.SLIDING if moves else Mode.RESTING), load, way_x, way_y

@@ -1,53 +1,51 @@
 """Fixed steps in time, for comparison: Moreau's projection ("fixed") and the paper's own scheme ("paper").
 
-Nothing is located: slips, stops and ends of contact come at the steps that they fall into, and a kink of a drive inside
-a step counts from the next evaluation on. Only a part that leaves the plate is stopped at the rim.
+Nothing is located: slips, stops and ends of contact come at the steps that they fall into, and a breakpoint of a drive
+inside a step counts from the next evaluation on. Only a part that leaves the plate is stopped at the rim.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import NamedTuple
 
-import numpy as np
 from numpy.typing import NDArray
 
 from particle.events import (
-    ENDS,
-    FRICTION,
-    GOES_ON,
-    LACKS_CELL,
-    LEFT_PLATE,
-    LOAD,
-    MODE,
-    RESTING,
-    REVERSES,
-    SLIDING,
-    SLIPS,
-    STOPS,
-    V_X,
-    V_Y,
+    Counts,
+    Motion,
+    Now,
     Part,
-    Record,
+    PathRecord,
     Request,
+    Row,
+    end_reason,
+    fill_row,
     margin,
-    new_record,
     note,
-    reason,
-    row_of,
-    slope,
+    rest_pull,
     write,
 )
 from particle.fixed.moreau import moreau_step
 from particle.fixed.paper_scheme import paper_step
 from particle.jit import jit
-from particle.surface import UNBUILT, Local, SurfaceMotion, enter, fields, rim_gap
-
-FloatArray = NDArray[np.float64]
+from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
+from particle.records import new_records
+from particle.surface import (
+    UNBUILT,
+    LocalSurface,
+    Surface,
+    SurfaceMotion,
+    SurfacePoint,
+    enter,
+    new_local,
+    rim_gap,
+    surface_at,
+)
 
 MOREAU, PAPER = 0, 1
-MOST_STEPS = 100_000_000
-MOST_ROWS = 20_000  # besides those at events
+MAX_STEPS = 100_000_000
+MAX_ROWS = 20_000  # besides those at events
 FINE = 1e-4  # of the shortest stroke: the step unless one is given
 HALVINGS = 50
 
@@ -65,114 +63,177 @@ def default_step(surface: SurfaceMotion, duration: float) -> float:
 def step_count(duration: float, time_step: float) -> int:
     """How many steps of `time_step` [s], the last one cut, make up a duration [s].
 
-    Raises ValueError when they are more than MOST_STEPS.
+    Raises ValueError when they are more than MAX_STEPS.
     """
-    if duration > MOST_STEPS * time_step:
+    if duration > MAX_STEPS * time_step:
         raise ValueError(
-            f"Input time_step of simulate must be at least {duration / MOST_STEPS:g} s, for at most {MOST_STEPS} steps "
+            f"Input time_step of simulate must be at least {duration / MAX_STEPS:g} s, for at most {MAX_STEPS} steps "
             f"in {duration!r} s; got {time_step!r}, for {duration / time_step:.4g} steps"
         )
     return max(1, math.ceil(duration / time_step * (1 - 1e-12)))
 
 
+class FixedMemory(NamedTuple):
+    """Scratch memory of a path by fixed steps."""
+
+    local: LocalSurface
+    motion: NDArray[Motion]  # (1,), v_z that of the velocity relative to the surface (PAPER)
+    after: NDArray[Motion]  # (1,) velocity and energies at the end of a step
+    now: NDArray[Now]  # (1,)
+    counts: NDArray[Counts]  # (1,)
+    row: NDArray[Row]  # (1,)
+
+
+def new_fixed_memory(surface: Surface) -> FixedMemory:
+    """Scratch memory that fits the surface as far as its cells are built."""
+    now, counts, row = new_records(Now), new_records(Counts), new_records(Row)
+    return FixedMemory(new_local(surface), new_records(Motion), new_records(Motion), now, counts, row)
+
+
 @jit
 def march_fixed(
-    surface: Any, request: Request, local: Any, scheme: int, time_step: float, steps: int, every: int
-) -> tuple[FloatArray, FloatArray, int, int]:
+    surface: Surface,
+    request: Request,
+    memory: FixedMemory,
+    record: PathRecord,
+    scheme: int,
+    time_step: float,
+    steps: int,
+    every: int,
+) -> PathRecord:
     """The path by `steps` steps of `time_step` [s], the last one cut at the duration; scheme: MOREAU or PAPER.
 
-    Returns rows (n, COLUMNS), at one step in `every`, at events and at the end, events (m, EVENT_COLUMNS), how the path
-    ended, and evaluations of the surface. Where a cell is lacking it ends, and must begin anew when there is one.
+    Rows at one step in `every`, at events and at the end go to `record`; memory.now says how the path ended,
+    memory.counts what it took. Where a cell is lacking it ends, and must begin anew when there is one.
     """
-    part, end = request.part, request.duration
-    record = new_record()
-    # x, y, v_x, v_y, work, dissipation, -, the velocity's z component relative to the surface (PAPER)
-    state, after = np.zeros(8), np.zeros(8)
-    state[:4] = request.start
-    mode = RESTING if state[2] == 0.0 and state[3] == 0.0 else SLIDING
-    time, gap, verdict, count = 0.0, rim_gap(surface, state[0], state[1]), GOES_ON, 0
-    cell = enter(surface, local, state[0], state[1], time, math.inf)
-    if cell == UNBUILT:
-        return record.rows[:0], record.events[:0], LACKS_CELL, count
-    if cell >= 0:
-        f = fields(local, state[0], state[1], time)
-        state[7] = state[2] * f.x + state[3] * f.y
-    record = write(record, fixed_row(local, part, scheme, mode, time, state))
+    now: Now = memory.now[0]
+    counts: Counts = memory.counts[0]
+    motion: Motion = memory.motion[0]
+    after: Motion = memory.after[0]
+    local, part = memory.local, request.part
+    _begin(surface, request, memory)
+    if now.verdict != Verdict.GOES_ON:
+        return record
+    gap = rim_gap(surface, motion.x, motion.y)
+    record = _write(memory, part, scheme, record, NO_EVENT)
     for n in range(steps):
-        begin, until = n * time_step, (n + 1) * time_step if n + 1 < steps else end
+        begin, until = n * time_step, (n + 1) * time_step if n + 1 < steps else request.duration
         h = until - begin
         ahead = 0.5 * h if scheme == MOREAU else 0.0
-        time = begin + ahead
-        gap, share = move(surface, gap, state, ahead * state[2], ahead * state[3])
-        cell = enter(surface, local, state[0], state[1], time, math.inf)
-        if cell == UNBUILT:
-            verdict = LACKS_CELL
+        now.time = begin + ahead
+        gap, share = move(surface, gap, motion, ahead * motion.v_x, ahead * motion.v_y)
+        if not _enter(surface, memory, now.time, share):
+            now.time = begin + share * ahead
             break
-        if share < 1.0 or cell < 0:
-            time, verdict = begin + share * ahead, LEFT_PLATE
-            break
-        f = fields(local, state[0], state[1], time)
-        count += 1
-        before = mode
+        f = surface_at(local, motion.x, motion.y, now.time)
+        counts.evaluations += 1
+        before = now.mode
         if scheme == MOREAU:
-            mode, load, way_x, way_y = moreau_step(f, part, h, before, state, after)
+            mode, load, way_x, way_y = moreau_step(f, part, h, before, motion, after)
         else:
-            mode, load, way_x, way_y = paper_step(f, part, h, before, state, after)
+            mode, load, way_x, way_y = paper_step(f, part, h, before, motion, after)
         if margin(local, part, load, surface.size) < 0.0:
-            mode, verdict = before, reason(surface, part, load, state)
+            now.verdict = end_reason(surface, part, load, motion)
             break
-        if before == RESTING and mode == SLIDING:
-            record = _note(record, SLIPS, fixed_row(local, part, scheme, mode, begin, state))
-        event = -1
-        if before == SLIDING and mode == RESTING:
-            a = slope(f, part)
-            event = STOPS
-            if a.demand > part.law.static_ratio * a.limit:
-                mode, event = SLIDING, REVERSES
-        # A path that turns by more than a right angle within one step is not told from one that turns back.
-        elif before == SLIDING and after[2] * state[2] + after[3] * state[3] < 0.0:
-            event = REVERSES
-        state[2:] = after[2:]
-        gap, share = move(surface, gap, state, way_x, way_y)
-        cell = enter(surface, local, state[0], state[1], until, math.inf)
-        if cell == UNBUILT:
-            verdict = LACKS_CELL
+        now.mode = mode
+        if before == Mode.RESTING and mode == Mode.SLIDING:
+            now.time = begin
+            record = _write(memory, part, scheme, record, EventKind.SLIPS)
+            now.time = begin + ahead
+        _find_event(part, memory, f, before)
+        motion.v_x, motion.v_y, motion.v_z = after.v_x, after.v_y, after.v_z
+        motion.work, motion.dissipated = after.work, after.dissipated
+        gap, share = move(surface, gap, motion, way_x, way_y)
+        if not _enter(surface, memory, until, share):
+            now.time += share * (until - now.time)
             break
-        if share < 1.0 or cell < 0:
-            time, verdict = time + share * (until - time), LEFT_PLATE
-            break
-        time = until
-        if event >= 0 or (n + 1) % every == 0 or n + 1 == steps:
-            row = fixed_row(local, part, scheme, mode, time, state)
-            record = _note(record, event, row) if event >= 0 else write(record, row)
-    if verdict not in (GOES_ON, LACKS_CELL):
-        enter(surface, local, state[0], state[1], time, math.inf)
-        record = _note(record, ENDS + verdict, fixed_row(local, part, scheme, mode, time, state))
-    return record.rows[: record.counts[0]], record.events[: record.counts[1]], verdict, count
+        now.time = until
+        if now.event != NO_EVENT or (n + 1) % every == 0 or n + 1 == steps:
+            record = _write(memory, part, scheme, record, now.event)
+    if now.verdict != Verdict.GOES_ON and now.verdict != Verdict.LACKS_CELL:
+        enter(surface, local, motion.x, motion.y, now.time, math.inf)
+        record = _write(memory, part, scheme, record, END_EVENTS + now.verdict)
+    return record
 
 
 @jit
-def fixed_row(local: Local, part: Part, scheme: int, mode: int, time: float, state: FloatArray) -> FloatArray:
-    """The row (COLUMNS,) of a state; loads of the paper's scheme are its own, those of a part at rest."""
-    row = row_of(local, part, mode, time, state)
+def _begin(surface: Surface, request: Request, memory: FixedMemory) -> None:
+    """The part at its start."""
+    now: Now = memory.now[0]
+    motion: Motion = memory.motion[0]
+    motion.x, motion.y, motion.v_x, motion.v_y = request.start[0], request.start[1], request.start[2], request.start[3]
+    now.mode = Mode.RESTING if motion.v_x == 0.0 and motion.v_y == 0.0 else Mode.SLIDING
+    cell = enter(surface, memory.local, motion.x, motion.y, now.time, math.inf)
+    if cell == UNBUILT:
+        now.verdict = Verdict.LACKS_CELL
+    elif cell >= 0:
+        f = surface_at(memory.local, motion.x, motion.y, now.time)
+        motion.v_z = motion.v_x * f.w_x + motion.v_y * f.w_y
+
+
+@jit
+def _enter(surface: Surface, memory: FixedMemory, time: float, share: float) -> bool:
+    """Prepares the surface around the part; False where the path ends, as it has gone a `share` of its way only."""
+    now: Now = memory.now[0]
+    motion: Motion = memory.motion[0]
+    cell = enter(surface, memory.local, motion.x, motion.y, time, math.inf)
+    if cell == UNBUILT:
+        now.verdict = Verdict.LACKS_CELL
+    elif share < 1.0 or cell < 0:
+        now.verdict = Verdict.LEFT_PLATE
+    return now.verdict == Verdict.GOES_ON
+
+
+@jit
+def _find_event(part: Part, memory: FixedMemory, f: SurfacePoint, before: int) -> None:
+    """What has happened to a part that slid before the step."""
+    now: Now = memory.now[0]
+    motion: Motion = memory.motion[0]
+    after: Motion = memory.after[0]
+    now.event = NO_EVENT
+    if before == Mode.SLIDING and now.mode == Mode.RESTING:
+        a = rest_pull(f, part)
+        now.event = EventKind.STOPS
+        if a.demand > part.law.static_ratio * a.limit:
+            now.mode, now.event = Mode.SLIDING, EventKind.REVERSES
+    # A path that turns by more than a right angle within one step is not told from one that turns back.
+    elif before == Mode.SLIDING and after.v_x * motion.v_x + after.v_y * motion.v_y < 0.0:
+        now.event = EventKind.REVERSES
+
+
+@jit
+def _write(memory: FixedMemory, part: Part, scheme: int, record: PathRecord, event: int) -> PathRecord:
+    """The record with the part's row, and with an event there."""
+    now: Now = memory.now[0]
+    row: Row = memory.row[0]
+    fill_fixed_row(memory.local, part, scheme, now.mode, now.time, memory.motion[0], row)
+    record = write(record, row)
+    return note(record, event, row) if event != NO_EVENT else record
+
+
+@jit
+def fill_fixed_row(
+    local: LocalSurface, part: Part, scheme: int, mode: int, time: float, motion: Motion, row: Row
+) -> None:
+    """The row of a motion into `row`; loads of the paper's scheme are its own, those of a part at rest."""
+    fill_row(local, part, mode, time, motion, row)
     if scheme == PAPER:
-        a = slope(fields(local, state[0], state[1], time), part)
-        row[LOAD], row[FRICTION] = a.load, part.mass * (a.demand if row[MODE] == RESTING else a.limit)
-    return row
+        a = rest_pull(surface_at(local, motion.x, motion.y, time), part)
+        row.load, row.friction = a.load, part.mass * (a.demand if row.mode == Mode.RESTING else a.limit)
 
 
 @jit
-def move(surface: Any, gap: float, state: FloatArray, way_x: float, way_y: float) -> tuple[float, float]:
-    """Moves `state` by a straight way [m], at most to the rim; `gap` [m], at most the distance from it, saves looking.
+def move(surface: Surface, gap: float, motion: Motion, way_x: float, way_y: float) -> tuple[float, float]:
+    """Moves `motion` by a straight way [m], at most to the rim; `gap` [m], at most the distance from it, saves looking.
 
     Returns the new gap and the share of the way that was gone, less than 1 where the rim is in it.
     """
-    x, y = state[0], state[1]
+    x, y = motion.x, motion.y
     gap -= math.hypot(way_x, way_y)
-    state[0], state[1] = x + way_x, y + way_y
+    motion.x, motion.y = x + way_x, y + way_y
     if gap > 0.0:
         return gap, 1.0
-    gap = rim_gap(surface, state[0], state[1])
+    gap = rim_gap(surface, motion.x, motion.y)
     if gap >= 0.0:
         return gap, 1.0
     low, high = 0.0, 1.0
@@ -183,10 +244,5 @@ def move(surface: Any, gap: float, state: FloatArray, way_x: float, way_y: float
         else:
             low = middle
     # Just on the plate, so that a way which ends within a rounding of the rim counts as crossing it, too.
-    state[0], state[1] = x + low * way_x, y + low * way_y
+    motion.x, motion.y = x + low * way_x, y + low * way_y
     return 0.0, low
-
-
-@jit
-def _note(record: Record, kind: int, row: FloatArray) -> Record:
-    return note(write(record, row), kind, row, math.hypot(row[V_X], row[V_Y]))

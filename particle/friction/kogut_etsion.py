@@ -28,8 +28,8 @@ from particle.friction_input import PAPER_PLASTICITY_INDEX, KogutEtsionInput
 FloatArray = NDArray[np.float64]
 
 SAMPLES = 1025  # separations from which the inverse is first found
-INTERVALS = (1024, 2048, 4096, 8192)  # of the table: the first that meets the error wanted
-WANTED_ERROR = 1e-9
+INTERVALS = (1024, 2048, 4096, 8192)  # of the table: the first that meets MAX_ERROR
+MAX_ERROR = 1e-9
 ROUNDING = (
     5 * np.finfo(float).eps
 )  # of the net load at pull-off, over the adhesion there: measured at random parameters
@@ -215,7 +215,7 @@ class KogutEtsion(KogutEtsionInput):
             between = (knots[:-1, None] + knots[1] * np.array([0.25, 0.5, 0.75])).ravel()
             place, exact = self._stretched(separation(between))
             error = 2 * float(np.abs(np.expm1(table(place) - exact)).max())
-            if error <= WANTED_ERROR:
+            if error <= MAX_ERROR:
                 break
         # An error e of the load over pull-off changes u by e / (2 u) there.
         rounded = ROUNDING * float(self.forces(high)[1]) / self.pull_off

@@ -3,49 +3,35 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER
-from particle.jit import bare, jit
+from particle.jit import jit, jit_no_arrays
 from particle.surface.cells import UNBUILT
-from particle.surface.local import (
-    BASE,
-    DEGREE,
-    FLOOR,
-    HALF_X,
-    HALF_Y,
-    MONOMIALS,
-    NEAR,
-    SIZE,
-    TIME,
-    UNIT,
-    Local,
-    X,
-    Y,
-    new_local,
-)
+from particle.surface.local import Frame, LocalSurface
+from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
 from particle.surface.span import enter
 
 FloatArray = NDArray[np.float64]
 
 
-class Fields(NamedTuple):
+class SurfacePoint(NamedTuple):
     """The surface at one point and time, in SI units, with the base's place, velocity and acceleration in its plane."""
 
     w: float
     w_t: float
     w_tt: float
-    x: float
-    y: float
-    xt: float
-    yt: float
-    xx: float
-    xy: float
-    yy: float
+    w_x: float
+    w_y: float
+    w_xt: float
+    w_yt: float
+    w_xx: float
+    w_xy: float
+    w_yy: float
     base_px: float
     base_py: float
     base_vx: float
@@ -54,19 +40,20 @@ class Fields(NamedTuple):
     base_ay: float
 
 
-@bare
-def at_time(local: Local, time: float) -> None:
+@jit_no_arrays
+def at_time(local: LocalSurface, time: float) -> None:
     """The cell's polynomial and logarithms at `time` [s], with two derivatives, into `at`."""
-    unit = local.frame[UNIT]
-    s = (time - local.frame[TIME]) / unit
+    frame: Frame = local.frame[0]
+    unit = frame.unit
+    s = (time - frame.time) / unit
     c, at = local.smooth, local.at
-    for m in range(local.counts[MONOMIALS] + local.counts[NEAR]):
+    for m in range(frame.monomials + frame.logarithms):
         at[0, m] = ((((c[5, m] * s + c[4, m]) * s + c[3, m]) * s + c[2, m]) * s + c[1, m]) * s + c[0, m]
         at[1, m] = ((((5 * c[5, m] * s + 4 * c[4, m]) * s + 3 * c[3, m]) * s + 2 * c[2, m]) * s + c[1, m]) / unit
         at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
 
 
-@bare
+@jit_no_arrays
 def quintic(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
     """A quintic in s = t / unit, with its first and second derivative in t."""
     value = ((((c[5] * s + c[4]) * s + c[3]) * s + c[2]) * s + c[1]) * s + c[0]
@@ -75,16 +62,17 @@ def quintic(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
     return value, first / unit, second / (unit * unit)
 
 
-@bare
-def fields(local: Local, x: float, y: float, time: float) -> Fields:
+@jit_no_arrays
+def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfacePoint:
     """The surface at a point [m] of the prepared cell and a time [s] of the prepared span."""
     at_time(local, time)
-    at, frame, size = local.at, local.frame, local.frame[SIZE]
-    half_x, half_y = frame[HALF_X], frame[HALF_Y]
-    u, v = (x - frame[X]) / half_x, (y - frame[Y]) / half_y
+    frame: Frame = local.frame[0]
+    at, size = local.at, frame.surface_size
+    half_x, half_y = frame.half_x, frame.half_y
+    u, v = (x - frame.x) / half_x, (y - frame.y) / half_y
     w = w_u = w_uu = w_v = w_uv = w_vv = 0.0
     w_t = w_ut = w_vt = w_tt = 0.0
-    monomials, degree = local.counts[MONOMIALS], local.counts[DEGREE]
+    monomials, degree = frame.monomials, frame.degree
     m = monomials
     # Horner in v inside Horner in u; w_uu and w_vv carry half of the second derivative.
     for i in range(degree, -1, -1):
@@ -109,10 +97,10 @@ def fields(local: Local, x: float, y: float, time: float) -> Fields:
         w_tt = w_tt * u + c
     g_x, g_y, g_xt, g_yt = w_u / half_x, w_v / half_y, w_ut / half_x, w_vt / half_y
     h_xx, h_xy, h_yy = 2 * w_uu / half_x**2, w_uv / (half_x * half_y), 2 * w_vv / half_y**2
-    for j in range(local.counts[NEAR]):
-        d_x, d_y = (x - local.near[j, 0]) / size, (y - local.near[j, 1]) / size
+    for j in range(frame.logarithms):
+        d_x, d_y = (x - local.sources[j, 0]) / size, (y - local.sources[j, 1]) / size
         square = d_x * d_x + d_y * d_y
-        bounded, inner, logarithm = _logarithm(frame[FLOOR], square)
+        bounded, inner, logarithm = _logarithm(frame.floor, square)
         m = monomials + j
         f, f_t, f_tt = at[0, m], at[1, m], at[2, m]
         value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
@@ -129,16 +117,16 @@ def fields(local: Local, x: float, y: float, time: float) -> Fields:
         h_xy += bend * 2 * d_x * d_y / bounded
         h_yy += bend * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
     base_px = base_py = base_vx = base_vy = base_ax = base_ay = 0.0
-    if local.counts[BASE] > 0:
-        s, unit = (time - frame[TIME]) / frame[UNIT], frame[UNIT]
+    if frame.base_drives > 0:
+        s, unit = (time - frame.time) / frame.unit, frame.unit
         base_px, base_vx, base_ax = quintic(local.base[:, 0], s, unit)
         base_py, base_vy, base_ay = quintic(local.base[:, 1], s, unit)
-    return Fields(
+    return SurfacePoint(
         w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, base_px, base_py, base_vx, base_vy, base_ax, base_ay
     )
 
 
-@bare
+@jit_no_arrays
 def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     """What r^2 ln r is made of: r^2 outside the floor, how far r is inside it, and 2 ln r there; lengths over the size.
 
@@ -148,12 +136,13 @@ def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     return bounded, (square - bounded) / bounded, math.log(bounded)
 
 
-@bare
-def standing(local: Local, x: float, y: float, out: FloatArray) -> None:
+@jit_no_arrays
+def motion_at(local: LocalSurface, x: float, y: float, out: FloatArray) -> None:
     """The surface at a fixed point [m] as polynomials in time: w, w_x, w_y into `out` (3, 6)."""
-    frame, size, c = local.frame, local.frame[SIZE], local.smooth
-    u, v = (x - frame[X]) / frame[HALF_X], (y - frame[Y]) / frame[HALF_Y]
-    monomials, degree = local.counts[MONOMIALS], local.counts[DEGREE]
+    frame: Frame = local.frame[0]
+    size, c = frame.surface_size, local.smooth
+    u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
+    monomials, degree = frame.monomials, frame.degree
     for k in range(ORDER):
         w = w_u = w_v = 0.0
         m = monomials
@@ -166,10 +155,10 @@ def standing(local: Local, x: float, y: float, out: FloatArray) -> None:
             w_u = w_u * u + w
             w = w * u + a
             w_v = w_v * u + a_v
-        out[0, k], out[1, k], out[2, k] = w, w_u / frame[HALF_X], w_v / frame[HALF_Y]
-    for j in range(local.counts[NEAR]):
-        d_x, d_y = (x - local.near[j, 0]) / size, (y - local.near[j, 1]) / size
-        bounded, inner, logarithm = _logarithm(frame[FLOOR], d_x * d_x + d_y * d_y)
+        out[0, k], out[1, k], out[2, k] = w, w_u / frame.half_x, w_v / frame.half_y
+    for j in range(frame.logarithms):
+        d_x, d_y = (x - local.sources[j, 0]) / size, (y - local.sources[j, 1]) / size
+        bounded, inner, logarithm = _logarithm(frame.floor, d_x * d_x + d_y * d_y)
         value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
         slope = (logarithm + 1 + inner) / size
         for k in range(ORDER):
@@ -180,13 +169,14 @@ def standing(local: Local, x: float, y: float, out: FloatArray) -> None:
 
 
 @jit
-def evaluate_points(surface: Any, xy: FloatArray, time: float) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """The first ten of `Fields` at points (n, 2) [m] and one time [s]: (n, 10), nan beyond the rim.
+def evaluate_points(
+    surface: Surface, local: LocalSurface, xy: FloatArray, time: float
+) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """The first ten of `SurfacePoint` at points (n, 2) [m] and one time [s]: (n, 10), nan beyond the rim.
 
     Also (n,) which of the points have no cell yet.
     """
     out, missing = np.full((len(xy), 10), math.nan), np.zeros(len(xy), dtype=np.bool_)
-    local = new_local(surface)
     for n in range(len(xy)):
         x, y = xy[n]
         if rim_gap(surface, x, y) < -1e-9 * surface.size:
@@ -194,6 +184,6 @@ def evaluate_points(surface: Any, xy: FloatArray, time: float) -> tuple[FloatArr
         cell = enter(surface, local, x, y, time, math.inf)
         missing[n] = cell == UNBUILT
         if cell >= 0:
-            f = fields(local, x, y, time)
-            out[n] = np.array([f.w, f.w_t, f.w_tt, f.x, f.y, f.xt, f.yt, f.xx, f.xy, f.yy])
+            f = surface_at(local, x, y, time)
+            out[n] = np.array([f.w, f.w_t, f.w_tt, f.w_x, f.w_y, f.w_xt, f.w_yt, f.w_xx, f.w_xy, f.w_yy])
     return out, missing

@@ -1,133 +1,126 @@
-"""Bridges: which kinks end a span, and what stands for drives over those that do not.
+"""Bridges: which breakpoints end a span, and what replaces the drives over those that do not.
 
-The kinks of drives that hardly count in the cell need not end a span: over these such a drive is replaced by the
-quintic that has its height, velocity and acceleration at both ends, so that it takes up nothing but what the third
+Breakpoints of drives that hardly count in the cell need not end a span. Over these such a drive is replaced by the
+quintic that has its height, velocity and acceleration at both ends, so that it differs only by what the third
 derivative's jump does in between.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
-from particle.drives import drive_piece
-from particle.jit import bare
-from particle.surface.local import (
-    ACCELERATION,
-    BASE,
-    CELL,
-    DRIVES,
-    END,
-    LANDED,
-    LONGEST,
-    ROUGH,
-    SLACK,
-    TIME,
-    UNIT,
-    UNTIL,
-    VELOCITY,
-    Local,
-)
+from particle.drives import DriveTable, drive_piece
+from particle.jit import jit_no_arrays
+from particle.surface.local import Frame, LocalSurface
+from particle.surface.record import Surface
 
 # A jump J of the third derivative, bridged over a time T, is off by up to these times J T^2 and J T.
-OFF_VELOCITY, OFF_ACCELERATION = 0.004737, 0.0625
-LONGEST_BRIDGE, SHORTEST_BRIDGE = 0.25, 0.02  # of the shortest stroke, of the longest bridge: rounding makes more of it
-FINER, FINEST = 4.0, 1e-12  # steps of the roughness from which kinks end a span
-PAYS = 0.9  # of the spans: how many may be left for bridges to be worth it
+VELOCITY_ERROR, ACCELERATION_ERROR = 0.004737, 0.0625
+MAX_BRIDGE, MIN_BRIDGE = 0.25, 0.02  # of the shortest stroke, of the longest bridge: shorter ones amplify rounding
+JUMP_STEP, MIN_JUMP = 4.0, 1e-12  # factor between the jumps tried as limit, and the least of them over the largest
+WORTHWHILE = 0.9  # of the spans: bridges must leave fewer
 
 
-@bare
-def allow(local: Local, velocity: float, acceleration: float) -> None:
-    """By how much [m/s, m/s^2] the surface's motion may be off, from the next span on, where kinks are bridged."""
-    local.frame[VELOCITY], local.frame[ACCELERATION] = velocity, acceleration
+@jit_no_arrays
+def allow_bridges(local: LocalSurface, velocity_error: float, acceleration_error: float) -> None:
+    """How far [m/s, m/s^2] the surface's motion may be off over bridges, from the next span on; 0: there are none."""
+    frame: Frame = local.frame[0]
+    frame.velocity_error, frame.acceleration_error = velocity_error, acceleration_error
 
 
-@bare
-def drive_of(surface: Any, local: Local, i: int) -> int:
+@jit_no_arrays
+def drive_of(surface: Surface, local: LocalSurface, i: int) -> int:
     """The drive that is i-th in the cell; the base's two follow the cell's."""
-    beyond = i - (local.counts[DRIVES] - local.counts[BASE])
+    frame: Frame = local.frame[0]
+    beyond = i - (frame.drives - frame.base_drives)
     if beyond >= 0:
         return int(surface.shape_count + beyond)
-    return int(surface.cells.drive[surface.cells.first_drive[local.counts[CELL]] + i])
+    return int(surface.cells.drive[surface.cells.first_drive[frame.cell] + i])
 
 
-@bare
-def find_roughness(surface: Any, local: Local, i: int) -> None:
-    """How rough the i-th drive is in this cell."""
-    cells, rough = surface.cells, surface.drives.rough[drive_of(surface, local, i)]
-    counted = i < local.counts[DRIVES] - local.counts[BASE]
-    weight = cells.weight[cells.first_drive[local.counts[CELL]] + i] if counted else math.inf
-    local.clock[i, ROUGH] = weight * rough if rough > 0.0 else 0.0
+@jit_no_arrays
+def find_jump(surface: Surface, local: LocalSurface, i: int) -> None:
+    """By how much the third derivative of what the i-th drive does in this cell jumps."""
+    frame: Frame = local.frame[0]
+    cells, jump = surface.cells, surface.drives.rough[drive_of(surface, local, i)]
+    counted = i < frame.drives - frame.base_drives
+    weight = cells.weight[cells.first_drive[frame.cell] + i] if counted else math.inf
+    local.clock[i].jump = weight * jump if jump > 0.0 else 0.0
 
 
-@bare
-def find_end(surface: Any, local: Local, end: float) -> None:
-    """Where the span from frame[TIME] ends, at most at `end` [s]."""
-    f, clock = local.frame, local.clock
-    if f[VELOCITY] == 0.0:
-        f[LANDED] = f[LONGEST] = 0.0
-    elif f[LONGEST] == 0.0:
+@jit_no_arrays
+def find_end(surface: Surface, local: LocalSurface, end: float) -> None:
+    """When the span from frame.time ends, at most at `end` [s]."""
+    frame: Frame = local.frame[0]
+    clock = local.clock
+    if frame.velocity_error == 0.0:
+        frame.min_jump = frame.max_bridge = 0.0
+    elif frame.max_bridge == 0.0:
         _choose(surface, local)
-    first = landed = end
-    for i in range(local.counts[DRIVES]):
-        first = min(first, clock[i, UNTIL])
-        if clock[i, ROUGH] >= f[LANDED]:
-            landed = min(landed, clock[i, UNTIL])
-    f[END] = max(first, min(landed, f[TIME] + f[LONGEST]))
+    first = unbridged = end
+    for i in range(frame.drives):
+        first = min(first, clock[i].until)
+        if clock[i].jump >= frame.min_jump:
+            unbridged = min(unbridged, clock[i].until)
+    frame.end = max(first, min(unbridged, frame.time + frame.max_bridge))
 
 
-@bare
-def _choose(surface: Any, local: Local) -> None:
-    """From which roughness on kinks end a span, and how long the others may be bridged: what makes fewest spans."""
-    f, clock, drives = local.frame, local.clock, surface.drives
-    roughest = kinks = 0.0
-    for i in range(local.counts[DRIVES]):
-        kinks += _kink_rate(drives, drive_of(surface, local, i))
-        if math.isfinite(clock[i, ROUGH]):
-            roughest = max(roughest, clock[i, ROUGH])
-    f[LANDED], f[LONGEST], fewest = 0.0, LONGEST_BRIDGE * f[UNIT], PAYS * kinks
-    limit = FINER * roughest
-    while limit > FINEST * roughest:
-        landed = rough = 0.0
-        for i in range(local.counts[DRIVES]):
-            if clock[i, ROUGH] >= limit:
-                landed += _kink_rate(drives, drive_of(surface, local, i))
+@jit_no_arrays
+def _choose(surface: Surface, local: LocalSurface) -> None:
+    """From which jump on breakpoints end a span, and how long the others may be bridged: what makes fewest spans."""
+    frame: Frame = local.frame[0]
+    clock, drives = local.clock, surface.drives
+    largest = breakpoints = 0.0
+    for i in range(frame.drives):
+        breakpoints += _breakpoint_rate(drives, drive_of(surface, local, i))
+        if math.isfinite(clock[i].jump):
+            largest = max(largest, clock[i].jump)
+    frame.min_jump, frame.max_bridge, fewest = 0.0, MAX_BRIDGE * frame.unit, WORTHWHILE * breakpoints
+    limit = JUMP_STEP * largest
+    while limit > MIN_JUMP * largest:
+        breakpoints = bridged = 0.0
+        for i in range(frame.drives):
+            if clock[i].jump >= limit:
+                breakpoints += _breakpoint_rate(drives, drive_of(surface, local, i))
             else:
-                rough += clock[i, ROUGH]
-        longest = LONGEST_BRIDGE * f[UNIT]
-        if rough > 0.0:
-            by_velocity = math.sqrt(f[VELOCITY] / (OFF_VELOCITY * rough))
-            longest = min(longest, by_velocity, f[ACCELERATION] / (OFF_ACCELERATION * rough))
-        if landed + 1 / longest < fewest:
-            f[LANDED], f[LONGEST], fewest = limit, longest, landed + 1 / longest
-        limit /= FINER
+                bridged += clock[i].jump
+        longest = MAX_BRIDGE * frame.unit
+        if bridged > 0.0:
+            by_velocity = math.sqrt(frame.velocity_error / (VELOCITY_ERROR * bridged))
+            longest = min(longest, by_velocity, frame.acceleration_error / (ACCELERATION_ERROR * bridged))
+        if breakpoints + 1 / longest < fewest:
+            frame.min_jump, frame.max_bridge, fewest = limit, longest, breakpoints + 1 / longest
+        limit /= JUMP_STEP
 
 
-@bare
-def _kink_rate(drives: Any, i: int) -> float:
-    """Kinks a second of a drive that is running."""
+@jit_no_arrays
+def _breakpoint_rate(drives: DriveTable, i: int) -> float:
+    """Breakpoints a second of a drive that is running."""
     return float((drives.first[i + 1] - drives.first[i]) / drives.span[i])
 
 
-@bare
-def is_bridged(local: Local, i: int) -> bool:
-    """Whether the i-th drive has a kink within the span."""
-    f, row = local.frame, local.clock[i]
-    return bool(row[UNTIL] < f[END] - row[SLACK] and f[END] - f[TIME] > SHORTEST_BRIDGE * f[LONGEST])
+@jit_no_arrays
+def is_bridged(local: LocalSurface, i: int) -> bool:
+    """Whether the i-th drive has a breakpoint within the span."""
+    frame: Frame = local.frame[0]
+    clock = local.clock[i]
+    long_enough = frame.end - frame.time > MIN_BRIDGE * frame.max_bridge
+    return bool(clock.until < frame.end - clock.slack and long_enough)
 
 
-@bare
-def bridge(surface: Any, local: Local, i: int) -> None:
-    """Replace the piece of the i-th drive from frame[TIME] on by a bridge to frame[END], if it needs one."""
+@jit_no_arrays
+def bridge(surface: Surface, local: LocalSurface, i: int) -> None:
+    """Replace the piece of the i-th drive from frame.time on by a bridge to frame.end, if it needs one."""
     if not is_bridged(local, i):
         return
-    f, row, ahead = local.frame, local.clock[i], local.ahead
-    drive_piece(surface.drives, drive_of(surface, local, i), f[END], f[UNIT], ahead)
-    s = (f[END] - f[TIME]) / f[UNIT]
-    height = ahead[0] - (row[0] + s * (row[1] + s * row[2]))
-    velocity = s * (ahead[1] - (row[1] + 2 * s * row[2]))
-    acceleration = s * s * (ahead[2] - row[2])
-    row[3] = (10 * height - 4 * velocity + acceleration) / s**3
-    row[4] = (7 * velocity - 15 * height - 2 * acceleration) / s**4
-    row[5] = (6 * height - 3 * velocity + acceleration) / s**5
-    row[UNTIL] = f[END]
+    frame: Frame = local.frame[0]
+    piece, ahead = local.pieces[i], local.ahead
+    drive_piece(surface.drives, drive_of(surface, local, i), frame.end, frame.unit, ahead)
+    s = (frame.end - frame.time) / frame.unit
+    height = ahead[0] - (piece[0] + s * (piece[1] + s * piece[2]))
+    velocity = s * (ahead[1] - (piece[1] + 2 * s * piece[2]))
+    acceleration = s * s * (ahead[2] - piece[2])
+    piece[3] = (10 * height - 4 * velocity + acceleration) / s**3
+    piece[4] = (7 * velocity - 15 * height - 2 * acceleration) / s**4
+    piece[5] = (6 * height - 3 * velocity + acceleration) / s**5
+    local.clock[i].until = frame.end

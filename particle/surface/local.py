@@ -1,4 +1,4 @@
-"""What the part knows of the surface: the polynomial in (x, y, t) of its cell, over the time until it is prepared anew.
+"""The surface around a part: the polynomial in (x, y, t) of its cell, over the time until it is prepared anew.
 
 `span.enter` prepares this scratch memory.
 """
@@ -6,91 +6,112 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER
-from particle.jit import bare, jit
-from particle.surface.cells import NOWHERE, WHOLE
+from particle.jit import jit_no_arrays
+from particle.records import Record, new_records
+from particle.surface.cells import NOWHERE, WHOLE, Cells
+from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
-# Places in Local.frame, Local.counts and a row of Local.clock.
-TIME, END, UNIT, X, Y, HALF_X, HALF_Y, CLEAR, SIZE, FLOOR, REACH, MISSING_X, MISSING_Y, BEGUN = range(14)
-VELOCITY, ACCELERATION, LANDED, LONGEST = range(14, 18)
-CELL, DRIVES, NEAR, MONOMIALS, DEGREE, BASE = range(6)
-SINCE, UNTIL, SLACK, ROUGH = ORDER, ORDER + 1, ORDER + 2, ORDER + 3
 
 
-class Local(NamedTuple):
-    """Scratch memory of one path: all that an evaluation needs, so that little is handed from kernel to kernel.
+class Frame(Record):
+    """The cell and the times for which a local surface holds, and what its polynomials are counted from."""
 
-    Polynomials in time are in (t - frame[TIME]) / frame[UNIT].
-    """
+    time: float  # s, from which it holds
+    end: float  # s, until which it holds
+    unit: float  # s, its polynomials are in (t - time) / unit
+    begun: float  # s, when it was prepared from nothing
+    x: float  # m, the cell's centre
+    y: float
+    half_x: float  # m, half its width
+    half_y: float
+    clear: float  # m, the cell's distance from the rim
+    surface_size: float  # m
+    floor: float  # that of the logarithms, over the surface's size
+    overhang: float  # half widths that the polynomial holds
+    missing_x: float  # m, a place that has no cell yet
+    missing_y: float
+    velocity_error: float  # m/s, how far the surface may be off over breakpoints that are bridged
+    acceleration_error: float  # m/s^2, the same
+    min_jump: float  # m/s^3, drives whose third derivative jumps by as much end a span at their breakpoints
+    max_bridge: float  # s, how long the others may be bridged
+    cell: int
+    drives: int  # those that count in the cell, and the base's
+    logarithms: int
+    monomials: int
+    degree: int
+    base_drives: int
 
-    # The times [s] between which it holds and their unit [s], the cell's centre, half width and distance from the rim
-    # [m], the surface's size [m] and its floor over that, how many half widths the polynomial holds, and a place [m]
-    # that has no cell yet, and when it was prepared from nothing; by how much [m/s, m/s^2] the surface's motion may be
-    # off where kinks are bridged, how rough [m/s^3] a drive is whose kinks are not, and how long [s] a bridge may be.
-    frame: FloatArray  # (18,)
-    counts: IntArray  # (6,) the cell, its drives, logarithms, monomials and degree, the base's drives
+
+class Clock(Record):
+    """When the piece of one drive holds."""
+
+    since: float  # s, what its polynomial is counted from
+    until: float  # s, its next breakpoint, or the end of its bridge
+    slack: float  # s, how close to that is as good as there
+    jump: float  # m/s^3, by how much the third derivative of what it does in the cell jumps at its breakpoints
+
+
+class LocalSurface(NamedTuple):
+    """Scratch memory of one path: all that an evaluation needs, so that little is handed from kernel to kernel."""
+
+    frame: NDArray[Frame]  # (1,)
+    clock: NDArray[Clock]  # (D,)
+    pieces: FloatArray  # (D, 6) m, the quintic of each drive
     smooth: FloatArray  # (6, M + J) m, the cell's polynomial; then the strengths of its logarithms
     at: FloatArray  # (3, M + J) m, these and their first two derivatives in time, at one time
-    near: FloatArray  # (J, 2) m, where the logarithms are
+    sources: FloatArray  # (J, 2) m, where the logarithms are
     base: FloatArray  # (6, 2) m, where the base is
     ahead: FloatArray  # (6,) m, a drive's quintic at the end of the span
-    clock: FloatArray  # (D, 10) m and s, of each drive its quintic, the time from which that counts, until when it
-    #                     does, how close to that is as good as there, and how rough [m/s^3] it is in the cell
 
 
-@jit
-def new_local(surface: Any) -> Local:
+def new_local(surface: Surface) -> LocalSurface:
     """Scratch memory that fits the surface, with no cell and no time yet."""
-    width = monomial_count(surface.cells.highest) + surface.cells.most_near
-    local = Local(
-        np.zeros(18),
-        np.zeros(6, dtype=np.int64),
-        np.zeros((ORDER, width)),
-        np.zeros((3, width)),
-        np.zeros((surface.cells.most_near, 2)),
-        np.zeros((ORDER, 2)),
-        np.zeros(ORDER),
-        np.zeros((surface.cells.most_drives + 2, ORDER + 4)),
+    cells = surface.cells
+    width, drives = monomial_count(cells.highest) + cells.most_near, cells.most_drives + 2
+    local = LocalSurface(
+        frame=new_records(Frame),
+        clock=new_records(Clock, drives),
+        pieces=np.zeros((drives, ORDER)),
+        smooth=np.zeros((ORDER, width)),
+        at=np.zeros((3, width)),
+        sources=np.zeros((cells.most_near, 2)),
+        base=np.zeros((ORDER, 2)),
+        ahead=np.zeros(ORDER),
     )
     prepare(surface, local)
     return local
 
 
-@jit
-def prepare(surface: Any, local: Local) -> None:
+def prepare(surface: Surface, local: LocalSurface) -> None:
     """Scratch memory of a surface before there is a cell and a time."""
-    local.frame[:] = 0.0
-    local.frame[SIZE], local.frame[FLOOR], local.frame[REACH] = (
-        surface.size,
-        surface.floor / surface.size,
-        surface.overhang,
-    )
-    local.counts[BASE] = 2 * surface.moving_base
-    local.counts[CELL] = NOWHERE
+    local.frame[:] = np.zeros_like(local.frame)
+    frame: Frame = local.frame[0]
+    frame.surface_size, frame.floor, frame.overhang = surface.size, surface.floor / surface.size, surface.overhang
+    frame.base_drives, frame.cell = 2 * surface.moving_base, NOWHERE
 
 
-@bare
+def missing_place(local: LocalSurface) -> FloatArray:
+    """The place (1, 2) [m] where `enter` found no cell."""
+    frame: Frame = local.frame[0]
+    return np.array([[frame.missing_x, frame.missing_y]])
+
+
+@jit_no_arrays
 def monomial_count(degree: int) -> int:
     """How many monomials x^i y^j there are up to a degree."""
     return (degree + 1) * (degree + 2) // 2
 
 
-def missing_place(local: Local) -> FloatArray:
-    """The place (1, 2) [m] where `enter` found no cell."""
-    return local.frame[None, [MISSING_X, MISSING_Y]]
-
-
-@bare
-def cell_at(cells: Any, x: float, y: float) -> int:
+@jit_no_arrays
+def cell_at(cells: Cells, x: float, y: float) -> int:
     """The cell that holds a point [m]; NOWHERE when there is no plate, UNBUILT when there may be."""
     if not math.isfinite(cells.width[0]):
         return 0
@@ -104,7 +125,7 @@ def cell_at(cells: Any, x: float, y: float) -> int:
     return NOWHERE if cell >= 0 and cells.first_row[cell] == NOWHERE else cell
 
 
-@bare
+@jit_no_arrays
 def _interval(along: float, width: float, count: int) -> int:
     """Which of `count` intervals of a width holds a coordinate; the outer edges belong to the outer ones."""
     place = int(math.floor(along / width))
@@ -115,14 +136,15 @@ def _interval(along: float, width: float, count: int) -> int:
     return place if 0 <= place < count else NOWHERE
 
 
-@bare
-def within_cell(local: Local, x: float, y: float) -> bool:
+@jit_no_arrays
+def within_cell(local: LocalSurface, x: float, y: float) -> bool:
     """Whether the cell's polynomial holds at a point [m]."""
-    f = local.frame
-    return abs(x - f[X]) <= f[REACH] * f[HALF_X] and abs(y - f[Y]) <= f[REACH] * f[HALF_Y]
+    f: Frame = local.frame[0]
+    return abs(x - f.x) <= f.overhang * f.half_x and abs(y - f.y) <= f.overhang * f.half_y
 
 
-@bare
-def gap_at(surface: Any, local: Local, x: float, y: float) -> float:
+@jit_no_arrays
+def gap_at(surface: Surface, local: LocalSurface, x: float, y: float) -> float:
     """A distance [m] that a point of the cell is from the rim at least, negative off the plate; exact near the rim."""
-    return local.frame[CLEAR] if local.frame[CLEAR] > 0.0 else rim_gap(surface, x, y)
+    clear: float = local.frame[0].clear
+    return clear if clear > 0.0 else rim_gap(surface, x, y)

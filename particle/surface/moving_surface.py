@@ -1,8 +1,8 @@
 """SurfaceMotion: the moving surface w(x, y, t) = sum_i h_i(t) phi_i(x, y), and its record of arrays for kernels.
 
-Each h_i is a drive, between two kinks one quintic in time; each phi_i is the shape of one actuator, on a cell of a
-background grid one polynomial and the logarithms r^2 ln(r) around the actuators close by. So a cell's whole smooth part
-is one polynomial in x, y, t.
+Each h_i is a drive: one quintic in time between two breakpoints. Each phi_i is the shape of one actuator: on a cell of
+a background grid one polynomial, and the logarithms r^2 ln(r) around the actuators close by. So a cell's whole smooth
+part is one polynomial in x, y, t.
 """
 
 from __future__ import annotations
@@ -10,15 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, field, replace
-from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.drives import ORDER, AnyDrive, DriveTable, accelerations, drive_table, monomial_table
+from particle.drives import AnyDrive, DriveTable, accelerations, drive_table
 from particle.surface.at_point import evaluate_points
-from particle.surface.cells import NOWHERE, Cells, CellStore, OneCell
+from particle.surface.cells import NOWHERE, CellStore
+from particle.surface.local import new_local
+from particle.surface.record import Surface
 
 FloatArray = NDArray[np.float64]
 
@@ -32,22 +33,6 @@ class SurfaceState(NamedTuple):
     gradient: FloatArray  # (n, 2)
     gradient_t: FloatArray  # (n, 2) 1/s
     hessian: FloatArray  # (n, 2, 2) 1/m
-
-
-class Surface(NamedTuple):
-    """A moving surface as kernels read it: arrays and numbers only."""
-
-    drives: DriveTable  # `shape_count` drives, then the base's x and y where it moves
-    cells: Cells
-    shape_count: int
-    sources: FloatArray  # (J, 2) m, the centres of the logarithms
-    size: float  # m, the length in the logarithms and that tolerances refer to
-    floor: float  # m, radius below which the Hessian of a logarithm grows no more
-    overhang: float  # a cell's polynomials hold out to this many half widths
-    conics: FloatArray  # (k, 4) m, the rim's whole ellipses: centre x, y and semi-axes
-    edges: FloatArray  # (m, 3, 2) m, its other edges: start, middle and end of parabolas; no rim where both are empty
-    moving_base: bool  # whether two more drives carry the base in its plane
-    unit: float  # s, of time in the polynomials that are made of cells and drives
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -154,10 +139,10 @@ class SurfaceMotion:
         if not math.isfinite(time):
             raise ValueError(f"Input time of evaluate must be a finite number of seconds; got {time}")
         xy = np.atleast_2d(np.asarray(xy, dtype=float))
-        rows, missing = evaluate_points(self.record, xy, float(time))
+        rows, missing = self._points(xy, time)
         if missing.any():
             self.store.build(xy[missing])
-            rows, _ = evaluate_points(self.record, xy, float(time))
+            rows, _ = self._points(xy, time)
         if np.isnan(rows).any():
             beyond = xy[np.isnan(rows).any(axis=1)][0].tolist()
             raise ValueError(f"Input xy of evaluate must lie on the surface; got {beyond} m")
@@ -165,99 +150,12 @@ class SurfaceMotion:
         hessian = np.stack([np.stack([xx, xy_], axis=-1), np.stack([xy_, yy], axis=-1)], axis=-2)
         return SurfaceState(w, w_t, w_tt, np.stack([x, y], axis=-1), np.stack([xt, yt], axis=-1), hessian)
 
+    def _points(self, xy: FloatArray, time: float) -> tuple[FloatArray, NDArray[np.bool_]]:
+        surface = self.record
+        return evaluate_points(surface, new_local(surface), xy, float(time))
+
     def base_acceleration(self, time: float) -> FloatArray:
         """The acceleration (2,) [m/s^2] of its base along x and y at a time [s]; zero where it does not move."""
         if not self.moving_base:
             return np.zeros(2)
         return accelerations(self.drives, time)[self.shape_count :]
-
-
-def polynomial_surface(
-    coefficients: ArrayLike, base: Sequence[AnyDrive] | None = None, size: float = 1.0
-) -> SurfaceMotion:
-    """A polynomial surface without rim and actuators, w = sum c[i, j, k] x^i y^j t^k in SI units: bowls, inclines,
-    tests.
-
-    Parameters
-    ----------
-    coefficients : array (I, J) or (I, J, K)
-        c, for a surface at rest or a moving one with K <= 6.
-    size : float
-        Length that the integrator's tolerance refers to, m.
-    base : pair of drives, optional
-        Motion of the base along x and y.
-
-    Returns
-    -------
-    surface : SurfaceMotion
-        The surface.
-
-    Raises
-    ------
-    ValueError
-        The coefficients have any other shape.
-    """
-    c = np.asarray(coefficients, dtype=float)
-    c = c[:, :, None] if c.ndim == 2 else c
-    if c.ndim != 3 or not 1 <= c.shape[2] <= ORDER:
-        raise ValueError(
-            f"Input coefficients must have shape (I, J) or (I, J, K) with K <= 6; got {np.shape(coefficients)}"
-        )
-    if base is not None and len(base) != 2:
-        raise ValueError(f"Input base of polynomial_surface must be two drives, for x and y; got {len(base)}")
-    degree = c.shape[0] + c.shape[1] - 2
-    square = np.zeros((degree + 1, degree + 1, c.shape[2]))
-    square[: c.shape[0], : c.shape[1]] = c
-    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
-    shapes = np.array([[square[i, j, k] * size ** (i + j) for i, j in powers] for k in range(c.shape[2])])
-    return SurfaceMotion(
-        drives=_joined(monomial_table(c.shape[2]), drive_table(base or [])),
-        store=OneCell(shapes, degree, size),
-        sources=np.zeros((0, 2)),
-        size=size,
-        moving_base=base is not None,
-    )
-
-
-def platform_surface(
-    x: AnyDrive | None = None, y: AnyDrive | None = None, z: AnyDrive | None = None, size: float = 1.0
-) -> SurfaceMotion:
-    """A flat rigid surface without rim that drives move along x, y and z.
-
-    Positions on it are relative to the platform.
-
-    Parameters
-    ----------
-    x, y, z : drive, optional
-        Motion along each axis; None: no motion.
-    size : float
-        Length that the integrator's tolerance refers to, m; the platform's largest travel suits.
-
-    Returns
-    -------
-    surface : SurfaceMotion
-        The surface.
-
-    Raises
-    ------
-    ValueError
-        The size is not positive.
-    """
-    if not (math.isfinite(size) and size > 0):
-        raise ValueError(f"Input size of platform_surface must be a positive length in m; got {size!r}")
-    flat = polynomial_surface([[1.0]], size=size)
-    tables = [_still_table() if drive is None else drive_table([drive]) for drive in (z, x, y)]
-    return replace(flat, drives=reduce(_joined, tables), moving_base=True)
-
-
-def _still_table() -> DriveTable:
-    """A drive that stays at 0, without kinks."""
-    table = monomial_table(1)
-    return table._replace(coefficients=np.zeros_like(table.coefficients))
-
-
-def _joined(a: DriveTable, b: DriveTable) -> DriveTable:
-    return DriveTable(
-        np.concatenate([a.first, a.first[-1] + b.first[1:]]),
-        *(np.concatenate([left, right]) for left, right in zip(a[1:], b[1:], strict=True)),
-    )

@@ -7,24 +7,25 @@ once, and so does each crossing of the edges with a ray towards positive x.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.jit import bare
+from particle.jit import jit_no_arrays
+from particle.surface.record import Surface
 
 FloatArray = NDArray[np.float64]
+Vector = tuple[float, float]
 
 HALVINGS = 54  # of a parameter in [0, 1]
 NEWTON_STEPS = 100
 STRAIGHT = 1e-28  # squared curvature of an edge, over its squared length, that is rounding
-FINEST = 1e-3  # of a step: shorter dips beyond the rim are not looked for,
+MIN_DIP = 1e-3  # of a step: shorter dips beyond the rim are not looked for,
 ROUNDING = 1e-12  # nor shallower ones, of the plate's size
 
 
-@bare
-def rim_gap(surface: Any, x: float, y: float) -> float:
+@jit_no_arrays
+def rim_gap(surface: Surface, x: float, y: float) -> float:
     """Distance [m] of (x, y) from the rim, negative off the plate; the surface's size where there is no rim."""
     if len(surface.conics) == 0 and len(surface.edges) == 0:
         return float(surface.size)
@@ -52,7 +53,7 @@ def rim_gap(surface: Any, x: float, y: float) -> float:
     return nearest if inside else -nearest
 
 
-@bare
+@jit_no_arrays
 def ellipse_gap(x: float, y: float, a: float, b: float) -> float:
     """Distance [m] from an ellipse with semi-axes a and b [m] around the origin, positive inside.
 
@@ -82,7 +83,7 @@ def ellipse_gap(x: float, y: float, a: float, b: float) -> float:
     return distance if (x / a) ** 2 + (y / b) ** 2 < 1.0 else -distance
 
 
-@bare
+@jit_no_arrays
 def crosses(edge: FloatArray, x: float, y: float) -> bool:
     """Whether a ray from (x, y) towards positive x crosses an edge (3, 2) an odd number of times.
 
@@ -107,7 +108,7 @@ def crosses(edge: FloatArray, x: float, y: float) -> bool:
     return crossed
 
 
-@bare
+@jit_no_arrays
 def edge_distance(edge: FloatArray, x: float, y: float) -> float:
     """Distance [m] of (x, y) from an edge (3, 2), by its nearest parameter.
 
@@ -143,13 +144,11 @@ def edge_distance(edge: FloatArray, x: float, y: float) -> float:
     return nearest
 
 
-@bare
-def first_beyond(
-    surface: Any, gap: float, start: FloatArray, end: FloatArray, v_0: FloatArray, v_1: FloatArray, h: float
-) -> float:
+@jit_no_arrays
+def first_beyond(surface: Surface, gap: float, start: Vector, end: Vector, v_0: Vector, v_1: Vector, h: float) -> float:
     """The share of a step of h [s] after which its path is first seen off the plate; 1 when it is not.
 
-    The path is the cubic from `start` to `end` (x, y, ...) [m] with the velocities v_0 and v_1 (x, y, ...) [m/s] there;
+    The path is the cubic from `start` to `end` (x, y) [m] with the velocities v_0 and v_1 (x, y) [m/s] there;
     `gap` [m] is the start's distance from the rim. No point of the rim is closer than that, so the search strides.
     """
     x_0, y_0, x_1, y_1 = start[0], start[1], end[0], end[1]
@@ -160,7 +159,7 @@ def first_beyond(
     )
     s = 0.0
     while True:
-        s += max(gap / fastest, FINEST) if fastest > 0.0 else 1.0
+        s += max(gap / fastest, MIN_DIP) if fastest > 0.0 else 1.0
         if s >= 1.0:
             return 1.0
         r = 1.0 - s

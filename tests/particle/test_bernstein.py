@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from particle.events.bernstein import DEEPEST, first_negative, halve, to_bernstein
+from particle.events.bernstein import MAX_HALVINGS, first_negative, halve, to_bernstein
 
 SIZES = st.integers(1, 17)
 NUMBERS = st.floats(-1, 1, allow_subnormal=False)
@@ -91,8 +91,8 @@ def test_what_is_passed_over_is_nowhere_negative_and_what_is_found_is(b):
     before = range(61) if found == math.inf else range(60)
     assert all(exact(b, end * k / 60) >= -ROUNDING for k in before) or found == 0.0
     if found < math.inf:
-        # The place is the left end of an interval of at most 2^-DEEPEST at whose ends the polynomial is negative.
-        width = Fraction(1, 2**DEEPEST)
+        # The place is the left end of an interval of at most 2^-MAX_HALVINGS at whose ends the polynomial is negative.
+        width = Fraction(1, 2**MAX_HALVINGS)
         assert min(exact(b, end), exact(b, min(Fraction(1), end + width))) < ROUNDING
     if b[0] < 0:
         assert found == 0.0
@@ -107,7 +107,7 @@ def test_a_single_crossing_is_located_to_the_last_halving(degree, place):
     """(s0 - s)(1 + s)^(n-1) changes its sign once."""
     p = Polynomial([place, -1.0]) * Polynomial([1.0, 1.0]) ** (degree - 1)
     b = bernstein(p.coef)
-    assert first_negative(b) == pytest.approx(place, abs=2 * 0.5**DEEPEST + 1e3 * np.finfo(float).eps)
+    assert first_negative(b) == pytest.approx(place, abs=2 * 0.5**MAX_HALVINGS + 1e3 * np.finfo(float).eps)
     assert first_negative(-b) == 0.0
 
 

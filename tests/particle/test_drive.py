@@ -7,7 +7,7 @@ import pytest
 from pieces import piece_at
 
 from particle import Drive
-from particle.drives.drive import drive_table, next_kink
+from particle.drives import drive_table, next_breakpoint
 
 
 def quintic(s):
@@ -56,7 +56,7 @@ def test_velocity_and_acceleration_are_the_derivatives(name):
 def test_stroke_velocity_and_acceleration_are_continuous_at_kinks(name):
     drive, kinks, time = DRIVES[name], [], -1.0
     table = drive_table([drive])
-    while (time := next_kink(table, time)) < 9e-3:
+    while (time := next_breakpoint(table, time)) < 9e-3:
         kinks.append(time)
     assert kinks
     before, after = (drive.evaluate(np.array(kinks) + shift) for shift in (-1e-12, 1e-12))
@@ -68,7 +68,7 @@ def test_stroke_velocity_and_acceleration_are_continuous_at_kinks(name):
 def test_kinks_come_at_delay_half_periods_and_the_last_end():
     table = drive_table([DRIVES["two cycles"], DRIVES["up"]])
     kinks, time = [], -1.0
-    while (time := next_kink(table, time)) < math.inf:
+    while (time := next_breakpoint(table, time)) < math.inf:
         kinks.append(time)
     assert kinks == pytest.approx(sorted([0.4e-3, 1.4e-3, 2.4e-3, 3.4e-3, 4.4e-3, 0.0, 1 / 450]), abs=1e-15)
 
@@ -76,22 +76,22 @@ def test_kinks_come_at_delay_half_periods_and_the_last_end():
 def test_an_endless_drive_has_a_kink_each_half_period_and_never_the_same_twice():
     table, kinks, time = drive_table([Drive(1e-6, 300)]), [], 0.0
     for _ in range(1000):
-        time = next_kink(table, time)
+        time = next_breakpoint(table, time)
         kinks.append(time)
     assert kinks == pytest.approx(np.arange(1, 1001) / 600, rel=1e-14)
 
 
 def test_a_surface_without_drives_has_no_kink():
-    assert next_kink(drive_table([]), 0.0) == math.inf
+    assert next_breakpoint(drive_table([]), 0.0) == math.inf
 
 
 @pytest.mark.parametrize("name", DRIVES)
 @pytest.mark.parametrize("time", [0.0, 0.7e-3, 2.0e-3, 3.1e-3])
-def test_a_piece_is_the_stroke_up_to_the_next_kink(name, time):
+def test_a_piece_is_the_stroke_up_to_the_next_breakpoint(name, time):
     drive = DRIVES[name]
     table, unit = drive_table([drive]), 0.37e-3
     piece = piece_at(table, 0, time, unit)
-    end = min(next_kink(table, time), time + unit)
+    end = min(next_breakpoint(table, time), time + unit)
     times = np.linspace(time, end, 9)[:-1]
     values = np.polynomial.polynomial.polyval((times - time) / unit, piece)
     assert np.abs(values - drive.evaluate(times)[0]).max() < 1e-13 * abs(drive.stroke)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pieces import piece_at
 
 from particle import Drive, HermiteDrive, Segment, SegmentDrive, TableDrive
-from particle.drives.drive import drive_table, monomial_table, next_kink
+from particle.drives import drive_table, monomial_table, next_breakpoint
 
 POLYNOMIAL = np.polynomial.Polynomial([1e-6, -2e-3, 3.0, 4e2, -5e4, 6e6])
 
@@ -55,7 +55,7 @@ KINDS = {
 
 def kinks_of(table, end, time=-1.0):
     kinks = []
-    while (time := next_kink(table, time)) < end:
+    while (time := next_breakpoint(table, time)) < end:
         kinks.append(time)
     return kinks
 
@@ -78,7 +78,7 @@ def test_heights_are_those_of_the_formula_at_any_time(name, passes, part):
 def test_from_one_kink_to_the_next_the_height_is_one_quintic(name, passes, part, unit):
     drive, _, span = KINDS[name]
     table, start = drive_table([drive]), span * (passes + part)
-    end = next_kink(table, start)
+    end = next_breakpoint(table, start)
     assert end > start
     piece = piece_at(table, 0, start + 0.5 * (end - start), unit)
     times = start + (end - start) * np.linspace(0.01, 0.99, 8)
@@ -109,7 +109,7 @@ def test_kinks_that_rounding_blurs_still_begin_their_pieces(frequency, delay, pa
     drive = Drive(1.0, frequency, delay=delay)
     table, half = drive_table([drive]), 0.5 / frequency
     for strokes in (2 * passes, 2 * passes + 1):
-        kink = next_kink(table, delay + (strokes - 0.5) * half)
+        kink = next_breakpoint(table, delay + (strokes - 0.5) * half)
         assert kink == pytest.approx(delay + strokes * half, rel=1e-15)
         piece, up = piece_at(table, 0, kink, half), 1 - 2 * (strokes % 2)
         assert piece[:3] == pytest.approx([strokes % 2, 0, 0], abs=1e-6)
@@ -117,7 +117,7 @@ def test_kinks_that_rounding_blurs_still_begin_their_pieces(frequency, delay, pa
         # One rounding earlier it is still the piece before, which goes the other way.
         earlier = piece_at(table, 0, np.nextafter(kink, -1), half)
         assert earlier[5] == pytest.approx(-6 * up if strokes else 0, rel=1e-6)
-        assert next_kink(table, kink) == pytest.approx(delay + (strokes + 1) * half, rel=1e-15)
+        assert next_breakpoint(table, kink) == pytest.approx(delay + (strokes + 1) * half, rel=1e-15)
 
 
 def test_kinks_of_drives_that_differ_by_rounding_are_one():
@@ -203,7 +203,7 @@ def test_a_measured_motion_of_many_samples_is_found_at_once():
     table = drive_table([drive])
     times = np.linspace(0, 3, 20_001)[:-1]
     assert np.abs(drive.evaluate(times)[0] - wave(times)[0]).max() < 1e-14
-    assert [next_kink(table, t) for t in (0.0, 1.5, 2.99999)] == pytest.approx([3e-5, 1.50003, 3.0])
+    assert [next_breakpoint(table, t) for t in (0.0, 1.5, 2.99999)] == pytest.approx([3e-5, 1.50003, 3.0])
 
 
 def test_a_schedule_goes_on_from_where_each_segment_ended():

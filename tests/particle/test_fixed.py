@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from motions import motion
 from scipy.optimize import minimize
 
 from coupling.surface.motion import surface_motion
@@ -20,10 +21,10 @@ from particle import (
     simulate,
 )
 from particle.events.equations import Part
-from particle.events.record import RESTING, SLIDING
 from particle.fixed.moreau import moreau_step
-from particle.fixed.steps import MOST_ROWS, MOST_STEPS, step_count
-from particle.surface.at_point import Fields
+from particle.fixed.steps import MAX_ROWS, MAX_STEPS, step_count
+from particle.modes import Mode
+from particle.surface.at_point import SurfacePoint
 
 MASS, G = 2e-9, 9.80665
 FLAT = polynomial_surface([[0.0]])
@@ -46,20 +47,20 @@ def breathing_bowl():
     return polynomial_surface(c)
 
 
-def some_fields(rng):
+def some_point(rng):
     values = rng.normal(size=10)
-    return Fields(*values, *np.zeros(6))
+    return SurfacePoint(*values, *np.zeros(6))
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_step_minimises_what_moreaus_inclusion_says(seed):
     """v+ is the minimum of |v - v_free|_M^2 / 2 + (h Q/m) |v|_M, found here by scipy."""
     rng = np.random.default_rng(seed)
-    f, h, q = some_fields(rng), 0.05, 3.0
-    state, after = rng.normal(size=8), np.zeros(8)
-    v, g = state[2:4], np.array([f.x, f.y])
-    hessian = np.array([[f.xx, f.xy], [f.xy, f.yy]])
-    b = G + f.w_tt + 2 * v @ [f.xt, f.yt] + v @ hessian @ v
+    f, h, q = some_point(rng), 0.05, 3.0
+    start, after = motion(*rng.normal(size=8)), motion()
+    v, g = np.array([start.v_x, start.v_y]), np.array([f.w_x, f.w_y])
+    hessian = np.array([[f.w_xx, f.w_xy], [f.w_xy, f.w_yy]])
+    b = G + f.w_tt + 2 * v @ [f.w_xt, f.w_yt] + v @ hessian @ v
     free = v - h * b * g / (1 + g @ g)
     metric = np.eye(2) + np.outer(g, g)
 
@@ -67,24 +68,25 @@ def test_a_step_minimises_what_moreaus_inclusion_says(seed):
         return (u - free) @ metric @ (u - free) / 2 + h * q * math.sqrt(u @ metric @ u)
 
     part = Part(MASS, G, 0.0, 0.0, 0.0, ConstantFriction(q * MASS).law)
-    mode, load, way_x, way_y = moreau_step(f, part, h, SLIDING, state, after)
+    mode, load, way_x, way_y = moreau_step(f, part, h, int(Mode.SLIDING), start, after)
+    end = np.array([after.v_x, after.v_y])
     best = minimize(cost, free, method="BFGS", options={"gtol": 1e-10}).x
-    assert mode == SLIDING
-    assert after[2:4] == pytest.approx(best, abs=1e-7)
-    assert [way_x, way_y] == pytest.approx(h / 2 * after[2:4], rel=1e-14)
+    assert mode == Mode.SLIDING
+    assert end == pytest.approx(best, abs=1e-7)
+    assert [way_x, way_y] == pytest.approx(h / 2 * end, rel=1e-14)
     assert load == pytest.approx(MASS * b / math.sqrt(1 + g @ g), rel=1e-14)
     # Friction dissipates the kinetic energy that it takes away.
-    lost = (free - after[2:4]) @ metric @ (v + after[2:4]) / 2
-    assert after[5] - state[5] == pytest.approx(MASS * lost, rel=1e-6, abs=1e-24)
+    lost = (free - end) @ metric @ (v + end) / 2
+    assert after.dissipated - start.dissipated == pytest.approx(MASS * lost, rel=1e-6, abs=1e-24)
 
 
 def test_an_impulse_within_the_disc_stops_the_part_to_the_bit():
     rng = np.random.default_rng(7)
-    f, state, after = some_fields(rng), rng.normal(size=8), np.ones(8)
+    f, start, after = some_point(rng), motion(*rng.normal(size=8)), motion(*np.ones(8))
     part = Part(MASS, G, 0.0, 0.0, 0.0, ConstantFriction(100 * MASS).law)
-    mode, _, way_x, way_y = moreau_step(f, part, 1.0, SLIDING, state, after)
-    assert mode == RESTING
-    assert after[2] == after[3] == way_x == way_y == 0.0
+    mode, _, way_x, way_y = moreau_step(f, part, 1.0, int(Mode.SLIDING), start, after)
+    assert mode == Mode.RESTING
+    assert after.v_x == after.v_y == way_x == way_y == 0.0
 
 
 def test_a_stuck_part_stays_to_the_bit():
@@ -213,7 +215,7 @@ def test_rows_are_thinned_but_for_events():
     surface = polynomial_surface([[0.0]], base=base, size=1e-2)
     found = fixed(surface, Micropart(1.0, (0.0, 0.0)), CoulombAdhesion(0.3), 1.0, 1e-6)
     assert found.evaluations == 1_000_000
-    assert MOST_ROWS < len(found.time) <= MOST_ROWS + 1 + len(found.events)
+    assert MAX_ROWS < len(found.time) <= MAX_ROWS + 1 + len(found.events)
     assert (np.diff(found.time) > 0).all() and len(found.events) > 20
     assert np.isin([event.time for event in found.events], found.time).all()
     assert found.time[-1] == 1.0
@@ -265,6 +267,6 @@ def test_what_fixed_steps_cannot_do_is_refused(wrong, says):
 def test_steps_are_counted_and_bounded():
     assert step_count(1.0, 0.25) == 4 and step_count(1.0, 0.3) == 4 and step_count(1.0, 5.0) == 1
     assert step_count(0.3, 0.1) == 3  # whatever rounding says of 0.3 / 0.1
-    assert step_count(1.0, 1 / MOST_STEPS) == MOST_STEPS
+    assert step_count(1.0, 1 / MAX_STEPS) == MAX_STEPS
     with pytest.raises(ValueError, match="got 1e-10, for 2e\\+10 steps$"):
         step_count(2.0, 1e-10)

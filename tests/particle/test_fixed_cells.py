@@ -8,7 +8,7 @@ import pytest
 from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import ConstantFriction, Drive, Micropart, SurfaceMotion, simulate
-from particle.drives.drive import monomial_table
+from particle.drives import monomial_table
 from particle.surface.cells import NOWHERE, CellFit, CellPool
 
 RADIUS, MASS = 300e-6, 2e-9

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, CoulombAdhesion, FrictionTable, KogutEtsion
-from particle.friction.contact import ScaledFriction, friction_limit
+from particle.friction import ScaledFriction, friction_limit
 
 
 @pytest.mark.parametrize("load", [-1.0, 0.0, 3.0])

@@ -4,18 +4,19 @@ import math
 
 import numpy as np
 import pytest
+from motions import motion
 
 from particle import ConstantFriction, CoulombAdhesion, EventKind, Micropart, Outcome, polynomial_surface, simulate
 from particle.events.equations import Part
-from particle.events.record import RESTING, SLIDING
 from particle.fixed.paper_scheme import across, paper_step, rotation
-from particle.surface.at_point import Fields
+from particle.modes import Mode
+from particle.surface.at_point import SurfacePoint
 
 MASS, G = 2e-9, 9.80665
 
 
-def fields_of(**values):
-    return Fields(**(dict.fromkeys(Fields._fields, 0.0) | values))
+def point_of(**values):
+    return SurfacePoint(**(dict.fromkeys(SurfacePoint._fields, 0.0) | values))
 
 
 def part_with(limit, gravity=0.0):
@@ -26,12 +27,19 @@ def hill(r, angle):
     """w = exp(-r^2), which falls away from the origin, at a point; R = r is the radius of its level lines."""
     x, y = r * math.cos(angle), r * math.sin(angle)
     w = math.exp(-r * r)
-    return fields_of(w=w, x=-2 * x * w, y=-2 * y * w, xx=(4 * x * x - 2) * w, xy=4 * x * y * w, yy=(4 * y * y - 2) * w)
+    return point_of(
+        w=w,
+        w_x=-2 * x * w,
+        w_y=-2 * y * w,
+        w_xx=(4 * x * x - 2) * w,
+        w_xy=4 * x * y * w,
+        w_yy=(4 * y * y - 2) * w,
+    )
 
 
 @pytest.mark.parametrize("gradient", [(0.3, -0.4), (-2.0, 0.1), (0.0, 0.7), (0.0, 0.0)])
 def test_the_rotation_turns_x_along_the_gradient_and_z_along_the_normal(gradient):
-    turn = rotation(fields_of(x=gradient[0], y=gradient[1]))
+    turn = rotation(point_of(w_x=gradient[0], w_y=gradient[1]))
     assert turn @ turn.T == pytest.approx(np.eye(3), abs=1e-15)
     assert np.linalg.det(turn) == pytest.approx(1.0)
     q = math.hypot(*gradient)
@@ -42,7 +50,7 @@ def test_the_rotation_turns_x_along_the_gradient_and_z_along_the_normal(gradient
 @pytest.mark.parametrize("r", [0.2, 0.9, 2.0])
 def test_the_way_across_the_gradient_is_that_of_equation_10(r):
     f = hill(r, 0.7)
-    sine = math.sin(math.atan(math.hypot(f.x, f.y)))
+    sine = math.sin(math.atan(math.hypot(f.w_x, f.w_y)))
     for way in (0.05, -0.3):
         y, z = across(f, rotation(f), way)
         assert y == pytest.approx(r / sine * math.sin(way * sine / r), rel=1e-12)
@@ -50,38 +58,36 @@ def test_the_way_across_the_gradient_is_that_of_equation_10(r):
 
 
 def test_on_level_ground_the_way_is_straight():
-    f = fields_of()
+    f = point_of()
     assert across(f, rotation(f), 0.4) == (0.4, 0.0)
 
 
 def test_above_the_threshold_friction_works_against_the_velocity():
     """Level ground shaken by nothing: V_T = Q h/m = 0.2 m/s."""
-    state, after = np.zeros(8), np.zeros(8)
-    state[2], state[3] = 0.3, 0.4
-    mode, load, way_x, way_y = paper_step(fields_of(w_tt=5.0), part_with(2.0), 0.1, SLIDING, state, after)
-    assert mode == SLIDING and load == pytest.approx(5 * MASS)
-    assert after[2:4] == pytest.approx([0.18, 0.24])
+    start, after = motion(0.0, 0.0, 0.3, 0.4), motion()
+    mode, load, way_x, way_y = paper_step(point_of(w_tt=5.0), part_with(2.0), 0.1, int(Mode.SLIDING), start, after)
+    assert mode == Mode.SLIDING and load == pytest.approx(5 * MASS)
+    assert [after.v_x, after.v_y] == pytest.approx([0.18, 0.24])
     assert [way_x, way_y] == pytest.approx([0.018, 0.024])
 
 
 def test_below_the_threshold_the_force_decides():
-    f, h = fields_of(x=1.0, w_tt=-math.sqrt(2) * 6.0), 0.1  # F_e / m = 6 up the slope of 45 degrees
-    state, after = np.zeros(8), np.zeros(8)
-    state[3] = 0.1
-    mode, _, way_x, way_y = paper_step(f, part_with(7.0), h, SLIDING, state, after)
-    assert mode == RESTING
-    assert after[2] == after[3] == after[7] == way_x == way_y == 0.0
-    mode, *_ = paper_step(f, part_with(4.0), h, SLIDING, state, after)
+    f, h = point_of(w_x=1.0, w_tt=-math.sqrt(2) * 6.0), 0.1  # F_e / m = 6 up the slope of 45 degrees
+    start, after = motion(0.0, 0.0, 0.0, 0.1), motion()
+    mode, _, way_x, way_y = paper_step(f, part_with(7.0), h, int(Mode.SLIDING), start, after)
+    assert mode == Mode.RESTING
+    assert after.v_x == after.v_y == after.v_z == way_x == way_y == 0.0
+    mode, *_ = paper_step(f, part_with(4.0), h, int(Mode.SLIDING), start, after)
     up = h * (6 - 4)
-    assert mode == SLIDING
-    assert [after[2], after[3], after[7]] == pytest.approx([up / math.sqrt(2), 0.1, up / math.sqrt(2)])
+    assert mode == Mode.SLIDING
+    assert [after.v_x, after.v_y, after.v_z] == pytest.approx([up / math.sqrt(2), 0.1, up / math.sqrt(2)])
 
 
 def test_the_normal_force_knows_nothing_of_the_velocity():
-    f = fields_of(x=0.5, y=-0.2, xt=3.0, yt=1.0, xx=4.0, yy=-1.0, w_tt=2.0)
+    f = point_of(w_x=0.5, w_y=-0.2, w_xt=3.0, w_yt=1.0, w_xx=4.0, w_yy=-1.0, w_tt=2.0)
     for velocity in ((0.0, 0.0), (0.3, 2.0)):
-        state = np.array([0.0, 0.0, *velocity, 0.0, 0.0, 0.0, 0.0])
-        load = paper_step(f, part_with(0.5, G), 1e-3, SLIDING, state, np.zeros(8))[1]
+        start = motion(0.0, 0.0, *velocity)
+        load = paper_step(f, part_with(0.5, G), 1e-3, int(Mode.SLIDING), start, motion())[1]
         assert load == pytest.approx(MASS * (G + 2.0) / math.sqrt(1.29), rel=1e-14)
 
 

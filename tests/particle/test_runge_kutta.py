@@ -4,13 +4,17 @@ import math
 
 import numpy as np
 import pytest
+from motions import motion
 
 from particle import ConstantFriction, polynomial_surface
 from particle.events.equations import Part
-from particle.events.record import SLIDING
-from particle.events.runge_kutta import Pairs, attempt, error, fields_at_start, new_step, pairs_for, rate, tableau
-from particle.surface.at_point import fields
-from particle.surface.local import CELL, new_local
+from particle.events.memory import new_memory
+from particle.events.motion import as_numbers
+from particle.events.runge_kutta import attempt, motion_rate, step_error
+from particle.events.step import surface_at_start
+from particle.events.tableau import Pairs, pairs_for, tableau
+from particle.modes import Mode
+from particle.surface.at_point import surface_at
 from particle.surface.span import enter
 
 OMEGA = 3.0  # 1/s
@@ -21,20 +25,33 @@ def bowl():
     return polynomial_surface([[0, 0, 0.5 * OMEGA**2 * 1e-9], [0, 0, 0], [0.5 * OMEGA**2 * 1e-9, 0, 0]])
 
 
+def prepared(surface, pairs, *start, end=1.0):
+    """Memory of a sliding part at its start, until an end [s]."""
+    memory = new_memory(surface, pairs, np.zeros(1, dtype=np.int64))
+    memory.motion_numbers[0, : len(start)] = start
+    memory.now["mode"] = Mode.SLIDING
+    enter(surface, memory.local, 0.0, 0.0, 0.0, end)
+    return memory
+
+
+def find_rate(memory, part):
+    """The rate at the start of a step."""
+    motion, time, step = memory.motion[0], memory.now[0].time, memory.step
+    f = surface_at(memory.local, motion.x, motion.y, time)
+    step.loads[0] = motion_rate(f, int(Mode.SLIDING), memory.local, part, time, motion, step.rates[0])
+
+
 def march(pair, steps):
     """Position and velocity after 1 s by `steps` steps, and the pair's estimate for the first of them."""
     surface, part = bowl().record, Part(1.0, 1e9, 0.0, 0.0, 0.0, ConstantFriction(0.0).law)
-    local, step = new_local(surface), new_step(Pairs(pair, pair))
-    enter(surface, local, 0.0, 0.0, 0.0, 1.0)
-    state, h, first = np.array([0.1, 0.0, 0.0, 0.2, 0.0, 0.0]), 1 / steps, 0.0
+    memory, h, first = prepared(surface, Pairs(pair, pair), 0.1, 0.0, 0.0, 0.2), 1 / steps, 0.0
     for k in range(steps):
-        step.loads[0] = rate(
-            fields(local, state[0], state[1], k * h), SLIDING, local, part, k * h, state, step.rates[0]
-        )
-        assert attempt(SLIDING, surface, local, part, pair, step, k * h, state, h)
-        first = error(pair, step, h, 1.0, math.inf) if k == 0 else first
-        state[:] = step.end
-    return state[:4], first
+        memory.now["time"] = k * h
+        find_rate(memory, part)
+        assert attempt(surface, part, pair, memory, h)
+        first = step_error(pair, memory.step, h, 1.0, math.inf) if k == 0 else first
+        memory.motion[0] = memory.step.end[0]
+    return memory.motion_numbers[0, :4], first
 
 
 def truth():
@@ -79,29 +96,27 @@ def test_the_part_does_not_slide_back_within_a_step_under_friction():
         Part(1.0, 9.81, 0.0, 0.0, 0.0, ConstantFriction(1.0).law),
         tableau(8),
     )
-    local, step, state = new_local(surface), new_step(Pairs(pair, pair)), np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-    enter(surface, local, 0.0, 0.0, 0.0, 10.0)
-    step.loads[0] = rate(fields(local, 0.0, 0.0, 0.0), SLIDING, local, part, 0.0, state, step.rates[0])
-    assert attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 0.9)
-    assert step.end == pytest.approx([0.9 - 0.5 * 0.81, 0, 0.1, 0, -0.5 * (1 - 0.01) + 0.495, 0.495], abs=1e-14)
-    assert not attempt(SLIDING, surface, local, part, pair, step, 0.0, state, 1.5)
+    memory = prepared(surface, Pairs(pair, pair), 0.0, 0.0, 1.0, end=10.0)
+    find_rate(memory, part)
+    assert attempt(surface, part, pair, memory, 0.9)
+    end = as_numbers(memory.step.end)[0]
+    assert end == pytest.approx([0.9 - 0.5 * 0.81, 0, 0.1, 0, -0.5 * (1 - 0.01) + 0.495, 0.495, 0, 0], abs=1e-14)
+    assert not attempt(surface, part, pair, memory, 1.5)
 
 
 def test_the_surface_at_a_steps_end_serves_the_next_step_in_the_same_cell():
     surface, part = bowl().record, Part(1.0, 1e9, 0.0, 0.0, 0.0, ConstantFriction(0.0).law)
-    local, step, count = new_local(surface), new_step(pairs_for(1e-9)), np.zeros(3, dtype=np.int64)
-    enter(surface, local, 0.0, 0.0, 0.0, 1.0)
-    state, h = np.array([0.1, 0.0, 0.0, 0.2, 0.0, 0.0]), 0.01
-    step.loads[0] = rate(
-        fields_at_start(local, step, count, 0.0, state), SLIDING, local, part, 0.0, state, step.rates[0]
-    )
-    assert count[0] == 1
-    assert attempt(SLIDING, surface, local, part, tableau(8), step, 0.0, state, h)
-    assert fields_at_start(local, step, count, h, step.end) == fields(local, step.end[0], step.end[1], h)
-    assert count[0] == 1  # it was kept
-    elsewhere = step.end + np.array([1e-15, 0.0, 0.0, 0.0, 0.0, 0.0])
-    assert fields_at_start(local, step, count, h, elsewhere) == fields(local, elsewhere[0], elsewhere[1], h)
-    fields_at_start(local, step, count, 1.1 * h, step.end)
-    local.counts[CELL] += 1
-    fields_at_start(local, step, count, h, step.end)
-    assert count[0] == 4  # another place, time or cell
+    memory, h = prepared(surface, pairs_for(1e-9), 0.1, 0.0, 0.0, 0.2), 0.01
+    local, step, counts, end = memory.local, memory.step, memory.counts[0], memory.step.end[0]
+    surface_at_start(local, step, counts, 0.0, memory.motion[0])
+    assert counts.evaluations == 1
+    find_rate(memory, part)
+    assert attempt(surface, part, tableau(8), memory, h)
+    assert surface_at_start(local, step, counts, h, end) == surface_at(local, end.x, end.y, h)
+    assert counts.evaluations == 1  # it was kept
+    elsewhere = motion(end.x + 1e-15, end.y)
+    assert surface_at_start(local, step, counts, h, elsewhere) == surface_at(local, elsewhere.x, elsewhere.y, h)
+    surface_at_start(local, step, counts, 1.1 * h, end)
+    local.frame["cell"] += 1
+    surface_at_start(local, step, counts, h, end)
+    assert counts.evaluations == 4  # another place, time or cell

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, polynomial_surface
-from particle.events import slide
+from particle.events import contact_end
 from particle.events.equations import Part
-from particle.events.record import SLIDING
-from particle.events.runge_kutta import new_step, pairs_for
-from particle.surface.local import new_local
+from particle.events.memory import new_memory
+from particle.events.request import Request
+from particle.events.slide import slide
+from particle.events.tableau import pairs_for
+from particle.modes import Mode, Verdict
 from particle.surface.span import enter
 
 
@@ -23,16 +25,15 @@ def test_a_step_that_is_cut_a_little_does_not_become_as_long_as_the_span_again(m
     def excursion(*_):
         return cuts.pop() if cuts else 1.0
 
-    monkeypatch.setattr(slide, "first_excursion", excursion)
+    monkeypatch.setattr(contact_end, "first_excursion", excursion)
     surface, pairs = polynomial_surface([[0.0]]).record, pairs_for(1e-9)
     part = Part(1.0, 9.81, 0.0, 0.0, 0.0, ConstantFriction(1.0).law)
-    request = slide.Request(part, np.array([0.0, 0.0, 5.0, 0.0]), 1.0, 1e-9, 1.0, 1.0, False, False, False, (0.0, 0.0))
-    local, step, count = new_local(surface), new_step(pairs), np.zeros(3, dtype=np.int64)
-    enter(surface, local, 0.0, 0.0, 0.0, 1.0)
-    state = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-    mode, time, _, verdict = slide.slide(
-        surface, local, request, pairs, step, count, SLIDING, 0.0, math.inf, 1.0, state
-    )
-    assert (mode, verdict) == (SLIDING, slide.GOES_ON)
-    assert time == pytest.approx(0.95 * 0.97, rel=1e-15)
-    assert state[0] == pytest.approx(5.0 * time - 0.5 * time**2, rel=1e-14)
+    request = Request(part, np.array([0.0, 0.0, 5.0, 0.0]), 1.0, 1e-9, 1.0, 1.0, False, False, False, (0.0, 0.0))
+    memory = new_memory(surface, pairs, np.zeros(1, dtype=np.int64))
+    motion, now = memory.motion[0], memory.now[0]
+    enter(surface, memory.local, 0.0, 0.0, 0.0, 1.0)
+    motion.v_x, now.mode, now.h, now.span_end = 5.0, Mode.SLIDING, math.inf, 1.0
+    slide(surface, request, pairs, memory)
+    assert (now.mode, now.verdict) == (Mode.SLIDING, Verdict.GOES_ON)
+    assert now.time == pytest.approx(0.95 * 0.97, rel=1e-15)
+    assert motion.x == pytest.approx(5.0 * now.time - 0.5 * now.time**2, rel=1e-14)

@@ -8,11 +8,11 @@ import pytest
 from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
 from particle import Drive, platform_surface
-from particle.drives.drive import next_kink
-from particle.surface.at_point import fields
-from particle.surface.bridge import allow
+from particle.drives import next_breakpoint
+from particle.surface.at_point import surface_at
+from particle.surface.bridge import allow_bridges
 from particle.surface.cells import NOWHERE, UNBUILT
-from particle.surface.local import END, HALF_X, HALF_Y, X, Y, cell_at, missing_place, new_local
+from particle.surface.local import cell_at, missing_place, new_local
 from particle.surface.span import enter
 
 RADIUS, STROKE = 300e-6, 10e-6
@@ -30,8 +30,8 @@ def spread(count, seed=3):
 
 
 def values(local, x, y, time):
-    f = fields(local, x, y, time)
-    return np.array([f.w, f.w_t / 1e3, f.w_tt / 1e6, f.x * RADIUS, f.y * RADIUS, f.xy * RADIUS**2])
+    f = surface_at(local, x, y, time)
+    return np.array([f.w, f.w_t / 1e3, f.w_tt / 1e6, f.w_x * RADIUS, f.w_y * RADIUS, f.w_xy * RADIUS**2])
 
 
 @pytest.mark.parametrize("count", [1, 3, 12])
@@ -45,11 +45,11 @@ def test_after_many_kinks_it_is_as_if_prepared_anew(count):
         assert enter(record, local, x, y, time, 0.1) >= 0
         anew = new_local(record)
         enter(record, anew, x, y, time, 0.1)
-        assert local.frame[END] == anew.frame[END] > time
+        assert local.frame[0].end == anew.frame[0].end > time
         for share in (0.0, 0.5, 1.0):
-            at = time + share * (local.frame[END] - time)
+            at = time + share * (local.frame[0].end - time)
             assert np.abs(values(local, x, y, at) - values(anew, x, y, at)).max() < 1e-11 * STROKE
-        time, kinks = local.frame[END], kinks + 1
+        time, kinks = local.frame[0].end, kinks + 1
     assert kinks > 4 * count
 
 
@@ -77,13 +77,13 @@ def test_a_base_moves_on_as_well():
     local, time = new_local(record), 0.0
     while time < 0.05:
         enter(record, local, 0.0, 0.0, time, 0.05)
-        middle = 0.5 * (time + local.frame[END])
-        f = fields(local, 0.0, 0.0, middle)
+        middle = 0.5 * (time + local.frame[0].end)
+        f = surface_at(local, 0.0, 0.0, middle)
         h, v, a = drive.evaluate(middle)
         assert f.base_px == pytest.approx(h, abs=1e-12 * STROKE)
         assert f.base_vx == pytest.approx(v, abs=1e-9 * STROKE)
         assert f.base_ax == pytest.approx(a, abs=1e-6 * STROKE)
-        time = local.frame[END]
+        time = local.frame[0].end
     assert math.isclose(time, 0.05)
 
 
@@ -94,23 +94,24 @@ def test_bridges_are_as_good_as_asked_and_meet_the_surface_at_both_ends(off):
     record, end = surface.record, 0.05
     velocity, acceleration = off * STROKE * 1e3, 10 * off * STROKE * 1e6
     exact, bridged, time, kinks, spans = new_local(record), new_local(record), 0.0, 0, 0
-    allow(bridged, velocity, acceleration)
+    allow_bridges(bridged, velocity, acceleration)
     rng = np.random.default_rng(0)
     while time < end:
         assert enter(record, bridged, x, y, time, end) >= 0
-        until, spans = bridged.frame[END], spans + 1
+        frame = bridged.frame[0]
+        until, spans = frame.end, spans + 1
         begin = time
         while time < until:
             enter(record, exact, x, y, time, until)
             kinks += 1
-            for at in (time, 0.5 * (time + exact.frame[END]), exact.frame[END]):
-                u, v = rng.uniform(-1, 1, 2) * bridged.frame[[HALF_X, HALF_Y]]
-                place = bridged.frame[X] + u, bridged.frame[Y] + v
-                one, other = fields(exact, *place, at), fields(bridged, *place, at)
+            for at in (time, 0.5 * (time + exact.frame[0].end), exact.frame[0].end):
+                u, v = rng.uniform(-1, 1, 2) * [frame.half_x, frame.half_y]
+                place = frame.x + u, frame.y + v
+                one, other = surface_at(exact, *place, at), surface_at(bridged, *place, at)
                 share = 0.01 if at in (begin, until) else 1.0  # what rounding makes of the shortest bridges
                 assert abs(one.w_t - other.w_t) < share * velocity
                 assert abs(one.w_tt - other.w_tt) < share * acceleration
-            time = exact.frame[END]
+            time = exact.frame[0].end
     assert time == end
     assert spans < {1e-3: 0.35, 1e-5: 0.8}[off] * kinks
 
@@ -120,8 +121,8 @@ def test_only_what_hardly_counts_is_bridged():
     surface = spread(2)
     record = surface.record
     local, time = new_local(record), 0.0
-    allow(local, 1e-4 * STROKE * 1e3, 1e-3 * STROKE * 1e6)
+    allow_bridges(local, 1e-4 * STROKE * 1e3, 1e-3 * STROKE * 1e6)
     while time < 0.05:
         enter(record, local, 0.0, 0.0, time, 0.05)
-        assert local.frame[END] == min(next_kink(record.drives, time), 0.05)
-        time = local.frame[END]
+        assert local.frame[0].end == min(next_breakpoint(record.drives, time), 0.05)
+        time = local.frame[0].end

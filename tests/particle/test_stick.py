@@ -9,7 +9,7 @@ from particle import ConstantFriction, CoulombAdhesion, Drive, KogutEtsion, poly
 from particle.events.equations import Part, length, pull
 from particle.events.stick import leaves_rest, new_rest
 from particle.friction.contact import friction_limit
-from particle.surface.at_point import fields
+from particle.surface.at_point import surface_at
 from particle.surface.local import new_local
 from particle.surface.span import enter
 
@@ -41,7 +41,7 @@ KOGUT_ETSION = KogutEtsion.paper().law
 
 def stays(surface, local, part, time):
     """Whether a part at rest at the origin is held at one time: the definition, from the equations of motion."""
-    f = fields(local, 0.0, 0.0, time)
+    f = surface_at(local, 0.0, 0.0, time)
     p = pull(f, 0.0, 0.0, part)
     limit = part.law.static_ratio * friction_limit(part.law, p.normal) / part.mass
     return -part.law.pull_off <= p.normal <= part.law.largest_load and length(f, p.x, p.y) <= limit

@@ -14,7 +14,7 @@ from fem_plate import Plate
 from fem_plate.analytic import DiscShapes
 from meshes import disc
 from particle import Drive, polynomial_surface
-from particle.surface.at_point import fields
+from particle.surface.at_point import surface_at
 from particle.surface.cells import UNBUILT, CellPool
 from particle.surface.local import new_local, within_cell
 from particle.surface.span import enter
@@ -148,7 +148,7 @@ def test_cells_hold_a_little_beyond_their_sides(surface, exact):
     strokes = [drive.evaluate(1e-3)[0] for drive in DRIVES]
     for (x, y), truth in zip(outside, exact.evaluate(outside, strokes)[0], strict=True):
         assert within_cell(local, 0.999 * x, 0.999 * y) and not within_cell(local, x + surface.size, y)
-        assert fields(local, x, y, 1e-3).w == pytest.approx(truth, abs=1e-8 * 150e-6)
+        assert surface_at(local, x, y, 1e-3).w == pytest.approx(truth, abs=1e-8 * 150e-6)
 
 
 def test_there_must_be_one_drive_an_actuator(exact):

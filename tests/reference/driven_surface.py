@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from particle import AnyDrive, HermiteDrive, SurfaceMotion, TableDrive, polynomial_surface
-from particle.drives.drive import drive_table
+from particle.drives import drive_table
 
 
 def driven(

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.drives.drive import ORDER, drive_piece
-from particle.drives.table import DriveTable
+from particle.drives import ORDER, DriveTable, drive_piece
 
 
 def piece_at(table: DriveTable, i: int, time: float, unit: float) -> NDArray[np.float64]:

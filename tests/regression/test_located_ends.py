@@ -16,7 +16,7 @@ from particle import (
     polynomial_surface,
     simulate,
 )
-from particle.drives.drive import drive_table, next_kink
+from particle.drives import drive_table, next_breakpoint
 
 RADIUS = 300e-6
 
@@ -46,7 +46,7 @@ def test_a_part_that_leaves_along_an_axis_has_its_files(axis, tmp_path):
     assert all(file.exists() for file in result.files)
 
 
-def test_next_kink_is_always_later():
+def test_next_breakpoint_is_always_later():
     """At late times rounding put a kink before the time that it was asked for, and a run never ended."""
     random = np.random.default_rng(5)
     for _ in range(100):
@@ -54,7 +54,7 @@ def test_next_kink_is_always_later():
         table = drive_table([drive])
         for count in random.integers(1, 100_000, 20):
             kink = drive.delay + count * 0.5 / drive.frequency
-            assert next_kink(table, kink) > kink
+            assert next_breakpoint(table, kink) > kink
 
 
 @pytest.mark.parametrize("static, kind", [(0.39, EventKind.REVERSES), (0.41, EventKind.STOPS)])

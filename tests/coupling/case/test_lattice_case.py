@@ -6,7 +6,7 @@ from lattice_cases import DRIVE, FIRST, FRAME, PLACES, problems, python_case, re
 
 from coupling.case import ActuatorCase, Case, CaseError, InputError, LatticeCase, read_case
 from coupling.run import build_drives
-from particle.drives.drive import drive_table
+from particle.drives import drive_table
 
 
 def test_rows_run_along_y_and_columns_along_x_around_the_centre(tmp_path):

@@ -1,0 +1,108 @@
+"""Kernels of drives: the piece around a time, and the breakpoint after it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.drives.record import MERGED, ORDER, ROUNDING, DriveTable
+from particle.jit import jit_no_arrays
+
+FloatArray = NDArray[np.float64]
+
+
+@jit_no_arrays
+def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatArray) -> None:
+    """The quintic of drive i around `time` [s]: its coefficients (6,) [m] in (t - time) / unit, into `out`.
+
+    At a breakpoint it is the piece that begins there.
+    """
+    for k in range(ORDER):
+        out[k] = 0.0
+    if time < table.delay[i]:
+        out[0] = table.coefficients[table.first[i], 0]
+        return
+    if time >= _edge(table, i, table.repeats[i], table.first[i]):
+        for k in range(ORDER):
+            out[0] += table.coefficients[table.first[i + 1] - 1, k]
+        return
+    passes, segment = _place(table, i, time)
+    since = time
+    if math.isfinite(table.span[i]):
+        since = (time - table.delay[i]) - table.span[i] * passes
+    # Taylor's shift of the polynomial to `time`, by repeated Horner.
+    shift = (since - table.start[segment]) / table.scale[segment]
+    for k in range(ORDER):
+        out[k] = table.coefficients[segment, k]
+    for k in range(ORDER - 1):
+        for j in range(ORDER - 2, k - 1, -1):
+            out[j] += shift * out[j + 1]
+    factor = 1.0
+    for k in range(ORDER):
+        out[k] *= factor
+        factor *= unit / table.scale[segment]
+
+
+@jit_no_arrays
+def breakpoint_slack(table: DriveTable, i: int, time: float) -> float:
+    """How close [s] to `time` a breakpoint of drive i must be to count as one there: rounding, or 1e-12 of a stroke."""
+    return MERGED * table.stroke_time[i] + ROUNDING * abs(time) if math.isfinite(table.span[i]) else 0.0
+
+
+@jit_no_arrays
+def drive_breakpoint(table: DriveTable, i: int, time: float) -> float:
+    """The first time [s] after `time` at which drive i has a breakpoint; inf when there is none."""
+    if not math.isfinite(table.span[i]):
+        return math.inf
+    after = time + breakpoint_slack(table, i, time)
+    if after < table.delay[i]:
+        return float(table.delay[i])
+    if after >= _edge(table, i, table.repeats[i], table.first[i]):
+        return math.inf
+    passes, segment = _place(table, i, after)
+    if segment + 1 < table.first[i + 1]:
+        return _edge(table, i, passes, segment + 1)
+    return _edge(table, i, passes + 1.0, table.first[i])
+
+
+@jit_no_arrays
+def next_breakpoint(table: DriveTable, time: float) -> float:
+    """The first time [s] after `time` at which any drive has a breakpoint; inf when there is none.
+
+    Breakpoints closer than 1e-12 of a stroke, or than rounding at that time, are taken as one.
+    """
+    nearest = math.inf
+    for i in range(len(table.delay)):
+        nearest = min(nearest, drive_breakpoint(table, i, time))
+    return nearest
+
+
+@jit_no_arrays
+def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
+    """When [s] a segment of drive i begins after so many passes: the one expression that decides about pieces."""
+    if not math.isfinite(table.span[i]):
+        return math.inf
+    return float(table.delay[i] + (table.span[i] * passes + table.start[segment]))
+
+
+@jit_no_arrays
+def _place(table: DriveTable, i: int, time: float) -> tuple[float, int]:
+    """The passes that drive i has behind it at `time` [s], from its delay to before its end, and its segment then."""
+    low, high = table.first[i], table.first[i + 1]
+    if not math.isfinite(table.span[i]):
+        return 0.0, low
+    passes = float(np.floor((time - table.delay[i]) / table.span[i]))
+    # The quotient is rounded: at late times it may be one off.
+    if _edge(table, i, passes + 1.0, low) <= time:
+        passes += 1.0
+    elif _edge(table, i, passes, low) > time:
+        passes -= 1.0
+    while high - low > 1:
+        middle = (low + high) // 2
+        if _edge(table, i, passes, middle) <= time:
+            low = middle
+        else:
+            high = middle
+    return passes, low

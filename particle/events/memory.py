@@ -1,0 +1,57 @@
+"""Scratch memory of a path: where the part is, what it does, and what the steps need."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.events.motion import Counts, Motion, Now, as_numbers
+from particle.events.record import Row
+from particle.events.step import Step, new_step
+from particle.events.stick import Rest, new_rest
+from particle.events.tableau import Pairs
+from particle.records import new_records
+from particle.surface import LocalSurface, Surface, new_local, prepare
+
+FloatArray = NDArray[np.float64]
+
+
+class Memory(NamedTuple):
+    """Scratch memory of a path."""
+
+    local: LocalSurface
+    rest: Rest
+    step: Step
+    motion: NDArray[Motion]  # (1,)
+    motion_numbers: FloatArray  # (1, SIZE), the same memory without names
+    now: NDArray[Now]  # (1,)
+    counts: NDArray[Counts]  # (1,)
+    row: NDArray[Row]  # (1,) what is about to be recorded
+    stop: NDArray[np.int64]  # (1,) another thread sets it to 1 when nobody waits for the path any more
+
+
+def new_memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
+    """Scratch memory that fits the surface as far as its cells are built."""
+    motion = new_records(Motion)
+    return Memory(
+        local=new_local(surface),
+        rest=new_rest(),
+        step=new_step(pairs),
+        motion=motion,
+        motion_numbers=as_numbers(motion),
+        now=new_records(Now),
+        counts=new_records(Counts),
+        row=new_records(Row),
+        stop=stop,
+    )
+
+
+def clear_memory(surface: Surface, memory: Memory) -> None:
+    """Make the scratch memory of another path, over a surface of the same measures, as good as new."""
+    prepare(surface, memory.local)
+    memory.step.seen[0].time = math.nan
+    for array in (memory.motion, memory.now, memory.counts):
+        array[:] = np.zeros_like(array)

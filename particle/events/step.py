@@ -1,0 +1,99 @@
+"""Scratch memory and result of one Runge-Kutta step."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.events.motion import Counts, Motion, as_numbers
+from particle.events.tableau import Pairs
+from particle.jit import jit_no_arrays
+from particle.records import Record, new_records
+from particle.surface import LocalSurface, SurfacePoint, surface_at
+
+FloatArray = NDArray[np.float64]
+
+
+class Seen(Record):
+    """The start of a step: its distance from the rim, and the surface where the step before ended."""
+
+    gap: float  # m
+    time: float  # s, x, y [m], cell: for which the rest holds
+    x: float
+    y: float
+    cell: int
+    w: float
+    w_t: float
+    w_tt: float
+    w_x: float
+    w_y: float
+    w_xt: float
+    w_yt: float
+    w_xx: float
+    w_xy: float
+    w_yy: float
+    base_px: float
+    base_py: float
+    base_vx: float
+    base_vy: float
+    base_ax: float
+    base_ay: float
+
+
+class Step(NamedTuple):
+    """Scratch memory and result of a step. Names with `_numbers` are the same memory without names."""
+
+    rates: NDArray[Motion]  # (stages + 1,)
+    rate_numbers: FloatArray  # (stages + 1, SIZE)
+    stage: NDArray[Motion]  # (1,)
+    stage_numbers: FloatArray  # (1, SIZE)
+    end: NDArray[Motion]  # (1,)
+    plane: NDArray[Motion]  # (1,) the motion at the start, its velocity in the plane's coordinates
+    still: NDArray[Motion]  # (1,) zeros
+    loads: FloatArray  # (stages + 1,) N, normal force at each stage
+    margins: FloatArray  # (stages + 1,) how far each stage is from the end of contact
+    seen: NDArray[Seen]  # (1,)
+
+
+def new_step(pairs: Pairs) -> Step:
+    stages = len(pairs.long.c)
+    rates, stage, seen = new_records(Motion, stages), new_records(Motion), new_records(Seen)
+    seen[0].time = math.nan
+    return Step(
+        rates=rates,
+        rate_numbers=as_numbers(rates),
+        stage=stage,
+        stage_numbers=as_numbers(stage),
+        end=new_records(Motion),
+        plane=new_records(Motion),
+        still=new_records(Motion),
+        loads=np.zeros(stages),
+        margins=np.zeros(stages),
+        seen=seen,
+    )
+
+
+@jit_no_arrays
+def surface_at_start(local: LocalSurface, step: Step, counts: Counts, time: float, motion: Motion) -> SurfacePoint:
+    """The surface where a step starts; the step before may have evaluated it at its end."""
+    s: Seen = step.seen[0]
+    if s.time == time and s.x == motion.x and s.y == motion.y and s.cell == local.frame[0].cell:
+        return SurfacePoint(
+            *(s.w, s.w_t, s.w_tt, s.w_x, s.w_y, s.w_xt, s.w_yt, s.w_xx, s.w_xy, s.w_yy),
+            *(s.base_px, s.base_py, s.base_vx, s.base_vy, s.base_ax, s.base_ay),
+        )
+    counts.evaluations += 1
+    return surface_at(local, motion.x, motion.y, time)
+
+
+@jit_no_arrays
+def keep_surface(local: LocalSurface, step: Step, time: float, f: SurfacePoint) -> None:
+    """Keep the surface at the end of a step that ends at a time [s]."""
+    s: Seen = step.seen[0]
+    s.time, s.x, s.y, s.cell = time, step.stage[0].x, step.stage[0].y, local.frame[0].cell
+    s.w, s.w_t, s.w_tt, s.w_x, s.w_y, s.w_xt, s.w_yt = f.w, f.w_t, f.w_tt, f.w_x, f.w_y, f.w_xt, f.w_yt
+    s.w_xx, s.w_xy, s.w_yy, s.base_px, s.base_py = f.w_xx, f.w_xy, f.w_yy, f.base_px, f.base_py
+    s.base_vx, s.base_vy, s.base_ax, s.base_ay = f.base_vx, f.base_vy, f.base_ax, f.base_ay

@@ -1,0 +1,156 @@
+"""Where compiled kernels are kept: a folder named by the hash of the package's sources, so that none can be stale.
+
+numba compares a kernel's own file only, and would go on with old code of the kernels that it calls.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from numba.core import config
+from numba.core.caching import Cache, CompileResultCacheImpl, _CacheLocator, _SourceFileBackedLocatorMixin
+from numba.misc.appdirs import AppDirs
+
+PACKAGE = Path(__file__).parent
+PREFIX = "kernels-"
+MAX_FOLDERS = 4  # of the last used sources; others may belong to another checkout, or to the state before an edit
+MAX_WAIT = 300.0  # s, for another process to compile a kernel
+
+
+def source_digest(package: Path) -> str:
+    """A hash of all sources of a package; empty where there are none, as in an archive."""
+    sources = sorted(package.rglob("*.py"))
+    digest = hashlib.sha256()
+    for path in sources:
+        digest.update(path.relative_to(package).as_posix().encode() + b"\0")
+        digest.update(hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()[:32] if sources else ""
+
+
+def source_stamps(package: Path) -> frozenset[tuple[str, int, int]]:
+    """What changes when any source is edited: its name, time and size."""
+    stats = ((str(path), path.stat()) for path in package.rglob("*.py"))
+    return frozenset((name, stat.st_mtime_ns, stat.st_size) for name, stat in stats)
+
+
+def cache_folder(package: Path, digest: str) -> Path | None:
+    """The folder for kernels of these sources; None where no place can be written to.
+
+    It lies in NUMBA_CACHE_DIR if that is set, else beside the sources, else in the user's folder of caches.
+    """
+    user = Path(AppDirs(appname="active-surface", appauthor=False).user_cache_dir)
+    places = [Path(config.CACHE_DIR) / "active-surface"] if config.CACHE_DIR else []
+    for place in [*places, package / "__pycache__", user] if digest else []:
+        folder = place / f"{PREFIX}{digest}"
+        if _can_write(folder):
+            _remove_unused(place)
+            return folder
+    return None
+
+
+def _can_write(folder: Path) -> bool:
+    """Whether files can be made in the folder, which is made and marked as used."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+        os.utime(folder)
+    except OSError:
+        return False
+    return True
+
+
+def _remove_unused(place: Path) -> None:
+    """Keep the folders used last; a process that still uses another one compiles anew what it lacks."""
+    with suppress(OSError):
+        folders = sorted(place.glob(f"{PREFIX}*"), key=lambda folder: folder.stat().st_mtime, reverse=True)
+        for folder in folders[MAX_FOLDERS:]:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+STAMPS = source_stamps(PACKAGE)
+FOLDER = cache_folder(PACKAGE, source_digest(PACKAGE))
+
+
+class _Locator(_SourceFileBackedLocatorMixin, _CacheLocator):  # type: ignore[misc]
+    """Files of one kernel in the folder."""
+
+    def __init__(self, kernel: Callable[..., Any]) -> None:
+        self._py_file = kernel.__code__.co_filename
+        self._name = f"{kernel.__module__}-{kernel.__code__.co_firstlineno}"
+
+    def get_cache_path(self) -> str:
+        return str(FOLDER)
+
+    def get_disambiguator(self) -> str:
+        return self._name
+
+
+class _CacheImpl(CompileResultCacheImpl):  # type: ignore[misc]
+    """As numba's own, with our folder whatever its settings are."""
+
+    def __init__(self, kernel: Callable[..., Any]) -> None:
+        self._lineno = kernel.__code__.co_firstlineno
+        self._locator = _Locator(kernel)
+        self._filename_base = self.get_filename_base(kernel.__qualname__, "")
+
+
+class KernelCache(Cache):  # type: ignore[misc]
+    """The cache of one kernel.
+
+    Once a source has been edited under a running process, nothing is loaded or saved any more. Of several processes
+    that need a kernel, one compiles it while the others wait.
+    """
+
+    _impl_class = _CacheImpl
+    _compiling: KernelCache | None = None  # the kernel that this process is compiling, with all that it calls
+
+    def __init__(self, dispatcher: Any) -> None:
+        super().__init__(dispatcher.py_func)
+        self._dispatcher = dispatcher
+        self._lock: Any = None
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        if source_stamps(PACKAGE) != STAMPS:
+            return None
+        kernel = super().load_overload(sig, target_context)
+        if kernel is not None or not self._begin():
+            return kernel
+        kernel = super().load_overload(sig, target_context)  # another process may have compiled it
+        if kernel is not None:
+            self._end()
+        return kernel
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            if source_stamps(PACKAGE) == STAMPS:
+                super().save_overload(sig, data)
+        finally:
+            if KernelCache._compiling is self:
+                self._end()
+
+    def _begin(self) -> bool:
+        """Wait until no other process compiles this kernel; False within another kernel, which is locked already."""
+        from filelock import FileLock, Timeout  # here, because a run with cached kernels needs no lock
+
+        other = KernelCache._compiling
+        if other is not None and other._dispatcher._compiling_counter:
+            return False
+        if other is not None:  # its compilation was broken off
+            other._end()
+        self._impl.locator.ensure_cache_path()
+        lock = FileLock(Path(self.cache_path) / f"{self._impl.filename_base}.lock")
+        with suppress(Timeout, OSError, NotImplementedError):  # then both compile it
+            lock.acquire(timeout=MAX_WAIT)
+        KernelCache._compiling, self._lock = self, lock
+        return True
+
+    def _end(self) -> None:
+        KernelCache._compiling = None
+        self._lock.release()

@@ -1,0 +1,43 @@
+"""What a part does, how its path ends, and what happens to it at one moment."""
+
+from __future__ import annotations
+
+import enum
+
+
+class Mode(enum.IntEnum):
+    """What a part does; the first three are also the states of a trajectory."""
+
+    RESTING = 0
+    SLIDING = 1
+    FLYING = 2
+    MANIFOLD = 3  # it slides, in its first moments (`events.breakaway`)
+    TURNED = 4  # it came to rest on a slope that pulls it back at once
+
+
+class Verdict(enum.IntEnum):
+    """How a path ends; the last two only for now: until there is a cell, and when nobody waits for it any more."""
+
+    GOES_ON = 0
+    DETACHED = 1
+    LEFT_PLATE = 2
+    OVERLOADED = 3
+    WORK_LIMIT = 4
+    LACKS_CELL = 5
+    INTERRUPTED = 6
+
+
+class EventKind(enum.IntEnum):
+    """What happens to the part at one moment."""
+
+    SLIPS = 0  # begins to slide
+    STOPS = 1  # comes to rest on the surface
+    REVERSES = 2  # stops sliding and slides on in another direction at once
+    DETACHES = 3  # comes off
+    LEAVES_PLATE = 4  # goes over the rim
+    OVERLOADS = 5  # is pressed on more than the friction law covers
+    LANDS = 6  # touches the surface again after a flight
+
+
+NO_EVENT = -1
+END_EVENTS = 2  # the event of a path that ends is EventKind(END_EVENTS + verdict)

@@ -1,0 +1,29 @@
+"""A moving surface as kernels read it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.drives import DriveTable
+from particle.surface.cells import Cells
+
+FloatArray = NDArray[np.float64]
+
+
+class Surface(NamedTuple):
+    """A moving surface as kernels read it: arrays and numbers only."""
+
+    drives: DriveTable  # `shape_count` drives, then the base's x and y where it moves
+    cells: Cells
+    shape_count: int
+    sources: FloatArray  # (J, 2) m, the centres of the logarithms
+    size: float  # m, the length in the logarithms and that tolerances refer to
+    floor: float  # m, radius below which the Hessian of a logarithm grows no more
+    overhang: float  # a cell's polynomials hold out to this many half widths
+    conics: FloatArray  # (k, 4) m, the rim's whole ellipses: centre x, y and semi-axes
+    edges: FloatArray  # (m, 3, 2) m, its other edges: start, middle and end of parabolas; no rim where both are empty
+    moving_base: bool  # whether two more drives carry the base in its plane
+    unit: float  # s, of time in the polynomials that are made of cells and drives

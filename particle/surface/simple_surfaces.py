@@ -1,0 +1,106 @@
+"""Surfaces without actuators: polynomials and platforms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import reduce
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from particle.drives import ORDER, AnyDrive, DriveTable, drive_table, monomial_table
+from particle.surface.cells import OneCell
+from particle.surface.moving_surface import SurfaceMotion
+
+
+def polynomial_surface(
+    coefficients: ArrayLike, base: Sequence[AnyDrive] | None = None, size: float = 1.0
+) -> SurfaceMotion:
+    """A polynomial surface without rim and actuators, w = sum c[i, j, k] x^i y^j t^k in SI units: bowls, inclines,
+    tests.
+
+    Parameters
+    ----------
+    coefficients : array (I, J) or (I, J, K)
+        c, for a surface at rest or a moving one with K <= 6.
+    size : float
+        Length that the integrator's tolerance refers to, m.
+    base : pair of drives, optional
+        Motion of the base along x and y.
+
+    Returns
+    -------
+    surface : SurfaceMotion
+        The surface.
+
+    Raises
+    ------
+    ValueError
+        The coefficients have any other shape.
+    """
+    c = np.asarray(coefficients, dtype=float)
+    c = c[:, :, None] if c.ndim == 2 else c
+    if c.ndim != 3 or not 1 <= c.shape[2] <= ORDER:
+        raise ValueError(
+            f"Input coefficients must have shape (I, J) or (I, J, K) with K <= 6; got {np.shape(coefficients)}"
+        )
+    if base is not None and len(base) != 2:
+        raise ValueError(f"Input base of polynomial_surface must be two drives, for x and y; got {len(base)}")
+    degree = c.shape[0] + c.shape[1] - 2
+    square = np.zeros((degree + 1, degree + 1, c.shape[2]))
+    square[: c.shape[0], : c.shape[1]] = c
+    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
+    shapes = np.array([[square[i, j, k] * size ** (i + j) for i, j in powers] for k in range(c.shape[2])])
+    return SurfaceMotion(
+        drives=_joined(monomial_table(c.shape[2]), drive_table(base or [])),
+        store=OneCell(shapes, degree, size),
+        sources=np.zeros((0, 2)),
+        size=size,
+        moving_base=base is not None,
+    )
+
+
+def platform_surface(
+    x: AnyDrive | None = None, y: AnyDrive | None = None, z: AnyDrive | None = None, size: float = 1.0
+) -> SurfaceMotion:
+    """A flat rigid surface without rim that drives move along x, y and z.
+
+    Positions on it are relative to the platform.
+
+    Parameters
+    ----------
+    x, y, z : drive, optional
+        Motion along each axis; None: no motion.
+    size : float
+        Length that the integrator's tolerance refers to, m; the platform's largest travel suits.
+
+    Returns
+    -------
+    surface : SurfaceMotion
+        The surface.
+
+    Raises
+    ------
+    ValueError
+        The size is not positive.
+    """
+    if not (math.isfinite(size) and size > 0):
+        raise ValueError(f"Input size of platform_surface must be a positive length in m; got {size!r}")
+    flat = polynomial_surface([[1.0]], size=size)
+    tables = [_still_table() if drive is None else drive_table([drive]) for drive in (z, x, y)]
+    return replace(flat, drives=reduce(_joined, tables), moving_base=True)
+
+
+def _still_table() -> DriveTable:
+    """A drive that stays at 0, without kinks."""
+    table = monomial_table(1)
+    return table._replace(coefficients=np.zeros_like(table.coefficients))
+
+
+def _joined(a: DriveTable, b: DriveTable) -> DriveTable:
+    return DriveTable(
+        np.concatenate([a.first, a.first[-1] + b.first[1:]]),
+        *(np.concatenate([left, right]) for left, right in zip(a[1:], b[1:], strict=True)),
+    )

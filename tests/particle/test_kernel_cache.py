@@ -1,0 +1,108 @@
+"""No kernel is stale, wherever the cache lies, and several processes do not compile the same one."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from particle import kernel_cache
+from particle.kernel_cache import MAX_FOLDERS, PACKAGE, cache_folder, source_digest
+
+ROOMS = ("", "drives", "friction", "surface", "events", "fixed")
+USE = """
+import os
+from particle.events.equations import Part
+from particle.events.slipping import load_and_demand
+from particle import ConstantFriction
+part = Part(1.0, 9.0, 0.0, 0.0, 2.0, ConstantFriction(1.0).law)
+import particle
+assert particle.__file__.startswith(os.getcwd())
+print(load_and_demand(1.0, 0.0, 0.0, 0.0, 0.0, part)[0], sum(load_and_demand.stats.cache_misses.values()))
+"""
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A copy of the package."""
+    return shutil.copytree(PACKAGE, tmp_path / "particle", ignore=shutil.ignore_patterns("__pycache__"))
+
+
+@pytest.fixture(autouse=True)
+def no_settings(monkeypatch, tmp_path):
+    monkeypatch.setattr(kernel_cache.config, "CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
+
+
+def test_an_edit_of_any_source_in_any_room_gives_another_folder(package):
+    before = {source_digest(package)}
+    assert before == {source_digest(PACKAGE)}  # wherever the package lies
+    for room in ROOMS:
+        for source in sorted((package / room).glob("*.py")):
+            source.write_text(source.read_text() + "\n# edited\n")
+            before.add(source_digest(package))
+    assert len(before) == 1 + len(list(package.rglob("*.py")))
+
+
+def test_the_cache_lies_where_the_user_wants_it_else_beside_the_sources(package, monkeypatch, tmp_path):
+    assert cache_folder(package, "abc") == package / "__pycache__" / "kernels-abc"
+    monkeypatch.setattr(kernel_cache.config, "CACHE_DIR", str(tmp_path / "own"))
+    assert cache_folder(package, "abc") == tmp_path / "own" / "active-surface" / "kernels-abc"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the user's folder is set as on Linux")
+def test_a_folder_that_cannot_be_written_to_is_passed_over(package, monkeypatch, tmp_path):
+    (package / "__pycache__").write_text("a file in its place")
+    assert cache_folder(package, "abc") == tmp_path / "user" / "active-surface" / "kernels-abc"
+    monkeypatch.setattr(kernel_cache.config, "CACHE_DIR", str(package / "__pycache__"))
+    assert cache_folder(package, "abc") == tmp_path / "user" / "active-surface" / "kernels-abc"
+    shutil.rmtree(tmp_path / "user")
+    (tmp_path / "user").write_text("another one")
+    assert cache_folder(package, "abc") is None
+
+
+def test_only_the_folders_used_last_are_kept(package):
+    for k in range(MAX_FOLDERS + 2):
+        folder = cache_folder(package, f"{k}")
+        assert folder
+        (folder / "kernel.nbc").write_bytes(b"")
+        os.utime(folder, (k, k))
+    assert cache_folder(package, "2")  # used again
+    assert cache_folder(package, "new")
+    kept = {folder.name.removeprefix("kernels-") for folder in (package / "__pycache__").iterdir()}
+    assert kept == {"2", "new", *(f"{k}" for k in range(4, MAX_FOLDERS + 2))}
+
+
+def start(package: Path, cache: Path) -> subprocess.Popen[str]:
+    """A process in the folder of the package, so that it imports that."""
+    settings = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
+    command = [sys.executable, "-c", USE]
+    return subprocess.Popen(command, cwd=package.parent, env=settings, stdout=subprocess.PIPE, text=True)
+
+
+def result(process: subprocess.Popen[str]) -> tuple[float, int]:
+    """The load, and how many kernels were compiled for it."""
+    load, compiled = process.communicate(timeout=600)[0].split()
+    return float(load), int(compiled)
+
+
+@pytest.mark.compiled
+def test_a_kernel_is_compiled_once_and_anew_when_one_that_it_calls_has_changed(package, tmp_path):
+    cache = tmp_path / "own"
+    both = [start(package, cache), start(package, cache)]
+    outputs = [result(process) for process in both]
+    assert [load for load, _ in outputs] == [12.0, 12.0]
+    assert sum(compiled for _, compiled in outputs) == 1
+    assert result(start(package, cache)) == (12.0, 0)
+    source = package / "events" / "equations.py"
+    text = source.read_text()
+    assert text.count("+ part.squeeze") == 1
+    time.sleep(1.1)  # Python itself looks at the second of an edit and at its size
+    source.write_text(text.replace("+ part.squeeze", "- part.squeeze"))
+    assert result(start(package, cache)) == (8.0, 1)
+    time.sleep(1.1)
+    source.write_text(text)
+    assert result(start(package, cache)) == (12.0, 0)
