@@ -37,7 +37,7 @@ def stiffness_per_point(stiffness: ArrayLike | None, count: int, caller: str, ma
     wrong = np.flatnonzero(~(values >= 0) if may_float else ~(values > 0)).tolist()
     if wrong:
         bound = "0 or more" if may_float else "positive"
-        got = f"{values[wrong[0]]} N/m for point {wrong[0] + 1}"
+        got = f"{values[wrong[0]]} N/m for point {wrong[0]}"
         raise ValueError(f"Input stiffness of {caller} must be {bound}; got {got}")
     return values
 
@@ -49,12 +49,10 @@ def check_points(caller: str, points: FloatArray, gap: FloatArray, size: float) 
     """
     mistakes = [] if points.size else ["at least one point is needed"]
     for i in np.flatnonzero(~(gap > SAME_PLACE * size)).tolist():
-        mistakes.append(
-            f"point {i + 1} at {points[i].tolist()} m must lie inside the rim; it is {-gap[i]:.3g} m beyond it"
-        )
+        mistakes.append(f"point {i} at {points[i].tolist()} m must lie inside the rim; it is {-gap[i]:.3g} m beyond it")
     finite = np.flatnonzero(np.isfinite(points).all(axis=1))
     for i, j in finite[sorted(cKDTree(points[finite]).query_pairs(SAME_PLACE * size))].tolist():
-        mistakes.append(f"points {i + 1} and {j + 1} must differ; both are at {points[i].tolist()} m")
+        mistakes.append(f"points {i} and {j} must differ; both are at {points[i].tolist()} m")
     if mistakes:
         raise ValueError(f"Input points of {caller}: " + "; ".join(mistakes))
 

@@ -120,18 +120,14 @@ def _mistakes(xy: FloatArray, corners: ArrayLike, cell_size: float, names: Seque
         mistakes.append(f"Input names of polygon must be one for each of its {len(xy)} sides; got {names!r}")
     repeated = [(i, j) for i in range(len(xy)) for j in range(i) if (xy[i] == xy[j]).all()]
     for i, j in repeated:
-        mistakes.append(
-            f"Input corners of polygon must differ; got corner {i + 1} at corner {j + 1}, {xy[i].tolist()} m"
-        )
+        mistakes.append(f"Input corners of polygon must differ; got corner {i} at corner {j}, {xy[i].tolist()} m")
     if not repeated:
         ends = np.roll(xy, -1, axis=0)
         low, high = np.minimum(xy, ends), np.maximum(xy, ends)
         overlap = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)  # of boxes: no other sides can cross
         crossed = [(j, i) for i, j in np.argwhere(np.tril(overlap, -1)).tolist() if _touch(xy, ends, i, j)]
         for one, other in crossed:
-            mistakes.append(
-                f"Input corners of polygon must give sides that do not cross; got {one + 1} and {other + 1}"
-            )
+            mistakes.append(f"Input corners of polygon must give sides that do not cross; got {one} and {other}")
     return mistakes
 
 

@@ -82,14 +82,14 @@ def simulate_many(
     if drives is not None:
         if len(drives) != len(parts):
             wrong.append(f"Input drives of simulate_many must be one row a part, {len(parts)}; got {len(drives)}")
-        wrong += surface.drive_faults({f"drives of part {k + 1}": own for k, own in enumerate(drives)})
+        wrong += surface.drive_faults({f"drives of part {k}": own for k, own in enumerate(drives)})
     if threads is not None and threads < 1:
         wrong.append(f"Input threads of simulate_many must be at least 1; got {threads!r}")
     wrong += faults(duration, gravity, tolerance, after_detachment)
     record = surface.record
     for k, part in enumerate(parts):
         if not rim_gap(record, *map(float, part.position)) >= 0:
-            wrong.append(f"Input position of part {k + 1} must lie on the plate; got {tuple(part.position)!r} m")
+            wrong.append(f"Input position of part {k} must lie on the plate; got {tuple(part.position)!r} m")
     if wrong:
         raise ValueError("; ".join(wrong))
     found: list[Trajectory | None] = [None] * len(parts)
@@ -144,7 +144,7 @@ def _laws(friction: Contact | Iterable[Contact], count: int) -> tuple[list[Conta
         wrong.append(f"Input friction of simulate_many must be one law or one a part, {count}; got {got}")
     for k, law in enumerate(laws or []):
         if not _is_law(law):
-            wrong.append(f"Input friction of part {k + 1} must be a friction law; got {law!r}")
+            wrong.append(f"Input friction of part {k} must be a friction law; got {law!r}")
     return laws or [], wrong
 
 

@@ -117,7 +117,7 @@ class _Work:
             try:
                 task = route.leg(number, place)
             except ValueError as error:
-                self._failure = f"leg {number + 1}: {error}"
+                self._failure = f"leg {number}: {error}"
                 return
             tell = partial(_tell_leg, self._tell, number, len(route.through))
             self._approach = Approach(self._surface, task, self._threads, tell)
@@ -167,7 +167,7 @@ class _Work:
         if settled(path):
             self._arrivals, self._now = (*self._arrivals, end), end
         else:
-            self._failure = f"leg {len(self._arrivals) + 1}: {path.sentence} At {path.time[-1] * 1e3:g} ms."
+            self._failure = f"leg {len(self._arrivals)}: {path.sentence} At {path.time[-1] * 1e3:g} ms."
         return path
 
 

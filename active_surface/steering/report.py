@@ -50,7 +50,7 @@ def lines(result: Aimed) -> list[tuple[str, str]]:
         ),
         ("outcome", f"{result.trajectory.outcome}. {result.trajectory.sentence}"),
     ]
-    for number, leg in enumerate(result.legs, 1):
+    for number, leg in enumerate(result.legs):
         if len(result.legs) > 1:
             rows.append((f"leg {number}", f"from {leg.start * MILLI:g} ms on"))
         rows += [(f"actuator {k}", _drive(leg.actuators[k])) for k in leg.movers]
@@ -80,7 +80,7 @@ def plan_lines(result: Planned) -> list[tuple[str, str]]:
     for k, (time, distance) in enumerate(zip(result.arrivals, result.distances, strict=True)):
         where = f"{point(result.route.through[k])} by {time * MILLI:g} ms, but for {distance * MICRO:.4f} um"
         where += f", {_verdict(distance, result.route.settings.tolerance)}"
-        rows.append((f"leg {k + 1}", where))
+        rows.append((f"leg {k}", where))
     if result.failure:
         label, _, said = result.failure.partition(": ")
         rows.append((label, said))

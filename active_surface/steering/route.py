@@ -30,9 +30,9 @@ class Route:
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", self.name or self.case.name)
         wrong = [] if self.through else ["through must be one way-point or more; got none"]
-        for number, place in enumerate(self.through, 1):
+        for number, place in enumerate(self.through):
             # Where legs after the first begin is not known yet: `leg` looks at what depends on it.
-            known = mistakes(self.case, self.settings, place) if number == 1 else _misplaced(self.case, place)
+            known = mistakes(self.case, self.settings, place) if number == 0 else _misplaced(self.case, place)
             wrong += [f"{f'way-point {number}' if key == 'target' else key} {message}" for key, message in known]
         if wrong:
             raise ValueError("\n".join(wrong))
@@ -44,7 +44,7 @@ class Route:
         """
         part = self.case.part.model_copy(update={"position": start, "velocity": (0.0, 0.0)} if number else {})
         case = self.case.model_copy(update={"part": part, "source": None})
-        return Task(case, self.through[number], self.settings, f"{self.name}_{number + 1}")
+        return Task(case, self.through[number], self.settings, f"{self.name}_{number}")
 
 
 def _misplaced(case: Case, place: Place) -> Iterator[Mistake]:

@@ -51,7 +51,7 @@ class FrictionTable:
     def __post_init__(self) -> None:
         wrong = point_mistakes(self.loads, self.limits, self.static_ratio)
         if wrong:
-            places = ["" if point is None else f"at point {point + 1} " for _, point, _ in wrong]
+            places = ["" if point is None else f"at point {point} " for _, point, _ in wrong]
             each = zip(wrong, places, strict=True)
             raise ValueError(
                 "; ".join(f"Input {name} of FrictionTable {place}{what}" for (name, _, what), place in each)

@@ -109,7 +109,7 @@ def test_disc_shapes_are_the_greens_functions_that_meet_unit_heights(exact, layo
 
 
 def test_disc_shapes_refuse_points_beyond_the_radius_and_doubled_ones():
-    with pytest.raises(ValueError, match="point 2 at .* must lie inside the rim.*; points 1 and 3 must differ"):
+    with pytest.raises(ValueError, match="point 1 at .* must lie inside the rim.*; points 0 and 2 must differ"):
         DiscShapes([[0.0, 0.0], [0.0, 1.1 * RADIUS], [0.0, 0.0]], RADIUS)
 
 

@@ -85,7 +85,7 @@ def test_there_must_be_one_force_a_point(plate, forces):
 
 
 def test_misplaced_points_are_refused(plate):
-    with pytest.raises(ValueError, match="point 1 .* must lie inside the rim"):
+    with pytest.raises(ValueError, match="point 0 .* must lie inside the rim"):
         plate.deflection([[2.0, 0.0]], [1.0])
     with pytest.raises(ValueError, match="must lie on the plate; got"):
         plate.pressure(1.0).evaluate([[2.0, 0.0]])

@@ -113,9 +113,9 @@ def test_all_refused_points_are_named_in_one_error(plate):
     with pytest.raises(ValueError) as caught:
         plate.influence(wrong)
     text = str(caught.value)
-    for part in ("point 2 at [0.0003, 0.0] m", "point 3 at [0.0, -0.0006] m", "points 1 and 5 must differ"):
+    for part in ("point 1 at [0.0003, 0.0] m", "point 2 at [0.0, -0.0006] m", "points 0 and 4 must differ"):
         assert part in text
-    assert "point 1 at" not in text and "point 4 at" not in text
+    assert "point 0 at" not in text and "point 3 at" not in text
 
 
 def test_a_point_that_is_no_number_is_refused(plate):

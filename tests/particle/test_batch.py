@@ -139,7 +139,7 @@ def test_every_wrong_input_is_named(surface, parts):
         "threads of simulate_many must be at least 1; got 0",
         "duration",
         "tolerance",
-        "position of part 2 must lie on the plate; got (1.0, 0.0) m",
+        "position of part 1 must lie on the plate; got (1.0, 0.0) m",
     ):
         assert words in str(caught.value)
 
@@ -157,10 +157,10 @@ def test_laws_may_come_as_anything_that_has_one_a_part(surface, parts, many):
     [
         (4e-9, "^Input friction of simulate_many must be one law or one a part, 2; got 4e-09$"),
         (None, "^Input friction of simulate_many must be one law or one a part, 2; got None$"),
-        ([LAW, 4e-9], "^Input friction of part 2 must be a friction law; got 4e-09$"),
-        (np.array([None, LAW]), "^Input friction of part 1 must be a friction law; got None$"),
-        ([LAW, ConstantFriction], "^Input friction of part 2 must be a friction law; got <class"),
-        ([0.1], "a part, 2; got 1; Input friction of part 1 must be a friction law; got 0.1$"),
+        ([LAW, 4e-9], "^Input friction of part 1 must be a friction law; got 4e-09$"),
+        (np.array([None, LAW]), "^Input friction of part 0 must be a friction law; got None$"),
+        ([LAW, ConstantFriction], "^Input friction of part 1 must be a friction law; got <class"),
+        ([0.1], "a part, 2; got 1; Input friction of part 0 must be a friction law; got 0.1$"),
     ],
 )
 def test_what_is_no_friction_law_is_refused(surface, parts, wrong, words):
@@ -172,18 +172,18 @@ def test_a_platforms_drives_cannot_be_exchanged():
     platform, own = platform_surface(Drive(1e-3, 3.0), size=1e-3), [Drive(1e-3, 2.0)]
     with pytest.raises(ValueError, match="^Input drives must stay the surface's own: the drives of a platform"):
         platform.driven_by(own)
-    many = "^Input drives of part 1 must stay the surface's own: .* exchanged; make a surface with the drives wanted$"
+    many = "^Input drives of part 0 must stay the surface's own: .* exchanged; make a surface with the drives wanted$"
     with pytest.raises(ValueError, match=many):
         simulate_many(platform, [Micropart(MASS, (0.0, 0.0))] * 2, LAW, 1e-3, drives=[own, own])
 
 
 def test_drives_that_are_no_rows_are_refused(surface, parts):
-    with pytest.raises(ValueError, match="drives of part 1 must be one an actuator, 13; got Drive.*part 2 must be one"):
+    with pytest.raises(ValueError, match="drives of part 0 must be one an actuator, 13; got Drive.*part 1 must be one"):
         simulate_many(surface, parts[:2], LAW, 1e-3, drives=[Drive(1e-6, 300)] * 2)
 
 
 def test_drives_of_the_wrong_number_are_refused_before_anything_is_found(surface, parts):
-    with pytest.raises(ValueError, match="drives of part 2 must be one an actuator, 13; got 1"):
+    with pytest.raises(ValueError, match="drives of part 1 must be one an actuator, 13; got 1"):
         simulate_many(surface, parts[:2], LAW, 1e-3, drives=[drives(np.random.default_rng(0), 13), [Drive(1e-6, 300)]])
 
 

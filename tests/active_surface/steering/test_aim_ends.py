@@ -124,7 +124,7 @@ def test_a_plan_ends_with_the_leg_that_loses_the_part_and_says_so(tmp_path):
     planned = plan_over(surface, Route(case, (TARGET, (0.0, 0.0)), Settings(**LIFTED)))
     assert planned.trajectory.time[-1] < planned.case.run.duration
     assert not planned.arrivals and not planned.distances and not planned.complete and planned.scatter.lost == 5
-    assert planned.failure.startswith("leg 1: The part ")
+    assert planned.failure.startswith("leg 0: The part ")
     assert planned.failure.endswith(f"At {planned.trajectory.time[-1] * 1e3:g} ms.")
 
 
@@ -134,7 +134,7 @@ def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, 
     monkeypatch.setattr("active_surface.steering.planning.settled", lambda path: next(rests))
     way = (TARGET, (6e-5, 5e-5))
     planned = plan_over(build_surface(case), Route(case, way, settings), file=tmp_path / "out" / "p.toml")
-    assert len(planned.arrivals) == 1 and planned.targets == way and planned.failure.startswith("leg 2: ")
+    assert len(planned.arrivals) == 1 and planned.targets == way and planned.failure.startswith("leg 1: ")
     assert planned.scatter.distance == pytest.approx(np.hypot(*(planned.scatter.ends - way[1]).T))
     comment = (tmp_path / "out" / "p.toml").read_text().split("\n\n")[0].splitlines()
     off = f"{planned.distances[0] * 1e6:g} um"

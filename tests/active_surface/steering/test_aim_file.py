@@ -62,7 +62,7 @@ tolerance = 5
     assert told[0] == "3 aim.target must be inside the rim; got a point 100 um beyond it"
     assert told[1].startswith("4 aim.frequency must be the least and the largest value") and "in that order" in told[1]
     assert told[2:] == [
-        '5 aim.stroke[1] must be a length such as "150 um"; got "5 Hz", a frequency',
+        '5 aim.stroke[0] must be a length such as "150 um"; got "5 Hz", a frequency',
         "6 aim.actuators must be a list of numbers of actuators, counted from 0, such as [0, 4], each once; got [0, 0]",
         "7 aim.cycels is not known; did you mean cycles?",
         '8 aim.tolerance must be a length such as "150 um"; got 5, which has no unit',
@@ -154,8 +154,8 @@ def test_way_points_are_checked_before_any_search(tmp_path):
     with pytest.raises(ValueError) as error:
         read_route(tmp_path / "base.toml", [(0.0, 1e-5), (4e-4, 0.0), (0.0, -3e-4)])
     assert str(error.value) == (
-        "way-point 2 must be inside the rim; got a point 100 um beyond it\n"
-        "way-point 3 must be inside the rim; got a point on it"
+        "way-point 1 must be inside the rim; got a point 100 um beyond it\n"
+        "way-point 2 must be inside the rim; got a point on it"
     )
     with pytest.raises(ValueError, match="through must be one way-point or more"):
         read_route(tmp_path / "base.toml", [])

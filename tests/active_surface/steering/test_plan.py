@@ -140,7 +140,7 @@ def test_the_command_takes_all_points_after_through(tmp_path):
 @pytest.mark.parametrize(
     ("points", "message"),
     [
-        (["--through", "0,0", "400,0"], "way-point 2 must be inside the rim; got a point 100 um beyond it"),
+        (["--through", "0,0", "400,0"], "way-point 1 must be inside the rim; got a point 100 um beyond it"),
         (["--through", "0,0,0"], "--through must be two lengths"),
         (["--through"], "--through is missing; it must be X,Y ..."),
         (["--through", "0,0", "nowhere"], "nowhere is too much; the command is"),

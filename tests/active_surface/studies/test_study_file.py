@@ -40,7 +40,7 @@ def test_axes_of_the_plate_vary_slowest(tmp_path):
 @pytest.mark.parametrize(
     ("field", "message"),
     [
-        ("actuators.0.frequenzy", "actuators[1] has no frequenzy; did you mean frequency?"),
+        ("actuators.0.frequenzy", "actuators[0] has no frequenzy; did you mean frequency?"),
         ("actuatos.0.stroke", "the case has no actuatos; did you mean actuators?"),
         ("actuators.2.stroke", "its actuators are counted from 0 to 1, * for all; got 2"),
         ("part.", 'part has no ""; it has mass, position, velocity, size, squeeze'),
@@ -55,7 +55,7 @@ def test_axes_of_the_plate_vary_slowest(tmp_path):
 )
 def test_a_field_that_there_is_not_is_told(tmp_path, field, message):
     (told,) = mistakes(tmp_path, f'[[axes]]\nfield = "{field}"\nvalues = [1]\n')
-    assert told.startswith("4 axes[1].field must be") and told.endswith(message)
+    assert told.startswith("4 axes[0].field must be") and told.endswith(message)
 
 
 @pytest.mark.parametrize(
@@ -63,21 +63,21 @@ def test_a_field_that_there_is_not_is_told(tmp_path, field, message):
     [
         (
             'values = ["1 um", "300 Hz"]',
-            '5 axes[1].values[2] must be a length such as "150 um"; got "300 Hz", a frequency',
+            '5 axes[0].values[1] must be a length such as "150 um"; got "300 Hz", a frequency',
         ),
-        ("values = [3]", '5 axes[1].values[1] must be a length such as "150 um"; got 3, which has no unit'),
-        ("values = []", '5 axes[1].values must be a list of values such as ["300 Hz", "400 Hz"]; got []'),
+        ("values = [3]", '5 axes[0].values[0] must be a length such as "150 um"; got 3, which has no unit'),
+        ("values = []", '5 axes[0].values must be a list of values such as ["300 Hz", "400 Hz"]; got []'),
         ('range = ["1 um"]', 'must be the first and the last value, such as ["200 Hz", "600 Hz"]; got ["1 um"]'),
-        ('range = ["1 um", "1 um"]\ncount = 2', "axes[1].range must have a last value that differs from the first"),
+        ('range = ["1 um", "1 um"]\ncount = 2', "axes[0].range must have a last value that differs from the first"),
         (
             'range = ["1 um", "2 um"]',
-            'axes[1].count is missing; with sampling = "grid" a range needs a count of values',
+            'axes[0].count is missing; with sampling = "grid" a range needs a count of values',
         ),
-        ('range = ["1 um", "2 um"]\ncount = 1', "axes[1].count must be at least 2 for a range; got 1"),
+        ('range = ["1 um", "2 um"]\ncount = 1', "axes[0].count must be at least 2 for a range; got 1"),
         ('values = ["1 um", "1000 nm"]', "must differ from each other; got 1e-06 m twice"),
-        ('values = ["1 um"]\ncount = 3', "axes[1].count must not be given with values; it belongs to a range"),
-        ('values = ["1 um"]\nrange = ["1 um", "2 um"]', "axes[1].range must not be given with values"),
-        ("", "axes[1].values is missing; it must be a list of values, or have range and count in its place"),
+        ('values = ["1 um"]\ncount = 3', "axes[0].count must not be given with values; it belongs to a range"),
+        ('values = ["1 um"]\nrange = ["1 um", "2 um"]', "axes[0].range must not be given with values"),
+        ("", "axes[0].values is missing; it must be a list of values, or have range and count in its place"),
         (
             'range = ["0 um", "2 um"]\ncount = 3\nspacing = "logarithmic"',
             'must have values above 0 with spacing = "logarithmic"',
@@ -85,8 +85,8 @@ def test_a_field_that_there_is_not_is_told(tmp_path, field, message):
         ('values = ["1 um"]\nname = "point"', 'any of _ . * -, and none of the results\' own names; got "point"'),
         ('values = ["1 um"]\nname = "end_x"', 'none of the results\' own names; got "end_x"'),
         ('values = ["1 um"]\nname = "a/b"', 'none of the results\' own names; got "a/b"'),
-        ('range = ["1 um", "2 um"]\ncount = 1_000_000_000', "axes[1].count must be at most 1e+06; got 1000000000"),
-        ('value = ["1 um"]', "axes[1].value is not known; did you mean values?"),
+        ('range = ["1 um", "2 um"]\ncount = 1_000_000_000', "axes[0].count must be at most 1e+06; got 1000000000"),
+        ('value = ["1 um"]', "axes[0].value is not known; did you mean values?"),
     ],
 )
 def test_values_that_do_not_fit_are_told(tmp_path, keys, message):
@@ -125,10 +125,10 @@ def test_all_mistakes_are_told_at_once(tmp_path):
     )
     assert [line.split()[1] for line in told] == [
         "study.repeats",
+        "axes[1].field",
         "axes[2].field",
-        "axes[3].field",
-        "axes[4].values[1]",
-        "axes[4].values[2]",
+        "axes[3].values[0]",
+        "axes[3].values[1]",
     ]
     assert "actuators.1.stroke is varied by the axis actuators.*.stroke already" in told[1]
     assert told[4].endswith('must be greater than 0; got "-1 kg"')
@@ -140,7 +140,7 @@ def test_an_axis_over_part_of_what_another_one_varies_is_a_mistake(tmp_path, fir
     tilted = PLATE + 'gravity = ["1 m/s^2", "0 m/s^2", "9.8 m/s^2"]\n'
     (told,) = mistakes(tmp_path, "".join(axes if first else axes[::-1]), tilted)
     already = f"run.gravity.0 is varied by the axis run.gravity{'' if first else '.0'} already"
-    assert told.endswith(f"axes[2].field must be varied by one axis only; {already}")
+    assert told.endswith(f"axes[1].field must be varied by one axis only; {already}")
 
 
 def test_a_file_without_axes_and_one_without_a_case_are_told(tmp_path):
@@ -157,7 +157,7 @@ def test_missing_keys_are_told_with_what_they_must_be(tmp_path):
     told = mistakes(tmp_path, '[study]\n[[axes]]\nvalues = ["1 um"]\n')
     assert told == [
         '1 study.case is missing; it must be the name of a case file such as "two_actuators.toml"',
-        '2 axes[1].field is missing; it must be the path of a field such as "actuators.0.frequency"',
+        '2 axes[0].field is missing; it must be the path of a field such as "actuators.0.frequency"',
     ]
 
 
@@ -175,7 +175,7 @@ def test_a_list_has_as_many_values_on_each_axis(tmp_path):
     (told,) = mistakes(
         tmp_path, 'sampling = "list"\n' + STROKE + '[[axes]]\nfield = "part.mass"\nvalues = ["1e-9 kg"]\n'
     )
-    assert told.endswith('axes[2].values must be as many as those of the first axis with sampling = "list", 2')
+    assert told.endswith('axes[1].values must be as many as those of the first axis with sampling = "list", 2')
 
 
 def test_a_start_that_is_always_off_the_plate_is_a_mistake(tmp_path):
@@ -188,7 +188,7 @@ def test_a_start_that_is_always_off_the_plate_is_a_mistake(tmp_path):
 
 def test_a_value_that_contradicts_the_case_everywhere_is_a_mistake(tmp_path):
     (told,) = mistakes(tmp_path, '[[axes]]\nfield = "actuators.0.force"\nvalues = ["1 mN"]\n')
-    assert "actuators[1].force must not be given with a stroke" in told
+    assert "actuators[0].force must not be given with a stroke" in told
 
 
 @pytest.mark.parametrize(
@@ -203,7 +203,7 @@ def test_a_value_that_contradicts_the_case_everywhere_is_a_mistake(tmp_path):
 )
 def test_files_and_what_decides_on_other_keys_cannot_be_varied(tmp_path, field, value, said):
     (told,) = mistakes(tmp_path, f'[[axes]]\nfield = "{field}"\nvalues = ["{value}"]\n')
-    assert told.endswith(f"axes[1].field must be a field that can be varied; got {field}, which tells {said}")
+    assert told.endswith(f"axes[0].field must be a field that can be varied; got {field}, which tells {said}")
 
 
 @pytest.mark.parametrize("made", ['lattice.columns"\nvalues = [2, 3]', 'lattice.stroke"\nvalues = ["4 um", "8 um"]'])
@@ -234,13 +234,13 @@ def test_values_of_an_axis_are_checked_whatever_else_is_wrong_with_it(tmp_path):
         '[[axes]]\nfield = "actuators.0.stroke"\nvalues = ["1 parsec?"]\n',
     )
     assert [line.split()[1] for line in told] == [
-        "axes[1].name",
-        "axes[1].values[2]",
-        "axes[1].values[3]",
-        "axes[2].range[1]",
-        "axes[2].spacing",
-        "axes[3].field",
-        "axes[3].values[1]",
+        "axes[0].name",
+        "axes[0].values[1]",
+        "axes[0].values[2]",
+        "axes[1].range[0]",
+        "axes[1].spacing",
+        "axes[2].field",
+        "axes[2].values[0]",
     ]
 
 

@@ -149,7 +149,7 @@ def test_the_command_says_what_it_found(tmp_path):
 def test_a_study_with_mistakes_leaves_nothing_behind(tmp_path):
     path = written(tmp_path, SHAKEN.replace("plate.motion", "plate.motio"), PLATFORM)
     done = CliRunner().invoke(main, ["sweep", str(path), "-o", str(tmp_path / "out")])
-    assert done.exit_code == 2 and "axes[1].field" in done.output and "Traceback" not in done.output
+    assert done.exit_code == 2 and "axes[0].field" in done.output and "Traceback" not in done.output
     assert not (tmp_path / "out").exists()
 
 

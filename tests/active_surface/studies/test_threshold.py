@@ -162,7 +162,7 @@ def test_another_threshold_is_drawn_without_running_again(tmp_path, monkeypatch)
         ),
         (
             f'{AXES}[map]\nthreshold = "distance"\n[[axes]]\nfield = "part.mas"\n',
-            r"axes\[3\](.|\n)*map.threshold|map.threshold(.|\n)*axes\[3\]",
+            r"axes\[2\](.|\n)*map.threshold|map.threshold(.|\n)*axes\[2\]",
         ),
     ],
 )

@@ -61,7 +61,7 @@ def problems(folder, drive):
     """The mistakes, each with its line counted from that of the first line of the drive."""
     with pytest.raises(CaseError) as caught:
         read(folder, drive)
-    return [f"{p.line - FIRST} {p.field.removeprefix('actuators[1].')} {p.message}" for p in caught.value.problems]
+    return [f"{p.line - FIRST} {p.field.removeprefix('actuators[0].')} {p.message}" for p in caught.value.problems]
 
 
 @pytest.mark.parametrize(
@@ -144,8 +144,8 @@ WRONG = [
     ("table = 3", '0 table must be two or more points, each a time and a height, such as [["0 ms", "0 um"], '),
     ('table = [["0 s", "1 m"]]', "0 table must be two or more points"),
     ('table = [["0 s", "1 m"], ["1 s"]]', "0 table must be two or more points"),
-    ('table = [["0 s", "1 m"],\n["1 s", "1 s"]]', '0 table[2][2] must be a length such as "150 um"; got "1 s", a time'),
-    ('table = [["0 s", "1 m"], [1, "1 m"]]', '0 table[2][1] must be a time such as "50 ms"; got 1, which has no unit'),
+    ('table = [["0 s", "1 m"],\n["1 s", "1 s"]]', '0 table[1][1] must be a length such as "150 um"; got "1 s", a time'),
+    ('table = [["0 s", "1 m"], [1, "1 m"]]', '0 table[1][0] must be a time such as "50 ms"; got 1, which has no unit'),
     (
         'table = [["1 s", "1 m"], ["2 s", "1 m"]]',
         '0 table must begin at the time 0; got "1 s"; a delay is a key of its',
@@ -161,7 +161,7 @@ WRONG = [
         "segments = 3",
         "0 segments must be written [[actuators.segments]], in double brackets, once for each segment; got 3",
     ),
-    ("segments = [3]", "0 segments[1] must be a table, written [[actuators.segments]]; got 3"),
+    ("segments = [3]", "0 segments[0] must be a table, written [[actuators.segments]]; got 3"),
     (
         "[actuators.segments]\n" + CYCLE,
         "0 segments must be written [[actuators.segments]], in double brackets, once for each segment; got [actuators",
@@ -170,25 +170,25 @@ WRONG = [
         f"[actuators.segments]\n{CYCLE}[actuators.segments]\n{CYCLE}",
         "0 actuators.segments must be written [[actuators.segments]], in double brackets, once for each segment; got",
     ),
-    (SEGMENTS + "strok = 3", "19 segments[4].strok is not known; did you mean stroke?"),
+    (SEGMENTS + "strok = 3", "19 segments[3].strok is not known; did you mean stroke?"),
     (
         SEGMENTS + "colour = 3",
-        "19 segments[4].colour is not known; [[actuators.segments]] has stroke, frequency, cycle,",
+        "19 segments[3].colour is not known; [[actuators.segments]] has stroke, frequency, cycle,",
     ),
     (
         SEGMENTS.replace("cycles = 2", "cycles = 1"),
         "1 repeats must not be given with segments which do not end at height 0",
     ),
-    (SEGMENTS.replace("cycles = 3", "cycles = 1_000_001"), "5 segments[1].cycles must be at most 1e+06; got 1000001"),
-    (SEGMENTS.replace('dwell = "1 ms"', ""), '7 segments[2].dwell is missing; with cycle = "hold" it must be the time'),
-    (SEGMENTS.replace('"1 ms"', '"0 ms"'), '9 segments[2].dwell must be greater than 0 with cycle = "hold"; got 0 s'),
-    (SEGMENTS.replace('"hold"', '"sine"'), '8 segments[2].cycle must be "up-down", "up" or "hold"; got "sine"'),
+    (SEGMENTS.replace("cycles = 3", "cycles = 1_000_001"), "5 segments[0].cycles must be at most 1e+06; got 1000001"),
+    (SEGMENTS.replace('dwell = "1 ms"', ""), '7 segments[1].dwell is missing; with cycle = "hold" it must be the time'),
+    (SEGMENTS.replace('"1 ms"', '"0 ms"'), '9 segments[1].dwell must be greater than 0 with cycle = "hold"; got 0 s'),
+    (SEGMENTS.replace('"hold"', '"sine"'), '8 segments[1].cycle must be "up-down", "up" or "hold"; got "sine"'),
     (
         SEGMENTS.replace('"hold"', '"hold"\nstroke = "1 m"'),
-        '9 segments[2].stroke must not be given with cycle = "hold"',
+        '9 segments[1].stroke must not be given with cycle = "hold"',
     ),
-    (SEGMENTS.replace('stroke = "-2 um"\n', ""), "10 segments[3].stroke is missing; it must be a length such as"),
-    (SEGMENTS.replace('frequency = "1 kHz"\n', ""), "10 segments[3].frequency is missing; it must be a frequency such"),
+    (SEGMENTS.replace('stroke = "-2 um"\n', ""), "10 segments[2].stroke is missing; it must be a length such as"),
+    (SEGMENTS.replace('frequency = "1 kHz"\n', ""), "10 segments[2].frequency is missing; it must be a frequency such"),
 ]
 
 
@@ -223,6 +223,6 @@ def test_all_mistakes_come_at_once(tmp_path):
     )
     found = problems(tmp_path, text.replace("cycles = 3", "cycles = 0").replace('"hold"', '"hold"\nfrequency = "1 Hz"'))
     assert [" ".join(line.split()[:2]) for line in found] == [
-        *("0 table[1][2]", "0 table[3][2]", "0 table", "3 colour", "4 repeats", "7 segments", "10 segments[1].cycles"),
-        "14 segments[2].frequency",
+        *("0 table[0][1]", "0 table[2][1]", "0 table", "3 colour", "4 repeats", "7 segments", "10 segments[0].cycles"),
+        "14 segments[1].frequency",
     ]

@@ -114,7 +114,7 @@ MISSING = 'friction.loads is missing; it must be forces such as ["-1 uN", "0 N",
         ('load = ["-1 uN"]', [(2, "friction.load is not known; did you mean loads?")]),
         (
             'limits = ["-1 uN", "0 N", "1 N"]',
-            [(0, MISSING), (2, "friction.limits[1] must be 0 or positive; got -1e-06 N")],
+            [(0, MISSING), (2, "friction.limits[0] must be 0 or positive; got -1e-06 N")],
         ),
         (
             'loads = ["-1 uN", "0 N", "1 N"]',
@@ -123,16 +123,16 @@ MISSING = 'friction.loads is missing; it must be forces such as ["-1 uN", "0 N",
         (
             'loads = ["1 uN", "0 N"]\nlimits = 3',
             [
-                (2, "friction.loads[1] must be minus the pull-off force, so 0 or negative; got 1e-06 N"),
-                (2, "friction.loads[2] must be greater than the one before, 1e-06 N; got 0.0 N"),
+                (2, "friction.loads[0] must be minus the pull-off force, so 0 or negative; got 1e-06 N"),
+                (2, "friction.loads[1] must be greater than the one before, 1e-06 N; got 0.0 N"),
                 (3, 'friction.limits must be a list of forces such as ["-1 uN", "0 N", "5 uN"]; got 3'),
             ],
         ),
         (
             'loads = ["-1 uN", "0 N", "5 Hz"]\nlimits = [\n  "10 nN", "2 nN",\n  1]\nstatic_ratio = 0.5',
             [
-                (2, 'friction.loads[3] must be a force such as "2 uN"; got "5 Hz", a frequency'),
-                (3, 'friction.limits[3] must be a force such as "2 uN"; got 1, which has no unit'),
+                (2, 'friction.loads[2] must be a force such as "2 uN"; got "5 Hz", a frequency'),
+                (3, 'friction.limits[2] must be a force such as "2 uN"; got 1, which has no unit'),
                 (6, "friction.static_ratio must be at least 1; got 0.5"),
             ],
         ),
@@ -169,7 +169,7 @@ REFUSED = [
     ('model = "coulomb"\ncoefficient = -0.1', "friction.coefficient must be at least 0; got -0.1"),
     ('model = "coulomb"\ncoefficient = 0.1\nadhesion = "-1 N"', 'friction.adhesion must be at least 0; got "-1 N"'),
     ('model = "coulomb"\ncoefficient = 0.0\nstatic_coefficient = 0.5', "friction.static_coefficient must not"),
-    (LISTS.replace('"20 nN"', '"2 nN"'), "friction.limits[2] must not be less than the one before"),
+    (LISTS.replace('"20 nN"', '"2 nN"'), "friction.limits[1] must not be less than the one before"),
     (FILE, "friction.file must be a file that can be read"),
 ]
 

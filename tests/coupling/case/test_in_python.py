@@ -61,9 +61,9 @@ def test_an_actuator_is_checked_in_python_though_another_table_is_wrong() -> Non
         python_case(actuators=[wrong], run={"duration": -1})
     assert str(caught.value) == (
         "Input run.duration of Case must be greater than 0; got -1.0\n"
-        "Input actuators[1].position of Case must be inside the rim; got a point 999700 um beyond it"
+        "Input actuators[0].position of Case must be inside the rim; got a point 999700 um beyond it"
     )
-    assert [field for field, _ in caught.value.problems] == ["run.duration", "actuators[1].position"]
+    assert [field for field, _ in caught.value.problems] == ["run.duration", "actuators[0].position"]
 
 
 def test_everything_wrong_is_said_at_once_in_the_words_of_files() -> None:

@@ -93,7 +93,7 @@ WRONG = [
     ('force = "1 uN"\nfrequency = "1 Hz"\nstiffness = "row N/m"\n', "lattice.stiffness must not be given with a force"),
     (
         "[[lattice.segments]]\n" + DRIVE + "hue = 3\n",
-        "lattice.segments[1].hue is not known; [[lattice.segments]] has stroke",
+        "lattice.segments[0].hue is not known; [[lattice.segments]] has stroke",
     ),
     (DRIVE + 'margin = "1 mm"\n', "lattice.margin leaves no actuator on the plate"),
     (
@@ -102,7 +102,7 @@ WRONG = [
     ),
     (
         DRIVE + '[[actuators]]\nposition = ["75 um", "0 um"]\n' + DRIVE,
-        "actuators[1].position must differ from that of row 1, column 2 of the lattice; got the same point",
+        "actuators[0].position must differ from that of row 1, column 2 of the lattice; got the same point",
     ),
 ]
 

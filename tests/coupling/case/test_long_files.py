@@ -41,9 +41,9 @@ def actuators() -> str:
         (
             changed((FRICTION, forces())),
             GOOD[: GOOD.index(FRICTION)].count("\n") + 2,
-            "friction.loads[5000] must be a force",
+            "friction.loads[4999] must be a force",
         ),
-        (changed((DRIVEN, table())), GOOD[: GOOD.index(DRIVEN)].count("\n") + 1, "actuators[1].table[5000][2] must be"),
+        (changed((DRIVEN, table())), GOOD[: GOOD.index(DRIVEN)].count("\n") + 1, "actuators[0].table[4999][1] must be"),
         (
             changed(("[part]", actuators() + "[part]")),
             GOOD[: GOOD.index("[part]")].count("\n") + 5000,

@@ -26,17 +26,17 @@ def test_five_mistakes_at_once(tmp_path: Path) -> None:
         "  the file  run is missing; it must be a table, written [run]\n"
         "  line 3    plate.raduis is not known; did you mean radius?\n"
         "  line 5    plate.poisson_ratio must be less than 0.5; got 0.5\n"
-        '  line 10   actuators[1].stroke must be a length such as "150 um"; got "150 Hz", a frequency\n'
-        "  line 20   actuators[2].cycles must be a whole number; got 5.0"
+        '  line 10   actuators[0].stroke must be a length such as "150 um"; got "150 Hz", a frequency\n'
+        "  line 20   actuators[1].cycles must be a whole number; got 5.0"
     )
     assert caught.value.problems[3] == Problem(
-        10, "actuators[1].stroke", 'must be a length such as "150 um"; got "150 Hz", a frequency'
+        10, "actuators[0].stroke", 'must be a length such as "150 um"; got "150 Hz", a frequency'
     )
 
 
 BROKEN = [
     # Keys and tables
-    ((STROKE, ""), 'line 8  actuators[1].stroke is missing; it must be a length such as "150 um"'),
+    ((STROKE, ""), 'line 8  actuators[0].stroke is missing; it must be a length such as "150 um"'),
     (
         ('shape = "disc"', ""),
         'line 1  plate.shape is missing; it must be "disc", "rectangle", "annulus", "ellipse", "polygon" or "platf',
@@ -48,7 +48,7 @@ BROKEN = [
         ("[plate]", 'name = "x"\n[plate]'),
         "line 1  name is not known; the file has [plate], [[actuators]], [lattice], [part]",
     ),
-    ((STROKE, STROKE + "\ncolour = 1"), "line 11  actuators[1].colour is not known; [[actuators]] has position, "),
+    ((STROKE, STROKE + "\ncolour = 1"), "line 11  actuators[0].colour is not known; [[actuators]] has position, "),
     (("[plate]", "[[plate]]"), "line 1  plate must be a table, written [plate]; got a list of tables"),
     ((RADIUS, "[plate.radius]"), 'plate.radius must be a length such as "150 um"; got a table'),
     ((GOOD, "actuators = 3\nplate = 1\n" + GOOD[GOOD.index("[part]") :]), "line 2  plate must be a table, written"),
@@ -57,16 +57,16 @@ BROKEN = [
     ((POISSON, "poisson_ratio = true"), "plate.poisson_ratio must be a number; got true"),
     ((POISSON, "poisson_ratio = nan"), "plate.poisson_ratio must be a finite number; got nan"),
     ((POISSON, "poisson_ratio = -0.1"), "plate.poisson_ratio must be at least 0; got -0.1"),
-    (("cycles = 5", "cycles = 0"), "actuators[2].cycles must be at least 1; got 0"),
-    (("cycles = 5", "cycles = true"), "actuators[2].cycles must be a whole number; got true"),
-    (("cycles = 5", 'cycles = 5\ncycle = "up"'), 'line 20  actuators[2].cycles must not be given with cycle = "up"'),
-    (("cycles = 5", 'cycle = "down"'), 'actuators[2].cycle must be "up-down", "up", "sine" or "cosine"; got "down"'),
+    (("cycles = 5", "cycles = 0"), "actuators[1].cycles must be at least 1; got 0"),
+    (("cycles = 5", "cycles = true"), "actuators[1].cycles must be a whole number; got true"),
+    (("cycles = 5", 'cycles = 5\ncycle = "up"'), 'line 20  actuators[1].cycles must not be given with cycle = "up"'),
+    (("cycles = 5", 'cycle = "down"'), 'actuators[1].cycle must be "up-down", "up", "sine" or "cosine"; got "down"'),
     (
         ('shape = "disc"', 'shape = "square"'),
         'line 2  plate.shape must be "disc", "rectangle", "annulus", "ellipse", "polygon" or "platform"; got "square"',
     ),
-    (('"300 Hz"', '"0 Hz"'), 'actuators[1].frequency must be greater than 0; got "0 Hz"'),
-    (('"1 ms"', '"-1 ms"'), 'actuators[2].delay must be at least 0; got "-1 ms"'),
+    (('"300 Hz"', '"0 Hz"'), 'actuators[0].frequency must be greater than 0; got "0 Hz"'),
+    (('"1 ms"', '"-1 ms"'), 'actuators[1].delay must be at least 0; got "-1 ms"'),
     ((RADIUS, 'radius = "-3 um"'), 'plate.radius must be greater than 0; got "-3 um"'),
     (
         (RADIUS, RADIUS + '\ncell_size = "301 um"'),
@@ -78,15 +78,15 @@ BROKEN = [
     ((PART, 'position = "100 um"'), "line 25  part.position must be two lengths, x and y, such as"),
     ((PART, 'position = ["1 um"]'), 'such as ["100 um", "100 um"]; got ["1 um"]'),
     ((PART, 'position = ["1 um", "2 um", "3 um"]'), 'got ["1 um", "2 um", "3 um"]'),
-    ((PART, 'position = ["1 um", 2]'), 'part.position[2] must be a length such as "150 um"; got 2, which has no unit'),
-    (('"0.15 mm"', '"0.15 ms"'), "line 14  actuators[2].position[1] must be a length"),
+    ((PART, 'position = ["1 um", 2]'), 'part.position[1] must be a length such as "150 um"; got 2, which has no unit'),
+    (('"0.15 mm"', '"0.15 ms"'), "line 14  actuators[1].position[0] must be a length"),
     (
         (PART, PART + "\nvelocity = 0"),
         'part.velocity must be two velocities, x and y, such as ["0 m/s", "0 m/s"]; got 0',
     ),
     ((PART, 'position = ["300 um", "0 um"]'), "part.position must be inside the rim; got a point on it"),
-    (('"0.15 mm"', '"-0.3 mm"'), "line 14  actuators[2].position must be inside the rim; got a point on it"),
-    (('"0.15 mm"', '"0 m"'), "line 14  actuators[2].position must differ from actuators[1].position; got the same"),
+    (('"0.15 mm"', '"-0.3 mm"'), "line 14  actuators[1].position must be inside the rim; got a point on it"),
+    (('"0.15 mm"', '"0 m"'), "line 14  actuators[1].position must differ from actuators[0].position; got the same"),
     # Friction
     ((FRICTION, ""), 'line 27  friction.model is missing; it must be "kogut-etsion", "constant", "coulomb" or "table"'),
     (
@@ -142,12 +142,12 @@ def test_places_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
     outside = "must be inside the rim; got a point"
     assert problems(tmp_path, text) == [
         'line 2   plate.density must be a density such as "2330 kg/m^3"; got "1 s", a time',
-        f"line 10  actuators[1].position {outside} 0.1 mm beyond it",
-        "line 11  actuators[1].speed is not known; "
+        f"line 10  actuators[0].position {outside} 0.1 mm beyond it",
+        "line 11  actuators[0].speed is not known; "
         "[[actuators]] has position, force, stiffness, stroke, frequency, cycle, cycles, dwell, table, segments, "
         "repeats, delay",
-        f"line 16  actuators[2].position {outside} 0.1 mm beyond it",
-        "line 16  actuators[2].position must differ from actuators[1].position; got the same point",
+        f"line 16  actuators[1].position {outside} 0.1 mm beyond it",
+        "line 16  actuators[1].position must differ from actuators[0].position; got the same point",
         'line 25  part.mass is missing; it must be a mass such as "2e-9 kg"',
         f"line 26  part.position {outside} 700 um beyond it",
     ]
@@ -200,7 +200,7 @@ def test_lines_of_dotted_keys_and_inline_tables(tmp_path: Path) -> None:
     assert found["plate.thickness"] == 2
     assert found["plate.shape"] == 3
     assert found["part.mass"] == found["part.position"] == 4
-    assert found["actuators[1].stroke"] == 5
+    assert found["actuators[0].stroke"] == 5
     assert found["run.duration"] == 7
     assert found["run.frames"] == 11
 

@@ -23,11 +23,11 @@ WRONG = [
     ({"shape": 'shape = "polygon"\ncorners = 3'}, "plate.corners must be three points or more, such as "),
     (
         {"shape": SHAPES["polygon"].replace('["0 um", "200 um"]', '["0 um", 200]')},
-        'plate.corners[3][2] must be a length such as "150 um"; got 200, which has no unit',
+        'plate.corners[2][1] must be a length such as "150 um"; got 200, which has no unit',
     ),
     (
         {"shape": SHAPES["polygon"].replace('["0 um", "200 um"]', '["-200 um", "-200 um"]')},
-        "plate.corners must differ; got corner 3 at corner 1",
+        "plate.corners must differ; got corner 2 at corner 0",
     ),
     ({"shape": SHAPES["polygon"] + '\nsides = ["a"]'}, 'plate.sides must be 3 names, one a side; got ["a"]'),
     (
@@ -76,7 +76,7 @@ WRONG = [
     # Places
     (
         {"shape": SHAPES["annulus"], "places": ["0 um, 40 um"]},
-        "actuators[1].position must be inside the rim; got a point 10 um beyond it",
+        "actuators[0].position must be inside the rim; got a point 10 um beyond it",
     ),
     (
         {"shape": SHAPES["rectangle"], "part": "0 um, 130 um"},
@@ -88,28 +88,28 @@ WRONG = [
     ),
     (
         {"shape": SHAPES["ellipse"], "places": ["0 um, 200 um"]},
-        "actuators[1].position must be inside the rim; got a point on it",
+        "actuators[0].position must be inside the rim; got a point on it",
     ),
     # Drives
     (
         {"shape": SHAPES["disc"], "drive": 'frequency = "1 Hz"\n'},
-        'actuators[1].stroke is missing; it must be a length such as "150 um", or have a force such as "1 mN"',
+        'actuators[0].stroke is missing; it must be a length such as "150 um", or have a force such as "1 mN"',
     ),
     (
         {"shape": SHAPES["disc"], "drive": DRIVE + 'force = "1 mN"\n'},
-        "actuators[1].force must not be given with a stroke",
+        "actuators[0].force must not be given with a stroke",
     ),
     (
         {"shape": SHAPES["disc"], "drive": 'force = "1 mN"\nstiffness = "1 N/m"\nfrequency = "1 Hz"\n'},
-        "actuators[1].stiffness must not be given with a force",
+        "actuators[0].stiffness must not be given with a force",
     ),
     (
         {"shape": SHAPES["disc"], "drive": DRIVE + 'stiffness = "0 N/m"\n'},
-        'actuators[1].stiffness must be greater than 0; got "0 N/m"',
+        'actuators[0].stiffness must be greater than 0; got "0 N/m"',
     ),
     (
         {"shape": SHAPES["disc"], "drive": DRIVE + 'stiffness = "1 N"\n'},
-        'actuators[1].stiffness must be a stiffness such as "1e4 N/m"; got "1 N", a force',
+        'actuators[0].stiffness must be a stiffness such as "1e4 N/m"; got "1 N", a force',
     ),
 ]
 
@@ -139,13 +139,13 @@ def test_mistakes_in_the_outline_and_elsewhere_come_together(tmp_path):
         "plate.supports.iner",
         "plate.density",
         "plate.cell_size",
-        "actuators[1].position",
+        "actuators[0].position",
+        "actuators[0].frequency",
         "actuators[1].frequency",
-        "actuators[2].frequency",
         "part.position",
     ]
 
 
 def test_a_misspelt_stroke_is_not_missing_as_well(tmp_path):
     found = problems(tmp_path, text(SHAPES["disc"], drive='strok = "1 um"\nfrequency = "1 Hz"\n'))
-    assert found == ["actuators[1].strok is not known; did you mean stroke?"]
+    assert found == ["actuators[0].strok is not known; did you mean stroke?"]

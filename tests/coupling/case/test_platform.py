@@ -122,7 +122,7 @@ WRONG = [
     ),
     (
         '[[plate.motion.x.segments]]\nstroke = "1 um"\ncolour = 1',
-        "5 plate.motion.x.segments[1].colour is not known; [[plate.motion.x.segments]] has stroke, frequency",
+        "5 plate.motion.x.segments[0].colour is not known; [[plate.motion.x.segments]] has stroke, frequency",
     ),
     (
         '[[actuators]]\nposition = ["0 um", "0 um"]\nstroke = "1 um"\nfrequency = "1 Hz"',

@@ -46,7 +46,7 @@ from coupling.case.values import units
 )
 def test_wrong_lengths(tmp_path: Path, value: str, reason: str) -> None:
     found = problems(tmp_path, changed((STROKE, f"stroke = {value}")))
-    assert found == [f'line 10  actuators[1].stroke must be a length such as "150 um"; got {value}{reason}']
+    assert found == [f'line 10  actuators[0].stroke must be a length such as "150 um"; got {value}{reason}']
 
 
 def test_an_angular_velocity_is_not_a_frequency(tmp_path: Path) -> None:
