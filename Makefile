@@ -9,7 +9,8 @@ export OPENBLAS_NUM_THREADS ?= 1
 # that take long first.
 PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-reorder --cov
 # Only the kernels of `particle` are compiled: what marches them runs in plain Python, too, which shows the lines covered.
-MARCHES := tests/particle tests/physics tests/regression
+MARCHES := tests/particle tests/physics tests/regression tests/active_surface/studies/test_feasible.py
+MARCHES += $(addprefix tests/validation/test_, motion_oracle.py single_stroke.py two_actuators.py)
 
 .PHONY: demo test test-all long-tests lint kernels docs site paper benchmark clean
 

@@ -72,6 +72,7 @@ def same(one, other):
     )
 
 
+@pytest.mark.compiled
 def test_paths_have_the_same_bits_one_by_one_and_in_any_order_and_number_of_threads(surface, parts):
     run = {"duration": 3e-3, "tolerance": 1e-6}
     alone = [simulate(surface, part, LAW, **run) for part in parts]

@@ -87,7 +87,7 @@ def test_a_base_moves_on_as_well():
     assert math.isclose(time, 0.05)
 
 
-@pytest.mark.parametrize("off", [1e-3, 1e-5])
+@pytest.mark.parametrize("off", [1e-3, pytest.param(1e-5, marks=pytest.mark.compiled)])
 def test_bridges_are_as_good_as_asked_and_meet_the_surface_at_both_ends(off):
     surface, (x, y) = spread(100), (0.31 * RADIUS, 0.2 * RADIUS)
     surface.evaluate([[x, y]], 0.0)

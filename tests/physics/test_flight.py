@@ -257,7 +257,7 @@ def bounces(a, rate, mu, u, tilt, end):
 
 
 @pytest.mark.parametrize("strength", [1.2, 2.2, 3.6, 5.5, 9.0])
-@pytest.mark.parametrize("frequency", [4.0, 700.0])
+@pytest.mark.parametrize("frequency", [pytest.param(4.0, marks=pytest.mark.compiled), 700.0])
 @pytest.mark.parametrize("late", [0.0, 0.3], ids=["at once", "delayed"])
 def test_a_part_bounces_on_a_shaken_plate_as_an_independent_simulation_does(strength, frequency, late):
     """Dead impacts on a sine whose acceleration is `strength` g, with friction in slides and in landings.
