@@ -56,9 +56,9 @@ _SENTENCES = {
 }
 
 
-_FOR_GOOD = "The part rests on the surface for good: nothing that the drives still do moves it."
+_FOR_GOOD = "The part is at rest, and the drives do not move it again."
 _IN_FLIGHT = "The part is in flight at the end of the run."
-_FOR_NOW = "The part rests on the surface at the end of the run; what the drives do later moves it again."
+_FOR_NOW = "The part is at rest at the end of the run; the drives move it again later."
 
 
 @dataclass(frozen=True)

@@ -79,7 +79,7 @@ def test_all_floating_is_the_compliance(plate):
 
 @pytest.mark.parametrize("wrong", [-1.0, float("nan"), [1.0, 2.0, -3.0, np.inf]])
 def test_a_negative_stiffness_is_refused(plate, wrong):
-    with pytest.raises(ValueError, match="^Input stiffness of influence must be 0 or more; got .* N/m for point [13]$"):
+    with pytest.raises(ValueError, match="^Input stiffness of influence must be 0 or more; got .* N/m for point [02]$"):
         plate.influence(FOUR, wrong)
 
 
