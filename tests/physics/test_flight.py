@@ -225,6 +225,26 @@ def test_without_flight_the_run_ends_where_the_part_comes_off():
     assert path.time[-1] == pytest.approx(throw(drive, G, G)[0], rel=1e-8)
 
 
+def test_a_part_lands_where_its_parabola_meets_a_surface_of_sixth_order_along_it():
+    """The surface rises and is warped by (x y)^3 / 2: below a part on its way the gap is of order 6 in time."""
+    drive, warp = Drive(*THROWS["lab"], cycle="up"), np.zeros((4, 4))
+    warp[3, 3] = 0.5
+    surface = driven([drive, level()], [[[1.0]], warp])
+    path = flies(surface, Micropart(MASS, (0.0, 0.0), (1.0, 1.2)), CoulombAdhesion(0.01), 0.9, tolerance=1e-9)
+    off, land = path.events[:2]
+    assert (off.kind, land.kind) == (DETACHES, LANDS)
+    begin = path.at([np.nextafter(off.time, 0)])
+    (x, y), (u, v) = begin.position[0], begin.velocity[0][:2]
+    height, rate = (float(value) for value in drive.evaluate(off.time)[:2])
+    height, rate = height + (x * y) ** 3 / 2, rate + 1.5 * (x * y) ** 2 * (x * v + y * u)
+
+    def gap(t):
+        ahead = float(drive.evaluate(off.time + t)[0]) + ((x + u * t) * (y + v * t)) ** 3 / 2
+        return height + rate * t - G * t**2 / 2 - ahead
+
+    assert land.time - off.time == pytest.approx(brentq(gap, 0.01, 0.9, xtol=1e-15), rel=1e-8)
+
+
 def bounces(a, rate, mu, u, tilt, end):
     """Take-offs (time) and landings (time, place, speed after it) on h = a sin(rate t), found one by one."""
     t, x, away = 0.0, 0.0, []

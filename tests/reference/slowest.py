@@ -1,4 +1,4 @@
-"""The pytest option `--slowest FILE`: a Markdown table of the tests that take the most processor time.
+"""The pytest option `--slowest=FILE`: a Markdown table of the tests that take the most processor time.
 
 Processor time, of the test's process and of those that it started, says more than the clock where tests run side by
 side. What a shared fixture takes counts for the first test that uses it.
