@@ -1,4 +1,4 @@
-"""How many evaluations of the surface a path takes: for each cycle of two drives, for each kink of many.
+"""How many evaluations of the surface a path takes: for each cycle of two drives, for each breakpoint of many.
 
 .venv/bin/python benchmarks/cycles.py       writes tables for docs/benchmarks.md
 """
@@ -53,19 +53,19 @@ def cycles_table() -> list[str]:
     return lines
 
 
-def kinks_table() -> list[str]:
-    lines = ["| actuators | kinks | tolerance | evaluations a kink |", "|---:|---:|---:|---:|"]
+def breakpoints_table() -> list[str]:
+    lines = ["| actuators | breakpoints | tolerance | evaluations a breakpoint |", "|---:|---:|---:|---:|"]
     for count in (25, 100):
         one = problem(count, STARTS[count])
-        surface, kinks = ours.surface_of(one), len(one.kinks) - 1
+        surface, breakpoints = ours.surface_of(one), len(one.breakpoints) - 1
         for tolerance in TOLERANCES:
             path = ours.path_of(one, surface)(tolerance=tolerance)
-            lines.append(f"| {count} | {kinks} | {tolerance:.0e} | {path.evaluations / kinks:.1f} |")
+            lines.append(f"| {count} | {breakpoints} | {tolerance:.0e} | {path.evaluations / breakpoints:.1f} |")
     return lines
 
 
 def main() -> None:
-    for block, lines in (("cycles", cycles_table()), ("kinks", kinks_table())):
+    for block, lines in (("cycles", cycles_table()), ("breakpoints", breakpoints_table())):
         print("\n".join(lines), end="\n\n")
         report.write(block, lines)
 

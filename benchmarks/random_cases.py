@@ -52,7 +52,7 @@ class RandomCase:
 
     seed: int
     surface: SurfaceMotion
-    spans: int  # between kinks of the drives
+    spans: int  # between breakpoints of the drives
     part: Micropart
     contact: str
     friction: Contact

@@ -13,9 +13,9 @@ from .progress import (
     CountBar as CountBar,
     Progress as Progress,
     StageBar as StageBar,
-    Tell as Tell,
+    ProgressCallback as ProgressCallback,
     silent as silent,
-    untold as untold,
+    no_progress as no_progress,
 )
 from .repeat import Rerun as Rerun, rerun as rerun
 from . import report as report

@@ -11,20 +11,20 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from typing import Any
 
-Tell = Callable[[int, int], object]  # gets how many of the stage's pieces are done, and of how many
-Progress = Callable[[str], AbstractContextManager[Tell]]
+ProgressCallback = Callable[[int, int], object]  # gets how many of the stage's pieces are done, and of how many
+Progress = Callable[[str], AbstractContextManager[ProgressCallback]]
 
 PATIENCE = 2.0  # s of silence
 COMPILING = "Compiling the kernels (once, up to a minute)"
 
 
-def untold(done: int, of: int) -> None:
+def no_progress(done: int, of: int) -> None:
     """No count."""
 
 
-def silent(stage: str) -> AbstractContextManager[Tell]:
+def silent(stage: str) -> AbstractContextManager[ProgressCallback]:
     """No progress."""
-    return nullcontext(untold)
+    return nullcontext(no_progress)
 
 
 class _Bar:
@@ -87,9 +87,9 @@ class StageBar(_Bar):
         return self._stage
 
     @contextmanager
-    def _stage(self, stage: str) -> Iterator[Tell]:
+    def _stage(self, stage: str) -> Iterator[ProgressCallback]:
         if not self._bar:
-            yield untold
+            yield no_progress
             return
         bar, task = self._bar, self._task
         bar.update(task, description=stage)
@@ -113,9 +113,9 @@ class CountBar(_Bar):
         columns = [BarColumn(bar_width=30), MofNCompleteColumn(), TextColumn("{task.description}")]
         return [SpinnerColumn(), *columns, TimeRemainingColumn(), TextColumn("left")]
 
-    def __enter__(self) -> Tell:
+    def __enter__(self) -> ProgressCallback:
         self._start()
-        return self._tell if self._bar else untold
+        return self._tell if self._bar else no_progress
 
     def _tell(self, done: int, of: int) -> None:
         assert self._bar

@@ -15,7 +15,7 @@ from particle.path import find_path, find_path_by_steps
 from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
 
-BRIDGED = 100.0  # tolerances, relative: how far off the surface's acceleration may be where kinks are bridged
+BRIDGED = 100.0  # tolerances, relative: how far off the surface's acceleration may be where breakpoints are bridged
 
 _FIXED_STEPS = {"fixed": MOREAU, "paper": PAPER}
 

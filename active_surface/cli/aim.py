@@ -96,12 +96,12 @@ def _search(
     find: Callable[..., Result], task: Any, output: Path | None, threads: int | None, overwrite: bool, quiet: bool
 ) -> Result:
     """What a search finds, with a bar meanwhile."""
-    from coupling import CountBar, untold
+    from coupling import CountBar, no_progress
     from coupling.results import check_folder
 
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(untold) if quiet else CountBar("paths") as tell:
+    with nullcontext(no_progress) if quiet else CountBar("paths") as tell:
         return refusing(find, task, folder, threads, tell, overwrite)
 
 

@@ -49,9 +49,9 @@ def animate(
     matplotlib does, and the command says so.
     """
     from active_surface.views.film import animate as make
-    from coupling import CountBar, untold
+    from coupling import CountBar, no_progress
 
-    with nullcontext(untold) if quiet else CountBar("frames") as tell:
+    with nullcontext(no_progress) if quiet else CountBar("frames") as tell:
         made = refusing(
             partial(
                 make,

@@ -37,7 +37,7 @@ def sweep(
     if scheduler is not None and threads is not None:
         raise click.UsageError("--threads must not be given with --scheduler: each worker uses all of its own threads")
     from active_surface.studies import REFUSED, figures, lines, read_study, run_study
-    from coupling import CountBar, untold
+    from coupling import CountBar, no_progress
     from coupling.results import check_folder
 
     check_kind(study, "study")
@@ -45,7 +45,7 @@ def sweep(
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
     try:
-        with nullcontext(untold) if quiet else CountBar("paths") as tell:
+        with nullcontext(no_progress) if quiet else CountBar("paths") as tell:
             result = refusing(run_study, read, folder, threads, tell, scheduler, overwrite)
     except KeyboardInterrupt:
         ctrl_c.end("interrupted; the same command goes on where this one stopped")

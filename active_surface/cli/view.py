@@ -39,11 +39,11 @@ def view(result: Path, output: Path | None, paths: int | None, opened: bool, qui
     if found.is_sweep:
         from active_surface.studies import read_study, read_sweep
         from active_surface.views.pages import write_study_page
-        from coupling import CountBar, untold
+        from coupling import CountBar, no_progress
 
         given = None if found.study is None else refusing(read_study, found.study)
         study, dataset = refusing(read_sweep, found.path, given)
-        with dataset, nullcontext(untold) if quiet else CountBar("paths") as tell:
+        with dataset, nullcontext(no_progress) if quiet else CountBar("paths") as tell:
             refusing(write_study_page, study, dataset, page, paths, tell)
     else:
         if paths is not None:

@@ -15,7 +15,7 @@ from active_surface.steering.paths import Paths
 from active_surface.steering.picture import draw_aim
 from active_surface.steering.result import check_free, drawn, prepared, with_scatter
 from active_surface.steering.task import Task
-from coupling import Tell, untold
+from coupling import ProgressCallback, no_progress
 from coupling.case import length_text, write_case
 from particle import SurfaceMotion, unbroken
 
@@ -24,7 +24,7 @@ def aim(
     task: Task,
     output: str | Path | None = None,
     threads: int | None = None,
-    tell: Tell = untold,
+    tell: ProgressCallback = no_progress,
     overwrite: bool = False,
 ) -> Aimed:
     """Find the drives that bring a part to a target.
@@ -68,7 +68,7 @@ def aim_over(
     surface: SurfaceMotion,
     task: Task,
     threads: int | None = None,
-    tell: Tell = untold,
+    tell: ProgressCallback = no_progress,
     file: Path | None = None,
 ) -> Aimed:
     """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""

@@ -14,7 +14,7 @@ from active_surface.steering.leg_search import LegSearch
 from active_surface.steering.paths import Paths, cost, path_of, settled
 from active_surface.steering.schedule import Leg, lasting, scheduled
 from active_surface.steering.task import Task
-from coupling import Tell
+from coupling import ProgressCallback
 from coupling.case import Case
 from particle import SurfaceMotion, Trajectory
 
@@ -31,7 +31,7 @@ NEARER: Final = 0.95  # of the distance before: a leg must leave less to be kept
 class Approach:
     """Collects the legs that bring the part of a task to its target."""
 
-    def __init__(self, surface: SurfaceMotion, task: Task, threads: int | None, tell: Tell) -> None:
+    def __init__(self, surface: SurfaceMotion, task: Task, threads: int | None, tell: ProgressCallback) -> None:
         """tell: is called with the number of paths so far and its maximum."""
         self._surface, self._task, self._threads, self._tell = surface, task, threads, tell
         self._horizon, self._cost, self._before, self._searches = task.case.run.duration, math.inf, 0, 0

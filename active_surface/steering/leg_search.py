@@ -10,7 +10,7 @@ from active_surface.steering.paths import Paths
 from active_surface.steering.schedule import Leg
 from active_surface.steering.search import NEWTON_RANGE, search, search_robust
 from active_surface.steering.task import Task
-from coupling import Tell
+from coupling import ProgressCallback
 from particle import SurfaceMotion
 
 
@@ -18,7 +18,13 @@ class LegSearch:
     """Finds the drives that bring a part to a task's target within its case's duration, on few enough paths."""
 
     def __init__(
-        self, surface: SurfaceMotion, task: Task, threads: int | None, tell: Tell, max_paths: int, number: int = 0
+        self,
+        surface: SurfaceMotion,
+        task: Task,
+        threads: int | None,
+        tell: ProgressCallback,
+        max_paths: int,
+        number: int = 0,
     ) -> None:
         """number: of the search; each number has its own stream of random numbers."""
         self._newton_range, self._movers = NEWTON_RANGE * surface.size, task.movers

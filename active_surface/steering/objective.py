@@ -11,7 +11,7 @@ from active_surface.steering.knobs import Knobs
 from active_surface.steering.paths import Disturbance, Paths, cost
 from active_surface.steering.scatter import SEARCHED, disturbances
 from active_surface.steering.task import Task
-from coupling import Tell
+from coupling import ProgressCallback
 
 FloatArray = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class Objective:
     """
 
     def __init__(
-        self, task: Task, knobs: Knobs, paths: Paths, tell: Tell, max_paths: int, disturbed: bool = False
+        self, task: Task, knobs: Knobs, paths: Paths, tell: ProgressCallback, max_paths: int, disturbed: bool = False
     ) -> None:
         """max_paths: number of paths after which the search ends."""
         self._task, self._knobs, self._paths, self._tell, self._max_paths = task, knobs, paths, tell, max_paths

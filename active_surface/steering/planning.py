@@ -18,7 +18,7 @@ from active_surface.steering.planned import Planned
 from active_surface.steering.result import check_free, drawn, prepared, with_scatter
 from active_surface.steering.route import Route
 from active_surface.steering.schedule import Leg, scheduled
-from coupling import Tell, untold
+from coupling import ProgressCallback, no_progress
 from coupling.case import Case, length_text, write_case
 from particle import SurfaceMotion, Trajectory, unbroken
 
@@ -27,7 +27,7 @@ def plan(
     route: Route,
     output: str | Path | None = None,
     threads: int | None = None,
-    tell: Tell = untold,
+    tell: ProgressCallback = no_progress,
     overwrite: bool = False,
 ) -> Planned:
     """Find the drives that carry a part over way-points.
@@ -71,7 +71,7 @@ def plan_over(
     surface: SurfaceMotion,
     route: Route,
     threads: int | None = None,
-    tell: Tell = untold,
+    tell: ProgressCallback = no_progress,
     file: Path | None = None,
 ) -> Planned:
     """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
@@ -99,7 +99,7 @@ def plan_over(
 class _Work:
     """The legs of a plan, as they are found."""
 
-    def __init__(self, surface: SurfaceMotion, route: Route, threads: int | None, tell: Tell) -> None:
+    def __init__(self, surface: SurfaceMotion, route: Route, threads: int | None, tell: ProgressCallback) -> None:
         self._surface, self._route, self._threads, self._tell = surface, route, threads, tell
         self._approach: Approach | None = None
         self._legs: tuple[Leg, ...] = ()
@@ -179,5 +179,5 @@ def _comment(result: Planned) -> str:
     return "\n".join([*said, result.failure] if result.failure else said)
 
 
-def _tell_leg(tell: Tell, leg: int, legs: int, done: int, of: int) -> None:
+def _tell_leg(tell: ProgressCallback, leg: int, legs: int, done: int, of: int) -> None:
     tell(leg * of + done, legs * of)

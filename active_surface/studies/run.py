@@ -24,7 +24,7 @@ from active_surface.studies.pictures import draw_sweep
 from active_surface.studies.record import OUTCOMES, Records
 from active_surface.studies.study import Study
 from active_surface.studies.validity import model_warnings
-from coupling import Tell, untold
+from coupling import ProgressCallback, no_progress
 
 if TYPE_CHECKING:
     import xarray
@@ -66,7 +66,7 @@ def run_study(
     study: Study,
     output: str | Path | None = None,
     threads: int | None = None,
-    tell: Tell = untold,
+    tell: ProgressCallback = no_progress,
     scheduler: str | None = None,
     overwrite: bool = False,
 ) -> Sweep:
@@ -139,7 +139,9 @@ def _files(study: Study, folder: Path) -> tuple[Path, Path]:
     return folder / f"{study.name}{ENDING}", folder / f"{study.name}.sweep"
 
 
-def _results_file(study: Study, folder: Path, threads: int | None, tell: Tell, scheduler: str | None) -> Path:
+def _results_file(
+    study: Study, folder: Path, threads: int | None, tell: ProgressCallback, scheduler: str | None
+) -> Path:
     """Compute what is missing in a folder; returns the file of all results there."""
     (file, chunks), key = _files(study, folder), study.key
     store = ChunkStore(chunks / key[:16], key)
@@ -154,7 +156,7 @@ def _results_file(study: Study, folder: Path, threads: int | None, tell: Tell, s
     return file
 
 
-def _compute(engine: Engine, store: ChunkStore, tell: Tell, scheduler: str | None) -> None:
+def _compute(engine: Engine, store: ChunkStore, tell: ProgressCallback, scheduler: str | None) -> None:
     """Compute the chunks that the store does not have yet."""
     missing = [chunk for chunk in range(engine.chunks) if store.load(*engine.span(chunk)) is None]
     done = engine.paths - sum(stop - start for start, stop in map(engine.span, missing))

@@ -114,7 +114,7 @@ class Comparison:
         root = partial(contact.solve, problem.friction) if self.rough else limit
 
         def compiled(count: int, step: float) -> FloatArray:
-            law, data = problem.friction.law, (problem.points, problem.kinks, problem.forces)
+            law, data = problem.friction.law, (problem.points, problem.breakpoints, problem.forces)
             return np.array(with_numba.fixed_steps(*problem.start, *data, law, step, count))
 
         def fixed(count: int, step: float) -> FloatArray:

@@ -32,7 +32,7 @@ def table() -> list[str]:
     r, angle = 0.7 * RADIUS * np.sqrt(rng.uniform(0, 1, PATHS)), rng.uniform(0, 2 * math.pi, PATHS)
     starts = np.column_stack([r * np.cos(angle), r * np.sin(angle)])
     problems = [replace(base, start=(x, y)) for x, y in starts[:SAMPLE].tolist()]
-    rate, data = with_scipy.rate_in_numba(base), (base.points, base.kinks, base.forces, base.friction.law)
+    rate, data = with_scipy.rate_in_numba(base), (base.points, base.breakpoints, base.forces, base.friction.law)
     step = DURATION / STEPS
     methods = {
         OURS: lambda which: ours.ends(base, surface, np.array([which.start]), TOLERANCE)[0],

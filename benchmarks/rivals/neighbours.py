@@ -141,8 +141,8 @@ def row(count: int) -> str:
     pitch = OUT_TO * RADIUS * math.sqrt(math.pi / count)
     centre, time = RADIUS * np.array(PLACE), MOMENT * which.duration
     xy = centre + HALF * pitch * np.random.default_rng(1).uniform(-1, 1, (SAMPLES, 2))
-    span = np.searchsorted(which.kinks[1:-1], time, side="right")
-    since = time - which.kinks[span]
+    span = np.searchsorted(which.breakpoints[1:-1], time, side="right")
+    since = time - which.breakpoints[span]
     exact = with_numpy.shapes(xy, which).value @ which.forces[span] @ with_numpy.powers(since)[:, 0]
     drives = np.linalg.solve(which.shapes.strengths, which.forces[span])
 

@@ -19,7 +19,7 @@ FloatArray = NDArray[np.float64]
 RADIUS, MASS, GRAVITY = 300e-6, 2e-9, 9.80665
 OUT_TO = 0.8  # of the radius, the outermost actuator
 COUNTS, MOST = (1, 2, 9, 25, 100), 10_000  # actuators by default, and at most
-FEWEST_IN_WAVES = 5000  # actuators: the forces of that many drives, each with its kinks, would not fit in memory
+FEWEST_IN_WAVES = 5000  # actuators: the forces of that many drives, each with its breakpoints, would not fit in memory
 DELAYS, WAVE = 100, 0.06  # delays that differ in a wave; its stroke, over the radius
 QUINTIC = np.array([0.0, 0.0, 0.0, 10.0, -15.0, 6.0])  # a stroke from 0 to 1
 CONSTANT = ConstantFriction(20.9 * MASS)
@@ -44,7 +44,7 @@ class PathProblem:
         return DiscShapes(self.points, RADIUS)
 
     @cached_property
-    def kinks(self) -> FloatArray:
+    def breakpoints(self) -> FloatArray:
         """(S + 1,) s: 0, the times at which any stroke begins or ends, and the duration."""
         halves = 0.5 / self.frequencies
         most = math.ceil(self.duration / halves.min()) + 1
@@ -57,7 +57,7 @@ class PathProblem:
 
         In units that leave the deflection in m: w = sum_j forces_j G(x / RADIUS, points_j / RADIUS).
         """
-        begins, middles = self.kinks[:-1, None], 0.5 * (self.kinks[:-1] + self.kinks[1:])[:, None]
+        begins, middles = self.breakpoints[:-1, None], 0.5 * (self.breakpoints[:-1] + self.breakpoints[1:])[:, None]
         rate = 2 * self.frequencies
         strokes = np.floor((middles - self.delays) * rate)
         place = (begins - self.delays) * rate - strokes

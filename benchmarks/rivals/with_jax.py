@@ -22,13 +22,15 @@ jax.config.update("jax_enable_x64", True)
 
 def new_fixed_steps(problem: PathProblem) -> Callable[[FloatArray, float, int], FloatArray]:
     """What takes starts (n, 2) [m], a step [s] and a count to the places (n, 2) [m]; constant friction only."""
-    kinks, forces, sources = (jnp.asarray(a) for a in (problem.kinks, problem.forces, problem.points / RADIUS))
+    breakpoints, forces, sources = (
+        jnp.asarray(a) for a in (problem.breakpoints, problem.forces, problem.points / RADIUS)
+    )
     square, friction = (sources**2).sum(axis=1), float(problem.friction.friction_limit(0.0)) / MASS
     k = jnp.arange(6)
 
     def forces_at(time: jax.Array) -> jax.Array:
-        span = jnp.searchsorted(kinks[1:-1], time, side="right")
-        since = time - kinks[span]
+        span = jnp.searchsorted(breakpoints[1:-1], time, side="right")
+        since = time - breakpoints[span]
         powers = jnp.power(since, k)
         first = k * jnp.concatenate([jnp.zeros(1), powers[:-1]])
         second = k * (k - 1) * jnp.concatenate([jnp.zeros(2), powers[:-2]])

@@ -78,15 +78,15 @@ def right_side(
     time: float,
     state: FloatArray,
     points: FloatArray,
-    kinks: FloatArray,
+    breakpoints: FloatArray,
     forces: FloatArray,
     law: Any,
     scratch: FloatArray,
 ) -> FloatArray:
     """d/dt of (x, y, v_x, v_y) while the part slides; forces (S, N, 6), scratch (N, 3)."""
     x, y, v_x, v_y = state
-    span = np.searchsorted(kinks[1:-1], time, side="right")
-    quintics(forces[span], time - kinks[span], scratch)
+    span = np.searchsorted(breakpoints[1:-1], time, side="right")
+    quintics(forces[span], time - breakpoints[span], scratch)
     f = plate(x, y, points, scratch)
     a_x, a_y, load = pull(f, v_x, v_y)
     slow = friction_limit(law, load) / MASS / length(f, v_x, v_y)
@@ -95,7 +95,14 @@ def right_side(
 
 @compiled
 def fixed_steps(
-    x: float, y: float, points: FloatArray, kinks: FloatArray, forces: FloatArray, law: Any, step: float, count: int
+    x: float,
+    y: float,
+    points: FloatArray,
+    breakpoints: FloatArray,
+    forces: FloatArray,
+    law: Any,
+    step: float,
+    count: int,
 ) -> tuple[float, float]:
     """The place [m] of a part that starts from rest, after so many steps [s] by Moreau's scheme."""
     v_x = v_y = 0.0
@@ -104,9 +111,9 @@ def fixed_steps(
         x += 0.5 * step * v_x
         y += 0.5 * step * v_y
         time = (k + 0.5) * step
-        while span + 2 < len(kinks) and time >= kinks[span + 1]:
+        while span + 2 < len(breakpoints) and time >= breakpoints[span + 1]:
             span += 1
-        quintics(forces[span], time - kinks[span], at)
+        quintics(forces[span], time - breakpoints[span], at)
         f = plate(x, y, points, at)
         a_x, a_y, load = pull(f, v_x, v_y)
         free_x, free_y = v_x + step * a_x, v_y + step * a_y

@@ -64,8 +64,8 @@ def shapes(xy: FloatArray, problem: PathProblem) -> Shapes:
 
 def plate(xy: FloatArray, time: float, problem: PathProblem) -> Plate:
     """The sum over all actuators at points (n, 2) [m] and one time [s]."""
-    span = np.searchsorted(problem.kinks[1:-1], time, side="right")
-    forces = problem.forces[span] @ powers(time - problem.kinks[span])
+    span = np.searchsorted(problem.breakpoints[1:-1], time, side="right")
+    forces = problem.forces[span] @ powers(time - problem.breakpoints[span])
     f = shapes(xy, problem)
     slopes = np.einsum("pni,nk->pki", f.gradient, forces[:, :2])
     force = 4 * SCALE / RADIUS**2 * forces[:, 0]

@@ -51,13 +51,13 @@ def rate_in_numpy(problem: PathProblem) -> Rate:
 
 def rate_in_numba(problem: PathProblem) -> Rate:
     """The same, compiled."""
-    points, kinks, forces, law = problem.points, problem.kinks, problem.forces, problem.friction.law
+    points, breakpoints, forces, law = problem.points, problem.breakpoints, problem.forces, problem.friction.law
     scratch = np.empty((len(points), 3))
-    return lambda time, state: with_numba.right_side(time, state, points, kinks, forces, law, scratch)
+    return lambda time, state: with_numba.right_side(time, state, points, breakpoints, forces, law, scratch)
 
 
 def trace(problem: PathProblem, rate: Rate, tolerance: float) -> Traced:
-    """The path up to the end, or to where the part comes off; steps end at the kinks of the drives."""
+    """The path up to the end, or to where the part comes off; steps end at the breakpoints of the drives."""
     time, state, asked = 0.0, np.array([*problem.start, 0.0, 0.0]), 0
 
     def counted(t: float, y: FloatArray) -> FloatArray:
@@ -88,7 +88,7 @@ def trace(problem: PathProblem, rate: Rate, tolerance: float) -> Traced:
             return Traced(state[:2], asked)
         off = mode == "just off"
         names = [name for name in events if off or name in ("stops", "detaches")]
-        later = problem.kinks[np.searchsorted(problem.kinks, time, side="right")]
+        later = problem.breakpoints[np.searchsorted(problem.breakpoints, time, side="right")]
         found = solve_ivp(
             counted,
             (time, later),
@@ -121,7 +121,7 @@ def _load(problem: PathProblem, time: float, state: FloatArray) -> float:
 def slip(problem: PathProblem, time: float, place: FloatArray) -> tuple[float, FloatArray]:
     """When [s] a part at rest slips (the duration: it does not), and which way (2,), of length 1 along the surface."""
     # At a fixed place height and gradient are quintics over each span.
-    spans = np.arange(np.searchsorted(problem.kinks[1:-1], time, side="right"), len(problem.forces))
+    spans = np.arange(np.searchsorted(problem.breakpoints[1:-1], time, side="right"), len(problem.forces))
     shapes = with_numpy.shapes(place[None], problem)
     quintics = np.stack([shapes.value[0], *shapes.gradient[0].T]) @ problem.forces[spans]  # (S, 3, 6)
 
@@ -136,7 +136,7 @@ def slip(problem: PathProblem, time: float, place: FloatArray) -> tuple[float, F
         limit = problem.friction.friction_limit(load) / MASS
         return limit - with_numpy.length(f, pull), pull, gradient
 
-    begins, ends = problem.kinks[spans], problem.kinks[spans + 1]
+    begins, ends = problem.breakpoints[spans], problem.breakpoints[spans + 1]
     low = np.maximum(begins, time)
     times = low[:, None] + (ends - low)[:, None] * np.linspace(0, 1, SAMPLES)
     since = times - begins[:, None]

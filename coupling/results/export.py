@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.files import whole_file
-from coupling.progress import Tell, untold
+from coupling.progress import ProgressCallback, no_progress
 from coupling.results.saved import OF_PART, SavedRun
 from coupling.results.vtkhdf import GZIP, part_file, plate_file
 
@@ -38,7 +38,9 @@ class Frame(NamedTuple):
     fields: dict[str, NDArray]  # (n,) or (n, 3)
 
 
-def export_run(saved: SavedRun, folder: str | Path, form: str, tell: Tell = untold) -> tuple[Path, ...]:
+def export_run(
+    saved: SavedRun, folder: str | Path, form: str, tell: ProgressCallback = no_progress
+) -> tuple[Path, ...]:
     """Write a saved run to a folder, made if need be, in one of FORMATS; returns the two files to open.
 
     tell: gets how many steps are written, and of how many.
@@ -72,7 +74,7 @@ def _part_frames(saved: SavedRun) -> Iterator[Frame]:
         yield Frame(time, saved.position[k : k + 1], {name: getattr(saved, name)[k : k + 1] for name in OF_PART})
 
 
-def _counted(frames: Iterator[Frame], tell: Tell, count: int) -> Iterator[Frame]:
+def _counted(frames: Iterator[Frame], tell: ProgressCallback, count: int) -> Iterator[Frame]:
     for k, frame in enumerate(frames):
         tell(k, count)
         yield frame

@@ -15,7 +15,7 @@ from coupling.case import Case
 from coupling.display import DisplaySurface, display_surface, most_deflected, onto_surface
 from coupling.drives import frame_times, stroke_heights
 from coupling.environment import versions
-from coupling.progress import Tell, untold
+from coupling.progress import ProgressCallback, no_progress
 from coupling.results.case_record import CaseRecord
 from coupling.results.csv_file import is_trajectory, write_csv
 from coupling.results.vtkhdf import part_file, plate_file
@@ -48,7 +48,7 @@ def write_results(
     summary: Summary,
     folder: Path,
     csv: bool = False,
-    tell: Tell = untold,
+    tell: ProgressCallback = no_progress,
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
 

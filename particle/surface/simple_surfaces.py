@@ -94,7 +94,7 @@ def platform_surface(
 
 
 def _still_table() -> DriveTable:
-    """A drive that stays at 0, without kinks."""
+    """A drive that stays at 0, without breakpoints."""
     table = monomial_table(1)
     return table._replace(coefficients=np.zeros_like(table.coefficients))
 

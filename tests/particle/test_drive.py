@@ -1,4 +1,4 @@
-"""Drives: quintic strokes 10 s^3 - 15 s^4 + 6 s^5, their kinks, and what they refuse."""
+"""Drives: quintic strokes 10 s^3 - 15 s^4 + 6 s^5, their breakpoints, and what they refuse."""
 
 import math
 
@@ -20,7 +20,7 @@ DRIVES = {
     "late": Drive(-40e-6, 250, delay=1.3e-3),
     "two cycles": Drive(80e-6, 500, cycles=2, delay=0.4e-3),
 }
-TIMES = np.linspace(0, 9e-3, 1001) + 1e-7  # never on a kink
+TIMES = np.linspace(0, 9e-3, 1001) + 1e-7  # never on a breakpoint
 
 
 def expected(drive, time):
@@ -48,40 +48,40 @@ def test_velocity_and_acceleration_are_the_derivatives(name):
     drive, step = DRIVES[name], 1e-7
     (before, v_before, _), (_, v, a), (after, v_after, _) = (drive.evaluate(TIMES + k * step) for k in (-1, 0, 1))
     assert np.abs((after - before) / (2 * step) - v).max() < 1e-6 * np.abs(v).max()
-    # The third derivative jumps at kinks, which a difference across one feels at first order.
+    # The third derivative jumps at breakpoints, which a difference across one feels at first order.
     assert np.abs((v_after - v_before) / (2 * step) - a).max() < 2e-3 * np.abs(a).max()
 
 
 @pytest.mark.parametrize("name", DRIVES)
-def test_stroke_velocity_and_acceleration_are_continuous_at_kinks(name):
-    drive, kinks, time = DRIVES[name], [], -1.0
+def test_stroke_velocity_and_acceleration_are_continuous_at_breakpoints(name):
+    drive, breakpoints, time = DRIVES[name], [], -1.0
     table = drive_table([drive])
     while (time := next_breakpoint(table, time)) < 9e-3:
-        kinks.append(time)
-    assert kinks
-    before, after = (drive.evaluate(np.array(kinks) + shift) for shift in (-1e-12, 1e-12))
+        breakpoints.append(time)
+    assert breakpoints
+    before, after = (drive.evaluate(np.array(breakpoints) + shift) for shift in (-1e-12, 1e-12))
     for one, other, scale in zip(before, after, (1, 1e3, 1e7), strict=True):
         assert np.abs(one - other).max() < 1e-6 * scale * abs(drive.stroke)
     assert np.abs(after[1]).max() < 1e-9 * abs(drive.stroke) * drive.frequency + 1e-9
 
 
-def test_kinks_come_at_delay_half_periods_and_the_last_end():
+def test_breakpoints_come_at_delay_half_periods_and_the_last_end():
     table = drive_table([DRIVES["two cycles"], DRIVES["up"]])
-    kinks, time = [], -1.0
+    breakpoints, time = [], -1.0
     while (time := next_breakpoint(table, time)) < math.inf:
-        kinks.append(time)
-    assert kinks == pytest.approx(sorted([0.4e-3, 1.4e-3, 2.4e-3, 3.4e-3, 4.4e-3, 0.0, 1 / 450]), abs=1e-15)
+        breakpoints.append(time)
+    assert breakpoints == pytest.approx(sorted([0.4e-3, 1.4e-3, 2.4e-3, 3.4e-3, 4.4e-3, 0.0, 1 / 450]), abs=1e-15)
 
 
-def test_an_endless_drive_has_a_kink_each_half_period_and_never_the_same_twice():
-    table, kinks, time = drive_table([Drive(1e-6, 300)]), [], 0.0
+def test_an_endless_drive_has_a_breakpoint_each_half_period_and_never_the_same_twice():
+    table, breakpoints, time = drive_table([Drive(1e-6, 300)]), [], 0.0
     for _ in range(1000):
         time = next_breakpoint(table, time)
-        kinks.append(time)
-    assert kinks == pytest.approx(np.arange(1, 1001) / 600, rel=1e-14)
+        breakpoints.append(time)
+    assert breakpoints == pytest.approx(np.arange(1, 1001) / 600, rel=1e-14)
 
 
-def test_a_surface_without_drives_has_no_kink():
+def test_a_surface_without_drives_has_no_breakpoint():
     assert next_breakpoint(drive_table([]), 0.0) == math.inf
 
 

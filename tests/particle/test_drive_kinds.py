@@ -1,4 +1,4 @@
-"""Sines, tables, measured motions and schedules: their heights, pieces and kinks at any time, and what they refuse."""
+"""Sines, tables, measured motions and schedules: their heights, pieces and breakpoints, and what they refuse."""
 
 import math
 
@@ -53,11 +53,11 @@ KINDS = {
 }
 
 
-def kinks_of(table, end, time=-1.0):
-    kinks = []
+def breakpoints_of(table, end, time=-1.0):
+    breakpoints = []
     while (time := next_breakpoint(table, time)) < end:
-        kinks.append(time)
-    return kinks
+        breakpoints.append(time)
+    return breakpoints
 
 
 @pytest.mark.parametrize("name", KINDS)
@@ -75,7 +75,7 @@ def test_heights_are_those_of_the_formula_at_any_time(name, passes, part):
 @pytest.mark.parametrize("name", KINDS)
 @given(passes=st.sampled_from([0, 1, 999, 1_000_000]), part=st.floats(0, 1), unit=st.floats(0.01, 10))
 @settings(max_examples=60, deadline=None)
-def test_from_one_kink_to_the_next_the_height_is_one_quintic(name, passes, part, unit):
+def test_from_one_breakpoint_to_the_next_the_height_is_one_quintic(name, passes, part, unit):
     drive, _, span = KINDS[name]
     table, start = drive_table([drive]), span * (passes + part)
     end = next_breakpoint(table, start)
@@ -89,52 +89,52 @@ def test_from_one_kink_to_the_next_the_height_is_one_quintic(name, passes, part,
 
 @pytest.mark.parametrize("passes", [0, 3, 1_000_000])
 @pytest.mark.parametrize("name", KINDS)
-def test_the_list_of_kinks_is_complete_at_any_time(name, passes):
+def test_the_list_of_breakpoints_is_complete_at_any_time(name, passes):
     drive, _, span = KINDS[name]
     start, scale, *_ = drive.segments()
-    kinks = kinks_of(drive_table([drive]), span * (passes + 1.5), span * (passes + 0.5) - 1e-3 * span)
+    breakpoints = breakpoints_of(drive_table([drive]), span * (passes + 1.5), span * (passes + 0.5) - 1e-3 * span)
     edges = np.concatenate([start + span * passes, start + span * (passes + 1)])
     edges = edges[(edges > span * (passes + 0.499)) & (edges < span * (passes + 1.5))]
-    assert kinks == pytest.approx(edges, rel=1e-15)
-    # At a kink, the piece that begins there: otherwise its own fifth derivative would be another's.
+    assert breakpoints == pytest.approx(edges, rel=1e-15)
+    # At a breakpoint, the piece that begins there: otherwise its own fifth derivative would be another's.
     table = drive_table([drive])
-    for kink, after in zip(kinks[:-1], kinks[1:], strict=True):
-        here, later = piece_at(table, 0, kink, 1.0), piece_at(table, 0, 0.5 * (kink + after), 1.0)
+    for breakpoint, after in zip(breakpoints[:-1], breakpoints[1:], strict=True):
+        here, later = piece_at(table, 0, breakpoint, 1.0), piece_at(table, 0, 0.5 * (breakpoint + after), 1.0)
         assert here[5] == pytest.approx(later[5], rel=1e-12, abs=1e-300)
 
 
 @given(frequency=st.floats(0.1, 1e4), delay=st.floats(0, 10), passes=st.integers(0, 1_000_000))
 @settings(max_examples=200, deadline=None)
-def test_kinks_that_rounding_blurs_still_begin_their_pieces(frequency, delay, passes):
+def test_breakpoints_that_rounding_blurs_still_begin_their_pieces(frequency, delay, passes):
     drive = Drive(1.0, frequency, delay=delay)
     table, half = drive_table([drive]), 0.5 / frequency
     for strokes in (2 * passes, 2 * passes + 1):
-        kink = next_breakpoint(table, delay + (strokes - 0.5) * half)
-        assert kink == pytest.approx(delay + strokes * half, rel=1e-15)
-        piece, up = piece_at(table, 0, kink, half), 1 - 2 * (strokes % 2)
+        breakpoint = next_breakpoint(table, delay + (strokes - 0.5) * half)
+        assert breakpoint == pytest.approx(delay + strokes * half, rel=1e-15)
+        piece, up = piece_at(table, 0, breakpoint, half), 1 - 2 * (strokes % 2)
         assert piece[:3] == pytest.approx([strokes % 2, 0, 0], abs=1e-6)
         assert piece[3] == pytest.approx(10 * up, rel=1e-6)
         # One rounding earlier it is still the piece before, which goes the other way.
-        earlier = piece_at(table, 0, np.nextafter(kink, -1), half)
+        earlier = piece_at(table, 0, np.nextafter(breakpoint, -1), half)
         assert earlier[5] == pytest.approx(-6 * up if strokes else 0, rel=1e-6)
-        assert next_breakpoint(table, kink) == pytest.approx(delay + (strokes + 1) * half, rel=1e-15)
+        assert next_breakpoint(table, breakpoint) == pytest.approx(delay + (strokes + 1) * half, rel=1e-15)
 
 
-def test_kinks_of_drives_that_differ_by_rounding_are_one():
+def test_breakpoints_of_drives_that_differ_by_rounding_are_one():
     one, other = Drive(1.0, 3.0), Drive(1.0, 3.0 * (1 + 1e-16), delay=1 / 3.0)
-    kinks = kinks_of(drive_table([one, other]), 1e6, 1e6 - 10)
-    assert np.diff(kinks) == pytest.approx(1 / 6, rel=1e-8)
+    breakpoints = breakpoints_of(drive_table([one, other]), 1e6, 1e6 - 10)
+    assert np.diff(breakpoints) == pytest.approx(1 / 6, rel=1e-8)
 
 
 @given(st.data())
 @settings(max_examples=60, deadline=None)
-def test_random_tables_are_their_own_points_with_every_kink(data):
+def test_random_tables_are_their_own_points_with_every_breakpoint(data):
     gaps = data.draw(st.lists(st.floats(1e-6, 1.0), min_size=1, max_size=30))
     heights = data.draw(st.lists(st.floats(-1, 1), min_size=len(gaps) + 1, max_size=len(gaps) + 1))
     drive = TableDrive(np.concatenate([[0], np.cumsum(gaps)]), heights, delay=data.draw(st.floats(0, 2)))
     h, v, a = drive.evaluate(drive.delay + drive.times)
     assert h == pytest.approx(heights, abs=1e-8)  # the velocity may be 1e6, and the time is rounded
-    assert kinks_of(drive_table([drive]), math.inf) == pytest.approx(drive.delay + drive.times, rel=1e-15)
+    assert breakpoints_of(drive_table([drive]), math.inf) == pytest.approx(drive.delay + drive.times, rel=1e-15)
     middle = drive.delay + 0.5 * (drive.times[:-1] + drive.times[1:])
     assert drive.evaluate(middle)[0] == pytest.approx(0.5 * (drive.heights[:-1] + drive.heights[1:]), abs=1e-8)
 
@@ -157,9 +157,9 @@ def test_a_counted_sine_ends_at_0_and_its_pieces_join(cycle):
     drive = Drive(1.0, 2.0, cycle, cycles=3, delay=0.25)
     assert drive.evaluate([0.0, 0.25, 1.75, 9.0])[0] == pytest.approx([0, 0, 0, 0], abs=1e-15)
     assert drive.evaluate(1.75)[1] == 0
-    kinks = kinks_of(drive_table([drive]), math.inf)
-    assert kinks == pytest.approx(0.25 + np.arange(3 * 128 + 1) / 256, rel=1e-15)
-    inner = np.array(kinks[1:-1])
+    breakpoints = breakpoints_of(drive_table([drive]), math.inf)
+    assert breakpoints == pytest.approx(0.25 + np.arange(3 * 128 + 1) / 256, rel=1e-15)
+    inner = np.array(breakpoints[1:-1])
     for one, other, scale in zip(
         drive.evaluate(inner - 1e-9), drive.evaluate(inner + 1e-9), (20, 200, 3000), strict=True
     ):
@@ -280,6 +280,6 @@ def test_every_wrong_field_is_named(make, owner, names):
     ],
     ids=["up-down", "with dwell", "cosine", "sine", "schedule"],
 )
-def test_which_derivatives_jump_at_kinks(drive, velocity, acceleration):
+def test_which_derivatives_jump_at_breakpoints(drive, velocity, acceleration):
     jump = drive_table([Drive(3e-6, 40.0), drive]).jump > 0
     assert jump.tolist() == [[False, False], [velocity, acceleration]]

@@ -224,7 +224,7 @@ def test_a_load_beyond_the_contact_model_overloads_it():
 
 @pytest.mark.compiled
 def test_a_run_that_would_take_for_ever_stops_at_its_work_limit():
-    """A bowl without friction and without kinks in its drive: one span, 22 000 evaluations at most."""
+    """A bowl without friction and without breakpoints in its drive: one span, 22 000 evaluations at most."""
     trajectory = simulate(
         polynomial_surface([[0, 0, 1.0], [0, 0, 0], [1.0, 0, 0]]),
         Micropart(1.0, (0.5, 0.0), (0.0, 1.0)),

@@ -35,11 +35,11 @@ def values(local, x, y, time):
 
 
 @pytest.mark.parametrize("count", [1, 3, 12])
-def test_after_many_kinks_it_is_as_if_prepared_anew(count):
+def test_after_many_breakpoints_it_is_as_if_prepared_anew(count):
     surface = spread(count)
     x, y = 0.31 * RADIUS, 0.9 * RADIUS  # beside the rim, where w is small against what it is made of
     surface.evaluate([[x, y]], 0.0)
-    record, time, kinks = surface.record, 0.0, 0
+    record, time, breakpoints = surface.record, 0.0, 0
     local = new_local(record)
     while time < 0.1:
         assert enter(record, local, x, y, time, 0.1) >= 0
@@ -49,8 +49,8 @@ def test_after_many_kinks_it_is_as_if_prepared_anew(count):
         for share in (0.0, 0.5, 1.0):
             at = time + share * (local.frame[0].end - time)
             assert np.abs(values(local, x, y, at) - values(anew, x, y, at)).max() < 1e-11 * STROKE
-        time, kinks = local.frame[0].end, kinks + 1
-    assert kinks > 4 * count
+        time, breakpoints = local.frame[0].end, breakpoints + 1
+    assert breakpoints > 4 * count
 
 
 def test_a_place_without_a_cell_is_told_and_what_was_prepared_stays():
@@ -93,7 +93,7 @@ def test_bridges_are_as_good_as_asked_and_meet_the_surface_at_both_ends(off):
     surface.evaluate([[x, y]], 0.0)
     record, end = surface.record, 0.05
     velocity, acceleration = off * STROKE * 1e3, 10 * off * STROKE * 1e6
-    exact, bridged, time, kinks, spans = new_local(record), new_local(record), 0.0, 0, 0
+    exact, bridged, time, breakpoints, spans = new_local(record), new_local(record), 0.0, 0, 0
     allow_bridges(bridged, velocity, acceleration)
     rng = np.random.default_rng(0)
     while time < end:
@@ -103,7 +103,7 @@ def test_bridges_are_as_good_as_asked_and_meet_the_surface_at_both_ends(off):
         begin = time
         while time < until:
             enter(record, exact, x, y, time, until)
-            kinks += 1
+            breakpoints += 1
             for at in (time, 0.5 * (time + exact.frame[0].end), exact.frame[0].end):
                 u, v = rng.uniform(-1, 1, 2) * [frame.half_x, frame.half_y]
                 place = frame.x + u, frame.y + v
@@ -113,11 +113,11 @@ def test_bridges_are_as_good_as_asked_and_meet_the_surface_at_both_ends(off):
                 assert abs(one.w_tt - other.w_tt) < share * acceleration
             time = exact.frame[0].end
     assert time == end
-    assert spans < {1e-3: 0.35, 1e-5: 0.8}[off] * kinks
+    assert spans < {1e-3: 0.35, 1e-5: 0.8}[off] * breakpoints
 
 
 def test_only_what_hardly_counts_is_bridged():
-    """Over two actuators every kink ends a span, whatever is allowed short of the motion itself."""
+    """Over two actuators every breakpoint ends a span, whatever is allowed short of the motion itself."""
     surface = spread(2)
     record = surface.record
     local, time = new_local(record), 0.0

@@ -1,4 +1,4 @@
-"""A kink of the surface's velocity is an impact: closed forms for a base and a plate that start or end at speed."""
+"""A jump of the surface's velocity is an impact: closed forms for a base and a plate that start or end at speed."""
 
 import math
 

@@ -49,12 +49,12 @@ Height = Callable[[float], tuple[float, float, float]]  # t -> h, h', h''
 
 @dataclass
 class Problem:
-    """What moves on what. `limit` is Q(N) [N]; `kinks` are all times at which a derivative of the surface jumps."""
+    """What moves on what. `limit`: Q(N) [N]; `breakpoints`: the times at which a derivative of the surface jumps."""
 
     surface: Surface
     mass: float
     limit: Callable[[float], float]
-    kinks: Sequence[float] = ()
+    breakpoints: Sequence[float] = ()
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.80665)
     squeeze: float = 0.0
     pull_off: float = math.inf
@@ -105,7 +105,7 @@ def trace(problem: Problem, position: Sequence[float], velocity: Sequence[float]
     def note(kind: str) -> None:
         events.append((kind, time, *place.tolist()))
 
-    edges = np.unique([0.0, *(k for k in problem.kinks if 0 < k < duration), duration])
+    edges = np.unique([0.0, *(k for k in problem.breakpoints if 0 < k < duration), duration])
     mode = "slide" if v.any() else "rest"
     for end in edges[1:].tolist():
         while time < end:
@@ -127,7 +127,7 @@ def trace(problem: Problem, position: Sequence[float], velocity: Sequence[float]
                 held = size_of(f.pull, f) <= problem.static_ratio * f.limit
                 note("stops" if held else "reverses")
                 mode = "rest" if held else "off"
-            elif mode == "off":  # it is fast enough by now, or a kink came: its velocity is all there is to know
+            elif mode == "off":  # it is fast enough by now, or a breakpoint came: its velocity is all there is to know
                 mode = "slide" if found == "fast" or time >= end else mode
     return Path(time, place, v, events)
 
@@ -147,7 +147,7 @@ def rest(problem: Problem, time: float, end: float, place: np.ndarray) -> tuple[
     found = []
     for kind, measure in kinds:
         values = np.array([measure(moment) for moment in moments])
-        # A part that has just come to rest, or that rested up to a kink, is held there but for rounding.
+        # A part that has just come to rest, or that rested up to a breakpoint, is held there but for rounding.
         below = np.flatnonzero(values < -1e-9 * max(1.0, float(np.abs(values).max())))
         if len(below):
             k = below[0]

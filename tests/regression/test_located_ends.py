@@ -47,14 +47,14 @@ def test_a_part_that_leaves_along_an_axis_has_its_files(axis, tmp_path):
 
 
 def test_next_breakpoint_is_always_later():
-    """At late times rounding put a kink before the time that it was asked for, and a run never ended."""
+    """At late times rounding put a breakpoint before the time that it was asked for, and a run never ended."""
     random = np.random.default_rng(5)
     for _ in range(100):
         drive = Drive(1e-6, random.uniform(100, 1000), delay=random.choice([0.0, 1e-3]))
         table = drive_table([drive])
         for count in random.integers(1, 100_000, 20):
-            kink = drive.delay + count * 0.5 / drive.frequency
-            assert next_breakpoint(table, kink) > kink
+            breakpoint = drive.delay + count * 0.5 / drive.frequency
+            assert next_breakpoint(table, breakpoint) > breakpoint
 
 
 @pytest.mark.parametrize("static, kind", [(0.39, EventKind.REVERSES), (0.41, EventKind.STOPS)])

@@ -75,7 +75,7 @@ def test_a_quick_stop_keeps_the_energy_ledger(tolerance):
 
 
 def test_samples_after_a_jolt_of_a_part_that_goes_on_sliding_are_those_after_it():
-    """The row at the kink held the velocity before the jolt, and samples marched on from that."""
+    """The row at the breakpoint held the velocity before the jolt, and samples marched on from that."""
     start = 0.1
     surface = driven([level(0.0)], base=(steady(0.7, 1.0, start), Drive(0.0, 10.0)))
     path = simulate(surface, Micropart(MASS, (0.0, 0.0), (2.0, 0.0)), ConstantFriction(3.0 * MASS), 0.3)

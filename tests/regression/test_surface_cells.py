@@ -29,7 +29,7 @@ def thirteen_drives():
 
 
 @pytest.mark.compiled
-def test_a_kink_at_a_cells_edge_is_no_jump_though_some_drive_has_one():
+def test_a_breakpoint_at_a_cells_edge_is_no_jump_though_some_drive_has_one():
     """The cells' velocities differ by more than a jump that counts; six of these sixty parts were thrown off by it."""
     jumping = HermiteDrive([0, 1e-3], [0, 1e-16], [0, 2e-13], [0, 0])
     calm = surface_motion(DiscShapes(thirteen_points(), RADIUS), [*thirteen_drives()[:12], Drive(1e-16, 500.0)])

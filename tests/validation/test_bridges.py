@@ -1,4 +1,4 @@
-"""Over many actuators kinks are bridged: ends stay within the tolerance, loads near it, for far fewer evaluations."""
+"""Over many actuators breakpoints are bridged: ends stay within the tolerance, at far fewer evaluations."""
 
 import numpy as np
 import pytest
@@ -18,13 +18,13 @@ def run():
     def path(tolerance):
         return simulate(surface, Micropart(MASS, START), many.friction, DURATION, tolerance=tolerance)
 
-    return path, len(many.kinks) - 1
+    return path, len(many.breakpoints) - 1
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize(("tolerance", "evaluations"), [(1e-5, 2), (1e-6, 3), (1e-8, 8)])
 def test_ends_and_loads_are_as_good_as_the_tolerance(run, tolerance, evaluations):
-    path, kinks = run
+    path, breakpoints = run
     truth, found = path(1e-11), path(tolerance)
     assert found.outcome is truth.outcome and len(found.events) == len(truth.events) > 2
     way = np.hypot(*np.diff(truth.position, axis=0).T).sum()
@@ -36,4 +36,4 @@ def test_ends_and_loads_are_as_good_as_the_tolerance(run, tolerance, evaluations
     times = [one.time - other.time for one, other in zip(found.events, truth.events, strict=True)]
     assert np.abs(times).max() < 300 * tolerance * DURATION
     assert found.energy.balance < 30 * tolerance
-    assert found.evaluations < evaluations * kinks
+    assert found.evaluations < evaluations * breakpoints

@@ -92,12 +92,12 @@ def ratio_of(law):
 
 
 def problem(actuators, strokes, part, law, gravity, duration):
-    kinks = [delay + k / (2 * f) for _, f, delay in strokes for k in range(math.ceil(2 * f * duration) + 1)]
+    breakpoints = [delay + k / (2 * f) for _, f, delay in strokes for k in range(math.ceil(2 * f * duration) + 1)]
     return Problem(
         boggio(actuators, RADIUS, [up_down(*stroke) for stroke in strokes]),
         part.mass,
         limit_of(law),
-        kinks,
+        breakpoints,
         gravity,
         part.squeeze,
         law.pull_off,
@@ -135,8 +135,10 @@ def compare(run, theirs, start, rounding=0.0):
 )
 def test_the_oracle_finds_the_reference_paths_of_one_stroke(height, end, events):
     """On which two other integrators agreed; the digits given are all confirmed."""
-    kinks = [1 / 600, 1 / 450, 1 / 300]
-    stroke = Problem(boggio([[0.0, 0.0]], RADIUS, [height]), MASS, lambda load: 20.9 * MASS, kinks, (0.0, 0.0, 0.0))
+    breakpoints = [1 / 600, 1 / 450, 1 / 300]
+    stroke = Problem(
+        boggio([[0.0, 0.0]], RADIUS, [height]), MASS, lambda load: 20.9 * MASS, breakpoints, (0.0, 0.0, 0.0)
+    )
     found = trace(stroke, (100e-6, 0.0), (0.0, 0.0), 8e-3)
     assert found.position == pytest.approx((end, 0.0), rel=3e-11, abs=1e-18)
     assert [time for _, time, *_ in found.events] == pytest.approx(1e-4 * np.array(events), rel=4e-11)
@@ -191,12 +193,12 @@ def test_a_path_on_a_polynomial_is_the_oracle_s(name):
     coefficients, base, part, law, gravity, duration = POLYNOMIALS[name]
     drives = [Drive(stroke, f, delay=delay) for stroke, f, delay in base] or None
     heights = [up_down(*stroke) for stroke in base] or (still, still)
-    kinks = [delay + k / (2 * f) for _, f, delay in base for k in range(math.ceil(2 * f * duration) + 1)]
+    breakpoints = [delay + k / (2 * f) for _, f, delay in base for k in range(math.ceil(2 * f * duration) + 1)]
     exact = Problem(
         polynomial(coefficients, heights),
         part.mass,
         limit_of(law),
-        kinks,
+        breakpoints,
         gravity,
         part.squeeze,
         law.pull_off,

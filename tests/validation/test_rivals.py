@@ -31,8 +31,8 @@ def surface(pair):
 
 def test_forces_are_those_of_the_drives(pair):
     for time in (0.0, 2e-4, 7e-4, 1.4e-3):
-        span = np.searchsorted(pair.kinks[1:-1], time, side="right")
-        found = pair.forces[span] @ with_numpy.powers(time - pair.kinks[span])
+        span = np.searchsorted(pair.breakpoints[1:-1], time, side="right")
+        found = pair.forces[span] @ with_numpy.powers(time - pair.breakpoints[span])
         drives = [
             Drive(pair.stroke, f, delay=d).evaluate(time) for f, d in zip(pair.frequencies, pair.delays, strict=True)
         ]
@@ -43,9 +43,9 @@ def test_forces_are_those_of_the_drives(pair):
 def test_both_sums_are_the_moving_surface(pair, surface):
     xy, time = RADIUS * np.random.default_rng(0).uniform(-0.5, 0.5, (20, 2)), 1.2e-3
     f, true = with_numpy.plate(xy, time, pair), surface.evaluate(xy, time)
-    span = np.searchsorted(pair.kinks[1:-1], time, side="right")
+    span = np.searchsorted(pair.breakpoints[1:-1], time, side="right")
     at = np.empty((2, 3))
-    with_numba.quintics(pair.forces[span], time - pair.kinks[span], at)
+    with_numba.quintics(pair.forces[span], time - pair.breakpoints[span], at)
     compiled = np.array([with_numba.plate(x, y, pair.points, at) for x, y in xy])
     expected = [true.w_tt, *true.gradient.T, *true.gradient_t.T, *true.hessian.reshape(-1, 4).T[[0, 1, 3]]]
     by_numpy = [f.w_tt, *f.gradient.T, *f.gradient_t.T, *f.hessian.reshape(-1, 4).T[[0, 1, 3]]]
@@ -59,7 +59,7 @@ def test_fixed_steps_are_those_of_the_scheme(contact, surface, request):
     which = request.getfixturevalue(contact)
     step = which.duration / STEPS
     limit = which.friction.friction_limit
-    data = (which.points, which.kinks, which.forces, which.friction.law, step, STEPS)
+    data = (which.points, which.breakpoints, which.forces, which.friction.law, step, STEPS)
     compiled = np.array(with_numba.fixed_steps(*which.start, *data))
     starts = np.array([which.start, (0.0, 0.0), which.start])
     many = with_numpy.fixed_steps(which, starts, limit, step, STEPS)
@@ -109,9 +109,9 @@ def test_all_neighbours_are_the_surface(pair, surface):
     centre, pitch, time = np.array([20e-6, 30e-6]), 60e-6, 1.2e-3
     xy = centre + neighbours.HALF * pitch * np.array([[0.9, -0.9], [0.0, 0.5], [-1.0, 1.0]])
     of = neighbours.neighbours(pair, centre, pitch, np.arange(2))
-    span = np.searchsorted(pair.kinks[1:-1], time, side="right")
+    span = np.searchsorted(pair.breakpoints[1:-1], time, side="right")
     drives = np.linalg.solve(pair.shapes.strengths, pair.forces[span])
-    found = neighbours.repeat(xy, drives, time - pair.kinks[span], of, neighbours.MONOMIALS, 1)
+    found = neighbours.repeat(xy, drives, time - pair.breakpoints[span], of, neighbours.MONOMIALS, 1)
     mine = ours.evaluations(surface, xy, time, 1)
     assert (np.abs(found - mine).max(axis=0) < 1e-5 * np.abs(mine).max(axis=0)).all()
 
@@ -157,12 +157,12 @@ def test_tables_tell_what_was_not_tried():
 
 
 @pytest.mark.parametrize(("count", "tolerance"), [(25, 1e-6), (100, 1e-9)])
-def test_a_kink_of_many_drives_costs_few_evaluations(count, tolerance):
+def test_a_breakpoint_of_many_drives_costs_few_evaluations(count, tolerance):
     """About one step of the pair of order 5 each, as the surface at its end serves the next."""
     many = problem(count, STARTS[count], duration=5e-3)
     path = ours.path_of(many, ours.surface_of(many))(tolerance=tolerance)
     assert len(path.events) > 0
-    assert path.evaluations < 8.5 * (len(many.kinks) - 1)
+    assert path.evaluations < 8.5 * (len(many.breakpoints) - 1)
 
 
 @pytest.mark.parametrize("counts", [["0"], ["1", "10001"], ["-3"]])

@@ -82,7 +82,7 @@ def limit_rate(surface, friction):
 
 @pytest.mark.compiled
 def test_the_paper_s_scheme_tends_to_its_own_equations_with_order_one(radius):
-    """A part that slides from the start over one kink, by scipy on the surface's public fields; rough contact."""
+    """A part that slides from the start over one breakpoint, by scipy on the surface's public fields; rough contact."""
     friction, end = KogutEtsion.paper(), 1.2e-3
     surface = surface_motion(DiscShapes(PAIR, radius), STROKES)
     part = Micropart(MASS, (60e-6, -40e-6), (0.06, 0.09))

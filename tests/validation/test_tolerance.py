@@ -20,15 +20,15 @@ MASS, RADIUS = 2e-9, 300e-6
 PAIR = [[75e-6, 10e-6], [-75e-6, 10e-6]]
 STROKES = [Drive(150e-6, 300), Drive(90e-6, 450, delay=0.4e-3)]
 HEIGHTS = [up_down(150e-6, 300), up_down(90e-6, 450, 0.4e-3)]
-KINKS = [*(k / 600 for k in range(3)), *(0.4e-3 + k / 900 for k in range(3))]
+BREAKPOINTS = [*(k / 600 for k in range(3)), *(0.4e-3 + k / 900 for k in range(3))]
 ONCE, RISE = (Drive(150e-6, 300, cycles=1), up_down(150e-6, 300, cycles=1)), (Drive(150e-6, 450, "up"), up(150e-6, 450))
 CONSTANT, ROUGH = ConstantFriction(20.9 * MASS), KogutEtsion.paper()
-# Actuators, drives, their formulas and kinks, start, friction, gravity, duration.
+# Actuators, drives, their formulas and breakpoints, start, friction, gravity, duration.
 CASES = {
     "up and down at 300 Hz": ([[0.0, 0.0]], [ONCE[0]], [ONCE[1]], [1 / 600, 1 / 300], (100e-6, 0.0), CONSTANT, 0, 8e-3),
     "up at 450 Hz": ([[0.0, 0.0]], [RISE[0]], [RISE[1]], [1 / 450], (100e-6, 0.0), CONSTANT, 0, 8e-3),
-    "two actuators": (PAIR, STROKES, HEIGHTS, KINKS, (60e-6, -40e-6), CONSTANT, 9.80665, 3e-3),
-    "two actuators, rough contact": (PAIR, STROKES, HEIGHTS, KINKS, (60e-6, -40e-6), ROUGH, 9.80665, 3e-3),
+    "two actuators": (PAIR, STROKES, HEIGHTS, BREAKPOINTS, (60e-6, -40e-6), CONSTANT, 9.80665, 3e-3),
+    "two actuators, rough contact": (PAIR, STROKES, HEIGHTS, BREAKPOINTS, (60e-6, -40e-6), ROUGH, 9.80665, 3e-3),
 }
 TOLERANCES = 10.0 ** -np.arange(4, 12)
 ORACLE = 2e-11  # of the radius; what the truth of a pass over an actuator may be wrong by
@@ -39,13 +39,13 @@ pytestmark = pytest.mark.compiled
 @cache
 def truth_and_runs(name):
     """The oracle's path, and for each tolerance the integrator's."""
-    actuators, drives, heights, kinks, start, friction, gravity, duration = CASES[name]
+    actuators, drives, heights, breakpoints, start, friction, gravity, duration = CASES[name]
 
     def limit(load):
         return float(friction.friction_limit(load))
 
     plate = boggio(actuators, RADIUS, heights)
-    exact = Problem(plate, MASS, limit, kinks, (0.0, 0.0, -gravity), pull_off=friction.pull_off)
+    exact = Problem(plate, MASS, limit, breakpoints, (0.0, 0.0, -gravity), pull_off=friction.pull_off)
     truth = trace(exact, start, (0.0, 0.0), duration)
     surface = surface_motion(DiscShapes(actuators, RADIUS), drives, 1e-11)
     part = Micropart(MASS, start)

@@ -38,7 +38,7 @@ def test_finite_elements_and_closed_form_end_within_1e_6_of_the_path(section, ra
 @pytest.mark.parametrize("friction", [ConstantFriction(20.9 * MASS), KogutEtsion.paper()], ids=["constant", "rough"])
 @pytest.mark.parametrize("tolerance, bound", [(1e-6, 5e-5), (1e-9, 2e-8)])
 def test_a_sliding_path_is_that_of_dop853(boggio, friction, tolerance, bound):
-    """From the first row at 10 mm/s to 3 ms, by scipy on the surface's public fields, kink by kink."""
+    """From the first row at 10 mm/s to 3 ms, by scipy on the surface's public fields, breakpoint by breakpoint."""
     start, end = STARTS[1], 3e-3
     reference = path(boggio, start, friction, end, 1e-11)
     assert [event.kind for event in reference.events] == [EventKind.SLIPS]
@@ -55,8 +55,8 @@ def test_a_sliding_path_is_that_of_dop853(boggio, friction, tolerance, bound):
         return [*v, *(-b * g / square - limit / MASS * v / np.sqrt(v @ v + (v @ g) ** 2))]
 
     state, begin = np.concatenate([reference.position[first], reference.velocity[first]]), reference.time[first]
-    kinks = np.unique(np.concatenate([np.arange(4) / 600, 0.4e-3 + np.arange(4) / 900]))
-    edges = [begin, *kinks[(kinks > begin) & (kinks < end)], end]
+    breakpoints = np.unique(np.concatenate([np.arange(4) / 600, 0.4e-3 + np.arange(4) / 900]))
+    edges = [begin, *breakpoints[(breakpoints > begin) & (breakpoints < end)], end]
     for one, other in zip(edges[:-1], edges[1:], strict=True):
         state = solve_ivp(rate, (one, other), state, method="DOP853", rtol=1e-10, atol=1e-14).y[:, -1]
     ours = path(boggio, start, friction, end, tolerance).position

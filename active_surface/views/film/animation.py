@@ -23,7 +23,7 @@ from active_surface.views.film.look import Look
 from active_surface.views.film.pace import Pace, pace_of, warnings_of
 from active_surface.views.film.painter import chosen, painter
 from active_surface.views.film.stage import Stage, stage_of
-from coupling import Tell, build_drives, untold
+from coupling import ProgressCallback, build_drives, no_progress
 from coupling.case import Case, parse
 from coupling.results import SavedRun, check_folder, read_run
 
@@ -71,7 +71,7 @@ def animate(
     exaggeration: float | None = None,
     size: str | tuple[int, int] | None = None,
     renderer: str = "auto",
-    tell: Tell = untold,
+    tell: ProgressCallback = no_progress,
 ) -> Animation:
     """Make a film of a run.
 

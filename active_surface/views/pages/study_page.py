@@ -13,7 +13,7 @@ from active_surface.studies.pictures import Findings, Shown
 from active_surface.views.pages.page_file import notes_of, rows_of, write_page
 from active_surface.views.pages.study_data import study_data
 from active_surface.views.pages.sweep_paths import Paths, find_paths, spread, usual_count
-from coupling import Tell, untold
+from coupling import ProgressCallback, no_progress
 
 if TYPE_CHECKING:
     import xarray
@@ -22,7 +22,7 @@ PROGRAMS = "study_map.js", "study_path.js", "study.js"
 
 
 def write_study_page(
-    study: Study, dataset: xarray.Dataset, path: Path, paths: int | None = None, tell: Tell = untold
+    study: Study, dataset: xarray.Dataset, path: Path, paths: int | None = None, tell: ProgressCallback = no_progress
 ) -> Path:
     """Writes the page of a sweep to an HTML file, as a whole or not at all; returns its path.
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from active_surface.studies import AT_ONCE, Engine
 from active_surface.views.pages.thinned import thinned
-from coupling import Tell, untold
+from coupling import ProgressCallback, no_progress
 from coupling.pictures import extent
 from particle import Trajectory
 
@@ -48,7 +48,7 @@ def spread(shape: tuple[int, ...], count: int) -> NDArray[np.bool_]:
     return chosen
 
 
-def find_paths(engine: Engine, numbers: IntArray, ends: FloatArray, tell: Tell = untold) -> Paths:
+def find_paths(engine: Engine, numbers: IntArray, ends: FloatArray, tell: ProgressCallback = no_progress) -> Paths:
     """Find the paths of these numbers (p,), whose ends (p, 2) [m] the sweep knows: nan where they were refused."""
     known_ends = np.isfinite(ends).all(axis=1)
     order = np.argsort(numbers[known_ends])
