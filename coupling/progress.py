@@ -15,7 +15,7 @@ ProgressCallback = Callable[[int, int], object]  # gets how many of the stage's 
 Progress = Callable[[str], AbstractContextManager[ProgressCallback]]
 
 PATIENCE = 2.0  # s of silence
-COMPILING = "Compiling the kernels (once, up to a minute)"
+COMPILING = "Compiling the kernels (once, a minute or two)"
 
 
 def no_progress(done: int, of: int) -> None:
