@@ -39,8 +39,10 @@ def whole_file(
             _sync(path.parent)
     finally:
         if not keep:
-            _remove(partial)
-            _open.discard(partial)
+            try:
+                _remove(partial)
+            finally:
+                _open.discard(partial)
 
 
 def remove_partial_files() -> None:
@@ -59,7 +61,7 @@ def _remove(partial: Path) -> None:
 
 def _sync(path: Path) -> None:
     """Return once what a file or folder holds is on disk."""
-    descriptor = os.open(path, os.O_RDONLY)
+    descriptor = os.open(path, os.O_RDWR if os.name == "nt" else os.O_RDONLY)  # Windows syncs what it may write
     try:
         os.fsync(descriptor)
     finally:

@@ -28,10 +28,10 @@ def silent(stage: str) -> AbstractContextManager[ProgressCallback]:
 
 
 class _Bar:
-    """A bar on the terminal's error stream after a while of silence; None where that cannot show one."""
+    """A bar on the terminal's error stream after a while of silence; none elsewhere."""
 
     def __init__(self, total: int | None = None) -> None:
-        self._bar = _bar(self._columns()) if sys.stderr.isatty() else None
+        self._bar = _bar(self._columns()) if sys.stderr and sys.stderr.isatty() else None
         self._task = self._bar.add_task("", total=total) if self._bar else None
         self._announcing = ExitStack()
 
@@ -50,7 +50,7 @@ class _Bar:
     def _announce(self) -> None:
         if self._bar:
             self._bar.console.print(COMPILING, highlight=False)
-        else:
+        elif sys.stderr:
             print(COMPILING, file=sys.stderr, flush=True)
 
     def __exit__(self, *_: object) -> None:

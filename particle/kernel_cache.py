@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
+import sys
 import tempfile
 from collections.abc import Callable
 from contextlib import suppress
@@ -24,9 +25,14 @@ MAX_FOLDERS = 4  # of the last used sources; others may belong to another checko
 MAX_WAIT = 300.0  # s, for another process to compile a kernel
 
 
+def _sources(package: Path) -> list[Path]:
+    """The sources of a package; none in an archive. A dangling link, as an editor's lock, is none."""
+    return sorted(path for path in package.rglob("*.py") if path.is_file())
+
+
 def source_digest(package: Path) -> str:
-    """A hash of all sources of a package; empty where there are none, as in an archive."""
-    sources = sorted(package.rglob("*.py"))
+    """A hash of all sources of a package; empty where there are none."""
+    sources = _sources(package)
     digest = hashlib.sha256()
     for path in sources:
         digest.update(path.relative_to(package).as_posix().encode() + b"\0")
@@ -36,7 +42,7 @@ def source_digest(package: Path) -> str:
 
 def source_stamps(package: Path) -> frozenset[tuple[str, int, int]]:
     """What changes when any source is edited: its name, time and size."""
-    stats = ((str(path), path.stat()) for path in package.rglob("*.py"))
+    stats = ((str(path), path.stat()) for path in _sources(package))
     return frozenset((name, stat.st_mtime_ns, stat.st_size) for name, stat in stats)
 
 
@@ -98,14 +104,14 @@ class _CacheImpl(CompileResultCacheImpl):  # type: ignore[misc]
     def __init__(self, kernel: Callable[..., Any]) -> None:
         self._lineno = kernel.__code__.co_firstlineno
         self._locator = _Locator(kernel)
-        self._filename_base = self.get_filename_base(kernel.__qualname__, "")
+        self._filename_base = self.get_filename_base(kernel.__qualname__, getattr(sys, "abiflags", ""))
 
 
 class KernelCache(Cache):  # type: ignore[misc]
     """The cache of one kernel.
 
     Once a source has been edited under a running process, nothing is loaded or saved any more. Of several processes
-    that need a kernel, one compiles it while the others wait.
+    that need kernels, one compiles while the others wait.
     """
 
     _impl_class = _CacheImpl
@@ -144,9 +150,10 @@ class KernelCache(Cache):  # type: ignore[misc]
             return False
         if other is not None:  # its compilation was broken off
             other._end()
-        self._impl.locator.ensure_cache_path()
-        lock = FileLock(Path(self.cache_path) / f"{self._impl.filename_base}.lock")
+        # One lock for all kernels, as those that two of them call are saved with either. Another thread may let it go.
+        lock = FileLock(Path(self.cache_path) / "kernels.lock", thread_local=False)
         with suppress(Timeout, OSError, NotImplementedError):  # then both compile it
+            self._impl.locator.ensure_cache_path()
             lock.acquire(timeout=MAX_WAIT)
         KernelCache._compiling, self._lock = self, lock
         return True

@@ -71,7 +71,7 @@ def _mistake(error: click.UsageError) -> Mistake:
         return error.param_hint, error.message
     extra = re.fullmatch(r"Got unexpected extra arguments? \((.*)\)", error.message)
     if extra and error.ctx:
-        return extra[1], f"is too much; the command is {_usage(error.ctx)}"
+        return extra[1], f"is one argument too many; the command is {_usage(error.ctx)}"
     return "", error.message
 
 

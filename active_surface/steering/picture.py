@@ -33,6 +33,7 @@ SHARE_OF_WAY = 0.01  # to a target that is pointed at: the least that the frame 
 MIN_FRAME = 1e-9  # m
 SHARE = 0.97  # of the ends: at least so many are drawn
 MAX_NUMBERED = 100  # actuators
+MIN_MARKER = 1.5  # points, of actuators too many to be drawn apart
 TARGET: dict[str, Any] = {
     "marker": "D",
     "markerfacecolor": "none",
@@ -54,7 +55,7 @@ def draw_plan(found: Planned, path: Path) -> Path:
     """Draw the result of a plan into a PNG file; return its path."""
     route = found.route
     targets = found.targets
-    which = "the last of them" if len(targets) == len(route.through) else f"way-point {len(targets)}"
+    which = "the last of them" if len(targets) == len(route.through) else f"way-point {len(targets) - 1}"
     count = (
         f"{sum(found.reached)} of {len(route.through)} way-points within {quantity_text(route.settings.tolerance, 'm')}"
     )
@@ -87,7 +88,7 @@ def _draw_plate(axes: Axes, case: Case, trajectory: Trajectory, targets: Sequenc
     keys: list[Artist] = []
     moving = np.array([bool(actuator.stroke) or actuator.segments is not None for actuator in case.actuators])
     places = np.array([actuator.position for actuator in case.actuators])
-    size = marker_size(places, frame)
+    size = marker_size(places, frame) or MIN_MARKER
     for some, colour, label in ((moving, "#7fa8c9", "moving actuator"), (~moving, "white", "actuator at rest")):
         keys += mark_actuators(axes, places[some], frame, unit.per_si, size=size, colour=colour, label=label)
     for number, place in enumerate(places * unit.per_si) if len(places) <= MAX_NUMBERED else ():
@@ -96,7 +97,7 @@ def _draw_plate(axes: Axes, case: Case, trajectory: Trajectory, targets: Sequenc
     keys += draw_path(axes, trajectory, line, unit, is_visible(line, box))
     drawn = np.array(targets) * unit.per_si
     keys += axes.plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
-    for number, place in enumerate(drawn.tolist() if len(targets) > 1 else [], 1):
+    for number, place in enumerate(drawn.tolist() if len(targets) > 1 else []):
         axes.annotate(str(number), place, (8, 8), color=TARGET["markeredgecolor"], weight="bold", **NUMBER)
     return keys
 

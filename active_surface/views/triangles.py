@@ -9,6 +9,8 @@ from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 
+from meshes import cross
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
@@ -42,9 +44,9 @@ def barycentric(corners: FloatArray, places: FloatArray) -> FloatArray:
     """
     a, b, c = np.moveaxis(corners, -2, 0)
     u, v, w = b - a, c - a, places - a
-    area = _cross(u, v)
+    area = cross(u, v)
     area = np.where(area == 0, 1.0, area)
-    second, third = _cross(w, v) / area, _cross(u, w) / area
+    second, third = cross(w, v) / area, cross(u, w) / area
     return np.stack([1 - second - third, second, third], axis=-1)
 
 
@@ -68,7 +70,7 @@ def coarse(points: FloatArray, triangles: IntArray, most: int) -> IntArray:
         side *= 1.05
     found = chosen[Delaunay(points[chosen]).simplices]
     u, v = points[found[:, 1]] - points[found[:, 0]], points[found[:, 2]] - points[found[:, 0]]
-    wide = np.abs(_cross(u, v)) > SLIVER * side**2
+    wide = np.abs(cross(u, v)) > SLIVER * side**2
     return np.asarray(found[wide & inside(points, triangles, points[found].mean(axis=1))])
 
 
@@ -77,7 +79,3 @@ def outer_edges(triangles: IntArray) -> IntArray:
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     unique, count = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
     return np.asarray(unique[count == 1])
-
-
-def _cross(u: FloatArray, v: FloatArray) -> FloatArray:
-    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])

@@ -67,7 +67,7 @@ def mistakes_in(errors: Iterable[Any]) -> list[Any]:
 
 
 def location_text(location: Location) -> str:
-    """The name of the field at a location, which counts from 1: actuators[1].stroke."""
+    """The name of the field at a location, which counts from 0: actuators[0].stroke."""
     return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in location).lstrip(".")
 
 

@@ -21,9 +21,9 @@ class Seen(Record):
     """The start of a step: its distance from the rim, and the surface where the step before ended."""
 
     gap: float  # m
-    time: float  # s, x, y [m], cell: for which the rest holds
-    x: float
-    y: float
+    time: float  # s, for which the rest holds
+    x: float  # m
+    y: float  # m
     cell: int
     w: float
     w_t: float
@@ -52,7 +52,6 @@ class Step(NamedTuple):
     stage_numbers: FloatArray  # (1, SIZE)
     end: NDArray[Motion]  # (1,)
     plane: NDArray[Motion]  # (1,) the motion at the start, its velocity in the plane's coordinates
-    still: NDArray[Motion]  # (1,) zeros
     loads: FloatArray  # (stages + 1,) N, normal force at each stage
     margins: FloatArray  # (stages + 1,) how far each stage is from the end of contact
     seen: NDArray[Seen]  # (1,)
@@ -69,7 +68,6 @@ def new_step(pairs: Pairs) -> Step:
         stage_numbers=as_numbers(stage),
         end=new_records(Motion),
         plane=new_records(Motion),
-        still=new_records(Motion),
         loads=np.zeros(stages),
         margins=np.zeros(stages),
         seen=seen,

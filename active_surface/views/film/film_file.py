@@ -157,7 +157,8 @@ class _Folder:
     """Numbered pictures."""
 
     def __init__(self, path: Path) -> None:
-        path.mkdir(exist_ok=True)
+        shutil.rmtree(path, ignore_errors=True)  # of a film that was killed
+        path.mkdir()
         self._path, self._count = path, 0
 
     def add(self, image: Image) -> None:

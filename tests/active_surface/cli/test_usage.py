@@ -28,7 +28,7 @@ MISUSES = [
         ["run"],
         "active-surface run: 1 mistake\n  CASE is missing; it must be the name of a file, as in active-surface run",
     ),
-    (["run", "x", "y"], "  y is too much; the command is active-surface run [OPTIONS] CASE"),
+    (["run", "x", "y"], "  y is one argument too many; the command is active-surface run [OPTIONS] CASE"),
     (["run", "x", "--ouput", "y"], "active-surface run: 1 mistake\n  --ouput is not known; did you mean --output?"),
     (["run", "x", "--frob"], "  --frob is not known; active-surface run has --csv, --help, --json, --output"),
     (["run", "x", "-o"], "active-surface run: 1 mistake\n  -o must be followed by its value; got nothing"),
