@@ -7,28 +7,35 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 # Tests run on all processors, those of a file on one, as they share what is made for them. tests/conftest.py puts files
 # that take long first.
-PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-reorder --cov
-# Only the kernels of `particle` are compiled: what marches them runs in plain Python, too, which shows the lines covered.
-MARCHES := tests/particle tests/physics tests/regression tests/active_surface/studies/test_feasible.py
+PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-reorder
+# Only the kernels of `particle` are compiled: its tests run in plain Python, too, which shows the lines covered. In
+# test-all so does what else marches.
+PLAIN := NUMBA_DISABLE_JIT=1 $(PYTEST) -m "not slow and not compiled"
+MARCHES := tests/physics tests/regression tests/active_surface/studies/test_feasible.py
 MARCHES += $(addprefix tests/validation/test_, motion_oracle.py single_stroke.py two_actuators.py)
 
-.PHONY: demo test test-all long-tests lint kernels docs site paper benchmark clean
+.PHONY: demo test test-all long-tests forget-coverage lint kernels docs site paper benchmark clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/two_actuators.toml
 
 test: .venv/developer
 	@$(MAKE) --no-print-directory -j2 lint kernels
-	@echo "== what marches, in plain Python (1 of 2)"
-	NUMBA_DISABLE_JIT=1 $(PYTEST) --cov-report= -m "not slow and not compiled" $(MARCHES)
+	@echo "== the part, in plain Python (1 of 2)"
+	$(PLAIN) $(COVERAGE) tests/particle
 	@echo "== all tests, with compiled kernels (2 of 2)"
-	$(PYTEST) --cov-append -m "not slow"
+	$(PYTEST) $(COVERAGE) -m "not slow"
 
-test-all: test long-tests
+test-all: COVERAGE := --cov --cov-append --cov-report=
+test-all: forget-coverage test long-tests
 
-# Rivals, browsers, clusters, killed runs, long validation.
+forget-coverage:
+	rm -f .coverage
+
+# What else marches in plain Python, rivals, browsers, clusters, killed runs, long validation.
 long-tests: .venv/developer
-	$(PYTEST) --cov-append -m slow
+	$(PLAIN) $(COVERAGE) $(MARCHES)
+	$(PYTEST) --cov --cov-append -m slow
 
 # Compiled once, before several processes would do so at a time.
 kernels: .venv/developer
@@ -83,5 +90,5 @@ paper: .venv/installed
 	@touch $@
 
 clean:
-	rm -rf .venv build results .coverage .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
+	rm -rf .venv build results .coverage .hypothesis .mypy_cache .ruff_cache .pytest_cache .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

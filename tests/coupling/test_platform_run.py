@@ -101,7 +101,7 @@ def test_fixed_steps_are_checked_with_half_the_step():
     moved = abs(coarse.trajectory.position[-1, 0] - fine.trajectory.position[-1, 0])
     assert coarse.summary.path_error == pytest.approx(moved, rel=1e-12) and moved > 1e-8
     assert "in a run with half the time step" in said(coarse)
-    assert "a smaller run.time_step gives more" in said(coarse)
+    assert "the error falls in proportion to run.time_step" in said(coarse)
     assert "100 times tighter" not in said(coarse)
 
 

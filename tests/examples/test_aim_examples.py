@@ -19,6 +19,7 @@ def test_the_aim_reaches_its_target():
     assert found.reached and not found.scatter.lost and found.scatter.quantile(0.9) < 10e-6
 
 
+@pytest.mark.slow
 def test_the_plan_carries_the_part_over_five_actuators_round_a_corner():
     file = AIMS / "around_the_corner.toml"
     told = re.search(r"--through (.*)", file.read_text())[1]

@@ -11,11 +11,16 @@ from coupling.display import onto_plate
 
 FILES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 LARGE = "array_100x100"
-EXAMPLES = [f for f in FILES if 'shape = "platform"' not in f.read_text() and f.stem != LARGE]
+LONG = "annulus", "array_10x10"
+EXAMPLES = [
+    pytest.param(file, id=file.stem, marks=[pytest.mark.slow] if file.stem in LONG else [])
+    for file in FILES
+    if 'shape = "platform"' not in file.read_text() and file.stem != LARGE
+]
 pytestmark = pytest.mark.compiled
 
 
-@pytest.fixture(scope="module", params=EXAMPLES, ids=lambda path: path.stem)
+@pytest.fixture(scope="module", params=EXAMPLES)
 def result(request, tmp_path_factory):
     return run_case(read_case(request.param), output=tmp_path_factory.mktemp("results"))
 

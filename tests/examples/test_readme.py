@@ -21,7 +21,7 @@ def test_python_of_the_readme_runs(block, tmp_path, monkeypatch, capsys):
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)
     exec(compile(block, "README.md", "exec"), {})
-    assert "rests on the surface" in capsys.readouterr().out
+    assert "The part is at rest" in capsys.readouterr().out
 
 
 @pytest.mark.compiled

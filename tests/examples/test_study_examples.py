@@ -9,7 +9,7 @@ from active_surface.studies import read_study, run_study
 
 STUDIES = Path(__file__).parents[2] / "examples" / "studies"
 FILES = [file for file in sorted(STUDIES.glob("*.toml")) if "[study]" in file.read_text()]
-pytestmark = pytest.mark.compiled
+pytestmark = [pytest.mark.compiled, pytest.mark.slow]
 
 
 @pytest.fixture(scope="module")

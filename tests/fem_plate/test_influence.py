@@ -119,7 +119,7 @@ def test_all_refused_points_are_named_in_one_error(plate):
 
 
 def test_a_point_that_is_no_number_is_refused(plate):
-    with pytest.raises(ValueError, match="point 1"):
+    with pytest.raises(ValueError, match="point 0"):
         plate.influence([[float("nan"), 0.0]])
 
 

@@ -24,6 +24,7 @@ def bench():
     return Bench()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", MODULES)
 def test_figure_runs_and_is_written(module, bench):
     found = finder(module)(bench, TINY)

@@ -218,7 +218,7 @@ def test_an_axis_over_what_another_axis_makes_anew_is_a_mistake(tmp_path, made, 
         (told,) = mistakes(tmp_path, text, LATTICE)
         over = made.split('"')[0]
         message = f"must not vary actuators from 1 on: the axis over {over} makes them"
-        assert told.endswith(f"axes[{2 if first else 1}].field {message}")
+        assert told.endswith(f"axes[{1 if first else 0}].field {message}")
     else:
         assert len(read_study(written(tmp_path, text, LATTICE)).points) == 2
     alone = LATTICE[: LATTICE.index("[[actuators]]")] + LATTICE[LATTICE.index("[lattice]") :]

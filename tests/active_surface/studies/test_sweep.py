@@ -64,7 +64,7 @@ def test_a_platform_is_swept_in_memory_and_its_axes_are_labelled(tmp_path):
             LATTICE,
             '[[axes]]\nfield = "lattice.stroke"\nvalues = ["50 um", "70 um"]\n',
             [('stroke = "5 * (1 + column) um"', 'stroke = "{} m"')],
-            marks=pytest.mark.compiled,
+            marks=[pytest.mark.compiled, pytest.mark.slow],
         ),
     ],
     ids=["platform", "plate", "lattice"],

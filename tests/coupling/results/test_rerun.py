@@ -179,4 +179,8 @@ def test_a_partial_result_reruns_and_says_so_but_not_onto_itself(moved, tmp_path
     done = rerun(result, "--output", str(result.parent))
     assert done.exit_code == 2 and "must be another folder than that of the result" in done.output
     done = rerun(result, "--output", str(tmp_path / "again"))
-    assert done.exit_code == 0 and "not written to the end" in done.output and "bit for bit" in done.output
+    assert (
+        done.exit_code == 0
+        and done.output.startswith("partial     The files lack the last steps")
+        and "bit for bit" in done.output
+    )

@@ -52,7 +52,7 @@ def test_a_run_is_finished_though_its_picture_cannot_be_drawn(tmp_path, monkeypa
         raise RuntimeError("no ink")
 
     (tmp_path / "run.png").write_text("of another run")
-    monkeypatch.setattr("coupling.results.results.draw_run", fails)
+    monkeypatch.setattr("coupling.pictures.draw_run", fails)
     with pytest.warns(RuntimeWarning, match=r"run.png could not be drawn: no ink"):
         result = run_case(shaken(), tmp_path, csv=True)
     assert [file.name for file in result.files] == ["run.plate.vtkhdf", "run.part.vtkhdf", "run.csv"]

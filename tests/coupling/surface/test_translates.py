@@ -79,7 +79,12 @@ LATTICES = {
 }
 
 
-@pytest.mark.parametrize("name", LATTICES)
+LONG = "narrow", "narrow and soft"
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in LATTICES]
+)
 def test_fits_are_shared_only_where_that_is_as_good_as_the_tolerance(name, section):
     counts, pitch, stiffness = LATTICES[name]
     points = lattice(*counts) / PITCH * pitch
