@@ -21,13 +21,15 @@ def page_of(results: Sequence[FigureResult], effort: Effort, parameters: Paramet
     counts = {kind: sum(verdict.verdict == kind for verdict in verdicts) for kind in (REPRODUCED, PARTLY, NOT)}
     parts = [
         "# The paper, figure by figure\n",
+        "**Outside the model's validity:** the paper's strokes are 20 to 40 times the plate's thickness; the figures "
+        "compare with the paper's linear theory, not with a device ([limits](limits.md)).\n",
         '"Micropart Motion on a Surface Due to Controlled Surface Excitation": what it states, and what this '
         "program finds.\n",
         f"Written by `active-surface reproduce all{' --full' if effort.name == 'full' else ''} --output docs`. Of "
         f"{sum(counts.values())} statements {counts[REPRODUCED]} are reproduced, {counts[PARTLY]} partly, "
         f"{counts[NOT]} not. "
         "What the paper leaves open, and how much each figure depends on it: [open points](paper-open-points.md).\n",
-        "Figures 1, 2 and 7 to 10 are drawings of concepts; there is nothing in them to be found again.\n",
+        "Figures 1, 2 and 7 to 10 are drawings of concepts; they hold nothing to reproduce.\n",
         _how(effort, parameters),
         "## Verdicts\n",
         _table(verdicts),
