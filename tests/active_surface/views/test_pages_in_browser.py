@@ -190,7 +190,7 @@ def test_the_surface_is_turned_by_the_mouse_while_it_plays(open_page):
         assert eye(browser) != pytest.approx(slanted, abs=0.1)
         if held:
             ActionChains(browser).release().perform()
-    assert not browser.find_elements(By.CSS_SELECTOR, "[data-eye][aria-pressed=true]")
+    wait(lambda: not browser.find_elements(By.CSS_SELECTOR, "[data-eye][aria-pressed=true]"))
     browser.find_element(By.CSS_SELECTOR, "[data-eye=above]").click()
     before = shown()
     wait(lambda: shown() >= before + 2)

@@ -140,13 +140,13 @@ def test_values_are_told_apart_and_ends_are_shown_where_the_first_start_was_refu
     browser = open_page("repeats")
     picker = browser.find_element(By.ID, "picker-0")
     picker.send_keys(Keys.HOME)
-    wait(lambda: readout(browser)["frequency"] == "10000.00 Hz")
+    wait(lambda: readout(browser)["frequency"] == "10.00000 kHz")
     names = "return element('path').data.map((trace) => trace.name).filter((name) => name)"
     wait(lambda: browser.execute_script(names) == ["actuator", "ends of 3 starts"])
     assert "The first start was refused." in browser.find_element(By.ID, "path-caption").text
     said = browser.find_element(By.CLASS_NAME, "sentence").text
     assert said.endswith("if it is one of the 2, of 3, in this page.")
     picker.send_keys(Keys.ARROW_RIGHT)
-    wait(lambda: readout(browser)["frequency"] == "10000.50 Hz")
+    wait(lambda: readout(browser)["frequency"] == "10.00050 kHz")
     wait(lambda: browser.execute_script(names) == ["actuator", "path", "ends of 3 starts", "start", "end"])
-    assert picker.get_attribute("aria-valuetext") == "10000.50 Hz"
+    assert picker.get_attribute("aria-valuetext") == "10.00050 kHz"
