@@ -12,7 +12,7 @@ from particle.checks import finite, not_negative, positive, refuse
 
 @dataclass(frozen=True)
 class Micropart:
-    """A part, modelled as a point on the surface.
+    """A part that lies on the surface; (x, y) is the point of the plate's mid-plane under it.
 
     Raises
     ------
@@ -24,6 +24,7 @@ class Micropart:
     position: tuple[float, float]  # m
     velocity: tuple[float, float] = (0.0, 0.0)  # m/s
     squeeze: float = 0.0  # N, a constant force that presses it onto the surface, along the normal
+    centre_height: float = 0.0  # m, of its centre of mass over the surface that it lies on
 
     def __post_init__(self) -> None:
         pairs = {name: getattr(self, name) for name in ("position", "velocity")}
@@ -32,6 +33,7 @@ class Micropart:
             [
                 (positive(self.mass), "mass", "positive, in kg", self.mass),
                 (not_negative(self.squeeze), "squeeze", "0 or a positive force in N", self.squeeze),
+                (not_negative(self.centre_height), "centre_height", "0 or a positive length in m", self.centre_height),
                 *((_is_pair(value), name, "two finite numbers", value) for name, value in pairs.items()),
             ],
         )

@@ -117,12 +117,11 @@ def new_request(
 ) -> Request:
     """What kernels are asked for."""
     vector = np.atleast_1d(np.asarray(gravity, dtype=float))
-    x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
     stroke_time = shortest_stroke(surface, duration)
     force = float(part.mass * (np.linalg.norm(vector) + surface.size / stroke_time**2))
     jumps, bends = (bool((surface.drives.jump[:, k] > 0).any()) for k in (0, 1))
     return Request(
-        part=Part(float(part.mass), -float(z), float(x), float(y), float(part.squeeze), friction.law),
+        part=modelled(surface, part, friction, gravity),
         start=np.array([*part.position, *part.velocity], dtype=float),
         duration=float(duration),
         tolerance=tolerance * surface.size,
@@ -135,3 +134,14 @@ def new_request(
         if bends
         else (tolerance * surface.size / stroke_time, BRIDGED * tolerance * force / part.mass),
     )
+
+
+def modelled(surface: SurfaceMotion, part: Micropart, friction: Contact, gravity: float | Sequence[float]) -> Part:
+    """The part as the equations of motion know it."""
+    vector = np.atleast_1d(np.asarray(gravity, dtype=float))
+    x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
+    contact = centre = 0.0
+    if surface.tilts:  # on a surface that stays level all heights move alike
+        contact, centre = surface.half_thickness, surface.half_thickness + part.centre_height
+    forces = float(part.mass), -float(z), float(x), float(y), float(part.squeeze)
+    return Part(*forces, friction.law, float(contact), float(centre))

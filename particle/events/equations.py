@@ -1,17 +1,19 @@
-"""The equations of motion of a point part on a moving surface z = w(x, y, t), and its energy.
+"""The equations of motion of a part on a moving surface z = w(x, y, t), and its energy.
 
-With v = (x', y'), a the base's acceleration in its plane less gravity's share there, and everything of w at the part's
-place and time:
+(x, y) is the point of the mid-plane under the part: its contact is at the height z_k along the normal n above it, its
+centre of mass at z_c. With v = (x', y'), a the base's acceleration in its plane less gravity's share there, everything
+of w at that point and time, and S, n' and n'' (for x'' = y'' = 0) of `particle.events.parallel`:
 
     B = g + w_tt + 2 v.grad(w_t) + v.H.v - a.grad(w)        s^2 = 1 + |grad w|^2
-    N = m B / s + squeeze                                   normal force, from the constraint z'' = d^2 w / dt^2
-    u = sqrt(|v|^2 + (v.grad w)^2)                          sliding speed
-    (x'', y'') = -a - B grad(w)/s^2 - (Q(N)/m) v/u          while it slides
+    N = m (B / s - z_c |n'|^2) + squeeze                    normal force, from the constraint
+    p = -a - B grad(w)/s^2 - z_c n''                        pull without friction, along the surface
+    k = (I - z_k S) v,   u = |k|_M                          velocity and speed of the contact over the surface
+    (I - z_c S) (x'', y'') = p - (Q(N)/m) k/u               while it slides
 
-and it sticks while the force without friction, m |-a - B grad(w)/s^2| measured along the surface, is at most Q(N).
+and it sticks while m |p|_M at v = 0 is at most Q(N). With z_k = z_c = 0 the part is a point on the mid-plane.
 
-The surface does the work of the contact's force (and the squeeze's) at its own velocity, (V, w_t) with V that of the
-base; friction dissipates Q u; the rest is kinetic and potential energy of the part, both as seen by one at rest.
+The surface does the work of the contact's force at its own velocity, and that of the moment that turns the part with
+it; friction dissipates Q u; the rest is kinetic and potential energy of the part, both as seen by one at rest.
 """
 
 from __future__ import annotations
@@ -20,6 +22,14 @@ import math
 from typing import NamedTuple
 
 from particle.events.motion import Motion
+from particle.events.parallel import (
+    from_height,
+    inner,
+    normal_bend,
+    normal_rate,
+    shape_operator,
+    to_height,
+)
 from particle.friction import FrictionLaw, friction_limit
 from particle.jit import jit_no_arrays
 from particle.surface import LocalSurface, SurfacePoint, surface_at
@@ -34,6 +44,8 @@ class Part(NamedTuple):
     tilt_y: float
     squeeze: float  # N, presses the part onto the surface along its normal
     law: FrictionLaw
+    contact: float = 0.0  # m, heights over the mid-plane: of the contact, and of the centre of mass
+    centre: float = 0.0
 
 
 class Pull(NamedTuple):
@@ -52,13 +64,44 @@ def pull(f: SurfacePoint, v_x: float, v_y: float, part: Part) -> Pull:
     bend = v_x * (f.w_xx * v_x + 2 * f.w_xy * v_y) + v_y * f.w_yy * v_y
     b = part.gravity + f.w_tt + 2 * (v_x * f.w_xt + v_y * f.w_yt) + bend - a_x * f.w_x - a_y * f.w_y
     square = 1 + f.w_x * f.w_x + f.w_y * f.w_y
-    climb = v_x * f.w_x + v_y * f.w_y
-    return Pull(
-        -a_x - b * f.w_x / square,
-        -a_y - b * f.w_y / square,
-        part.mass * b / math.sqrt(square) + part.squeeze,
-        math.sqrt(v_x * v_x + v_y * v_y + climb * climb),
-    )
+    p_x, p_y = -a_x - b * f.w_x / square, -a_y - b * f.w_y / square
+    normal = part.mass * b / math.sqrt(square) + part.squeeze
+    if part.centre > 0.0:
+        n = normal_bend(f, v_x, v_y)
+        p_x, p_y = p_x - part.centre * n.x, p_y - part.centre * n.y
+        normal -= part.mass * part.centre * n.down
+    return Pull(p_x, p_y, normal, slip_speed(f, part, v_x, v_y))
+
+
+@jit_no_arrays
+def slip_speed(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> float:
+    """The speed [m/s] of the contact over the surface."""
+    k_x, k_y = slip(f, part, v_x, v_y)
+    return length(f, k_x, k_y)
+
+
+@jit_no_arrays
+def slip(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> tuple[float, float]:
+    """The velocity [m/s] of the contact over the surface."""
+    return to_height(shape_operator(f), part.contact, v_x, v_y) if part.contact > 0.0 else (v_x, v_y)
+
+
+@jit_no_arrays
+def over_plane(f: SurfacePoint, part: Part, k_x: float, k_y: float) -> tuple[float, float]:
+    """The velocity (x', y') [m/s] of a part from that of its contact."""
+    return from_height(shape_operator(f), part.contact, k_x, k_y) if part.contact > 0.0 else (k_x, k_y)
+
+
+@jit_no_arrays
+def by_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
+    """The rate of (x, y) from that of the centre of mass along the surface, and so its acceleration."""
+    return from_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else (x, y)
+
+
+@jit_no_arrays
+def of_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
+    """The inverse of `by_centre`."""
+    return to_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else (x, y)
 
 
 @jit_no_arrays
@@ -75,11 +118,24 @@ def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> flo
     p = pull(f, v_x, v_y, part)
     limit = friction_limit(part.law, p.normal)
     slow = limit / part.mass / p.speed if p.speed > 0.0 else 0.0
+    k_x, k_y = slip(f, part, v_x, v_y)
     rate.x, rate.y = v_x, v_y
-    rate.v_x, rate.v_y = p.x - slow * v_x, p.y - slow * v_y
-    rate.work = push(f, part, p.normal) - part.mass * slow * drag(f, v_x, v_y)
+    rate.v_x, rate.v_y = by_centre(f, part, p.x - slow * k_x, p.y - slow * k_y)
+    rate.work = push(f, part, p.normal) - part.mass * slow * drag(f, part, k_x, k_y)
+    rate.work += part.mass * slow * turning(f, part, v_x, v_y)
     rate.dissipated = limit * p.speed
     return p.normal
+
+
+@jit_no_arrays
+def turning(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> float:
+    """What the friction's moment takes to turn a sliding part with the surface, over the friction per sliding speed."""
+    if part.centre == part.contact:
+        return 0.0
+    shape = shape_operator(f)
+    k_x, k_y = to_height(shape, part.contact, v_x, v_y)
+    c_x, c_y = to_height(shape, part.centre, v_x, v_y)
+    return inner(f, k_x, k_y, k_x - c_x, k_y - c_y)
 
 
 @jit_no_arrays
@@ -90,16 +146,27 @@ def push(f: SurfacePoint, part: Part, load: float) -> float:
 
 
 @jit_no_arrays
-def drag(f: SurfacePoint, x: float, y: float) -> float:
-    """The surface's velocity [m/s] times a vector along it, given in the plane's coordinates."""
-    return x * f.base_vx + y * f.base_vy + (x * f.w_x + y * f.w_y) * f.w_t
+def drag(f: SurfacePoint, part: Part, x: float, y: float) -> float:
+    """The velocity [m/s] of the place that the centre of mass has on the surface, times a vector along the surface."""
+    along = x * f.base_vx + y * f.base_vy + (x * f.w_x + y * f.w_y) * f.w_t
+    if part.centre > 0.0:
+        n_x, n_y, n_z = normal_rate(f, 0.0, 0.0)
+        along += part.centre * (x * n_x + y * n_y + (x * f.w_x + y * f.w_y) * n_z)
+    return along
 
 
 @jit_no_arrays
-def energy(f: SurfacePoint, x: float, y: float, v_x: float, v_y: float, part: Part) -> tuple[float, float]:
-    """Kinetic and potential energy [J] of a part on the surface."""
-    s_x, s_y, s_z = v_x + f.base_vx, v_y + f.base_vy, f.w_t + v_x * f.w_x + v_y * f.w_y
-    height = part.gravity * f.w - part.tilt_x * (x + f.base_px) - part.tilt_y * (y + f.base_py)
+def energy(
+    f: SurfacePoint, x: float, y: float, v_x: float, v_y: float, z: float, v_z: float, part: Part
+) -> tuple[float, float]:
+    """Kinetic and potential energy [J] of a part on the surface, or over it, where z [m] is not w."""
+    s_x, s_y, s_z = v_x + f.base_vx, v_y + f.base_vy, v_z
+    height = part.gravity * z - part.tilt_x * (x + f.base_px) - part.tilt_y * (y + f.base_py)
+    if part.centre > 0.0:
+        n_x, n_y, n_z = normal_rate(f, v_x, v_y)
+        s_x, s_y, s_z = s_x + part.centre * n_x, s_y + part.centre * n_y, s_z + part.centre * n_z
+        s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
+        height += part.centre * (part.gravity + part.tilt_x * f.w_x + part.tilt_y * f.w_y) / s
     return 0.5 * part.mass * (s_x * s_x + s_y * s_y + s_z * s_z), part.mass * height
 
 
@@ -107,7 +174,7 @@ def energy(f: SurfacePoint, x: float, y: float, v_x: float, v_y: float, part: Pa
 def energy_at_rest(local: LocalSurface, part: Part, time: float, motion: Motion) -> float:
     """The energy [J] of a part at rest on the surface at the place of `motion`."""
     f = surface_at(local, motion.x, motion.y, time)
-    kinetic, potential = energy(f, motion.x, motion.y, 0.0, 0.0, part)
+    kinetic, potential = energy(f, motion.x, motion.y, 0.0, 0.0, f.w, f.w_t, part)
     return kinetic + potential
 
 

@@ -116,7 +116,7 @@ def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record
     advance(surface, local, now.time, request.duration)
     new = surface_at(local, motion.x, motion.y, now.time)
     slack = flight.MIN_JUMP * surface.size / request.stroke_time
-    if flight.velocity_jump(old, new) <= slack:
+    if flight.velocity_jump(old, new, request.part) <= slack:
         return record
     if before == Mode.MANIFOLD:
         motion.v_x, motion.v_y = row.v_x, row.v_y

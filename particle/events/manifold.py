@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from particle.events.breakaway import RestPull, lag, rest_pull, velocity
-from particle.events.equations import Part, energy_at_rest, length
+from particle.events.breakaway import RestPull, heading, rest_pull, velocity
+from particle.events.equations import Part, energy_at_rest, length, slip_speed
 from particle.events.memory import Memory
 from particle.events.motion import Motion, Now
 from particle.events.request import Request
@@ -30,7 +30,7 @@ def manifold_error(local: LocalSurface, part: Part, time: float, motion: Motion)
     """What the slow manifold's next term would move the part by [m]."""
     f = surface_at(local, motion.x, motion.y, time)
     a = rest_pull(f, part)
-    kappa = lag(local, part, time, motion.x, motion.y, motion.v_x, f, a)
+    kappa = heading(local, part, time, motion.x, motion.y, motion.v_x, f, a).kappa
     return 3 * abs(kappa) * motion.v_x**3 / a.limit if a.limit > 0.0 else math.inf
 
 
@@ -39,21 +39,21 @@ def joins_manifold(
     local: LocalSurface, request: Request, time: float, motion: Motion, f: SurfacePoint, a: RestPull
 ) -> bool:
     """Whether a slow part's velocity (v_x, v_y) has become that of the slow manifold, on which steps may be longer."""
-    u, tolerance = length(f, motion.v_x, motion.v_y), request.tolerance
+    u, tolerance = slip_speed(f, request.part, motion.v_x, motion.v_y), request.tolerance
     if a.limit <= 0.0 or a.demand < 1.1 * MIN_PULL * a.limit or u > 0.01 * a.limit * request.stroke_time:
         return False
-    kappa = lag(local, request.part, time, motion.x, motion.y, u, f, a)
-    v_x, v_y = velocity(u, kappa, a)
+    h = heading(local, request.part, time, motion.x, motion.y, u, f, a)
+    v_x, v_y = velocity(f, request.part, u, h)
     # What is off the manifold turns into it within u / Q.
     off = length(f, motion.v_x - v_x, motion.v_y - v_y) * u / a.limit
-    return bool(off <= 0.01 * tolerance and 3 * abs(kappa) * u**3 / a.limit <= 0.01 * tolerance)
+    return bool(off <= 0.01 * tolerance and 3 * abs(h.kappa) * u**3 / a.limit <= 0.01 * tolerance)
 
 
 @jit_no_arrays
 def to_plane(local: LocalSurface, part: Part, time: float, motion: Motion, f: SurfacePoint, a: RestPull) -> None:
     """Turn the sliding speed u of a motion on the manifold into v_x and v_y."""
-    kappa = lag(local, part, time, motion.x, motion.y, motion.v_x, f, a)
-    motion.v_x, motion.v_y = velocity(motion.v_x, kappa, a)
+    h = heading(local, part, time, motion.x, motion.y, motion.v_x, f, a)
+    motion.v_x, motion.v_y = velocity(f, part, motion.v_x, h)
 
 
 @jit_no_arrays

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.breakaway import lag, rest_pull, velocity
+from particle.events.breakaway import heading, rest_pull, velocity
 from particle.events.equations import Part, energy, pull
 from particle.events.motion import Motion
 from particle.friction import friction_limit
@@ -79,20 +79,17 @@ def fill_row(local: LocalSurface, part: Part, mode: int, time: float, motion: Mo
     f = surface_at(local, x, y, time)
     if mode == Mode.FLYING:
         row.v_x, row.v_y, row.z, row.v_z, row.load, row.friction = v_x, v_y, motion.z, motion.v_z, 0.0, 0.0
-        s_x, s_y = v_x + f.base_vx, v_y + f.base_vy
-        row.kinetic = 0.5 * part.mass * (s_x * s_x + s_y * s_y + motion.v_z * motion.v_z)
-        height = part.gravity * motion.z - part.tilt_x * (x + f.base_px) - part.tilt_y * (y + f.base_py)
-        row.potential = part.mass * height
+        row.kinetic, row.potential = energy(f, x, y, v_x, v_y, motion.z, motion.v_z, part)
         return
     a = rest_pull(f, part)
     if mode == Mode.MANIFOLD:
-        v_x, v_y = velocity(motion.v_x, lag(local, part, time, x, y, motion.v_x, f, a), a)
+        v_x, v_y = velocity(f, part, motion.v_x, heading(local, part, time, x, y, motion.v_x, f, a))
     elif mode == Mode.RESTING:
         v_x = v_y = 0.0
     row.v_x, row.v_y, row.z, row.v_z = v_x, v_y, f.w, f.w_t + v_x * f.w_x + v_y * f.w_y
     row.load = pull(f, v_x, v_y, part).normal
     row.friction = part.mass * a.demand if mode == Mode.RESTING else friction_limit(part.law, row.load)
-    row.kinetic, row.potential = energy(f, x, y, v_x, v_y, part)
+    row.kinetic, row.potential = energy(f, x, y, v_x, v_y, row.z, row.v_z, part)
 
 
 @jit

@@ -6,7 +6,7 @@ import math
 
 from particle.events.breakaway import RestPull, rest_pull
 from particle.events.contact_end import stays_in_contact
-from particle.events.equations import length
+from particle.events.equations import slip_speed
 from particle.events.manifold import joins_manifold, leave_manifold, stays_on_manifold, to_plane
 from particle.events.memory import Memory
 from particle.events.motion import Counts, Motion, Now
@@ -64,7 +64,7 @@ def slide(surface: Surface, request: Request, pairs: Pairs, memory: Memory) -> N
     if slows and _stops(surface, request, memory, f, a):
         return
     if now.mode == Mode.SLIDING and joins_manifold(local, request, now.time, motion, f, a):
-        motion.v_x, motion.v_y = length(f, motion.v_x, motion.v_y), 0.0
+        motion.v_x, motion.v_y = slip_speed(f, part, motion.v_x, motion.v_y), 0.0
         now.mode = Mode.MANIFOLD
         step.loads[0] = motion_rate(f, now.mode, local, part, now.time, motion, step.rates[0])
     _step(surface, request, pairs, memory, f, a)
@@ -82,7 +82,7 @@ def _stops(surface: Surface, request: Request, memory: Memory, f: SurfacePoint, 
         to_plane(local, part, time, motion, f, a)
     pace = 0.01 * surface.size / request.stroke_time
     small = 0.01 * request.tolerance
-    stop, error = frozen_stop(f, a, motion.v_x, motion.v_y, small), math.inf
+    stop, error = frozen_stop(f, part, a, motion.v_x, motion.v_y, small), math.inf
     if stop.time < min(IN_SIGHT * now.h, 0.5 * local.frame[0].unit):
         stop, error = stop_ahead(stop, local, part, time, motion, small, pace, request.force)
         counts.evaluations += 1

@@ -15,28 +15,43 @@ BoolArray = NDArray[np.bool_]
 
 
 @jit_no_arrays
-def load_and_demand(w_tt: float, w_x: float, w_y: float, a_x: float, a_y: float, part: Part) -> tuple[float, float]:
+def load_and_demand(
+    w_tt: float,
+    slope: tuple[float, float],
+    slope_t: tuple[float, float],
+    slope_tt: tuple[float, float],
+    base: tuple[float, float],
+    part: Part,
+) -> tuple[float, float]:
     """The net load [N] of a part at rest, and the pull [m/s^2] that friction must hold.
 
-    a_x, a_y: m/s^2, the acceleration of the surface's base.
+    slope_t, slope_tt: 1/s and 1/s^2, the rates of the slope.  base: m/s^2, the acceleration of the surface's base.
     """
-    f = SurfacePoint(0.0, 0.0, w_tt, w_x, w_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, a_x, a_y)
+    f = SurfacePoint(
+        *(0.0, 0.0, w_tt, slope[0], slope[1], slope_t[0], slope_t[1], 0.0, 0.0, 0.0, slope_tt[0], slope_tt[1]),
+        *(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, base[0], base[1]),
+    )
     p = pull(f, 0.0, 0.0, part)
     return p.normal, length(f, p.x, p.y)
 
 
 @jit
 def find_lost(
-    w_tt: FloatArray, slope: FloatArray, base: FloatArray, part: Part, factors: FloatArray, lost: BoolArray
+    w_tt: FloatArray,
+    slopes: tuple[FloatArray, FloatArray, FloatArray],
+    base: FloatArray,
+    part: Part,
+    factors: FloatArray,
+    lost: BoolArray,
 ) -> None:
     """Mark in `lost` (F, n) the places where a part at rest is not held by its contact at this moment.
 
-    base: (2,) m/s^2, the acceleration of the surface's base; it grows with the factors (F,) as `w_tt` (n,) does.
+    slopes: (n, 2), the slope and its two rates.  base: (2,) m/s^2, the acceleration of the surface's base.  Rates grow
+    with the factors (F,) of the drives' frequencies, accelerations with their squares.
     """
     for i in range(len(factors)):
-        k = factors[i] ** 2
         for n in range(len(w_tt)):
-            load, _ = load_and_demand(k * w_tt[n], slope[n, 0], slope[n, 1], k * base[0], k * base[1], part)
+            load, _ = _at_factor(w_tt, slopes, base, part, factors[i], n)
             if not -part.law.pull_off <= load <= part.law.largest_load:
                 lost[i, n] = True
 
@@ -44,7 +59,7 @@ def find_lost(
 @jit
 def count_slips(
     w_tt: FloatArray,
-    slope: FloatArray,
+    slopes: tuple[FloatArray, FloatArray, FloatArray],
     base: FloatArray,
     part: Part,
     factors: FloatArray,
@@ -55,12 +70,33 @@ def count_slips(
     """Count where a part at rest slips at this moment: into `counts` (2, F) and, at the last factor, `slips` (n,)."""
     law = part.law
     for i in range(len(factors)):
-        k = factors[i] ** 2
         for n in range(len(w_tt)):
-            load, demand = load_and_demand(k * w_tt[n], slope[n, 0], slope[n, 1], k * base[0], k * base[1], part)
+            load, demand = _at_factor(w_tt, slopes, base, part, factors[i], n)
             if not -law.pull_off <= load <= law.largest_load:
                 continue
             if part.mass * demand > law.static_ratio * friction_limit(law, load):
                 counts[0, i] += 0.0 if lost[i, n] else 1.0
                 counts[1, i] += 1.0
                 slips[n] += 1.0 if i == len(factors) - 1 else 0.0
+
+
+@jit_no_arrays
+def _at_factor(
+    w_tt: FloatArray,
+    slopes: tuple[FloatArray, FloatArray, FloatArray],
+    base: FloatArray,
+    part: Part,
+    factor: float,
+    n: int,
+) -> tuple[float, float]:
+    """Load and demand at the n-th place with the drives' frequencies multiplied by a factor."""
+    slope, slope_t, slope_tt = slopes
+    k = factor**2
+    return load_and_demand(
+        k * w_tt[n],
+        (slope[n, 0], slope[n, 1]),
+        (factor * slope_t[n, 0], factor * slope_t[n, 1]),
+        (k * slope_tt[n, 0], k * slope_tt[n, 1]),
+        (k * base[0], k * base[1]),
+        part,
+    )

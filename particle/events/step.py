@@ -35,6 +35,15 @@ class Seen(Record):
     w_xx: float
     w_xy: float
     w_yy: float
+    w_xtt: float
+    w_ytt: float
+    w_xxt: float
+    w_xyt: float
+    w_yyt: float
+    w_xxx: float
+    w_xxy: float
+    w_xyy: float
+    w_yyy: float
     base_px: float
     base_py: float
     base_vx: float
@@ -80,7 +89,8 @@ def surface_at_start(local: LocalSurface, step: Step, counts: Counts, time: floa
     s: Seen = step.seen[0]
     if s.time == time and s.x == motion.x and s.y == motion.y and s.cell == local.frame[0].cell:
         return SurfacePoint(
-            *(s.w, s.w_t, s.w_tt, s.w_x, s.w_y, s.w_xt, s.w_yt, s.w_xx, s.w_xy, s.w_yy),
+            *(s.w, s.w_t, s.w_tt, s.w_x, s.w_y, s.w_xt, s.w_yt, s.w_xx, s.w_xy, s.w_yy, s.w_xtt, s.w_ytt),
+            *(s.w_xxt, s.w_xyt, s.w_yyt, s.w_xxx, s.w_xxy, s.w_xyy, s.w_yyy),
             *(s.base_px, s.base_py, s.base_vx, s.base_vy, s.base_ax, s.base_ay),
         )
     counts.evaluations += 1
@@ -94,4 +104,6 @@ def keep_surface(local: LocalSurface, step: Step, time: float, f: SurfacePoint) 
     s.time, s.x, s.y, s.cell = time, step.stage[0].x, step.stage[0].y, local.frame[0].cell
     s.w, s.w_t, s.w_tt, s.w_x, s.w_y, s.w_xt, s.w_yt = f.w, f.w_t, f.w_tt, f.w_x, f.w_y, f.w_xt, f.w_yt
     s.w_xx, s.w_xy, s.w_yy, s.base_px, s.base_py = f.w_xx, f.w_xy, f.w_yy, f.base_px, f.base_py
+    s.w_xtt, s.w_ytt, s.w_xxt, s.w_xyt, s.w_yyt = f.w_xtt, f.w_ytt, f.w_xxt, f.w_xyt, f.w_yyt
+    s.w_xxx, s.w_xxy, s.w_xyy, s.w_yyy = f.w_xxx, f.w_xxy, f.w_xyy, f.w_yyy
     s.base_vx, s.base_vy, s.base_ax, s.base_ay = f.base_vx, f.base_vy, f.base_ax, f.base_ay

@@ -5,7 +5,8 @@ the surface times s^2, and s^2 itself. Positive Bernstein coefficients of
 
     Q^2 s^2 - (m s x force along the surface)^2     with the least Q that the subinterval's loads allow,
 
-prove that the part sticks throughout it. What is not proved is halved, the earlier half first.
+prove that the part sticks throughout it. What is not proved is halved, the earlier half first. A centre of mass off the
+mid-plane adds to these polynomials (`stick_raised`).
 """
 
 from __future__ import annotations
@@ -19,6 +20,9 @@ from numpy.typing import NDArray
 from particle.drives import ORDER
 from particle.events.bernstein import MAX_HALVINGS, halve, to_bernstein
 from particle.events.equations import Part
+from particle.events.polynomials import dot, product, second_derivative, total
+from particle.events.stick_raised import DEGREE as RAISED_DEGREE
+from particle.events.stick_raised import fill_raised, holds_raised, is_safe_raised
 from particle.friction import friction_limit
 from particle.jit import jit, jit_no_arrays
 from particle.surface import LocalSurface, motion_at
@@ -35,6 +39,7 @@ class Rest(NamedTuple):
     """Scratch memory of the search: subintervals still to be proved, the earliest on top."""
 
     polynomials: FloatArray  # (MAX_HALVINGS + 2, 3, DEGREE + 1): C, squared force times s^2, s^2, in Bernstein form
+    raised: FloatArray  # (MAX_HALVINGS + 2, 6, RAISED_DEGREE + 1), those of `stick_raised`
     low: FloatArray  # (MAX_HALVINGS + 2,)
     width: FloatArray  # (MAX_HALVINGS + 2,)
     motion: FloatArray  # (3, 6), w, w_x and w_y at the place as polynomials of the share of the time
@@ -44,6 +49,7 @@ class Rest(NamedTuple):
 def new_rest() -> Rest:
     return Rest(
         np.zeros((MAX_HALVINGS + 2, 3, DEGREE + 1)),
+        np.zeros((MAX_HALVINGS + 2, 6, RAISED_DEGREE + 1)),
         np.zeros(MAX_HALVINGS + 2),
         np.zeros(MAX_HALVINGS + 2),
         np.zeros((3, ORDER)),
@@ -64,19 +70,20 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
     straight = local.frame[0].base_drives == 0 and part.tilt_x == 0.0 and part.tilt_y == 0.0
     if straight and _safe_by_extremes(part, rest, end - begin):
         return math.inf
-    _polynomials(local, part, rest.motion, begin, end, rest.polynomials[0])
+    raised = part.centre > 0.0
+    polynomials = rest.raised if raised else rest.polynomials
+    _polynomials(local, part, rest.motion, begin, end, polynomials[0])
     # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
-    slack = SLACK * np.abs(rest.polynomials[0, 1]).max()
+    slack = SLACK * np.abs(polynomials[0, 1]).max()
     rest.low[0], rest.width[0] = 0.0, 1.0
     narrowest = 0.5**MAX_HALVINGS
     top = 0
     while top >= 0:
-        if _safe_by_bernstein(part, rest.polynomials[top], slack):
+        if _safe_by_bernstein(part, polynomials[top], slack):
             top -= 1
         elif rest.width[top] <= narrowest:
             # Neither provable nor divisible: a slip if the far end says so, else the limit was only touched.
-            c, force, square = rest.polynomials[top, :, -1]
-            if not holds(part, c, force - slack, square):
+            if not _holds_at_end(part, polynomials[top], slack):
                 return float(begin + (rest.low[top] + rest.width[top]) * (end - begin))
             top -= 1
         else:
@@ -84,8 +91,8 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
             rest.low[top + 1] = rest.low[top]
             rest.low[top] += half
             rest.width[top] = rest.width[top + 1] = half
-            for row in range(3):
-                halve(rest.polynomials[top, row], rest.polynomials[top + 1, row])
+            for row in range(polynomials.shape[1]):
+                halve(polynomials[top, row], polynomials[top + 1, row])
             top += 1
     return math.inf
 
@@ -111,6 +118,24 @@ def _safe_by_extremes(part: Part, rest: Rest, lasting: float) -> bool:
         bend = factor * (b[k] - 2 * b[k + 1] + b[k + 2])
         least, most = min(least, part.gravity + bend), max(most, part.gravity + bend)
     s = math.sqrt(1.0 + square)
+    if part.centre > 0.0:
+        # |n'| is at most |grad w_t|, and n'' along the surface at most |grad w_tt| + 2 |grad w_t|^2.
+        turn = bend = 0.0
+        for row in (1, 2):
+            to_bernstein(rest.motion[row], b)
+            fastest = sharpest = 0.0
+            for k in range(ORDER - 1):
+                fastest = max(fastest, abs(b[k + 1] - b[k]))
+            for k in range(ORDER - 2):
+                sharpest = max(sharpest, abs(b[k] - 2 * b[k + 1] + b[k + 2]))
+            turn, bend = turn + (5 * fastest / lasting) ** 2, bend + (factor * sharpest) ** 2
+        shift, less = part.centre * (math.sqrt(bend) + 2 * turn), part.centre * turn
+        load_low = part.mass * ((least / s if least > 0 else least) - less) + part.squeeze
+        load_high = part.mass * (most if most > 0 else most / s) + part.squeeze
+        if load_low < -part.law.pull_off or load_high > part.law.largest_load:
+            return False
+        limit = part.law.static_ratio * friction_limit(part.law, load_low) / part.mass
+        return max(abs(least), abs(most)) * math.sqrt(square) + shift <= limit
     load_low = part.mass * (least / s if least > 0 else least) + part.squeeze
     load_high = part.mass * (most if most > 0 else most / s) + part.squeeze
     if load_low < -part.law.pull_off or load_high > part.law.largest_load:
@@ -128,8 +153,19 @@ def holds(part: Part, c: float, force: float, square: float) -> bool:
     return -part.law.pull_off <= load <= part.law.largest_load and force <= limit * limit * square * ROUNDING
 
 
+@jit_no_arrays
+def _holds_at_end(part: Part, rest: FloatArray, slack: float) -> bool:
+    """Whether the part stays at the end of a subinterval."""
+    if part.centre > 0.0:
+        return holds_raised(part, rest, slack)
+    return holds(part, rest[0, -1], rest[1, -1] - slack, rest[2, -1])
+
+
 @jit
 def _safe_by_bernstein(part: Part, rest: FloatArray, slack: float) -> bool:
+    """Whether the Bernstein coefficients of a subinterval prove that the part stays."""
+    if part.centre > 0.0:
+        return is_safe_raised(part, rest, slack)
     c_low, c_high = rest[0].min(), rest[0].max()
     s_low, s_high = math.sqrt(max(1.0, rest[2].min())), math.sqrt(max(1.0, rest[2].max()))
     load_low = part.mass * c_low / (s_high if c_low > 0 else s_low) + part.squeeze
@@ -147,29 +183,35 @@ def _safe_by_bernstein(part: Part, rest: FloatArray, slack: float) -> bool:
 def _polynomials(
     local: LocalSurface, part: Part, motion: FloatArray, begin: float, end: float, out: FloatArray
 ) -> None:
-    """C, the squared force along the surface times s^2, and s^2, from `begin` to `end` [s]: Bernstein form (3, 17)."""
-    w_tt, g_x, g_y = _second(motion[0], end - begin), motion[1], motion[2]
+    """C, the squared force along the surface times s^2, and s^2, from `begin` to `end` [s]: Bernstein form (3, 17).
+
+    With a centre of mass off the mid-plane (6, 37), as in `stick_raised`.
+    """
+    w_tt, g_x, g_y = second_derivative(motion[0], end - begin), motion[1], motion[2]
     b_x, b_y = np.zeros(ORDER - 2), np.zeros(ORDER - 2)
     if local.frame[0].base_drives > 0:
         base = local.base.T.copy()
         low, width = (begin - local.frame[0].time) / local.frame[0].unit, (end - begin) / local.frame[0].unit
         _move(base[0], low, width)
         _move(base[1], low, width)
-        b_x, b_y = _second(base[0], end - begin), _second(base[1], end - begin)
+        b_x, b_y = second_derivative(base[0], end - begin), second_derivative(base[1], end - begin)
     b_x[0] -= part.tilt_x
     b_y[0] -= part.tilt_y
     upright = w_tt.copy()
     upright[0] += part.gravity
-    q_2 = _plus(_times(g_x, g_x), _times(g_y, g_y))
-    b_g = _plus(_times(b_x, g_x), _times(b_y, g_y))
-    b_2 = _plus(_times(b_x, b_x), _times(b_y, b_y))
-    c = _plus(upright, -b_g)
+    q_2 = dot(g_x, g_y, g_x, g_y)
+    b_g = dot(b_x, b_y, g_x, g_y)
+    b_2 = dot(b_x, b_y, b_x, b_y)
+    c = total(upright, -b_g)
     # s^2 |force|^2 = |b|^2 s^2 + upright^2 q^2 + 2 upright (b.g) - (b.g)^2: what gravity and inertia leave along it.
-    force = _plus(b_2, _times(b_2, q_2))
-    force = _plus(force, _times(_times(upright, upright), q_2))
-    force = _plus(force, _plus(2 * _times(upright, b_g), -_times(b_g, b_g)))
+    force = total(b_2, product(b_2, q_2))
+    force = total(force, product(product(upright, upright), q_2))
+    force = total(force, total(2 * product(upright, b_g), -product(b_g, b_g)))
     square = q_2.copy()
     square[0] += 1.0
+    if part.centre > 0.0:
+        fill_raised(c, force, square, b_x, b_y, motion, end - begin, out)
+        return
     to_bernstein(c, out[0])
     to_bernstein(force, out[1])
     to_bernstein(square, out[2])
@@ -186,29 +228,3 @@ def _move(c: FloatArray, low: float, width: float) -> None:
     for k in range(n + 1):
         c[k] *= factor
         factor *= width
-
-
-@jit
-def _second(c: FloatArray, unit: float) -> FloatArray:
-    """The second derivative in time of a polynomial of s = t / unit."""
-    out = np.zeros(len(c) - 2)
-    for k in range(len(out)):
-        out[k] = (k + 2) * (k + 1) * c[k + 2] / (unit * unit)
-    return out
-
-
-@jit
-def _times(a: FloatArray, b: FloatArray) -> FloatArray:
-    out = np.zeros(len(a) + len(b) - 1)
-    for i in range(len(a)):
-        for j in range(len(b)):
-            out[i + j] += a[i] * b[j]
-    return out
-
-
-@jit
-def _plus(a: FloatArray, b: FloatArray) -> FloatArray:
-    out = np.zeros(max(len(a), len(b)))
-    out[: len(a)] += a
-    out[: len(b)] += b
-    return out

@@ -7,6 +7,9 @@ across it), |A| < Q stops the part after
     X = (A p^2 + 2 Q p u + A u^2)/(4 (Q^2 - A^2)) along d
     Y = r (2 Q u + A p)/(4 Q^2 - A^2) across it.
 
+Here p, r, X and Y are the contact's, and A and Q are multiplied by d.K d of `particle.events.breakaway`, which is 1
+where the contact is as high as the centre of mass. What K has across d is left to the error.
+
 A pull A > Q instead turns a part that moves nearly straight against it, after T = u/(A + Q), X = p u/(2 (A + Q)) and
 Y = r u/(A + 2 Q), which is exact up to lengths of r^2/Q.
 """
@@ -18,9 +21,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from particle.events.breakaway import RestPull, rest_pull
-from particle.events.equations import Part, drag, pull, push
+from particle.events.breakaway import RestPull, mobility, moved, rest_pull
+from particle.events.equations import Part, drag, of_centre, over_plane, pull, push, slip
 from particle.events.motion import Motion
+from particle.events.parallel import inner
 from particle.jit import jit_no_arrays
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
@@ -36,33 +40,45 @@ class Stop(NamedTuple):
     x: float
     y: float
     reverses: bool
-    pull_x: float  # m/s^2, the frozen pull A d
-    pull_y: float
+    impulse_x: float  # m/s, what friction takes from the part on the way, per kg
+    impulse_y: float
     loss: float  # m^2/s^2, what friction dissipates on the way, per kg
+    turning: float  # m^2/s^2, what its moment takes to turn the part with the surface
+    miss: float  # m, what K has across the way
 
 
 @jit_no_arrays
-def frozen_stop(f: SurfacePoint, a: RestPull, v_x: float, v_y: float, small: float) -> Stop:
+def frozen_stop(f: SurfacePoint, part: Part, a: RestPull, v_x: float, v_y: float, small: float) -> Stop:
     """The stop under frozen forces; `small` [m] is a length that does not count, r^2/Q of a part that turns back."""
-    climb = v_x * f.w_x + v_y * f.w_y
+    k_x, k_y = slip(f, part, v_x, v_y)
+    climb = k_x * f.w_x + k_y * f.w_y
     climb_d, climb_n = a.d_x * f.w_x + a.d_y * f.w_y, a.n_x * f.w_x + a.n_y * f.w_y
-    p = v_x * a.d_x + v_y * a.d_y + climb * climb_d
-    r = v_x * a.n_x + v_y * a.n_y + climb * climb_n
+    p = k_x * a.d_x + k_y * a.d_y + climb * climb_d
+    r = k_x * a.n_x + k_y * a.n_y + climb * climb_n
     u = math.hypot(p, r)
-    q, force = a.limit, a.demand
+    straight, bent, wide = 1.0, 0.0, 0.0
+    if part.centre != part.contact:
+        k = mobility(f, part)
+        m_x, m_y = moved(k, a.d_x, a.d_y)
+        straight, bent = inner(f, a.d_x, a.d_y, m_x, m_y), abs(inner(f, a.n_x, a.n_y, m_x, m_y))
+        wide = abs(k.xx + k.yy - 2 * straight)
+    q, force = straight * a.limit, straight * a.demand
     if force < q:
         loss = q * q - force * force
         along = (force * p * p + 2 * q * p * u + force * u * u) / (4 * loss)
         across = r * (2 * q * u + force * p) / (4 * q * q - force * force)
-        time = (u * q + force * p) / loss
-        x, y = along * a.d_x + across * a.n_x, along * a.d_y + across * a.n_y
-        return Stop(time, x, y, False, force * a.d_x, force * a.d_y, 0.5 * u * u + force * along)
-    if q > 0.0 and p < 0.0 and r * r <= small * q:
-        time = u / (force + q)
+        time, reverses = (u * q + force * p) / loss, False
+    elif q > 0.0 and p < 0.0 and r * r <= small * q:
+        time, reverses = u / (force + q), True
         along, across = 0.5 * p * time, r * u / (force + 2 * q)
-        x, y = along * a.d_x + across * a.n_x, along * a.d_y + across * a.n_y
-        return Stop(time, x, y, True, force * a.d_x, force * a.d_y, 0.5 * u * u + force * along)
-    return Stop(math.inf, 0.0, 0.0, False, 0.0, 0.0, 0.0)
+    else:
+        return Stop(math.inf, 0.0, 0.0, False, 0.0, 0.0, 0.0, 0.0, 0.0)
+    x, y = over_plane(f, part, along * a.d_x + across * a.n_x, along * a.d_y + across * a.n_y)
+    c_x, c_y = of_centre(f, part, v_x, v_y)
+    c_x, c_y = c_x + a.demand * a.d_x * time, c_y + a.demand * a.d_y * time
+    loss = (0.5 * u * u + force * along) / straight
+    miss = bent * abs(along) + (bent + wide) * abs(across)
+    return Stop(time, x, y, reverses, c_x, c_y, loss, loss * (1.0 - 1.0 / straight), miss)
 
 
 @jit_no_arrays
@@ -79,10 +95,10 @@ def stop_ahead(
     x, y, v_x, v_y = motion.x, motion.y, motion.v_x, motion.v_y
     # After a third of the time a straight stop has covered five ninths of its way.
     g = surface_at(local, x + 5 / 9 * now.x, y + 5 / 9 * now.y, time + now.time / 3)
-    later = frozen_stop(g, rest_pull(g, part), v_x, v_y, small)
+    later = frozen_stop(g, part, rest_pull(g, part), v_x, v_y, small)
     if later.reverses != now.reverses or not math.isfinite(later.time):
         return now, math.inf
-    miss = max(math.hypot(later.x - now.x, later.y - now.y), pace * abs(later.time - now.time))
+    miss = max(math.hypot(later.x - now.x, later.y - now.y) + later.miss, pace * abs(later.time - now.time))
     return later, max(miss, part.mass / force * abs(later.loss - now.loss))
 
 
@@ -90,11 +106,10 @@ def stop_ahead(
 def come_to_rest(local: LocalSurface, part: Part, time: float, motion: Motion, stop: Stop) -> bool:
     """Moves `motion` (x, y, v_x, v_y, work, dissipation) to a stop; False, and no move, if contact ends on the way.
 
-    The friction's impulse on the way is known, v + A d T per kg. Powers are integrated by Gauss's rule along the way of
+    Powers are integrated by Gauss's rule along the way of
     a straight stop, which is quadratic in time.
     """
     x, y, v_x, v_y = motion.x, motion.y, motion.v_x, motion.v_y
-    slow_x, slow_y = v_x + stop.pull_x * stop.time, v_y + stop.pull_y * stop.time
     work = 0.0
     for k in range(len(NODES)):
         to_go = 1.0 - NODES[k]
@@ -103,8 +118,10 @@ def come_to_rest(local: LocalSurface, part: Part, time: float, motion: Motion, s
         load = pull(f, to_go * v_x, to_go * v_y, part).normal
         if not -part.law.pull_off <= load <= part.law.largest_load:
             return False
-        work += WEIGHTS[k] * (push(f, part, load) * stop.time - part.mass * drag(f, slow_x, slow_y))
+        work += WEIGHTS[k] * (
+            push(f, part, load) * stop.time - part.mass * drag(f, part, stop.impulse_x, stop.impulse_y)
+        )
     motion.x, motion.y, motion.v_x, motion.v_y = x + stop.x, y + stop.y, 0.0, 0.0
-    motion.work += work
+    motion.work += work + part.mass * stop.turning
     motion.dissipated += part.mass * stop.loss
     return True

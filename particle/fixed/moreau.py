@@ -6,14 +6,29 @@ surface) and the pull p of `particle.events.equations`, the velocity at the end 
     v+ - v - h p  in  -(h Q(N)/m) d|v+|_M      so that      v+ = (1 - h Q / (m |v + h p|_M)) (v + h p)
 
 or 0 where that bracket is negative: friction's impulse brings v + h p to rest when it can. Its direction is that of the
-end, implicit, hence a part at rest has v = 0 to the bit and a sliding part stops without creeping.
+end, implicit, hence a part at rest has v = 0 to the bit and a sliding part stops without creeping. Off the mid-plane v
+is the velocity of the centre of mass along the surface, and the direction that of the contact, K v+ with K of
+`particle.events.breakaway`.
 
 J.J. Moreau, Unilateral contact and dry friction in finite freedom dynamics, 1988.
 """
 
 from __future__ import annotations
 
-from particle.events import ROUNDING, Motion, Part, drag, length, pull, push
+from particle.events import (
+    ROUNDING,
+    Motion,
+    Part,
+    by_centre,
+    drag,
+    first_slip,
+    inner,
+    length,
+    mobility,
+    of_centre,
+    pull,
+    push,
+)
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.modes import Mode
@@ -32,15 +47,19 @@ def moreau_step(
     v_x, v_y = motion.v_x, motion.v_y
     p = pull(f, v_x, v_y, part)
     limit = friction_limit(part.law, p.normal)
-    free_x, free_y = v_x + h * p.x, v_y + h * p.y
+    c_x, c_y = of_centre(f, part, v_x, v_y)
+    free_x, free_y = c_x + h * p.x, c_y + h * p.y
     speed, largest = length(f, free_x, free_y), h * limit / part.mass
     held = largest * part.law.static_ratio if mode == Mode.RESTING else largest
     kept = 0.0 if speed * speed <= held * held * ROUNDING else 1.0 - largest / speed
-    after.v_x, after.v_y = kept * free_x, kept * free_y
+    end_x, end_y = kept * free_x, kept * free_y
+    if kept > 0.0 and part.centre != part.contact:
+        _, e_x, e_y = first_slip(f, mobility(f, part), free_x, free_y, largest)
+        end_x, end_y = free_x - largest * e_x, free_y - largest * e_y
     # Friction's impulse per kg; it dissipates at the mean velocity.
-    lost_x, lost_y = free_x - after.v_x, free_y - after.v_y
-    mean_x, mean_y = 0.5 * (v_x + after.v_x), 0.5 * (v_y + after.v_y)
-    climb = (lost_x * f.w_x + lost_y * f.w_y) * (mean_x * f.w_x + mean_y * f.w_y)
-    after.work = motion.work + h * push(f, part, p.normal) - part.mass * drag(f, lost_x, lost_y)
-    after.dissipated = motion.dissipated + part.mass * (lost_x * mean_x + lost_y * mean_y + climb)
+    lost_x, lost_y = free_x - end_x, free_y - end_y
+    mean_x, mean_y = 0.5 * (c_x + end_x), 0.5 * (c_y + end_y)
+    after.v_x, after.v_y = by_centre(f, part, end_x, end_y)
+    after.work = motion.work + h * push(f, part, p.normal) - part.mass * drag(f, part, lost_x, lost_y)
+    after.dissipated = motion.dissipated + part.mass * inner(f, lost_x, lost_y, mean_x, mean_y)
     return (Mode.SLIDING if kept > 0.0 else Mode.RESTING), p.normal, 0.5 * h * after.v_x, 0.5 * h * after.v_y

@@ -9,6 +9,7 @@ logic, (6) and (7), with the threshold speed V_T = (F_f/m) dt:
     V_r <  V_T and F_e > F_f    so they do, with friction against F_e
     else                        the part moves with the surface: V_r = 0
 
+Off the mid-plane the surface's acceleration is that of the place of the centre of mass; all else stays the paper's.
 Positions follow by (10), in which R/sin(theta) is the radius of the normal curvature across the gradient.
 """
 
@@ -19,7 +20,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events import Motion, Part, drag, push
+from particle.events import Motion, Part, drag, normal_bend, push
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.modes import Mode
@@ -62,6 +63,11 @@ def paper_step(
     turn = rotation(f)
     before = np.array([motion.v_x, motion.v_y, motion.v_z])
     inertia = np.array([part.tilt_x - f.base_ax, part.tilt_y - f.base_ay, -part.gravity - f.w_tt])
+    if part.centre > 0.0:
+        n = normal_bend(f, 0.0, 0.0)
+        upright = np.array([n.x, n.y, n.x * f.w_x + n.y * f.w_y])
+        for k in range(3):
+            inertia[k] -= part.centre * (upright[k] - n.down * turn[2, k])
     v_x, v_y, e_x, e_y, e_z = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(3):
         v_x += turn[0, k] * before[k]
@@ -83,7 +89,7 @@ def paper_step(
     u_x, u_y = (v_x + h * (e_x + q_x), v_y + h * (e_y + q_y)) if moves else (0.0, 0.0)
     after.v_x, after.v_y = turn[0, 0] * u_x + turn[1, 0] * u_y, turn[0, 1] * u_x + turn[1, 1] * u_y
     after.v_z = turn[0, 2] * u_x + turn[1, 2] * u_y
-    drags = drag(f, turn[0, 0] * q_x + turn[1, 0] * q_y, turn[0, 1] * q_x + turn[1, 1] * q_y)
+    drags = drag(f, part, turn[0, 0] * q_x + turn[1, 0] * q_y, turn[0, 1] * q_x + turn[1, 1] * q_y)
     after.work = motion.work + h * (push(f, part, load) + part.mass * drags)
     after.dissipated = motion.dissipated + h * part.mass * limit * math.hypot(u_x, u_y)
     y, z = across(f, turn, h * u_y)

@@ -32,6 +32,15 @@ class SurfacePoint(NamedTuple):
     w_xx: float
     w_xy: float
     w_yy: float
+    w_xtt: float
+    w_ytt: float
+    w_xxt: float
+    w_xyt: float
+    w_yyt: float
+    w_xxx: float
+    w_xxy: float
+    w_xyy: float
+    w_yyy: float
     base_px: float
     base_py: float
     base_vx: float
@@ -70,33 +79,49 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
     at, size = local.at, frame.surface_size
     half_x, half_y = frame.half_x, frame.half_y
     u, v = (x - frame.x) / half_x, (y - frame.y) / half_y
-    w = w_u = w_uu = w_v = w_uv = w_vv = 0.0
-    w_t = w_ut = w_vt = w_tt = 0.0
+    w = w_u = w_uu = w_uuu = w_v = w_uv = w_uuv = w_vv = w_uvv = w_vvv = 0.0
+    w_t = w_ut = w_uut = w_vt = w_uvt = w_vvt = w_tt = w_utt = w_vtt = 0.0
     monomials, degree = frame.monomials, frame.degree
     m = monomials
-    # Horner in v inside Horner in u; w_uu and w_vv carry half of the second derivative.
+    # Horner in v inside Horner in u; n times u or v in a name stands for the n-th derivative over n!.
     for i in range(degree, -1, -1):
-        a = a_v = a_vv = b = b_v = c = 0.0
+        a = a_v = a_vv = a_vvv = b = b_v = b_vv = c = c_v = 0.0
         for _ in range(degree + 1 - i):
             m -= 1
+            a_vvv = a_vvv * v + a_vv
             a_vv = a_vv * v + a_v
             a_v = a_v * v + a
             a = a * v + at[0, m]
+            b_vv = b_vv * v + b_v
             b_v = b_v * v + b
             b = b * v + at[1, m]
+            c_v = c_v * v + c
             c = c * v + at[2, m]
+        w_uuu = w_uuu * u + w_uu
         w_uu = w_uu * u + w_u
         w_u = w_u * u + w
         w = w * u + a
+        w_uuv = w_uuv * u + w_uv
         w_uv = w_uv * u + w_v
         w_v = w_v * u + a_v
+        w_uvv = w_uvv * u + w_vv
         w_vv = w_vv * u + a_vv
+        w_vvv = w_vvv * u + a_vvv
+        w_uut = w_uut * u + w_ut
         w_ut = w_ut * u + w_t
         w_t = w_t * u + b
+        w_uvt = w_uvt * u + w_vt
         w_vt = w_vt * u + b_v
+        w_vvt = w_vvt * u + b_vv
+        w_utt = w_utt * u + w_tt
         w_tt = w_tt * u + c
+        w_vtt = w_vtt * u + c_v
     g_x, g_y, g_xt, g_yt = w_u / half_x, w_v / half_y, w_ut / half_x, w_vt / half_y
+    g_xtt, g_ytt = w_utt / half_x, w_vtt / half_y
     h_xx, h_xy, h_yy = 2 * w_uu / half_x**2, w_uv / (half_x * half_y), 2 * w_vv / half_y**2
+    h_xxt, h_xyt, h_yyt = 2 * w_uut / half_x**2, w_uvt / (half_x * half_y), 2 * w_vvt / half_y**2
+    t_xxx, t_xxy = 6 * w_uuu / half_x**3, 2 * w_uuv / (half_x**2 * half_y)
+    t_xyy, t_yyy = 2 * w_uvv / (half_x * half_y**2), 6 * w_vvv / half_y**3
     for j in range(frame.logarithms):
         d_x, d_y = (x - local.sources[j, 0]) / size, (y - local.sources[j, 1]) / size
         square = d_x * d_x + d_y * d_y
@@ -112,6 +137,19 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
         g_y += f * slope * d_y
         g_xt += f_t * slope * d_x
         g_yt += f_t * slope * d_y
+        g_xtt += f_tt * slope * d_x
+        g_ytt += f_tt * slope * d_y
+        bend_t = f_t / (size * size)
+        h_xxt += bend_t * (logarithm + 1 + inner + 2 * d_x * d_x / bounded)
+        h_xyt += bend_t * 2 * d_x * d_y / bounded
+        h_yyt += bend_t * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
+        # Within the floor the third derivatives are those of the parabola in r^2.
+        twist, once = f / (size * size * size), 2 / bounded
+        cubed = -4 / (bounded * bounded) if inner == 0.0 else 0.0
+        t_xxx += twist * d_x * (3 * once + cubed * d_x * d_x)
+        t_xxy += twist * d_y * (once + cubed * d_x * d_x)
+        t_xyy += twist * d_x * (once + cubed * d_y * d_y)
+        t_yyy += twist * d_y * (3 * once + cubed * d_y * d_y)
         bend = f / (size * size)
         h_xx += bend * (logarithm + 1 + inner + 2 * d_x * d_x / bounded)
         h_xy += bend * 2 * d_x * d_y / bounded
@@ -122,7 +160,8 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
         base_px, base_vx, base_ax = quintic(local.base[:, 0], s, unit)
         base_py, base_vy, base_ay = quintic(local.base[:, 1], s, unit)
     return SurfacePoint(
-        w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, base_px, base_py, base_vx, base_vy, base_ax, base_ay
+        *(w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, g_xtt, g_ytt),
+        *(h_xxt, h_xyt, h_yyt, t_xxx, t_xxy, t_xyy, t_yyy, base_px, base_py, base_vx, base_vy, base_ax, base_ay),
     )
 
 
@@ -172,11 +211,11 @@ def motion_at(local: LocalSurface, x: float, y: float, out: FloatArray) -> None:
 def evaluate_points(
     surface: Surface, local: LocalSurface, xy: FloatArray, time: float
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """The first ten of `SurfacePoint` at points (n, 2) [m] and one time [s]: (n, 10), nan beyond the rim.
+    """The first twelve of `SurfacePoint` at points (n, 2) [m] and one time [s]: (n, 12), nan beyond the rim.
 
     Also (n,) which of the points have no cell yet.
     """
-    out, missing = np.full((len(xy), 10), math.nan), np.zeros(len(xy), dtype=np.bool_)
+    out, missing = np.full((len(xy), 12), math.nan), np.zeros(len(xy), dtype=np.bool_)
     for n in range(len(xy)):
         x, y = xy[n]
         if rim_gap(surface, x, y) < -1e-9 * surface.size:
@@ -185,5 +224,6 @@ def evaluate_points(
         missing[n] = cell == UNBUILT
         if cell >= 0:
             f = surface_at(local, x, y, time)
-            out[n] = np.array([f.w, f.w_t, f.w_tt, f.w_x, f.w_y, f.w_xt, f.w_yt, f.w_xx, f.w_xy, f.w_yy])
+            out[n, :10] = np.array([f.w, f.w_t, f.w_tt, f.w_x, f.w_y, f.w_xt, f.w_yt, f.w_xx, f.w_xy, f.w_yy])
+            out[n, 10:] = np.array([f.w_xtt, f.w_ytt])
     return out, missing

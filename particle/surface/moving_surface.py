@@ -33,6 +33,7 @@ class SurfaceState(NamedTuple):
     gradient: FloatArray  # (n, 2)
     gradient_t: FloatArray  # (n, 2) 1/s
     hessian: FloatArray  # (n, 2, 2) 1/m
+    gradient_tt: FloatArray  # (n, 2) 1/s^2
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,6 +49,7 @@ class SurfaceMotion:
     conics: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))  # (k, 4) m, as in `Outline`
     edges: FloatArray = field(default_factory=lambda: np.zeros((0, 3, 2)))  # (m, 3, 2) m, as in `Outline`
     moving_base: bool = False  # whether two more drives carry the base in its plane
+    half_thickness: float = 0.0  # m, height over the mid-plane of the face that parts lie on
 
     @property
     def record(self) -> Surface:
@@ -71,6 +73,11 @@ class SurfaceMotion:
         cells = int((self.store.cells.first_row != NOWHERE).sum())
         error = f"{self.error:.1e}" if cells else "not measured"
         return f"<SurfaceMotion: drives {len(self.drives.delay)}, cells built {cells}, error {error}>"
+
+    @property
+    def tilts(self) -> bool:
+        """Whether it can be anything but level."""
+        return self.store.cells.highest > 0 or len(self.sources) > 0
 
     @property
     def shape_count(self) -> int:
@@ -146,9 +153,10 @@ class SurfaceMotion:
         if np.isnan(rows).any():
             beyond = xy[np.isnan(rows).any(axis=1)][0].tolist()
             raise ValueError(f"Input xy of evaluate must lie on the surface; got {beyond} m")
-        w, w_t, w_tt, x, y, xt, yt, xx, xy_, yy = rows.T
+        w, w_t, w_tt, x, y, xt, yt, xx, xy_, yy, xtt, ytt = rows.T
         hessian = np.stack([np.stack([xx, xy_], axis=-1), np.stack([xy_, yy], axis=-1)], axis=-2)
-        return SurfaceState(w, w_t, w_tt, np.stack([x, y], axis=-1), np.stack([xt, yt], axis=-1), hessian)
+        gradient, gradient_t, gradient_tt = (np.stack(pair, axis=-1) for pair in ((x, y), (xt, yt), (xtt, ytt)))
+        return SurfaceState(w, w_t, w_tt, gradient, gradient_t, hessian, gradient_tt)
 
     def _points(self, xy: FloatArray, time: float) -> tuple[FloatArray, NDArray[np.bool_]]:
         surface = self.record

@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes import Outline
-from particle import Micropart, SurfaceMotion
+from particle import Micropart, SurfaceMotion, modelled
 from particle.drives import DriveTable
-from particle.events import Part, count_slips, find_lost
+from particle.events import count_slips, find_lost
 from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
@@ -69,6 +69,9 @@ class Feasible:
     own: Own
 
 
+State = tuple[FloatArray, tuple[FloatArray, FloatArray, FloatArray], FloatArray]
+
+
 def find_feasible(
     surface: SurfaceMotion,
     outline: Outline,
@@ -93,8 +96,7 @@ def find_feasible(
     window = min(window, MAX_STROKES * stroke_time)
     count = max(int(np.ceil(PER_STROKE * window / stroke_time)), PER_STROKE)
     moments = window * (np.arange(count) + 0.5) / count
-    vector = np.array([0.0, 0.0, -gravity]) if isinstance(gravity, (int, float)) else np.array(gravity, dtype=float)
-    resting = Part(part.mass, -float(vector[2]), float(vector[0]), float(vector[1]), part.squeeze, friction.law)
+    resting = modelled(surface, part, friction, gravity)
     lost = np.zeros((len(every), len(points)), dtype=np.bool_)
     states = _states(surface, points, moments)
     for state in states():
@@ -118,20 +120,19 @@ def moving(drives: DriveTable) -> BoolArray:
     return np.array([pieces[first:last].any() for first, last in pairwise(drives.first)], dtype=np.bool_)
 
 
-def _states(
-    surface: SurfaceMotion, points: FloatArray, moments: FloatArray
-) -> Callable[[], Iterable[tuple[FloatArray, FloatArray, FloatArray]]]:
-    """w_tt (n,), slopes (n, 2) and the base's acceleration (2,) at one moment after the other, as often as asked for.
+def _states(surface: SurfaceMotion, points: FloatArray, moments: FloatArray) -> Callable[[], Iterable[State]]:
+    """w_tt (n,), slopes and their two rates (n, 2), and the base's acceleration (2,), moment by moment.
 
     They are kept where they take little memory, else found again.
     """
 
-    def find() -> Iterator[tuple[FloatArray, FloatArray, FloatArray]]:
+    def find() -> Iterator[State]:
         for time in moments.tolist():
             state = surface.evaluate(points, time)
-            yield state.w_tt, state.gradient, surface.base_acceleration(time)
+            slopes = state.gradient, state.gradient_t, state.gradient_tt
+            yield state.w_tt, slopes, surface.base_acceleration(time)
 
-    if 3 * len(points) * len(moments) > MAX_KEPT:
+    if 7 * len(points) * len(moments) > MAX_KEPT:
         return find
     kept = list(find())
     return lambda: kept

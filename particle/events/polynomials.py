@@ -1,0 +1,51 @@
+"""Polynomials in powers of time: sums, products and derivatives."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.jit import jit
+
+FloatArray = NDArray[np.float64]
+
+
+@jit
+def derivative(c: FloatArray, unit: float) -> FloatArray:
+    """The derivative in time of a polynomial of s = t / unit."""
+    out = np.zeros(len(c) - 1)
+    for k in range(len(out)):
+        out[k] = (k + 1) * c[k + 1] / unit
+    return out
+
+
+@jit
+def second_derivative(c: FloatArray, unit: float) -> FloatArray:
+    """The second derivative in time of a polynomial of s = t / unit."""
+    out = np.zeros(len(c) - 2)
+    for k in range(len(out)):
+        out[k] = (k + 2) * (k + 1) * c[k + 2] / (unit * unit)
+    return out
+
+
+@jit
+def product(a: FloatArray, b: FloatArray) -> FloatArray:
+    out = np.zeros(len(a) + len(b) - 1)
+    for i in range(len(a)):
+        for j in range(len(b)):
+            out[i + j] += a[i] * b[j]
+    return out
+
+
+@jit
+def dot(a_x: FloatArray, a_y: FloatArray, b_x: FloatArray, b_y: FloatArray) -> FloatArray:
+    """The scalar product of two vectors."""
+    return total(product(a_x, b_x), product(a_y, b_y))
+
+
+@jit
+def total(a: FloatArray, b: FloatArray) -> FloatArray:
+    out = np.zeros(max(len(a), len(b)))
+    out[: len(a)] += a
+    out[: len(b)] += b
+    return out
