@@ -22,6 +22,7 @@ from . import report as report
 from .report import warnings as warnings
 from .run import (
     build_friction as build_friction,
+    build_part as build_part,
     build_scene as build_scene,
     follow_part as follow_part,
     friction_law as friction_law,

@@ -15,7 +15,8 @@ from coupling.scene import PlateScene
 from coupling.steepest import around, steepest
 from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes
 from meshes import Outline
-from particle import AnyDrive, SurfaceMotion, Trajectory
+from particle import AnyDrive, ContactSamples, SurfaceMotion, Trajectory
+from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
 
@@ -38,7 +39,9 @@ class PlateFigures:
     deflection_over_thickness: float
     linear_path_error: float  # relative, of small-deflection theory
     largest_slope: float
-    in_plane_motion: float  # m, of the top face
+    top_face_share: float  # what the top face and the centre of mass add to the pull on the part, over the rest of it
+    tipping: float | None  # largest shift of the pressure centre over half the part's size; None: size not given
+    tips: bool  # whether it is more than 1, without adhesion to hold the part
     first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
     drive_over_first: float | None  # fastest drive over that frequency
     drives_over_first: tuple[float, float] | None  # the slowest and the fastest drive over it
@@ -49,13 +52,14 @@ class PlateFigures:
     part_sag: float  # m, the plate's deflection under the part's largest force
 
 
-def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory) -> PlateFigures:
+def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, friction: Contact) -> PlateFigures:
     """The figures of a plate under its drives and a part's path over it."""
     plate, shapes, drives, surface = scene.plate, scene.shapes, scene.lifts, scene.surface
     slope, deflection = _extremes(shapes, drives, case.run.duration)
     thickness = plate.section.thickness
     over_thickness = deflection / thickness
-    normal = trajectory.at(moments(drives, float(trajectory.time[-1]))).normal_force
+    contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
+    tipping = _tipping(case, contact)
     first = _first_frequency(plate, shapes)
     moving = [drive for drive in drives if travel(drive) > 0] or drives
     rings = bool((surface.drives.jump[: surface.shape_count, :2] > 0).any())
@@ -68,7 +72,9 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory) -> Plat
         deflection_over_thickness=over_thickness,
         linear_path_error=LINEAR_ERROR * over_thickness**2,
         largest_slope=slope,
-        in_plane_motion=thickness / 2 * slope,
+        top_face_share=_top_face_share(contact),
+        tipping=tipping,
+        tips=tipping is not None and tipping > 1 and friction.law.pull_off == 0,
         first_frequency=first,
         drive_over_first=None if first is None else max(drive.frequency for drive in moving) / first,
         drives_over_first=None if first is None else _range([drive.frequency / first for drive in moving]),
@@ -76,7 +82,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory) -> Plat
         plate_rings=rings,
         quasi_static_error=None if rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
-        part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(normal)))),
+        part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force)))),
     )
 
 
@@ -123,14 +129,39 @@ def _extremes(shapes: PlateShapes, drives: Sequence[AnyDrive], end: float) -> tu
 
 def _part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, trajectory: Trajectory) -> float | None:
     """The part's size times the largest curvature under it at the rows of its path."""
-    size = case.part.size
-    if size is None and isinstance(case.friction, KogutEtsionCase):
-        size = float(np.sqrt(case.friction.contact_area))
+    size = _part_size(case)
     if size is None:
         return None
     on_plate = outline.gap(trajectory.position) >= 0  # all but the last of a part that slid over the rim
     places = zip(trajectory.position[on_plate], trajectory.time[on_plate], strict=True)
     return size * max(float(np.abs(np.linalg.eigvalsh(surface.evaluate(xy, t).hessian)).max()) for xy, t in places)
+
+
+def _part_size(case: Case) -> float | None:
+    """The side [m] of the part's footprint."""
+    if case.part.size is None and isinstance(case.friction, KogutEtsionCase):
+        return float(np.sqrt(case.friction.contact_area))
+    return case.part.size
+
+
+def _top_face_share(contact: ContactSamples) -> float:
+    """What the heights of contact and centre of mass add to the pull, over that on a point of the mid-plane.
+
+    Root mean squares over the path, of the vectors' lengths; inf where the rest is 0.
+    """
+    rest, added = (float(np.sqrt(np.nanmean(np.square(pull)))) for pull in (contact.point_pull, contact.added_pull))
+    return added / rest if rest > 0 else float("inf" if added > 0 else 0)
+
+
+def _tipping(case: Case, contact: ContactSamples) -> float | None:
+    """The largest shift of the pressure centre over half the part's size: friction times the centre's height over N."""
+    size = _part_size(case)
+    if size is None:
+        return None
+    pressed = contact.normal_force > 0
+    friction = np.linalg.norm(contact.friction[pressed], axis=1)
+    shift = case.part.centre_height * friction / contact.normal_force[pressed]
+    return float(shift.max(initial=0.0)) / (size / 2)
 
 
 def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: float) -> float:

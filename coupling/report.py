@@ -73,13 +73,15 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
         (
             "model",
             f"deflection {s.deflection_over_thickness:.3g} times the thickness (path error of linear theory "
-            f"{_percent(s.linear_path_error)}), slope {s.largest_slope:.3g}, "
-            f"neglected in-plane motion {s.in_plane_motion * MICRO:.3g} um",
+            f"{_percent(s.linear_path_error)}), slope {s.largest_slope:.3g}",
         ),
         ("", _dynamics(s)),
         *([("", _drives(s))] if s.drives_over_first else []),
+        ("", f"top face and centre of mass add {_share(s.top_face_share)} to the pull on the part"),
         ("", f"the part's own force deflects the plate by {s.part_sag * MICRO:.1e} um"),
     ]
+    if s.tipping:
+        rows.append(("", f"pressure centre shifts by {s.tipping:.2g} of half the part's size"))
     if s.part_curvature is not None:
         rows.append(("", f"part size times curvature {s.part_curvature:.2g}"))
     return rows
@@ -157,6 +159,11 @@ def _of_model(s: PlateSummary) -> list[str]:
             "A drive's velocity or acceleration jumps, as at the start of a sine or cosine. A plate then rings, by as "
             "much as its acceleration jumps, until damping ends it. The model leaves that out."
         )
+    if s.tips:
+        texts.append(
+            f"The centre of pressure moves out to {s.tipping:.2g} of half the part's size: a part this high tips over, "
+            "which the model leaves out."
+        )
     if s.part_curvature is not None and s.part_curvature > MAX_CURVATURE:
         texts.append(
             f"Part size times curvature reaches {s.part_curvature:.2g}; the point-part model holds up to about "
@@ -210,6 +217,10 @@ def _drives(s: PlateSummary) -> str:
 def _range(ratios: Sequence[float]) -> str:
     """The smallest and the largest ratio, or one where they are equal."""
     return "-".join(dict.fromkeys(f"{ratio:.2g}" for ratio in ratios))
+
+
+def _share(ratio: float) -> str:
+    return f"{100 * ratio:.2g} %" if ratio < 2 else f"{ratio:.3g} times itself"
 
 
 def _percent(share: float) -> str:

@@ -172,10 +172,15 @@ def friction_law(law: FrictionCase) -> Contact:
     return particle.KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
 
 
+def build_part(case: Case, position: tuple[float, float] | None = None) -> particle.Micropart:
+    """The part of a case, at its start or another place [m]."""
+    p = case.part
+    return particle.Micropart(p.mass, position or p.position, p.velocity, p.squeeze, p.centre_height)
+
+
 def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tighter: bool = False) -> Trajectory:
     """The part's path over the surface; tighter: at a hundredth of the tolerance, or with half the time step."""
-    part = particle.Micropart(case.part.mass, case.part.position, case.part.velocity, case.part.squeeze)
-    run = case.run
+    part, run = build_part(case), case.run
     tolerance = max(run.tolerance / 100, 1e-13) if tighter else run.tolerance
     steps: dict[str, Any] = {}
     if run.scheme != "events" and (run.time_step or tighter):

@@ -112,7 +112,7 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         frames_per_cycle=None if scene.fits else _frames_per_cycle(case, drives, float(trajectory.time[-1])),
     )
     if isinstance(scene, PlateScene):
-        return PlateSummary(**vars(summary), **vars(plate_figures(case, scene, trajectory)))
+        return PlateSummary(**vars(summary), **vars(plate_figures(case, scene, trajectory, friction)))
     return summary
 
 

@@ -12,6 +12,7 @@ from .modes import EventKind as EventKind
 from .surface.moving_surface import SurfaceMotion as SurfaceMotion, SurfaceState as SurfaceState
 from .surface.simple_surfaces import platform_surface as platform_surface, polynomial_surface as polynomial_surface
 from .trajectory import (
+    ContactSamples as ContactSamples,
     Energy as Energy,
     Event as Event,
     Outcome as Outcome,

@@ -17,6 +17,7 @@ from particle.events import (
     PathRecord,
     Request,
     clear_memory,
+    contact_states,
     march,
     new_memory,
     new_record,
@@ -26,7 +27,7 @@ from particle.events import (
 )
 from particle.fixed import between, march_fixed, new_fixed_memory
 from particle.modes import EventKind, Verdict
-from particle.surface import Surface, SurfaceMotion, missing_place
+from particle.surface import Surface, SurfaceMotion, missing_place, new_local
 from particle.trajectory import Event, Outcome, State, Trajectory, energy_of, samples_of
 
 FloatArray = NDArray[np.float64]
@@ -141,6 +142,12 @@ def _by_steps(surface: SurfaceMotion, request: Request, kind: int, rows: Rows, t
     return samples
 
 
+def _contact_states(surface: SurfaceMotion, request: Request, rows: Rows) -> Rows:
+    """Where contact and centre of mass are at rows of the path, and what acts there."""
+    record = surface.record
+    return contact_states(record, new_local(record), request.part, rows)
+
+
 def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> Computed:
     """A path over the surface, computed anew whenever it has come to a place where a cell was lacking."""
     while True:
@@ -168,4 +175,5 @@ def _trajectory(
         evaluations=computed.evaluations,
         energy=energy_of(computed.rows, request.force * surface.size),
         sampler=sampler,
+        contact=partial(_contact_states, surface, request),
     )

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from particle.friction.kogut_etsion import KogutEtsion
+
 FloatArray = NDArray[np.float64]
 
 MIN_ENERGY = 1e-6
@@ -85,6 +87,23 @@ class Samples(NamedTuple):
     state: NDArray[np.int64]  # (k,) State
 
 
+class ContactSamples(NamedTuple):
+    """Contact and centre of mass of a part in space at k moments, and the forces on it."""
+
+    time: FloatArray  # (k,) s
+    contact: FloatArray  # (k, 3) m, where it touches the surface
+    centre: FloatArray  # (k, 3) m, its centre of mass
+    normal: FloatArray  # (k, 3) the surface's normal, along which it stands: its attitude
+    normal_force: FloatArray  # (k,) N, net, along the normal
+    friction: FloatArray  # (k, 3) N, on the part
+    pull: FloatArray  # (k,) m/s^2, along the surface, without friction; 0 in flight
+    point_pull: FloatArray  # (k,) m/s^2, the same on a point of the mid-plane
+    added_pull: FloatArray  # (k,) m/s^2, the difference, which the heights of contact and centre of mass make
+    separation: FloatArray  # (k,) of a rough contact over its roughness; nan in flight and for other laws, as below
+    contact_load: FloatArray  # (k,) N, by which its asperities are pressed
+    adhesion: FloatArray  # (k,) N, which holds against it; the net normal force is their difference
+
+
 @dataclass(frozen=True, eq=False)
 class Energy:
     """The energy ledger at the rows of a trajectory: kinetic + potential grow by work - dissipated."""
@@ -127,6 +146,7 @@ class Trajectory:
     evaluations: int  # of the surface
     energy: Energy
     sampler: Callable[[FloatArray], NDArray[Any]]  # rows at ascending times
+    contact: Callable[[NDArray[Any]], NDArray[Any]]  # `ContactState`s at rows
     future: Callable[[], bool | None] | None = None  # of a part that rests at the end
 
     @cached_property
@@ -186,14 +206,54 @@ class Trajectory:
         ValueError
             A time is nan.
         """
-        if np.isnan(np.asarray(times, dtype=float)).any():
-            raise ValueError("Input times of at must be numbers; got nan")
-        within = np.clip(np.asarray(times, dtype=float), self.time[0], self.time[-1])
+        return samples_of(self._rows_at(times, "at"))
+
+    def contact_at(self, times: ArrayLike, friction: KogutEtsion | None = None) -> ContactSamples:
+        """Contact and centre of mass in space at times, and the forces on the part there.
+
+        Parameters
+        ----------
+        times : array (k,)
+            Times, s; those before the start or after the end count as these.
+        friction : KogutEtsion, optional
+            The law of the run, for the parts of the normal force.
+
+        Returns
+        -------
+        samples : ContactSamples
+            Places and forces at these times.
+
+        Raises
+        ------
+        ValueError
+            A time is nan.
+        """
+        rows = self._rows_at(times, "contact_at")
+        states = self.contact(rows)
+        vectors = (
+            np.column_stack([states[head + axis] for axis in "xyz"]) for head in ("", "centre_", "normal_", "friction_")
+        )
+        place, centre, normal, force = vectors
+        load = rows["load"]
+        parts = np.full((3, len(load)), np.nan)
+        if friction is not None:
+            touching = rows["mode"] != Mode.FLYING
+            separation = friction.separation(load[touching])
+            parts[:, touching] = separation, *friction.forces(separation)[:2]
+        pulls = (states[name] for name in ("pull", "point_pull", "added_pull"))
+        return ContactSamples(rows["time"], place, centre, normal, load, force, *pulls, *parts)
+
+    def _rows_at(self, times: ArrayLike, caller: str) -> NDArray[Any]:
+        """The rows (k,) at times (k,) [s] in any order."""
+        at = np.asarray(times, dtype=float)
+        if np.isnan(at).any():
+            raise ValueError(f"Input times of {caller} must be numbers; got nan")
+        within = np.clip(at, self.time[0], self.time[-1])
         order = np.argsort(within, kind="stable")
         ordered = self.sampler(within[order])
         rows = np.empty_like(ordered)
         rows[order] = ordered
-        return samples_of(rows)
+        return rows
 
     def __repr__(self) -> str:
         found = f"{len(self.time)} rows, {len(self.events)} events"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from active_surface.studies import start_faults
-from coupling import build_drives, build_friction
+from coupling import build_drives, build_friction, build_part
 from coupling.case import ActuatorCase, Case
 from particle import Micropart, Outcome, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact, ScaledFriction
@@ -77,7 +77,7 @@ class Paths:
             good = left & np.array([not faults for faults in start_faults(self.case, moved)])
             starts[good] = moved[good]
             left &= ~good
-        return [Micropart(part.mass, (x, y), part.velocity, part.squeeze) for x, y in starts.tolist()]
+        return [build_part(self.case, (x, y)) for x, y in starts.tolist()]
 
 
 def path_of(paths: Paths, case: Case) -> Trajectory:

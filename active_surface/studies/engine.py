@@ -19,7 +19,7 @@ from active_surface.studies.record import Records, new_records, put
 from active_surface.studies.refusal import contact_of, mistakes_of, start_faults
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Base, Variants
-from coupling import build_drives, build_scene, silent
+from coupling import build_drives, build_part, build_scene, silent
 from coupling.case import Case, PlatformCase, RunCase
 from coupling.scene import platform_scene
 from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
@@ -147,7 +147,7 @@ class Engine:
                 if messages := messages + [fault for fault in (law, surface) if isinstance(fault, str)]:
                     wrong[row] = messages
                 elif not isinstance(law, str):
-                    part = Micropart(case.part.mass, (place[0], place[1]), case.part.velocity, case.part.squeeze)
+                    part = build_part(case, (place[0], place[1]))
                     groups[case.run].append(_Path(row, case, part, law))
             if not isinstance(surface, str):
                 yield from ((paths, surface, run) for run, paths in groups.items())

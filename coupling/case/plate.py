@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, StrictFloat, StrictStr, Tag, field_validator
+from pydantic import Discriminator, Field, StrictBool, StrictFloat, StrictStr, Tag, field_validator
 
 from coupling.case.table import Contradictions, KeyedTable
 from coupling.case.values import Density, FileBeside, Length, Point, Pressure, length_text, quoted
@@ -44,6 +44,8 @@ class PlateCase(KeyedTable, ABC):
     """How thick it is."""
     density: Density | None = Field(default=None, gt=0)
     """With it drives are compared with the plate's first frequency."""
+    top_face: StrictBool = True
+    """Whether parts lie on the top face, which bending also moves in its plane, or, if false, on the mid-plane."""
 
     @abstractmethod
     def build_mesh(self) -> PlateMesh:

@@ -30,6 +30,8 @@ class PartCase(Table):
     """The side of its footprint, for the check of curvature; without it the root of the contact area."""
     squeeze: Force = Field(default=0.0, ge=0)
     """A constant force that presses it onto the surface, along the normal."""
+    centre_height: Length = Field(default=0.0, ge=0, examples=["50 um"])
+    """How high its centre of mass stands above the surface that it lies on."""
 
 
 class RunCase(KeyedTable):

@@ -47,7 +47,8 @@ def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateS
         shapes = plate.influence(points, actuator_stiffness(case), truncation, tell)
     with progress("Fitting the surface"):
         drives = build_drives(case)
-        return PlateScene(plate, shapes, drives, surface_motion(shapes, drives, case.run.surface_tolerance))
+        top = plate_case.thickness / 2 if plate_case.top_face else 0.0
+        return PlateScene(plate, shapes, drives, surface_motion(shapes, drives, case.run.surface_tolerance, top))
 
 
 def build_plate(plate: PlateCase) -> Plate:

@@ -14,7 +14,9 @@ from particle import SurfaceMotion
 from particle.drives import DriveTable
 from particle.surface import BuiltCells, Cells
 
-KIND, VERSION = "active-surface surface motion", 1
+KIND, VERSION = "active-surface surface motion", 2
+
+LENGTHS = ("size", "floor", "overhang", "half_thickness")
 
 
 def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
@@ -45,7 +47,7 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
     check_surface(path)
     with whole_file(path) as partial, h5py.File(partial, "w") as file:
         file.attrs.update(kind=KIND, version=VERSION, error=surface.error, moving_base=surface.moving_base)
-        file.attrs.update(size=surface.size, floor=surface.floor, overhang=surface.overhang)
+        file.attrs.update({name: getattr(surface, name) for name in LENGTHS})
         for name in ("sources", "conics", "edges"):
             file[name] = getattr(surface, name)
         for group, table in (("drives", surface.drives), ("cells", surface.store.cells)):
@@ -90,7 +92,7 @@ def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
             group: {name: value[()] if value.shape else value[()].item() for name, value in file[group].items()}
             for group in ("drives", "cells")
         }
-        rest: dict[str, Any] = {name: float(file.attrs[name]) for name in ("size", "floor", "overhang")}
+        rest: dict[str, Any] = {name: float(file.attrs[name]) for name in LENGTHS}
         rest |= {name: np.ascontiguousarray(file[name][()]) for name in ("sources", "conics", "edges")}
         return SurfaceMotion(
             drives=DriveTable(**tables["drives"]),

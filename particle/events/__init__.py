@@ -2,6 +2,7 @@
 
 from particle.events.breakaway import first_slip, mobility, rest_pull
 from particle.events.contact_end import end_reason
+from particle.events.contact_state import ContactState, contact_states
 from particle.events.dense_output import resume
 from particle.events.equations import Part, by_centre, drag, length, margin, of_centre, pull, push
 from particle.events.integrator import march

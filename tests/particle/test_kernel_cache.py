@@ -18,10 +18,10 @@ import os
 from particle.events.equations import Part
 from particle.events.slipping import load_and_demand
 from particle import ConstantFriction
-part = Part(1.0, 9.0, 0.0, 0.0, 2.0, ConstantFriction(1.0).law)
+part, LEVEL = Part(1.0, 9.0, 0.0, 0.0, 2.0, ConstantFriction(1.0).law), (0.0, 0.0)
 import particle
 assert particle.__file__.startswith(os.getcwd())
-print(load_and_demand(1.0, 0.0, 0.0, 0.0, 0.0, part)[0], sum(load_and_demand.stats.cache_misses.values()))
+print(load_and_demand(1.0, LEVEL, LEVEL, LEVEL, LEVEL, part)[0], sum(load_and_demand.stats.cache_misses.values()))
 """
 
 

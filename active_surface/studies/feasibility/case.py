@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from active_surface.studies.feasibility.area import ACROSS, Curves, Feasible, find_feasible, moving
-from coupling import Progress, build_drives, build_friction, build_scene, silent, whole_file
+from coupling import Progress, build_drives, build_friction, build_part, build_scene, silent, whole_file
 from coupling.case import Case
 from meshes import Outline
-from particle import AnyDrive, Micropart, interruptible
+from particle import AnyDrive, interruptible
 from particle.drives import drive_table
 from particle.events import horizon
 
@@ -153,7 +153,7 @@ def feasibility(
         assert scene.shapes
         until = horizon(drive_table(drives), 0.0)
         whole = case.run.duration if until is None else min(until, case.run.duration)
-        part = Micropart(case.part.mass, case.part.position, squeeze=case.part.squeeze)
+        part = build_part(case)
         factors = np.geomspace(low, high, COUNT) / frequency
         with progress("Looking where the part slips"):
             areas = interruptible(

@@ -1,0 +1,72 @@
+"""Where contact and centre of mass of a part are in space, and what acts on it there."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.events.equations import Part, length, pull, slip
+from particle.events.record import Row
+from particle.jit import jit
+from particle.modes import Mode
+from particle.records import Record, record_type
+from particle.surface import LocalSurface, Surface, enter, surface_at
+
+
+class ContactState(Record):
+    """A part at one moment, in space."""
+
+    x: float  # m, of the contact; over the base at its start
+    y: float
+    z: float
+    centre_x: float  # m, of the centre of mass
+    centre_y: float
+    centre_z: float
+    normal_x: float  # of the surface, along which the part stands
+    normal_y: float
+    normal_z: float
+    friction_x: float  # N, on the part
+    friction_y: float
+    friction_z: float
+    pull: float  # m/s^2, without friction
+    point_pull: float  # m/s^2, the same on a point of the mid-plane
+    added_pull: float  # m/s^2, the length of their difference
+
+
+CONTACT_STATE = record_type(ContactState)
+
+
+@jit
+def contact_states(surface: Surface, local: LocalSurface, part: Part, rows: NDArray[Row]) -> NDArray[ContactState]:
+    """The states (k,) at the rows (k,) of a path; nan where the surface has no cell."""
+    out = np.zeros(len(rows), CONTACT_STATE)
+    low = part._replace(contact=0.0, centre=0.0)
+    for k in range(len(rows)):
+        row, state = rows[k], out[k]
+        x, y, v_x, v_y = row.x, row.y, row.v_x, row.v_y
+        if enter(surface, local, x, y, row.time, math.inf) < 0:
+            state.x = state.centre_x = state.point_pull = state.added_pull = math.nan
+            continue
+        f = surface_at(local, x, y, row.time)
+        s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
+        n_x, n_y, n_z = -f.w_x / s, -f.w_y / s, 1 / s
+        x, y = x + f.base_px, y + f.base_py
+        state.x, state.y, state.z = x + part.contact * n_x, y + part.contact * n_y, row.z + part.contact * n_z
+        state.centre_x, state.centre_y = x + part.centre * n_x, y + part.centre * n_y
+        state.centre_z = row.z + part.centre * n_z
+        state.normal_x, state.normal_y, state.normal_z = n_x, n_y, n_z
+        if row.mode == Mode.FLYING:
+            continue
+        p, q = pull(f, v_x, v_y, part), pull(f, v_x, v_y, low)
+        state.pull, state.point_pull = length(f, p.x, p.y), length(f, q.x, q.y)
+        state.added_pull = length(f, p.x - q.x, p.y - q.y)
+        k_x, k_y = slip(f, part, v_x, v_y)
+        if row.mode == Mode.RESTING:
+            d_x, d_y = -part.mass * p.x, -part.mass * p.y
+        else:
+            held = row.friction / p.speed if p.speed > 0.0 else 0.0
+            d_x, d_y = -held * k_x, -held * k_y
+        state.friction_x, state.friction_y, state.friction_z = d_x, d_y, d_x * f.w_x + d_y * f.w_y
+    return out
