@@ -89,6 +89,7 @@ def run_case(
     progress: Progress = silent,
     csv: bool = False,
     save_surface: bool = False,
+    forces: bool = False,
 ) -> Result:
     """Run a case.
 
@@ -102,6 +103,8 @@ def run_case(
         Also write the trajectory to NAME.csv.
     save_surface : bool
         Also write the moving surface, with the cells that the part came to, to NAME.surface.h5 (`read_surface`).
+    forces : bool
+        Also write the parts of the contact's force to the part's file and the CSV file (`Trajectory.contact_at`).
     progress : Progress, optional
         Reports the progress of a stage, for progress bars.
 
@@ -123,10 +126,10 @@ def run_case(
         check_surface(Path(output) / f"{case.name}.surface.h5")
     # Many small systems: BLAS threads would only wait for each other, and take two to four times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return _run(case, None if output is None else Path(output), progress, csv, save_surface)
+        return _run(case, None if output is None else Path(output), progress, csv, save_surface, forces)
 
 
-def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_surface: bool) -> Result:
+def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_surface: bool, forces: bool) -> Result:
     record = None if output is None else record_of(case)  # its files may be others when the path is found
     scene = build_scene(case, progress)
     with progress("Following the part"):
@@ -138,7 +141,8 @@ def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_su
     if output is None or record is None:
         return Result(case, scene, trajectory, summary)
     with progress("Writing the results") as tell:
-        files = write_results(case, record, scene, trajectory, summary, output, csv, tell)
+        law = friction if forces else None
+        files = write_results(case, record, scene, trajectory, summary, output, csv, tell, law)
         if save_surface:
             files += (write_surface(scene.surface, output / f"{case.name}.surface.h5"),)
     return Result(case, scene, trajectory, summary, files)

@@ -19,8 +19,11 @@ STAGES = 5
 @options.quiet
 @options.as_json
 @click.option("--csv", is_flag=True, help="Also write the trajectory to NAME.csv.")
+@click.option("--forces", is_flag=True, help="Also write the parts of the contact's force to the part's file and CSV.")
 @click.option("--save-surface", is_flag=True, help="Also write the moving surface to NAME.surface.h5.")
-def run(case: Path, output: Path | None, quiet: bool, as_json: bool, csv: bool, save_surface: bool) -> None:
+def run(
+    case: Path, output: Path | None, quiet: bool, as_json: bool, csv: bool, forces: bool, save_surface: bool
+) -> None:
     """Run CASE and write its results."""
     parsed = read(case)
     from coupling import StageBar, report, run_case, silent
@@ -29,7 +32,7 @@ def run(case: Path, output: Path | None, quiet: bool, as_json: bool, csv: bool, 
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
     with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
-        result = refusing(run_case, parsed, folder, bar, csv, save_surface)
+        result = refusing(run_case, parsed, folder, bar, csv, save_surface, forces)
     warnings = report.warnings(result.summary)
     figures = result.summary.as_dict() | {"warnings": warnings, "files": [str(file) for file in result.files]}
     options.tell(figures, report.lines(result.summary), quiet, as_json, warnings, result.files)

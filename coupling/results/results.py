@@ -22,7 +22,8 @@ from coupling.results.vtkhdf import part_file, plate_file
 from coupling.scene import Scene
 from coupling.summary import Summary
 from coupling.surface import is_surface
-from particle import Samples, Trajectory
+from particle import KogutEtsion, Samples, Trajectory
+from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
 
@@ -36,6 +37,13 @@ UNITS = {
     "drive": "m (N where a force drives) at actuators, 0 elsewhere",
     "normal_force": "N",
     "friction_force": "N",
+    "contact": "m, in space, where the part touches the surface",
+    "centre": "m, in space, of the part's centre of mass",
+    "normal": "of the surface, along which the part stands",
+    "friction": "N, on the part",
+    "separation": "of a rough contact, over its roughness",
+    "contact_load": "N, by which the asperities of a rough contact are pressed",
+    "adhesion": "N, of a rough contact",
     "state": "0: stuck, 1: slipping, 2: flying",
 }
 
@@ -49,13 +57,15 @@ def write_results(
     folder: Path,
     csv: bool = False,
     tell: ProgressCallback = no_progress,
+    friction: Contact | None = None,
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
 
     A picture that cannot be drawn is left out, with a RuntimeWarning.
 
     record: of the case, taken before the work: later its files may be others.  csv: whether to write NAME.csv as well.
-    tell: gets how many time steps are written, and of how many.
+    tell: gets how many time steps are written, and of how many.  friction: the contact's forces go to the part's file
+    and the CSV, too.
     """
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
@@ -72,6 +82,8 @@ def write_results(
     samples = trajectory.at(times)
     position = np.column_stack([onto_surface(scene, samples.position), samples.height])
     velocity = np.column_stack([samples.velocity, samples.vertical_velocity])
+    rough = friction if isinstance(friction, KogutEtsion) else None
+    forces = {} if friction is None else _contact_fields(trajectory, times, rough)
     spread: list[FloatArray] = []
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
@@ -92,6 +104,7 @@ def write_results(
                 state=samples.state[some],
                 normal_force=samples.normal_force[some],
                 friction_force=samples.friction_force[some],
+                **{name: values[some] for name, values in forces.items()},
             )
     picture = folder / f"{case.name}.png"
     files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
@@ -104,8 +117,16 @@ def write_results(
     except Exception as error:  # the run is finished, whatever becomes of its picture
         warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
     if csv:
-        files.append(write_csv(trajectory, folder / f"{case.name}.csv", times))
+        files.append(write_csv(trajectory, folder / f"{case.name}.csv", times, friction is not None, rough))
     return tuple(files)
+
+
+def _contact_fields(trajectory: Trajectory, times: FloatArray, friction: KogutEtsion | None) -> dict[str, FloatArray]:
+    """The fields of the contact at times (k,): vectors (k, 3), and for a rough contact numbers (k,), 0 in flight."""
+    contact = trajectory.contact_at(times, friction)
+    names = ["contact", "centre", "normal", "friction"]
+    names += ["separation", "contact_load", "adhesion"] if friction else []
+    return {name: np.nan_to_num(getattr(contact, name)) for name in names}
 
 
 def _fields(ground: DisplaySurface, heights: FloatArray, speeds: FloatArray) -> dict[str, NDArray[np.float32]]:

@@ -42,7 +42,7 @@ CONTACT_STATE = record_type(ContactState)
 def contact_states(surface: Surface, local: LocalSurface, part: Part, rows: NDArray[Row]) -> NDArray[ContactState]:
     """The states (k,) at the rows (k,) of a path; nan where the surface has no cell."""
     out = np.zeros(len(rows), CONTACT_STATE)
-    low = part._replace(contact=0.0, centre=0.0)
+    point = Part(part.mass, part.gravity, part.tilt_x, part.tilt_y, part.squeeze, part.law, 0.0, 0.0)
     for k in range(len(rows)):
         row, state = rows[k], out[k]
         x, y, v_x, v_y = row.x, row.y, row.v_x, row.v_y
@@ -59,7 +59,7 @@ def contact_states(surface: Surface, local: LocalSurface, part: Part, rows: NDAr
         state.normal_x, state.normal_y, state.normal_z = n_x, n_y, n_z
         if row.mode == Mode.FLYING:
             continue
-        p, q = pull(f, v_x, v_y, part), pull(f, v_x, v_y, low)
+        p, q = pull(f, v_x, v_y, part), pull(f, v_x, v_y, point)
         state.pull, state.point_pull = length(f, p.x, p.y), length(f, q.x, q.y)
         state.added_pull = length(f, p.x - q.x, p.y - q.y)
         k_x, k_y = slip(f, part, v_x, v_y)

@@ -57,11 +57,12 @@ def search(surface, part, begin=0.0):
 @pytest.mark.parametrize(
     "kind, gravity", [("constant", 9.81), ("coulomb", 9.81), ("coulomb", 0.0), ("kogut-etsion", 9.81)]
 )
-def test_a_break_away_is_never_missed_and_never_early(kind, gravity):
+@pytest.mark.parametrize("heights", [(0.0, 0.0), (0.2, 0.2), (0.1, 0.5)])
+def test_a_break_away_is_never_missed_and_never_early(kind, gravity, heights):
     rng, found = np.random.default_rng(7), []
     for _ in range(60):
         surface, begin = moving(rng), rng.choice([0.0, rng.uniform(0, 0.9)])
-        part = Part(MASS, gravity, 0.0, 0.0, 0.0, law(rng, kind))
+        part = Part(MASS, gravity, 0.0, 0.0, 0.0, law(rng, kind), *heights)
         leaves, local = search(surface, part, begin)
         times = begin + (1 - begin) * np.linspace(0, 1, SAMPLES)
         held = np.array([stays(surface, local, part, t) for t in times])
