@@ -14,7 +14,7 @@ from particle import SurfaceMotion
 from particle.drives import DriveTable
 from particle.surface import BuiltCells, Cells
 
-KIND, VERSION = "active-surface surface motion", 1
+KIND, VERSION = "active-surface surface motion", 2
 
 
 def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
