@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from coupling.case import ENDLESS, Case, DriveCase, amplitude
 from particle import AnyDrive, Drive, Segment, SegmentDrive, TableDrive
-from particle.drives import drive_table, next_breakpoint
+from particle.drives import ORDER, drive_table, next_breakpoint
 
 FloatArray = NDArray[np.float64]
 
@@ -36,7 +36,8 @@ def build_drive(drive: DriveCase) -> AnyDrive:
         return TableDrive(times, heights, repeats, drive.delay)
     if drive.segments is not None:
         return SegmentDrive([Segment(**segment.model_dump()) for segment in drive.segments], repeats, drive.delay)
-    return Drive(amplitude(drive), drive.frequency or 0.0, drive.cycle, drive.cycles, drive.delay, drive.dwell)
+    timing = (drive.cycle, drive.cycles, drive.delay, drive.dwell, drive.phase, drive.ramp)
+    return Drive(amplitude(drive), drive.frequency or 0.0, *timing)
 
 
 def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray, derivative: int = 0) -> FloatArray:
@@ -79,11 +80,11 @@ def moments(drives: Sequence[AnyDrive], end: float) -> FloatArray:
 
 
 def _marks(drive: AnyDrive) -> tuple[FloatArray, FloatArray]:
-    """The times (k,) [s] of its pieces' starts, middles and ends in the first pass, and the heights (k,) [m] there."""
-    start, scale, rows, _ = drive.segments()
+    """When [s] its pieces begin, are half over and end for the first time (k,), and the heights [m] there (k,)."""
+    pieces = drive.segments()
     part = np.array([0.0, 0.5, 1.0])
-    times = drive.delay + (start[:, None] + scale[:, None] * part).ravel()
-    return times, (rows @ np.power.outer(part, np.arange(rows.shape[1])).T).ravel()
+    times = drive.delay + (pieces.since[:, None] + pieces.scale[:, None] * part).ravel()
+    return times, (pieces.coefficients @ np.power.outer(part, np.arange(ORDER)).T).ravel()
 
 
 def travel(drive: AnyDrive) -> float:
@@ -95,9 +96,8 @@ def first_jump(drives: Sequence[AnyDrive], end: float) -> float | None:
     """The first time [s] between 0 and `end` at which a drive's velocity jumps; None: at none."""
     times = []
     for drive in drives:
-        start, scale, _, repeats = drive.segments()
         near = 1e-6 * drive.stroke_time
-        for time in (drive.delay, drive.delay + (start[-1] + scale[-1]) * repeats):
+        for time in (drive.delay, drive.delay + drive.segments().duration):
             if 0 < time < end:
                 before, after = drive.evaluate([time - near, time + near])[1]
                 if abs(after - before) > JUMP * travel(drive) / drive.stroke_time:

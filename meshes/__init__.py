@@ -17,4 +17,5 @@ __all__ = [  # public; the stub beside has also what other packages of the progr
     "polygon",
     "read",
     "rectangle",
+    "regular_polygon",
 ]

@@ -1,7 +1,7 @@
 from .curves import Circle as Circle, Ellipse as Ellipse, Parabolas as Parabolas
 from .mesh import Corner as Corner, PlateMesh as PlateMesh
 from .outline import Outline as Outline
-from .polygons import polygon as polygon
+from .polygons import polygon as polygon, regular_polygon as regular_polygon
 from .reader import read as read
 from .shapes import annulus as annulus, disc as disc, ellipse as ellipse, rectangle as rectangle
 

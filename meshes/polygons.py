@@ -67,6 +67,39 @@ def polygon(corners: ArrayLike, cell_size: float, names: Sequence[str] | None = 
     return PlateMesh(mesh_points, triangles, boundaries, {}, outline)
 
 
+def regular_polygon(sides: int, radius: float, cell_size: float, rotation: float = 0.0) -> PlateMesh:
+    """A regular polygon around the origin; its boundary is "rim".
+
+    Parameters
+    ----------
+    sides : int
+        How many, 3 or more.
+    radius : float
+        From the centre to a corner [m].
+    cell_size : float
+        About the longest edge of a cell [m].
+    rotation : float
+        Of the first corner from the x axis, counter-clockwise [rad].
+
+    Returns
+    -------
+    PlateMesh
+
+    Raises
+    ------
+    ValueError
+        Names everything that is wrong.
+    """
+    mistakes = check_lengths("regular_polygon", radius=radius, cell_size=cell_size)
+    if isinstance(sides, bool) or not isinstance(sides, (int, np.integer)) or sides < 3:
+        mistakes.append(f"Input sides of regular_polygon must be a whole number of at least 3; got {sides!r}")
+    if not np.isfinite(rotation):
+        mistakes.append(f"Input rotation of regular_polygon must be a finite angle in rad; got {rotation!r}")
+    refuse(mistakes)
+    angle = rotation + 2 * np.pi * np.arange(sides) / sides
+    return polygon(radius * np.stack([np.cos(angle), np.sin(angle)], axis=1), cell_size)
+
+
 class _Sizes:
     """How long the edges on one side of a polygon should be."""
 

@@ -103,6 +103,7 @@ def _bounds(actuator: ActuatorCase, settings: Settings, duration: float) -> dict
 def at_rest(actuator: ActuatorCase) -> ActuatorCase:
     """An actuator held at height 0, or floating without a force."""
     once: dict[str, object] = {"frequency": actuator.frequency or 1.0, "cycle": "up-down", "cycles": 1}
-    without = dict.fromkeys(("table", "segments")) | {"repeats": 1, "delay": 0.0, "dwell": 0.0}
+    none = dict.fromkeys(("delay", "dwell", "phase", "ramp"), 0.0)
+    without: dict[str, object] = dict.fromkeys(("table", "segments")) | {"repeats": 1} | none
     pushed = {"force": 0.0} if actuator.force is not None else {"stroke": 0.0}
     return actuator.model_copy(update=once | without | pushed)

@@ -49,11 +49,10 @@ def _over_time(k: int, actuator: ActuatorCase, legs: Sequence[Leg]) -> ActuatorC
     if not segments:
         return at_rest(actuator)
     unset = dict.fromkeys(("stroke", "force", "frequency", "table", "cycles"))
-    same = {"cycle": "up-down", "dwell": 0.0, "repeats": 1, "delay": 0.0}
+    same = {"cycle": "up-down", "dwell": 0.0, "repeats": 1, "delay": 0.0, "phase": 0.0, "ramp": 0.0}
     return actuator.model_copy(update=unset | same | {"segments": tuple(segments)})
 
 
 def _end(actuator: ActuatorCase) -> float:
     """When a drive with a number of cycles ends [s]."""
-    start, scale, _, repeats = build_drive(actuator).segments()
-    return actuator.delay + float(start[-1] + scale[-1]) * repeats
+    return actuator.delay + build_drive(actuator).segments().duration

@@ -130,6 +130,8 @@ def _unfit(actuator: ActuatorCase, settings: Settings) -> str:
         return "has no stroke but a force, a table or segments"
     if actuator.cycle != "up-down":
         return f'has cycle = "{actuator.cycle}"'
+    if actuator.phase:
+        return "has a phase, so that it begins in the middle"
     return "is 0, which leaves no bounds" if actuator.stroke == 0 and settings.stroke is None else ""
 
 

@@ -14,7 +14,16 @@ from coupling.case.friction import (
 from coupling.case.lattice import LatticeCase
 from coupling.case.lattice_places import SAME_PLACE, beyond, gaps, half_size
 from coupling.case.messages import InputError, Location, Mistake, in_file, location_text, message_of, mistakes_in
-from coupling.case.plate import AnnulusCase, DiscCase, EllipseCase, MeshCase, PlateCase, PolygonCase, RectangleCase
+from coupling.case.plate import (
+    AnnulusCase,
+    DiscCase,
+    EllipseCase,
+    MeshCase,
+    PlateCase,
+    PolygonCase,
+    RectangleCase,
+    RegularPolygonCase,
+)
 from coupling.case.platform import MotionCase, PlatformCase
 from coupling.case.schema import json_schema
 from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, adapter, errors_of, right_value, validate

@@ -16,6 +16,7 @@ from coupling.case.plate import (
     PlateCase,
     PolygonCase,
     RectangleCase,
+    RegularPolygonCase,
     ShapeCase,
 )
 from coupling.case.platform import PlatformCase
@@ -48,12 +49,14 @@ class ShapelessCase(PlateCase):
 
 
 PLATFORM: Final = 'shape = "platform"'
+REGULAR: Final = 'shape = "polygon" and a radius'
 PLATES: dict[str, type[PlateCase | PlatformCase]] = {
     'shape = "disc"': DiscCase,
     'shape = "rectangle"': RectangleCase,
     'shape = "annulus"': AnnulusCase,
     'shape = "ellipse"': EllipseCase,
     'shape = "polygon"': PolygonCase,
+    REGULAR: RegularPolygonCase,
     PLATFORM: PlatformCase,
     "a mesh": MeshCase,
     "no shape": ShapelessCase,
@@ -65,6 +68,12 @@ def kind(plate: Any) -> str:
     """Which of PLATES a plate is, given as a table or as a model."""
     keys = plate if isinstance(plate, dict) else getattr(plate, "__dict__", {})
     named = f'shape = "{keys.get("shape")}"'
+    if (
+        named == 'shape = "polygon"'
+        and "corners" not in keys
+        and ("radius" in keys or isinstance(keys.get("sides"), int))
+    ):
+        return REGULAR
     if named in PLATES:
         return named
     return "a mesh" if "mesh" in keys and "shape" not in keys else "no shape"
@@ -76,6 +85,7 @@ AnyPlate = Annotated[
     | Annotated[AnnulusCase, Tag('shape = "annulus"')]
     | Annotated[EllipseCase, Tag('shape = "ellipse"')]
     | Annotated[PolygonCase, Tag('shape = "polygon"')]
+    | Annotated[RegularPolygonCase, Tag(REGULAR)]
     | Annotated[PlatformCase, Tag(PLATFORM)]
     | Annotated[MeshCase, Tag("a mesh")]
     | Annotated[ShapelessCase, Tag("no shape")],

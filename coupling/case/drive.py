@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from itertools import accumulate
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictInt
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictFloat, StrictInt
 from pydantic_core import CoreSchema, core_schema
 
 from coupling.case.table import WRONG, Contradictions, KeyedTable
-from coupling.case.values import Force, Frequency, Length, Point, Stiffness, Time, quoted
+from coupling.case.values import Angle, Force, Frequency, Length, Point, Stiffness, Time, quoted
 
 ENDLESS: Final = "endless"
 MIN_SPACING: Final = 1e-12  # of points of a table, over its whole time
@@ -60,11 +60,32 @@ class _Points:
         return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
 
 
+@dataclass(frozen=True)
+class _Ramp:
+    """Marks a number of cycles over which a wave grows."""
+
+    shortest: ClassVar[float] = 0.01
+    longest: ClassVar[float] = 1000
+    expected: ClassVar[str] = f"0, or a number of cycles from {shortest} to {longest}"
+
+    def validate(self, value: float) -> float:
+        if value == 0 or self.shortest <= value <= self.longest:
+            return value
+        raise ValueError(f"must be {self.expected}; got {quoted(value)}")
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_after_validator_function(self.validate, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"type": "number", "minimum": 0, "maximum": self.longest}
+
+
 def _is_pair(value: object) -> bool:
     return isinstance(value, (list, tuple)) and len(value) == 2
 
 
 Cycle = Literal["up-down", "up", "sine", "cosine"]
+Ramp = Annotated[StrictFloat, _Ramp()]
 Points = Annotated[tuple[tuple[Time, Length], ...], _Points()]
 Repeats = Annotated[int | Literal["endless"], _Passes()]
 
@@ -136,14 +157,27 @@ class Driven(KeyedTable):
             yield "cycles", 'must not be given with cycle = "up"; it counts cycles that go on'
         if "dwell" in given and cycle in ("up", "sine", "cosine"):
             yield "dwell", f'must not be given with cycle = "{cycle}"; it is the rest after each stroke of "up-down"'
+        if "phase" in given and cycle == "up":
+            yield "phase", 'must not be given with cycle = "up"; it is where in a cycle that goes on the drive begins'
+        yield from cls._of_ramp(given, cycle)
         if "repeats" in given:
             yield "repeats", "must not be given without a table or segments; cycles counts those of a stroke"
+
+    @classmethod
+    def _of_ramp(cls, given: Mapping[str, Any], cycle: object) -> Contradictions:
+        """What does not go with a ramp."""
+        ramp, cycles = given.get("ramp", 0.0), given.get("cycles")
+        if "ramp" in given and cycle in ("up-down", "up"):
+            yield "ramp", f'must not be given with cycle = "{cycle}"; only a "sine" and a "cosine" grow'
+        elif isinstance(ramp, float | int) and isinstance(cycles, int) and 2 * ramp > cycles:
+            why = f"half of cycles, {cycles / 2:g}: the wave grows over the first cycles and decays over the last"
+            yield "ramp", f"must be at most {why}; got {ramp:g}"
 
     @classmethod
     def _beside_times(cls, driver: str, given: Mapping[str, Any]) -> Contradictions:
         """What does not go with a table or segments, which say themselves what happens when."""
         why = "whose points have their own times" if driver == "table" else "which have their own"
-        for key in ("frequency", "cycle", "cycles", "dwell"):
+        for key in ("frequency", "cycle", "cycles", "dwell", "phase", "ramp"):
             if key in given:
                 yield key, f"must not be given with {_NAMED[driver]}, {why}"
         if driver == "segments" and given["segments"] == ():
@@ -164,9 +198,13 @@ class DriveCase(Driven):
     cycle: Cycle = "up-down"
     """Up in the first half and down in the second; up once and held; or sines."""
     cycles: StrictInt | None = Field(default=None, ge=1, examples=[5])
-    """How many cycles there are, after which it rests at 0; without it they do not end."""
+    """How many cycles there are, after which it rests where it began; without it they do not end."""
     dwell: Time = Field(default=0.0, ge=0)
     """The rest after each stroke, up and down."""
+    phase: Angle = Field(default=0.0, examples=["90 deg"])
+    """Where in its cycle it begins; a whole cycle, dwells included, has 360 deg. Not with "up"."""
+    ramp: Ramp = Field(default=0.0, examples=[3])
+    """Cycles over which a "sine" or "cosine" grows from rest, and decays over the last of its cycles."""
     table: Points | None = Field(default=None, examples=[[["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "20 um"]]])
     """In place of a stroke: heights at given times, with a smooth stroke from each to the next."""
     segments: tuple[SegmentCase, ...] | None = None

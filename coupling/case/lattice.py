@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import Field, GetCoreSchemaHandler, StrictInt, ValidationError, ValidatorFunctionWrapHandler
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case.drive import ActuatorCase, Cycle, Driven, Points, Repeats, SegmentCase
+from coupling.case.drive import ActuatorCase, Cycle, Driven, Points, Ramp, Repeats, SegmentCase
 from coupling.case.messages import RULES
 from coupling.case.table import WRONG, Contradictions, adapter
 from coupling.case.values import Amount, Choice, Condition, Directed, Formula, Length, Point, Quantity, quoted
@@ -22,9 +22,10 @@ AMOUNTS: Final = {
     "frequency": Amount("Hz", "300 Hz"),
     "dwell": Amount("s", "50 ms"),
     "delay": Amount("s", "50 ms"),
+    "phase": Amount("rad", "90 deg"),
 }
 """The keys of an actuator that may be formulas."""
-SHARED: Final = ("cycle", "cycles", "table", "segments", "repeats")
+SHARED: Final = ("cycle", "cycles", "ramp", "table", "segments", "repeats")
 """Its keys that are the same for all."""
 
 
@@ -71,6 +72,9 @@ class _Apart:
 class LatticeCase(Driven):
     """Actuators in `rows` along y and `columns` along x, `pitch` apart, around a `centre`, in m.
 
+    In a hexagonal lattice rows are sqrt(3)/2 pitches apart, and every second one, counted from the middle one (of an
+    even number the lower of the two), is half a pitch further to the right.
+
     Those nearer than `margin` in m to the rim, or beyond it, are left out, None: none is; and those for which the
     `Condition` `where` is false. The other keys are those of an actuator; a `Formula` gives each its own value.
     """
@@ -84,10 +88,12 @@ class LatticeCase(Driven):
     """How many rows there are, along y."""
     columns: StrictInt = Field(ge=1, examples=[3])
     """How many columns there are, along x."""
+    kind: Literal["rectangular", "hexagonal"] = "rectangular"
+    """Rows above each other, or every second row moved by half a pitch, so that all neighbours are one pitch apart."""
     pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um"), "xy"), _Apart()] = Field(
         examples=["100 um"]
     )
-    """The distance of neighbours, or two: along x and along y."""
+    """The distance of neighbours, or two: along x and along y; in a hexagonal lattice one."""
     centre: Point = (0.0, 0.0)
     """The lattice's middle."""
     margin: Length | None = Field(default=None, ge=0, examples=["20 um"])
@@ -110,6 +116,12 @@ class LatticeCase(Driven):
     """As of an actuator, the same for all."""
     dwell: Annotated[float | Formula, AMOUNTS["dwell"], _Ruled("dwell")] = 0.0
     """As of an actuator, or an expression and its unit."""
+    phase: Annotated[float | Formula, AMOUNTS["phase"], _Ruled("phase")] = Field(
+        default=0.0, examples=["60 * column deg"]
+    )
+    """As of an actuator, or an expression and its unit: a wave over the lattice."""
+    ramp: Ramp = Field(default=0.0, examples=[3])
+    """As of an actuator, the same for all."""
     table: Points | None = Field(default=None, examples=[[["0 ms", "0 um"], ["1 ms", "50 um"], ["3 ms", "20 um"]]])
     """As of an actuator, the same for all."""
     segments: tuple[SegmentCase, ...] | None = None
@@ -124,6 +136,8 @@ class LatticeCase(Driven):
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         yield from super().contradictions(given)
+        if given.get("kind") == "hexagonal" and isinstance(given.get("pitch"), tuple):
+            yield "pitch", 'must be one length with kind = "hexagonal", in which all neighbours are as far apart'
         counts = {key: count for key in ("rows", "columns") if (count := given.get(key, WRONG)) != WRONG}
         if counts and size(counts) > MAX_PLACES:
             key, *other = sorted(counts, key=counts.__getitem__, reverse=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, Self
+from typing import Any, Final, NamedTuple, Self
 
 from coupling.case.drive import ActuatorCase
 from coupling.case.lattice import AMOUNTS, MAX_PLACES, SHARED, broken_rule, size
@@ -25,6 +25,13 @@ class Spot(NamedTuple):
         return f"row {self.row}, column {self.column}"
 
 
+_NEEDED: Final = {
+    "rectangular": {"x": {"columns"}, "y": {"rows"}},
+    "hexagonal": {"x": {"rows", "columns"}, "y": {"rows"}},
+}
+"""The counts that a coordinate depends on, by the lattice's kind."""
+
+
 class Grid(NamedTuple):
     """All places of a lattice, as far as they can be told from those of its keys that are right."""
 
@@ -39,15 +46,20 @@ class Grid(NamedTuple):
         counts = {key: counted[key] for key in ("rows", "columns") if counted.get(key, WRONG) is not WRONG}
         rows, columns = (counts.get(key, 1) for key in ("rows", "columns"))
         known = {"pi", *counts} | {key[:-1] for key in counts}
-        pitch, centre = values["pitch"], values["centre"]
-        if pitch is WRONG or centre is WRONG:
+        pitch, centre, kind = values["pitch"], values["centre"], values["kind"]
+        hexagonal = kind == "hexagonal"
+        if WRONG in (pitch, centre, kind) or (hexagonal and isinstance(pitch, tuple)):
             pitch, centre = math.nan, (math.nan, math.nan)
         else:
-            known |= {axis for axis, key in (("x", "columns"), ("y", "rows")) if key in counts}
-        across, along = pitch if isinstance(pitch, tuple) else (pitch, pitch)
-        x = [centre[0] + (column - (columns - 1) / 2) * across for column in range(columns)]
+            known |= {axis for axis, keys in _NEEDED[kind].items() if keys <= counts.keys()}
+        across, along = pitch if isinstance(pitch, tuple) else (pitch, pitch * math.sqrt(0.75) if hexagonal else pitch)
+        moved = [0.5 if hexagonal and (row - (rows - 1) // 2) % 2 else 0.0 for row in range(rows)]  # in pitches
+        x = {
+            by: [centre[0] + (by + column - (columns - 1) / 2) * across for column in range(columns)]
+            for by in set(moved)
+        }
         y = [centre[1] + (row - (rows - 1) / 2) * along for row in range(rows)]
-        spots = [Spot(row, column, x[column], y[row]) for row in range(rows) for column in range(columns)]
+        spots = [Spot(row, column, x[moved[row]][column], y[row]) for row in range(rows) for column in range(columns)]
         return cls(spots, {"pi": math.pi, "rows": float(rows), "columns": float(columns)}, frozenset(known))
 
     @property

@@ -5,13 +5,25 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, StrictBool, StrictFloat, StrictStr, Tag, field_validator
+from pydantic import (
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    StrictBool,
+    StrictFloat,
+    StrictInt,
+    StrictStr,
+    Tag,
+    field_validator,
+)
+from pydantic_core import CoreSchema, core_schema
 
 from coupling.case.table import Contradictions, KeyedTable
-from coupling.case.values import Density, FileBeside, Length, Point, Pressure, length_text, quoted
+from coupling.case.values import Angle, Density, FileBeside, Length, Point, Pressure, length_text, quoted
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -163,6 +175,22 @@ class EllipseCase(ShapeCase):
         return 2 * min(self.semi_axis_x, self.semi_axis_y), math.pi * self.semi_axis_x * self.semi_axis_y
 
 
+@dataclass(frozen=True)
+class _Corners:
+    """Marks a tuple as the corners of a polygon."""
+
+    points: ClassVar[str] = 'three points or more, such as [["0 um", "0 um"], ["2 um", "0 um"], ["0 um", "1 um"]]'
+    expected: ClassVar[str] = points + ", or have a number of sides and a radius in their place"
+
+    def validate(self, corners: object) -> object:
+        if not isinstance(corners, (list, tuple)) or len(corners) < 3:
+            raise ValueError(f"must be {self.points}; got {quoted(corners)}")
+        return corners
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self.validate, handler(source))
+
+
 class PolygonCase(ShapeCase):
     """A polygon."""
 
@@ -170,18 +198,12 @@ class PolygonCase(ShapeCase):
 
     shape: Literal["polygon"]
     """A polygon, which may turn inwards; its boundary is rim, or by sides."""
-    corners: tuple[Point, ...] = Field(examples=[[["-300 um", "-300 um"], ["300 um", "-300 um"], ["0 um", "300 um"]]])
+    corners: Annotated[tuple[Point, ...], _Corners()] = Field(
+        examples=[[["-300 um", "-300 um"], ["300 um", "-300 um"], ["0 um", "300 um"]]]
+    )
     """Its corners, three or more, in either sense."""
     sides: tuple[StrictStr, ...] | None = Field(default=None, examples=[["base", "flank", "flank"]])
     """A name for each side, the first from the first corner to the second; sides of one name are one boundary."""
-
-    @field_validator("corners", mode="before")
-    @classmethod
-    def _three_points(cls, corners: Any) -> Any:
-        if not isinstance(corners, (list, tuple)) or len(corners) < 3:
-            example = '[["0 um", "0 um"], ["2 um", "0 um"], ["0 um", "1 um"]]'
-            raise ValueError(f"must be three points or more, such as {example}; got {quoted(corners)}")
-        return corners
 
     @field_validator("sides", mode="before")
     @classmethod
@@ -206,6 +228,30 @@ class PolygonCase(ShapeCase):
         import meshes
 
         return meshes.polygon(self.corners, cell_size, self.sides)
+
+
+class RegularPolygonCase(ShapeCase):
+    """A regular polygon."""
+
+    shape: Literal["polygon"]
+    """A regular polygon around the origin, by its sides and its radius; its boundary is rim."""
+    sides: StrictInt = Field(ge=3, le=1000, examples=[6])
+    """How many sides it has."""
+    radius: Length = Field(gt=0, examples=["300 um"])
+    """From the centre to a corner."""
+    rotation: Angle = Field(default=0.0, examples=["30 deg"])
+    """Turns it counter-clockwise; without it a corner lies on the x axis."""
+
+    @property
+    def measures(self) -> tuple[float, float]:
+        half = math.pi / self.sides
+        width = self.radius * math.cos(half) + self.radius * (1.0 if self.sides % 2 else math.cos(half))
+        return width, self.sides * self.radius**2 * math.sin(half) * math.cos(half)
+
+    def mesh_of(self, cell_size: float) -> PlateMesh:
+        import meshes
+
+        return meshes.regular_polygon(self.sides, self.radius, cell_size, self.rotation)
 
 
 class MeshCase(PlateCase):

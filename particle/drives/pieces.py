@@ -24,14 +24,14 @@ def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatA
     if time < table.delay[i]:
         out[0] = table.coefficients[table.first[i], 0]
         return
-    if time >= _edge(table, i, table.repeats[i], table.first[i]):
+    if time >= _end(table, i):
         for k in range(ORDER):
             out[0] += table.coefficients[table.first[i + 1] - 1, k]
         return
     passes, segment = _place(table, i, time)
     since = time
     if math.isfinite(table.span[i]):
-        since = (time - table.delay[i]) - table.span[i] * passes
+        since = (time - _origin(table, i)) - table.span[i] * passes
     # Taylor's shift of the polynomial to `time`, by repeated Horner.
     shift = (since - table.start[segment]) / table.scale[segment]
     for k in range(ORDER):
@@ -59,12 +59,14 @@ def drive_breakpoint(table: DriveTable, i: int, time: float) -> float:
     after = time + breakpoint_slack(table, i, time)
     if after < table.delay[i]:
         return float(table.delay[i])
-    if after >= _edge(table, i, table.repeats[i], table.first[i]):
+    if after >= _end(table, i):
         return math.inf
     passes, segment = _place(table, i, after)
-    if segment + 1 < table.first[i + 1]:
-        return _edge(table, i, passes, segment + 1)
-    return _edge(table, i, passes + 1.0, table.first[i])
+    if segment + 1 == table.first[i + 1] and segment >= table.loop[i, 1]:
+        return _end(table, i)
+    if segment + 1 == table.loop[i, 1]:
+        return _edge(table, i, passes + 1.0, table.loop[i, 0])
+    return _edge(table, i, passes, segment + 1)
 
 
 @jit_no_arrays
@@ -84,21 +86,42 @@ def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
     """When [s] a segment of drive i begins after so many passes: the one expression that decides about pieces."""
     if not math.isfinite(table.span[i]):
         return math.inf
-    return float(table.delay[i] + (table.span[i] * passes + table.start[segment]))
+    return float(_origin(table, i) + (table.span[i] * passes + table.start[segment]))
+
+
+@jit_no_arrays
+def _origin(table: DriveTable, i: int) -> float:
+    """When [s] the first pass of drive i begins, after its lead."""
+    return float(table.delay[i] - table.start[table.first[i]])
+
+
+@jit_no_arrays
+def _end(table: DriveTable, i: int) -> float:
+    """When [s] drive i has ended."""
+    last = table.first[i + 1] - 1
+    if last < table.loop[i, 1]:
+        return _edge(table, i, table.repeats[i], table.loop[i, 0])
+    length = table.start[last] + table.scale[last]
+    return float(_origin(table, i) + (table.span[i] * table.repeats[i] + length))
 
 
 @jit_no_arrays
 def _place(table: DriveTable, i: int, time: float) -> tuple[float, int]:
     """The passes that drive i has behind it at `time` [s], from its delay to before its end, and its segment then."""
-    low, high = table.first[i], table.first[i + 1]
+    low, high = table.loop[i, 0], table.loop[i, 1]
     if not math.isfinite(table.span[i]):
         return 0.0, low
-    passes = float(np.floor((time - table.delay[i]) / table.span[i]))
-    # The quotient is rounded: at late times it may be one off.
-    if _edge(table, i, passes + 1.0, low) <= time:
-        passes += 1.0
-    elif _edge(table, i, passes, low) > time:
-        passes -= 1.0
+    if time < _edge(table, i, 0.0, low):
+        passes, low, high = 0.0, table.first[i], low
+    elif time >= _edge(table, i, table.repeats[i], low):
+        passes, low, high = table.repeats[i], high, table.first[i + 1]
+    else:
+        passes = float(np.floor((time - _origin(table, i)) / table.span[i]))
+        # The quotient is rounded: at late times it may be one off.
+        if _edge(table, i, passes + 1.0, low) <= time:
+            passes += 1.0
+        elif _edge(table, i, passes, low) > time:
+            passes -= 1.0
     while high - low > 1:
         middle = (low + high) // 2
         if _edge(table, i, passes, middle) <= time:

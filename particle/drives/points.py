@@ -75,7 +75,8 @@ class TableDrive(Evaluated):
     def segments(self) -> Segments:
         """Start (S,) and scale (S,) [s] and coefficients (S, 6) [m] of one pass, and how often it repeats."""
         rest = np.zeros(len(self.times))
-        return self.times[:-1], *hermite(self.times, self.heights, rest, rest), float(self.repeats or math.inf)
+        pieces = hermite(self.times, self.heights, rest, rest)
+        return Segments(self.times[:-1], *pieces, float(self.repeats or math.inf))
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +172,7 @@ class HermiteDrive(Evaluated):
 
     def segments(self) -> Segments:
         """Start (S,) and scale (S,) [s] and coefficients (S, 6) [m] of the pieces, and 1: they come once."""
-        return self.times[:-1], *hermite(*self._rows()), 1.0
+        return Segments(self.times[:-1], *hermite(*self._rows()), 1.0)
 
     def _rows(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         return self.times, self.heights, self.velocities, self.accelerations

@@ -17,12 +17,14 @@ ROUNDING = 4 * np.finfo(float).eps  # of the time: the same holds for breakpoint
 class DriveTable(NamedTuple):
     """The drives of all actuators, as kernels read them.
 
-    Drive i holds its first value until delay[i], then runs through its segments first[i] .. first[i+1]-1, repeats[i]
-    times in all (inf: without end), each pass lasting span[i], then holds its last value.
+    Drive i holds its first value until delay[i], then runs through its segments first[i] .. first[i+1]-1 and holds its
+    last value. Those from loop[i, 0] to before loop[i, 1] are passed repeats[i] times (inf: without end), each pass
+    lasting span[i]; those before, its lead, and those after, its tail, once.
     """
 
     first: NDArray[np.int64]  # (N+1,)
-    start: FloatArray  # (S,) s, of a segment after the start of its pass; a pass's first is 0
+    loop: NDArray[np.int64]  # (N, 2)
+    start: FloatArray  # (S,) s, after the start of the pass; of the lead negative, of the tail after the last pass
     scale: FloatArray  # (S,) s, what its polynomial's variable is divided by
     coefficients: FloatArray  # (S, 6) m, in (t - start) / scale
     delay: FloatArray  # (N,) s

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from particle.checks import finite, not_negative, positive, refuse, whole
-from particle.drives.drive import up_down
 from particle.drives.quintic import QUINTIC
 from particle.drives.record import ORDER
+from particle.drives.strokes import up_down
 from particle.drives.table import Evaluated, FloatArray, Segments
 
 MAX_STROKES = 1_000_000
@@ -173,7 +173,7 @@ class SegmentDrive(Evaluated):
             height += segment.rise
         scale = np.concatenate([scale for scale, _ in parts])
         start = np.concatenate([[0.0], np.cumsum(scale[:-1])])
-        return start, scale, np.concatenate([rows for _, rows in parts]), float(self.repeats or math.inf)
+        return Segments(start, scale, np.concatenate([rows for _, rows in parts]), float(self.repeats or math.inf))
 
 
 def returns(schedule: Sequence[Segment]) -> bool:

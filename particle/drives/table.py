@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,8 +14,46 @@ from particle.drives.record import ORDER, ROUNDING, DriveTable
 from particle.jit import jit
 
 FloatArray = NDArray[np.float64]
-Segments = tuple[FloatArray, FloatArray, FloatArray, float]
-"""Start (S,) and scale (S,) [s] and coefficients (S, 6) [m] of one pass, and how often it repeats (inf: no end)."""
+
+
+class Segments(NamedTuple):
+    """The pieces of a drive: a lead that comes once, a pass that repeats, and a tail that comes once."""
+
+    start: FloatArray  # (S,) s, after the start of the pass; of the lead negative, of the tail after the last pass
+    scale: FloatArray  # (S,) s, what the polynomial's variable is divided by
+    coefficients: FloatArray  # (S, 6) m, in (t - start) / scale
+    repeats: float  # of the pass; inf: no end
+    lead: int = 0  # how many segments come before the pass
+    tail: int = 0  # how many come after the last pass
+
+    @property
+    def span(self) -> float:
+        """The time [s] of one pass."""
+        last = len(self.start) - self.tail - 1
+        return float(self.start[last] + self.scale[last])
+
+    @property
+    def lead_time(self) -> float:
+        """The time [s] before the first pass."""
+        return -float(self.start[0])
+
+    @property
+    def tail_time(self) -> float:
+        """The time [s] after the last pass."""
+        return float(self.start[-1] + self.scale[-1]) if self.tail else 0.0
+
+    @property
+    def duration(self) -> float:
+        """The time [s] from the delay to the end; inf: no end."""
+        return self.lead_time + self.span * self.repeats + self.tail_time
+
+    @property
+    def since(self) -> FloatArray:
+        """When [s] each segment begins for the first time, after the delay (S,); inf for a tail that never comes."""
+        passed = np.zeros(len(self.start))
+        passed[len(passed) - self.tail :] = self.span * self.repeats if self.tail else 0.0
+        return self.lead_time + passed + self.start
+
 
 # What a jump of the fourth and fifth derivative adds, over the time of a bridge, to one of the third (see `span`).
 JUMP_OVER, FOURTH, FIFTH = 0.25, 0.141, 0.036  # JUMP_OVER: of a stroke
@@ -23,6 +61,22 @@ JUMP_OVER, FOURTH, FIFTH = 0.25, 0.141, 0.036  # JUMP_OVER: of a stroke
 # Derivatives 1 to 5 of a segment at its begin and end, times its scale to that power, from its coefficients: (6, 5).
 _AT_END = np.array([[math.perm(k, order) for order in range(1, ORDER)] for k in range(ORDER)], dtype=float)
 _AT_BEGIN = np.where(np.eye(ORDER, ORDER - 1, -1) > 0, _AT_END, 0.0)
+
+
+def joined(
+    lead: tuple[FloatArray, ...], cycle: tuple[FloatArray, ...], tail: tuple[FloatArray, ...] | None, repeats: float
+) -> Segments:
+    """Pieces that come once, those of a pass, and pieces that come once after the last pass, None: there are none.
+
+    Each has starts (S,), of the lead below 0, scales (S,) and coefficients (S, 6). Where the pass does not come at all
+    the others make one.
+    """
+    if repeats == 0 and tail is not None:
+        whole = [np.concatenate(parts) for parts in zip(lead, tail, strict=True)]
+        return Segments(whole[0] - whole[0][0], whole[1], whole[2], 1.0)
+    rest = () if tail is None else (tail,)
+    start, scale, rows = (np.concatenate(parts) for parts in zip(lead, cycle, *rest, strict=True))
+    return Segments(start, scale, rows, float(repeats), len(lead[0]), 0 if tail is None else len(tail[0]))
 
 
 class AnyDrive(Protocol):
@@ -45,7 +99,7 @@ class AnyDrive(Protocol):
         """The largest difference of the pieces from the height they stand for, over the stroke; 0: they are exact."""
 
     def segments(self) -> Segments:
-        """The pieces of one pass, and how often it repeats."""
+        """The pieces, and how often their pass repeats."""
 
     def evaluate(self, time: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
         """h [m], its velocity [m/s] and its acceleration [m/s^2] at times of any shape [s]."""
@@ -72,16 +126,19 @@ def accelerations(table: DriveTable, time: float) -> FloatArray:
 
 def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
     """The drives as kernels read them."""
-    parts = [drive.segments() for drive in drives]
+    parts = [Segments(*drive.segments()) for drive in drives]
     none = np.zeros((len(drives), 2))
+    first = np.cumsum([0] + [len(part.start) for part in parts])
+    beside = np.array([(part.lead, -part.tail) for part in parts], dtype=np.int64).reshape(-1, 2)
     table = DriveTable(
-        first=np.cumsum([0] + [len(start) for start, *_ in parts]),
-        start=np.concatenate([np.zeros(0)] + [start for start, *_ in parts]),
-        scale=np.concatenate([np.zeros(0)] + [scale for _, scale, *_ in parts]),
-        coefficients=np.concatenate([np.zeros((0, ORDER))] + [rows for _, _, rows, _ in parts]),
+        first=first,
+        loop=np.stack([first[:-1], first[1:]], axis=1) + beside,
+        start=np.concatenate([np.zeros(0)] + [part.start for part in parts]),
+        scale=np.concatenate([np.zeros(0)] + [part.scale for part in parts]),
+        coefficients=np.concatenate([np.zeros((0, ORDER))] + [part.coefficients for part in parts]),
         delay=np.array([drive.delay for drive in drives], dtype=float),
-        span=np.array([start[-1] + scale[-1] for start, scale, *_ in parts], dtype=float),
-        repeats=np.array([repeats for *_, repeats in parts], dtype=float),
+        span=np.array([part.span for part in parts], dtype=float),
+        repeats=np.array([part.repeats for part in parts], dtype=float),
         stroke_time=np.array([drive.stroke_time for drive in drives], dtype=float),
         jump=none,
         rough=none[:, 0],
@@ -96,6 +153,7 @@ def monomial_table(count: int) -> DriveTable:
     """Drives that are the powers 1, t, t^2, ... of time [s], without breakpoints, for surfaces given as polynomials."""
     return DriveTable(
         first=np.arange(count + 1),
+        loop=np.stack([np.arange(count), np.arange(1, count + 1)], axis=1),
         start=np.zeros(count),
         scale=np.ones(count),
         coefficients=np.eye(ORDER)[:count],
@@ -112,7 +170,8 @@ def monomial_table(count: int) -> DriveTable:
 def _jumps(table: DriveTable) -> FloatArray:
     """The largest jumps of the first five derivatives at breakpoints (N, 5) [m/s, m/s^2, ...]; 0: by rounding.
 
-    Breakpoints are from one segment to the next, at its start and at its end.
+    Breakpoints are from one segment to the next, at its start and at its end. There is none at the start of a drive
+    without delay: no run begins before it.
     """
     if len(table.span) == 0:
         return np.zeros((0, ORDER - 1))
@@ -121,10 +180,12 @@ def _jumps(table: DriveTable) -> FloatArray:
     begins, ends = table.coefficients @ _AT_BEGIN / per_order, table.coefficients @ _AT_END / per_order
     step = np.zeros_like(begins)
     step[1:] = np.abs(begins[1:] - ends[:-1])
-    # At rest before the start, and after the end if there is one; before that the last segment goes on into the first.
-    again = np.where((table.repeats > 1)[:, None], np.abs(ends[last] - begins[first]), 0.0)
+    # At rest before the start, and after the end if there is one; before that the end of a pass goes on into the next.
+    loop_first, loop_last = table.loop[:, 0], table.loop[:, 1] - 1
+    again = np.where((table.repeats > 1)[:, None], np.abs(ends[loop_last] - begins[loop_first]), 0.0)
     end = np.where(np.isfinite(table.repeats)[:, None], np.abs(ends[last]), 0.0)
-    step[first] = np.maximum(np.maximum(np.abs(begins[first]), end), again)
+    start = np.where((table.delay > 0)[:, None], np.abs(begins[first]), 0.0)
+    step[first] = np.maximum(np.maximum(start, end), again)
     jump = np.maximum.reduceat(step, first)
     most = np.maximum.reduceat(np.abs(table.coefficients).max(axis=1), first)
     rounding = 100 * ROUNDING * most[:, None] / np.minimum.reduceat(table.scale, first)[:, None] ** orders

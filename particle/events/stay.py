@@ -39,7 +39,10 @@ def horizon(table: DriveTable, time: float) -> float | None:
         if table.coefficients[table.first[i] : table.first[i + 1], 1:].any():
             return None
     passes = np.where(endless, 0.0, table.repeats)[bounded]
-    last = float((table.delay[bounded] + table.span[bounded] * passes).max(initial=time))
+    lead, tail = -table.start[table.first[:-1]], table.first[1:] - 1
+    tail_time = np.where(tail < table.loop[:, 1], 0.0, table.start[tail] + table.scale[tail])
+    ends = table.delay + lead + tail_time
+    last = float((ends[bounded] + table.span[bounded] * passes).max(initial=time))
     spans = table.span[endless]
     if len(spans) == 0:
         return last

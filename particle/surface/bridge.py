@@ -96,7 +96,7 @@ def _choose(surface: Surface, local: LocalSurface) -> None:
 @jit_no_arrays
 def _breakpoint_rate(drives: DriveTable, i: int) -> float:
     """Breakpoints a second of a drive that is running."""
-    return float((drives.first[i + 1] - drives.first[i]) / drives.span[i])
+    return float((drives.loop[i, 1] - drives.loop[i, 0]) / drives.span[i])
 
 
 @jit_no_arrays

@@ -102,5 +102,6 @@ def _still_table() -> DriveTable:
 def _joined(a: DriveTable, b: DriveTable) -> DriveTable:
     return DriveTable(
         np.concatenate([a.first, a.first[-1] + b.first[1:]]),
-        *(np.concatenate([left, right]) for left, right in zip(a[1:], b[1:], strict=True)),
+        np.concatenate([a.loop, a.first[-1] + b.loop]),
+        *(np.concatenate([left, right]) for left, right in zip(a[2:], b[2:], strict=True)),
     )

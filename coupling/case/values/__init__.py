@@ -14,6 +14,7 @@ from coupling.case.values.csv_columns import (
 from coupling.case.values.formula import Amount, Choice, Condition, Formula
 from coupling.case.values.quantities import (
     AXES,
+    Angle,
     Area,
     Density,
     Directed,

@@ -11,7 +11,7 @@ from typing import Any, Final
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case.values.expression import KEYWORDS, PLACES, Expression, parse, split, unreadable
+from coupling.case.values.expression import KEYWORDS, NAMES, Expression, parse, split, unreadable
 from coupling.case.values.units import Quantity, quoted
 
 FORMULA: Final = "an expression and its unit"
@@ -81,7 +81,7 @@ class Amount(Quantity):
             return Formula(text, expression, rest, self.convert(text, "1", rest))
         except ValueError:
             reason = unreadable(rest) if rest else ""
-            if not reason and re.search(rf"\b({'|'.join((*KEYWORDS, *PLACES))})\b", rest):
+            if not reason and re.search(rf"\b({'|'.join((*KEYWORDS, *NAMES))})\b", rest):
                 example = f"(5 if row > 2 else 3) {self._unit}"
                 reason = f"the unit must come once, at the end, as in {quoted(example)}"
             if not reason:

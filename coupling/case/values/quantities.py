@@ -93,6 +93,7 @@ class _Beside:
 Length = Annotated[float, Quantity("m", "150 um")]
 Area = Annotated[float, Quantity("m^2", "1e4 um^2")]
 Time = Annotated[float, Quantity("s", "50 ms")]
+Angle = Annotated[float, Quantity("rad", "90 deg")]
 Frequency = Annotated[float, Quantity("Hz", "300 Hz")]
 Speed = Annotated[float, Quantity("m/s", "0.1 m/s")]
 Acceleration = Annotated[float, Quantity("m/s^2", "9.80665 m/s^2")]

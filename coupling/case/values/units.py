@@ -1,7 +1,7 @@
 """Quantities with units: text such as "150 um" becomes a float in SI units.
 
-Units of lengths, times, forces and the like with an SI prefix are read here, to the bit as pint reads them; all others
-are left to pint, which takes longer to load than a case takes to read.
+Units of lengths, times, forces and the like with an SI prefix, and those of angles, are read here, to the bit as pint
+reads them; all others are left to pint, which takes longer to load than a case takes to read.
 """
 
 from __future__ import annotations
@@ -49,6 +49,7 @@ _USUAL_UNITS: Final = [
         "microgram",
         "nanogram",
     ),
+    *("rad", "deg", "turn", "degree", "radian"),
     *("N", "mN", "uN", "nN", "newton", "Pa", "kPa", "MPa", "GPa", "pascal", "J", "mJ", "uJ", "nJ", "joule"),
 ]
 
@@ -56,6 +57,8 @@ _PREFIXES: Final = {"": 0, "k": 3, "M": 6, "G": 9, "c": -2, "m": -3, "u": -6, "\
 _PREFIXED_BASES: Final = {
     "m": "m", "m^2": "m^2", "m^3": "m^3", "s": "s", "Hz": "Hz", "g": "kg", "N": "N", "Pa": "Pa", "J": "J",
 }  # fmt: skip
+_PI: Final = Decimal("3.14159265358979323846264338327950288")
+_ANGLES: Final = {"deg": _PI / 180, "degree": _PI / 180, "turn": 2 * _PI}
 _PREFIXED: Final = re.compile(rf"({'|'.join(_PREFIXES)})(m|s|Hz|g|N|Pa|J)(?:\^([23]))?")
 
 # Other characters are refused here because pint skips them: it would read "1,5 mm" as 15 mm, and a typographic minus
@@ -100,6 +103,8 @@ class Quantity:
         base, exponent = prefixed(unit)
         if base == self.unit:
             value = float(Decimal(number).scaleb(exponent))
+        elif unit in _ANGLES and self.unit == "rad":
+            value = float(Decimal(number) * _ANGLES[unit])
         elif base in _PREFIXED_BASES.values():
             raise self.refusal(text, f", {DIMENSIONS[base]}")
         else:
