@@ -28,8 +28,11 @@ _TRIPLES = sorted(
 )
 _TARGET, LEFT, RIGHT = np.array(_TRIPLES).T
 STARTS = np.searchsorted(_TARGET, np.arange(len(MONOMIALS)))
-X, Y, T = INDEX[1, 0, 0], INDEX[0, 1, 0], INDEX[0, 0, 1]
+X, Y, T, TT, XX, YY = (INDEX[m] for m in [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 2), (2, 0, 0), (0, 2, 0)])
 SECOND = [INDEX[m] for m in MONOMIALS if sum(m) == 2]
+SECOND_POWERS = POWERS[SECOND]
+RAISED = np.array([[INDEX.get((i + 1, j, k), 0), INDEX.get((i, j + 1, k), 0)] for i, j, k in MONOMIALS])
+FACTORS = np.where(RAISED > 0, POWERS[:, :2] + 1, 0)
 Jets = Callable[[float, float, float], np.ndarray]  # x, y, t -> w (20,)
 
 
@@ -42,7 +45,7 @@ def of(derivatives: Sequence[np.ndarray], a: np.ndarray) -> np.ndarray:
     d = a.copy()
     d[0] = 0.0
     square = times(d, d)
-    jet = derivatives[1] * d + derivatives[2] / 2 * square + derivatives[3] / 6 * times(square, d)
+    jet = times(derivatives[3] / 6 * square + derivatives[2] / 2 * d, d) + derivatives[1] * d
     jet[0] += derivatives[0]
     return jet
 
@@ -56,19 +59,15 @@ def inverse_root(a: np.ndarray) -> np.ndarray:
     return of((f, -f**3 / 2, 3 * f**5 / 4, -15 * f**7 / 8), a)
 
 
-def derivative(a: np.ndarray, axis: int) -> np.ndarray:
-    """Along x or y; its third order is not known, and 0."""
-    up = POWERS + np.eye(3, dtype=int)[axis]
-    known = up.sum(1) <= ORDER
-    jet = np.zeros_like(a)
-    jet[known] = (a[[INDEX[tuple(m)] for m in up[known]]].T * up[known, axis]).T
-    return jet
+def slopes(a: np.ndarray) -> np.ndarray:
+    """The derivatives (20, 2) along x and y; their third order is not known, and 0."""
+    return FACTORS * a[RAISED]
 
 
 def drive(height: Height, time: float) -> np.ndarray:
     h, h_t, h_tt = height(time)
     jet = np.zeros(len(MONOMIALS))
-    jet[[0, T, INDEX[0, 0, 2]]] = h, h_t, h_tt / 2
+    jet[0], jet[T], jet[TT] = h, h_t, h_tt / 2
     return jet
 
 
@@ -85,8 +84,7 @@ def boggio(points: Sequence[Sequence[float]], radius: float, heights: Sequence[H
         r[[0, X, Y]] = np.maximum((to**2).sum(1), 1e-40), 2 * to[:, 0], 2 * to[:, 1]
         s[0] = place @ place * size - 2 * sources @ place + 1
         s[[X, Y]] = 2 * (np.outer(place, size) - sources.T)
-        for m in (2, 0, 0), (0, 2, 0):
-            r[INDEX[m]], s[INDEX[m]] = 1.0, size
+        r[[XX, YY]], s[[XX, YY]] = 1.0, size
         return times(r, log(r) - log(s)) + s - r
 
     weights = np.linalg.inv(np.array([terms(place)[0] for place in sources]))
@@ -119,12 +117,15 @@ def top_face(w: Jets, contact: float, centre: float, base: Sequence[Height] = (s
 
     def surface(x: float, y: float, time: float) -> _Lifted:
         jet = w(x, y, time)
-        p, q = derivative(jet, 0), derivative(jet, 1)
-        square = times(p, p) + times(q, q)
+        gradient = slopes(jet)
+        square = times(gradient, gradient).sum(1)
         square[0] += 1
-        inverse = inverse_root(square)
-        normal = np.stack([-times(p, inverse), -times(q, inverse), inverse], axis=1)
-        place = np.stack([*(drive(height, time) for height in base), jet], axis=1)
+        inverse = inverse_root(square)[:, None]
+        normal = np.hstack([-times(gradient, inverse), inverse])
+        place = np.empty_like(normal)
+        for axis, height in enumerate(base):
+            place[:, axis] = drive(height, time)
+        place[:, 2] = jet
         place[0, :2] += x, y
         place[X, 0] += 1
         place[Y, 1] += 1
@@ -141,6 +142,6 @@ class _Lifted:
 
     def frame(self, v: np.ndarray) -> Frame:
         along = np.array([*v, 1.0])  # (x, y, t) by t
-        carried = 2 * np.prod(along ** POWERS[SECOND], axis=1) @ self.centre[SECOND]
+        carried = 2 * np.prod(along**SECOND_POWERS, axis=1) @ self.centre[SECOND]
         r = self.centre
         return Frame(r[0], r[T], carried, self.normal, r[[X, Y]].T, self.contact[[X, Y]].T)
