@@ -1,4 +1,4 @@
-"""What the tests against `motion_oracle` share: friction by its own formulas, breakpoints of strokes, lengths of paths."""
+"""What tests against `motion_oracle` share: friction by its own formulas, breakpoints of strokes, lengths of paths."""
 
 from __future__ import annotations
 
@@ -11,6 +11,14 @@ from motion_oracle import Path
 from particle import ConstantFriction, CoulombAdhesion
 from particle.friction import Contact
 
+NAMES = {
+    "SLIPS": "slips",
+    "STOPS": "stops",
+    "REVERSES": "reverses",
+    "DETACHES": "detaches",
+    "LEAVES_PLATE": "leaves",
+    "LANDS": "lands",
+}
 Strokes = Sequence[tuple[float, float, float]]  # stroke, frequency, delay
 
 

@@ -191,7 +191,7 @@ def trace(problem: Problem, position: Sequence[float], velocity: Sequence[float]
                     note("detaches")
                     mode, thrown = "fly", throw(problem, time, y)
             elif mode == "off":  # it is fast enough by now, or a breakpoint came: its velocity is all there is to know
-                mode = "slide" if found == "fast" or time >= end else mode
+                mode = "slide"
     return path()
 
 
@@ -296,6 +296,11 @@ def slide(problem: Problem, time: float, end: float, y: np.ndarray, off: bool) -
         """Over the speed below which friction would stop it in a hundredth of a stroke."""
         return size_of(y[2:4]) - 0.01 * force(problem, moment, y[:2], y[2:4]).limit * problem.stroke_time
 
+    def gain(moment: float, y: np.ndarray) -> float:
+        """Negative where it slows down by more than rounding."""
+        f = force(problem, moment, y[:2], y[2:4])
+        return y[2:4] @ f.acceleration(y[2:4]) / size_of(y[2:4]) + 1e-3 * f.limit
+
     def contact(moment: float, y: np.ndarray) -> float:
         return force(problem, moment, y[:2], y[2:4]).load + problem.pull_off
 
@@ -306,7 +311,12 @@ def slide(problem: Problem, time: float, end: float, y: np.ndarray, off: bool) -
     ends = [("leaves", inside)] + ([("detaches", contact)] if problem.pull_off < math.inf else [])
     if off:
         fast = ("fast", lambda moment, y: -speed_left(moment, y))
-        return march(Radau, rate, time, y, end, atol, [*ends, fast], first_step=1e-13)
+        # From the moment on: its steps may be shorter than the rounding of a time.
+        later = [(kind, lambda s, y, of=measure: of(time + s, y)) for kind, measure in [*ends, fast, ("slow", gain)]]
+        s, y, found = march(Radau, lambda s, y: rate(time + s, y), 0.0, y, end - time, atol, later, first_step=1e-13)
+        if found != "slow":
+            return (time + s if found else end), y, found
+        return to_rest(problem, time + s, end, y, ends)
     if speed_left(time, y) > 0:
         t, y, found = march(DOP853, rate, time, y, end, atol, [*ends, ("slow", speed_left)])
         if found != "slow":

@@ -56,7 +56,7 @@ def log(a: np.ndarray) -> np.ndarray:
 
 def inverse_root(a: np.ndarray) -> np.ndarray:
     f = a[0] ** -0.5
-    return of((f, -f**3 / 2, 3 * f**5 / 4, -15 * f**7 / 8), a)
+    return of((f, -(f**3) / 2, 3 * f**5 / 4, -15 * f**7 / 8), a)
 
 
 def slopes(a: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Parts on the top face: cases for the package and for `motion_oracle`, which shares nothing with it but laws' tables."""
+"""Parts on the top face: cases for the package and for `motion_oracle`."""
 
 from __future__ import annotations
 
@@ -47,13 +47,20 @@ class Case:
     mass: float = MASS
     flies: bool = False
 
+    def at(self, contact: float, centre: float) -> Case:
+        """The same with other heights."""
+        return replace(self, contact=contact, centre=centre)
+
     def heights(self) -> list[motion_oracle.Height]:
         return [up_down(*stroke) for stroke in self.strokes]
 
     def drives(self) -> list[Drive]:
         return [Drive(stroke, f, delay=delay) for stroke, f, delay in self.strokes]
 
-    def exact(self) -> motion_oracle.Surface:
+    def base(self) -> list[motion_oracle.Height]:
+        return [still, still]
+
+    def height(self) -> top_face.Jets:
         raise NotImplementedError
 
     def package(self) -> SurfaceMotion:
@@ -65,7 +72,7 @@ class Case:
     def trace(self) -> motion_oracle.Path:
         """The oracle's path."""
         problem = motion_oracle.Problem(
-            self.exact(),
+            top_face.top_face(self.height(), self.contact, self.centre, self.base()),
             self.mass,
             limit_of(self.law),
             breakpoints(self.strokes, self.duration),
@@ -98,9 +105,8 @@ class Disc(Case):
     actuators: Sequence[Sequence[float]] = ((0.0, 0.0),)
     radius: float = 300e-6
 
-    def exact(self) -> motion_oracle.Surface:
-        w = top_face.boggio(self.actuators, self.radius, self.heights())
-        return top_face.top_face(w, self.contact, self.centre)
+    def height(self) -> top_face.Jets:
+        return top_face.boggio(self.actuators, self.radius, self.heights())
 
     def package(self) -> SurfaceMotion:
         return surface_motion(DiscShapes([list(place) for place in self.actuators], self.radius), self.drives(), 1e-11)
@@ -115,12 +121,14 @@ class Polynomial(Case):
 
     coefficients: np.ndarray | None = None
 
-    def exact(self) -> motion_oracle.Surface:
-        w = top_face.polynomial(self.coefficients)
-        return top_face.top_face(w, self.contact, self.centre, self.heights() or (still, still))
+    def base(self) -> list[motion_oracle.Height]:
+        return self.heights()
+
+    def height(self) -> top_face.Jets:
+        return top_face.polynomial(self.coefficients)
 
     def package(self) -> SurfaceMotion:
-        return polynomial_surface(self.coefficients, self.drives() or None)
+        return polynomial_surface(self.coefficients, self.drives())
 
 
 PAIR = ((75e-6, 10e-6), (-75e-6, 10e-6))
@@ -162,13 +170,13 @@ CASES = {
         10e-6,
         57e-6,
         (60e-6, -40e-6),
-        CoulombAdhesion(0.1, 8e-7, static_coefficient=0.13),
+        CoulombAdhesion(0.2, 8e-7, static_coefficient=0.26),
         4e-3,
         STROKES,
         actuators=PAIR,
     ),
     "steep bowl on a base": Polynomial(
-        0.02, 0.07, (0.1, 0.0), CoulombAdhesion(0.3, 20.0), 2.0, BASE, mass=1.0, coefficients=BOWL
+        0.02, 0.07, (0.1, 0.0), CoulombAdhesion(0.6, 20.0), 1.0, BASE, mass=1.0, coefficients=BOWL
     ),
     "tilted, squeezed, on a base": Polynomial(
         0.03,
@@ -187,7 +195,7 @@ CASES = {
         30e-6,
         (60e-6, -40e-6),
         CoulombAdhesion(0.05, 2e-8),
-        4e-3,
+        5e-3,
         ((40e-6, 400, 0.0), (30e-6, 550, 0.2e-3)),
         squeeze=1e-7,
         flies=True,
