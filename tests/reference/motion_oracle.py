@@ -1,17 +1,22 @@
-"""A point part on a moving surface, integrated a second time: scipy's solvers, events by root finding, closed forms.
+"""A part on a moving surface, integrated a second time: scipy's solvers, events by root finding, closed forms.
 
-    z'' = d^2/dt^2 w(x, y, t) fixes the normal force:
-    B = g + w_tt + 2 v.G_t + v.H v - a.G,  N = m B/s + squeeze,  v' = p - (Q/m) v/u,  p = -a - B G/s^2
+With r(X, t) the place in space of the centre of mass above the surface's point X, r_0 that of the contact and n the
+normal, Newton's law in the coordinates X of the surface is
 
-with G = grad w, s^2 = 1 + |G|^2, u^2 = v.M v, M = I + G G^T, and a the base's acceleration less gravity's share there.
-Sliding is DOP853 in (x, y, v). Where u is small compared with friction times a stroke, it is either
+    free = r'' at X'' = 0, less gravity,  N = m n.free + squeeze,  pull = -(free - (n.free) n)
+    at rest while |pull| <= static ratio Q(N)/m,  sliding: (dr/dX) X'' = pull - (Q/m) J X'/|J X'|,  J = dr_0/dX
 
-- on its way to rest: with dt = u ds the equations in (t, x, y, ln u, n = v/u) are regular, n' = p - (Q/m + du/dt) n,
-  du/dt = n.M p - Q/m + u (n.G)(n.dG/dt), and u falls exponentially in s; or
-- just off: the direction relaxes at the rate Q/(m u), and Radau takes (x, y, v) from a speed of 1e-13 m/s along p.
+A point on a surface that moves upwards, `Point`, has r = r_0 = (X + base, w); `top_face` lifts both off the mid-plane.
+Sliding is DOP853 in (X, X'). Where |X'| is small compared with friction times a stroke, it is either
 
-Everything that ends a piece is located by repeating the last step, not by its interpolant. Slow: seconds a case.
-With RTOL or FIRST_SPEED smaller still, the ends of the reference cases move by less than 2e-11 of the plate's radius.
+- on its way to rest: with dt = u ds, u = |X'|, the equations in (t, X, ln u, n = X'/u) are regular,
+  (ln u)' = n.X'', n' = X'' - (n.X'') n, and u falls exponentially in s; or
+- just off: the direction relaxes at the rate Q/(m u), and Radau takes (X, X') from a speed of 1e-13 m/s along the pull.
+
+In flight the centre of mass is thrown, the squeeze acts straight down, and X is the point whose r lies above or below
+it; the part lands where r meets it. Everything that ends a piece is located by repeating the last step, not by its
+interpolant. Slow: seconds a case. With RTOL or FIRST_SPEED smaller still, the ends of the reference cases move by less
+than 2e-11 of the plate's radius.
 """
 
 from __future__ import annotations
@@ -19,7 +24,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy.integrate import DOP853, Radau, solve_ivp
@@ -27,12 +32,30 @@ from scipy.optimize import brentq
 
 RTOL, LENGTH_ERROR, SPEED_ERROR = 1e-13, 1e-18, 1e-16  # of one step; m, m/s (a plate is 1e-4 m wide)
 FIRST_SPEED, LAST_SPEED = 1e-13, 1e-14  # m/s
-SCAN = 4000  # moments of a span at which a part at rest is looked at
+HEAT_ERROR = 1e-18  # J/kg
+SCAN = 1000  # moments of a span at which a part at rest or in flight is looked at
 INSIDE = np.linspace(0, 1, 7)[1:]  # of a step: where its interpolant is searched for events
 
 
-class Point(NamedTuple):
+class Frame(NamedTuple):
+    """What the surface does to a part at X with the velocity X'."""
+
+    place: np.ndarray  # (3,) r
+    velocity: np.ndarray  # (3,) r_t, that of the surface
+    carried: np.ndarray  # (3,) r'' where X'' = 0
+    normal: np.ndarray  # (3,)
+    centre: np.ndarray  # (3, 2) dr/dX
+    contact: np.ndarray  # (3, 2) J
+
+
+class At(Protocol):
     """The surface at one place and time."""
+
+    def frame(self, v: np.ndarray) -> Frame: ...
+
+
+class Point(NamedTuple):
+    """A surface whose points move upwards, and a part that is one of them, at one place and time."""
 
     w: float
     w_t: float
@@ -42,8 +65,16 @@ class Point(NamedTuple):
     hessian: np.ndarray  # (2, 2)
     base: np.ndarray = np.zeros(2)  # m/s^2, acceleration of the base
 
+    def frame(self, v: np.ndarray) -> Frame:
+        """Place and velocity in the plane are those relative to the base."""
+        rises = self.w_tt + 2 * v @ self.gradient_t + v @ self.hessian @ v
+        centre = np.vstack([np.eye(2), self.gradient])
+        normal = np.array([*-self.gradient, 1.0]) / math.sqrt(1 + self.gradient @ self.gradient)
+        place, velocity = np.array([0.0, 0.0, self.w]), np.array([0.0, 0.0, self.w_t])
+        return Frame(place, velocity, np.array([*self.base, rises]), normal, centre, centre)
 
-Surface = Callable[[float, float, float], Point]  # x, y, t
+
+Surface = Callable[[float, float, float], At]  # x, y, t
 Height = Callable[[float], tuple[float, float, float]]  # t -> h, h', h''
 
 
@@ -61,6 +92,8 @@ class Problem:
     static_ratio: float = 1.0
     gap: Callable[[float, float], float] = field(default=lambda x, y: 1.0)  # m from the rim
     stroke_time: float = 1e-3  # s, only decides which of the formulations is used
+    flies: bool = False  # whether it is followed where it comes off
+    impact: float = 0.0  # tangential over normal impulse of a landing, at most
 
 
 @dataclass
@@ -71,106 +104,202 @@ class Path:
     position: np.ndarray
     velocity: np.ndarray
     events: list[tuple[str, float, float, float]]
+    dissipated: float  # J, by friction and impacts
+    kinetic: float  # J
 
 
 class Force(NamedTuple):
-    pull: np.ndarray  # p, (2,)
+    frame: Frame
+    pull: np.ndarray  # (3,) m/s^2, along the surface
     load: float  # N
     limit: float  # Q/m
-    metric: np.ndarray  # M
-    turn: np.ndarray  # dG/dt
-    gradient: np.ndarray
+
+    def accelerates(self, along: np.ndarray) -> np.ndarray:
+        """The X'' that accelerates the centre of mass by a vector along the surface."""
+        a = self.frame.centre
+        return np.linalg.solve(a.T @ a, a.T @ along)
+
+    def acceleration(self, v: np.ndarray) -> np.ndarray:
+        """X'' of a part that slides."""
+        slip = self.frame.contact @ v
+        return self.accelerates(self.pull - self.limit * slip / size_of(slip))
+
+    def heats(self, v: np.ndarray) -> float:
+        """W/kg"""
+        return self.limit * size_of(self.frame.contact @ v)
+
+
+def size_of(vector: np.ndarray) -> float:
+    return math.sqrt(vector @ vector)
 
 
 def force(problem: Problem, time: float, place: np.ndarray, v: np.ndarray) -> Force:
-    f = problem.surface(place[0], place[1], time)
-    a = f.base - np.array(problem.gravity[:2])
-    g = f.gradient
-    b = -problem.gravity[2] + f.w_tt + 2 * v @ f.gradient_t + v @ f.hessian @ v - a @ g
-    square = 1 + g @ g
-    load = problem.mass * b / math.sqrt(square) + problem.squeeze
+    f = problem.surface(place[0], place[1], time).frame(v)
+    free = f.carried - np.array(problem.gravity)
+    across = f.normal @ free
+    load = problem.mass * across + problem.squeeze
     limit = problem.limit(max(load, -problem.pull_off)) / problem.mass
-    return Force(-a - b * g / square, load, limit, np.eye(2) + np.outer(g, g), f.gradient_t + f.hessian @ v, g)
-
-
-def size_of(vector: np.ndarray, f: Force) -> float:
-    """Its length along the surface."""
-    return math.sqrt(vector @ f.metric @ vector)
+    return Force(f, across * f.normal - free, load, limit)
 
 
 def trace(problem: Problem, position: Sequence[float], velocity: Sequence[float], duration: float) -> Path:
-    """The path up to `duration`, or to where the part comes off or leaves the plate."""
-    place, v, time, events = np.array(position, float), np.array(velocity, float), 0.0, []
+    """The path up to `duration`, or to where the part comes off (unless it flies) or leaves the plate."""
+    y, time, events = np.array([*position, *velocity, 0.0], float), 0.0, []  # X, X', dissipated [J/kg]
 
     def note(kind: str) -> None:
-        events.append((kind, time, *place.tolist()))
+        events.append((kind, time, *y[:2].tolist()))
+
+    def path() -> Path:
+        f = force(problem, time, y[:2], y[2:4]).frame
+        v = f.velocity + f.centre @ y[2:4] if thrown is None else thrown(time)[1]
+        return Path(time, y[:2], y[2:4], events, problem.mass * y[4], problem.mass * (v @ v) / 2)
 
     edges = np.unique([0.0, *(k for k in problem.breakpoints if 0 < k < duration), duration])
-    mode = "slide" if v.any() else "rest"
+    mode, thrown = "slide" if y[2:4].any() else "rest", None
     for end in edges[1:].tolist():
         while time < end:
             if mode == "rest":
-                time, found = rest(problem, time, end, place)
+                time, found = rest(problem, time, end, y[:2])
+            elif mode == "fly":
+                time, y, found = fly(problem, thrown, time, end, y)
             else:
                 if mode == "off":
-                    v = FIRST_SPEED * (p := force(problem, time, place, np.zeros(2))).pull / size_of(p.pull, p)
-                time, place, v, found = slide(problem, time, end, place, v, mode == "off")
-            if found in ("detaches", "leaves"):
+                    f = force(problem, time, y[:2], np.zeros(2))
+                    along = f.accelerates(f.pull)
+                    y[2:4] = FIRST_SPEED * along / size_of(along)
+                time, y, found = slide(problem, time, end, y, mode == "off")
+            if found == "leaves" or (found == "detaches" and not problem.flies):
                 note(found)
-                return Path(time, place, v, events)
+                return path()
             if found == "slips":
                 note("slips")
                 mode = "off"
             elif found == "at rest":
-                v = np.zeros(2)
-                f = force(problem, time, place, v)
-                held = size_of(f.pull, f) <= problem.static_ratio * f.limit
+                y[2:4] = 0.0
+                f = force(problem, time, y[:2], y[2:4])
+                held = size_of(f.pull) <= problem.static_ratio * f.limit
                 note("stops" if held else "reverses")
                 mode = "rest" if held else "off"
+            elif found == "detaches":
+                note("detaches")
+                mode, thrown = "fly", throw(problem, time, y)
+            elif found == "lands":
+                y = land(problem, thrown, time, y)
+                note("lands")
+                mode, thrown = "slide" if y[2:4].any() else "rest", None
+                if force(problem, time, y[:2], y[2:4]).load < -problem.pull_off:
+                    note("detaches")
+                    mode, thrown = "fly", throw(problem, time, y)
             elif mode == "off":  # it is fast enough by now, or a breakpoint came: its velocity is all there is to know
-                mode = "slide" if found == "fast" or time >= end else mode
-    return Path(time, place, v, events)
+                mode = "slide"
+    return path()
+
+
+def first(measures: Sequence[tuple[str, Callable[[float], float]]], values: np.ndarray, moments: np.ndarray):
+    """The first (moment, kind) at which a measure, `values` (k, n) at these moments (n,), falls below zero."""
+    found = []
+    for (kind, measure), row in zip(measures, values, strict=True):
+        # A part that has just come to rest, or that rested up to a breakpoint, is held there but for rounding.
+        below = np.flatnonzero(row < -1e-9 * max(1.0, float(np.abs(row).max())))
+        if len(below):
+            k = below[0]
+            before = moments[max(k - 1, 0)]
+            late = k == 0 or row[k - 1] <= 0
+            found.append((float(before if late else brentq(measure, before, moments[k], xtol=1e-18, rtol=1e-15)), kind))
+    return min(found) if found else None
 
 
 def rest(problem: Problem, time: float, end: float, place: np.ndarray) -> tuple[float, str]:
     """Until the pull exceeds friction or the load pull-off."""
 
-    def slack(moment: float) -> float:
+    def margins(moment: float) -> tuple[float, float]:
         f = force(problem, moment, place, np.zeros(2))
-        return problem.static_ratio * f.limit - size_of(f.pull, f)
-
-    def grip(moment: float) -> float:
-        return force(problem, moment, place, np.zeros(2)).load + problem.pull_off
+        return problem.static_ratio * f.limit - size_of(f.pull), f.load + problem.pull_off
 
     moments = np.linspace(time, end, SCAN)
-    kinds = [("slips", slack)] + ([("detaches", grip)] if problem.pull_off < math.inf else [])
-    found = []
-    for kind, measure in kinds:
-        values = np.array([measure(moment) for moment in moments])
-        # A part that has just come to rest, or that rested up to a breakpoint, is held there but for rounding.
-        below = np.flatnonzero(values < -1e-9 * max(1.0, float(np.abs(values).max())))
-        if len(below):
-            k = below[0]
-            late = k == 0 or values[k - 1] <= 0
-            before = moments[max(k - 1, 0)]
-            root = before if late else brentq(measure, before, moments[k], xtol=1e-18, rtol=1e-15)
-            found.append((float(root), kind))
-    return min(found) if found else (end, "")
+    values = np.array([margins(moment) for moment in moments]).T
+    measures = [("slips", lambda t: margins(t)[0]), ("detaches", lambda t: margins(t)[1])]
+    kinds = 2 if problem.pull_off < math.inf else 1
+    return first(measures[:kinds], values[:kinds], moments) or (end, "")
 
 
-def slide(
-    problem: Problem, time: float, end: float, place: np.ndarray, v: np.ndarray, off: bool
-) -> tuple[float, np.ndarray, np.ndarray, str]:
+def throw(problem: Problem, start: float, y: np.ndarray) -> Callable[[float], tuple[np.ndarray, np.ndarray]]:
+    """Place and velocity of the centre of mass of a part that comes off, over time."""
+    f = problem.surface(y[0], y[1], start).frame(y[2:4])
+    place, velocity = f.place, f.velocity + f.centre @ y[2:4]
+    down = np.array(problem.gravity) - [0.0, 0.0, problem.squeeze / problem.mass]
+
+    def at(time: float) -> tuple[np.ndarray, np.ndarray]:
+        s = time - start
+        return place + s * velocity + s * s / 2 * down, velocity + s * down
+
+    return at
+
+
+def under(problem: Problem, place: np.ndarray, time: float, guess: np.ndarray) -> tuple[np.ndarray, float]:
+    """The X whose r lies under or over a place, by Newton's method from a guess, and the height over it."""
+    point = guess.copy()
+    for _ in range(50):
+        f = problem.surface(point[0], point[1], time).frame(np.zeros(2))
+        off = np.linalg.solve(f.centre[:2], place[:2] - f.place[:2])
+        point += off
+        if size_of(off) < 1e-17:
+            return point, float(place[2] - f.place[2] - f.centre[2] @ off)
+    raise RuntimeError("no point under the part")
+
+
+def fly(problem: Problem, thrown: Callable, time: float, end: float, y: np.ndarray) -> tuple[float, np.ndarray, str]:
+    """Until the part lands; the measures are scaled to the flight's largest height."""
+
+    def over(moment: float, guess: np.ndarray) -> tuple[np.ndarray, float]:
+        return under(problem, thrown(moment)[0], moment, guess)
+
+    moments, points, heights = np.linspace(time, end, SCAN), [y[:2]], [0.0]
+    for moment in moments[1:]:
+        point, height = over(moment, points[-1])
+        points.append(point)
+        heights.append(height)
+        if height < 0 or problem.gap(*point) < 0:
+            break
+    else:
+        return end, np.array([*points[-1], 0.0, 0.0, y[4]]), ""
+    guess, before = points[-2], moments[len(points) - 2]
+    if heights[-1] >= 0:
+        kind, measure = "leaves", lambda t: problem.gap(*over(t, guess)[0])
+    else:
+        kind, measure = "lands", lambda t: over(t, guess)[1]
+    if measure(before) <= 0:
+        raise RuntimeError("a flight shorter than the scan resolves")
+    time = float(brentq(measure, before, moment, xtol=1e-18, rtol=1e-15))
+    return time, np.array([*over(time, guess)[0], 0.0, 0.0, y[4]]), kind
+
+
+def land(problem: Problem, thrown: Callable, time: float, y: np.ndarray) -> np.ndarray:
+    """The impact: the normal velocity is lost, and of that along the surface `impact` times as much."""
+    f = problem.surface(y[0], y[1], time).frame(np.zeros(2))
+    relative = thrown(time)[1] - f.velocity
+    into = relative @ f.normal
+    along = relative - into * f.normal
+    kept = max(0.0, 1 - problem.impact * abs(into) / size_of(along)) * along
+    v = np.linalg.solve(f.centre.T @ f.centre, f.centre.T @ kept)
+    return np.array([*y[:2], *v, y[4] + (relative @ relative - kept @ kept) / 2])
+
+
+def slide(problem: Problem, time: float, end: float, y: np.ndarray, off: bool) -> tuple[float, np.ndarray, str]:
     """Until the end, rest, detachment or the rim; `off`: begins with Radau, and ends where that is no longer needed."""
 
     def rate(moment: float, y: np.ndarray) -> np.ndarray:
         f = force(problem, moment, y[:2], y[2:4])
-        return np.concatenate([y[2:4], f.pull - f.limit * y[2:4] / size_of(y[2:4], f)])
+        return np.array([*y[2:4], *f.acceleration(y[2:4]), f.heats(y[2:4])])
 
     def speed_left(moment: float, y: np.ndarray) -> float:
         """Over the speed below which friction would stop it in a hundredth of a stroke."""
+        return size_of(y[2:4]) - 0.01 * force(problem, moment, y[:2], y[2:4]).limit * problem.stroke_time
+
+    def gain(moment: float, y: np.ndarray) -> float:
+        """Negative where it slows down by more than rounding."""
         f = force(problem, moment, y[:2], y[2:4])
-        return size_of(y[2:4], f) - 0.01 * f.limit * problem.stroke_time
+        return y[2:4] @ f.acceleration(y[2:4]) / size_of(y[2:4]) + 1e-3 * f.limit
 
     def contact(moment: float, y: np.ndarray) -> float:
         return force(problem, moment, y[:2], y[2:4]).load + problem.pull_off
@@ -178,50 +307,48 @@ def slide(
     def inside(moment: float, y: np.ndarray) -> float:
         return problem.gap(y[0], y[1])
 
-    atol = np.array([LENGTH_ERROR, LENGTH_ERROR, SPEED_ERROR, SPEED_ERROR])
-    y = np.concatenate([place, v])
-    ends = [("detaches", contact), ("leaves", inside)]
+    atol = np.array([LENGTH_ERROR, LENGTH_ERROR, SPEED_ERROR, SPEED_ERROR, HEAT_ERROR])
+    ends = [("leaves", inside)] + ([("detaches", contact)] if problem.pull_off < math.inf else [])
     if off:
         fast = ("fast", lambda moment, y: -speed_left(moment, y))
-        t, y, found = march(Radau, rate, time, y, end, atol, [*ends, fast], first_step=1e-13)
-        return t, y[:2], y[2:], found
+        # From the moment on: its steps may be shorter than the rounding of a time.
+        later = [(kind, lambda s, y, of=measure: of(time + s, y)) for kind, measure in [*ends, fast, ("slow", gain)]]
+        s, y, found = march(Radau, lambda s, y: rate(time + s, y), 0.0, y, end - time, atol, later, first_step=1e-13)
+        if found != "slow":
+            return (time + s if found else end), y, found
+        return to_rest(problem, time + s, end, y, ends)
     if speed_left(time, y) > 0:
         t, y, found = march(DOP853, rate, time, y, end, atol, [*ends, ("slow", speed_left)])
         if found != "slow":
-            return t, y[:2], y[2:], found
+            return t, y, found
         time = t
     return to_rest(problem, time, end, y, ends)
 
 
-def to_rest(
-    problem: Problem, time: float, end: float, y: np.ndarray, ends: list
-) -> tuple[float, np.ndarray, np.ndarray, str]:
-    """The regular form, z = (t, x, y, ln u, n)."""
+def to_rest(problem: Problem, time: float, end: float, y: np.ndarray, ends: list) -> tuple[float, np.ndarray, str]:
+    """The regular form, z = (t, X, ln u, n, dissipated)."""
 
     def rate(_: float, z: np.ndarray) -> np.ndarray:
-        u, n = math.exp(z[3]), z[4:]
+        u, n = math.exp(z[3]), z[4:6] / size_of(z[4:6])  # 1 but for errors, which grow where it moves against the pull
         f = force(problem, z[0], z[1:3], u * n)
-        n = n / size_of(n, f)  # 1 but for errors, which grow where it moves against the pull
-        gain = n @ f.metric @ f.pull - f.limit + u * (n @ f.gradient) * (n @ f.turn)
-        return np.concatenate([[u], u * u * n, [gain], f.pull - (f.limit + gain) * n])
+        a = f.acceleration(n)
+        return np.array([u, *(u * u * n), n @ a, *(a - (n @ a) * n), u * u * f.heats(n)])
 
     def plain(z: np.ndarray) -> np.ndarray:
-        return np.concatenate([z[1:3], math.exp(z[3]) * z[4:]])
+        return np.array([*z[1:3], *(math.exp(z[3]) * z[4:6]), z[6]])
 
-    f = force(problem, time, y[:2], y[2:])
-    u = size_of(y[2:], f)
-    fast = math.log(max(4 * u, 0.04 * f.limit * problem.stroke_time))
+    u = size_of(y[2:4])
+    fast = math.log(max(4 * u, 0.04 * force(problem, time, y[:2], y[2:4]).limit * problem.stroke_time))
     stops = [(kind, lambda _, z, of=measure: of(z[0], plain(z))) for kind, measure in ends]
     stops += [
         ("", lambda _, z: end - z[0]),
         ("at rest", lambda _, z: z[3] - math.log(LAST_SPEED)),
         ("fast", lambda _, z: fast - z[3]),  # it did not come to rest: a turn
     ]
-    z = np.array([time, *y[:2], math.log(u), *(y[2:] / u)])
-    atol = np.array([1e-18, LENGTH_ERROR, LENGTH_ERROR, 1e-13, 1e-13, 1e-13])
+    z = np.array([time, *y[:2], math.log(u), *(y[2:4] / u), y[4]])
+    atol = np.array([1e-18, LENGTH_ERROR, LENGTH_ERROR, 1e-13, 1e-13, 1e-13, HEAT_ERROR])
     _, z, found = march(DOP853, rate, 0.0, z, math.inf, atol, stops)
-    y = plain(z)
-    return (end if found == "" else z[0]), y[:2], y[2:], "" if found == "fast" else found
+    return (end if found == "" else z[0]), plain(z), "" if found == "fast" else found
 
 
 def march(method, rate, start, y, end, atol, events, **options):

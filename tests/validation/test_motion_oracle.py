@@ -5,10 +5,10 @@ for the rough contact and the table of points, which other tests check.
 """
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
+from motion_cases import NAMES, breakpoints, limit_of, path_length, ratio_of
 from motion_oracle import Problem, trace
 from motion_surfaces import boggio, polynomial, still, up, up_down
 
@@ -32,7 +32,6 @@ STROKES = [(150e-6, 300, 0.0), (90e-6, 450, 0.4e-3)]
 THREE = [[0.0, 120e-6], [110e-6, -60e-6], [-90e-6, -80e-6]]
 POINTS = FrictionTable([-4e-7, -2e-7, 0.0, 4e-7, 1e-6, 4e-6], [0.0, 1.5e-8, 2.6e-8, 4.2e-8, 6e-8, 1e-7], 1.2)
 DOWN = (0.0, 0.0, -G)
-NAMES = {"SLIPS": "slips", "STOPS": "stops", "REVERSES": "reverses", "DETACHES": "detaches", "LEAVES_PLATE": "leaves"}
 # Tolerance, then how far ends may differ over the length of the path, and how far events over their time.
 BOUNDS = [(1e-10, 1e-8, 1e-7), (1e-12, 1e-9, 1e-8)]
 # m: rounding on a plate of 300 um. Whatever the tolerances of both and of the surface, ends stay 2e-14 to 9e-14 off,
@@ -77,27 +76,12 @@ PLATES = {
 }
 
 
-def limit_of(law):
-    if isinstance(law, ConstantFriction):
-        return lambda load: law.limit
-    if isinstance(law, CoulombAdhesion):
-        return lambda load: max(0.0, law.coefficient * (load + law.adhesion))
-    return lambda load: float(law.friction_limit(load))
-
-
-def ratio_of(law):
-    if isinstance(law, CoulombAdhesion) and law.static_coefficient is not None:
-        return law.static_coefficient / law.coefficient
-    return getattr(law, "static_ratio", 1.0)
-
-
 def problem(actuators, strokes, part, law, gravity, duration):
-    breakpoints = [delay + k / (2 * f) for _, f, delay in strokes for k in range(math.ceil(2 * f * duration) + 1)]
     return Problem(
         boggio(actuators, RADIUS, [up_down(*stroke) for stroke in strokes]),
         part.mass,
         limit_of(law),
-        breakpoints,
+        breakpoints(strokes, duration),
         gravity,
         part.squeeze,
         law.pull_off,
@@ -111,7 +95,7 @@ def compare(run, theirs, start, rounding=0.0):
     """The same events at the same times and places, for each of the tolerances. run: of a tolerance."""
     kinds, times = [kind for kind, *_ in theirs.events], [time for _, time, *_ in theirs.events]
     corners = [start, *(place for _, _, *place in theirs.events), theirs.position]
-    way = sum(math.dist(a, b) for a, b in pairwise(corners))
+    way = path_length(theirs, start)
     for tolerance, near, prompt in BOUNDS:
         ours = run(tolerance)
         assert [NAMES[event.kind.name] for event in ours.events] == kinds
@@ -135,10 +119,8 @@ def compare(run, theirs, start, rounding=0.0):
 )
 def test_the_oracle_finds_the_reference_paths_of_one_stroke(height, end, events):
     """On which two other integrators agreed; the digits given are all confirmed."""
-    breakpoints = [1 / 600, 1 / 450, 1 / 300]
-    stroke = Problem(
-        boggio([[0.0, 0.0]], RADIUS, [height]), MASS, lambda load: 20.9 * MASS, breakpoints, (0.0, 0.0, 0.0)
-    )
+    plate, changes = boggio([[0.0, 0.0]], RADIUS, [height]), [1 / 600, 1 / 450, 1 / 300]
+    stroke = Problem(plate, MASS, lambda load: 20.9 * MASS, changes, (0.0, 0.0, 0.0))
     found = trace(stroke, (100e-6, 0.0), (0.0, 0.0), 8e-3)
     assert found.position == pytest.approx((end, 0.0), rel=3e-11, abs=1e-18)
     assert [time for _, time, *_ in found.events] == pytest.approx(1e-4 * np.array(events), rel=4e-11)
@@ -193,12 +175,11 @@ def test_a_path_on_a_polynomial_is_the_oracle_s(name):
     coefficients, base, part, law, gravity, duration = POLYNOMIALS[name]
     drives = [Drive(stroke, f, delay=delay) for stroke, f, delay in base] or None
     heights = [up_down(*stroke) for stroke in base] or (still, still)
-    breakpoints = [delay + k / (2 * f) for _, f, delay in base for k in range(math.ceil(2 * f * duration) + 1)]
     exact = Problem(
         polynomial(coefficients, heights),
         part.mass,
         limit_of(law),
-        breakpoints,
+        breakpoints(base, duration),
         gravity,
         part.squeeze,
         law.pull_off,

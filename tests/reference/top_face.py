@@ -1,0 +1,147 @@
+"""Surfaces of `motion_oracle` off the mid-plane, by Taylor arithmetic of the places in space alone.
+
+    r(X, t) = (X + base(t), w(X, t)) + z n(X, t),  n = (-w_x, -w_y, 1)/s,  s^2 = 1 + w_x^2 + w_y^2
+
+A jet is an array (20, ...) of Taylor coefficients in (x, y, t) about a place and time, up to the third order: w needs
+three for the two of n, and its t^3 enters nowhere. Boggio's function and polynomials are put together from jets of x, y
+and t; no derivative is written down.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from motion_oracle import Frame, Height, Surface
+from motion_surfaces import still
+
+ORDER = 3
+MONOMIALS = sorted((m for m in itertools.product(range(ORDER + 1), repeat=3) if sum(m) <= ORDER), key=sum)
+INDEX = {m: k for k, m in enumerate(MONOMIALS)}
+POWERS = np.array(MONOMIALS)
+_TRIPLES = sorted(
+    (INDEX[tuple(np.add(a, b))], INDEX[a], INDEX[b])
+    for a, b in itertools.product(MONOMIALS, repeat=2)
+    if sum(a) + sum(b) <= ORDER
+)
+_TARGET, LEFT, RIGHT = np.array(_TRIPLES).T
+STARTS = np.searchsorted(_TARGET, np.arange(len(MONOMIALS)))
+X, Y, T, TT, XX, YY = (INDEX[m] for m in [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 2), (2, 0, 0), (0, 2, 0)])
+SECOND = [INDEX[m] for m in MONOMIALS if sum(m) == 2]
+SECOND_POWERS = POWERS[SECOND]
+RAISED = np.array([[INDEX.get((i + 1, j, k), 0), INDEX.get((i, j + 1, k), 0)] for i, j, k in MONOMIALS])
+FACTORS = np.where(RAISED > 0, POWERS[:, :2] + 1, 0)
+Jets = Callable[[float, float, float], np.ndarray]  # x, y, t -> w (20,)
+
+
+def times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.add.reduceat(a[LEFT] * b[RIGHT], STARTS, axis=0)
+
+
+def of(derivatives: Sequence[np.ndarray], a: np.ndarray) -> np.ndarray:
+    """f(a), with f and its three derivatives at a's value."""
+    d = a.copy()
+    d[0] = 0.0
+    square = times(d, d)
+    jet = times(derivatives[3] / 6 * square + derivatives[2] / 2 * d, d) + derivatives[1] * d
+    jet[0] += derivatives[0]
+    return jet
+
+
+def log(a: np.ndarray) -> np.ndarray:
+    return of((np.log(a[0]), 1 / a[0], -1 / a[0] ** 2, 2 / a[0] ** 3), a)
+
+
+def inverse_root(a: np.ndarray) -> np.ndarray:
+    f = a[0] ** -0.5
+    return of((f, -(f**3) / 2, 3 * f**5 / 4, -15 * f**7 / 8), a)
+
+
+def slopes(a: np.ndarray) -> np.ndarray:
+    """The derivatives (20, 2) along x and y; their third order is not known, and 0."""
+    return FACTORS * a[RAISED]
+
+
+def drive(height: Height, time: float) -> np.ndarray:
+    h, h_t, h_tt = height(time)
+    jet = np.zeros(len(MONOMIALS))
+    jet[0], jet[T], jet[TT] = h, h_t, h_tt / 2
+    return jet
+
+
+def boggio(points: Sequence[Sequence[float]], radius: float, heights: Sequence[Height]) -> Jets:
+    """A clamped disc: 16 pi G = R ln(R/S) + S - R around each source, weighted so that w = h_i at each of them."""
+    sources = np.array(points, float) / radius
+    size = (sources**2).sum(1)
+    scale = radius ** -(POWERS[:, 0] + POWERS[:, 1]).astype(float)
+
+    def terms(place: np.ndarray) -> np.ndarray:
+        """Of each source (20, n), with the radius as unit."""
+        to = place - sources
+        r, s = np.zeros((2, len(MONOMIALS), len(sources)))
+        r[[0, X, Y]] = np.maximum((to**2).sum(1), 1e-40), 2 * to[:, 0], 2 * to[:, 1]
+        s[0] = place @ place * size - 2 * sources @ place + 1
+        s[[X, Y]] = 2 * (np.outer(place, size) - sources.T)
+        r[[XX, YY]], s[[XX, YY]] = 1.0, size
+        return times(r, log(r) - log(s)) + s - r
+
+    weights = np.linalg.inv(np.array([terms(place)[0] for place in sources]))
+
+    def w(x: float, y: float, time: float) -> np.ndarray:
+        moved = np.array([drive(height, time) for height in heights])
+        shapes = terms(np.array([x, y]) / radius)
+        return scale * times(shapes, (weights @ moved).T).sum(1)
+
+    return w
+
+
+def polynomial(coefficients) -> Jets:
+    """w = sum c[i, j, k] x^i y^j t^k (or c[i, j])."""
+    c = np.atleast_3d(np.asarray(coefficients, float))
+
+    def shifted(value: float, count: int) -> np.ndarray:
+        """Taylor coefficients (order, power) of the powers of a variable."""
+        return np.array([[math.comb(n, m) * value ** max(n - m, 0) for n in range(count)] for m in range(ORDER + 1)])
+
+    def w(x: float, y: float, time: float) -> np.ndarray:
+        p, q, r = (shifted(value, count) for value, count in zip((x, y, time), c.shape, strict=True))
+        return np.einsum("ai,bj,ck,ijk->abc", p, q, r, c, optimize=True)[tuple(POWERS.T)]
+
+    return w
+
+
+def top_face(w: Jets, contact: float, centre: float, base: Sequence[Height] = (still, still)) -> Surface:
+    """The contact and the centre of mass at these heights [m] over the mid-plane, along its normal."""
+
+    def surface(x: float, y: float, time: float) -> _Lifted:
+        jet = w(x, y, time)
+        gradient = slopes(jet)
+        square = times(gradient, gradient).sum(1)
+        square[0] += 1
+        inverse = inverse_root(square)[:, None]
+        normal = np.hstack([-times(gradient, inverse), inverse])
+        place = np.empty_like(normal)
+        for axis, height in enumerate(base):
+            place[:, axis] = drive(height, time)
+        place[:, 2] = jet
+        place[0, :2] += x, y
+        place[X, 0] += 1
+        place[Y, 1] += 1
+        return _Lifted(place + contact * normal, place + centre * normal, normal[0])
+
+    return surface
+
+
+class _Lifted:
+    """Jets (20, 3) of the contact's and the centre's place, and the normal."""
+
+    def __init__(self, contact: np.ndarray, centre: np.ndarray, normal: np.ndarray) -> None:
+        self.contact, self.centre, self.normal = contact, centre, normal
+
+    def frame(self, v: np.ndarray) -> Frame:
+        along = np.array([*v, 1.0])  # (x, y, t) by t
+        carried = 2 * np.prod(along**SECOND_POWERS, axis=1) @ self.centre[SECOND]
+        r = self.centre
+        return Frame(r[0], r[T], carried, self.normal, r[[X, Y]].T, self.contact[[X, Y]].T)

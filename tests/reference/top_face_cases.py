@@ -1,0 +1,204 @@
+"""Parts on the top face: cases for the package and for `motion_oracle`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import motion_oracle
+import numpy as np
+import top_face
+from motion_cases import Strokes, breakpoints, limit_of, ratio_of
+from motion_surfaces import still, up_down
+
+from coupling.surface.motion import surface_motion
+from fem_plate.analytic import DiscShapes
+from particle import (
+    ConstantFriction,
+    CoulombAdhesion,
+    Drive,
+    KogutEtsion,
+    Micropart,
+    Trajectory,
+    polynomial_surface,
+    simulate,
+)
+from particle.friction import Contact
+from particle.surface import SurfaceMotion
+
+MASS, G = 2e-9, 9.80665
+DOWN = (0.0, 0.0, -G)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A part of `mass`, with the contact and the centre of mass at these heights over the mid-plane."""
+
+    contact: float  # m, half the plate's thickness
+    centre: float  # m
+    start: tuple[float, float]
+    law: Contact
+    duration: float
+    strokes: Strokes  # of the actuators, or of a base along x and y
+    gravity: tuple[float, float, float] = DOWN
+    velocity: tuple[float, float] = (0.0, 0.0)
+    squeeze: float = 0.0
+    mass: float = MASS
+    flies: bool = False
+
+    def at(self, contact: float, centre: float) -> Case:
+        """The same with other heights."""
+        return replace(self, contact=contact, centre=centre)
+
+    def heights(self) -> list[motion_oracle.Height]:
+        return [up_down(*stroke) for stroke in self.strokes]
+
+    def drives(self) -> list[Drive]:
+        return [Drive(stroke, f, delay=delay) for stroke, f, delay in self.strokes]
+
+    def base(self) -> list[motion_oracle.Height]:
+        return [still, still]
+
+    def height(self) -> top_face.Jets:
+        raise NotImplementedError
+
+    def package(self) -> SurfaceMotion:
+        raise NotImplementedError
+
+    def gap(self, x: float, y: float) -> float:
+        return 1.0
+
+    def trace(self) -> motion_oracle.Path:
+        """The oracle's path."""
+        problem = motion_oracle.Problem(
+            top_face.top_face(self.height(), self.contact, self.centre, self.base()),
+            self.mass,
+            limit_of(self.law),
+            breakpoints(self.strokes, self.duration),
+            self.gravity,
+            self.squeeze,
+            self.law.pull_off,
+            ratio_of(self.law),
+            self.gap,
+            0.5 / max(f for _, f, _ in self.strokes),
+            self.flies,
+            self.law.coefficient if isinstance(self.law, CoulombAdhesion) else 0.0,
+        )
+        return motion_oracle.trace(problem, self.start, self.velocity, self.duration)
+
+    def simulate(self, tolerance: float) -> Trajectory:
+        """The package's path."""
+        surface = replace(self.package(), half_thickness=self.contact)
+        over = self.centre - self.contact
+        part = Micropart(self.mass, self.start, self.velocity, squeeze=self.squeeze, centre_height=over)
+        after = "fly" if self.flies else "stop"
+        return simulate(
+            surface, part, self.law, self.duration, self.gravity, tolerance=tolerance, after_detachment=after
+        )
+
+
+@dataclass(frozen=True)
+class Disc(Case):
+    """On a clamped disc."""
+
+    actuators: Sequence[Sequence[float]] = ((0.0, 0.0),)
+    radius: float = 300e-6
+
+    def height(self) -> top_face.Jets:
+        return top_face.boggio(self.actuators, self.radius, self.heights())
+
+    def package(self) -> SurfaceMotion:
+        return surface_motion(DiscShapes([list(place) for place in self.actuators], self.radius), self.drives(), 1e-11)
+
+    def gap(self, x: float, y: float) -> float:
+        return self.radius - math.hypot(x, y)
+
+
+@dataclass(frozen=True)
+class Polynomial(Case):
+    """On a polynomial, on a base that moves in its plane."""
+
+    coefficients: np.ndarray | None = None
+
+    def base(self) -> list[motion_oracle.Height]:
+        return self.heights()
+
+    def height(self) -> top_face.Jets:
+        return top_face.polynomial(self.coefficients)
+
+    def package(self) -> SurfaceMotion:
+        return polynomial_surface(self.coefficients, self.drives())
+
+
+PAIR = ((75e-6, 10e-6), (-75e-6, 10e-6))
+STROKES = ((150e-6, 300, 0.0), (90e-6, 450, 0.4e-3))
+BOWL = np.array([[0.0, 0.05, 0.9], [0.0, 0.2, 0.0], [0.6, 0.0, 0.0]])
+SWAYS = np.zeros((3, 3, 4))  # a bowl that rises, tilts and flattens
+SWAYS[:, :, 0] = BOWL
+SWAYS[0, 0, 2:], SWAYS[1, 0, 1:3], SWAYS[0, 2, 1] = (0.5, -0.4), (0.2, -0.3), -0.4
+BASE = ((0.3, 1.6, 0.0), (-0.2, 2.5, 0.1))
+
+CASES = {
+    "one actuator": Disc(
+        50e-6, 50e-6, (300e-6, 200e-6), ConstantFriction(8e-9), 5e-3, ((15e-6, 2000, 0.0),), radius=1e-3
+    ),
+    "two actuators": Disc(
+        50e-6,
+        80e-6,
+        (100e-6, -100e-6),
+        ConstantFriction(4e-8),
+        5e-3,
+        ((40e-6, 440, 0.0), (-30e-6, 600, 0.2e-3)),
+        actuators=((300e-6, 100e-6), (-250e-6, -350e-6)),
+        radius=1e-3,
+    ),
+    "steep": Disc(
+        5e-6,
+        15e-6,
+        (45e-6, -10e-6),
+        ConstantFriction(4e-8),
+        5e-3,
+        ((50e-6, 400, 0.0),),
+        actuators=((10e-6, 5e-6),),
+        radius=100e-6,
+    ),
+    "rough and squeezed": Disc(
+        10e-6, 30e-6, (100e-6, 100e-6), KogutEtsion.paper(), 3e-3, STROKES, squeeze=2e-7, actuators=PAIR
+    ),
+    "static friction": Disc(
+        10e-6,
+        57e-6,
+        (60e-6, -40e-6),
+        CoulombAdhesion(0.2, 8e-7, static_coefficient=0.26),
+        4e-3,
+        STROKES,
+        actuators=PAIR,
+    ),
+    "steep bowl on a base": Polynomial(
+        0.02, 0.07, (0.1, 0.0), CoulombAdhesion(0.6, 20.0), 1.0, BASE, mass=1.0, coefficients=BOWL
+    ),
+    "tilted, squeezed, on a base": Polynomial(
+        0.03,
+        0.08,
+        (0.3, 0.2),
+        CoulombAdhesion(0.2, 15.0),
+        1.5,
+        BASE,
+        (1.0, 0.5, -9.0),
+        squeeze=2.0,
+        mass=1.0,
+        coefficients=SWAYS,
+    ),
+    "flight": Disc(
+        10e-6,
+        30e-6,
+        (60e-6, -40e-6),
+        CoulombAdhesion(0.05, 2e-8),
+        5e-3,
+        ((40e-6, 400, 0.0), (30e-6, 550, 0.2e-3)),
+        squeeze=1e-7,
+        flies=True,
+        actuators=PAIR,
+    ),
+}

@@ -1,0 +1,85 @@
+"""Parts on the top face of a bent plate, their centre of mass above it, against `motion_oracle`.
+
+The oracle differentiates places in space by Taylor arithmetic (`top_face`) and shares no formula with the integrator.
+What it found is written down in `top_face_results`; the slow test finds it again.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from motion_cases import NAMES, path_length
+from top_face import polynomial, top_face
+from top_face_cases import CASES, SWAYS
+from top_face_results import RESULTS
+
+pytestmark = pytest.mark.compiled
+
+TOLERANCE, NEAR, PROMPT = 1e-12, 1e-7, 1e-6  # ends over the length of the path, events over their time
+REPEATS = 5e-9  # how well the oracle finds again what is written down
+V = np.array([0.3, -0.7])
+
+
+def check(path, expected, near, prompt):
+    """`path`: end, events as (kind, time), dissipated and kinetic energy [J]."""
+    end, events, dissipated, kinetic = path
+    assert [kind for kind, _ in events] == [kind for kind, _ in expected.events]
+    assert [time for _, time in events] == pytest.approx([time for _, time in expected.events], rel=prompt, abs=1e-17)
+    assert math.dist(end, expected.end) < near * expected.length
+    assert (dissipated, kinetic) == pytest.approx((expected.dissipated, expected.kinetic), rel=10 * near)
+
+
+def of_package(run):
+    events = [(NAMES[event.kind.name], event.time) for event in run.events]
+    return run.position[-1], events, run.energy.dissipated[-1], run.energy.kinetic[-1]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_path_on_the_top_face_is_the_oracle_s(name):
+    run = CASES[name].simulate(TOLERANCE)
+    check(of_package(run), RESULTS[name], NEAR, PROMPT)
+    assert run.energy.balance < NEAR
+
+
+def test_the_default_tolerance_gives_the_reference_to_a_millionth_of_its_path():
+    check(of_package(CASES["one actuator"].simulate(1e-9)), RESULTS["one actuator"], 1e-6, PROMPT)
+
+
+def test_without_the_lengths_the_part_of_the_reference_moves_a_third_as_far():
+    flat = CASES["one actuator"].at(0.0, 0.0)
+    run = flat.simulate(TOLERANCE)
+    assert math.dist(run.position[-1], flat.start) == pytest.approx(9.670575238222e-6, rel=NEAR)
+    assert [event.kind.name for event in run.events] == ["SLIPS"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CASES)
+def test_the_oracle_finds_again_what_is_written_down(name):
+    case, expected = CASES[name], RESULTS[name]
+    path = case.trace()
+    events = [(kind, time) for kind, time, *_ in path.events]
+    check((path.position, events, path.dissipated, path.kinetic), expected, REPEATS, REPEATS)
+    assert path_length(path, case.start) == pytest.approx(expected.length, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    "w, place, time, step, size",
+    [
+        (polynomial(SWAYS), (0.3, 0.2), 0.7, 1e-3, 1.0),
+        (CASES["two actuators"].height(), (100e-6, -100e-6), 0.9e-3, 1e-6, 1e-3),
+    ],
+    ids=["polynomial", "disc"],
+)
+def test_the_oracle_s_acceleration_is_the_difference_of_places(w, place, time, step, size):
+    """Along a line at constant X', by the central difference of the eighth order."""
+    v = V * size
+    surface = top_face(w, 0.03 * size, 0.08 * size)
+
+    def at(moment):
+        return surface(*(np.array(place) + (moment - time) * v), moment).frame(v)
+
+    here, weights = at(time), np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
+    places = np.array([at(time + k * step).place for k in range(-4, 5)])
+    assert here.carried == pytest.approx(weights @ places / step**2, rel=1e-6, abs=1e-7 * np.abs(here.carried).max())
+    assert here.normal @ here.centre == pytest.approx([0.0, 0.0], abs=1e-14)
+    assert here.normal @ here.contact == pytest.approx([0.0, 0.0], abs=1e-14)
