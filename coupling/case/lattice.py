@@ -88,14 +88,14 @@ class LatticeCase(Driven):
     """How many rows there are, along y."""
     columns: StrictInt = Field(ge=1, examples=[3])
     """How many columns there are, along x."""
-    kind: Literal["rectangular", "hexagonal"] = "rectangular"
-    """Rows above each other, or every second row moved by half a pitch, so that all neighbours are one pitch apart."""
     pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um"), "xy"), _Apart()] = Field(
         examples=["100 um"]
     )
     """The distance of neighbours, or two: along x and along y; in a hexagonal lattice one."""
     centre: Point = (0.0, 0.0)
     """The lattice's middle."""
+    kind: Literal["rectangular", "hexagonal"] = "rectangular"
+    """Rows above each other, or every second row moved by half a pitch, so that all neighbours are one pitch apart."""
     margin: Length | None = Field(default=None, ge=0, examples=["20 um"])
     """Actuators nearer than this to the rim, or beyond it, are left out; without it they are a mistake."""
     where: Annotated[Condition, Choice()] | None = Field(default=None, examples=["not (row == 1 and column == 1)"])

@@ -53,9 +53,9 @@ class _Template:
 
         short: without those that may be left out, too.
         """
-        needed = _needed(table)
+        needed, known = _needed(table), beside.model_fields if beside else {}
         for key, field in sorted(table.model_fields.items(), key=lambda one: not _names(one[1])):
-            told = beside is not None and key in beside.model_fields and not _names(field)
+            told = key in known and known[key].description == field.description and not _names(field)
             if told or (short and key not in needed) or _tables_only(field):
                 continue
             how = "Required" if key in needed else "Optional" if field.default is None else "Default"

@@ -6,7 +6,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from meshes import PlateMesh, annulus, disc, ellipse, polygon, rectangle
+from meshes import PlateMesh, annulus, disc, ellipse, polygon, rectangle, regular_polygon
 
 STAR = [(r * np.cos(k * np.pi / 5), r * np.sin(k * np.pi / 5)) for k, r in enumerate([1, 0.4] * 5)]
 POLYGONS = {
@@ -281,3 +281,26 @@ def test_mistakes_of_a_polygon_are_all_told_at_once(corners, cell_size, names, m
     assert len(lines) == len(messages)
     for line, message in zip(lines, messages, strict=True):
         assert line.startswith("Input ") and message in line
+
+
+@pytest.mark.parametrize("sides", [3, 6, 7, 24])
+@pytest.mark.parametrize("rotation", [0.0, 0.3])
+def test_a_regular_polygon_has_its_area_perimeter_and_distances(sides, rotation):
+    mesh, half = regular_polygon(sides, 2.0, 0.3, rotation), np.pi / sides
+    a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
+    (x, y), (u, v) = (b - a).T, (c - a).T
+    assert (x * v - y * u).min() > 0
+    assert (x * v - y * u).sum() / 2 == pytest.approx(sides * 4 * np.sin(half) * np.cos(half), rel=1e-12)
+    rim = mesh.points[mesh.boundaries["rim"]]
+    assert list(mesh.boundaries) == ["rim"]
+    assert np.hypot(*(rim[:, 1] - rim[:, 0]).T).sum() == pytest.approx(sides * 4 * np.sin(half), rel=1e-12)
+    # From the centre to a side, and from beyond a corner to that corner.
+    tip = 2.5 * np.array([np.cos(rotation), np.sin(rotation)])
+    assert mesh.outline.gap(np.array([[0.0, 0.0], tip])) == pytest.approx([2 * np.cos(half), -0.5], rel=1e-12)
+
+
+def test_every_mistake_in_a_regular_polygon_is_named():
+    with pytest.raises(ValueError) as caught:
+        regular_polygon(2, -1.0, np.nan, np.inf)
+    for name in ("sides", "radius", "cell_size", "rotation"):
+        assert f"Input {name} of regular_polygon must be" in str(caught.value)

@@ -144,8 +144,8 @@ def test_places_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
         'line 2   plate.density must be a density such as "2330 kg/m^3"; got "1 s", a time',
         f"line 10  actuators[0].position {outside} 0.1 mm beyond it",
         "line 11  actuators[0].speed is not known; "
-        "[[actuators]] has position, force, stiffness, stroke, frequency, cycle, cycles, dwell, table, segments, "
-        "repeats, delay",
+        "[[actuators]] has position, force, stiffness, stroke, frequency, cycle, cycles, dwell, phase, ramp, "
+        "table, segments, repeats, delay",
         f"line 16  actuators[1].position {outside} 0.1 mm beyond it",
         "line 16  actuators[1].position must differ from actuators[0].position; got the same point",
         'line 25  part.mass is missing; it must be a mass such as "2e-9 kg"',

@@ -116,6 +116,14 @@ def test_a_case_of_any_shape_is_built_in_python():
 
 def test_the_models_are_named_as_in_the_discriminated_union():
     assert {model.__name__ for model in PLATES.values()} == {
-        *("DiscCase", "RectangleCase", "AnnulusCase", "EllipseCase", "PolygonCase", "PlatformCase"),
+        *(
+            "DiscCase",
+            "RectangleCase",
+            "AnnulusCase",
+            "EllipseCase",
+            "PolygonCase",
+            "PlatformCase",
+            "RegularPolygonCase",
+        ),
         *("MeshCase", "ShapelessCase"),
     }
