@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from active_surface.views.rounding import round_above
 from active_surface.views.smooth import Smooth
-from coupling.pictures import extent
+from fem_plate import extent
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from active_surface.studies import AT_ONCE, Engine
 from active_surface.views.pages.thinned import thinned
 from coupling import ProgressCallback, no_progress
-from coupling.pictures import extent
+from fem_plate import extent
 from particle import Trajectory
 
 FloatArray = NDArray[np.float64]
