@@ -95,12 +95,14 @@ class Group(Command, click.Group):
 
 def leave(end: SystemExit) -> NoReturn:
     """End the process without taking apart all that it loaded, which takes a tenth of a short command."""
-    atexit._run_exitfuncs()
-    with suppress(OSError):  # Python reports what cannot be written
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(end.code if isinstance(end.code, int) else 1)
-    raise end
+    code = 0 if end.code is None else end.code
+    if isinstance(code, int):
+        atexit._run_exitfuncs()
+        with suppress(OSError):  # Python reports what cannot be written
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(code)
+    raise end  # Python prints what the code is
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
