@@ -7,12 +7,10 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray, IntArray
 from active_surface.steering.tables import Settings
 from coupling.case import ActuatorCase, Case
-
-FloatArray = NDArray[np.float64]
 
 SLOWEST, FASTEST = 0.2, 2.0  # of an actuator's own frequency
 LATEST = 2.0  # of its own delay
@@ -52,7 +50,7 @@ class Knobs:
         return [(knob.low, knob.high + (not knob.smooth)) for knob in self.knobs]
 
     @property
-    def smooth(self) -> NDArray[np.int64]:
+    def smooth(self) -> IntArray:
         """The indices of the smooth knobs."""
         return np.array([k for k, knob in enumerate(self.knobs) if knob.smooth], dtype=np.int64)
 

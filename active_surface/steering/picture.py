@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
-from numpy.typing import NDArray
 
 from active_surface.steering.aimed import Aimed
 from active_surface.steering.planned import Planned
@@ -22,7 +21,6 @@ from fem_plate import frame_around, mark_actuators, marker_size
 from meshes import Drawing, draw_rim, quantity_text, rim_curves, unit_for
 from particle import HALO, Trajectory
 
-FloatArray = NDArray[np.float64]
 Place = tuple[float, float]
 
 SIZE = 5.6  # inches, of a panel

@@ -106,7 +106,7 @@ def _last_lines(result: SteeringResult) -> list[tuple[str, str]]:
 
 
 def _verdict(distance: float, tolerance: float) -> str:
-    return f"{'within' if distance <= tolerance else 'not within'} the {tolerance * MICRO:g} um wanted"
+    return f"{'within' if distance <= tolerance else 'not within'} the {tolerance * MICRO:g} um tolerance"
 
 
 def point(place: tuple[float, float]) -> str:

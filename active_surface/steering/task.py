@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.steering.knobs import shortest
 from active_surface.steering.reach import off_the_line
 from active_surface.steering.tables import Settings
@@ -24,7 +24,6 @@ from coupling.case import (
     length_text,
 )
 
-FloatArray = NDArray[np.float64]
 Mistake = tuple[str, str]
 """A key of [aim], and what is wrong with it."""
 

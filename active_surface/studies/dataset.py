@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Final
 import h5netcdf
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.studies.axis import Axis
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.slabs import slabs
@@ -129,7 +129,7 @@ def _about(study: Study) -> dict[str, Any]:
     }
 
 
-def _rim(case: Case) -> NDArray[np.float64]:
+def _rim(case: Case) -> FloatArray:
     """The curves of the plate's rim (n, 2) [m], with nan after each; empty: there is a platform."""
     if not isinstance(case.plate, PlateCase):
         return np.empty((0, 2))

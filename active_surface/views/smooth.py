@@ -9,14 +9,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 from scipy.spatial import cKDTree
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.views.triangles import barycentric
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 AROUND = 12  # points that a slope is fitted to, by a quadratic
 NEAREST = 24  # triangles among which that of a point is sought
@@ -31,7 +28,7 @@ class Smooth:
     points: FloatArray
     triangles: IntArray
 
-    def locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
+    def locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, BoolArray]:
         """The triangle (k,) of points (k, 2) [m], their barycentric coordinates (k, 3), and whether they are in it.
 
         A point that is in none has a place near it, on the rim.
@@ -40,7 +37,7 @@ class Smooth:
         triangle, shares, inside = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         return triangle, shares, inside
 
-    def _locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
+    def _locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, BoolArray]:
         """The same for so few points that memory does not matter."""
         near = self._tree.query(xy, k=min(NEAREST, len(self.triangles)))[1].reshape(len(xy), -1)
         corners = self.points[self.triangles[near]]  # (k, NEAREST, 3, 2)

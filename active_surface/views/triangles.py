@@ -6,13 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.tri import Triangulation
-from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from meshes import cross
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 SLIVER = 0.01  # of a cell's area: smaller triangles of a thinned surface are none
 
@@ -50,7 +47,7 @@ def barycentric(corners: FloatArray, places: FloatArray) -> FloatArray:
     return np.stack([1 - second - third, second, third], axis=-1)
 
 
-def inside(points: FloatArray, triangles: IntArray, places: FloatArray) -> NDArray[np.bool_]:
+def inside(points: FloatArray, triangles: IntArray, places: FloatArray) -> BoolArray:
     """Which places (q, 2) [m] lie in the triangles."""
     return np.asarray(Triangulation(*points.T, triangles).get_trifinder()(*places.T) >= 0)
 

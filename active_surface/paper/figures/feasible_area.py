@@ -11,10 +11,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import COLOURS, MICRO, FigureResult, finish
 from active_surface.paper.models import CLOSED, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort
-from active_surface.paper.path import FloatArray
 from active_surface.paper.verdict import Answer, Verdict, of_checks
 from active_surface.studies.feasibility import Feasible, find_feasible
 from particle import Micropart

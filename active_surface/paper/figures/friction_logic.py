@@ -11,10 +11,10 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import LOOK, FigureResult, finish
 from active_surface.paper.models import CLOSED, PAPER, Bench
 from active_surface.paper.parameters import Effort
-from active_surface.paper.path import FloatArray
 from active_surface.paper.verdict import Answer, Verdict, of_checks
 from particle import EventKind, HermiteDrive, Micropart, Trajectory, platform_surface, simulate
 

@@ -8,10 +8,11 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.axes import Axes
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import LOOK, MICRO
 from active_surface.paper.models import CLOSED, MODELS, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort, Place
-from active_surface.paper.path import FloatArray, Path
+from active_surface.paper.path import Path
 from active_surface.paper.profiles import NEAREST, SUPERPOSED
 from active_surface.paper.verdict import Answer
 

@@ -7,13 +7,13 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.arrays import BoolArray, FloatArray
 from active_surface.paper.figure_result import MICRO, FigureResult, finish, percent
 from active_surface.paper.figures.threshold_picture import draw_ends, draw_thresholds
 from active_surface.paper.models import MODELS, Bench
 from active_surface.paper.parameters import Effort
-from active_surface.paper.path import FloatArray
 from active_surface.paper.share import NEARLY_ALL
-from active_surface.paper.split import BoolArray, Ends, Fits, Split, Thresholds, best_split, first_loss, fits_of
+from active_surface.paper.split import Ends, Fits, Split, Thresholds, best_split, first_loss, fits_of
 from active_surface.paper.verdict import Answer, Verdict, of_checks
 
 LOWEST, HIGHEST = 160.0, 760.0  # Hz

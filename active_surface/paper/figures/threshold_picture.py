@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from active_surface.arrays import BoolArray, FloatArray
 from active_surface.paper.figure_result import LOOK, MICRO, look
 from active_surface.paper.models import CLOSED, PAPER, PLATE
-from active_surface.paper.path import FloatArray
-from active_surface.paper.split import BoolArray, Thresholds
+from active_surface.paper.split import Thresholds
 
 GREY, SHIFT = "#707070", 1.2  # um, by which the models' marks stand apart
 

@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from active_surface.studies.feasibility.area import Feasible, FloatArray
+from active_surface.arrays import FloatArray
+from active_surface.studies.feasibility.area import Feasible
 from coupling.pictures import map_axes, save_picture
 from fem_plate import frame_around, mark_actuators
 from meshes import Drawing, draw_rim, rim_curves, unit_for

@@ -13,11 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import ScalarFormatter
-from numpy.typing import NDArray
 
-from active_surface.studies.pictures.shown import FloatArray, IntArray, Scale, Shown, labelled
+from active_surface.arrays import BoolArray, FloatArray, IntArray
+from active_surface.studies.pictures.shown import Scale, Shown, labelled
 from active_surface.studies.record import OUTCOMES
-from active_surface.studies.threshold import BoolArray
 from coupling.pictures import plain_ticks
 from meshes import Unit, legend_below
 
@@ -80,7 +79,7 @@ def draw_outline(axes: Axes, across: Scale, up: Scale, holds: BoolArray | None) 
     axes.add_collection(LineCollection(lines, colors="white", linewidths=1.4, path_effects=black), autolim=False)
 
 
-def add_key(axes: Axes, numbers: NDArray[np.int64], names: tuple[str, ...], colours: tuple[Any, ...]) -> None:
+def add_key(axes: Axes, numbers: IntArray, names: tuple[str, ...], colours: tuple[Any, ...]) -> None:
     """A key of the classes that there are, with the share of each, below the axes."""
     counts = np.bincount(numbers.ravel(), minlength=len(names))
     share = 100 / max(numbers.size, 1)

@@ -9,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.studies.pictures.heat import COLOURS, add_key, frame
-from active_surface.studies.pictures.shown import FloatArray, Shown
+from active_surface.studies.pictures.shown import Shown
 from active_surface.studies.record import OUTCOMES
 
 LARGEST, SMALLEST = 40.0, 3.0  # square points, of a marker

@@ -8,15 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies.axis import Axis, counted
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.record import COLUMNS, OUTCOMES
-from active_surface.studies.threshold import BoolArray
 from coupling import near
 from meshes import Unit, unit_for
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 DISTANCE = "distance"
 NUMBER = "number of the path"  # with spaces, which no axis has in its name

@@ -8,9 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from active_surface.arrays import BoolArray
 from active_surface.studies.pictures.heat import edges, frame
 from active_surface.studies.pictures.shown import Shown
-from active_surface.studies.threshold import BoolArray, lowest
+from active_surface.studies.threshold import lowest
 from meshes import legend_below
 
 COLOUR, BAND = "#c8371b", "#f3c9bd"

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray, Image
 from active_surface.views.film.camera import Camera, camera_of
 from active_surface.views.film.captions import Captions
 from active_surface.views.film.film_file import check_film, film_file, format_of
@@ -26,9 +26,6 @@ from active_surface.views.film.stage import Stage, stage_of
 from coupling import ProgressCallback, build_drives, no_progress
 from coupling.case import Case, parse
 from coupling.results import SavedRun, check_folder, read_run
-
-FloatArray = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
 FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
 SIZE = {"mp4": (1280, 720), "gif": (800, 450), "png": (1280, 720)}

@@ -9,9 +9,9 @@ from functools import cached_property
 
 import numpy as np
 from matplotlib.tri import Triangulation, UniformTriRefiner
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from active_surface.arrays import FloatArray, IntArray
 from active_surface.views.lines import Lines, clipped, divided, net, net_width, path_points
 from active_surface.views.rounding import exaggeration
 from active_surface.views.smooth import Smooth
@@ -20,9 +20,6 @@ from coupling.pictures import PITCHES, Scale, extent, is_visible, path_window
 from coupling.results import SavedRun
 from fem_plate import pitch
 from particle import State
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 MAX_TRIANGLES = 40_000  # of a mesh that is made finer to be drawn
 ACROSS = 120  # cells along a window

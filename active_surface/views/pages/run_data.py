@@ -6,8 +6,8 @@ from typing import Any, Final
 
 import numpy as np
 from matplotlib.colors import Normalize, to_hex
-from numpy.typing import NDArray
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.views.lines import cut_in
 from active_surface.views.pages.modes import modes_of
 from active_surface.views.pages.packed import packed, packed_rows
@@ -17,9 +17,6 @@ from coupling.pictures import Scale, extent, path_window
 from coupling.results import SavedRun
 from meshes import Unit, unit_for
 from particle import State, stretches
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 MAX_STEPS: Final = 1000  # of a page; of more, as many evenly spread
 MAX_POINTS: Final = 6000  # of its surface; of more, those around the path, or fewer of these
@@ -98,7 +95,7 @@ def _colours(scale: Scale, low: float, high: float) -> list[list[Any]]:
     return [[stop, to_hex(scale.colours(norm(low + stop * (high - low))))] for stop in stops.tolist()]
 
 
-def _close(points: FloatArray, triangles: IntArray, window: FloatArray) -> NDArray[np.bool_]:
+def _close(points: FloatArray, triangles: IntArray, window: FloatArray) -> BoolArray:
     """Which points (n, 2) [m] have a triangle that reaches into a window (2, 2) [m]."""
     corners = points[triangles]
     reach = ((corners.max(axis=1) >= window[0]) & (corners.min(axis=1) <= window[1])).all(axis=1)

@@ -7,16 +7,14 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.studies import OUTCOMES, SENTENCES, Study
 from active_surface.studies.pictures import COLOURS, Scale, Shown, edges, outline
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.sweep_paths import Paths
 from coupling.case import Case, PlateCase
 from meshes import Unit, rim_curves, unit_for
-
-FloatArray = NDArray[np.float64]
 
 MAX_ENDS = 100_000  # of all starts; of more only the first of each point
 MAX_ACTUATORS = 400  # that are drawn

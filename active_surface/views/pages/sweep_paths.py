@@ -5,16 +5,13 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies import AT_ONCE, Engine
 from active_surface.views.pages.thinned import thinned
 from coupling import ProgressCallback, no_progress
 from coupling.pictures import extent
 from particle import Trajectory
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 MAX_PATHS: Final = 2500  # of a page, if no other number is asked for,
 PATIENCE: Final = 60.0  # and about as many as are found in so many seconds
@@ -36,7 +33,7 @@ def usual_count(engine: Engine) -> int:
     return min(MAX_PATHS, max(int(engine.chunk_length * PATIENCE / AT_ONCE), 1))
 
 
-def spread(shape: tuple[int, ...], count: int) -> NDArray[np.bool_]:
+def spread(shape: tuple[int, ...], count: int) -> BoolArray:
     """Which cells of a shape are chosen so that they are at most `count`: every so many-th along each side."""
     chosen = np.zeros(shape, dtype=bool)
     if count == 0:

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.views.prints.sheet import MM, Picture, put_keys
 from coupling.pictures import (
     Curves,
@@ -28,8 +28,6 @@ from coupling.pictures import (
 )
 from meshes import NOTHING, unit_for
 from particle import EventKind, State, shade, shade_keys, stretches
-
-FloatArray = NDArray[np.float64]
 
 SHARE = 0.75  # of the width is a map's, about
 PANEL, STRIP, REST = 27.0, 3.5, 16.0  # mm: the height of a panel, of the strip of events, of labels and keys
