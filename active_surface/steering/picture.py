@@ -11,9 +11,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 
-from active_surface.steering.aimed import Aimed
-from active_surface.steering.planned import Planned
-from active_surface.steering.result import SteeringResult
+from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.scatter import Scatter
 from coupling.case import Case, PlateCase
 from coupling.pictures import draw_path, is_visible, map_axes, save_picture

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from active_surface.steering.aimed import Aimed
-from active_surface.steering.planned import Planned
-from active_surface.steering.result import SteeringResult
+from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.scatter import Scatter
 from coupling.case import ActuatorCase
 
@@ -82,11 +80,11 @@ def plan_lines(result: Planned) -> list[tuple[str, str]]:
         where += f", {_verdict(distance, result.route.settings.tolerance)}"
         rows.append((f"leg {k}", where))
     if result.failure:
-        label, _, said = result.failure.partition(": ")
-        rows.append((label, said))
+        label, _, reason = result.failure.partition(": ")
+        rows.append((label, reason))
     tolerance = f"{result.route.settings.tolerance * MICRO:g} um"
     count = f"{sum(result.reached)} of {len(result.route.through)} way-points within {tolerance}; {result.paths} paths"
-    rows.append(("found", count + (", stopped by Ctrl-C" if result.interrupted else "")))
+    rows.append(("reached", count + (", stopped by Ctrl-C" if result.interrupted else "")))
     rows.append(("outcome", f"{result.trajectory.outcome}. {result.trajectory.sentence}"))
     return rows + _last_lines(result)
 
