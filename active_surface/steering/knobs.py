@@ -88,13 +88,13 @@ def _bounds(actuator: ActuatorCase, settings: Settings, duration: float) -> dict
     own = actuator.frequency or 0.0
     frequency = settings.frequency or (SLOWEST * own, FASTEST * own)
     stroke = actuator.stroke or 0.0
-    most = max(1, math.floor(frequency[1] * duration))
+    max_cycles = max(1, math.floor(frequency[1] * duration))
     low, high = settings.cycles
     return {
         "frequency": frequency,
         "stroke": settings.stroke or (min(0.0, stroke), max(0.0, stroke)),
         "delay": settings.delay or (0.0, LATEST * actuator.delay),
-        "cycles": (float(min(low, most)), float(min(high, most))),
+        "cycles": (float(min(low, max_cycles)), float(min(high, max_cycles))),
     }
 
 

@@ -52,8 +52,8 @@ def read_task(path: str | os.PathLike[str], target: Place | None = None, quantil
     ValueError
         The target does not suit the case.
     """
-    case, settings, told = read_settings(path, target is None)
-    goal = target or told
+    case, settings, own_target = read_settings(path, target is None)
+    goal = target or own_target
     if goal is None:
         raise ValueError("the target is missing; it must be two lengths, as --target 100,-50 or in the file's [aim]")
     if quantile is not None:

@@ -99,7 +99,7 @@ def _common(result: SteeringResult) -> dict[str, Any]:
 
 def _last_lines(result: SteeringResult) -> list[tuple[str, str]]:
     scatter = "not looked for, after Ctrl-C" if result.scatter is None else scatter_line(result.scatter)
-    warnings = [("warning", said) for said in result.warnings]
+    warnings = [("warning", text) for text in result.warnings]
     return [("scatter", scatter), *(("wrote", str(file)) for file in result.files), *warnings]
 
 
@@ -117,10 +117,10 @@ def scatter_line(scatter: Scatter) -> str:
     shares = {"half": 0.5, "90 %": 0.9, "all": 1.0}
     result = {name: scatter.quantile(share) * MICRO for name, share in shares.items()}
     within = ", ".join(f"{name} within {away:.3g} um" for name, away in result.items() if math.isfinite(away))
-    said = [f"{within} of the target"] if within else []
-    said += [f"{scatter.lost} lost"] if scatter.lost else []
+    parts = [f"{within} of the target"] if within else []
+    parts += [f"{scatter.lost} lost"] if scatter.lost else []
     count = len(scatter.distance)
-    return f"{'; '.join(said)} ({count} runs with friction and strokes up to 1 %, starts up to 1 um off)"
+    return f"{'; '.join(parts)} ({count} runs with friction and strokes up to 1 %, starts up to 1 um off)"
 
 
 def _drive(actuator: ActuatorCase) -> str:

@@ -49,8 +49,8 @@ def paths_of(bench: Bench, effort: Effort, frequencies: Sequence[float], start: 
 
 def reaches(path: Path, actuator: Place, pitch: float) -> float:
     """When [s] a part is first nearer than half a pitch [m] to an actuator; inf: never."""
-    near = np.flatnonzero(path.away(actuator) < pitch / 2)
-    return float(path.time[near[0]]) if len(near) else np.inf
+    close = np.flatnonzero(path.away(actuator) < pitch / 2)
+    return float(path.time[close[0]]) if len(close) else np.inf
 
 
 def joined(results: dict[str, Answer]) -> dict[str, Answer]:

@@ -15,7 +15,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import ScalarFormatter
 
 from active_surface.arrays import BoolArray, FloatArray, IntArray
-from active_surface.studies.pictures.shown import Scale, Shown, labelled
+from active_surface.studies.pictures.selection import Scale, Selection, labelled
 from active_surface.studies.record import OUTCOMES
 from coupling.pictures import plain_ticks
 from meshes import Unit, legend_below
@@ -28,18 +28,18 @@ MAX_NAMES = 12  # along an axis
 FEW_DIGITS = 1e-4, 1e7  # numbers between them are written out
 
 
-def draw_value(figure: Figure, axes: Axes, shown: Shown) -> None:
+def draw_value(figure: Figure, axes: Axes, selection: Selection) -> None:
     """Draw a map of a column of the results."""
-    across, up = shown.axes
-    draw_field(figure, axes, across, up, shown.mean_value, shown.meaning, shown.unit)
-    draw_outline(axes, across, up, shown.holds)
+    across, up = selection.axes
+    draw_field(figure, axes, across, up, selection.mean_value, selection.meaning, selection.unit)
+    draw_outline(axes, across, up, selection.holds)
 
 
-def draw_outcome(axes: Axes, shown: Shown) -> None:
+def draw_outcome(axes: Axes, selection: Selection) -> None:
     """Draw a map of what became of the part."""
-    across, up = shown.axes
-    draw_classes(axes, across, up, shown.usual_outcome, OUTCOMES, COLOURS)
-    draw_outline(axes, across, up, shown.holds)
+    across, up = selection.axes
+    draw_classes(axes, across, up, selection.usual_outcome, OUTCOMES, COLOURS)
+    draw_outline(axes, across, up, selection.holds)
 
 
 def draw_field(

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.pictures.panel import panels
-from active_surface.studies.pictures.shown import Shown
+from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.study import Study
 from coupling.pictures import save_picture
 from meshes import Drawing
@@ -32,21 +32,21 @@ def draw_sweep(study: Study, dataset: xarray.Dataset, path: Path) -> Path:
 
 def compose(figure: Figure, findings: Findings) -> None:
     """Draw the results of a sweep into an empty figure."""
-    shown = Shown.of(findings)
-    drawn = panels(shown)
+    selection = Selection.of(findings)
+    drawn = panels(selection)
     figure.set_size_inches(WIDTH * len(drawn), HEIGHT)
     figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
     places = [figure.add_subplot(1, len(drawn), k + 1) for k in range(len(drawn))]
     for axes, panel in zip(places, drawn, strict=True):
         panel.draw(figure, axes)
         axes.set_title(panel.title, fontsize=10, parse_math=False)
-    figure.suptitle(f"{findings.name}: {about(shown)}", parse_math=False)
+    figure.suptitle(f"{findings.name}: {about(selection)}", parse_math=False)
 
 
-def about(shown: Shown) -> str:
+def about(selection: Selection) -> str:
     """What is shown, in words."""
-    of, drawn, repeats = shown.findings.dataset["outcome"].size, shown.outcome.size, shown.findings.repeats
+    of, drawn, repeats = selection.findings.dataset["outcome"].size, selection.outcome.size, selection.findings.repeats
     parts = [f"{of} paths" if drawn == of else f"{drawn} of {of} paths"]
     if repeats > 1:
         parts.append(f"mean of {repeats} starts")
-    return ", ".join(parts + [f"{name} = {text}" for name, text in shown.fixed.items()])
+    return ", ".join(parts + [f"{name} = {text}" for name, text in selection.fixed.items()])

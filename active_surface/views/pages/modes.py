@@ -35,8 +35,8 @@ def modes_of(field: NDArray, close: BoolArray | None = None) -> Modes:
     heights = field / sizes  # so that all are wanted to the same error
     turned = len(heights) > heights.shape[1]
     rows = heights.T if turned else heights
-    found, vectors = np.linalg.eigh(rows @ rows.T)
-    vectors = vectors[:, np.argsort(-found)]
+    eigenvalues, vectors = np.linalg.eigh(rows @ rows.T)
+    vectors = vectors[:, np.argsort(-eigenvalues)]
     rest, rank = rows.copy(), 0
     while rank == 0 or (rank < len(rows) and float(np.abs(rest).max()) > SEEN):
         vector = vectors[:, rank]

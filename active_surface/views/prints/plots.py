@@ -77,9 +77,9 @@ def plot(
 def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tuple[str, list[Picture], bool]:
     """The name of a result, its pictures, and whether it was written to the end."""
     if is_run(path):
-        given = [key for key, name in (("x", x), ("y", y), ("value", value)) if name is not None]
-        if given:
-            raise ValueError(f"Input {' and '.join(given)} of plot must be given for a sweep only; {path} is of a run")
+        names = [key for key, name in (("x", x), ("y", y), ("value", value)) if name is not None]
+        if names:
+            raise ValueError(f"Input {' and '.join(names)} of plot must be given for a sweep only; {path} is of a run")
         run = read_run(path)
         return run.name, run_pictures(portrait_of_saved(run)), run.complete
     file = path if path.is_file() else path.with_name(path.name + ENDING)

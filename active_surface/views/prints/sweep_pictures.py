@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from active_surface.studies.pictures import Findings, Panel, Shown, about, outcome_panel, panels, value_panel
+from active_surface.studies.pictures import Findings, Panel, Selection, about, outcome_panel, panels, value_panel
 from active_surface.views.prints.sheet import Picture
 
 OUTCOME = "outcome"
@@ -19,13 +19,13 @@ def sweep_pictures(
     They hold all that they show, so that the file may be closed.
     Raises ValueError for a name that there is not.
     """
-    shown = Shown.of(findings, x, y, value)
+    selection = Selection.of(findings, x, y, value)
     one = outcome_panel if value == OUTCOME else value_panel
-    chosen = panels(shown) if value is None else [one(shown)]
-    return [_picture(panel, shown) for panel in chosen]
+    chosen = panels(selection) if value is None else [one(selection)]
+    return [_picture(panel, selection) for panel in chosen]
 
 
-def _picture(panel: Panel, shown: Shown) -> Picture:
+def _picture(panel: Panel, selection: Selection) -> Picture:
     def draw(figure: Figure) -> None:
         axes = figure.add_subplot()
         panel.draw(figure, axes)
@@ -33,4 +33,4 @@ def _picture(panel: Panel, shown: Shown) -> Picture:
             figure.set_figheight(HEIGHT * figure.get_figwidth())
 
     caption = panel.title[0].upper() + panel.title[1:]
-    return Picture(panel.name, f"{caption}: {about(shown)}.", draw)
+    return Picture(panel.name, f"{caption}: {about(selection)}.", draw)

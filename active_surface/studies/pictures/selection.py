@@ -1,4 +1,4 @@
-"""Shown: what of a sweep's results its picture shows."""
+"""Selection: what of a sweep's results its picture shows."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _even(values: FloatArray) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
+class Selection:
     """Results along at most two axes of a grid, or at points; repeats are along the last dimension.
 
     Numbers along an axis of a grid ascend.
@@ -98,7 +98,7 @@ class Shown:
     holds: BoolArray | None = None
 
     @classmethod
-    def of(cls, findings: Findings, x: str | None = None, y: str | None = None, column: str | None = None) -> Shown:
+    def of(cls, findings: Findings, x: str | None = None, y: str | None = None, column: str | None = None) -> Selection:
         """What is shown over the axes named x and y, by default the longest, of a column of the results.
 
         Raises ValueError, naming all of them, for names that there are not.
