@@ -16,11 +16,10 @@ from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study
 from active_surface.studies.pictures.findings import read_findings
 from active_surface.studies.pictures.selection import Selection
-from active_surface.views.prints.plots import plot
+from active_surface.views.prints.plots import plot, sweep_pictures
 from active_surface.views.prints.run_pictures import MARKS, courses, run_pictures
 from active_surface.views.prints.saved_portrait import portrait_of_saved
 from active_surface.views.prints.sheet import MM, drawn
-from active_surface.views.prints.sweep_pictures import sweep_pictures
 from coupling import read_case, run_case
 from coupling.display import display_surface
 from coupling.pictures.portrait import deflected_most, portrait_of
