@@ -99,14 +99,14 @@ def run_case(
         The case.
     output : path, optional
         Folder for NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png.
+    progress : Progress, optional
+        Reports the progress of a stage, for progress bars.
     csv : bool
         Also write the trajectory to NAME.csv.
     save_surface : bool
         Also write the moving surface, with the cells that the part came to, to NAME.surface.h5 (`read_surface`).
     forces : bool
         Also write the parts of the contact's force to the part's file and the CSV file (`Trajectory.contact_at`).
-    progress : Progress, optional
-        Reports the progress of a stage, for progress bars.
 
     Returns
     -------
