@@ -1,0 +1,86 @@
+"""The picture and the table of docs/howto/waves.md: how fast a wave carries a part, over its phase velocity.
+
+    .venv/bin/python docs/wave_pictures.py
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from coupling import build_friction, build_surface, read_case
+from coupling.run import build_part
+from particle import Drive, SurfaceMotion, Trajectory, simulate
+
+DOCS = Path(__file__).parent
+PAGE = DOCS / "howto/waves.md"
+WAVELENGTH, RAMP = 4e-3, 3  # m, cycles; of examples/wave.toml
+FREQUENCIES = (60, 120, 180, 240, 300, 340, 360, 370, 380, 390)  # Hz
+SETTLED, CYCLES = 20, 100  # cycles of the wave that are left out, and the last one
+MILLI, MICRO, G = 1e3, 1e6, 9.80665
+
+
+def wave(surface: SurfaceMotion, places: np.ndarray, stroke: float, frequency: float, way: int) -> SurfaceMotion:
+    """The surface with a wave that runs to the right (way 1) or to the left (-1)."""
+    phases = np.mod(-way * 2 * math.pi * places / WAVELENGTH, 2 * math.pi)
+    return surface.driven_by([Drive(stroke, frequency, "sine", phase=phase, ramp=RAMP) for phase in phases.tolist()])
+
+
+def speed(path: Trajectory, frequency: float, first: int = SETTLED) -> float:
+    """The mean speed [m/s] along x from one cycle to the last."""
+    ends = path.at([first / frequency, CYCLES / frequency]).position[:, 0]
+    return float(ends[1] - ends[0]) / ((CYCLES - first) / frequency)
+
+
+def main() -> None:
+    case = read_case(DOCS.parent / "examples/wave.toml")
+    surface, law, part = build_surface(case), build_friction(case), build_part(case)
+    places = np.array([actuator.position[0] for actuator in case.actuators])
+    stroke = case.actuators[0].stroke or 0.0
+
+    def follow(frequency: float, way: int, tolerance: float) -> Trajectory:
+        driven = wave(surface, places, stroke, frequency, way)
+        return simulate(driven, part, law, CYCLES / frequency, case.run.gravity, tolerance, after_detachment="fly")
+
+    lines = ["| phase velocity, m/s | acceleration / g | speed, um/s | tolerance 1e-11 | second half | flights |"]
+    lines.append("|---:|---:|---:|---:|---:|---:|")
+    speeds: dict[int, list[float]] = {1: [], -1: []}
+    for way in (1, -1):
+        for frequency in FREQUENCIES:
+            path, closer = follow(frequency, way, 1e-9), follow(frequency, way, 1e-11)
+            speeds[way].append(speed(closer, frequency))
+            shares = speed(path, frequency), speeds[way][-1], speed(closer, frequency, (SETTLED + CYCLES) // 2)
+            texts = (f"{MICRO * share:.1f}" for share in shares)
+            velocity, strength = way * WAVELENGTH * frequency, stroke * (2 * math.pi * frequency) ** 2 / G
+            flights = sum(event.kind.name == "LANDS" for event in closer.events)
+            lines.append(f"| {velocity:.2f} | {strength:.2f} | {' | '.join(texts)} | {flights} |")
+            print(lines[-1], flush=True)
+    begin, end = "<!-- speeds: generated -->", "<!-- speeds: end -->"
+    before, rest = PAGE.read_text().split(begin)
+    PAGE.write_text(f"{before}{begin}\n\n" + "\n".join(lines) + f"\n\n{end}{rest.split(end)[1]}")
+    draw(speeds, {frequency: follow(frequency, 1, 1e-11) for frequency in (180, 370)})
+
+
+def draw(speeds: dict[int, list[float]], paths: dict[int, Trajectory]) -> None:
+    figure = Figure(figsize=(10.0, 4.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    left, right = figure.subplots(1, 2)
+    for frequency, path in paths.items():
+        times = np.linspace(0.0, 0.2, 801)
+        moved = path.at(times).position[:, 0] - path.position[0, 0]
+        text = "in contact, with the wave" if moved[-1] > 0 else "hopping, against the wave"
+        left.plot(MILLI * times, MICRO * moved, label=f"{frequency} Hz: {text}")
+    left.set(xlabel="time, ms", ylabel="way along the wave's direction, um")
+    left.legend(frameon=False)
+    velocities = WAVELENGTH * np.array([-f for f in reversed(FREQUENCIES)] + list(FREQUENCIES))
+    right.plot(velocities, MILLI * np.array(speeds[-1][::-1] + speeds[1]), "o-", ms=4, color="#1b4f9c")
+    right.axhline(0.0, color="0.6", lw=0.8)
+    right.axvline(0.0, color="0.6", lw=0.8)
+    right.set(xlabel="phase velocity, m/s", ylabel="speed of the part, mm/s")
+    figure.savefig(DOCS / "waves.png", dpi=130)
+
+
+if __name__ == "__main__":
+    main()
