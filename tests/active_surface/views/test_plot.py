@@ -127,7 +127,7 @@ def pictured(request, tmp_path_factory):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("width", [60, 85, 180])
+@pytest.mark.parametrize("width", [60, pytest.param(85, marks=pytest.mark.slow), 180])
 def test_pictures_of_a_run_can_be_read(pictured, width):
     result, pictures = pictured
     assert [picture.name for picture in pictures if picture.name != "closeup"] == ["path", "time"]
