@@ -38,7 +38,7 @@ forget-coverage:
 
 # What else marches in plain Python, rivals, browsers, clusters, killed runs, long validation.
 long-tests: .venv/developer
-	$(PLAIN) $(COVERAGE) $(MARCHES)
+	NUMBA_DISABLE_JIT=1 $(PYTEST) $(COVERAGE) -m "not compiled" $(MARCHES)
 	$(PYTEST) --cov --cov-append -m slow
 
 # Compiled once, on one processor, before several processes would do so at a time.
