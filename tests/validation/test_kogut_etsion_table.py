@@ -58,7 +58,7 @@ def error(contact, load):
 CONTACTS = random_contacts(MANY)
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n != "paper")) for n in PRESETS])
 def test_the_friction_limit_is_exact_to_1e_8(name):
     contact = PRESETS[name]
     worst = max(error(contact, load) for load in random_loads(contact, 8, seed=1))
