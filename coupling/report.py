@@ -77,7 +77,7 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
         ),
         ("", _dynamics(s)),
         *([("", _drives(s))] if s.drives_over_first else []),
-        ("", f"top face and centre of mass add {_share(s.top_face_share)} to the pull on the part"),
+        ("", f"top face and centre of mass add {_share(s.top_face_share)} the mid-plane's pull on the part"),
         ("", f"the part's own force deflects the plate by {s.part_sag * MICRO:.1e} um"),
     ]
     if s.tipping:
@@ -220,7 +220,7 @@ def _range(ratios: Sequence[float]) -> str:
 
 
 def _share(ratio: float) -> str:
-    return f"{100 * ratio:.2g} %" if ratio < 2 else f"{ratio:.3g} times itself"
+    return f"{100 * ratio:.2g} % of" if ratio < 2 else f"{ratio:.3g} times"
 
 
 def _percent(share: float) -> str:

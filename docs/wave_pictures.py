@@ -1,6 +1,6 @@
 """The picture and the table of docs/howto/waves.md: how fast a wave carries a part, over its phase velocity.
 
-    .venv/bin/python docs/wave_pictures.py
+.venv/bin/python docs/wave_pictures.py
 """
 
 import math
