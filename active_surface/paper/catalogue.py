@@ -39,20 +39,20 @@ def modules_of(names: Sequence[str]) -> list[str]:
     Raises ValueError, naming every name that there is no figure of, as it was given.
     """
     known = [name for own in MODULES.values() for name in own]
-    wanted, wrong = set(), []
-    for given in names or [ALL]:
-        number = re.fullmatch(r"(?:fig\.?|figure)?\s*(\d+)[ab]?", given.strip().lower())
-        name = f"fig{int(number[1])}" if number else given.strip().lower()
+    chosen, wrong = set(), []
+    for text in names or [ALL]:
+        number = re.fullmatch(r"(?:fig\.?|figure)?\s*(\d+)[ab]?", text.strip().lower())
+        name = f"fig{int(number[1])}" if number else text.strip().lower()
         meant = near(name, known)
         if name in (*known, ALL):
-            wanted.add(name)
+            chosen.add(name)
         elif number and int(number[1]) in DRAWINGS:
-            wrong.append(f'"{given}" (figures 1, 2 and 7 to 10 are drawings)')
+            wrong.append(f'"{text}" (figures 1, 2 and 7 to 10 are drawings)')
         else:
-            wrong.append(f'"{given}"' + (f' (did you mean "{meant}"?)' if meant else ""))
+            wrong.append(f'"{text}"' + (f' (did you mean "{meant}"?)' if meant else ""))
     if wrong:
         raise ValueError(f"Figures must be among {', '.join(known)} or all; got {', '.join(wrong)}")
-    return [module for module, own in MODULES.items() if ALL in wanted or wanted & set(own)]
+    return [module for module, own in MODULES.items() if ALL in chosen or chosen & set(own)]
 
 
 def finder(module: str) -> Finder:

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.parameters import PARAMETERS, Effort, Parameters, Place
-from active_surface.paper.path import FloatArray, Path
+from active_surface.paper.path import Path
 from active_surface.paper.profiles import profile_outline, profile_surface
 from coupling import surface_motion
 from fem_plate import DiscShapes, Plate, PlateSection, Shapes

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from active_surface.arrays import FloatArray
 from particle import EventKind, Trajectory
-
-FloatArray = NDArray[np.float64]
 
 LAST_CYCLES: Final = 5  # in which a part must stay near the actuator to have converged
 

@@ -12,14 +12,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from meshes import Outline
 from particle import AnyDrive, SurfaceMotion
 from particle.drives import drive_table
 from particle.surface import NOWHERE, UNBUILT, WHOLE, BuiltCells, CellFit, CellPool
-
-FloatArray = NDArray[np.float64]
 
 SUPERPOSED, NEAREST = "superposed", "nearest"
 PER_PITCH = 2  # cells from one actuator to the next, so that the jump lies between cells
@@ -101,16 +99,16 @@ class _Maker:
             members = np.array([int(np.argmin(np.hypot(*(self.points - centre).T)))])
         return self._fit(centre, half, members), WHOLE
 
-    def _reached(self, centre: FloatArray, half: FloatArray) -> NDArray[np.bool_]:
+    def _reached(self, centre: FloatArray, half: FloatArray) -> BoolArray:
         """Which discs (2,) have a point in the cell."""
         away = np.maximum(np.abs(self.points - centre) - half, 0.0)
         return np.asarray(np.hypot(*away.T) < self.radius)
 
-    def _covered(self, centre: FloatArray, half: FloatArray) -> NDArray[np.bool_]:
+    def _covered(self, centre: FloatArray, half: FloatArray) -> BoolArray:
         """Which discs (2,) have all of the cell."""
         return np.asarray(np.hypot(*(np.abs(self.points - centre) + half).T) <= self.radius)
 
-    def _fit(self, centre: FloatArray, half: FloatArray, members: NDArray[np.int64]) -> CellFit:
+    def _fit(self, centre: FloatArray, half: FloatArray, members: IntArray) -> CellFit:
         rows = np.zeros((len(members), 6 + len(members)))
         for row, i in enumerate(members):
             (c_x, c_y), (h_x, h_y) = (centre - self.points[i]) / self.radius, half / self.radius

@@ -5,11 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from active_surface.paper.path import FloatArray
-
-BoolArray = NDArray[np.bool_]
+from active_surface.arrays import BoolArray, FloatArray
 
 
 class Split(NamedTuple):

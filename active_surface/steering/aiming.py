@@ -5,19 +5,17 @@ task -> surface -> approach, leg by leg: knobs, search -> case and path -> case 
 
 from __future__ import annotations
 
-from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 
-from active_surface.steering.aimed import Aimed
 from active_surface.steering.approach import Approach
 from active_surface.steering.paths import Paths
 from active_surface.steering.picture import draw_aim
-from active_surface.steering.result import check_free, drawn, prepared, with_scatter
+from active_surface.steering.result import Aimed
+from active_surface.steering.stages import check_free, drawn, prepared, searched, with_scatter
 from active_surface.steering.task import Task
 from coupling import ProgressCallback, no_progress
-from coupling.case import length_text, write_case
-from particle import SurfaceMotion, unbroken
+from coupling.case import length_text
+from particle import SurfaceMotion
 
 
 def aim(
@@ -60,8 +58,7 @@ def aim(
         return aim_over(prepared(task.case), task, threads, tell)
     file, picture = Path(output) / f"{task.name}_aimed.toml", Path(output) / f"{task.name}_aim.png"
     check_free((file, picture), overwrite)
-    result = aim_over(prepared(task.case), task, threads, tell, file)
-    return drawn(result, draw_aim, picture)
+    return drawn(aim_over(prepared(task.case), task, threads, tell, file), draw_aim, picture)
 
 
 def aim_over(
@@ -71,34 +68,19 @@ def aim_over(
     tell: ProgressCallback = no_progress,
     file: Path | None = None,
 ) -> Aimed:
-    """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
-    approach, interrupted = Approach(surface, task, threads, tell), False
-    result: Aimed | None = None
-    try:
-        with ExitStack() as shield:
-            try:
-                approach.run()
-            except KeyboardInterrupt:
-                shield.enter_context(unbroken())
-                interrupted = True
-            else:
-                shield.enter_context(unbroken())
-            case, path = approach.close()
-            case = case.model_copy(update={"name": f"{task.name}_aimed"})
-            result = Aimed(
-                task=task,
-                case=case,
-                trajectory=path,
-                legs=approach.legs,
-                paths=approach.paths,
-                interrupted=interrupted,
-            )
-            if file is not None:
-                x, y = (length_text(place) for place in task.target)
-                said = f"The drives bring the part to ({x}, {y}), but for {length_text(result.distance)}."
-                result = replace(result, files=(write_case(case, file, said),))
-    except KeyboardInterrupt:  # what was found before it stays
-        if result is None:
-            raise
-        return replace(result, interrupted=True)
-    return with_scatter(result, Paths(case, surface, threads), task.target, task.settings)
+    """The same over an existing surface; writes a case file at most, before it looks at the scatter."""
+    approach = Approach(surface, task, threads, tell)
+
+    def close() -> Aimed:
+        case, path = approach.close()
+        case = case.model_copy(update={"name": f"{task.name}_aimed"})
+        return Aimed(task=task, case=case, trajectory=path, legs=approach.legs, paths=approach.paths)
+
+    result = searched(approach.run, close, file, _comment)
+    return with_scatter(result, Paths(result.case, surface, threads), task.target, task.settings)
+
+
+def _comment(result: Aimed) -> str:
+    """The first line of a file of the drives: how near they bring the part to the target."""
+    x, y = map(length_text, result.task.target)
+    return f"The drives bring the part to ({x}, {y}), but for {length_text(result.distance)}."

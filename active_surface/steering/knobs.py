@@ -7,12 +7,10 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray, IntArray
 from active_surface.steering.tables import Settings
 from coupling.case import ActuatorCase, Case
-
-FloatArray = NDArray[np.float64]
 
 SLOWEST, FASTEST = 0.2, 2.0  # of an actuator's own frequency
 LATEST = 2.0  # of its own delay
@@ -52,7 +50,7 @@ class Knobs:
         return [(knob.low, knob.high + (not knob.smooth)) for knob in self.knobs]
 
     @property
-    def smooth(self) -> NDArray[np.int64]:
+    def smooth(self) -> IntArray:
         """The indices of the smooth knobs."""
         return np.array([k for k, knob in enumerate(self.knobs) if knob.smooth], dtype=np.int64)
 
@@ -90,13 +88,13 @@ def _bounds(actuator: ActuatorCase, settings: Settings, duration: float) -> dict
     own = actuator.frequency or 0.0
     frequency = settings.frequency or (SLOWEST * own, FASTEST * own)
     stroke = actuator.stroke or 0.0
-    most = max(1, math.floor(frequency[1] * duration))
+    max_cycles = max(1, math.floor(frequency[1] * duration))
     low, high = settings.cycles
     return {
         "frequency": frequency,
         "stroke": settings.stroke or (min(0.0, stroke), max(0.0, stroke)),
         "delay": settings.delay or (0.0, LATEST * actuator.delay),
-        "cycles": (float(min(low, most)), float(min(high, most))),
+        "cycles": (float(min(low, max_cycles)), float(min(high, max_cycles))),
     }
 
 

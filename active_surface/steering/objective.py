@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.steering.knobs import Knobs
 from active_surface.steering.paths import Disturbance, Paths, cost
 from active_surface.steering.scatter import SEARCHED, disturbances
 from active_surface.steering.task import Task
 from coupling import ProgressCallback
-
-FloatArray = NDArray[np.float64]
 
 SAMPLES = 16  # disturbed runs of each trial, if a quantile is minimised
 

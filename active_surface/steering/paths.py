@@ -6,16 +6,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from active_surface.arrays import FloatArray
 from active_surface.studies import start_faults
 from coupling import build_drives, build_friction
 from coupling.case import ActuatorCase, Case
 from particle import Micropart, Outcome, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact, ScaledFriction
-
-FloatArray = NDArray[np.float64]
 
 AT_ONCE = 256  # paths in a batch; larger ones are slower
 SETTLING = 1e-3  # s: times its speed, the extra distance of a part that still moves

@@ -10,11 +10,8 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
-from numpy.typing import NDArray
 
-from active_surface.steering.aimed import Aimed
-from active_surface.steering.planned import Planned
-from active_surface.steering.result import SteeringResult
+from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.scatter import Scatter
 from coupling.case import Case, PlateCase
 from coupling.pictures import draw_path, is_visible, map_axes, save_picture
@@ -22,7 +19,6 @@ from fem_plate import frame_around, mark_actuators, marker_size
 from meshes import Drawing, draw_rim, quantity_text, rim_curves, unit_for
 from particle import HALO, Trajectory
 
-FloatArray = NDArray[np.float64]
 Place = tuple[float, float]
 
 SIZE = 5.6  # inches, of a panel
@@ -45,27 +41,26 @@ NUMBER: dict[str, Any] = {"textcoords": "offset points", "fontsize": 9, "path_ef
 ENDS: dict[str, Any] = {"marker": "o", "color": "#1b4f9c", "markersize": 4, "markeredgewidth": 0, "alpha": 0.6}
 
 
-def draw_aim(found: Aimed, path: Path) -> Path:
+def draw_aim(result: Aimed, path: Path) -> Path:
     """Draw the result of a search into a PNG file; return its path."""
-    title = f"{found.task.name}: the part ends {_off(found, found.task.target)}"
-    return _draw(found, title, [found.task.target], path)
+    title = f"{result.task.name}: the part ends {_off(result, result.task.target)}"
+    return _draw(result, title, [result.task.target], path)
 
 
-def draw_plan(found: Planned, path: Path) -> Path:
+def draw_plan(result: Planned, path: Path) -> Path:
     """Draw the result of a plan into a PNG file; return its path."""
-    route = found.route
-    targets = found.targets
+    route = result.route
+    targets = result.targets
     which = "the last of them" if len(targets) == len(route.through) else f"way-point {len(targets) - 1}"
-    count = (
-        f"{sum(found.reached)} of {len(route.through)} way-points within {quantity_text(route.settings.tolerance, 'm')}"
-    )
-    return _draw(found, f"{route.name}: {count}; the part ends {_off(found, targets[-1], which)}", targets, path)
+    tolerance = quantity_text(route.settings.tolerance, "m")
+    count = f"{sum(result.reached)} of {len(route.through)} way-points within {tolerance}"
+    return _draw(result, f"{route.name}: {count}; the part ends {_off(result, targets[-1], which)}", targets, path)
 
 
-def _draw(found: SteeringResult, title: str, targets: Sequence[Place], path: Path) -> Path:
+def _draw(result: SteeringResult, title: str, targets: Sequence[Place], path: Path) -> Path:
     """Draw a path over its plate with the targets [m] in their order, and the ends of disturbed runs, into a file."""
-    assert found.scatter is not None
-    case, trajectory, scatter = found.case, found.trajectory, found.scatter
+    assert result.scatter is not None
+    case, trajectory, scatter = result.case, result.trajectory, result.scatter
     figure = Drawing(figsize=(2 * SIZE + 0.8, SIZE + 0.5))
     axes = [figure.add_subplot(1, 2, k + 1) for k in range(2)]
     keys = _draw_plate(axes[0], case, trajectory, targets)
@@ -114,11 +109,11 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
     spread = float(np.quantile(np.hypot(*(np.vstack([off, end]) - middle).T), SHARE))
     missed = float(np.hypot(*middle)) > FAR * spread
     if missed:
-        centre, shown = middle, max(spread, SHARE_OF_WAY * float(np.hypot(*middle)))
+        centre, reach = middle, max(spread, SHARE_OF_WAY * float(np.hypot(*middle)))
     else:
         centre = np.zeros(2)
-        shown = max(float(np.quantile(np.hypot(*off.T), SHARE)), float(np.hypot(*end)), *circles.values())
-    side = ROOM * max(shown, MIN_FRAME)
+        reach = max(float(np.quantile(np.hypot(*off.T), SHARE)), float(np.hypot(*end)), *circles.values())
+    side = ROOM * max(reach, MIN_FRAME)
     unit = unit_for(side + float(np.hypot(*centre)), "m")
     map_axes(axes, unit, " from the target")
     keys: list[Artist] = []
@@ -144,7 +139,7 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
     return keys
 
 
-def _off(found: SteeringResult, target: Place, name: str = "the target") -> str:
+def _off(result: SteeringResult, target: Place, name: str = "the target") -> str:
     """How far from a target [m] the part ends, in words."""
-    away = float(np.hypot(*(found.trajectory.position[-1] - target)))
+    away = float(np.hypot(*(result.trajectory.position[-1] - target)))
     return f"{quantity_text(away, 'm')} from {name}" if away > 0 else f"at {name}"

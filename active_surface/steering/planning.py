@@ -6,21 +6,19 @@ route -> surface -> leg by leg: task -> approach -> schedule so far -> place rea
 from __future__ import annotations
 
 import math
-from contextlib import ExitStack
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from active_surface.steering.approach import Approach, next_start
 from active_surface.steering.paths import Paths, path_of, settled
 from active_surface.steering.picture import draw_plan
-from active_surface.steering.planned import Planned
-from active_surface.steering.result import check_free, drawn, prepared, with_scatter
+from active_surface.steering.result import Planned
 from active_surface.steering.route import Route
 from active_surface.steering.schedule import Leg, scheduled
+from active_surface.steering.stages import check_free, drawn, prepared, searched, with_scatter
 from coupling import ProgressCallback, no_progress
-from coupling.case import Case, length_text, write_case
-from particle import SurfaceMotion, Trajectory, unbroken
+from coupling.case import Case, length_text
+from particle import SurfaceMotion, Trajectory
 
 
 def plan(
@@ -63,8 +61,7 @@ def plan(
         return plan_over(prepared(route.case), route, threads, tell)
     file, picture = Path(output) / f"{route.name}_planned.toml", Path(output) / f"{route.name}_plan.png"
     check_free((file, picture), overwrite)
-    result = plan_over(prepared(route.case), route, threads, tell, file)
-    return drawn(result, draw_plan, picture)
+    return drawn(plan_over(prepared(route.case), route, threads, tell, file), draw_plan, picture)
 
 
 def plan_over(
@@ -74,25 +71,9 @@ def plan_over(
     tell: ProgressCallback = no_progress,
     file: Path | None = None,
 ) -> Planned:
-    """The same over a surface that is there already; writes a case file at most, which is there before the scatter."""
-    work, interrupted = _Work(surface, route, threads, tell), False
-    result: Planned | None = None
-    try:
-        with ExitStack() as shield:
-            try:
-                work.run()
-            except KeyboardInterrupt:
-                shield.enter_context(unbroken())
-                interrupted = True
-            else:
-                shield.enter_context(unbroken())
-            result = replace(work.close(), interrupted=interrupted)
-            if file is not None:
-                result = replace(result, files=(write_case(result.case, file, _comment(result)),))
-    except KeyboardInterrupt:  # what was found before it stays
-        if result is None:
-            raise
-        return replace(result, interrupted=True)
+    """The same over an existing surface; writes a case file at most, before it looks at the scatter."""
+    work = _Work(surface, route, threads, tell)
+    result = searched(work.run, work.close, file, _comment)
     return with_scatter(result, Paths(result.case, surface, threads), result.targets[-1], route.settings)
 
 
@@ -175,8 +156,8 @@ def _comment(result: Planned) -> str:
     """What a file of the drives begins with: how near they bring the part to each way-point, and why no farther."""
     legs = zip(result.route.through, result.distances, strict=False)
     places = [f"({length_text(x)}, {length_text(y)}) but for {length_text(off)}" for (x, y), off in legs]
-    said = [f"The drives carry the part over {', '.join(places)}."] if places else []
-    return "\n".join([*said, result.failure] if result.failure else said)
+    sentences = [f"The drives carry the part over {', '.join(places)}."] if places else []
+    return "\n".join([*sentences, result.failure] if result.failure else sentences)
 
 
 def _tell_leg(tell: ProgressCallback, leg: int, legs: int, done: int, of: int) -> None:

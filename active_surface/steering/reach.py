@@ -7,12 +7,11 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from active_surface.arrays import FloatArray
 from coupling.case import AnnulusCase, Case, DiscCase, EllipseCase, PlateCase, RectangleCase, length_text
 
-FloatArray = NDArray[np.float64]
 Direction = tuple[float, float]
 
 ON_LINE: Final = 1e-12  # of the largest distance from the centre: tolerance of lying on the line

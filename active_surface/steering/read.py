@@ -10,9 +10,22 @@ from typing import Any
 from active_surface.steering.route import Route
 from active_surface.steering.tables import AimTable, AimTables, Settings
 from active_surface.steering.task import Mistake, Task, misplaced, mistakes
-from coupling.case import UNITS_REQUIRED, Case, CaseError, errors_of, parse, read_case, right_value, validate
+from coupling.case import (
+    UNITS_REQUIRED,
+    Case,
+    CaseError,
+    Quantity,
+    errors_of,
+    parse,
+    quoted,
+    read_case,
+    right_value,
+    validate,
+)
 
 Place = tuple[float, float]
+
+LENGTH = Quantity("m", "150 um")
 
 
 def read_task(path: str | os.PathLike[str], target: Place | None = None, quantile: float | None = None) -> Task:
@@ -39,8 +52,8 @@ def read_task(path: str | os.PathLike[str], target: Place | None = None, quantil
     ValueError
         The target does not suit the case.
     """
-    case, settings, told = read_settings(path, target is None)
-    goal = target or told
+    case, settings, own_target = read_settings(path, target is None)
+    goal = target or own_target
     if goal is None:
         raise ValueError("the target is missing; it must be two lengths, as --target 100,-50 or in the file's [aim]")
     if quantile is not None:
@@ -117,3 +130,26 @@ def _right(table: Mapping[str, Any]) -> Settings:
     valid = {key: right_value(AimTable, key, table, UNITS_REQUIRED) for key in Settings.model_fields}
     known = {key: value for key, value in valid.items() if value is not None}
     return Settings.model_construct(**({"stroke": (0.0, 0.0)} if "stroke" in table else {}) | known)
+
+
+def read_place(text: str, option: str) -> Place:
+    """The place [m] in a text such as 100,-50: two lengths, in um or with their units; ValueError names the option."""
+    message = f'{option} must be two lengths, x and y, such as 100,-50 (um) or "0.1 mm,-50 um"; got {quoted(text)}'
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise ValueError(message)
+    lengths = []
+    for part in parts:
+        try:
+            lengths.append(LENGTH.convert(part, part.strip(), "um") if _is_number(part) else LENGTH.parse(part))
+        except ValueError as error:
+            raise ValueError(f"{message}, whose {part.strip() or 'empty part'} {error}") from None
+    return lengths[0], lengths[1]
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

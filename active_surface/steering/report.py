@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from active_surface.steering.aimed import Aimed
-from active_surface.steering.planned import Planned
-from active_surface.steering.result import SteeringResult
+from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.scatter import Scatter
 from coupling.case import ActuatorCase
 
@@ -82,11 +80,11 @@ def plan_lines(result: Planned) -> list[tuple[str, str]]:
         where += f", {_verdict(distance, result.route.settings.tolerance)}"
         rows.append((f"leg {k}", where))
     if result.failure:
-        label, _, said = result.failure.partition(": ")
-        rows.append((label, said))
+        label, _, reason = result.failure.partition(": ")
+        rows.append((label, reason))
     tolerance = f"{result.route.settings.tolerance * MICRO:g} um"
     count = f"{sum(result.reached)} of {len(result.route.through)} way-points within {tolerance}; {result.paths} paths"
-    rows.append(("found", count + (", stopped by Ctrl-C" if result.interrupted else "")))
+    rows.append(("reached", count + (", stopped by Ctrl-C" if result.interrupted else "")))
     rows.append(("outcome", f"{result.trajectory.outcome}. {result.trajectory.sentence}"))
     return rows + _last_lines(result)
 
@@ -101,12 +99,12 @@ def _common(result: SteeringResult) -> dict[str, Any]:
 
 def _last_lines(result: SteeringResult) -> list[tuple[str, str]]:
     scatter = "not looked for, after Ctrl-C" if result.scatter is None else scatter_line(result.scatter)
-    warnings = [("warning", said) for said in result.warnings]
+    warnings = [("warning", text) for text in result.warnings]
     return [("scatter", scatter), *(("wrote", str(file)) for file in result.files), *warnings]
 
 
 def _verdict(distance: float, tolerance: float) -> str:
-    return f"{'within' if distance <= tolerance else 'not within'} the {tolerance * MICRO:g} um wanted"
+    return f"{'within' if distance <= tolerance else 'not within'} the {tolerance * MICRO:g} um tolerance"
 
 
 def point(place: tuple[float, float]) -> str:
@@ -119,10 +117,10 @@ def scatter_line(scatter: Scatter) -> str:
     shares = {"half": 0.5, "90 %": 0.9, "all": 1.0}
     result = {name: scatter.quantile(share) * MICRO for name, share in shares.items()}
     within = ", ".join(f"{name} within {away:.3g} um" for name, away in result.items() if math.isfinite(away))
-    said = [f"{within} of the target"] if within else []
-    said += [f"{scatter.lost} lost"] if scatter.lost else []
+    parts = [f"{within} of the target"] if within else []
+    parts += [f"{scatter.lost} lost"] if scatter.lost else []
     count = len(scatter.distance)
-    return f"{'; '.join(said)} ({count} runs with friction and strokes up to 1 %, starts up to 1 um off)"
+    return f"{'; '.join(parts)} ({count} runs with friction and strokes up to 1 %, starts up to 1 um off)"
 
 
 def _drive(actuator: ActuatorCase) -> str:

@@ -1,20 +1,20 @@
-"""Results: what aims and plans have in common, a case and its path."""
+"""Results of aims and plans: a case with the best drives, its path, and how near this comes to the targets."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+import math
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
-from active_surface.steering.paths import Paths
-from active_surface.steering.scatter import REPORTED, Scatter, disturbances
-from active_surface.steering.tables import Settings
-from coupling import build_friction, build_scene, follow_part, run_case, warnings
+from active_surface.steering.paths import settled
+from active_surface.steering.route import Place, Route
+from active_surface.steering.scatter import Scatter
+from active_surface.steering.schedule import Leg
+from active_surface.steering.task import Task
 from coupling.case import Case
-from particle import SurfaceMotion, Trajectory, interruptible
+from particle import Trajectory
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -34,61 +34,68 @@ class SteeringResult:
     files: tuple[Path, ...] = ()
 
 
-Kind = TypeVar("Kind", bound=SteeringResult)
-Place = tuple[float, float]
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Aimed(SteeringResult):
+    """The case with the drives of an aim, its path, and how far it ends from the target.
+
+    Parameters
+    ----------
+    legs : tuple
+        The legs of the way, one after the other. The drives of a single leg are cycles, those of several are
+        segments.
+    """
+
+    task: Task
+    legs: tuple[Leg, ...]
+
+    @property
+    def distance(self) -> float:
+        """From the path's end to the target [m]."""
+        return float(np.hypot(*(self.trajectory.position[-1] - self.task.target)))
+
+    @property
+    def reached(self) -> bool:
+        """Whether the part comes to rest for good within the tolerance of the target."""
+        return self.distance <= self.task.settings.tolerance and settled(self.trajectory)
 
 
-def prepared(case: Case) -> SurfaceMotion:
-    """The moving surface of a case; compiles all that paths need, so that Ctrl-C works from then on."""
-    surface = interruptible(build_scene, case).surface
-    interruptible(follow_part, case, surface, build_friction(case))
-    return surface
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Planned(SteeringResult):
+    """The case with the schedule of a plan, its path, and how each leg ended.
 
+    Parameters
+    ----------
+    arrivals : tuple of float
+        When the part comes to rest for good at each way-point, or beside it, s.
+    tried : int
+        Number of way-points with drives, including one on whose way the path failed.
+    failure : str
+        Why there are fewer arrivals than way-points; empty if there are not, or if Ctrl-C came.
+    """
 
-def with_scatter(result: Kind, paths: Paths, target: Place, settings: Settings) -> Kind:
-    """The result with its scatter about a target [m]; without it after Ctrl-C."""
-    if result.interrupted:
-        return result
-    try:
-        return replace(result, scatter=scattered(paths, result.case, target, settings.scatter, settings.seed))
-    except KeyboardInterrupt:
-        return replace(result, interrupted=True)
+    route: Route
+    arrivals: tuple[float, ...]
+    tried: int
+    failure: str = ""
 
+    @property
+    def targets(self) -> tuple[Place, ...]:
+        """The way-points [m] for which there are drives: the last of them is where these are to end."""
+        return self.route.through[: self.tried]
 
-def drawn(result: Kind, draw: Callable[[Kind, Path], Path], picture: Path) -> Kind:
-    """The result with its picture and the warnings of a run; without them after Ctrl-C."""
-    if result.interrupted:
-        return result
-    try:
-        cautions = tuple(warnings(interruptible(run_case, result.case).summary))
-        result = replace(result, warnings=cautions)
-        if result.scatter is not None:
-            result = replace(result, files=(*result.files, draw(result, picture)))
-    except KeyboardInterrupt:
-        return replace(result, interrupted=True)
-    except OSError as error:
-        return replace(result, warnings=(*result.warnings, f"The picture could not be written: {error}"))
-    return result
+    @property
+    def distances(self) -> list[float]:
+        """From the part to each way-point [m] when it has arrived there."""
+        there = self.trajectory.at(self.arrivals).position
+        ways = zip(there.tolist(), self.route.through, strict=False)  # to those where it has arrived
+        return [math.dist(place, target) for place, target in ways]
 
+    @property
+    def reached(self) -> list[bool]:
+        """Whether it arrived at each way-point within the tolerance."""
+        return [distance <= self.route.settings.tolerance for distance in self.distances]
 
-def check_free(files: tuple[Path, ...], overwrite: bool) -> None:
-    """Raise ValueError before the search where results would be lost or could not be written."""
-    for file in files:
-        if file.is_dir():
-            raise ValueError(f"Input output must be free for {file.name}; got {file.parent}, where that is a folder")
-    existing = [file.name for file in files if file.exists()]
-    if existing and not overwrite:
-        names = " and ".join(existing)
-        raise ValueError(
-            f"Input output must be free of other results; got {files[0].parent}, which has {names}: "
-            "--overwrite replaces them"
-        )
-
-
-def scattered(paths: Paths, case: Case, target: Place, count: int, seed: int) -> Scatter:
-    """The ends of `count` disturbed runs of a case, and their distances from a target [m]."""
-    ways = disturbances(count, len(case.actuators), seed, REPORTED)
-    trajectories = paths.of([(case.actuators, way) for way in ways])
-    ends = np.array([path.position[-1] for path in trajectories])
-    lost = np.array([path.time[-1] < case.run.duration for path in trajectories])
-    return Scatter(ends, np.where(lost, np.inf, np.hypot(*(ends - target).T)))
+    @property
+    def complete(self) -> bool:
+        """Whether every way-point was reached, within the tolerance."""
+        return len(self.arrivals) == len(self.route.through) and all(self.reached)

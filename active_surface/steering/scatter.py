@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.steering.paths import Disturbance
-
-FloatArray = NDArray[np.float64]
 
 FRICTION, STROKES = 0.01, 0.01  # largest relative changes of a run
 START = 1e-6  # m, its largest displacement

@@ -10,13 +10,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import differential_evolution
 
+from active_surface.arrays import FloatArray
 from active_surface.steering.knobs import Knobs
 from active_surface.steering.objective import Objective
 
-FloatArray = NDArray[np.float64]
 Seed = tuple[int, ...]
 
 POPULATION = 8  # times the number of knobs

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.steering.knobs import shortest
 from active_surface.steering.reach import off_the_line
 from active_surface.steering.tables import Settings
@@ -24,7 +24,6 @@ from coupling.case import (
     length_text,
 )
 
-FloatArray = NDArray[np.float64]
 Mistake = tuple[str, str]
 """A key of [aim], and what is wrong with it."""
 
@@ -84,13 +83,13 @@ def mistakes(case: Case, settings: Settings, target: tuple[float, float] | None)
         return
     if case.run.scheme != "events":
         yield "case", f'must have scheme = "events", by which drives are found; got "{case.run.scheme}"'
-    told = list(_actuator_mistakes(case, settings))
-    yield from told
+    unfit = list(_actuator_mistakes(case, settings))
+    yield from unfit
     if target is None:
         return
     placed = list(misplaced(case, target))
     yield from (("target", message) for message in placed)
-    if told:
+    if unfit:
         return
     chosen = movers(case, settings, target)
     soonest, duration = shortest(case, settings, chosen), case.run.duration
@@ -118,8 +117,8 @@ def _actuator_mistakes(case: Case, settings: Settings) -> Iterator[Mistake]:
     for k in settings.actuators or ():
         if k >= count:
             yield "actuators", f"must be numbers of actuators from 0 to {count - 1}; got {k}"
-        elif said := _unfit(case.actuators[k], settings):
-            yield "actuators", f"must be driven by a stroke that goes up and down; that of actuator {k} {said}"
+        elif reason := _unfit(case.actuators[k], settings):
+            yield "actuators", f"must be driven by a stroke that goes up and down; that of actuator {k} {reason}"
     if settings.actuators is None and all(_unfit(actuator, settings) for actuator in case.actuators):
         yield "case", "must have an actuator whose stroke goes up and down, or whose bounds are given; it has none"
 

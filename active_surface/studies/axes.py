@@ -23,9 +23,9 @@ class Axes:
         self._sampling = sampling
         self._lattice = lattice_of(case) if case else (None, 0)
         self._fields: list[tuple[int, str, Field]] = []
-        found = [self._axis(case, k, table) for k, table in enumerate(tables)] if case else []
-        self.whole = bool(found) and None not in found
-        axes = [(k, axis) for k, axis in enumerate(found) if axis]
+        per_table = [self._axis(case, k, table) for k, table in enumerate(tables)] if case else []
+        self.whole = bool(per_table) and None not in per_table
+        axes = [(k, axis) for k, axis in enumerate(per_table) if axis]
         self.mistakes += [*self._doubled(), *_unlike(axes, sampling)]
         # What the plate depends on varies slowest: points that follow each other share it.
         self.axes = tuple(sorted((axis for _, axis in axes), key=lambda axis: not (case and is_deep(case, axis))))
@@ -120,7 +120,7 @@ def _read(field: Field, written: Sequence[Any]) -> tuple[list[Value], list[tuple
 def _unlike(axes: Sequence[tuple[int, Axis]], sampling: Any) -> Iterator[Mistake]:
     """What in a list has not as many values as the first axis."""
     for k, axis in axes[1:] if sampling == "list" else ():
-        most = len(axes[0][1].values)
-        if len(axis.values) != most:
+        count = len(axes[0][1].values)
+        if len(axis.values) != count:
             key = "values"
-            yield ("axes", k, key), f'must be as many as those of the first axis with sampling = "list", {most}'
+            yield ("axes", k, key), f'must be as many as those of the first axis with sampling = "list", {count}'

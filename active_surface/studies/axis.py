@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.studies.field import Field
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Any, Final
 import h5netcdf
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.studies.axis import Axis
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
-from active_surface.studies.slabs import slabs
 from active_surface.studies.study import Study, versions
 from coupling import whole_file
 from coupling.case import Case, PlateCase
@@ -25,6 +24,7 @@ from meshes import rim_curves
 if TYPE_CHECKING:
     import xarray
 
+
 KIND_ATTRIBUTE: Final = "active-surface sweep"
 ENGINE: Final = "h5netcdf"
 LOGARITHMIC: Final = "logarithmic"
@@ -32,6 +32,7 @@ LABELS: Final = ("axes", "study", "case")  # attributes that say how the numbers
 RIM_PIECES: Final = 200  # of the longer side of the plate's box: how fine the rim is
 AT_ONCE: Final = 65536  # points whose coordinates are written together
 ROOM: Final = 1_000_000  # bytes, for what does not grow with the points
+Slab = tuple[slice, ...]
 
 
 def write_dataset(
@@ -129,7 +130,7 @@ def _about(study: Study) -> dict[str, Any]:
     }
 
 
-def _rim(case: Case) -> NDArray[np.float64]:
+def _rim(case: Case) -> FloatArray:
     """The curves of the plate's rim (n, 2) [m], with nan after each; empty: there is a platform."""
     if not isinstance(case.plate, PlateCase):
         return np.empty((0, 2))
@@ -196,3 +197,30 @@ def read_dataset(path: Path, axes: Sequence[str] | None = None) -> xarray.Datase
     renamed = dataset.rename(names).assign_attrs(axes=" ".join(axes))
     renamed.set_close(dataset.close)
     return renamed
+
+
+def slabs(shape: Sequence[int], start: int, stop: int) -> Iterator[tuple[Slab, int]]:
+    """Yield the boxes, in order, that elements start to stop - 1 of an array make up, each with its number of them."""
+    if start >= stop:
+        return
+    if len(shape) == 1:
+        yield (slice(start, stop),), stop - start
+        return
+    inner = math.prod(shape[1:])
+    first, last = start // inner, (stop - 1) // inner
+    if first == last:
+        yield from _within(first, slabs(shape[1:], start - first * inner, stop - first * inner))
+        return
+    whole_from, whole_to = -(-start // inner), stop // inner
+    if start % inner:
+        yield from _within(first, slabs(shape[1:], start % inner, inner))
+    if whole_to > whole_from:
+        rest = tuple(slice(0, n) for n in shape[1:])
+        yield (slice(whole_from, whole_to), *rest), (whole_to - whole_from) * inner
+    if stop % inner:
+        yield from _within(last, slabs(shape[1:], 0, stop % inner))
+
+
+def _within(index: int, inner: Iterator[tuple[Slab, int]]) -> Iterator[tuple[Slab, int]]:
+    for slab, count in inner:
+        yield (slice(index, index + 1), *slab), count

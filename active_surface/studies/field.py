@@ -56,10 +56,10 @@ class Field:
             raise ValueError("; ".join(message_of(detail, value, Case) for detail in error.errors())) from None
         if self.kind == "text" and isinstance(value, str):
             return value  # also where it is read as an expression
-        wanted = {"number": (int, float), "whole": (int,), "text": (str,)}[self.kind]
-        if not isinstance(read, wanted):
-            said = {"number": "number", "whole": "whole number", "text": "text"}[self.kind]
-            raise ValueError(f"must be one {said}; got {quoted(value)}")
+        types = {"number": (int, float), "whole": (int,), "text": (str,)}[self.kind]
+        if not isinstance(read, types):
+            name = {"number": "number", "whole": "whole number", "text": "text"}[self.kind]
+            raise ValueError(f"must be one {name}; got {quoted(value)}")
         return float(read) if self.kind == "number" else read
 
 
@@ -74,9 +74,9 @@ def find_field(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Fiel
     if path in FIXED:
         raise ValueError(f"must be a field that can be varied; got {path}, which tells {FIXED[path]}")
     fields = {key: field for key, field in Case.model_fields.items() if key not in LEFT_OUT}
-    found = list(_ends(keys, (), case, fields, lattice))
-    locations = tuple(location for location, *_ in found)
-    _, owner, key, annotation, metadata = found[0]
+    ends = list(_ends(keys, (), case, fields, lattice))
+    locations = tuple(location for location, *_ in ends)
+    _, owner, key, annotation, metadata = ends[0]
     quantity, kind = quantity_of(annotation, metadata), _kind(annotation, metadata)
     if kind is None:
         raise ValueError(f"must be a single value; got {path}, which is a list or table; name one in it")

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from active_surface.arrays import FloatArray, IntArray
 from active_surface.studies.axis import Axis
-
-FloatArray = NDArray[np.float64]
 
 Sampling = Literal["grid", "list", "random", "sobol"]
 SAMPLED, JITTERED = 0, 1  # independent streams of random numbers
@@ -76,7 +75,7 @@ class Points:
         radius, angle = self.jitter * np.sqrt(draws[:, 0]), 2 * math.pi * draws[:, 1]
         return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
 
-    def _random(self, at: NDArray[np.int64]) -> FloatArray:
+    def _random(self, at: IntArray) -> FloatArray:
         rows = [np.random.default_rng((self.seed, SAMPLED, k)).random(len(self.axes)) for k in at.tolist()]
         return np.array(rows).reshape(len(at), len(self.axes))
 

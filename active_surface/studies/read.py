@@ -65,25 +65,25 @@ def read_study(path: str | os.PathLike[str], case: Case | None = None) -> Study:
 def _study(path: Path, text: str, data: Mapping[str, Any], case: Case | None) -> tuple[Study | None, list[Mistake]]:
     """The study, None where it is not known, and what is wrong with it beyond each table by itself."""
     table = data.get("study")
-    given = StudyTable.values_of(table if isinstance(table, dict) else {}, UNITS_REQUIRED)
+    entries = StudyTable.values_of(table if isinstance(table, dict) else {}, UNITS_REQUIRED)
     mistakes: list[Mistake] = []
     if case is None:
-        case, mistakes = _case(path, given["case"])
+        case, mistakes = _case(path, entries["case"])
     written = data.get("axes")
     tables = [table for table in written if isinstance(table, dict)] if isinstance(written, list) else []
-    axes = Axes(case, [AxisTable.values_of(table, UNITS_REQUIRED) for table in tables], given["sampling"])
+    axes = Axes(case, [AxisTable.values_of(table, UNITS_REQUIRED) for table in tables], entries["sampling"])
     mistakes += axes.mistakes
     if written == []:
         mistakes.append((("axes",), "must be at least one table, written [[axes]]; got none"))
-    if case is None or not axes.whole or WRONG in given.values():
+    if case is None or not axes.whole or WRONG in entries.values():
         return None, mistakes
     points = Points(
         axes.axes,
-        given["sampling"],
-        given["points"] or 0,
-        given["repeats"],
-        given["jitter"],
-        given["seed"],
+        entries["sampling"],
+        entries["points"] or 0,
+        entries["repeats"],
+        entries["jitter"],
+        entries["seed"],
     )
     if len(points) > MAX_PATHS:
         mistakes.append((("axes",), f"must make at most {MAX_PATHS} paths; got {len(points)}"))

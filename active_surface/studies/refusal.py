@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from active_surface.arrays import FloatArray
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Variants
 from coupling import friction_law
@@ -26,8 +26,6 @@ from coupling.case import (
     mistakes_in,
 )
 from particle.friction import Contact
-
-FloatArray = NDArray[np.float64]
 
 TRIED = 64  # points, before the work begins
 LAWS = 256  # kept

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from active_surface.arrays import BoolArray, FloatArray
 from active_surface.studies.record import COLUMNS, OUTCOMES, REFUSED
 from coupling.case import Quantity, quoted
 
 if TYPE_CHECKING:
     import xarray
 
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 EXAMPLES: Final = {"m": "1 um", "s": "1 ms", "N": "1 uN"}
 OF_REFUSED: Final = ("outcome", "mistakes")

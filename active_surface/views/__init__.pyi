@@ -4,4 +4,4 @@ from .pages.study_page import write_study_page as write_study_page
 from .prints.plots import plot as plot
 
 # Not public: for the packages that build on this one.
-from .found import is_of as is_of, result_of as result_of
+from .result_file import is_of as is_of, result_of as result_of

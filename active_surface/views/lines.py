@@ -6,14 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray, IntArray
 from active_surface.views.rounding import round_above
 from active_surface.views.smooth import Smooth
-from coupling.pictures import extent
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate import extent
 
 SQUARES = 12  # of the net, about, along the longer side
 

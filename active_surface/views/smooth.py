@@ -9,14 +9,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 from scipy.spatial import cKDTree
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.views.triangles import barycentric
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 AROUND = 12  # points that a slope is fitted to, by a quadratic
 NEAREST = 24  # triangles among which that of a point is sought
@@ -31,7 +28,7 @@ class Smooth:
     points: FloatArray
     triangles: IntArray
 
-    def locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
+    def locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, BoolArray]:
         """The triangle (k,) of points (k, 2) [m], their barycentric coordinates (k, 3), and whether they are in it.
 
         A point that is in none has a place near it, on the rim.
@@ -40,17 +37,17 @@ class Smooth:
         triangle, shares, inside = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         return triangle, shares, inside
 
-    def _locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, NDArray[np.bool_]]:
+    def _locate(self, xy: FloatArray) -> tuple[IntArray, FloatArray, BoolArray]:
         """The same for so few points that memory does not matter."""
-        near = self._tree.query(xy, k=min(NEAREST, len(self.triangles)))[1].reshape(len(xy), -1)
-        corners = self.points[self.triangles[near]]  # (k, NEAREST, 3, 2)
+        nearest = self._tree.query(xy, k=min(NEAREST, len(self.triangles)))[1].reshape(len(xy), -1)
+        corners = self.points[self.triangles[nearest]]  # (k, NEAREST, 3, 2)
         shares = barycentric(corners, xy[:, None, :])
         kept = np.clip(shares, 0, None)
         kept /= kept.sum(axis=-1, keepdims=True)
         away = np.square((corners * kept[..., None]).sum(axis=2) - xy[:, None]).sum(axis=-1)
         best, rows = away.argmin(axis=1), np.arange(len(xy))
         inside = shares[rows, best].min(axis=-1) >= -OUTSIDE
-        return near[rows, best], kept[rows, best], inside
+        return nearest[rows, best], kept[rows, best], inside
 
     def at(self, xy: FloatArray) -> csr_matrix:
         """The matrix (k, n) from heights (n,) at the mesh's points to those at points (k, 2) [m] on it."""
@@ -94,17 +91,17 @@ class Smooth:
             return csr_matrix((n, n)), csr_matrix((n, n))
         tree = cKDTree(self.points)
         blocks = [self._fit(tree, self.points[first : first + BATCH]) for first in range(0, n, BATCH)]
-        near, fit = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+        nearest, fit = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         rows = np.repeat(np.arange(n), AROUND)
-        slopes = [csr_matrix((part.ravel(), (rows, near.ravel())), (n, n)) for part in np.moveaxis(fit, 1, 0)]
+        slopes = [csr_matrix((part.ravel(), (rows, nearest.ravel())), (n, n)) for part in np.moveaxis(fit, 1, 0)]
         along_x, along_y = (s - diags(np.asarray(s.sum(axis=1)).ravel()) for s in slopes)
         return csr_matrix(along_x), csr_matrix(along_y)
 
     def _fit(self, tree: cKDTree, points: FloatArray) -> tuple[IntArray, FloatArray]:
         """The points (k, AROUND) around some, and the weights (k, 2, AROUND) of their heights in the slopes there."""
-        distance, near = tree.query(points, k=AROUND + 1)
-        near, reach = near[:, 1:], distance[:, -1:]
-        x, y = np.moveaxis((self.points[near] - points[:, None]) / reach[..., None], -1, 0)
+        distance, nearest = tree.query(points, k=AROUND + 1)
+        nearest, reach = nearest[:, 1:], distance[:, -1:]
+        x, y = np.moveaxis((self.points[nearest] - points[:, None]) / reach[..., None], -1, 0)
         weight = 1 / (0.1 + x**2 + y**2)
         terms = np.stack([x, y, x * x, x * y, y * y], axis=-1) * weight[..., None]
-        return near, np.linalg.pinv(terms, rcond=1e-6)[:, :2] * weight[:, None, :] / reach[..., None]
+        return nearest, np.linalg.pinv(terms, rcond=1e-6)[:, :2] * weight[:, None, :] / reach[..., None]

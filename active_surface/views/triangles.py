@@ -6,13 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.tri import Triangulation
-from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from meshes import cross
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 SLIVER = 0.01  # of a cell's area: smaller triangles of a thinned surface are none
 
@@ -31,9 +28,9 @@ class Spots(NamedTuple):
 def spots_of(points: FloatArray, triangles: IntArray, places: FloatArray) -> Spots:
     """Places (q, 2) [m] on triangles (m, 3) of points (n, 2) [m]; one outside is on the plane of the one near it."""
     mesh = Triangulation(*points.T, triangles)
-    found = mesh.get_trifinder()(*places.T)
+    triangle = mesh.get_trifinder()(*places.T)
     nearest = cKDTree(points[triangles].mean(axis=1)).query(places)[1]
-    corners = triangles[np.where(found >= 0, found, nearest)]
+    corners = triangles[np.where(triangle >= 0, triangle, nearest)]
     return Spots(corners, barycentric(points[corners], places))
 
 
@@ -50,28 +47,28 @@ def barycentric(corners: FloatArray, places: FloatArray) -> FloatArray:
     return np.stack([1 - second - third, second, third], axis=-1)
 
 
-def inside(points: FloatArray, triangles: IntArray, places: FloatArray) -> NDArray[np.bool_]:
+def inside(points: FloatArray, triangles: IntArray, places: FloatArray) -> BoolArray:
     """Which places (q, 2) [m] lie in the triangles."""
     return np.asarray(Triangulation(*points.T, triangles).get_trifinder()(*places.T) >= 0)
 
 
-def coarse(points: FloatArray, triangles: IntArray, most: int) -> IntArray:
+def coarse(points: FloatArray, triangles: IntArray, max_points: int) -> IntArray:
     """Triangles (m', 3) that cover about the same with at most so many of the points, spread, those at edges first."""
     used = np.unique(triangles)
     low, high = points[used].min(axis=0), points[used].max(axis=0)
     inner = ~np.isin(used, outer_edges(triangles))
-    side = float(np.sqrt(np.prod(high - low) / most))
+    side = float(np.sqrt(np.prod(high - low) / max_points))
     while True:
         cells = np.floor((points[used] - low) / side).astype(np.int64)
         order = np.lexsort((inner, cells[:, 1], cells[:, 0]))
         chosen = used[order[np.unique(cells[order], axis=0, return_index=True)[1]]]
-        if len(chosen) <= most:
+        if len(chosen) <= max_points:
             break
         side *= 1.05
-    found = chosen[Delaunay(points[chosen]).simplices]
-    u, v = points[found[:, 1]] - points[found[:, 0]], points[found[:, 2]] - points[found[:, 0]]
+    faces = chosen[Delaunay(points[chosen]).simplices]
+    u, v = points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]]
     wide = np.abs(cross(u, v)) > SLIVER * side**2
-    return np.asarray(found[wide & inside(points, triangles, points[found].mean(axis=1))])
+    return np.asarray(faces[wide & inside(points, triangles, points[faces].mean(axis=1))])
 
 
 def outer_edges(triangles: IntArray) -> IntArray:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from active_surface.steering import aim, plan, read_route, read_task
-from active_surface.steering.places import read_place
+from active_surface.steering.read import read_place
 
 ROOT = Path(__file__).parents[2]
 AIMS = ROOT / "examples" / "aims"

@@ -7,10 +7,10 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import MICRO, FigureResult, finish, look
 from active_surface.paper.models import MODELS, Bench
 from active_surface.paper.parameters import Effort, Place
-from active_surface.paper.path import FloatArray
 from active_surface.paper.share import Share, percents, share_of
 from active_surface.paper.verdict import Answer, Verdict
 
@@ -91,16 +91,16 @@ def _band(bench: Bench, away: dict[str, FloatArray]) -> Verdict:
     for model, rows in away.items():
         share, by_frequency = within(rows, BAND), [within(row, BAND) for row in rows]
         kept = rows[np.isfinite(rows)]
-        median, most = (float(np.percentile(kept, q)) if len(kept) else float("nan") for q in (50, 90))
+        median, percentile_90 = (float(np.percentile(kept, q)) if len(kept) else float("nan") for q in (50, 90))
         numbers[model] = {
             "share": share.value, "by_frequency": [one.value for one in by_frequency], "median": median,
-            "percentile_90": most, "gone": float(np.isnan(rows).mean()), "parts": rows.size,
+            "percentile_90": percentile_90, "gone": float(np.isnan(rows).mean()), "parts": rows.size,
         }  # fmt: skip
         least, best = min(by_frequency), max(by_frequency)
         answers[model] = Answer(
             f"{share} of {rows.size} within 5 um, by frequency from {100 * least.value:.0f} to "
             f"{100 * best.value:.0f} % ({percents(by_frequency)}); median {MICRO * median:.1f}, 90 % within "
-            f"{MICRO * most:.1f} um",
+            f"{MICRO * percentile_90:.1f} um",
             float(np.mean([one.met for one in by_frequency])),
         )
     return Verdict(

@@ -13,8 +13,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.parameters import Parameters
-from active_surface.paper.path import FloatArray, Path
+from active_surface.paper.path import Path
 from active_surface.paper.share import share_of
 
 SPEED: Final = 0.2  # m/s

@@ -7,11 +7,12 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import MICRO, MILLI, FigureResult, finish, look
 from active_surface.paper.figures.coming_off import end_said, off_numbers, off_said
 from active_surface.paper.models import CLOSED, MODELS, Bench
 from active_surface.paper.parameters import Effort
-from active_surface.paper.path import FloatArray, Path
+from active_surface.paper.path import Path
 from active_surface.paper.share import Share, share_of
 from active_surface.paper.verdict import Answer, Verdict
 

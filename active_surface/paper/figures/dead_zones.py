@@ -13,10 +13,10 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import MICRO, FigureResult, finish
 from active_surface.paper.models import PLATE, Bench
 from active_surface.paper.parameters import Effort
-from active_surface.paper.path import FloatArray
 from active_surface.paper.share import HARDLY_ANY, NEARLY_ALL, share_of
 from active_surface.paper.verdict import Answer, Verdict
 from coupling import surface_motion

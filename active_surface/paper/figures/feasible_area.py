@@ -11,10 +11,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import COLOURS, MICRO, FigureResult, finish
 from active_surface.paper.models import CLOSED, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort
-from active_surface.paper.path import FloatArray
 from active_surface.paper.verdict import Answer, Verdict, of_checks
 from active_surface.studies.feasibility import Feasible, find_feasible
 from particle import Micropart
@@ -149,11 +149,11 @@ def _six(results: dict[str, dict[float, Feasible]]) -> Verdict:
     answers: dict[str, Answer] = {}
     numbers: dict[str, Any] = {}
     for model, rows in results.items():
-        most = [float(LOWEST * row.factors[row.feasible.integral.argmax()]) for row in rows.values()]
+        largest = [float(LOWEST * row.factors[row.feasible.integral.argmax()]) for row in rows.values()]
         other = [float(LOWEST * row.factors[row.slipping.integral.argmax()]) for row in rows.values()]
-        numbers |= {f"never coming off, {model}": most, f"attached at that moment, {model}": other}
-        text = f"never coming off: largest at {_list(most)} Hz; attached at that moment: at {_list(other)} Hz"
-        answers[model] = of_checks(text, [LARGEST[0] <= f <= LARGEST[1] for f in most + other])
+        numbers |= {f"never coming off, {model}": largest, f"attached at that moment, {model}": other}
+        text = f"never coming off: largest at {_list(largest)} Hz; attached at that moment: at {_list(other)} Hz"
+        answers[model] = of_checks(text, [LARGEST[0] <= f <= LARGEST[1] for f in largest + other])
     return Verdict(
         "6", "The time integral is largest at 300 to 400 Hz, for all strokes.", _with_paper(answers),
         "Its place moves with the stroke, as the threshold does.", numbers,

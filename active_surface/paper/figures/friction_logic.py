@@ -11,10 +11,10 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import LOOK, FigureResult, finish
 from active_surface.paper.models import CLOSED, PAPER, Bench
 from active_surface.paper.parameters import Effort
-from active_surface.paper.path import FloatArray
 from active_surface.paper.verdict import Answer, Verdict, of_checks
 from particle import EventKind, HermiteDrive, Micropart, Trajectory, platform_surface, simulate
 
@@ -62,8 +62,8 @@ def _logic(bench: Bench, ramps: dict[str, tuple[FloatArray, FloatArray]]) -> Ver
     limit = float(bench.parameters.friction.friction_limit(bench.parameters.mass * bench.parameters.gravity))
     answers, numbers = {}, {"friction_limit": limit}
     for model, (load, friction) in ramps.items():
-        wanted = np.minimum(load, limit)
-        wrong = float(np.abs(friction - wanted).max() / limit)
+        expected = np.minimum(load, limit)
+        wrong = float(np.abs(friction - expected).max() / limit)
         numbers[f"largest_difference_{model}"] = wrong
         answers[model] = of_checks(f"off by {wrong:.0e} of the limit at most", [wrong < 1e-2])
     return Verdict(
@@ -117,8 +117,8 @@ def _swinging(swings: dict[str, Trajectory], rate: float) -> tuple[Verdict, Verd
         numbers |= {f"slips_{model}": results._asdict(), f"relative_velocity_{model}": relative.tolist()}
         text = f"slips {results.slips:.3f} s, sticks {results.sticks:.3f} s, for {pause:.2f} s, then goes on "
         text += "the other way" if results.turns else "the same way"
-        near = [abs(results.slips - SLIP) < WITHIN, abs(results.sticks - STICK) < WITHIN]
-        slides[model] = of_checks(text, [*near, pause < WITHIN, results.turns])
+        in_time = [abs(results.slips - SLIP) < WITHIN, abs(results.sticks - STICK) < WITHIN]
+        slides[model] = of_checks(text, [*in_time, pause < WITHIN, results.turns])
         zero = np.abs(relative) < STILL * fastest
         turning = [f"{v:.2f} m/s at {t:.2f} s" for t, v in zip(times.tolist(), relative.tolist(), strict=True)]
         turns[model] = of_checks(", ".join(turning), [bool(zero.all())])

@@ -8,10 +8,11 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.axes import Axes
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import LOOK, MICRO
 from active_surface.paper.models import CLOSED, MODELS, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort, Place
-from active_surface.paper.path import FloatArray, Path
+from active_surface.paper.path import Path
 from active_surface.paper.profiles import NEAREST, SUPERPOSED
 from active_surface.paper.verdict import Answer
 
@@ -48,8 +49,8 @@ def paths_of(bench: Bench, effort: Effort, frequencies: Sequence[float], start: 
 
 def reaches(path: Path, actuator: Place, pitch: float) -> float:
     """When [s] a part is first nearer than half a pitch [m] to an actuator; inf: never."""
-    near = np.flatnonzero(path.away(actuator) < pitch / 2)
-    return float(path.time[near[0]]) if len(near) else np.inf
+    close = np.flatnonzero(path.away(actuator) < pitch / 2)
+    return float(path.time[close[0]]) if len(close) else np.inf
 
 
 def joined(results: dict[str, Answer]) -> dict[str, Answer]:

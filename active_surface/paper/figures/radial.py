@@ -7,10 +7,11 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import MICRO, MILLI, FigureResult, finish, look
 from active_surface.paper.models import MODELS, Bench
 from active_surface.paper.parameters import Effort, Place
-from active_surface.paper.path import FloatArray, Path
+from active_surface.paper.path import Path
 from active_surface.paper.verdict import Verdict, of_checks
 from particle import Drive
 

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from active_surface.paper.figure_result import MICRO, FigureResult, finish, percent
-from active_surface.paper.figures.threshold_picture import draw_ends, draw_thresholds
-from active_surface.paper.models import MODELS, Bench
+from active_surface.arrays import BoolArray, FloatArray
+from active_surface.paper.figure_result import LOOK, MICRO, FigureResult, finish, look, percent
+from active_surface.paper.models import CLOSED, MODELS, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort
-from active_surface.paper.path import FloatArray
 from active_surface.paper.share import NEARLY_ALL
-from active_surface.paper.split import BoolArray, Ends, Fits, Split, Thresholds, best_split, first_loss, fits_of
+from active_surface.paper.split import Ends, Fits, Split, Thresholds, best_split, first_loss, fits_of
 from active_surface.paper.verdict import Answer, Verdict, of_checks
 
 LOWEST, HIGHEST = 160.0, 760.0  # Hz
@@ -22,6 +23,7 @@ FIT_WITHIN: Final = 10.0  # Hz, by which a curve may be off
 NANOMETRES: Final = 9  # digits of strokes in m
 FEWER_STARTS: Final = 3  # times fewer starts than elsewhere, as each is followed at every frequency
 PERCENTILES: Final = (10, 90)
+GREY, SHIFT = "#707070", 1.2  # um, by which the models' marks stand apart
 
 
 def find(bench: Bench, effort: Effort) -> FigureResult:
@@ -174,3 +176,36 @@ def _curve(fits: Fits | None, others: dict[str, Fits | None]) -> Answer:
         return Answer("too few thresholds for a curve", 0.0)
     text = "; ".join([str(fits), *(f"by {name} {fit}" for name, fit in others.items() if fit)])
     return of_checks(text, [fits.quadratic_misfit <= FIT_WITHIN, fits.quadratic_misfit < fits.law_misfit])
+
+
+def draw_thresholds(axes: Axes, strokes: FloatArray, frequencies: FloatArray, results: dict[str, Thresholds]) -> None:
+    """Thresholds over strokes (S,) [m] with their scatter, and where single starts do not heed them."""
+    for k, (model, one) in enumerate(results.items()):
+        across = MICRO * strokes + SHIFT * (k - 1)
+        style = look(model)
+        axes.plot(across, [split.frequency for split in one.split], **style, marker="o", markersize=4)
+        axes.vlines(across, *np.array(one.scatter).T, color=style["color"], linewidth=0.9)
+        if model == PAPER and one.fits:
+            fine = np.linspace(strokes[0], strokes[-1], 100)
+            law = one.fits.level * (fine / one.fits.unit) ** one.fits.exponent
+            axes.plot(MICRO * fine, law, color=style["color"], linewidth=0.6, label="power law through it")
+    one = results[CLOSED]
+    for stroke, split, converges, lost in zip(strokes.tolist(), one.split, *one.ends, strict=True):
+        for ends, wrong, hollow in (
+            (converges, frequencies > split.frequency, False),
+            (lost, frequencies < split.frequency, True),
+        ):
+            shares = ends.mean(axis=1)
+            seen = wrong & (shares > 0)
+            sizes = 4 + 60 * shares[seen]
+            face = "none" if hollow else GREY
+            axes.scatter(np.full(seen.sum(), MICRO * stroke), frequencies[seen], sizes, face, edgecolors=GREY)
+
+
+def draw_ends(axes: Axes, frequencies: FloatArray, ends: dict[str, Sequence[BoolArray]]) -> None:
+    """The shares of starts that converge and that are lost over frequencies (F,) [Hz], of each model."""
+    for model, (converges, lost) in ends.items():
+        for rows, mark, text in ((converges, "o", "converge"), (lost, "x", "are lost")):
+            style: dict[str, Any] = LOOK[model] | {"marker": mark, "markersize": 4, "linewidth": 0.9}
+            style |= {"marker": ""} if model == PLATE else {}
+            axes.plot(frequencies, 100 * rows.mean(axis=1), **style, label=f"{model}: {text}")

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.paper.figure_result import COLOURS, MICRO, FigureResult, finish
 from active_surface.paper.models import CLOSED, MODELS, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort, Place
-from active_surface.paper.path import FloatArray
 from active_surface.paper.verdict import Answer, Verdict, of_checks
 
 LOWEST, HIGHEST = 100.0, 1600.0  # Hz

@@ -18,16 +18,13 @@ from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import BoolArray, FloatArray
 from meshes import Outline
 from particle import Micropart, SurfaceMotion
 from particle.drives import DriveTable
 from particle.events import Part, count_slips, find_lost
 from particle.friction import Contact
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 ACROSS: Final = 120  # places along the longer side of the plate
 PER_STROKE: Final = 48  # moments in the shortest stroke

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from active_surface.arrays import BoolArray, FloatArray
 from active_surface.studies.feasibility.area import ACROSS, Curves, Feasible, find_feasible, moving
 from coupling import Progress, build_drives, build_friction, build_scene, silent, whole_file
 from coupling.case import Case
@@ -21,7 +21,6 @@ from particle.events import horizon
 if TYPE_CHECKING:
     import xarray
 
-FloatArray = NDArray[np.float64]
 
 SPAN: Final = 0.25, 8.0  # times the case's own frequency
 COUNT: Final = 31  # frequencies
@@ -106,7 +105,7 @@ def _top(frequencies: FloatArray, values: FloatArray) -> float | None:
     return float(frequencies[np.argmax(values)]) if values.max() > 0 else None
 
 
-def _begins(frequencies: FloatArray, holds: NDArray[np.bool_]) -> list[float | None] | None:
+def _begins(frequencies: FloatArray, holds: BoolArray) -> list[float | None] | None:
     """The neighbouring frequencies [Hz] between which something begins; the first is None if it holds at the lowest.
 
     None: it holds at none.

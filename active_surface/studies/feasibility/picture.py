@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from active_surface.studies.feasibility.area import Feasible, FloatArray
+from active_surface.arrays import FloatArray
+from active_surface.studies.feasibility.area import Feasible
 from coupling.pictures import map_axes, save_picture
 from fem_plate import frame_around, mark_actuators
 from meshes import Drawing, draw_rim, rim_curves, unit_for
@@ -40,20 +41,20 @@ def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
 
 
 def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
-    found, box = feasibility.areas, feasibility.outline.box
+    areas, box = feasibility.areas, feasibility.outline.box
     unit = unit_for(box, "m")
-    x, y, share = _grid(found, np.where(found.own.lost, np.nan, 100 * found.own.shares))
-    half = found.spacing / 2
+    x, y, share = _grid(areas, np.where(areas.own.lost, np.nan, 100 * areas.own.shares))
+    half = areas.spacing / 2
     edges = [np.append(side - half, side[-1] + half) * unit.per_si for side in (x, y)]
     held = np.ma.masked_where(~(share > 0), share)
     mesh = axes.pcolormesh(*edges, held.T, cmap="viridis", vmin=0)
-    lost = _grid(found, np.where(found.own.lost, 1.0, np.nan))[2]
+    lost = _grid(areas, np.where(areas.own.lost, 1.0, np.nan))[2]
     axes.pcolormesh(*edges, np.ma.masked_invalid(lost).T, cmap=ListedColormap([LOST]), vmin=0, vmax=1)
     if held.count():
         figure.colorbar(mesh, ax=axes, label="share of the time in which the part slips [%]", shrink=0.8)
     draw_rim(axes, rim_curves(feasibility.outline), unit.per_si)
     keys: list[Artist] = [Patch(facecolor="white", edgecolor="black", label="the part stays at rest")]
-    if found.own.lost.any():
+    if areas.own.lost.any():
         keys.append(Patch(facecolor=LOST, label="it comes off at some moment"))
     keys += mark_actuators(axes, feasibility.actuators, frame_around(box), unit.per_si)
     map_axes(axes, unit)
@@ -63,26 +64,26 @@ def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
     axes.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False, fontsize=9)
 
 
-def _grid(found: Feasible, values: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _grid(areas: Feasible, values: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The squares' centres along x (n,) and y (m,) and values (n, m), nan where there is no plate."""
-    low = found.points.min(axis=0)
-    rows = np.rint((found.points - low) / found.spacing).astype(int)
+    low = areas.points.min(axis=0)
+    rows = np.rint((areas.points - low) / areas.spacing).astype(int)
     table = np.full(rows.max(axis=0) + 1, np.nan)
     table[rows[:, 0], rows[:, 1]] = values
-    x, y = (low[k] + found.spacing * np.arange(table.shape[k]) for k in (0, 1))
+    x, y = (low[k] + areas.spacing * np.arange(table.shape[k]) for k in (0, 1))
     return x, y, table
 
 
 def _draw_curves(peak: Axes, integral: Axes, feasibility: Feasibility) -> None:
-    found, frequencies = feasibility.areas, feasibility.frequencies
-    unit, side = unit_for(frequencies, "Hz"), unit_for(max(float(found.slipping.peak.max()) ** 0.5, SMALLEST), "m")
+    areas, frequencies = feasibility.areas, feasibility.frequencies
+    unit, side = unit_for(frequencies, "Hz"), unit_for(max(float(areas.slipping.peak.max()) ** 0.5, SMALLEST), "m")
     per_si, area, square = unit.per_si, side.per_si**2, f"{side.name}²"
     across = frequencies * per_si
-    peak.plot(across, found.slipping.peak * area, "--", color=PALE, linewidth=1.1, label="it slips, attached then")
-    peak.plot(across, found.feasible.peak * area, color=LINE, linewidth=1.6, label="it slips and never comes off")
-    peak.plot(across, found.lost_area * area, ":", color=LOST, linewidth=1.6, label="it comes off at some moment")
-    integral.plot(across, found.slipping.integral * area * 1e3, "--", color=PALE, linewidth=1.1)
-    integral.plot(across, found.feasible.integral * area * 1e3, color=LINE, linewidth=1.6)
+    peak.plot(across, areas.slipping.peak * area, "--", color=PALE, linewidth=1.1, label="it slips, attached then")
+    peak.plot(across, areas.feasible.peak * area, color=LINE, linewidth=1.6, label="it slips and never comes off")
+    peak.plot(across, areas.lost_area * area, ":", color=LOST, linewidth=1.6, label="it comes off at some moment")
+    integral.plot(across, areas.slipping.integral * area * 1e3, "--", color=PALE, linewidth=1.1)
+    integral.plot(across, areas.feasible.integral * area * 1e3, color=LINE, linewidth=1.6)
     peak.set_ylabel(f"largest area [{square}]")
     integral.set_ylabel(f"time integral [{square} ms]")
     integral.set_xlabel(f"frequency of the fastest drive [{unit.name}]")

@@ -26,8 +26,8 @@ def lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
             f"{figures['frequency_of_largest_time_integral']:.4g} Hz, in as many cycles",
         ),
     ]
-    for said, between in (("moves", figures["moves_it_from_between"]), ("loses", figures["loses_it_from_between"])):
-        rows.append((said, f"{_from(between)} of {looked_at}"))
+    for label, between in (("moves", figures["moves_it_from_between"]), ("loses", figures["loses_it_from_between"])):
+        rows.append((label, f"{_from(between)} of {looked_at}"))
     return rows
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from active_surface.studies.pictures.heat import COLOURS, draw_classes, draw_field, draw_outline
-from active_surface.studies.pictures.shown import Scale, Shown, mean
+from active_surface.studies.pictures.selection import Scale, Selection, mean
 from active_surface.studies.record import OUTCOMES
 from fem_plate import mark_actuators
 from meshes import draw_rim, quantity_text, unit_for
@@ -26,30 +26,30 @@ STAYS = "#f2efe6"
 WHITE = withStroke(linewidth=2.0, foreground="white")
 
 
-def is_over_starts(shown: Shown) -> bool:
+def is_over_starts(selection: Selection) -> bool:
     """Whether a sweep's axes are the start's x and y, over a few actuators."""
-    paths = {scale.axis.field.path for scale in shown.axes}
-    return paths == set(STARTS) and 0 < len(shown.findings.actuators) <= MAX_ACTUATORS
+    paths = {scale.axis.field.path for scale in selection.axes}
+    return paths == set(STARTS) and 0 < len(selection.findings.actuators) <= MAX_ACTUATORS
 
 
 class Basins:
     """Where parts are carried from where, over the start's x and y."""
 
-    def __init__(self, shown: Shown) -> None:
-        turned = shown.axes[0].axis.field.path == STARTS[1]
-        places = [Scale.of(scale.axis, np.sort(scale.axis.values)) for scale in shown.axes]
+    def __init__(self, selection: Selection) -> None:
+        turned = selection.axes[0].axis.field.path == STARTS[1]
+        places = [Scale.of(scale.axis, np.sort(scale.axis.values)) for scale in selection.axes]
         self.across, self.up = reversed(places) if turned else places
-        self.findings = shown.findings
-        actuators = shown.findings.actuators
-        away = np.linalg.norm(shown.end[..., None, :] - actuators, axis=-1)  # (n, m, repeats, N)
-        numbers, staying = shown.usual_outcome, [OUTCOMES.index(outcome.value) for outcome in STAYING]
+        self.findings = selection.findings
+        actuators = selection.findings.actuators
+        away = np.linalg.norm(selection.end[..., None, :] - actuators, axis=-1)  # (n, m, repeats, N)
+        numbers, staying = selection.usual_outcome, [OUTCOMES.index(outcome.value) for outcome in STAYING]
         nearest = np.argmin(mean(np.moveaxis(away, -2, -1)), axis=-1)
         widest = np.ptp(actuators, axis=0).max() if len(actuators) > 1 else np.abs(self.across.values).max()
-        self.near = SHORT * float(widest)
-        carried = shown.mean_distance > self.near
+        self.short_way = SHORT * float(widest)
+        carried = selection.mean_distance > self.short_way
         classes = np.where(np.isin(numbers, staying), len(OUTCOMES) + np.where(carried, 1 + nearest, 0), numbers)
         lengths = np.where(np.isin(numbers, staying), mean(away.min(axis=-1)), np.nan)
-        holds = shown.holds
+        holds = selection.holds
         if turned:
             classes, lengths, holds = classes.T, lengths.T, None if holds is None else holds.T
         self.classes, self.lengths, self.holds = classes, lengths, holds
@@ -57,7 +57,7 @@ class Basins:
     def draw_carried(self, axes: Axes) -> None:
         """Draw the actuator that is nearest to the end."""
         count = len(self.findings.actuators)
-        stays = f"carried less than {quantity_text(self.near, 'm', 2)}"
+        stays = f"carried less than {quantity_text(self.short_way, 'm', 2)}"
         names = (*OUTCOMES, stays, *(f"carried, nearest to actuator {k}" for k in range(count)))
         colours = (*COLOURS, STAYS, *(colormaps["tab20"](2 * k % 20 + 2 * k // 20) for k in range(count)))
         draw_classes(axes, self.across, self.up, self.classes, names, colours)

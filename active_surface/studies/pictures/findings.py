@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
+from active_surface.arrays import FloatArray
 from active_surface.studies.axis import Axis
 from active_surface.studies.dataset import LOGARITHMIC, key_of, read_dataset
 from active_surface.studies.field import Field
@@ -21,8 +21,6 @@ from active_surface.studies.threshold import Threshold, read_threshold
 
 if TYPE_CHECKING:
     import xarray
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

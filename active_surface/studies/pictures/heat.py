@@ -13,11 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import ScalarFormatter
-from numpy.typing import NDArray
 
-from active_surface.studies.pictures.shown import FloatArray, IntArray, Scale, Shown, labelled
+from active_surface.arrays import BoolArray, FloatArray, IntArray
+from active_surface.studies.pictures.selection import Scale, Selection, labelled
 from active_surface.studies.record import OUTCOMES
-from active_surface.studies.threshold import BoolArray
 from coupling.pictures import plain_ticks
 from meshes import Unit, legend_below
 
@@ -29,18 +28,18 @@ MAX_NAMES = 12  # along an axis
 FEW_DIGITS = 1e-4, 1e7  # numbers between them are written out
 
 
-def draw_value(figure: Figure, axes: Axes, shown: Shown) -> None:
+def draw_value(figure: Figure, axes: Axes, selection: Selection) -> None:
     """Draw a map of a column of the results."""
-    across, up = shown.axes
-    draw_field(figure, axes, across, up, shown.mean_value, shown.meaning, shown.unit)
-    draw_outline(axes, across, up, shown.holds)
+    across, up = selection.axes
+    draw_field(figure, axes, across, up, selection.mean_value, selection.meaning, selection.unit)
+    draw_outline(axes, across, up, selection.holds)
 
 
-def draw_outcome(axes: Axes, shown: Shown) -> None:
+def draw_outcome(axes: Axes, selection: Selection) -> None:
     """Draw a map of what became of the part."""
-    across, up = shown.axes
-    draw_classes(axes, across, up, shown.usual_outcome, OUTCOMES, COLOURS)
-    draw_outline(axes, across, up, shown.holds)
+    across, up = selection.axes
+    draw_classes(axes, across, up, selection.usual_outcome, OUTCOMES, COLOURS)
+    draw_outline(axes, across, up, selection.holds)
 
 
 def draw_field(
@@ -80,7 +79,7 @@ def draw_outline(axes: Axes, across: Scale, up: Scale, holds: BoolArray | None) 
     axes.add_collection(LineCollection(lines, colors="white", linewidths=1.4, path_effects=black), autolim=False)
 
 
-def add_key(axes: Axes, numbers: NDArray[np.int64], names: tuple[str, ...], colours: tuple[Any, ...]) -> None:
+def add_key(axes: Axes, numbers: IntArray, names: tuple[str, ...], colours: tuple[Any, ...]) -> None:
     """A key of the classes that there are, with the share of each, below the axes."""
     counts = np.bincount(numbers.ravel(), minlength=len(names))
     share = 100 / max(numbers.size, 1)

@@ -9,41 +9,42 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
+from active_surface.arrays import FloatArray
 from active_surface.studies.pictures.heat import COLOURS, add_key, frame
-from active_surface.studies.pictures.shown import FloatArray, Shown
+from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.record import OUTCOMES
 
 LARGEST, SMALLEST = 40.0, 3.0  # square points, of a marker
 MAX_VECTORS = 2000  # markers that are not drawn as pixels in files of lines
 
 
-def draw_points(figure: Figure, axes: Axes, shown: Shown) -> None:
+def draw_points(figure: Figure, axes: Axes, selection: Selection) -> None:
     """Draw a column of the results over two axes, or over one."""
-    values, (across, *_), unit = shown.mean_value, shown.axes, shown.unit
+    values, (across, *_), unit = selection.mean_value, selection.axes, selection.unit
     known = np.isfinite(values)
-    heights = _heights(axes, shown)
+    heights = _heights(axes, selection)
     shades = values[known] * unit.per_si
     marks = axes.scatter(across.drawn[known], heights[known], c=shades, cmap="viridis", **_look(len(values)))
-    figure.colorbar(marks, ax=axes).set_label(shown.label, parse_math=False)
+    figure.colorbar(marks, ax=axes).set_label(selection.label, parse_math=False)
 
 
-def draw_outcomes(axes: Axes, shown: Shown) -> None:
+def draw_outcomes(axes: Axes, selection: Selection) -> None:
     """Draw what became of the part over two axes; over one, at the values of the column."""
-    outcome, heights = shown.usual_outcome, _heights(axes, shown)
+    outcome, heights = selection.usual_outcome, _heights(axes, selection)
     norm = BoundaryNorm(np.arange(len(OUTCOMES) + 1) - 0.5, len(OUTCOMES))
     colours = ListedColormap(list(COLOURS))
-    axes.scatter(shown.axes[0].drawn, heights, c=outcome, cmap=colours, norm=norm, **_look(len(heights)))
+    axes.scatter(selection.axes[0].drawn, heights, c=outcome, cmap=colours, norm=norm, **_look(len(heights)))
     add_key(axes, outcome, OUTCOMES, COLOURS)
 
 
-def _heights(axes: Axes, shown: Shown) -> FloatArray:
+def _heights(axes: Axes, selection: Selection) -> FloatArray:
     """How high points (n,) stand in axes, which are labelled."""
-    across, *others = shown.axes
+    across, *others = selection.axes
     frame(axes, across, *others)
     if others:
         return others[0].drawn
-    axes.set_ylabel(shown.label)
-    return shown.mean_value * shown.unit.per_si
+    axes.set_ylabel(selection.label)
+    return selection.mean_value * selection.unit.per_si
 
 
 def _look(count: int) -> dict[str, Any]:

@@ -8,17 +8,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from active_surface.arrays import BoolArray
 from active_surface.studies.pictures.heat import edges, frame
-from active_surface.studies.pictures.shown import Shown
-from active_surface.studies.threshold import BoolArray, lowest
+from active_surface.studies.pictures.selection import Selection
+from active_surface.studies.threshold import lowest
 from meshes import legend_below
 
 COLOUR, BAND = "#c8371b", "#f3c9bd"
 
 
-def draw_threshold(axes: Axes, shown: Shown, holds: BoolArray, condition: str) -> None:
+def draw_threshold(axes: Axes, selection: Selection, holds: BoolArray, condition: str) -> None:
     """Draw the lowest value of the second axis at which a condition holds over the first axis."""
-    across, up = shown.axes
+    across, up = selection.axes
     frame(axes, across, up)
     order = np.argsort(across.drawn)
     where = across.drawn[order]

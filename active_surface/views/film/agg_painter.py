@@ -8,13 +8,11 @@ import numpy as np
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.path import Path
 from matplotlib.transforms import IdentityTransform
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray, Image
 from active_surface.views.film.frames import Frame
 from active_surface.views.film.look import AMBIENT, DIFFUSE, Look
 
-FloatArray = NDArray[np.float64]
-Image = NDArray[np.uint8]
 Colour = tuple[float, float, float]
 Soup = tuple[
     FloatArray, FloatArray, FloatArray

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray, Image
 from active_surface.views.film.camera import Camera, camera_of
 from active_surface.views.film.captions import Captions
 from active_surface.views.film.film_file import check_film, film_file, format_of
@@ -26,9 +26,6 @@ from active_surface.views.film.stage import Stage, stage_of
 from coupling import ProgressCallback, build_drives, no_progress
 from coupling.case import Case, parse
 from coupling.results import SavedRun, check_folder, read_run
-
-FloatArray = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
 FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
 SIZE = {"mp4": (1280, 720), "gif": (800, 450), "png": (1280, 720)}
@@ -114,9 +111,9 @@ def animate(
     """
     tries = _Tries()
     form = tries(format_of, None if output is None else Path(output), kind) or "mp4"
-    rate, wanted = FPS[form] if fps is None else fps, SIZE[form] if size is None else size
+    rate, pixels = FPS[form] if fps is None else fps, SIZE[form] if size is None else size
     view = tries(camera_of, camera)
-    wanted = tries(size_of, wanted) or SIZE[form]
+    pixels = tries(size_of, pixels) or SIZE[form]
     for name, value in (("exaggeration", exaggeration), ("fps", rate), ("slow-motion", slow_motion)):
         tries(_check_positive, name, value)
     run = tries(_run_of, result)
@@ -124,15 +121,15 @@ def animate(
     path = _output(run, output, form)
     tries(check_folder, path.parent)
     pace = tries(pace_of, run.time, rate, slow_motion)
-    tries(check_film, path, form, wanted, rate, len(pace.times) if pace else 0)
+    tries(check_film, path, form, pixels, rate, len(pace.times) if pace else 0)
     chosen_renderer, reason = tries(chosen, renderer) or ("", None)
     tries.end()
 
     stage = stage_of(run)
     times = exaggeration or stage.exaggeration
     path.parent.mkdir(parents=True, exist_ok=True)
-    with film_file(path, form, wanted, rate) as film:
-        for k, image in enumerate(_images(stage, view, wanted, times, pace.times, pace, chosen_renderer)):
+    with film_file(path, form, pixels, rate) as film:
+        for k, image in enumerate(_images(stage, view, pixels, times, pace.times, pace, chosen_renderer)):
             film.add(image)
             tell(k + 1, len(pace.times))
     warnings = [] if reason is None else [f"pyvista cannot draw here, so matplotlib has: {reason}. {HELP}"]
@@ -217,8 +214,8 @@ def _run_of(result: str | Path | SavedRun) -> SavedRun:
         path = Path(result)
         if path.suffix not in OTHERS:
             raise
-        wanted = f"Input RESULT must be that of a run: one of its files, or FOLDER/NAME; got {path}"
-        raise ValueError(f"{wanted}, {OTHERS[_kind(path)].format(name=path.stem)}") from None
+        expected = f"Input RESULT must be that of a run: one of its files, or FOLDER/NAME; got {path}"
+        raise ValueError(f"{expected}, {OTHERS[_kind(path)].format(name=path.stem)}") from None
 
 
 def _kind(path: Path) -> str:

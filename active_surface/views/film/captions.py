@@ -14,8 +14,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray, Image, IntArray
 from active_surface.views.film.frames import Frame
 from active_surface.views.film.layout import BOTTOM, Layout
 from active_surface.views.film.pace import Pace
@@ -24,8 +24,6 @@ from active_surface.views.rounding import round_below
 from coupling.case import PlatformCase
 from meshes import STEPS, draw_rim, quantity_text, unit_for
 from particle import HALO, PATH_COLOUR, SHADES, STICK_COLOUR, State, stretches
-
-Image = NDArray[np.uint8]
 
 DPI = 100
 MIN_LETTER = 9.0  # pixels
@@ -160,7 +158,7 @@ class Captions:
         text.set_fontsize(float(text.get_fontsize()) * min(1.0, share / wide))
 
     @property
-    def _rows(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def _rows(self) -> tuple[FloatArray, IntArray]:
         """When (r,), in the clock's unit, the part came to its states (r,), as far as the run is stored."""
         run = self._stage.run
         known = run.rows.time <= run.time[-1]

@@ -13,12 +13,10 @@ from tempfile import TemporaryFile
 from typing import IO, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image as Pictures
 
+from active_surface.arrays import Image
 from coupling import whole_file
-
-Image = NDArray[np.uint8]
 
 FORMATS = ("mp4", "gif", "png")
 # Settings of ffmpeg: H.264 as every viewer plays it, with no loss that is seen; a GIF whose 256 colours are chosen for

@@ -9,12 +9,10 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.views.film.stage import Stage
 from particle import State
-
-FloatArray = NDArray[np.float64]
 
 
 class Frame(NamedTuple):

@@ -6,12 +6,10 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.views.film.camera import Camera
 from active_surface.views.film.stage import Stage
-
-FloatArray = NDArray[np.float64]
 
 MIN_SIZE, MAX_SIDE = (320, 240), 8192  # pixels: width and height, either
 LEFT, RIGHT, BOTTOM, TOP = 0.03, 0.86, 0.17, 0.88  # of the picture: the part of it that the surface fills

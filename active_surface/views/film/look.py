@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.colors import to_rgb
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from active_surface.arrays import FloatArray, IntArray
 from active_surface.views.film.captions import COLOURS
 from active_surface.views.film.frames import Frame
 from active_surface.views.film.layout import Layout
@@ -16,9 +16,6 @@ from active_surface.views.film.stage import Stage
 from active_surface.views.lines import Lines
 from coupling.pictures import Scale
 from particle import PATH_COLOUR
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 AMBIENT, DIFFUSE = 0.42, 0.60  # brightness of what has no light, and what light adds at most
 LIGHT = np.array([-0.35, 0.55, 0.76])  # right, up and towards the camera, where light comes from,

@@ -5,9 +5,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, closing, nullcontext
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from active_surface.arrays import Image
 from active_surface.views.film.frames import Frame
 from active_surface.views.film.look import Look
 from active_surface.views.film.offscreen import prepare
@@ -18,7 +16,7 @@ RENDERERS = ("auto", "pyvista", "matplotlib")
 class Painter(Protocol):
     """Draws frames."""
 
-    def paint(self, frame: Frame) -> NDArray[np.uint8]:
+    def paint(self, frame: Frame) -> Image:
         """The picture (height, width, 3) of a frame, without words."""
 
 

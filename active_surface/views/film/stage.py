@@ -9,20 +9,17 @@ from functools import cached_property
 
 import numpy as np
 from matplotlib.tri import Triangulation, UniformTriRefiner
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from active_surface.arrays import FloatArray, IntArray
 from active_surface.views.lines import Lines, clipped, divided, net, net_width, path_points
 from active_surface.views.rounding import exaggeration
 from active_surface.views.smooth import Smooth
 from active_surface.views.triangles import outer_edges
-from coupling.pictures import PITCHES, Scale, extent, is_visible, path_window
+from coupling.pictures import PITCHES, Scale, is_visible, path_window
 from coupling.results import SavedRun
-from fem_plate import pitch
+from fem_plate import extent, pitch
 from particle import State
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 MAX_TRIANGLES = 40_000  # of a mesh that is made finer to be drawn
 ACROSS = 120  # cells along a window
@@ -89,15 +86,15 @@ class Stage:
         low = np.full(len(self.surface), np.inf)
         high = -low
         for _, heights in self.stored_heights():
-            found = self.matrices["surface"] @ heights.T
-            low, high = np.minimum(low, found.min(axis=1)), np.maximum(high, found.max(axis=1))
+            deflection = self.matrices["surface"] @ heights.T
+            low, high = np.minimum(low, deflection.min(axis=1)), np.maximum(high, deflection.max(axis=1))
         return low, high
 
     def stored_heights(self) -> Iterator[tuple[int, FloatArray]]:
         """The first step of some, and their deflections (k, n') [m] at the used points, until all steps have been."""
         for first in range(0, len(self.run.time), BATCH):
-            found = self.run.plate_field("deflection", slice(first, first + BATCH))
-            yield first, np.asarray(found[:, self.used], dtype=np.float64)
+            deflection = self.run.plate_field("deflection", slice(first, first + BATCH))
+            yield first, np.asarray(deflection[:, self.used], dtype=np.float64)
 
     @property
     def scale(self) -> Scale:
@@ -180,8 +177,8 @@ def _frame(run: SavedRun, path: FloatArray) -> tuple[FloatArray, bool]:
 def _near(run: SavedRun, frame: FloatArray) -> tuple[IntArray, IntArray]:
     """The points of a run that are in a frame (2, 2) [m] or near it, and the triangles between them."""
     low, high = frame + AROUND * extent(frame) * np.array([[-1.0], [1.0]])
-    near = ((run.points >= low) & (run.points <= high)).all(axis=1)
-    touching = run.triangles[near[run.triangles].any(axis=1)]
+    inside = ((run.points >= low) & (run.points <= high)).all(axis=1)
+    touching = run.triangles[inside[run.triangles].any(axis=1)]
     used, rows = np.unique(touching, return_inverse=True)
     return used, rows.reshape(-1, 3)
 

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pyvista as pv
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray, Image, IntArray
 from active_surface.views.film.frames import Frame
 from active_surface.views.film.look import AMBIENT, DIFFUSE, Look
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-Image = NDArray[np.uint8]
 Colour = tuple[float, float, float]
 
 AROUND = 1.0  # length of the scene: room for the sizes of marks and ball

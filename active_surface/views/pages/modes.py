@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from active_surface.arrays import BoolArray, FloatArray
 
 SEEN = 1e-3  # of the largest height in view: less is not seen
 
@@ -20,7 +20,7 @@ class Modes(NamedTuple):
     error: float  # the largest, in the field's unit
 
 
-def modes_of(field: NDArray, close: NDArray[np.bool_] | None = None) -> Modes:
+def modes_of(field: NDArray, close: BoolArray | None = None) -> Modes:
     """As few modes as give a field (k, n) to `SEEN` of its largest number, at least one.
 
     close: which of the n are looked at closely (n,), and so are good to `SEEN` of the largest number of these.
@@ -35,8 +35,8 @@ def modes_of(field: NDArray, close: NDArray[np.bool_] | None = None) -> Modes:
     heights = field / sizes  # so that all are wanted to the same error
     turned = len(heights) > heights.shape[1]
     rows = heights.T if turned else heights
-    found, vectors = np.linalg.eigh(rows @ rows.T)
-    vectors = vectors[:, np.argsort(-found)]
+    eigenvalues, vectors = np.linalg.eigh(rows @ rows.T)
+    vectors = vectors[:, np.argsort(-eigenvalues)]
     rest, rank = rows.copy(), 0
     while rank == 0 or (rank < len(rows) and float(np.abs(rest).max()) > SEEN):
         vector = vectors[:, rank]

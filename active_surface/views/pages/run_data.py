@@ -6,20 +6,18 @@ from typing import Any, Final
 
 import numpy as np
 from matplotlib.colors import Normalize, to_hex
-from numpy.typing import NDArray
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.views.lines import cut_in
 from active_surface.views.pages.modes import modes_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.rounding import exaggeration
 from active_surface.views.triangles import Spots, coarse, inside, outer_edges, spots_of
-from coupling.pictures import Scale, extent, path_window
+from coupling.pictures import Scale, path_window
 from coupling.results import SavedRun
+from fem_plate import extent
 from meshes import Unit, unit_for
 from particle import State, stretches
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 MAX_STEPS: Final = 1000  # of a page; of more, as many evenly spread
 MAX_POINTS: Final = 6000  # of its surface; of more, those around the path, or fewer of these
@@ -52,7 +50,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
     modes = modes_of(heights, None if window is None else _close(place, triangles, window))
     clock = unit_for(run.time, "s")
     marked = np.flatnonzero(points < len(run.actuators))
-    shown = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
+    in_box = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
     return {
         "time": packed(run.time[steps] * clock.per_si, "f4"),
         "units": {"time": clock.name, "length": along.name, "height": scale.unit.name},
@@ -73,8 +71,8 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "error": modes.error * scale.unit.per_si,
             "rim": packed(outer_edges(triangles), "u2"),
             "lines": [_lines(place, triangles, box) for box in ([box] if window is None else [box, window])],
-            "actuators": packed(marked if shown <= MAX_ACTUATORS else [], "u2"),
-            "unmarked": shown if shown > MAX_ACTUATORS else 0,
+            "actuators": packed(marked if in_box <= MAX_ACTUATORS else [], "u2"),
+            "unmarked": in_box if in_box > MAX_ACTUATORS else 0,
             "whole": len(np.unique(run.triangles)) == len(points),
         },
         "part": {
@@ -98,7 +96,7 @@ def _colours(scale: Scale, low: float, high: float) -> list[list[Any]]:
     return [[stop, to_hex(scale.colours(norm(low + stop * (high - low))))] for stop in stops.tolist()]
 
 
-def _close(points: FloatArray, triangles: IntArray, window: FloatArray) -> NDArray[np.bool_]:
+def _close(points: FloatArray, triangles: IntArray, window: FloatArray) -> BoolArray:
     """Which points (n, 2) [m] have a triangle that reaches into a window (2, 2) [m]."""
     corners = points[triangles]
     reach = ((corners.max(axis=1) >= window[0]) & (corners.min(axis=1) <= window[1])).all(axis=1)
@@ -175,8 +173,8 @@ def _spots(spots: Spots) -> dict[str, Any]:
 def _stretches(run: SavedRun, state: State) -> FloatArray:
     """When each stretch of a state begins and ends (s, 2) [s], as the integrator found it."""
     rows = stretches(run.rows.state == state)
-    found = run.rows.time[np.array(rows, dtype=np.int64).reshape(-1, 2)]
-    return np.asarray(found[found[:, 0] < run.time[-1]].clip(max=run.time[-1]))
+    times = run.rows.time[np.array(rows, dtype=np.int64).reshape(-1, 2)]
+    return np.asarray(times[times[:, 0] < run.time[-1]].clip(max=run.time[-1]))
 
 
 def _counted(run: SavedRun) -> str:
@@ -193,9 +191,9 @@ def _curves(run: SavedRun, steps: IntArray, along: Unit) -> list[dict[str, Any]]
         ("Velocity", "m/s", {"along x": velocity[:, 0], "along y": velocity[:, 1]}),
         ("Force", "N", {"normal load": run.normal_force[steps], "friction": run.friction_force[steps]}),
     ]
-    found = []
+    result = []
     for label, si, values in panels:
         unit = along if si == "m" else unit_for(np.concatenate(list(values.values())), si)
         lines = [{"name": name, "values": packed(v * unit.per_si, "f4")} for name, v in values.items()]
-        found.append({"label": label, "unit": unit.name, "lines": lines})
-    return found
+        result.append({"label": label, "unit": unit.name, "lines": lines})
+    return result

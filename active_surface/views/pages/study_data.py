@@ -7,16 +7,14 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.studies import OUTCOMES, SENTENCES, Study
-from active_surface.studies.pictures import COLOURS, Scale, Shown, edges, outline
+from active_surface.studies.pictures import COLOURS, Scale, Selection, edges, outline
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.sweep_paths import Paths
 from coupling.case import Case, PlateCase
 from meshes import Unit, rim_curves, unit_for
-
-FloatArray = NDArray[np.float64]
 
 MAX_ENDS = 100_000  # of all starts; of more only the first of each point
 MAX_ACTUATORS = 400  # that are drawn
@@ -24,33 +22,35 @@ RIM_STAYS = ("supports", "youngs_modulus", "poisson_ratio", "thickness", "densit
 STOPS = 9  # of the colour scale
 
 
-def study_data(study: Study, shown: Shown, starts: FloatArray, paths: Paths) -> dict[str, Any]:
+def study_data(study: Study, selection: Selection, starts: FloatArray, paths: Paths) -> dict[str, Any]:
     """What the programs of the page read; starts: (..., 2) m, of the first repeat of each cell."""
-    ends = shown.end if shown.end[..., 0].size <= MAX_ENDS else shown.end[..., :1, :]
+    ends = selection.end if selection.end[..., 0].size <= MAX_ENDS else selection.end[..., :1, :]
     places = np.concatenate([ends.reshape(-1, 2), starts.reshape(-1, 2)])
     known = places[np.isfinite(places).all(axis=1)]
     along = unit_for(known if len(known) else np.zeros((1, 2)), "m")
-    lengths = shown.mean_distance
+    lengths = selection.mean_distance
     finite = lengths[np.isfinite(lengths)]
     unit = unit_for(finite if len(finite) else np.zeros(1), "m")
-    cells = {number: cell for cell, number in enumerate(shown.numbers[..., 0].ravel().tolist())}
+    cells = {number: cell for cell, number in enumerate(selection.numbers[..., 0].ravel().tolist())}
     lines = sorted((cells[number], line) for number, line in paths.lines.items())
     every = np.concatenate([line for _, line in lines]) if lines else np.empty((0, 2))
     return {
-        "kind": "points" if shown.findings.scattered else "map" if len(shown.axes) == 2 else "curve",
-        "axes": [_axis(scale, not shown.findings.scattered) for scale in shown.axes],
-        "others": [_axis(scale, False) for scale in _others(study, shown)],
-        "outline": outline(*shown.axes, shown.holds) if shown.holds is not None and len(shown.axes) == 2 else [],
+        "kind": "points" if selection.findings.scattered else "map" if len(selection.axes) == 2 else "curve",
+        "axes": [_axis(scale, not selection.findings.scattered) for scale in selection.axes],
+        "others": [_axis(scale, False) for scale in _others(study, selection)],
+        "outline": outline(*selection.axes, selection.holds)
+        if selection.holds is not None and len(selection.axes) == 2
+        else [],
         "threshold": study.threshold.text if study.threshold else "",
         "units": {"length": along.name, "distance": unit.name},
         "distance": packed(lengths.ravel() * unit.per_si, "f4"),
-        "outcome": packed(shown.usual_outcome.ravel(), "u1"),
+        "outcome": packed(selection.usual_outcome.ravel(), "u1"),
         "outcomes": [list(pair) for pair in zip(OUTCOMES, SENTENCES, strict=True)],
         "colours": COLOURS,
         "scale": [[k / STOPS, to_hex(colormaps["viridis"](k / STOPS))] for k in range(STOPS + 1)],
         "starts": packed(starts.reshape(-1, 2) * along.per_si, "f4"),
         "ends": packed(ends * along.per_si, "f4"),
-        "repeats": shown.end.shape[-2],
+        "repeats": selection.end.shape[-2],
         "kept": ends.shape[-2],
         "paths": {
             "cells": packed([cell for cell, _ in lines], "u4"),
@@ -61,13 +61,13 @@ def study_data(study: Study, shown: Shown, starts: FloatArray, paths: Paths) -> 
     }
 
 
-def _others(study: Study, shown: Shown) -> list[Scale]:
+def _others(study: Study, selection: Selection) -> list[Scale]:
     """The axes of points that are not drawn."""
-    if not shown.findings.scattered:
+    if not selection.findings.scattered:
         return []
     axes = study.points.axes
-    columns = study.points.columns(0, len(shown.distance))
-    return [Scale.of(axis, column) for axis, column in list(zip(axes, columns, strict=True))[len(shown.axes) :]]
+    columns = study.points.columns(0, len(selection.distance))
+    return [Scale.of(axis, column) for axis, column in list(zip(axes, columns, strict=True))[len(selection.axes) :]]
 
 
 def _axis(scale: Scale, in_cells: bool) -> dict[str, Any]:

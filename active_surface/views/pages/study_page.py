@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from active_surface.studies import Engine, Study, Sweep, lines
-from active_surface.studies.pictures import Findings, Shown
+from active_surface.studies.pictures import Findings, Selection
 from active_surface.views.pages.page_file import notes_of, rows_of, write_page
 from active_surface.views.pages.study_data import study_data
 from active_surface.views.pages.sweep_paths import Paths, find_paths, spread, usual_count
@@ -29,42 +29,41 @@ def write_study_page(
     paths: how many paths to find for it; None: as many as take about a minute, at most 2 500. `tell` gets how many are
     found, and of how many.
     """
-    shown = Shown.of(Findings.of(study.name, dataset, study.threshold))
+    selection = Selection.of(Findings.of(study.name, dataset, study.threshold))
     engine = Engine(study)
-    numbers, ends = shown.numbers[..., 0], shown.end[..., 0, :]
+    numbers, ends = selection.numbers[..., 0], selection.end[..., 0, :]
     chosen = spread(numbers.shape, usual_count(engine) if paths is None else paths)
-    found = find_paths(engine, numbers[chosen], ends[chosen], tell)
+    followed = find_paths(engine, numbers[chosen], ends[chosen], tell)
     starts = np.stack([dataset[f"start_{c}"].values.ravel()[numbers] for c in "xy"], axis=-1)
     sweep = Sweep(study, dataset)
-    fixed = ", ".join(f"{name} = {text}" for name, text in shown.fixed.items())
+    fixed = ", ".join(f"{name} = {text}" for name, text in selection.fixed.items())
     texts = {
         "name": escape(study.name),
-        "sentence": escape(_sentence(study, shown, found)),
-        "warnings": notes_of([*sweep.warnings, *_warnings(found)]),
+        "sentence": escape(_sentence(study, selection, followed)),
+        "warnings": notes_of([*sweep.warnings, *_warnings(followed)]),
         "rows": rows_of([*lines(sweep), *([("shown at", fixed)] if fixed else [])]),
         "study": escape(study.source),
         "case": escape(study.case.source or study.case.model_dump_json(indent=2)),
     }
-    return write_page(path, study.name, "study.html", texts, study_data(study, shown, starts, found), PROGRAMS)
+    return write_page(path, study.name, "study.html", texts, study_data(study, selection, starts, followed), PROGRAMS)
 
 
-def _sentence(study: Study, shown: Shown, found: Paths) -> str:
+def _sentence(study: Study, selection: Selection, followed: Paths) -> str:
     """What there is to be seen."""
     repeats = study.points.repeats
-    said = f"{shown.numbers[..., 0].size} points" + (f", each with {repeats} starts" if repeats > 1 else "")
-    known = int(np.isfinite(shown.mean_distance).sum())
-    if not found.lines:
-        return f"{said}. A click on a point shows where its path starts and ends." if known else f"{said}."
-    if len(found.lines) == known:
-        return f"{said}. A click on a point shows its path."
-    return (
-        f"{said}. A click on a point shows its path, if it is one of the {len(found.lines)}, of {known}, in this page."
-    )
+    sentence = f"{selection.numbers[..., 0].size} points" + (f", each with {repeats} starts" if repeats > 1 else "")
+    known = int(np.isfinite(selection.mean_distance).sum())
+    if not followed.lines:
+        return f"{sentence}. A click on a point shows where its path starts and ends." if known else f"{sentence}."
+    if len(followed.lines) == known:
+        return f"{sentence}. A click on a point shows its path."
+    some = f"{len(followed.lines)}, of {known}, in this page"
+    return f"{sentence}. A click on a point shows its path, if it is one of the {some}."
 
 
-def _warnings(found: Paths) -> list[str]:
+def _warnings(followed: Paths) -> list[str]:
     """What is to be known of the paths."""
-    if not found.strangers:
+    if not followed.strangers:
         return []
-    which = f"{found.strangers} of the {len(found.lines)} paths, found once more for this page,"
+    which = f"{followed.strangers} of the {len(followed.lines)} paths, found once more for this page,"
     return [f"{which} end elsewhere than in the sweep: other versions made it, or the paths are chaotic."]

@@ -6,13 +6,26 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from matplotlib.figure import Figure
+
 from active_surface.studies import ENDING, key_of
-from active_surface.studies.pictures import read_findings
+from active_surface.studies.pictures import (
+    Findings,
+    Panel,
+    Selection,
+    about,
+    outcome_panel,
+    panels,
+    read_findings,
+    value_panel,
+)
 from active_surface.views.prints.run_pictures import run_pictures
 from active_surface.views.prints.saved_portrait import portrait_of_saved
 from active_surface.views.prints.sheet import FORMATS, WIDTH, Picture, drawn, save
-from active_surface.views.prints.sweep_pictures import sweep_pictures
 from coupling.results import is_run, read_run
+
+OUTCOME = "outcome"
+HEIGHT = 0.85  # of the width, where a picture has no shape of its own
 
 
 class Plotted(NamedTuple):
@@ -77,9 +90,9 @@ def plot(
 def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tuple[str, list[Picture], bool]:
     """The name of a result, its pictures, and whether it was written to the end."""
     if is_run(path):
-        given = [key for key, name in (("x", x), ("y", y), ("value", value)) if name is not None]
-        if given:
-            raise ValueError(f"Input {' and '.join(given)} of plot must be given for a sweep only; {path} is of a run")
+        names = [key for key, name in (("x", x), ("y", y), ("value", value)) if name is not None]
+        if names:
+            raise ValueError(f"Input {' and '.join(names)} of plot must be given for a sweep only; {path} is of a run")
         run = read_run(path)
         return run.name, run_pictures(portrait_of_saved(run)), run.complete
     file = path if path.is_file() else path.with_name(path.name + ENDING)
@@ -95,3 +108,28 @@ def _instead(path: Path) -> str:
     if path.suffix == ".toml" and path.is_file():
         return "which tells what to do; what one of these commands makes of it can be drawn"
     return "which is something else" if path.exists() else "which is no file"
+
+
+def sweep_pictures(
+    findings: Findings, x: str | None = None, y: str | None = None, value: str | None = None
+) -> list[Picture]:
+    """The pictures that tell of a sweep, over the axes named x and y; or that of one column of its results.
+
+    They hold all that they show, so that the file may be closed.
+    Raises ValueError for a name that there is not.
+    """
+    selection = Selection.of(findings, x, y, value)
+    one = outcome_panel if value == OUTCOME else value_panel
+    chosen = panels(selection) if value is None else [one(selection)]
+    return [_picture(panel, selection) for panel in chosen]
+
+
+def _picture(panel: Panel, selection: Selection) -> Picture:
+    def draw(figure: Figure) -> None:
+        axes = figure.add_subplot()
+        panel.draw(figure, axes)
+        if axes.get_aspect() == "auto":
+            figure.set_figheight(HEIGHT * figure.get_figwidth())
+
+    caption = panel.title[0].upper() + panel.title[1:]
+    return Picture(panel.name, f"{caption}: {about(selection)}.", draw)

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from active_surface.arrays import FloatArray
 from active_surface.views.prints.sheet import MM, Picture, put_keys
 from coupling.pictures import (
     Curves,
@@ -28,8 +28,6 @@ from coupling.pictures import (
 )
 from meshes import NOTHING, unit_for
 from particle import EventKind, State, shade, shade_keys, stretches
-
-FloatArray = NDArray[np.float64]
 
 SHARE = 0.75  # of the width is a map's, about
 PANEL, STRIP, REST = 27.0, 3.5, 16.0  # mm: the height of a panel, of the strip of events, of labels and keys
@@ -52,17 +50,17 @@ def run_pictures(portrait: Portrait) -> list[Picture]:
     line, relief = portrait.samples.position, portrait.relief
     window = path_window(line, portrait.box, relief.actuators) if relief else None
     surface = f"the plate at {portrait.when}, {portrait.most}" if relief else portrait.origin
-    found = [
+    pictures = [
         Picture(
             "path", f"The path over {surface}. {portrait.sentence}", lambda figure: _draw_all(figure, portrait, window)
         )
     ]
     if window is not None:
-        said = f"The path and what is around it: {surface}."
-        found.append(Picture("closeup", said, lambda figure: _draw_window(figure, portrait, window)))
+        text = f"The path and what is around it: {surface}."
+        pictures.append(Picture("closeup", text, lambda figure: _draw_window(figure, portrait, window)))
     names = ", ".join(curves.label for curves in courses(portrait))
-    found.append(Picture("time", f"Over time: {names}.", lambda figure: _draw_course(figure, portrait)))
-    return found
+    pictures.append(Picture("time", f"Over time: {names}.", lambda figure: _draw_course(figure, portrait)))
+    return pictures
 
 
 def _draw_all(figure: Figure, portrait: Portrait, window: FloatArray | None) -> None:
@@ -92,24 +90,24 @@ def courses(portrait: Portrait) -> list[Curves]:
     moved = np.abs(samples.position).max() > FAR * max(float(np.ptp(samples.position, axis=0).max()), NOTHING)
     x, y = (way if moved else samples.position).T
     relative = "relative " if portrait.base else ""
-    found = [Curves(relative + ("displacement" if moved else "position"), "m", {"along x": x, "along y": y})]
+    result = [Curves(relative + ("displacement" if moved else "position"), "m", {"along x": x, "along y": y})]
     if samples.height.any():
-        found.append(Curves("height", "m", {"": samples.height}))
+        result.append(Curves("height", "m", {"": samples.height}))
     v_x, v_y = samples.velocity.T
-    found.append(Curves(f"{relative}velocity", "m/s", {"along x": v_x, "along y": v_y}))
-    found += [curves for curves in curves_of(portrait) if "platform" in curves.values]
+    result.append(Curves(f"{relative}velocity", "m/s", {"along x": v_x, "along y": v_y}))
+    result += [curves for curves in curves_of(portrait) if "platform" in curves.values]
     forces = {"normal load": samples.normal_force, "friction": samples.friction_force}
-    return [*found, Curves("contact force", "N", forces)]
+    return [*result, Curves("contact force", "N", forces)]
 
 
 def _draw_course(figure: Figure, portrait: Portrait) -> None:
-    shown, rows, times = courses(portrait), portrait.rows, portrait.samples.time
-    figure.set_figheight((PANEL * len(shown) + STRIP + REST) * MM)
+    all_curves, rows, times = courses(portrait), portrait.rows, portrait.samples.time
+    figure.set_figheight((PANEL * len(all_curves) + STRIP + REST) * MM)
     unit = unit_for(times, "s")
-    grid = figure.add_gridspec(len(shown) + 1, 1, height_ratios=[STRIP, *[PANEL] * len(shown)])
+    grid = figure.add_gridspec(len(all_curves) + 1, 1, height_ratios=[STRIP, *[PANEL] * len(all_curves)])
     strip = figure.add_subplot(grid[0])
-    panels = [figure.add_subplot(grid[k + 1], sharex=strip) for k in range(len(shown))]
-    for panel, curves in zip(panels, shown, strict=True):
+    panels = [figure.add_subplot(grid[k + 1], sharex=strip) for k in range(len(all_curves))]
+    for panel, curves in zip(panels, all_curves, strict=True):
         draw_over_time(panel, rows, times, curves, unit)
         panel.tick_params(labelbottom=panel is panels[-1])
     panels[-1].set_xlabel(f"time [{unit.name}]")
@@ -128,12 +126,12 @@ def _draw_events(axes: Axes, portrait: Portrait, per_second: float) -> list[Arti
     axes.tick_params(bottom=False, labelbottom=False)
     room = 72 * SHARE * axes.figure.bbox.width / axes.figure.dpi / APART
     keys: list[Artist] = []
-    for kind, (marker, colour, said) in MARKS.items():
+    for kind, (marker, colour, text) in MARKS.items():
         times = [event.time for event in portrait.events if event.kind is kind]
         if not times or (kind in OFTEN and len(portrait.events) > room):
             continue
         look: dict[str, Any] = {"marker": marker, "color": colour, "markeredgecolor": "black", "linestyle": ""}
         look |= {"markersize": APART, "markeredgewidth": 0.6}
         axes.plot(np.array(times) * per_second, np.full(len(times), 0.5), **look, clip_on=False)
-        keys.append(Line2D([], [], **look, label=said))
+        keys.append(Line2D([], [], **look, label=text))
     return keys

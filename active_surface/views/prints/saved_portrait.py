@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.tri import CubicTriInterpolator, Triangulation
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
+from active_surface.arrays import FloatArray
 from coupling import silent
 from coupling.case import PlateCase
 from coupling.display import most_deflected
@@ -15,8 +15,6 @@ from coupling.results import SavedRun
 from coupling.scene import platform_scene
 from meshes import rim_curves
 from particle import Samples
-
-FloatArray = NDArray[np.float64]
 
 BATCH = 64  # steps whose deflections are read together
 JUMP = ("vertical_velocity", "normal_force", "friction_force")  # with velocities, where the state changes

@@ -213,7 +213,7 @@ def test_the_command_says_what_was_found(tmp_path):
     assert done.exit_code == 2 and "which has base_aimed.toml and base_aim.png: --overwrite replaces" in done.output
     done = CliRunner().invoke(main, [*arguments, "--overwrite"])
     assert [(tmp_path / "out" / f"base_{name}").read_bytes() for name in ("aimed.toml", "aim.png")] == before
-    assert done.exit_code == 0 and "within the 0.5 um wanted" in done.stdout
+    assert done.exit_code == 0 and "within the 0.5 um tolerance" in done.stdout
     assert [line.split()[0] for line in done.stdout.splitlines()].count("actuator") == 2
 
 

@@ -41,7 +41,7 @@ def test_a_part_that_passes_a_target_has_not_reached_it(tmp_path):
     passing = aim_over(surface, Task(case, (float(end[0]), float(end[1])), Settings(**fixed)))
     assert passing.distance == 0.0 and passing.trajectory.outcome is Outcome.MOVING and not passing.reached
     assert dict(lines(passing))["distance"].startswith(
-        "0.0000 um, within the 0.5 um wanted, but it does not rest there for good"
+        "0.0000 um, within the 0.5 um tolerance, but it does not rest there for good"
     )
 
 
@@ -90,7 +90,7 @@ def test_a_second_interruption_does_not_undo_the_first(tmp_path, monkeypatch):
 
     assert threading.current_thread() is threading.main_thread()
     before = signal.getsignal(signal.SIGINT)
-    monkeypatch.setattr("active_surface.steering.aiming.write_case", write)
+    monkeypatch.setattr("active_surface.steering.stages.write_case", write)
     aimed = aim_over(build_surface(case), Task(case, TARGET, Settings(scatter=5)), tell=stop, file=tmp_path / "a.toml")
     assert aimed.interrupted and len(written) == 1 and signal.getsignal(signal.SIGINT) is before
 
@@ -170,7 +170,7 @@ def test_a_plan_says_which_way_points_it_missed(tmp_path):
     (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\npaths = 3\nscatter = 2\n')
     arguments = ["plan", str(tmp_path / "aim.toml"), "-o", str(tmp_path / "out"), "--through", "-90,120", "90,120"]
     done = CliRunner().invoke(main, arguments)
-    assert done.exit_code == 0 and "not within the 0.5 um wanted" in done.stdout
+    assert done.exit_code == 0 and "not within the 0.5 um tolerance" in done.stdout
     assert "0 of 2 way-points within 0.5 um" in done.stdout
     told = json.loads(CliRunner().invoke(main, [*arguments, "--json", "--overwrite"]).stdout)
     assert [leg["reached"] for leg in told["legs"]] == [False, False] and not told["complete"]

@@ -6,7 +6,7 @@ import pytest
 from sweeps import PLATE, PLATFORM
 
 from active_surface.steering import Route, Settings, Task, read_route, read_task
-from active_surface.steering.places import read_place
+from active_surface.steering.read import read_place
 from coupling import CaseError, read_case
 
 ONE = PLATE[: PLATE.index("[[actuators]]")] + PLATE[PLATE.rindex("[[actuators]]") :]

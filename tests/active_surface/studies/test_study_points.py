@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from active_surface.studies import read_study
-from active_surface.studies.slabs import slabs
+from active_surface.studies.dataset import slabs
 from active_surface.studies.variants import Variants
 from coupling import read_case
 

@@ -14,7 +14,7 @@ from active_surface.studies.dataset import read_dataset, write_dataset
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.pictures.heat import edges
 from active_surface.studies.pictures.map import compose, draw_sweep
-from active_surface.studies.pictures.shown import Scale, Shown
+from active_surface.studies.pictures.selection import Scale, Selection
 from active_surface.studies.record import OUTCOMES, new_records
 
 
@@ -179,7 +179,7 @@ def test_one_value_alone_is_drawn(tmp_path):
 @pytest.mark.parametrize("other", ["", STROKE])
 def test_an_axis_may_be_called_number(tmp_path, other):
     study, dataset = made(tmp_path, LIMIT.replace('"limit"', '"number"') + other)
-    shown = Shown.of(Findings.of(study.name, dataset, None))
+    shown = Selection.of(Findings.of(study.name, dataset, None))
     scale = shown.axes[[axis.axis.name for axis in shown.axes].index("number")]
     assert scale.drawn == pytest.approx([1, 2]) and scale.unit.name == "nN"
     assert sorted(shown.numbers.ravel()) == list(range(len(study.points)))
@@ -197,6 +197,6 @@ def test_near_values_of_an_axis_are_told_apart(tmp_path):
     near = axis("actuators.0.frequency", '["10000 Hz", "10000.5 Hz", "10001 Hz"]', "frequency")
     uneven = axis("actuators.0.stroke", '["20 um", "20.00001 um", "20.001 um", "30 um"]', "stroke")
     study, dataset = made(tmp_path, near + uneven + axis("friction.limit", '["1 nN", "2 nN", "3 nN", "4 nN"]', "limit"))
-    shown = Shown.of(Findings.of(study.name, dataset, study.threshold), "stroke", "limit")
+    shown = Selection.of(Findings.of(study.name, dataset, study.threshold), "stroke", "limit")
     assert shown.fixed == {"frequency": "10.0005 kHz"}
     assert shown.axes[0].texts == ("20", "20.00001", "20.001", "30")

@@ -15,12 +15,11 @@ from sweeps import PLATE, PLATFORM, written
 from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study
 from active_surface.studies.pictures.findings import read_findings
-from active_surface.studies.pictures.shown import Shown
-from active_surface.views.prints.plots import plot
+from active_surface.studies.pictures.selection import Selection
+from active_surface.views.prints.plots import plot, sweep_pictures
 from active_surface.views.prints.run_pictures import MARKS, courses, run_pictures
 from active_surface.views.prints.saved_portrait import portrait_of_saved
 from active_surface.views.prints.sheet import MM, drawn
-from active_surface.views.prints.sweep_pictures import sweep_pictures
 from coupling import read_case, run_case
 from coupling.display import display_surface
 from coupling.pictures.portrait import deflected_most, portrait_of
@@ -228,13 +227,13 @@ def test_pictures_of_a_sweep_can_be_read(folder, name, chosen, expected):
 @pytest.mark.compiled
 def test_axes_of_a_map_are_those_that_are_named(folder):
     with read_findings(folder / "two.nc") as findings:
-        found, turned = Shown.of(findings), Shown.of(findings, "stroke")
+        found, turned = Selection.of(findings), Selection.of(findings, "stroke")
         assert [scale.axis.name for scale in found.axes] == ["frequency", "stroke"]
         assert [scale.axis.name for scale in turned.axes] == ["stroke", "frequency"]
         assert turned.mean_value.T.tolist() == found.mean_value.tolist()
         assert turned.holds.T.tolist() == found.holds.tolist()
     with read_findings(folder / "three.nc") as findings:
-        shown = Shown.of(findings, "mass", None, "path_length")
+        shown = Selection.of(findings, "mass", None, "path_length")
         assert [scale.axis.name for scale in shown.axes] == ["mass", "frequency"] and shown.fixed == {"stroke": "40 µm"}
         expected = findings.dataset["path_length"].sel(stroke=40e-6, method="nearest").transpose("mass", "frequency")
         assert shown.mean_value.tolist() == expected.values.tolist()

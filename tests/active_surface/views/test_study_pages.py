@@ -11,7 +11,7 @@ from active_surface.cli.program import main
 from active_surface.studies import read_study, run_study
 from active_surface.studies.engine import Engine
 from active_surface.studies.pictures.findings import Findings
-from active_surface.studies.pictures.shown import Shown
+from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.saved import read_sweep
 from active_surface.views.pages.study_data import study_data
 from active_surface.views.pages.study_page import write_study_page
@@ -81,7 +81,7 @@ def test_a_page_has_no_more_paths_than_asked(folder, sweep, count, cells):
 
 def test_of_many_ends_the_first_are_kept_and_the_repeats_stated(folder, sweep, monkeypatch):
     study = read_study(folder / "many.toml")
-    shown = Shown.of(Findings.of(study.name, sweep, study.threshold))
+    shown = Selection.of(Findings.of(study.name, sweep, study.threshold))
     shown = replace(shown, end=np.repeat(shown.end, 3, axis=-2))
     for most, kept in ((27, 3), (26, 1)):
         monkeypatch.setattr("active_surface.views.pages.study_data.MAX_ENDS", most)

@@ -11,7 +11,7 @@ from coupling.case import parse, read_case
 from coupling.results import ENDINGS, SavedRun, is_run, name_of, record_of
 
 
-class Found(NamedTuple):
+class ResultFile(NamedTuple):
     """A result: what its reader wants, and where its page goes."""
 
     path: Path  # of a run FOLDER/NAME or one of its files, of a sweep its file
@@ -20,7 +20,7 @@ class Found(NamedTuple):
     study: Path | None = None  # the study file that was named
 
 
-def result_of(path: Path, folder: Path) -> Found:
+def result_of(path: Path, folder: Path) -> ResultFile:
     """The result that a path stands for; that of a case or study file is in the folder or beside it.
 
     Raises ValueError when there is none.
@@ -28,11 +28,11 @@ def result_of(path: Path, folder: Path) -> Found:
     if path.suffix == ".toml":
         return _of_file(path, folder)
     if path.suffix == ENDING:
-        return Found(path, path.with_suffix(".sweep.html"), True)
+        return ResultFile(path, path.with_suffix(".sweep.html"), True)
     sweep = path.with_name(path.name + ENDING)
     if sweep.is_file() and not (path.is_file() or is_run(path)):
-        return Found(sweep, sweep.with_suffix(".sweep.html"), True)
-    return Found(path, path.with_name(f"{name_of(path)}.html"), False)
+        return ResultFile(sweep, sweep.with_suffix(".sweep.html"), True)
+    return ResultFile(path, path.with_name(f"{name_of(path)}.html"), False)
 
 
 def is_of(run: SavedRun, path: Path) -> bool:
@@ -41,12 +41,12 @@ def is_of(run: SavedRun, path: Path) -> bool:
     return json.loads(now.text) == json.loads(then.text) and dict(now.files) == dict(then.files)
 
 
-def _of_file(path: Path, folder: Path) -> Found:
+def _of_file(path: Path, folder: Path) -> ResultFile:
     tables = parse(path).tables
-    wanted = f"a result, or a file whose result is in {folder} or beside it"
+    expected = f"a result, or a file whose result is in {folder} or beside it"
     if "aim" in tables:
         its = "whose table [aim] is for `active-surface aim`: name the result of the case file that this writes"
-        raise ValueError(f"Input RESULT must be {wanted}; got {path}, {its}")
+        raise ValueError(f"Input RESULT must be {expected}; got {path}, {its}")
     is_sweep = "study" in tables
     endings = (ENDING,) if is_sweep else ENDINGS
     for place in (folder, path.parent):
@@ -54,9 +54,9 @@ def _of_file(path: Path, folder: Path) -> Found:
             file = place / f"{path.stem}{ending}"
             if file.is_file():
                 page = place / f"{path.stem}{'.sweep' if is_sweep else ''}.html"
-                return Found(file if is_sweep else place / path.stem, page, is_sweep, path if is_sweep else None)
+                return ResultFile(file if is_sweep else place / path.stem, page, is_sweep, path if is_sweep else None)
     command = "sweep" if is_sweep else "run"
     raise ValueError(
-        f"Input RESULT must be {wanted}; got {path}, and no {path.stem}{endings[0]} is there: "
+        f"Input RESULT must be {expected}; got {path}, and no {path.stem}{endings[0]} is there: "
         f"`active-surface {command} {path}` makes it"
     )

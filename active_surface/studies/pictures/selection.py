@@ -1,4 +1,4 @@
-"""Shown: what of a sweep's results its picture shows."""
+"""Selection: what of a sweep's results its picture shows."""
 
 from __future__ import annotations
 
@@ -8,15 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies.axis import Axis, counted
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.record import COLUMNS, OUTCOMES
-from active_surface.studies.threshold import BoolArray
 from coupling import near
 from meshes import Unit, unit_for
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 DISTANCE = "distance"
 NUMBER = "number of the path"  # with spaces, which no axis has in its name
@@ -81,7 +78,7 @@ def _even(values: FloatArray) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
+class Selection:
     """Results along at most two axes of a grid, or at points; repeats are along the last dimension.
 
     Numbers along an axis of a grid ascend.
@@ -101,7 +98,7 @@ class Shown:
     holds: BoolArray | None = None
 
     @classmethod
-    def of(cls, findings: Findings, x: str | None = None, y: str | None = None, column: str | None = None) -> Shown:
+    def of(cls, findings: Findings, x: str | None = None, y: str | None = None, column: str | None = None) -> Selection:
         """What is shown over the axes named x and y, by default the longest, of a column of the results.
 
         Raises ValueError, naming all of them, for names that there are not.
