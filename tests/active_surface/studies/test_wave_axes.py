@@ -1,0 +1,68 @@
+"""The phase and the ramp of drives as axes of a study."""
+
+import math
+
+import pytest
+
+from active_surface.studies.axis import Axis
+from active_surface.studies.field import find_field
+from active_surface.studies.variants import Variants
+from coupling import read_case
+
+CASE = """\
+[plate]
+shape = "disc"
+radius = "300 um"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+[[actuators]]
+position = ["0 um", "0 um"]
+stroke = "1 um"
+frequency = "300 Hz"
+cycle = "sine"
+[[actuators]]
+position = ["90 um", "0 um"]
+stroke = "1 um"
+frequency = "300 Hz"
+cycle = "cosine"
+phase = "20 deg"
+[part]
+mass = "2e-9 kg"
+position = ["100 um", "100 um"]
+[friction]
+model = "constant"
+limit = "1 uN"
+[run]
+duration = "5 ms"
+"""
+
+
+@pytest.fixture
+def case(tmp_path):
+    (tmp_path / "wave.toml").write_text(CASE)
+    return read_case(tmp_path / "wave.toml")
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "unit", "read"),
+    [
+        ("actuators.1.phase", "90 deg", "rad", math.pi / 2),
+        ("actuators.*.phase", "1 turn", "rad", 2 * math.pi),
+        ("actuators.*.ramp", 3, "1", 3.0),
+        ("actuators.0.ramp", 0.5, "1", 0.5),
+    ],
+)
+def test_phase_and_ramp_can_be_varied(case, path, value, unit, read):
+    field = find_field(case, None, path)
+    assert (field.unit, field.kind, field.read(value)) == (unit, "number", pytest.approx(read))
+    (key,) = {location[-1] for location in field.locations}
+    varied, _ = Variants(case, (Axis(path, field, (field.read(value),)),)).at((field.read(value),))
+    for k, actuator in enumerate(varied.actuators):
+        expected = read if ("actuators", k, key) in field.locations else getattr(case.actuators[k], key)
+        assert getattr(actuator, key) == pytest.approx(expected)
+
+
+def test_a_wrong_phase_is_refused_in_words(case):
+    with pytest.raises(ValueError, match='must be an angle such as "90 deg"; got "3 um", a length'):
+        find_field(case, None, "actuators.0.phase").read("3 um")
