@@ -67,7 +67,7 @@ def test_a_part_that_is_too_high_tips_over_unless_it_adheres():
 def test_heights_are_checked():
     with pytest.raises(InputError, match="part.centre_height of Case must be at least 0"):
         case(CONSTANT, part={"centre_height": -1e-6})
-    with pytest.raises(InputError, match="plate.top_face of Case must be"):
+    with pytest.raises(InputError, match="plate.top_face of Case must be true or false"):
         case(CONSTANT, plate={"top_face": "yes"})
 
 
