@@ -4,6 +4,8 @@ PYTHON ?= python3
 BIN := .venv/bin
 # Small dense systems gain nothing from BLAS threads and lose much where cores are busy.
 export OPENBLAS_NUM_THREADS ?= 1
+# Tests start many processes, which shall not compile every source anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 # Tests run on all processors, those of a file on one, as they share what is made for them. tests/conftest.py puts files
 # that take long first.
@@ -14,17 +16,19 @@ PLAIN := NUMBA_DISABLE_JIT=1 $(PYTEST) -m "not slow and not compiled"
 MARCHES := tests/physics tests/regression tests/active_surface/studies/test_feasible.py
 MARCHES += $(addprefix tests/validation/test_, motion_oracle.py single_stroke.py two_actuators.py)
 
-.PHONY: demo test test-all long-tests forget-coverage lint kernels docs site paper benchmark clean
+.PHONY: demo test test-all plain long-tests forget-coverage lint kernels docs site paper benchmark clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/two_actuators.toml
 
 test: .venv/developer
-	@$(MAKE) --no-print-directory -j2 lint kernels
-	@echo "== the part, in plain Python (1 of 2)"
-	$(PLAIN) $(COVERAGE) tests/particle
+	@$(MAKE) --no-print-directory -j2 kernels plain COVERAGE="$(COVERAGE)"
 	@echo "== all tests, with compiled kernels (2 of 2)"
 	$(PYTEST) $(COVERAGE) -m "not slow"
+
+plain: lint
+	@echo "== the part, in plain Python (1 of 2)"
+	$(PLAIN) $(COVERAGE) tests/particle
 
 test-all: COVERAGE := --cov --cov-append --cov-report=
 test-all: forget-coverage test long-tests
@@ -34,10 +38,10 @@ forget-coverage:
 
 # What else marches in plain Python, rivals, browsers, clusters, killed runs, long validation.
 long-tests: .venv/developer
-	$(PLAIN) $(COVERAGE) $(MARCHES)
+	NUMBA_DISABLE_JIT=1 $(PYTEST) $(COVERAGE) -m "not compiled" $(MARCHES)
 	$(PYTEST) --cov --cov-append -m slow
 
-# Compiled once, before several processes would do so at a time.
+# Compiled once, on one processor, before several processes would do so at a time.
 kernels: .venv/developer
 	@$(BIN)/active-surface run examples/two_actuators.toml --quiet --output build/kernels
 
@@ -77,9 +81,9 @@ paper: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
 	@touch $@
 
-.venv/developer: .venv/installed
+.venv/developer: .venv/python pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev,cluster]"
-	@touch $@
+	@touch .venv/installed $@
 
 .venv/benchmarks: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[benchmarks]"

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import interpolate  # loaded when it is used
 
 from particle import HermiteDrive
 
@@ -33,6 +32,8 @@ def fit_motion(
     smoothing: m, the noise of the positions: the spline has as few knots as bring the root mean square of the
     differences down to that. None: it goes through every position.
     """
+    from scipy import interpolate  # here, because few cases have measured motions
+
     t, h = np.asarray(times, dtype=float), np.asarray(positions, dtype=float)
     if smoothing is None:
         through = interpolate.make_interp_spline(t, h, DEGREE)

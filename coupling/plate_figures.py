@@ -130,7 +130,8 @@ def _part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, trajec
         return None
     on_plate = outline.gap(trajectory.position) >= 0  # all but the last of a part that slid over the rim
     places = zip(trajectory.position[on_plate], trajectory.time[on_plate], strict=True)
-    return size * max(float(np.abs(np.linalg.eigvalsh(surface.evaluate(xy, t).hessian)).max()) for xy, t in places)
+    hessians = np.concatenate([surface.evaluate(xy, t).hessian for xy, t in places])
+    return size * float(np.abs(np.linalg.eigvalsh(hessians)).max())
 
 
 def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: float) -> float:

@@ -98,12 +98,12 @@ def run_case(
         The case.
     output : path, optional
         Folder for NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png.
+    progress : Progress, optional
+        Reports the progress of a stage, for progress bars.
     csv : bool
         Also write the trajectory to NAME.csv.
     save_surface : bool
         Also write the moving surface, with the cells that the part came to, to NAME.surface.h5 (`read_surface`).
-    progress : Progress, optional
-        Reports the progress of a stage, for progress bars.
 
     Returns
     -------

@@ -13,6 +13,7 @@ from .analytic import DiscShapes as DiscShapes
 from .pictures import (
     distance_drawn as distance_drawn,
     draw_supports as draw_supports,
+    extent as extent,
     frame_around as frame_around,
     mark_actuators as mark_actuators,
     marker_size as marker_size,

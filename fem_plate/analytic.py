@@ -128,6 +128,7 @@ class DiscShapes(Shapes):
         points = np.atleast_2d(np.asarray(points, dtype=float))
         check_points("DiscShapes", points, radius - np.hypot(*points.T), radius)
         self.points, self.size = np.ascontiguousarray(points), radius
+        self.springs = np.full(len(points), np.inf)
         self.outline = Outline(conics=np.array([[0.0, 0.0, radius, radius]]))
         x = points / radius
         compliance = point_value(x, x) + smooth_value(x, x)

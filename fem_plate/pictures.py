@@ -81,7 +81,7 @@ def mark_actuators(
         size = marker_size(inside, frame, width) if size is None else size
         if not size:
             return [Line2D([], [], linestyle="", label=f"{len(places)} actuators, not marked")]
-        reach = size / width * _extent(frame)
+        reach = size / width * extent(frame)
         inside = inside[((inside > frame[0] + reach) & (inside < frame[1] - reach)).all(axis=1)]
     size = size or MARKER_SIZES[1]
     look = ACTUATOR | {"color": colour}
@@ -100,7 +100,7 @@ def marker_size(places: FloatArray, frame: FloatArray, width: float = AXES_WIDTH
 
 def distance_drawn(places: FloatArray, frame: FloatArray, width: float = AXES_WIDTH) -> float:
     """How far apart [points] places (N, 2) [m] are in a frame (2, 2) [m] so wide [points]; inf where they are few."""
-    return width * pitch(places) / _extent(frame) if len(places) > FEW else math.inf
+    return width * pitch(places) / extent(frame) if len(places) > FEW else math.inf
 
 
 def pitch(places: FloatArray) -> float:
@@ -112,11 +112,12 @@ def pitch(places: FloatArray) -> float:
 
 def frame_around(box: FloatArray) -> FloatArray:
     """The corners (2, 2) of a frame with a margin around a box (2, 2)."""
-    return box + MARGIN * _extent(box) * np.array([[-1.0], [1.0]])
+    return box + MARGIN * extent(box) * np.array([[-1.0], [1.0]])
 
 
-def _extent(frame: FloatArray) -> float:
-    return float(np.ptp(frame, axis=0).max())
+def extent(points: FloatArray) -> float:
+    """The longer side [m] of the box around points (n, 2) [m]."""
+    return float(np.ptp(points, axis=0).max())
 
 
 def draw_shapes(shapes: Shapes, weights: FloatArray | None, axes: Axes) -> None:

@@ -120,13 +120,13 @@ def modes(model: PlateModel, held: FloatArray, compliance: FloatArray, count: in
 def _masses(model: PlateModel, x: FloatArray, responses: FloatArray, mass: csc_matrix) -> tuple[FloatArray, FloatArray]:
     """int q psi_j (unknowns, N) and int psi_i psi_j (N, N) for psi = F + responses, F by quadrature."""
     space = model.space
-    points, weights = space.quadrature
+    (points, weights), triangles = space.quadrature, space.quadrature_triangles
     with_singular, of_singular = np.zeros((space.unknowns, len(x))), np.zeros((len(x), len(x)))
     for start in range(0, len(points), CHUNK):
         part = slice(start, start + CHUNK)
         value = point_value(points[part], x)
         weighted = weights[part, None] * value
-        with_singular += space.point_values(points[part]).T @ weighted  # int q F
+        with_singular += space.point_values(points[part], triangles[part]).T @ weighted  # int q F
         of_singular += value.T @ weighted  # int F F
     cross = mass @ responses + with_singular
     inner = responses.T @ (mass @ responses) + responses.T @ with_singular + with_singular.T @ responses

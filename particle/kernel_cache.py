@@ -17,6 +17,7 @@ from typing import Any
 
 from numba.core import config
 from numba.core.caching import Cache, CompileResultCacheImpl, _CacheLocator, _SourceFileBackedLocatorMixin
+from numba.core.runtime import rtsys
 from numba.misc.appdirs import AppDirs
 
 PACKAGE = Path(__file__).parent
@@ -125,13 +126,19 @@ class KernelCache(Cache):  # type: ignore[misc]
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         if source_stamps(PACKAGE) != STAMPS:
             return None
-        kernel = super().load_overload(sig, target_context)
+        kernel = self._load(sig, target_context)
         if kernel is not None or not self._begin():
             return kernel
-        kernel = super().load_overload(sig, target_context)  # another process may have compiled it
+        kernel = self._load(sig, target_context)  # another process may have compiled it
         if kernel is not None:
             self._end()
         return kernel
+
+    def _load(self, sig: Any, target_context: Any) -> Any:
+        """As numba's own, without all that only compiling needs, which a compilation loads itself."""
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
 
     def save_overload(self, sig: Any, data: Any) -> None:
         try:

@@ -10,7 +10,7 @@ import numpy as np
 from active_surface.arrays import FloatArray, IntArray
 from active_surface.views.rounding import round_above
 from active_surface.views.smooth import Smooth
-from coupling.pictures import extent
+from fem_plate import extent
 
 SQUARES = 12  # of the net, about, along the longer side
 

@@ -9,10 +9,9 @@ from .plate import (
     draw_plate as draw_plate,
     draw_window as draw_window,
     refined as refined,
-    relief_of as relief_of,
 )
 from .portrait import Portrait as Portrait
 from .run import draw_run as draw_run, draw_surface as draw_surface, plot_run as plot_run
 from .ticks import map_axes as map_axes, plain_ticks as plain_ticks
 from .time import Curves as Curves, curves_of as curves_of, draw_over_time as draw_over_time
-from .window import PITCHES as PITCHES, extent as extent, is_visible as is_visible, path_window as path_window
+from .window import PITCHES as PITCHES, is_visible as is_visible, path_window as path_window

@@ -7,7 +7,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from coupling.pictures.window import extent
+from fem_plate import extent
 from meshes import NOTHING, Unit, quantity_text
 from particle import PLACE, RING, Rows, draw_line
 

@@ -17,8 +17,7 @@ from matplotlib.tri import Triangulation, UniformTriRefiner
 from numpy.typing import NDArray
 
 from coupling.display import onto_plate
-from coupling.pictures.window import extent
-from fem_plate import PlateShapes, distance_drawn, frame_around, mark_actuators
+from fem_plate import PlateShapes, distance_drawn, extent, frame_around, mark_actuators
 from meshes import STEPS, Unit, draw_rim, rim_curves, unit_for
 
 if TYPE_CHECKING:

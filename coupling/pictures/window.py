@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate import pitch
+from fem_plate import extent, pitch
 
 FloatArray = NDArray[np.float64]
 
@@ -13,11 +13,6 @@ SHORT = 1 / 6  # of the plate's longer side: a shorter path gets a window
 VISIBLE = 1 / 1000  # of the plate's longer side: a shorter path is drawn as a point
 MIN_LENGTHS, MAX_LENGTHS = 2.5, 4.0  # of the path's extent: the side of the window,
 PITCHES = 2.2  # which shows so many pitches if it can
-
-
-def extent(path: FloatArray) -> float:
-    """The longer side [m] of the box around a path (n, 2) [m]."""
-    return float(np.ptp(path, axis=0).max())
 
 
 def is_visible(path: FloatArray, box: FloatArray) -> bool:

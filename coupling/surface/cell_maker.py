@@ -61,6 +61,7 @@ class CellMaker:
         nodes = OVERHANG * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
         self._nodes = np.stack(np.meshgrid(nodes, nodes, indexing="ij"), axis=-1).reshape(-1, 2)
         self._inverses: dict[int, FloatArray] = {}
+        self._rims: dict[float, FloatArray] = {}
         self.checks = np.random.default_rng(0).uniform(-1, 1, (CHECKS, 2))
 
     def make(self, cells: Sequence[Cell]) -> None:
@@ -177,5 +178,11 @@ class CellMaker:
         grid = grid[self.shapes.outline.inside(cell.centre + grid * cell.half)][::3]
         # Points near the edges of what there is matter most to a polynomial: hence those on the rim as well.
         step = 2 * float(cell.half.max()) / NODES * spacing
-        rim = (np.concatenate(rim_curves(self.shapes.outline, step)) - cell.centre) / cell.half
+        rim = (self._rim(step) - cell.centre) / cell.half
         return np.concatenate([grid, rim[np.abs(rim).max(axis=1) <= reach]])
+
+    def _rim(self, step: float) -> FloatArray:
+        """Points (n, 2) [m] of the rim, so far apart [m]."""
+        if step not in self._rims:
+            self._rims[step] = np.concatenate(rim_curves(self.shapes.outline, step))
+        return self._rims[step]

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage  # loaded when it is used
 
 from fem_plate import InfluenceShapes, PatchedShapes, Shapes
 from fem_plate.arrays import PITCH_DIGITS, spacing
@@ -29,6 +28,8 @@ class Lattice:
     """
 
     def __init__(self, shapes: InfluenceShapes | PatchedShapes, pitch: FloatArray) -> None:
+        from scipy.ndimage import distance_transform_edt  # here, because few plates have a lattice
+
         self.pitch, self.origin = pitch, shapes.points.min(axis=0)
         self._sites = np.round((shapes.points - self.origin) / pitch).astype(np.int64)
         self._rows = np.full(self._sites.max(axis=0) + 1, -1)
@@ -36,18 +37,18 @@ class Lattice:
         blocks = np.stack(np.meshgrid(*map(np.arange, self._rows.shape), indexing="ij"), axis=-1)
         self._gap = shapes.outline.gap(self.origin + (blocks + 0.5) * pitch)
         whole = np.pad(self._full(np.zeros(2, dtype=np.int64), np.ones(2, dtype=np.int64)), 1)
-        inside = np.minimum(ndimage.distance_transform_edt(whole, sampling=pitch)[1:-1, 1:-1], self._gap)
+        inside = np.minimum(distance_transform_edt(whole, sampling=pitch)[1:-1, 1:-1], self._gap)
         deepest = np.argwhere(inside > inside.max() - 1e-9 * pitch.min())
         self.middle: IntArray = deepest[np.abs(deepest + 0.5 - self._sites.mean(axis=0)).max(axis=1).argmin()]
         self._alike = np.zeros(self._rows.shape, dtype=np.bool_)
 
     def _full(self, low: IntArray, high: IntArray) -> NDArray[np.bool_]:
         """From which sites there are actuators all over the columns and rows from `low` (2,) to `high` (2,) off."""
+        from scipy.ndimage import minimum_filter
+
         size = high - low + 1
-        full = ndimage.minimum_filter(
-            self._rows >= 0, size=tuple(size), origin=tuple(-low - size // 2), mode="constant", cval=0
-        )
-        return np.asarray(full)
+        there = self._rows >= 0
+        return np.asarray(minimum_filter(there, tuple(size), origin=tuple(-low - size // 2), mode="constant", cval=0))
 
     def spread(self, fits: Sequence[CellFit], farther: int) -> IntArray:
         """Where the block may be moved whose cells have these fits: to where all actuators of theirs are, too.

@@ -125,8 +125,9 @@ class Triangles:
         """
         u, v = np.moveaxis(self.reference(x, triangle), 2, 0)
         table = np.stack([monomials(u, v, *d) @ REFERENCE for d in DERIVATIVES[order]])
-        chain = chain_rule(self.inverse[triangle], order)
-        return np.einsum("tdr,rtnk->dtnk", chain, table, optimize=True) @ self.transform[triangle]
+        if order:
+            table = np.einsum("tdr,rtnk->dtnk", chain_rule(self.inverse[triangle], order), table, optimize=True)
+        return table @ self.transform[triangle]
 
 
 def chain_rule(inverse: FloatArray, order: int) -> FloatArray:

@@ -10,7 +10,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 from scipy.sparse import coo_matrix, csc_matrix
 
 from fem_plate.elements.supports import CLAMPED, FREE
@@ -29,6 +28,8 @@ def exponent(angle: float, before: str, after: str, poisson_ratio: float) -> flo
 
     angle: rad, of the plate inside the corner.  Returns at most MAX_EXPONENT.
     """
+    from scipy.optimize import minimize  # here, because most plates have no such corner
+
     real, imaginary = np.meshgrid(np.arange(STEP, MAX_EXPONENT + STEP, STEP), np.arange(0, 1.5, STEP), indexing="ij")
     grid = _singular_value(real + 1j * imaginary, angle, before, after, poisson_ratio)
     padded = np.pad(grid, 1, constant_values=np.inf)

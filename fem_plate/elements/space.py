@@ -24,8 +24,9 @@ IntArray = NDArray[np.int64]
 CHUNK = 100_000  # points times functions evaluated at a time, to bound memory
 QUADRATURE = 6  # points along each side of a triangle, for integrands that are not polynomials
 BEYOND = 0.1  # of a triangle: points up to this far beyond the mesh, as between chord and rim, count as on it
-# How many of the closest triangles are searched for a point: more while it lies further outside the best than this.
-SEARCHES = ((12, 1e-9), (200, 0.02), (2000, np.inf))
+# How many of the closest triangles are searched for a point: more while it is not this deep inside the best one. A
+# point that is clearly inside one triangle is in no other.
+SEARCHES = ((3, 1e-9), (12, -1e-9), (200, -0.02), (2000, -np.inf))
 
 
 class PlateSpace:
@@ -112,9 +113,12 @@ class PlateSpace:
         matrix.eliminate_zeros()
         return self._to_independent(matrix)
 
-    def point_values(self, xy: FloatArray) -> csc_matrix:
-        """The matrix (n, unknowns) whose product with a function's unknowns is its value at points (n, 2)."""
-        triangle = self._locate(xy)
+    def point_values(self, xy: FloatArray, triangle: IntArray | None = None) -> csc_matrix:
+        """The matrix (n, unknowns) whose product with a function's unknowns is its value at points (n, 2).
+
+        triangle: (n,), that of each point where they are known.
+        """
+        triangle = self._locate(xy) if triangle is None else triangle
         data = self.triangles.derivatives(xy[:, None], triangle, 0)[0, :, 0]
         columns = self.dofs[triangle]
         rows = np.broadcast_to(np.arange(len(xy))[:, None], columns.shape)
@@ -181,6 +185,12 @@ class PlateSpace:
         return points, np.concatenate([area.ravel(), self.slivers.weights.ravel()])
 
     @property
+    def quadrature_triangles(self) -> IntArray:
+        """The triangle of each point of `quadrature`, (n,)."""
+        inside = np.repeat(np.arange(len(self.triangles.centre)), QUADRATURE**2)
+        return np.concatenate([inside, np.repeat(self.slivers.triangle, self.slivers.points.shape[1])])
+
+    @property
     def points(self) -> FloatArray:
         """The mesh's points, (n, 2)."""
         return np.unique(self.triangles.points.reshape(-1, 2), axis=0)
@@ -201,7 +211,7 @@ class PlateSpace:
         """The triangle of each point (n, 2) and the smallest of its barycentric coordinates there."""
         triangle, inside = np.empty(len(xy), dtype=np.int64), np.empty(len(xy))
         missing = np.arange(len(xy))
-        for closest, beyond in SEARCHES:
+        for closest, depth in SEARCHES:
             count = min(closest, len(self.triangles.centre))
             _, candidates = self._tree.query(xy[missing], k=range(1, count + 1))
             x = self.triangles.reference(xy[missing].repeat(count, 0)[:, None], candidates.reshape(-1)) + 1 / 3
@@ -210,7 +220,7 @@ class PlateSpace:
             best = np.argmax(smallest, axis=1)
             triangle[missing] = candidates[np.arange(len(missing)), best]
             inside[missing] = smallest.max(axis=1)
-            missing = missing[inside[missing] < -beyond]
+            missing = missing[inside[missing] < depth]
             if not missing.size:
                 break
         return triangle, inside

@@ -18,8 +18,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
 
 from particle.friction.contact import TABLE, FrictionLaw, check_loads, friction_limits, new_law
 from particle.friction.quadrature import from_power, on_panels
@@ -153,6 +151,8 @@ class KogutEtsion(KogutEtsionInput):
         ValueError
             A load is below -pull_off or above the peak of the friction limit.
         """
+        from scipy.optimize import brentq  # here, because no run needs it
+
         loads = np.asarray(net_load, dtype=float)
         check_loads(loads, self.pull_off, self.largest_load)
         low, high = self.branch
@@ -204,6 +204,8 @@ class KogutEtsion(KogutEtsionInput):
 
     @cached_property
     def _tabulated(self) -> tuple[FrictionLaw, float]:
+        from scipy.interpolate import CubicSpline  # here, because other laws do without it
+
         low, high = self.branch
         d = high - (high - low) * np.linspace(0, 1, SAMPLES)
         u, _ = self._stretched(d)

@@ -15,7 +15,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
 from particle.friction.contact import POINTS, FrictionLaw, friction_limits, new_law
 from particle.friction_input import point_mistakes
@@ -108,6 +107,8 @@ class FrictionTable:
 
 def _pieces(loads: FloatArray, limits: FloatArray) -> FloatArray:
     """`FrictionLaw.pieces`, (6, points + 1); before the first and past the last point Q goes on as a straight line."""
+    from scipy.interpolate import CubicSpline  # here, because other laws do without it
+
     h, rise = np.diff(loads), np.diff(limits)
     spline, chord = CubicSpline(loads, limits), rise / h
     slope, bend = np.maximum(spline(loads, 1), 0.0), spline(loads, 2)

@@ -3,6 +3,7 @@
 import importlib
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ def test_package_is_the_one_in_this_repository(name):
     assert Path(importlib.import_module(name).__file__).resolve() == ROOT / name / "__init__.py"
 
 
+@cache
 def loaded_by(name: str) -> set[str]:
     """The top-level modules that importing `name` loads, in a fresh interpreter."""
     code = f"import sys, {name}; from {name} import *; print(*{{m.partition('.')[0] for m in sys.modules}})"

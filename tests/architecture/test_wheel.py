@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = {"meshes", "fem_plate", "particle", "coupling", "active_surface"}
-SHORT = (ROOT / "examples" / "two_actuators.toml").read_text().replace('duration = "50 ms"', 'duration = "5 ms"')
+SHORT = (ROOT / "examples" / "two_actuators.toml").read_text().replace('duration = "50 ms"', 'duration = "1 ms"')
 
 
 def run(*command, cwd, check=True, **environment):
@@ -76,7 +76,7 @@ def test_the_main_job_runs_from_another_folder(installed, elsewhere):
 
 def test_the_package_runs_as_a_module(installed, elsewhere):
     done = run(installed.python, "-m", "active_surface", "check", "case.toml", cwd=elsewhere)
-    assert done.stdout.startswith("case.toml: fine; 2 actuators, 5 ms")
+    assert done.stdout.startswith("case.toml: fine; 2 actuators, 1 ms")
 
 
 USE = """\
@@ -91,7 +91,7 @@ def test_a_script_may_have_its_own_views_plotting_and_studies(installed, elsewhe
         (elsewhere / f"{name}.py").write_text("raise RuntimeError('this module is not meant')")
     (elsewhere / "script.py").write_text(USE.format(package=package))
     duration, file = run(installed.python, "script.py", cwd=elsewhere).stdout.split()
-    assert float(duration) == 0.005 and Path(file).parent == installed.packages.resolve() / package
+    assert float(duration) == 0.001 and Path(file).parent == installed.packages.resolve() / package
 
 
 HIDING = [

@@ -11,7 +11,7 @@ from coupling.display import onto_plate
 
 FILES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 LARGE = "array_100x100"
-LONG = "annulus", "array_10x10"
+LONG = "annulus", "array_10x10", "l_with_hole", "one_actuator"
 EXAMPLES = [
     pytest.param(file, id=file.stem, marks=[pytest.mark.slow] if file.stem in LONG else [])
     for file in FILES

@@ -20,6 +20,12 @@ def green(xy, source):
     return disc_green(xy, source, RADIUS, RIGIDITY)
 
 
+def test_shapes_of_a_disc_describe_and_draw_themselves():
+    shapes = DiscShapes(SOURCES, RADIUS)
+    assert repr(shapes).startswith("DiscShapes of 3 rigid actuators")
+    assert shapes.plot().axes
+
+
 def test_deflection_is_the_same_when_load_and_point_change_places():
     rng = np.random.default_rng(0)
     pairs = 0.6 * RADIUS * rng.uniform(-1, 1, (50, 2, 2))

@@ -1,6 +1,7 @@
 """Patches of large arrays: where they are cut, which are shared, how far they reach, and what is refused."""
 
 import re
+from functools import cache
 
 import numpy as np
 import pytest
@@ -37,9 +38,14 @@ def row(section):
 
 
 @pytest.fixture(scope="module")
-def shapes(row):
-    """Those of 60 actuators along the strip."""
-    return row.influence(lattice(60, 1), truncation=1e-3)
+def shapes_to(row):
+    """The shapes of 60 actuators along the strip, to a truncation; each is made once."""
+    return cache(lambda truncation: row.influence(lattice(60, 1), truncation=truncation))
+
+
+@pytest.fixture(scope="module")
+def shapes(shapes_to):
+    return shapes_to(1e-3)
 
 
 def test_tiles_that_look_alike_share_a_patch(shapes):
@@ -50,7 +56,7 @@ def test_tiles_that_look_alike_share_a_patch(shapes):
     assert np.concatenate([np.sort(tile.rows[tile.patch.core]) for tile in shapes.tiles]).tolist() == list(range(60))
 
 
-@pytest.mark.parametrize("shift", [0.1234565, 0.5, 1 / 3])
+@pytest.mark.parametrize("shift", [0.1234565, 0.5, pytest.param(1 / 3, marks=pytest.mark.slow)])
 def test_rounding_and_another_order_of_the_points_do_not_keep_patches_apart(row, shift):
     rng = np.random.default_rng(2)
     points = lattice(60, 1) + [shift * PITCH / 10, 0.0]
@@ -83,8 +89,8 @@ def test_the_pitch_of_another_layout_is_the_distance_of_neighbours():
     assert spacing(points) == pytest.approx(np.full(2, np.median(distance.min(axis=1))))
 
 
-def test_a_smaller_truncation_takes_wider_margins_and_is_met(row):
-    found = [row.influence(lattice(60, 1), truncation=t) for t in (1e-2, 1e-4, 1e-6)]
+def test_a_smaller_truncation_takes_wider_margins_and_is_met(shapes_to):
+    found = [shapes_to(t) for t in (1e-2, 1e-4, 1e-6)]
     assert [shapes.truncation_error <= t for shapes, t in zip(found, (1e-2, 1e-4, 1e-6), strict=True)] == [True] * 3
     assert found[0].truncation_error > found[1].truncation_error > found[2].truncation_error > 0
     widths = [np.ptp(shapes.tiles[7].patch.box[:, 0]) for shapes in found]
@@ -97,8 +103,19 @@ def test_a_truncation_must_be_positive(row, truncation):
         row.influence(lattice(60, 1), truncation=truncation)
 
 
-@pytest.mark.parametrize("mesh", [rectangle(1.5e-3, 1.5e-3, 0.15e-3), disc(1e-3, 0.15e-3)], ids=["rectangle", "disc"])
-@pytest.mark.parametrize("places", [[[-16, -10]], [[-16, -10], [15, 12]]], ids=["one", "two"])
+RECTANGLE, DISC = rectangle(1.5e-3, 1.5e-3, 0.15e-3), disc(1e-3, 0.15e-3)
+ONE, TWO = [[-16, -10]], [[-16, -10], [15, 12]]
+
+
+@pytest.mark.parametrize(
+    ("mesh", "places"),
+    [
+        pytest.param(RECTANGLE, ONE, id="one-rectangle", marks=pytest.mark.slow),
+        pytest.param(RECTANGLE, TWO, id="two-rectangle"),
+        pytest.param(DISC, ONE, id="one-disc"),
+        pytest.param(DISC, TWO, id="two-disc", marks=pytest.mark.slow),
+    ],
+)
 def test_clusters_on_a_big_plate_take_patches_as_large_as_needed(section, mesh, places):
     """Beyond its last actuator the plate swings far out, and is held only by the rim."""
     plate = Plate(mesh, section)
@@ -188,11 +205,9 @@ def test_the_shapes_nearby_are_all_that_are_not_zero_there(row):
     assert shapes.own_heights() == pytest.approx(np.diag(shapes.evaluate(points)[0]))
 
 
-def test_the_error_estimate_counts_what_is_left_out_and_the_cells(section):
-    fine, coarse = (
-        Plate(rectangle(61 * PITCH, 4 * PITCH, c), section).influence(lattice(60, 1), truncation=t)
-        for c, t in ((PITCH, 1e-2), (4 * PITCH, 1e-8))
-    )
+def test_the_error_estimate_counts_what_is_left_out_and_the_cells(section, shapes_to):
+    fine, mesh = shapes_to(1e-2), rectangle(61 * PITCH, 4 * PITCH, 4 * PITCH)
+    coarse = Plate(mesh, section).influence(lattice(60, 1), truncation=1e-8)
     assert fine.error_estimate == fine.truncation_error
     assert coarse.truncation_error <= 1e-8 < coarse.error_estimate < 1e-5
 
@@ -208,8 +223,8 @@ def test_what_floats_is_left_out_by_its_own_deflection(row):
     assert (np.abs(shapes.evaluate(spots)[0] - value).max(axis=0) < 2e-4 * np.abs(value).max(axis=0)).all()
 
 
-def test_a_sum_may_be_asked_for_at_the_actuators(row):
+def test_a_sum_may_be_asked_for_at_the_actuators(shapes_to):
     """Its curvature is infinite there, of either sign on either patch: no warning."""
     points, heights = lattice(60, 1), np.random.default_rng(6).uniform(-1, 1, 60)
-    value, gradient, _ = row.influence(points, truncation=1e-4).evaluate(points, heights)
+    value, gradient, _ = shapes_to(1e-4).evaluate(points, heights)
     assert np.abs(value - heights).max() < 1e-3 and np.isfinite(gradient).all()

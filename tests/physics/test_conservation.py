@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from coupling.surface.motion import surface_motion
 from particle import ConstantFriction, CoulombAdhesion, Drive, Micropart, Outcome, polynomial_surface, simulate
@@ -38,7 +39,7 @@ def test_friction_takes_the_work_of_its_way():
 
     w, u = height_and_speed(trajectory.position, trajectory.velocity)
     # Cubics between the rows are good to about 1e-6 here.
-    way = np.trapezoid(height_and_speed(*trajectory.at(times)[1:3])[1], times)
+    way = trapezoid(height_and_speed(*trajectory.at(times)[1:3])[1], times)
     lost = G * (w[0] - w[-1]) + 0.5 * (u[0] ** 2 - u[-1] ** 2)
     assert lost == pytest.approx(q * way, rel=1e-4)
 

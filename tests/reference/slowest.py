@@ -18,9 +18,7 @@ HEAD = """\
 # The {count} slowest tests
 
 Processor seconds of setup, call and teardown, and their share of the {total:.0f} s of all {number} tests. The first
-test that uses a shared fixture pays for it. Written by
-
-    {command}
+test that uses a shared fixture pays for it. CONTRIBUTING has the command that writes this table.
 
 | processor time, s | share | test |
 |---:|---:|---|
@@ -56,10 +54,8 @@ class Stopwatch:
 
     def pytest_sessionfinish(self) -> None:
         if not hasattr(self.config, "workerinput"):
-            command = "pytest " + " ".join(map(str, self.config.invocation_params.args))
-            self.config.getoption("slowest").write_text(
-                table(self.seconds, self.config.getoption("slowest_count"), command), encoding="utf-8"
-            )
+            rows = table(self.seconds, self.config.getoption("slowest_count"))
+            self.config.getoption("slowest").write_text(rows, encoding="utf-8")
 
 
 def seconds_by_file(path: Path) -> Counter[str]:
@@ -76,8 +72,8 @@ def spent() -> float:
     return sum(os.times()[:4])
 
 
-def table(seconds: Counter[str], count: int, command: str) -> str:
+def table(seconds: Counter[str], count: int) -> str:
     total = seconds.total()
     rows = seconds.most_common(count)
-    head = HEAD.format(count=len(rows), total=total, number=len(seconds), command=command)
+    head = HEAD.format(count=len(rows), total=total, number=len(seconds))
     return head + "".join(f"| {time:.1f} | {time / total:.1%} | `{test}` |\n" for test, time in rows)

@@ -77,6 +77,13 @@ PLATES = {
 }
 
 
+LONG = "many stops", "three actuators", "rough", "squeezed", "points", "on a base"
+
+
+def some_slow(names):
+    return [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in names]
+
+
 def limit_of(law):
     if isinstance(law, ConstantFriction):
         return lambda load: law.limit
@@ -160,7 +167,7 @@ def test_the_oracle_keeps_the_pursuit_curve_and_stops_as_dry_friction_says():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", PLATES)
+@pytest.mark.parametrize("name", some_slow(PLATES))
 def test_a_path_on_a_plate_is_the_oracle_s(name):
     actuators, strokes, part, law, gravity, duration = PLATES[name]
     theirs = trace(problem(*PLATES[name]), part.position, part.velocity, duration)
@@ -188,7 +195,7 @@ POLYNOMIALS = {
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", POLYNOMIALS)
+@pytest.mark.parametrize("name", some_slow(POLYNOMIALS))
 def test_a_path_on_a_polynomial_is_the_oracle_s(name):
     coefficients, base, part, law, gravity, duration = POLYNOMIALS[name]
     drives = [Drive(stroke, f, delay=delay) for stroke, f, delay in base] or None

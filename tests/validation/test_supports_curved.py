@@ -118,6 +118,7 @@ def test_orders_of_the_annulus():
     assert (orders >= (5, 4, 3)).all()
 
 
+@pytest.mark.slow
 def test_an_off_centre_force_on_an_annulus():
     rim = [[Arc(0, (1, 1), S)], [Arc(0, (0.3, 0.3), C, 0, -2 * np.pi)]]
     truth = goursat.solve(rim, [(0.6, 0.2)], [1], degree=120, poles=0)

@@ -127,10 +127,12 @@ def clamped_l():
     return np.array(rows)
 
 
+@pytest.mark.slow
 def test_the_clamped_l_with_its_reentrant_corner(clamped_l):
     assert (clamped_l[-1] < (1e-6, 1e-5, 1e-3)).all()
 
 
+@pytest.mark.slow
 def test_order_of_the_clamped_l(clamped_l):
     """Against the fineness: w ~ r^1.54 alone would leave order 1.1 on cells that are not graded."""
     assert (np.log(clamped_l[0] / clamped_l[-1]) / np.log(L_CELLS[0] / L_CELLS[-1]) >= (4, 3.5, 2.5)).all()

@@ -30,6 +30,8 @@ CASES = {
     "two actuators": (PAIR, STROKES, HEIGHTS, BREAKPOINTS, (60e-6, -40e-6), CONSTANT, 9.80665, 3e-3),
     "two actuators, rough contact": (PAIR, STROKES, HEIGHTS, BREAKPOINTS, (60e-6, -40e-6), ROUGH, 9.80665, 3e-3),
 }
+LONG = "up and down at 300 Hz"
+NAMES = [pytest.param(name, marks=[pytest.mark.slow] * (name == LONG)) for name in CASES]
 TOLERANCES = 10.0 ** -np.arange(4, 12)
 ORACLE = 2e-11  # of the radius; what the truth of a pass over an actuator may be wrong by
 MOST, MOST_BELOW_1E_6 = 25, 2  # error over tolerance; the lower order down to 1e-6 is the coarser one
@@ -52,7 +54,7 @@ def truth_and_runs(name):
     return truth, [simulate(surface, part, friction, duration, gravity, t) for t in TOLERANCES]
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", NAMES)
 def test_the_error_is_at_most_the_tolerance_times_one_constant(name):
     truth, runs = truth_and_runs(name)
     errors = np.array([np.hypot(*(run.position[-1] - truth.position)) for run in runs]) / RADIUS
@@ -65,7 +67,7 @@ def test_the_error_is_at_most_the_tolerance_times_one_constant(name):
     assert all(len(run.events) == len(truth.events) for run in runs)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", NAMES)
 def test_at_1e_10_the_end_is_good_to_1e_9_and_events_to_1e_8(name):
     truth, runs = truth_and_runs(name)
     run = runs[int(np.argmin(abs(np.log(TOLERANCES / 1e-10))))]
@@ -74,7 +76,7 @@ def test_at_1e_10_the_end_is_good_to_1e_9_and_events_to_1e_8(name):
     assert [event.time for event in run.events] == pytest.approx([time for _, time, *_ in truth.events], rel=1e-8)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", NAMES)
 def test_the_energy_ledger_closes_with_the_tolerance(name):
     balances = np.array([run.energy.balance for run in truth_and_runs(name)[1]])
     fine = TOLERANCES < 2e-9

@@ -16,9 +16,9 @@ from active_surface.views.lines import Lines, clipped, divided, net, net_width, 
 from active_surface.views.rounding import exaggeration
 from active_surface.views.smooth import Smooth
 from active_surface.views.triangles import outer_edges
-from coupling.pictures import PITCHES, Scale, extent, is_visible, path_window
+from coupling.pictures import PITCHES, Scale, is_visible, path_window
 from coupling.results import SavedRun
-from fem_plate import pitch
+from fem_plate import extent, pitch
 from particle import State
 
 MAX_TRIANGLES = 40_000  # of a mesh that is made finer to be drawn

@@ -13,8 +13,9 @@ from active_surface.views.pages.modes import modes_of
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.rounding import exaggeration
 from active_surface.views.triangles import Spots, coarse, inside, outer_edges, spots_of
-from coupling.pictures import Scale, extent, path_window
+from coupling.pictures import Scale, path_window
 from coupling.results import SavedRun
+from fem_plate import extent
 from meshes import Unit, unit_for
 from particle import State, stretches
 

@@ -9,7 +9,7 @@ import numpy as np
 from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies import AT_ONCE, Engine
 from coupling import ProgressCallback, no_progress
-from coupling.pictures import extent
+from fem_plate import extent
 from particle import Trajectory
 
 MAX_PATHS: Final = 2500  # of a page, if no other number is asked for,

@@ -16,9 +16,11 @@ import click
 import pytest
 from click.testing import CliRunner
 
+from active_surface.cli.ctrl_c import SOON, heard_again
 from active_surface.cli.group import Group
 from active_surface.cli.options import tell
 from active_surface.cli.program import main
+from particle.interrupt import unbroken
 
 ROOT = Path(__file__).parents[3]
 MISUSES = [
@@ -154,6 +156,19 @@ def test_ctrl_c_that_python_drops_ends_a_command_all_the_same(after, monkeypatch
     signal.signal(signal.SIGINT, before)
     assert (done.exit_code, done.stderr) == (130, "interrupted\n")
     assert after == 0 or time.monotonic() < begun + after
+
+
+def test_one_that_was_dropped_and_comes_again_where_nothing_must_be_broken_off_is_not_lost():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    victims, done = [Pressed()], []
+    with pytest.raises(KeyboardInterrupt), heard_again():
+        victims.clear()
+        with unbroken():
+            time.sleep(4 * SOON)
+            done.append(1)
+        done.append(2)
+    signal.signal(signal.SIGINT, before)
+    assert done == [1]
 
 
 @pytest.mark.parametrize(("cause", "ending"), [(KeyboardInterrupt(), 130), (OSError(), 1), (None, 1)])

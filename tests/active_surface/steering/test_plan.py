@@ -83,6 +83,7 @@ def test_a_plan_carries_the_part_over_its_way_points_and_its_file_runs_the_same(
     assert plan(route, threads=1).case.actuators == found.case.actuators
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_part_may_come_back_to_where_it_started(case, surface):
     route = Route(case, (THROUGH[0], case.part.position), Settings(scatter=1, tolerance=2e-6))
@@ -90,6 +91,7 @@ def test_a_part_may_come_back_to_where_it_started(case, surface):
     assert found.complete and np.hypot(*(found.trajectory.position[-1] - case.part.position)) < 2e-6
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_way_point_where_the_part_rests_is_reached_without_a_leg(case, surface):
     settings = Settings(scatter=1, tolerance=2e-6)
@@ -129,11 +131,12 @@ def test_legs_before_an_interruption_count(case, surface):
 @pytest.mark.compiled
 def test_the_command_takes_all_points_after_through(tmp_path):
     (tmp_path / "base.toml").write_text(CASE)
-    arguments = ["plan", "--quiet", "--through", "-30,0", "20 um,-10 um", str(tmp_path / "base.toml"), "--json"]
+    (tmp_path / "few.toml").write_text('[aim]\ncase = "base.toml"\npaths = 30\nscatter = 2\n')
+    arguments = ["plan", "--quiet", "--through", "-30,0", "20 um,-10 um", str(tmp_path / "few.toml"), "--json"]
     done = CliRunner().invoke(main, [*arguments, "-o", str(tmp_path / "out")])
     assert done.exit_code == 0, done.output
     assert [leg["target"] for leg in json.loads(done.stdout)["legs"]] == [[-3e-5, 0.0], [2e-5, -1e-5]]
-    run = ["run", str(tmp_path / "out" / "base_planned.toml"), "-q", "-o", str(tmp_path / "out")]
+    run = ["run", str(tmp_path / "out" / "few_planned.toml"), "-q", "-o", str(tmp_path / "out")]
     assert CliRunner().invoke(main, run).exit_code == 0
 
 

@@ -176,11 +176,12 @@ def test_open_opens_the_page(folder, result, monkeypatch):
     assert opened == [(folder / f"{NAME}.html").as_uri()]
 
 
-@pytest.mark.parametrize("ending", ["", ".plate.vtkhdf", ".part.vtkhdf"])
-def test_view_writes_beside_the_result_or_where_it_is_told(folder, result, ending, tmp_path):
-    said = CliRunner().invoke(main, ["view", str(folder / f"{NAME}{ending}")])
-    assert said.exit_code == 0 and f"{NAME}.html" in said.output
-    assert (folder / f"{NAME}.html").is_file()
+def test_view_writes_beside_the_result_or_where_it_is_told(folder, result, tmp_path):
+    for ending in ("", ".plate.vtkhdf", ".part.vtkhdf"):
+        (folder / f"{NAME}.html").unlink(missing_ok=True)
+        said = CliRunner().invoke(main, ["view", str(folder / f"{NAME}{ending}")])
+        assert said.exit_code == 0 and f"{NAME}.html" in said.output
+        assert (folder / f"{NAME}.html").is_file()
     said = CliRunner().invoke(main, ["view", str(folder / NAME), "-q", "-o", str(tmp_path / "new" / "x.html")])
     assert (said.exit_code, said.output) == (0, "")
     page = tmp_path / "new" / "x.html"

@@ -73,11 +73,10 @@ def test_lines_are_right_beside_texts_with_brackets_and_comments(tmp_path: Path)
     assert lines == at
 
 
-@pytest.mark.parametrize("absent", ["numba", "scipy", "pint", "matplotlib"])
-def test_a_good_case_is_checked_without(absent: str) -> None:
+def test_a_good_case_is_checked_without_numerics_or_pictures() -> None:
     code = (
         "import sys; from active_surface.cli.program import main;"
         "main(['check', 'examples/two_actuators.toml'], standalone_mode=False);"
-        f"sys.exit({absent!r} in sys.modules)"
+        "sys.exit(not {'numba', 'scipy', 'pint', 'matplotlib'}.isdisjoint(sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.DEVNULL).returncode == 0

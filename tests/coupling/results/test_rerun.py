@@ -9,6 +9,7 @@ import meshio
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from sweeps import PLATE, altered
 
 import meshes
 from active_surface.cli.program import main
@@ -90,46 +91,35 @@ def test_a_result_keeps_the_files_as_they_were_when_its_run_began(tmp_path, late
     assert rerun(tmp_path / "out" / "some", "--output", str(tmp_path / "again")).exit_code == 0
 
 
-PLATE = """\
-[plate]
-mesh = "plate.xdmf"
-supports = { "7" = "clamped" }
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
+MESHED = altered(
+    PLATE,
+    ('shape = "disc"\nradius = "300 um"', 'mesh = "plate.xdmf"\nsupports = { "7" = "clamped" }'),
+    ('cell_size = "80 um"\n', ""),
+    ('stroke = "60 um"', 'stroke = "5 um"'),
+    ('"-140 um"', '"-100 um"'),
+    ('"40 nN"', '"1e-12 N"'),
+    ('duration = "5 ms"', 'duration = "0.4 ms"\nframes = 3\ntolerance = 1e-5'),
+)
 
-[[actuators]]
-position = ["10 um", "0 um"]
-stroke = "5 um"
-frequency = "300 Hz"
 
-[part]
-mass = "2e-9 kg"
-position = ["30 um", "20 um"]
-
-[friction]
-model = "constant"
-limit = "1e-12 N"
-
-[run]
-duration = "0.4 ms"
-frames = 3
-tolerance = 1e-5
-"""
+def write_mesh(file):
+    """A rectangle in two files: XDMF has its numbers in a file beside it."""
+    mesh = meshes.rectangle(400e-6, 300e-6, 100e-6)
+    edges = np.concatenate(list(mesh.boundaries.values()))
+    cells = [("triangle", mesh.triangles), ("line", edges)]
+    numbers = [np.zeros(len(mesh.triangles), int), np.full(len(edges), 7)]
+    meshio.Mesh(mesh.points, cells, cell_data={"boundary": numbers}).write(file)
+    return mesh
 
 
 @pytest.mark.parametrize("place", ["./plate.h5", "sub/plate.h5", "../plate.h5"])
 def test_a_record_has_what_a_mesh_names_wherever_it_is(tmp_path, place):
     (tmp_path / "home" / "sub").mkdir(parents=True)
-    mesh = meshes.rectangle(400e-6, 300e-6, 100e-6)
-    edges = np.concatenate(list(mesh.boundaries.values()))
-    cells = [("triangle", mesh.triangles), ("line", edges)]
-    numbers = [np.zeros(len(mesh.triangles), int), np.full(len(edges), 7)]
     file = tmp_path / "home" / "plate.xdmf"
-    meshio.Mesh(mesh.points, cells, cell_data={"boundary": numbers}).write(file)
+    mesh = write_mesh(file)
     file.write_text(file.read_text().replace("plate.h5:", f"{place}:"))
     (tmp_path / "home" / "plate.h5").rename(tmp_path / "home" / place)
-    (tmp_path / "home" / "some.toml").write_text(PLATE)
+    (tmp_path / "home" / "some.toml").write_text(MESHED)
     case = read_case(tmp_path / "home" / "some.toml")
     again = case_of(record_of(case), "some")
     (tmp_path / "home" / place).unlink()
@@ -139,14 +129,9 @@ def test_a_record_has_what_a_mesh_names_wherever_it_is(tmp_path, place):
 
 
 def test_a_moved_result_with_a_mesh_reruns_to_the_same_bits(moved, tmp_path):
-    """An XDMF file has its numbers in a file beside it."""
-    mesh = meshes.rectangle(400e-6, 300e-6, 100e-6)
-    edges = np.concatenate(list(mesh.boundaries.values()))
-    cells = [("triangle", mesh.triangles), ("line", edges)]
-    numbers = [np.zeros(len(mesh.triangles), int), np.full(len(edges), 7)]
-    meshio.Mesh(mesh.points, cells, cell_data={"boundary": numbers}).write(tmp_path / "plate.xdmf")
+    write_mesh(tmp_path / "plate.xdmf")
     files = {f"plate_{end}": (tmp_path / f"plate.{end}").read_bytes() for end in ("xdmf", "h5")}
-    result = moved(PLATE, **files)
+    result = moved(MESHED, **files)
     (tmp_path / "plate.h5").unlink()
     done = rerun(result, "--output", str(tmp_path / "again"))
     assert done.exit_code == 0 and "the same, bit for bit" in done.output, done.output

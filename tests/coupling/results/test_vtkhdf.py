@@ -11,37 +11,24 @@ import h5py  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 import pyvista as pv
-from numpy.typing import ArrayLike
-from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkhdf_files import (
+    N_STEPS,
+    POINTS,
+    TIMES,
+    TRIANGLES,
+    bump,
+    gradient,
+    names,
+    part_fields,
+    position,
+    step_in_vtk,
+    times_in_vtk,
+)
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
 from coupling.results import steps_file, vtkhdf
 
-N_STEPS = 20  # neither flushed by count at the end nor fewer than one flush
-TIMES = [0.1 * k**1.5 for k in range(N_STEPS)]
 ROOT = Path(vtkhdf.__file__).parents[2]
-
-side = np.linspace(0.0, 0.01, 7)
-POINTS = np.array([(x, y) for y in side for x in side])
-CORNERS = np.array([7 * row + column for row in range(6) for column in range(6)])
-TRIANGLES = np.concatenate([CORNERS[:, None] + [0, 1, 8], CORNERS[:, None] + [0, 8, 7]])
-
-
-def bump(step: int) -> np.ndarray:
-    """A deflection of its own at each point and step."""
-    return 1e-6 * (step + 1) * np.exp(-(((POINTS[:, 0] - 5e-4 * step) / 2e-3) ** 2)) + 1e-8 * POINTS[:, 1]
-
-
-def gradient(step: int) -> np.ndarray:
-    return np.stack([bump(step), -2.0 * bump(step), np.full(len(POINTS), float(step))], axis=1)
-
-
-def position(step: int) -> tuple[float, float, float]:
-    return (1e-3 + 2e-4 * step, 2e-3 - 1e-5 * step**2, 1e-6 * step)
-
-
-def part_fields(step: int) -> dict[str, ArrayLike]:
-    return {"velocity": (0.1 * step, -0.2, 0.01 * step**2), "state": step % 3, "normal_force": 1e-6 / (step + 1)}
 
 
 def write_plate(directory: Path, steps: int = N_STEPS, first: int = 0, compress: bool = True) -> None:
@@ -54,20 +41,6 @@ def write_part(directory: Path, steps: int = N_STEPS, compress: bool = True) -> 
     with vtkhdf.part_file(directory, "run", compress=compress) as part:
         for k in range(steps):
             part.append(TIMES[k], position(k), **part_fields(k))
-
-
-def times_in_vtk(path: Path) -> list[float]:
-    """The time axis a pipeline such as ParaView's is offered."""
-    reader = vtkHDFReader()
-    reader.SetFileName(str(path))
-    reader.UpdateInformation()
-    return list(reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()) or ())
-
-
-def step_in_vtk(path: Path, step: int) -> pv.DataSet:
-    reader = pv.get_reader(path)
-    reader.reader.SetStep(step)
-    return reader.read()
 
 
 def assert_plate_step(path: Path, step: int) -> None:
@@ -86,10 +59,6 @@ def assert_part_step(path: Path, step: int) -> None:
     for name, value in part_fields(step).items():
         np.testing.assert_array_equal(mesh[name], [value])
     assert mesh["state"].dtype == np.int64
-
-
-def names(directory: Path) -> list[str]:
-    return sorted(path.name for path in directory.iterdir())
 
 
 @pytest.mark.parametrize("compress", [True, False])
@@ -160,7 +129,8 @@ def test_metadata_of_start_and_end_are_outside_the_vtk_group(tmp_path: Path) -> 
 CHILD = """
 import sys
 sys.path[:0] = sys.argv[2:]
-from test_vtkhdf import *
+from vtkhdf_files import *
+from coupling.results import steps_file, vtkhdf
 steps_file.FLUSH_AFTER = 0.0
 with vtkhdf.plate_file(sys.argv[1], "run", POINTS, TRIANGLES, {"case": "text"}) as plate, \\
         vtkhdf.part_file(sys.argv[1], "run") as part:
@@ -173,7 +143,7 @@ with vtkhdf.plate_file(sys.argv[1], "run", POINTS, TRIANGLES, {"case": "text"}) 
 
 
 def test_a_kill_leaves_partial_files_with_the_flushed_steps(tmp_path: Path) -> None:
-    command = [sys.executable, "-c", CHILD, str(tmp_path), str(Path(__file__).parent), str(ROOT)]
+    command = [sys.executable, "-c", CHILD, str(tmp_path), str(ROOT / "tests" / "reference"), str(ROOT)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as child:
         assert child.stdout is not None and child.stdout.readline() == "written\n"
         os.kill(child.pid, signal.SIGKILL)
@@ -236,16 +206,6 @@ def everything(file: h5py.File) -> dict[str, object]:
     return found
 
 
-@pytest.mark.parametrize("times", [[0.1, 0.3, 0.2], [0.1, 0.1], [0.1, float("nan")], [0.05, 0.2]])
-def test_a_refused_block_leaves_no_trace(tmp_path: Path, times: list[float]) -> None:
-    with vtkhdf.part_file(tmp_path, "run") as part:
-        part.append(0.05, position(0))
-        with pytest.raises(ValueError, match=r"time \S+ s is refused"):
-            part.append(times, np.zeros((len(times), 3)))
-        part.append(0.4, position(1))
-    assert times_in_vtk(tmp_path / "run.part.vtkhdf") == [0.05, 0.4]
-
-
 def test_there_are_as_many_times_as_steps_between_flushes_too(tmp_path: Path) -> None:
     """VTK overruns a buffer where Values is longer than NSteps, and HDF5 may write to disk whenever it likes."""
     with vtkhdf.part_file(tmp_path, "run") as part:
@@ -282,75 +242,3 @@ def test_a_rerun_replaces_the_partial_and_the_final_file(tmp_path: Path) -> None
     assert times_in_vtk(tmp_path / "run.plate.vtkhdf") == TIMES[4:6]
     reread = step_in_vtk(tmp_path / "run.plate.vtkhdf", 1)
     np.testing.assert_array_equal(reread["deflection"], bump(5))
-
-
-@pytest.mark.parametrize(
-    ("time", "changes", "message"),
-    [
-        (0.2, {"extra": bump(0)}, r"\[\] missing, \['extra'\] new"),
-        (0.2, {"gradient": None}, r"\['gradient'\] missing, \[\] new"),
-        (0.2, {"gradient": bump(0)}, r"'gradient' has shape \(49,\), unlike in the first step"),
-        (0.2, {"deflection": bump(0)[:-1]}, r"'deflection' has shape \(48,\); it must have \(49,\) or \(49, 3\)"),
-        (0.2, {"state": np.full(49, 0.5)}, "'state' is of type float64; in the first step it was int64"),
-        (0.2, {"deflection": np.full(49, "high")}, "'deflection' is not numeric"),
-        (0.1, {}, "time 0.1 s"),
-        (0.05, {}, "time 0.05 s"),
-        (float("nan"), {}, "time nan s"),
-    ],
-)
-def test_a_refused_step_leaves_no_trace(
-    tmp_path: Path, time: float, changes: dict[str, np.ndarray | None], message: str
-) -> None:
-    fields = {"deflection": bump(0), "gradient": gradient(0), "state": np.arange(49)}
-    changed = {name: value for name, value in (fields | changes).items() if value is not None}
-    with vtkhdf.plate_file(tmp_path, "run", POINTS, TRIANGLES) as plate:
-        plate.append(0.1, **fields)
-        with pytest.raises(ValueError, match=message):
-            plate.append(time, **changed)
-        plate.append(0.3, **(fields | {"deflection": bump(7)}))
-    path = tmp_path / "run.plate.vtkhdf"
-    assert times_in_vtk(path) == [0.1, 0.3]
-    np.testing.assert_array_equal(step_in_vtk(path, 0)["deflection"], bump(0))
-    np.testing.assert_array_equal(step_in_vtk(path, 1)["deflection"], bump(7))
-
-
-@pytest.mark.parametrize(
-    ("place", "velocity", "message"),
-    [
-        ((0.0, 0.0), (0.0, 0.0, 0.0), r"position has shape \(2,\)"),
-        ((0.0, 0.0, 0.0), (0.0, 0.0), r"'velocity' has shape \(2,\); it must have \(\) or \(3,\)"),
-    ],
-)
-def test_a_part_step_of_wrong_shape_is_refused(
-    tmp_path: Path, place: tuple[float, ...], velocity: tuple[float, ...], message: str
-) -> None:
-    with vtkhdf.part_file(tmp_path, "run") as part:
-        with pytest.raises(ValueError, match=message):
-            part.append(0.0, place, velocity=velocity)
-        part.append(0.0, position(1), velocity=(1.0, 2.0, 3.0))
-    np.testing.assert_array_equal(step_in_vtk(tmp_path / "run.part.vtkhdf", 0).points, [position(1)])
-
-
-@pytest.mark.parametrize(
-    ("points", "triangles", "message"),
-    [
-        (POINTS[:, :1], TRIANGLES, "points of shape"),
-        (np.full((3, 2), np.nan), [[0, 1, 2]], "must be finite"),
-        (POINTS, TRIANGLES[:, :2], "triangles of shape"),
-        (POINTS, TRIANGLES.astype(float), "must be integers"),
-        (POINTS, TRIANGLES + 1, "name points 1 to 49; there are 49"),
-        (POINTS, TRIANGLES - 1, "name points -1 to 47; there are 49"),
-    ],
-)
-def test_a_mesh_without_meaning_is_refused_before_a_file_is_touched(
-    tmp_path: Path, points: np.ndarray, triangles: np.ndarray, message: str
-) -> None:
-    with pytest.raises(ValueError, match=message):
-        vtkhdf.plate_file(tmp_path, "run", points, triangles)
-    assert names(tmp_path) == []
-
-
-def test_a_result_without_steps_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="has no step"), vtkhdf.part_file(tmp_path, "run"):
-        pass
-    assert names(tmp_path) == ["run.partial.part.vtkhdf"]

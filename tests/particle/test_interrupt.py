@@ -6,7 +6,6 @@ import time
 
 import pytest
 
-from active_surface.cli.ctrl_c import SOON, heard_again
 from particle.interrupt import interruptible, unbroken, wait
 
 
@@ -83,17 +82,6 @@ def test_what_comes_where_nothing_must_be_broken_off_is_heard_after_it():
         wait(press)
         done.append(1)
     assert over.is_set() and done == [1]
-
-
-def test_one_that_was_dropped_and_comes_again_where_nothing_must_be_broken_off_is_not_lost():
-    victims, done = [Dropper()], []
-    with pytest.raises(KeyboardInterrupt), heard_again():
-        victims.clear()
-        with unbroken():
-            time.sleep(4 * SOON)
-            done.append(1)
-        done.append(2)
-    assert done == [1]
 
 
 def test_where_ctrl_c_is_not_heard_it_stays_so():
