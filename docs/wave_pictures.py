@@ -18,6 +18,7 @@ DOCS = Path(__file__).parent
 PAGE = DOCS / "howto/waves.md"
 WAVELENGTH, RAMP = 4e-3, 3  # m, cycles; of examples/wave.toml
 FREQUENCIES = (60, 120, 180, 240, 300, 340, 360, 370, 380, 390)  # Hz
+DRAWN = (180, 300, 370)  # Hz, of the paths in the picture
 SETTLED, CYCLES = 20, 100  # cycles of the wave that are left out, and the last one
 MILLI, MICRO, G = 1e3, 1e6, 9.80665
 
@@ -60,7 +61,7 @@ def main() -> None:
     begin, end = "<!-- speeds: generated -->", "<!-- speeds: end -->"
     before, rest = PAGE.read_text().split(begin)
     PAGE.write_text(f"{before}{begin}\n\n" + "\n".join(lines) + f"\n\n{end}{rest.split(end)[1]}")
-    draw(speeds, {frequency: follow(frequency, 1, 1e-11) for frequency in (180, 370)})
+    draw(speeds, {frequency: follow(frequency, 1, 1e-11) for frequency in DRAWN})
 
 
 def draw(speeds: dict[int, list[float]], paths: dict[int, Trajectory]) -> None:
@@ -70,15 +71,17 @@ def draw(speeds: dict[int, list[float]], paths: dict[int, Trajectory]) -> None:
     for frequency, path in paths.items():
         times = np.linspace(0.0, 0.2, 801)
         moved = path.at(times).position[:, 0] - path.position[0, 0]
-        text = "in contact, with the wave" if moved[-1] > 0 else "hopping, against the wave"
+        contact = "hopping" if any(event.kind.name == "LANDS" for event in path.events) else "in contact"
+        text = f"{contact}, {'with' if moved[-1] > 0 else 'against'} the wave"
         left.plot(MILLI * times, MICRO * moved, label=f"{frequency} Hz: {text}")
-    left.set(xlabel="time, ms", ylabel="way along the wave's direction, um")
+    left.set(xlabel="time [ms]", ylabel="way along the wave's direction [µm]")
     left.legend(frameon=False)
+    left.margins(y=0.15)
     velocities = WAVELENGTH * np.array([-f for f in reversed(FREQUENCIES)] + list(FREQUENCIES))
     right.plot(velocities, MILLI * np.array(speeds[-1][::-1] + speeds[1]), "o-", ms=4, color="#1b4f9c")
     right.axhline(0.0, color="0.6", lw=0.8)
     right.axvline(0.0, color="0.6", lw=0.8)
-    right.set(xlabel="phase velocity, m/s", ylabel="speed of the part, mm/s")
+    right.set(xlabel="phase velocity [m/s]", ylabel="mean speed of the part [mm/s]")
     figure.savefig(DOCS / "waves.png", dpi=130)
 
 

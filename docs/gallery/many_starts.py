@@ -18,7 +18,7 @@ SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6)
 
 def draw(quick: bool = False) -> Figure:
     shapes = Plate(disc(RADIUS, 60e-6), SECTION).influence(ACTUATORS)
-    surface = surface_motion(shapes, [Drive(80e-6, 400.0), Drive(80e-6, 300.0)])
+    surface = surface_motion(shapes, [Drive(80e-6, 400.0), Drive(80e-6, 300.0)], half_thickness=SECTION.thickness / 2)
     count = 5 if quick else 80
     angle, radius = (
         np.pi * (3 - np.sqrt(5)) * np.arange(count),

@@ -19,7 +19,7 @@ def draw(quick: bool = False) -> Figure:
     actuators = PITCH * np.stack([column - 2, row - 2], axis=1)
     shapes = Plate(rectangle(6 * PITCH, 6 * PITCH, PITCH if quick else PITCH / 2), SECTION).influence(actuators)
     drives = [Drive(18e-6, FREQUENCY, delay=(k % 6) / 6 / FREQUENCY) for k in row + column]
-    surface = surface_motion(shapes, drives, surface_tolerance=1e-5)
+    surface = surface_motion(shapes, drives, surface_tolerance=1e-5, half_thickness=SECTION.thickness / 2)
     duration = 1.5e-3 if quick else 40e-3
     path = simulate(surface, Micropart(2e-9, START), ConstantFriction(4e-9), duration, tolerance=1e-6)
 
