@@ -56,6 +56,8 @@ class Field:
             raise ValueError("; ".join(message_of(detail, value, Case) for detail in error.errors())) from None
         if self.kind == "text" and isinstance(value, str):
             return value  # also where it is read as an expression
+        if isinstance(read, bool):
+            return str(read).lower()
         types = {"number": (int, float), "whole": (int,), "text": (str,)}[self.kind]
         if not isinstance(read, types):
             name = {"number": "number", "whole": "whole number", "text": "text"}[self.kind]

@@ -22,6 +22,7 @@ RULES = {
     "int_type": "a whole number",
     "finite_number": "a finite number",
     "string_type": "text",
+    "bool_type": "true or false",
     "greater_than": "greater than {gt:.4g}",
     "greater_than_equal": "at least {ge:.4g}",
     "less_than": "less than {lt:.4g}",

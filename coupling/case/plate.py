@@ -59,6 +59,12 @@ class PlateCase(KeyedTable, ABC):
     top_face: StrictBool = True
     """Whether parts lie on the top face, which bending also moves in its plane, or, if false, on the mid-plane."""
 
+    @field_validator("top_face", mode="before")
+    @classmethod
+    def _from_word(cls, value: Any) -> Any:
+        """A sweep has its values as words."""
+        return {"true": True, "false": False}.get(value, value) if isinstance(value, str) else value
+
     @abstractmethod
     def build_mesh(self) -> PlateMesh:
         """The plate's mesh; ValueError or OSError where there is none."""

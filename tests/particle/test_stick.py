@@ -57,10 +57,11 @@ def search(surface, part, begin=0.0):
 @pytest.mark.parametrize(
     "kind, gravity", [("constant", 9.81), ("coulomb", 9.81), ("coulomb", 0.0), ("kogut-etsion", 9.81)]
 )
-@pytest.mark.parametrize("heights", [(0.0, 0.0), (0.2, 0.2), (0.1, 0.5)])
+@pytest.mark.parametrize("heights", [(0.0, 0.0), (0.1, 0.5)])
 def test_a_break_away_is_never_missed_and_never_early(kind, gravity, heights):
     rng, found = np.random.default_rng(7), []
-    for _ in range(60):
+    count = 60 if heights == (0.0, 0.0) else 20
+    for _ in range(count):
         surface, begin = moving(rng), rng.choice([0.0, rng.uniform(0, 0.9)])
         part = Part(MASS, gravity, 0.0, 0.0, 0.0, law(rng, kind), *heights)
         leaves, local = search(surface, part, begin)
@@ -73,7 +74,7 @@ def test_a_break_away_is_never_missed_and_never_early(kind, gravity, heights):
             assert not stays(surface, local, part, leaves + 1e-12)
             assert all(stays(surface, local, part, t) for t in times if t < leaves - 1e-9)
         found.append(leaves)
-    assert 10 < np.isfinite(found).sum() < 60 or kind == "kogut-etsion"
+    assert count / 6 < np.isfinite(found).sum() < count or kind == "kogut-etsion"
     assert np.isfinite(found).any()
 
 

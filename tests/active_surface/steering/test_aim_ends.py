@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from sweeps import PLATE
 
 from active_surface.cli.program import main
-from active_surface.steering import Route, Settings, Task, aim, plan, result
+from active_surface.steering import Route, Settings, Task, aim, plan
 from active_surface.steering.aiming import aim_over
 from active_surface.steering.objective import SAMPLES, Objective
 from active_surface.steering.paths import Disturbance, Paths
@@ -62,7 +62,7 @@ def test_a_search_is_not_lost_by_an_interruption_of_its_scatter(tmp_path, monkey
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(result, "scattered", stop)
+    monkeypatch.setattr("active_surface.steering.stages.scattered", stop)
     aimed = aim(Task(case, TARGET), tmp_path / "out")
     assert aimed.interrupted and aimed.reached and aimed.scatter is None
     assert [file.name for file in aimed.files] == ["base_aimed.toml"]
@@ -101,8 +101,7 @@ def test_an_interruption_while_the_file_is_written_is_heard_after_it(tmp_path, m
         signal.raise_signal(signal.SIGINT)
         return file
 
-    for module in ("aiming", "planning"):
-        monkeypatch.setattr(f"active_surface.steering.{module}.write_case", write)
+    monkeypatch.setattr("active_surface.steering.stages.write_case", write)
     case, settings = case_of(tmp_path), Settings(paths=2, scatter=5)
     task = Task(case, TARGET, settings) if over is aim_over else Route(case, (TARGET,), settings)
     found = over(build_surface(case), task, file=tmp_path / "a.toml")
