@@ -32,6 +32,7 @@ from fem_plate import (
 from particle import (
     AnyDrive as AnyDrive,
     ConstantFriction as ConstantFriction,
+    ContactSamples as ContactSamples,
     CoulombAdhesion as CoulombAdhesion,
     Drive as Drive,
     Energy as Energy,

@@ -10,8 +10,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from coupling import build_friction, build_surface, read_case
-from coupling.run import build_part
+from coupling import build_friction, build_part, build_surface, read_case
 from particle import Drive, SurfaceMotion, Trajectory, simulate
 
 DOCS = Path(__file__).parent
