@@ -81,7 +81,7 @@ def main() -> None:
     lines = ["| deflection / thickness | " + " | ".join(f"{h * 1e6:g} um" for h in HEIGHTS) + " |"]
     lines.append("|---|" + "---:|" * len(HEIGHTS))
     for deflection in DEFLECTIONS:
-        lines.append(f"| {deflection:g} | " + " | ".join(f"{100 * share(deflection, h):.3g} %" for h in HEIGHTS) + " |")
+        lines.append(f"| {deflection:g} | " + " | ".join(f"{share(deflection, h):.3g}" for h in HEIGHTS) + " |")
     costs_lines = ["| part | evaluations | time of the path | time of an evaluation |", "|---|---:|---:|---:|"]
     costs_lines += [f"| {name} | {n} | {total:.2f} | {each:.2f} |" for name, n, total, each in costs(array())]
     print("\n".join([*lines, "", *costs_lines]))
