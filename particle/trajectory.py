@@ -6,7 +6,7 @@ import enum
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,8 +16,6 @@ from particle.modes import EventKind, Mode
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from particle.friction.kogut_etsion import KogutEtsion
 
 FloatArray = NDArray[np.float64]
 
@@ -85,6 +83,14 @@ class Samples(NamedTuple):
     normal_force: FloatArray  # (k,) N, net, of the contact
     friction_force: FloatArray  # (k,) N, its magnitude
     state: NDArray[np.int64]  # (k,) State
+
+
+class RoughContact(Protocol):
+    """What `KogutEtsion` knows of the parts of its normal force."""
+
+    def separation(self, net_load: ArrayLike) -> FloatArray: ...
+
+    def forces(self, separation: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]: ...
 
 
 class ContactSamples(NamedTuple):
@@ -208,7 +214,7 @@ class Trajectory:
         """
         return samples_of(self._rows_at(times, "at"))
 
-    def contact_at(self, times: ArrayLike, friction: KogutEtsion | None = None) -> ContactSamples:
+    def contact_at(self, times: ArrayLike, friction: RoughContact | None = None) -> ContactSamples:
         """Contact and centre of mass in space at times, and the forces on the part there.
 
         Parameters

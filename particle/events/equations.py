@@ -129,7 +129,7 @@ def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> flo
 
 @jit_no_arrays
 def turning(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> float:
-    """What the friction's moment takes to turn a sliding part with the surface, over the friction per sliding speed."""
+    """k.M (k - (I - z_c S) v) [m^2/s^2]; times Q/u the power of friction's moment, which turns a sliding part."""
     if part.centre == part.contact:
         return 0.0
     shape = shape_operator(f)

@@ -192,7 +192,7 @@ def test_run_prints_the_summary_as_json(tmp_path):
         main, ["run", str(EXAMPLES / "one_actuator.toml"), "--output", str(tmp_path / "out"), "--json"]
     )
     assert done.exit_code == 0
-    assert json.loads(done.stdout)["outcome"] == "stuck"
+    assert json.loads(done.stdout)["outcome"] == "moving"
     assert len(list((tmp_path / "out").glob("*.vtkhdf"))) == 2
 
 

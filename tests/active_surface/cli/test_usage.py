@@ -32,7 +32,7 @@ MISUSES = [
     ),
     (["run", "x", "y"], "  y is one argument too many; the command is active-surface run [OPTIONS] CASE"),
     (["run", "x", "--ouput", "y"], "active-surface run: 1 mistake\n  --ouput is not known; did you mean --output?"),
-    (["run", "x", "--frob"], "  --frob is not known; active-surface run has --csv, --help, --json, --output"),
+    (["run", "x", "--frob"], "  --frob is not known; active-surface run has --csv, --forces, --help, --json, --output"),
     (["run", "x", "-o"], "active-surface run: 1 mistake\n  -o must be followed by its value; got nothing"),
     (["sweep", "x", "-t", "0"], "  --threads must be a whole number of at least 1; got 0"),
     (["sweep", "x", "-t", "ab"], '  --threads must be a whole number of at least 1; got "ab"'),
