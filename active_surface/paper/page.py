@@ -55,8 +55,8 @@ def _how(effort: Effort, p: Parameters) -> str:
         "these figures in view, so where they agree that is in part a fit. What single figures need and the paper does "
         "not state was chosen for them: the platform's motion and friction (4), the strokes (5, 6, 15), the second "
         "start (14), the start (15, 16) and the states (19, 22).\n",
-        "The paper's part is a point on the plate's mid-plane, and so it is in all figures and models here. A case file "
-        "has parts on the top face, which bending also moves in its plane, unless its `[plate]` has "
+        "The paper's part is a point on the plate's mid-plane, and so it is in all figures and models here. A case "
+        "file has parts on the top face, which bending also moves in its plane, unless its `[plate]` has "
         "`top_face = false` ([motion](motion.md#equations)).\n",
         "Three models:\n",
         f"- **{MODELS[PAPER]}**: fixed steps of {MICRO * p.time_step:g} µs by its equations (6) to (12), on equation "
