@@ -39,7 +39,9 @@ class PlateFigures:
     deflection_over_thickness: float
     linear_path_error: float  # relative, of small-deflection theory
     largest_slope: float
-    top_face_share: float  # what the top face and the centre of mass add to the pull on the part, over the rest of it
+    top_face_share: (
+        float | None
+    )  # what the top face and the centre of mass add to the pull on the part, over the rest; None: there is none
     tipping: float | None  # largest shift of the pressure centre over half the part's size; None: size not given
     tips: bool  # whether it is more than 1, without adhesion to hold the part
     first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
@@ -145,13 +147,13 @@ def _part_size(case: Case) -> float | None:
     return case.part.size
 
 
-def _top_face_share(contact: ContactSamples) -> float:
+def _top_face_share(contact: ContactSamples) -> float | None:
     """What the heights of contact and centre of mass add to the pull, over that on a point of the mid-plane.
 
-    Root mean squares over the path, of the vectors' lengths; inf where the rest is 0.
+    Root mean squares over the path, of the vectors' lengths; None where the rest is 0.
     """
     rest, added = (float(np.sqrt(np.nanmean(np.square(pull)))) for pull in (contact.point_pull, contact.added_pull))
-    return added / rest if rest > 0 else float("inf" if added > 0 else 0)
+    return added / rest if rest > 0 else None
 
 
 def _tipping(case: Case, contact: ContactSamples) -> float | None:

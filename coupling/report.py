@@ -77,11 +77,11 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
         ),
         ("", _dynamics(s)),
         *([("", _drives(s))] if s.drives_over_first else []),
-        ("", f"top face and centre of mass add {_share(s.top_face_share)} the mid-plane's pull on the part"),
+        *([] if s.top_face_share is None else [("", _top_face(s.top_face_share))]),
         ("", f"the part's own force deflects the plate by {s.part_sag * MICRO:.1e} um"),
     ]
     if s.tipping:
-        rows.append(("", f"pressure centre shifts by {s.tipping:.2g} of half the part's size"))
+        rows.append(("", f"centre of pressure shifts by {s.tipping:.2g} times half the part's size"))
     if s.part_curvature is not None:
         rows.append(("", f"part size times curvature {s.part_curvature:.2g}"))
     return rows
@@ -156,12 +156,13 @@ def _of_model(s: PlateSummary) -> list[str]:
         )
     if s.plate_rings:
         texts.append(
-            "A drive's velocity or acceleration jumps, as at the start of a sine or cosine. A plate then rings, by as "
-            "much as its acceleration jumps, until damping ends it. The model leaves that out."
+            "A drive's velocity or acceleration jumps, as at the end of a sine or cosine, or at its start after a "
+            "delay; a ramp avoids both. The plate then rings, by as much as its acceleration jumps, until damping ends "
+            "it. The model leaves that out."
         )
     if s.tips:
         texts.append(
-            f"The centre of pressure moves out to {s.tipping:.2g} of half the part's size: a part this high tips over, "
+            f"The centre of pressure shifts by {s.tipping:.2g} times half the part's size: a part this high tips over, "
             "which the model leaves out."
         )
     if s.part_curvature is not None and s.part_curvature > MAX_CURVATURE:
@@ -219,8 +220,9 @@ def _range(ratios: Sequence[float]) -> str:
     return "-".join(dict.fromkeys(f"{ratio:.2g}" for ratio in ratios))
 
 
-def _share(ratio: float) -> str:
-    return f"{100 * ratio:.2g} % of" if ratio < 2 else f"{ratio:.3g} times"
+def _top_face(share: float) -> str:
+    added = f"{100 * share:.2g} % of" if share < 2 else f"{share:.3g} times"
+    return f"top face and centre of mass add {added} the mid-plane's pull on the part"
 
 
 def _percent(share: float) -> str:

@@ -166,7 +166,7 @@ def build_friction(case: Case) -> Contact:
 
 
 def friction_law(law: FrictionCase) -> Contact:
-    """The friction law that a table of a case tells of."""
+    """The friction law of a case's table."""
     if isinstance(law, ConstantCase):
         return particle.ConstantFriction(law.limit)
     if isinstance(law, CoulombCase):

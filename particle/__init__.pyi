@@ -7,7 +7,7 @@ from .friction.contact import ConstantFriction as ConstantFriction, CoulombAdhes
 from .friction.kogut_etsion import KogutEtsion as KogutEtsion
 from .friction.table import FrictionTable as FrictionTable
 from .micropart import Micropart as Micropart
-from .simulation import modelled as modelled, simulate as simulate
+from .simulation import part_record as part_record, simulate as simulate
 from .modes import EventKind as EventKind
 from .surface.moving_surface import SurfaceMotion as SurfaceMotion, SurfaceState as SurfaceState
 from .surface.simple_surfaces import platform_surface as platform_surface, polynomial_surface as polynomial_surface

@@ -85,7 +85,7 @@ def simulate_many(
         wrong += surface.drive_faults({f"drives of part {k}": own for k, own in enumerate(drives)})
     if threads is not None and threads < 1:
         wrong.append(f"Input threads of simulate_many must be at least 1; got {threads!r}")
-    wrong += faults(duration, gravity, tolerance, after_detachment)
+    wrong += faults(surface, duration, gravity, tolerance, after_detachment)
     record = surface.record
     for k, part in enumerate(parts):
         if not rim_gap(record, *map(float, part.position)) >= 0:

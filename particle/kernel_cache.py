@@ -135,7 +135,7 @@ class KernelCache(Cache):  # type: ignore[misc]
         return kernel
 
     def _load(self, sig: Any, target_context: Any) -> Any:
-        """As numba's own, without all that only compiling needs, which a compilation loads itself."""
+        """As numba's `load_overload`, without `target_context.refresh()`, which imports what only compiling needs."""
         rtsys.initialize(target_context)
         with self._guard_against_spurious_io_errors():
             return self._load_overload(sig, target_context)

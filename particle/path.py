@@ -144,8 +144,8 @@ def _by_steps(surface: SurfaceMotion, request: Request, kind: int, rows: Rows, t
 
 def _contact_states(surface: SurfaceMotion, request: Request, rows: Rows) -> Rows:
     """Where contact and centre of mass are at rows of the path, and what acts there."""
-    record = surface.record
-    return contact_states(record, new_local(record), request.part, rows)
+    record, contact = surface.record, surface.half_thickness
+    return contact_states(record, new_local(record), request.part, contact, contact + request.centre_height, rows)
 
 
 def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> Computed:

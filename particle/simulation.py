@@ -76,7 +76,7 @@ def simulate(
         wrong.append(f"Input time_step of simulate must be a positive time in s; got {time_step!r}")
     if scheme in _FIXED_STEPS and after_detachment == "fly":
         wrong.append(f"Input after_detachment of simulate must be 'stop' with the scheme {scheme!r}; got 'fly'")
-    wrong += faults(duration, gravity, tolerance, after_detachment)
+    wrong += faults(surface, duration, gravity, tolerance, after_detachment)
     if not rim_gap(surface.record, *map(float, part.position)) >= 0:
         wrong.append(f"Input position of Micropart must lie on the plate; got {tuple(part.position)!r} m")
     if wrong:
@@ -91,9 +91,18 @@ def simulate(
     return find_path_by_steps(surface, request, _FIXED_STEPS[scheme], step, steps, math.ceil(steps / MAX_ROWS))
 
 
-def faults(duration: float, gravity: float | Sequence[float], tolerance: float, after_detachment: str) -> list[str]:
+def faults(
+    surface: SurfaceMotion,
+    duration: float,
+    gravity: float | Sequence[float],
+    tolerance: float,
+    after_detachment: str,
+) -> list[str]:
     """What is wrong with what all paths of a run have in common."""
     wrong = []
+    height = surface.half_thickness
+    if not 0 <= height < math.inf:
+        wrong.append(f"Input half_thickness of SurfaceMotion must be 0 or a positive length in m; got {height!r}")
     vector = np.atleast_1d(np.asarray(gravity, dtype=float))
     if not (vector.shape in ((1,), (3,)) and np.isfinite(vector).all()):
         wrong.append(f"Input gravity of simulate must be an acceleration in m/s^2 or three of them; got {gravity!r}")
@@ -121,7 +130,7 @@ def new_request(
     force = float(part.mass * (np.linalg.norm(vector) + surface.size / stroke_time**2))
     jumps, bends = (bool((surface.drives.jump[:, k] > 0).any()) for k in (0, 1))
     return Request(
-        part=modelled(surface, part, friction, gravity),
+        part=part_record(surface, part, friction, gravity),
         start=np.array([*part.position, *part.velocity], dtype=float),
         duration=float(duration),
         tolerance=tolerance * surface.size,
@@ -130,14 +139,15 @@ def new_request(
         flies=flies,
         jumps=jumps,
         bends=bends,
+        centre_height=float(part.centre_height),
         bridged=(0.0, 0.0)
         if bends
         else (tolerance * surface.size / stroke_time, BRIDGED * tolerance * force / part.mass),
     )
 
 
-def modelled(surface: SurfaceMotion, part: Micropart, friction: Contact, gravity: float | Sequence[float]) -> Part:
-    """The part as the equations of motion know it."""
+def part_record(surface: SurfaceMotion, part: Micropart, friction: Contact, gravity: float | Sequence[float]) -> Part:
+    """The part's record for the kernels: forces, friction law, and heights of contact and centre over the mid-plane."""
     vector = np.atleast_1d(np.asarray(gravity, dtype=float))
     x, y, z = vector if len(vector) == 3 else (0.0, 0.0, -vector[0])
     contact = centre = 0.0

@@ -88,6 +88,12 @@ class Samples(NamedTuple):
 class RoughContact(Protocol):
     """What `KogutEtsion` knows of the parts of its normal force."""
 
+    @property
+    def pull_off(self) -> float: ...
+
+    @property
+    def largest_load(self) -> float: ...
+
     def separation(self, net_load: ArrayLike) -> FloatArray: ...
 
     def forces(self, separation: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]: ...
@@ -97,7 +103,7 @@ class ContactSamples(NamedTuple):
     """Contact and centre of mass of a part in space at k moments, and the forces on it."""
 
     time: FloatArray  # (k,) s
-    contact: FloatArray  # (k, 3) m, where it touches the surface
+    contact: FloatArray  # (k, 3) m, where it touches the surface; in flight the place that would touch
     centre: FloatArray  # (k, 3) m, its centre of mass
     normal: FloatArray  # (k, 3) the surface's normal, along which it stands: its attitude
     normal_force: FloatArray  # (k,) N, net, along the normal
@@ -105,9 +111,9 @@ class ContactSamples(NamedTuple):
     pull: FloatArray  # (k,) m/s^2, along the surface, without friction; 0 in flight
     point_pull: FloatArray  # (k,) m/s^2, the same on a point of the mid-plane
     added_pull: FloatArray  # (k,) m/s^2, the difference, which the heights of contact and centre of mass make
-    separation: FloatArray  # (k,) of a rough contact over its roughness; nan in flight and for other laws, as below
-    contact_load: FloatArray  # (k,) N, by which its asperities are pressed
-    adhesion: FloatArray  # (k,) N, which holds against it; the net normal force is their difference
+    separation: FloatArray  # (k,) over the roughness, of a rough contact; nan in flight and without its law
+    contact_load: FloatArray  # (k,) N, pressing its asperities; nan likewise
+    adhesion: FloatArray  # (k,) N, holding against it; contact_load - adhesion is the normal force; nan likewise
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,9 +248,10 @@ class Trajectory:
         place, centre, normal, force = vectors
         load = rows["load"]
         parts = np.full((3, len(load)), np.nan)
-        if friction is not None:
-            touching = rows["mode"] != Mode.FLYING
-            separation = friction.separation(load[touching])
+        touching = rows["mode"] != Mode.FLYING
+        if friction is not None and touching.any():
+            # The end of contact is located just beyond it, where the law has no separation.
+            separation = friction.separation(np.clip(load[touching], -friction.pull_off, friction.largest_load))
             parts[:, touching] = separation, *friction.forces(separation)[:2]
         pulls = (states[name] for name in ("pull", "point_pull", "added_pull"))
         return ContactSamples(rows["time"], place, centre, normal, load, force, *pulls, *parts)

@@ -69,7 +69,7 @@ class Group(Command, click.Group):
         ctrl_c.ends_soon()
         gc.set_threshold(GARBAGE)
         try:
-            super().main(args, *more, **extra)
+            return super().main(args, *more, **extra)
         except SystemExit as end:
             leave(end)
 
@@ -98,9 +98,10 @@ def leave(end: SystemExit) -> NoReturn:
     code = 0 if end.code is None else end.code
     if isinstance(code, int):
         atexit._run_exitfuncs()
-        with suppress(OSError):  # Python reports what cannot be written
-            sys.stdout.flush()
-            sys.stderr.flush()
+        with suppress(OSError, ValueError):  # Python reports what cannot be written
+            for stream in (sys.stdout, sys.stderr):
+                if stream is not None:  # closed before the start
+                    stream.flush()
             os._exit(code)
     raise end  # Python prints what the code is
 

@@ -28,6 +28,8 @@ FIGURES: Final = (
     "quasi_static_error",
     "plate_rings",
     "part_curvature",
+    "tipping",
+    "tips",
     "energy_balance",
 )
 

@@ -62,7 +62,7 @@ class PlateCase(KeyedTable, ABC):
     @field_validator("top_face", mode="before")
     @classmethod
     def _from_word(cls, value: Any) -> Any:
-        """A sweep has its values as words."""
+        """Sweeps write truth values as words."""
         return {"true": True, "false": False}.get(value, value) if isinstance(value, str) else value
 
     @abstractmethod

@@ -37,7 +37,7 @@ class Drive(Evaluated):
         Number of periods, by default without end; not for `"up"`. Afterwards the drive rests where it began.
     phase : float
         Where in its cycle the drive begins; a whole cycle, dwells included, is 2 pi. Not for `"up"`. During the delay
-        the drive rests at the height of its phase.
+        the drive rests at the height of its phase, with a ramp at 0.
     ramp : float
         Number of cycles, from 0.01 to 1000, over which a sine or cosine grows from rest, by the factor
         10 s^3 - 15 s^4 + 6 s^5 with s from 0 to 1; 0: none. With `cycles` it likewise decays over the last `ramp`
@@ -64,7 +64,7 @@ class Drive(Evaluated):
         begins = finite(self.phase) and (self.phase == 0 or self.cycle != "up")
         grows = finite(self.ramp) and (self.ramp == 0 or (self.cycle in WAVES and RAMPS[0] <= self.ramp <= RAMPS[1]))
         grows = grows and not (counts and self.cycles is not None and 2 * self.ramp > self.cycles)
-        ramps = f"0, or for 'sine' and 'cosine' from {RAMPS[0]} to {RAMPS[1]} cycles and half of cycles"
+        ramps = f"0, or for 'sine' and 'cosine' from {RAMPS[0]} to {RAMPS[1]} cycles, at most half of cycles"
         refuse(
             "Drive",
             [

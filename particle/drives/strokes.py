@@ -29,7 +29,7 @@ def up_down(stroke: float, frequency: float, dwell: float) -> Pass:
 
 
 def begun_at(turns: float, cycle: Pass, repeats: float) -> Segments:
-    """A cycle over and over, from a share of it on, in [0, 1): its rest first, and last what comes before that."""
+    """A cycle over and over, begun at a share of it in [0, 1): first its remainder, at the end the share skipped."""
     start, scale, rows = cycle
     span = start[-1] + scale[-1]
     k = int(np.searchsorted(start, turns * span, side="right")) - 1

@@ -1,6 +1,6 @@
 """The event-located integrator: rest, sliding, flight, and what lies between them."""
 
-from particle.events.breakaway import first_slip, mobility, rest_pull
+from particle.events.breakaway import first_slip, mobility, moved, rest_pull
 from particle.events.contact_end import end_reason
 from particle.events.contact_state import ContactState, contact_states
 from particle.events.dense_output import resume

@@ -101,7 +101,7 @@ def first_slip(f: SurfacePoint, k: Mobility, p_x: float, p_y: float, limit: floa
     e_x, e_y = p_x / size, p_y / size
     rate = size - limit
     for _ in range(TURNS):
-        # (r K^-1 + limit) e = p with r from the e before, then as long as 1: K is nearly I, so this settles fast.
+        # (r K^-1 + limit) e = p with r from the e before, then as long as 1: K is nearly I, so ten turns settle it.
         a_x, a_y = moved(k, p_x - limit * e_x, p_y - limit * e_y)
         rate = inner(f, e_x, e_y, a_x, a_y)
         q_x, q_y = moved(k, p_x, p_y)
@@ -183,8 +183,8 @@ def _raised_heading(
         a_x, a_y = _contact_acceleration(f, part, k, fast, v_x, v_y, limit * e_x, limit * e_y)
         turning_rate -= inner(f, n_x, n_y, a_x, a_y) / u
     across_x, across_y = moved(k, n_x, n_y)
-    kappa = turning_rate / (2 * rate + a.limit * inner(f, n_x, n_y, across_x, across_y))
-    return Heading(e_x, e_y, n_x, n_y, kappa)
+    damping = 2 * rate + a.limit * inner(f, n_x, n_y, across_x, across_y)
+    return Heading(e_x, e_y, n_x, n_y, turning_rate / damping if damping > 0.0 else 0.0)
 
 
 @jit_no_arrays

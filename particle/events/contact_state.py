@@ -39,34 +39,44 @@ CONTACT_STATE = record_type(ContactState)
 
 
 @jit
-def contact_states(surface: Surface, local: LocalSurface, part: Part, rows: NDArray[Row]) -> NDArray[ContactState]:
-    """The states (k,) at the rows (k,) of a path; nan where the surface has no cell."""
+def contact_states(
+    surface: Surface, local: LocalSurface, part: Part, contact: float, centre: float, rows: NDArray[Row]
+) -> NDArray[ContactState]:
+    """The states (k,) at the rows (k,) of a path; nan where the surface has no cell.
+
+    contact, centre: m, the heights over the mid-plane, also of a part on a surface that stays level.
+    """
     out = np.zeros(len(rows), CONTACT_STATE)
     point = Part(part.mass, part.gravity, part.tilt_x, part.tilt_y, part.squeeze, part.law, 0.0, 0.0)
     for k in range(len(rows)):
         row, state = rows[k], out[k]
         x, y, v_x, v_y = row.x, row.y, row.v_x, row.v_y
         if enter(surface, local, x, y, row.time, math.inf) < 0:
-            state.x = state.centre_x = state.point_pull = state.added_pull = math.nan
+            state.x = state.y = state.z = state.centre_x = state.centre_y = state.centre_z = math.nan
+            state.normal_x = state.normal_y = state.normal_z = math.nan
+            state.friction_x = state.friction_y = state.friction_z = math.nan
+            state.pull = state.point_pull = state.added_pull = math.nan
             continue
         f = surface_at(local, x, y, row.time)
         s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
         n_x, n_y, n_z = -f.w_x / s, -f.w_y / s, 1 / s
         x, y = x + f.base_px, y + f.base_py
-        state.x, state.y, state.z = x + part.contact * n_x, y + part.contact * n_y, row.z + part.contact * n_z
-        state.centre_x, state.centre_y = x + part.centre * n_x, y + part.centre * n_y
-        state.centre_z = row.z + part.centre * n_z
+        state.x, state.y, state.z = x + contact * n_x, y + contact * n_y, row.z + contact * n_z
+        state.centre_x, state.centre_y = x + centre * n_x, y + centre * n_y
+        state.centre_z = row.z + centre * n_z
         state.normal_x, state.normal_y, state.normal_z = n_x, n_y, n_z
         if row.mode == Mode.FLYING:
             continue
         p, q = pull(f, v_x, v_y, part), pull(f, v_x, v_y, point)
         state.pull, state.point_pull = length(f, p.x, p.y), length(f, q.x, q.y)
         state.added_pull = length(f, p.x - q.x, p.y - q.y)
-        k_x, k_y = slip(f, part, v_x, v_y)
         if row.mode == Mode.RESTING:
             d_x, d_y = -part.mass * p.x, -part.mass * p.y
-        else:
-            held = row.friction / p.speed if p.speed > 0.0 else 0.0
-            d_x, d_y = -held * k_x, -held * k_y
+        elif p.speed > 0.0:
+            k_x, k_y = slip(f, part, v_x, v_y)
+            d_x, d_y = -row.friction / p.speed * k_x, -row.friction / p.speed * k_y
+        else:  # it begins to slide, along the pull
+            against = row.friction / state.pull if state.pull > 0.0 else 0.0
+            d_x, d_y = -against * p.x, -against * p.y
         state.friction_x, state.friction_y, state.friction_z = d_x, d_y, d_x * f.w_x + d_y * f.w_y
     return out

@@ -94,13 +94,13 @@ def over_plane(f: SurfacePoint, part: Part, k_x: float, k_y: float) -> tuple[flo
 
 @jit_no_arrays
 def by_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
-    """The rate of (x, y) from that of the centre of mass along the surface, and so its acceleration."""
+    """(x', y') from the centre of mass's velocity [m/s] along the surface; also (x'', y'') from its acceleration."""
     return from_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else (x, y)
 
 
 @jit_no_arrays
 def of_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
-    """The inverse of `by_centre`."""
+    """The velocity [m/s] of the centre of mass along the surface from (x', y'): the inverse of `by_centre`."""
     return to_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else (x, y)
 
 

@@ -30,7 +30,7 @@ FloatArray = NDArray[np.float64]
 
 GRAZE = 1e-13  # of the surface's size: rounding of a height
 MIN_JUMP = 1e-11  # of the surface's size in a stroke: smaller velocities after an impact, and jumps, are rounding
-MAX_NEWTON, PLACED = 20, 1e-15  # of the height of the centre of mass
+MAX_NEWTON, PLACED = 20, 1e-15  # of the place and of the height of the centre of mass
 
 
 @jit
@@ -223,7 +223,7 @@ def _put_place(local: LocalSurface, part: Part, time: float, x: float, y: float,
         n_x, n_y, n_z = _centre_height(f, part)
         step_x, step_y = by_centre(f, part, x - n_x - out.x, y - n_y - out.y)
         out.x, out.y, out.z = out.x + step_x, out.y + step_y, z - n_z
-        if abs(step_x) + abs(step_y) <= PLACED * part.centre:
+        if abs(step_x) + abs(step_y) <= PLACED * (part.centre + abs(out.x) + abs(out.y)):
             return
 
 

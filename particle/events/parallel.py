@@ -101,8 +101,8 @@ class Bend(NamedTuple):
     """A second derivative of the normal: along the surface, and its part against the normal."""
 
     x: float  # 1/s^2
-    y: float
-    down: float
+    y: float  # 1/s^2
+    down: float  # 1/s^2
 
 
 @jit_no_arrays

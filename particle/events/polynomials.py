@@ -30,6 +30,7 @@ def second_derivative(c: FloatArray, unit: float) -> FloatArray:
 
 @jit
 def product(a: FloatArray, b: FloatArray) -> FloatArray:
+    """The product of two polynomials."""
     out = np.zeros(len(a) + len(b) - 1)
     for i in range(len(a)):
         for j in range(len(b)):
@@ -45,6 +46,7 @@ def dot(a_x: FloatArray, a_y: FloatArray, b_x: FloatArray, b_y: FloatArray) -> F
 
 @jit
 def total(a: FloatArray, b: FloatArray) -> FloatArray:
+    """The sum of two polynomials."""
     out = np.zeros(max(len(a), len(b)))
     out[: len(a)] += a
     out[: len(b)] += b

@@ -24,4 +24,5 @@ class Request(NamedTuple):
     flies: bool  # whether a part that comes off is followed to where it lands
     jumps: bool  # whether the surface's velocity jumps at breakpoints
     bends: bool  # whether its acceleration does
+    centre_height: float  # m, of the part's centre of mass over its contact
     bridged: tuple[float, float]  # m/s, m/s^2, how far the surface may be off over bridged breakpoints

@@ -22,7 +22,7 @@ from particle.events.bernstein import MAX_HALVINGS, halve, to_bernstein
 from particle.events.equations import Part
 from particle.events.polynomials import dot, product, second_derivative, total
 from particle.events.stick_raised import DEGREE as RAISED_DEGREE
-from particle.events.stick_raised import fill_raised, holds_raised, is_safe_raised
+from particle.events.stick_raised import X, Y, fill_raised, holds_raised, is_safe_raised
 from particle.friction import friction_limit
 from particle.jit import jit, jit_no_arrays
 from particle.surface import LocalSurface, motion_at
@@ -74,7 +74,11 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
     polynomials = rest.raised if raised else rest.polynomials
     _polynomials(local, part, rest.motion, begin, end, polynomials[0])
     # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
-    slack = SLACK * np.abs(polynomials[0, 1]).max()
+    largest = np.abs(polynomials[0, 1]).max()
+    if raised:
+        z = part.centre
+        largest += 2 * z * np.abs(polynomials[0, X]).max() + z * z * np.abs(polynomials[0, Y]).max()
+    slack = SLACK * largest
     rest.low[0], rest.width[0] = 0.0, 1.0
     narrowest = 0.5**MAX_HALVINGS
     top = 0

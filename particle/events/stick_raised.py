@@ -9,7 +9,7 @@ for the height z of the centre of mass,
     X = s^4 (p.n'') of both pulls = -s^4 a.g'' + s^2 (2 (a.g') sigma + (a.g - U) k) + 2 sigma^2 (U - a.g)
     Y = s^6 |g''|^2 - s^4 (k^2 + 4 sigma m) + 4 s^2 sigma^2 (k + e) - 4 sigma^4
 
-A polynomial over s^3 lies between those over the least and the largest s^3, so Bernstein coefficients prove here, too.
+A polynomial over s^3 lies between those over the least and the largest s^3, so Bernstein coefficients remain a proof.
 """
 
 from __future__ import annotations

@@ -25,6 +25,7 @@ from particle.events import (
     inner,
     length,
     mobility,
+    moved,
     of_centre,
     pull,
     push,
@@ -62,4 +63,10 @@ def moreau_step(
     after.v_x, after.v_y = by_centre(f, part, end_x, end_y)
     after.work = motion.work + h * push(f, part, p.normal) - part.mass * drag(f, part, lost_x, lost_y)
     after.dissipated = motion.dissipated + part.mass * inner(f, lost_x, lost_y, mean_x, mean_y)
+    if part.centre != part.contact:
+        # Friction acts at the contact; its moment turns the part with the surface.
+        k_x, k_y = moved(mobility(f, part), mean_x, mean_y)
+        turns = part.mass * inner(f, lost_x, lost_y, k_x - mean_x, k_y - mean_y)
+        after.work += turns
+        after.dissipated += turns
     return (Mode.SLIDING if kept > 0.0 else Mode.RESTING), p.normal, 0.5 * h * after.v_x, 0.5 * h * after.v_y

@@ -8,7 +8,7 @@ import pyvista
 
 from coupling import build_surface, read_surface, report, run_case, write_surface
 from coupling.case import Case, CoulombCase, InputError, KogutEtsionCase
-from particle import KogutEtsion
+from particle import EventKind, KogutEtsion, Micropart, State, simulate
 
 PLATE = {"shape": "disc", "radius": 1e-3, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 100e-6}
 PART = {"mass": 2e-9, "position": (300e-6, 200e-6), "size": 100e-6}
@@ -62,6 +62,22 @@ def test_a_part_that_is_too_high_tips_over_unless_it_adheres():
     assert tips.tipping == pytest.approx(shift.max() / 50e-6, rel=0.05)
     held = run_case(case(CoulombCase(coefficient=0.4, adhesion=1e-7), part=high)).summary
     assert not held.tips and not any("tips over" in text for text in report.warnings(held))
+
+
+def test_forces_of_a_part_that_comes_off():
+    """The end of contact is located just beyond it, where a rough contact has no separation."""
+    rough = KogutEtsion(contact_area=1e-12)
+    surface = build_surface(case(CONSTANT))
+    path = simulate(surface, Micropart(2e-9, (100e-6, 50e-6)), rough, 1e-3, after_detachment="fly")
+    off = [event.time for event in path.events if event.kind is EventKind.DETACHES]
+    assert off
+    contact = path.contact_at([0.0, off[0], path.time[-1]], rough)
+    assert np.isfinite(contact.contact).all() and np.isfinite(contact.separation[0])
+    flying = path.time[np.flatnonzero(path.state == State.FLIGHT)[0]]
+    assert np.isnan(path.contact_at([flying + 1e-9], rough).separation).all()
+    slips = [event.time for event in path.events if event.kind is EventKind.SLIPS]
+    forces = np.linalg.norm(path.contact_at(slips).friction, axis=1)
+    assert forces == pytest.approx(path.at(slips).friction_force, rel=1e-9)
 
 
 def test_heights_are_checked():

@@ -205,6 +205,10 @@ def test_the_ledger_closes_with_the_new_terms(name, scheme):
     path = simulate(surface, part, LAWS[name], 0.5, scheme=scheme, tolerance=1e-10, **step)
     assert path.path_length > 1e-3
     assert path.energy.balance < (1e-8 if scheme == "events" else 1e-2)
+    if scheme == "fixed":
+        truth = simulate(surface, part, LAWS[name], 0.5, tolerance=1e-10).energy
+        assert path.energy.dissipated[-1] == pytest.approx(truth.dissipated[-1], rel=2e-2)
+        assert path.energy.work[-1] == pytest.approx(truth.work[-1], rel=2e-2)
 
 
 @pytest.mark.compiled
@@ -224,6 +228,16 @@ def test_a_platform_does_not_tilt():
         for height in (0.0, 5e-5)
     )
     assert np.array_equal(low.position, high.position)
+
+
+def test_a_height_below_the_mid_plane_is_refused():
+    with pytest.raises(ValueError, match="Input half_thickness of SurfaceMotion must be 0 or a positive length"):
+        simulate(disc(-1e-6), Micropart(MASS, (0.0, 0.0)), LAWS["constant"], 1e-3)
+
+
+def test_on_a_platform_the_centre_of_mass_is_above_the_contact():
+    path = simulate(platform_surface(), Micropart(MASS, (0.0, 0.0), centre_height=5e-5), CoulombAdhesion(0.1), 0.1)
+    assert path.contact_at([0.0]).centre[0] == pytest.approx((0.0, 0.0, 5e-5))
 
 
 def test_dense_output_and_rest_are_those_of_the_rows():
@@ -276,7 +290,8 @@ def test_contact_and_centre_are_one_call_away():
     contact, samples = path.contact_at(times, law), path.at(times)
     assert np.linalg.norm(contact.centre - contact.contact, axis=1) == pytest.approx(np.full(21, 30e-6))
     assert np.linalg.norm(contact.normal, axis=1) == pytest.approx(np.ones(21))
-    assert np.abs(contact.contact - 50e-6 * contact.normal)[:, :2] == pytest.approx(np.abs(samples.position))
+    under = np.column_stack([samples.position, samples.height])
+    assert contact.contact - 50e-6 * contact.normal == pytest.approx(under, rel=1e-12, abs=1e-18)
     assert np.linalg.norm(contact.friction, axis=1) == pytest.approx(samples.friction_force, rel=1e-12, abs=1e-24)
     assert np.abs((contact.friction * contact.normal).sum(axis=1)).max() < 1e-12 * samples.friction_force.max()
     assert contact.contact_load - contact.adhesion == pytest.approx(contact.normal_force, rel=1e-9)

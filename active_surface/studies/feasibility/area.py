@@ -21,7 +21,7 @@ import numpy as np
 
 from active_surface.arrays import BoolArray, FloatArray
 from meshes import Outline
-from particle import Micropart, SurfaceMotion, modelled
+from particle import Micropart, SurfaceMotion, part_record
 from particle.drives import DriveTable
 from particle.events import count_slips, find_lost
 from particle.friction import Contact
@@ -93,7 +93,7 @@ def find_feasible(
     window = min(window, MAX_STROKES * stroke_time)
     count = max(int(np.ceil(PER_STROKE * window / stroke_time)), PER_STROKE)
     moments = window * (np.arange(count) + 0.5) / count
-    resting = modelled(surface, part, friction, gravity)
+    resting = part_record(surface, part, friction, gravity)
     lost = np.zeros((len(every), len(points)), dtype=np.bool_)
     states = _states(surface, points, moments)
     for state in states():
