@@ -18,7 +18,7 @@ import report
 from coupling import surface_motion
 from fem_plate import DiscShapes, Plate, PlateSection
 from meshes import rectangle
-from particle import ConstantFriction, Drive, Micropart, SurfaceMotion, simulate
+from particle import ConstantFriction, Drive, Micropart, SurfaceMotion, Trajectory, simulate
 
 RADIUS, THICKNESS, FREQUENCY = 1e-3, 100e-6, 2e3  # m, m, Hz
 DEFLECTIONS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)  # thicknesses
@@ -46,7 +46,7 @@ def array() -> SurfaceMotion:
     return surface_motion(plate.influence(points), [Drive(18e-6, 1.6e3, delay=delay) for delay in delays])
 
 
-def path(surface: SurfaceMotion, half_thickness: float, height: float = 0.0):
+def path(surface: SurfaceMotion, half_thickness: float, height: float = 0.0) -> Trajectory:
     """A path over the array."""
     part = Micropart(MASS, (20e-6, -35e-6), centre_height=height)
     return simulate(replace(surface, half_thickness=half_thickness), part, ConstantFriction(LIMIT), DURATION)
