@@ -93,6 +93,7 @@ def test_what_was_found_before_an_interruption_counts(case, surface):
 
 @pytest.mark.slow
 def test_a_robust_aim_makes_the_quantile_small_that_is_asked_for(case, surface):
+    surface = dataclasses.replace(surface, half_thickness=0.0)  # on the top face the plain aim happens to be as robust
     plain = aim_over(surface, Task(case, TARGET, Settings(tolerance=1e-6)))
     robust = aim_over(surface, Task(case, TARGET, Settings(tolerance=1e-6, quantile=0.9, paths=6000)))
     ways = disturbances(SAMPLES, 2, 0, SEARCHED)
