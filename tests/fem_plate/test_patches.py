@@ -89,6 +89,7 @@ def test_the_pitch_of_another_layout_is_the_distance_of_neighbours():
     assert spacing(points) == pytest.approx(np.full(2, np.median(distance.min(axis=1))))
 
 
+@pytest.mark.slow
 def test_a_smaller_truncation_takes_wider_margins_and_is_met(shapes_to):
     found = [shapes_to(t) for t in (1e-2, 1e-4, 1e-6)]
     assert [shapes.truncation_error <= t for shapes, t in zip(found, (1e-2, 1e-4, 1e-6), strict=True)] == [True] * 3
@@ -205,6 +206,7 @@ def test_the_shapes_nearby_are_all_that_are_not_zero_there(row):
     assert shapes.own_heights() == pytest.approx(np.diag(shapes.evaluate(points)[0]))
 
 
+@pytest.mark.slow
 def test_the_error_estimate_counts_what_is_left_out_and_the_cells(section, shapes_to):
     fine, mesh = shapes_to(1e-2), rectangle(61 * PITCH, 4 * PITCH, 4 * PITCH)
     coarse = Plate(mesh, section).influence(lattice(60, 1), truncation=1e-8)
@@ -212,6 +214,7 @@ def test_the_error_estimate_counts_what_is_left_out_and_the_cells(section, shape
     assert coarse.truncation_error <= 1e-8 < coarse.error_estimate < 1e-5
 
 
+@pytest.mark.slow
 def test_what_floats_is_left_out_by_its_own_deflection(row):
     """A newton on a floating actuator moves it by its compliance, be it large or small; that is the scale."""
     springs = np.where(np.arange(60) % 2, np.inf, 0.0)

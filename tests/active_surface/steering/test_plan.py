@@ -128,6 +128,7 @@ def test_legs_before_an_interruption_count(case, surface):
     assert 1 <= len(found.arrivals) == len(found.distances) < 3 and found.distances[0] < 2e-6
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_the_command_takes_all_points_after_through(tmp_path):
     (tmp_path / "base.toml").write_text(CASE)

@@ -173,6 +173,7 @@ def test_what_jumps_is_drawn_with_jumps(tmp_path):
         assert samples.normal_force[after - 1] == 0 == samples.friction_force[after - 1]
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_picture_of_a_partial_run_says_so(folder, tmp_path):
     for kind in ("plate", "part"):

@@ -128,6 +128,7 @@ def test_a_record_has_what_a_mesh_names_wherever_it_is(tmp_path, place):
         record_of(case)
 
 
+@pytest.mark.slow
 def test_a_moved_result_with_a_mesh_reruns_to_the_same_bits(moved, tmp_path):
     write_mesh(tmp_path / "plate.xdmf")
     files = {f"plate_{end}": (tmp_path / f"plate.{end}").read_bytes() for end in ("xdmf", "h5")}

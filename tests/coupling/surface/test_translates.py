@@ -35,6 +35,7 @@ def inside(count):
     return np.random.default_rng(1).uniform(-2.4 * PITCH, 2.4 * PITCH, (count, 2))
 
 
+@pytest.mark.slow
 def test_cells_a_pitch_apart_deep_in_a_lattice_have_the_same_polynomials_and_their_own_drives(surface):
     surface.evaluate(inside(50), 0.0)
     cells = surface.store.cells
