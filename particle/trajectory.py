@@ -158,7 +158,7 @@ class Trajectory:
     evaluations: int  # of the surface
     energy: Energy
     sampler: Callable[[FloatArray], NDArray[Any]]  # rows at ascending times
-    contact: Callable[[NDArray[Any]], NDArray[Any]]  # `ContactState`s at rows
+    contact: Callable[[NDArray[Any]], NDArray[Any]]  # rows of `ContactState` at rows
     future: Callable[[], bool | None] | None = None  # of a part that rests at the end
 
     @cached_property
