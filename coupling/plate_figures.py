@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 
-from coupling.case import SAME_PLACE, Case, KogutEtsionCase
+from coupling.case import SAME_PLACE, Case
 from coupling.drives import moments, stroke_heights, travel
 from coupling.scene import PlateScene
 from coupling.steepest import around, steepest
@@ -131,20 +131,13 @@ def _extremes(shapes: PlateShapes, drives: Sequence[AnyDrive], end: float) -> tu
 
 def _part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, trajectory: Trajectory) -> float | None:
     """The part's size times the largest curvature under it at the rows of its path."""
-    size = _part_size(case)
+    size = case.footprint
     if size is None:
         return None
     on_plate = outline.gap(trajectory.position) >= 0  # all but the last of a part that slid over the rim
     places = zip(trajectory.position[on_plate], trajectory.time[on_plate], strict=True)
     hessians = np.concatenate([surface.evaluate(xy, t).hessian for xy, t in places])
     return size * float(np.abs(np.linalg.eigvalsh(hessians)).max())
-
-
-def _part_size(case: Case) -> float | None:
-    """The side [m] of the part's footprint."""
-    if case.part.size is None and isinstance(case.friction, KogutEtsionCase):
-        return float(np.sqrt(case.friction.contact_area))
-    return case.part.size
 
 
 def _top_face_share(contact: ContactSamples) -> float | None:
@@ -158,7 +151,7 @@ def _top_face_share(contact: ContactSamples) -> float | None:
 
 def _tipping(case: Case, contact: ContactSamples) -> float | None:
     """The largest shift of the pressure centre over half the part's size: friction times the centre's height over N."""
-    size = _part_size(case)
+    size = case.footprint
     if size is None:
         return None
     pressed = contact.normal_force > 0

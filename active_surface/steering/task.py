@@ -16,7 +16,6 @@ from coupling.case import (
     SAME_PLACE,
     ActuatorCase,
     Case,
-    KogutEtsionCase,
     PlateCase,
     beyond,
     gaps,
@@ -144,7 +143,7 @@ def misplaced(case: Case, target: tuple[float, float]) -> Iterator[str]:
     mesh = case.plate.coarse_mesh
     least = SAME_PLACE * half_size(mesh)
     (gap,) = gaps(mesh, [target])
-    room = footprint(case) / math.sqrt(2)
+    room = (case.footprint or 0.0) / math.sqrt(2)
     if gap <= least:
         yield f"must be inside the rim; got a point {beyond(gap, least, 'um')}"
     elif gap < room:
@@ -152,13 +151,6 @@ def misplaced(case: Case, target: tuple[float, float]) -> Iterator[str]:
             f"must be at least {length_text(room)} inside the rim, half of the part's diagonal, for the part to fit; "
             f"got a point {length_text(gap)} inside it"
         )
-
-
-def footprint(case: Case) -> float:
-    """The side [m] of the part's footprint; 0 where the case does not tell it."""
-    if case.part.size is not None:
-        return case.part.size
-    return math.sqrt(case.friction.contact_area) if isinstance(case.friction, KogutEtsionCase) else 0.0
 
 
 def _from_way(places: FloatArray, start: tuple[float, float], target: tuple[float, float]) -> FloatArray:

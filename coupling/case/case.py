@@ -9,6 +9,7 @@ A case is made in three steps: parse (`toml_file`), check (`check`), build (`_bu
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError, model_validator
 
 from coupling.case.check import Checked, check
-from coupling.case.friction import TableCase
+from coupling.case.friction import KogutEtsionCase, TableCase
 from coupling.case.tables import CaseTables
 from coupling.case.toml_file import parse
 from coupling.case.values import UNITS_REQUIRED
@@ -46,6 +47,13 @@ class Case(CaseTables):
         if checked.errors:
             raise ValidationError.from_exception_data(cls.__name__, checked.errors)
         return _built(checked) | own
+
+    @property
+    def footprint(self) -> float | None:
+        """The side [m] of the part's footprint, or the root of the contact area; None: neither is given."""
+        if self.part.size is None and isinstance(self.friction, KogutEtsionCase):
+            return math.sqrt(self.friction.contact_area)
+        return self.part.size
 
     def __repr__(self) -> str:
         count, part, friction = len(self.actuators), self.part, self.friction.model

@@ -3,39 +3,15 @@
 import math
 
 import pytest
+from sweeps import PLATE
 
 from active_surface.studies.axis import Axis
 from active_surface.studies.field import find_field
 from active_surface.studies.variants import Variants
 from coupling import read_case
 
-CASE = """\
-[plate]
-shape = "disc"
-radius = "300 um"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
-[[actuators]]
-position = ["0 um", "0 um"]
-stroke = "1 um"
-frequency = "300 Hz"
-cycle = "sine"
-[[actuators]]
-position = ["90 um", "0 um"]
-stroke = "1 um"
-frequency = "300 Hz"
-cycle = "cosine"
-phase = "20 deg"
-[part]
-mass = "2e-9 kg"
-position = ["100 um", "100 um"]
-[friction]
-model = "constant"
-limit = "1 uN"
-[run]
-duration = "5 ms"
-"""
+CASE = PLATE.replace('"400 Hz"', '"400 Hz"\ncycle = "sine"')
+CASE = CASE.replace('"300 Hz"', '"300 Hz"\ncycle = "cosine"\nphase = "20 deg"')
 
 
 @pytest.fixture
