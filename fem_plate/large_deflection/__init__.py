@@ -1,0 +1,1 @@
+"""Large deflection: von Karman's plate, which stretches as it bends."""

@@ -1,0 +1,232 @@
+"""Equilibrium: Newton's method for the plate that bends and stretches, with a line search on its energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import bmat, coo_matrix, csc_matrix
+
+from fem_plate.large_deflection.factor import factorised
+from fem_plate.large_deflection.membrane import Membrane
+from fem_plate.large_deflection.samples import Samples, strains, times
+from fem_plate.large_deflection.trial import Trial
+
+FloatArray = NDArray[np.float64]
+
+MAX_STEPS = 40
+CONVERGED = 1e-10  # of the largest deflection: what the last step may change
+MAX_HALVINGS = 12  # of a step, while the energy grows
+ROUNDING = 1e-12  # of the energy
+
+
+class NotConverged(RuntimeError):
+    """Newton's method ended without an equilibrium."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loads:
+    """Strokes (J,) of the actuators that hold the plate and forces of the others, over the thickness; the pressure."""
+
+    strokes: FloatArray
+    pressure: float
+
+
+@dataclass(frozen=True, eq=False)
+class Coefficients:
+    """A deflected plate by the coefficients of its trial functions, with the membrane at rest."""
+
+    v: FloatArray  # (unknowns,)
+    extra: FloatArray  # (J + r,)
+    pressure: float
+    slopes: list[FloatArray]  # (k, 2 n) at each set of samples
+    membrane: FloatArray  # (m,)
+    stretching: float  # energy
+
+
+class Equilibrium:
+    """The plate on one mesh.
+
+    compliance: (J,) of the actuators: 0 rigid, inf where the force is prescribed.
+    """
+
+    def __init__(self, trial: Trial, membrane: Membrane, compliance: FloatArray) -> None:
+        self.trial, self.membrane, self.compliance = trial, membrane, compliance
+        self.held = np.isfinite(compliance)
+        self.space = trial.model.space
+        self.bending = self.space.stiffness(trial.model.poisson_ratio)
+        self._pins = trial.model.pins
+        self._known = [trial.slopes(samples) for samples in membrane.samples]
+        points = self.space.points
+        self._values = self.space.point_values(points)
+        self._extra_values = trial.extra.values(points)[:, :-1]
+
+    def solve(self, loads: Loads, start: Coefficients | None = None) -> tuple[Coefficients, FloatArray]:
+        """The equilibrium, and the actuators' forces (J,).
+
+        start: where to begin, with its loads' strokes; by default the linear plate.
+        """
+        now = self.linear(loads)[0] if start is None else start
+        energy = self.energy(now, loads)
+        for _ in range(MAX_STEPS):
+            dv, de, forces = self._step(now, loads)
+            share, change = 1.0, self._change(now, dv, de)
+            for _ in range(MAX_HALVINGS):
+                there = self.at(now.v + share * dv, now.extra + share * de, loads.pressure)
+                new_energy = self.energy(there, loads)
+                if new_energy <= energy + ROUNDING * abs(energy) or change < 1e3 * CONVERGED:
+                    break
+                share /= 2
+            now, energy = there, new_energy
+            if share == 1.0 and change < CONVERGED:
+                return now, forces
+        raise NotConverged(f"no equilibrium after {MAX_STEPS} steps; the last one changed w by {change:.1e} of itself")
+
+    def moved(self, start: Coefficients, by: Loads, pressure: float) -> Coefficients:
+        """A state with what the linear plate adds under further strokes."""
+        linear = self.linear(by)[0]
+        return self.at(start.v + linear.v, start.extra + linear.extra, pressure)
+
+    def linear(self, loads: Loads) -> tuple[Coefficients, FloatArray]:
+        """The plate without stretching, and the actuators' forces."""
+        trial, held = self.trial, self.held
+        count, r = len(held), trial.count - len(held)
+        forces = np.where(held, 0.0, loads.strokes)
+        yielding = trial.heights[held][:, :count][:, held] + np.diag(self.compliance[held])
+        motions = trial.heights[held][:, count:]
+        matrix = np.block([[yielding, motions], [motions.T, np.zeros((r, r))]])
+        missing = loads.strokes - trial.heights[:, :count] @ forces - loads.pressure * trial.pressure_heights
+        balance = loads.pressure * trial.extra_load[count:] - trial.heights[:, count:].T @ forces
+        solution = np.linalg.solve(matrix, np.concatenate([missing[held], balance]))
+        forces[held] = solution[: held.sum()]
+        extra = np.concatenate([forces, solution[held.sum() :]])
+        return self.at(np.zeros(self.space.unknowns), extra, loads.pressure), forces
+
+    def at(self, v: FloatArray, extra: FloatArray, pressure: float) -> Coefficients:
+        """The plate with given coefficients."""
+        everything, weights = self.space.all_unknowns(v), np.append(extra, pressure)
+        slopes = [
+            (samples.gradient @ everything[self.space.dofs[samples.triangle]][..., None])[..., 0] + known @ weights
+            for samples, known in zip(self.membrane.samples, self._known, strict=True)
+        ]
+        membrane, stretching = self.membrane.respond(slopes)
+        return Coefficients(v, extra, pressure, slopes, membrane, stretching)
+
+    def heights(self, state: Coefficients) -> FloatArray:
+        """w at the actuators (J,)."""
+        trial = self.trial
+        return np.asarray(
+            trial.at_actuators @ state.v + trial.heights @ state.extra + state.pressure * trial.pressure_heights
+        )
+
+    def bending_forces(self, state: Coefficients) -> tuple[FloatArray, FloatArray]:
+        """The bending energy's derivative, less the pressure's work, in v and in the extra coefficients."""
+        trial = self.trial
+        return (
+            self.bending @ state.v + trial.cross @ state.extra + state.pressure * trial.load,
+            trial.cross.T @ state.v + trial.inner @ state.extra + state.pressure * trial.extra_load,
+        )
+
+    def energy(self, state: Coefficients, loads: Loads) -> float:
+        """The energy of plate, springs and loads, but for a constant."""
+        trial = self.trial
+        of_v, of_extra = self.bending_forces(state)
+        linear = state.pressure * (trial.load @ state.v + trial.extra_load @ state.extra)
+        bending = 0.5 * (state.v @ of_v + state.extra @ of_extra + linear)
+        heights = self.heights(state)
+        springs = self.held & (self.compliance > 0)
+        stretched = (loads.strokes - heights)[springs] ** 2 / self.compliance[springs]
+        work = loads.strokes[~self.held] @ heights[~self.held]
+        return float(bending + state.stretching + 0.5 * stretched.sum() - work)
+
+    def tangent(self, state: Coefficients) -> tuple[csc_matrix, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """The energy's second derivatives: of v and membrane, of these with the extra functions, of the extra ones.
+
+        Also the stretching energy's derivative in v and in the extra coefficients.
+        """
+        membrane, dofs, count = self.membrane, self.space.dofs, self.trial.count
+        everything = membrane.expand(state.membrane)
+        all_w, all_m = self.space.all_count, len(everything)
+        element = np.zeros((len(dofs), dofs.shape[1], dofs.shape[1]))
+        couplings = np.zeros((len(dofs), membrane.dofs.shape[1], dofs.shape[1]))
+        with_w, with_m = np.zeros((all_w, count)), np.zeros((all_m, count))
+        inner, of_v, of_extra = np.zeros((count, count)), np.zeros(all_w), np.zeros(count)
+        for samples, known, p in zip(membrane.samples, self._known, state.slopes, strict=True):
+            force, known = membrane.force(samples, everything, p), known[..., :-1]
+            of_p = samples.weighted(times(force, p[..., None]))[..., 0]
+            np.add.at(of_v, dofs[samples.triangle], np.einsum("kni,kn->ki", samples.gradient, of_p))
+            of_extra += np.einsum("knj,kn->j", known, of_p)
+            stiff = samples.weighted(force + membrane.stiffening(p))
+            transposed = samples.gradient.transpose(0, 2, 1)
+            np.add.at(element, samples.triangle, transposed @ times(stiff, samples.gradient))
+            of_known = times(stiff, known)
+            np.add.at(with_w, dofs[samples.triangle], transposed @ of_known)
+            inner += np.einsum("kni,knj->ij", known, of_known, optimize=True)
+            operator = samples.weighted(samples.operator).transpose(0, 2, 1)
+            np.add.at(couplings, samples.triangle, operator @ strains(p, samples.gradient))
+            np.add.at(with_m, membrane.dofs[samples.triangle], operator @ strains(p, known))
+        stiffness = self.bending + self._pins.T @ self._pins + self.space.assembled(element)
+        coupling = membrane.reduce(self.space.to_independent(self._assembled(couplings, all_m, all_w).T).T)
+        block = bmat([[stiffness, coupling.T], [coupling, membrane.sign * membrane.stiffness]], format="csc")
+        border = np.concatenate([self.space.to_independent(with_w) + self.trial.cross, membrane.reduce(with_m)])
+        return block, border, inner + self.trial.inner, self.space.to_independent(of_v), of_extra
+
+    def _assembled(self, element: FloatArray, rows: int, columns: int) -> csc_matrix:
+        """The sum of element matrices from all unknowns of w to all of the membrane."""
+        row = np.broadcast_to(self.membrane.dofs[:, :, None], element.shape)
+        column = np.broadcast_to(self.space.dofs[:, None, :], element.shape)
+        return coo_matrix((element.ravel(), (row.ravel(), column.ravel())), shape=(rows, columns)).tocsc()
+
+    def bordered(
+        self, block: csc_matrix, border: FloatArray, inner: FloatArray
+    ) -> Callable[[FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]:
+        """Solves the linearised plate with the held actuators' heights as constraints.
+
+        The solver takes what drives v, what drives the extra coefficients and the heights missing at held actuators;
+        it returns v, extra coefficients and the held actuators' forces.
+        """
+        trial, held, n = self.trial, self.held, self.space.unknowns
+        solve = factorised(block)
+        pins, count = self._pins, trial.count
+        pinned = np.zeros((len(border), pins.shape[0]))
+        pinned[:n] = pins.toarray().T
+        holds = np.zeros((len(border), held.sum()))
+        holds[:n] = trial.at_actuators[held].toarray().T
+        columns = np.concatenate([border, -holds, pinned], axis=1)
+        corner = np.zeros((columns.shape[1], columns.shape[1]))
+        at, last = count + held.sum(), columns.shape[1]
+        corner[:count, :count] = inner
+        corner[:count, count:at] = -trial.heights[held].T
+        corner[count:at, :count] = -trial.heights[held]
+        corner[count:at, count:at] = -np.diag(self.compliance[held])
+        solved = solve(columns)
+        schur = corner - columns.T @ solved
+
+        def answer(of_v: FloatArray, of_extra: FloatArray, missing: FloatArray) -> tuple[FloatArray, ...]:
+            load = np.zeros(len(border))
+            load[:n] = of_v
+            first = solve(load)
+            rest = np.concatenate([of_extra, -missing, np.zeros(last - at)]) - columns.T @ first
+            outer = np.linalg.solve(schur, rest)
+            return (first - solved @ outer)[:n], outer[:count], outer[count:at]
+
+        return answer
+
+    def _step(self, now: Coefficients, loads: Loads) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Newton's step in v and in the extra coefficients, and the actuators' forces after it."""
+        block, border, inner, of_v, of_extra = self.tangent(now)
+        bent_v, bent_extra = self.bending_forces(now)
+        given = np.where(self.held, 0.0, loads.strokes)
+        of_v = self.trial.at_actuators.T @ given - of_v - bent_v
+        of_extra = self.trial.heights.T @ given - of_extra - bent_extra
+        missing = (loads.strokes - self.heights(now))[self.held]
+        dv, de, held_forces = self.bordered(block, border, inner)(of_v, of_extra, missing)
+        given[self.held] = held_forces
+        return dv, de, given
+
+    def _change(self, now: Coefficients, dv: FloatArray, de: FloatArray) -> float:
+        """The largest change of w over the largest w, at the mesh's points."""
+        w = self._values @ now.v + self._extra_values @ now.extra
+        return float(np.abs(self._values @ dv + self._extra_values @ de).max() / max(np.abs(w).max(), 1e-300))
