@@ -124,7 +124,7 @@ class PlateSpace:
 
         triangle: (n,), that of each point where they are known.
         """
-        triangle = self._locate(xy) if triangle is None else triangle
+        triangle = self.triangle_of(xy) if triangle is None else triangle
         data = self.triangles.derivatives(xy[:, None], triangle, 0)[0, :, 0]
         columns = self.dofs[triangle]
         rows = np.broadcast_to(np.arange(len(xy))[:, None], columns.shape)
@@ -143,7 +143,7 @@ class PlateSpace:
         step = max(1, CHUNK // k)
         for start in range(0, n, step):
             part = slice(start, start + step)
-            triangle = self._locate(xy[part])
+            triangle = self.triangle_of(xy[part])
             of_triangle = unknowns[self.dofs[triangle]]  # (n, 21, k)
             for order, result in enumerate(results):
                 table = self.triangles.derivatives(xy[part, None], triangle, order)[:, :, 0]
@@ -159,7 +159,7 @@ class PlateSpace:
         step = max(1, CHUNK // result.shape[1])
         for start in range(0, len(xy), step):
             part = slice(start, start + step)
-            triangle = self._locate(xy[part])
+            triangle = self.triangle_of(xy[part])
             xx, _, yy = self.triangles.derivatives(xy[part, None], triangle, 2)
             result[part] = ((xx + yy) @ unknowns[self.dofs[triangle]])[:, 0]
         return result
@@ -209,7 +209,7 @@ class PlateSpace:
         """Whether points (n, 2) lie in the mesh or just beyond it, (n,)."""
         return self._find(xy)[1] > -BEYOND
 
-    def _locate(self, xy: FloatArray) -> IntArray:
+    def triangle_of(self, xy: FloatArray) -> IntArray:
         """The triangle of each point (n, 2), the closest one for a point between a chord and the rim."""
         return self._find(xy)[0]
 

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
-from fem_plate.elements import CLAMPED, FREE, PlateModel, PlateSpace
+from fem_plate.elements import CLAMPED, FREE, PlateModel, PlateSpace, SingularCorner, singular_corners
 from fem_plate.large_deflection.factor import factorised
-from fem_plate.large_deflection.membrane import Membrane
+from fem_plate.large_deflection.membrane import AIRY, Membrane
 from fem_plate.large_deflection.samples import Samples
 from meshes import PlateMesh
 
@@ -25,10 +25,17 @@ IntArray = NDArray[np.int64]
 DEGREE = 12  # of the quadrature: forces have degree 3, slopes 4 each
 
 
+def airy_corners(mesh: PlateMesh, movable: bool, poisson_ratio: float) -> list[SingularCorner]:
+    """The corners where the stress function is not smooth."""
+    return singular_corners(mesh, _supports(mesh, movable), -poisson_ratio)
+
+
 def airy(mesh: PlateMesh, movable: bool, poisson_ratio: float, corners: Sequence[int]) -> Membrane:
-    """The membrane of a plate without holes, whose whole rim is immovable, or free to move, in its plane."""
-    supports = dict.fromkeys(mesh.boundaries, CLAMPED if movable else FREE)
-    model = PlateModel(mesh, supports, -poisson_ratio, corners)
+    """The membrane of a plate without holes, whose whole rim is immovable, or free to move, in its plane.
+
+    corners: rows of mesh points where second derivatives may jump.
+    """
+    model = PlateModel(mesh, _supports(mesh, movable), -poisson_ratio, corners)
     space = model.space
     stiffness = (model.pinned_stiffness / (12 * (1 - poisson_ratio**2))).tocsc()
     xy, weights = get_quadrature(RefTri, DEGREE)
@@ -39,6 +46,7 @@ def airy(mesh: PlateMesh, movable: bool, poisson_ratio: float, corners: Sequence
     if len(space.slivers.triangle):
         samples.append(_samples(space, *space.slivers))
     return Membrane(
+        name=AIRY,
         samples=tuple(samples),
         dofs=space.dofs,
         stiffness=stiffness,
@@ -48,6 +56,11 @@ def airy(mesh: PlateMesh, movable: bool, poisson_ratio: float, corners: Sequence
         expand=space.all_unknowns,
         reduce=space.to_independent,
     )
+
+
+def _supports(mesh: PlateMesh, movable: bool) -> dict[str, str]:
+    """Those of the plate that the stress function is the deflection of."""
+    return dict.fromkeys(mesh.boundaries, CLAMPED if movable else FREE)
 
 
 def _samples(space: PlateSpace, triangle: IntArray, points: FloatArray, weights: FloatArray) -> Samples:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ from fem_plate.large_deflection.trial import Trial
 FloatArray = NDArray[np.float64]
 
 MAX_STEPS = 40
-CONVERGED = 1e-10  # of the largest deflection: what the last step may change
+CONVERGED = 1e-8  # of the largest deflection: what the last step may change; Newton's next would change its square
 MAX_HALVINGS = 12  # of a step, while the energy grows
 ROUNDING = 1e-12  # of the energy
 
@@ -76,7 +76,7 @@ class Equilibrium:
             for _ in range(MAX_HALVINGS):
                 there = self.at(now.v + share * dv, now.extra + share * de, loads.pressure)
                 new_energy = self.energy(there, loads)
-                if new_energy <= energy + ROUNDING * abs(energy) or change < 1e3 * CONVERGED:
+                if new_energy <= energy + ROUNDING * abs(energy) or change < 10 * CONVERGED:
                     break
                 share /= 2
             now, energy = there, new_energy
@@ -104,15 +104,44 @@ class Equilibrium:
         extra = np.concatenate([forces, solution[held.sum() :]])
         return self.at(np.zeros(self.space.unknowns), extra, loads.pressure), forces
 
+    def slopes_at(self, sets: Sequence[Samples], state: Coefficients) -> list[FloatArray]:
+        """The slopes (k, 2 n) of a state at other samples."""
+        known = [self.trial.slopes(samples) for samples in sets]
+        return self._slopes(sets, known, state.v, state.extra, state.pressure)
+
+    def bending_energy(self, state: Coefficients) -> float:
+        """The energy of bending alone."""
+        points, weights = self.space.quadrature
+        values = self.trial.extra.values(points)
+        of_v, of_extra = self.bending @ state.v + self.trial.cross @ state.extra, self.trial.inner @ state.extra
+        unpressed = 0.5 * (state.v @ (of_v + self.trial.cross @ state.extra) + state.extra @ of_extra)
+        # With phi a bending energy is a mean height, but for what rigid motions bear.
+        raised = weights @ (
+            self.space.point_values(points, self.space.quadrature_triangles) @ state.v + values[:, :-1] @ state.extra
+        )
+        raised += self.trial.load @ state.v + self.trial.extra_load @ state.extra
+        own = weights @ values[:, -1] - self.trial.borne @ self.trial.borne
+        return float(unpressed + state.pressure * raised + 0.5 * state.pressure**2 * own)
+
     def at(self, v: FloatArray, extra: FloatArray, pressure: float) -> Coefficients:
         """The plate with given coefficients."""
-        everything, weights = self.space.all_unknowns(v), np.append(extra, pressure)
-        slopes = [
-            (samples.gradient @ everything[self.space.dofs[samples.triangle]][..., None])[..., 0] + known @ weights
-            for samples, known in zip(self.membrane.samples, self._known, strict=True)
-        ]
+        slopes = self._slopes(self.membrane.samples, self._known, v, extra, pressure)
         membrane, stretching = self.membrane.respond(slopes)
         return Coefficients(v, extra, pressure, slopes, membrane, stretching)
+
+    def _slopes(
+        self,
+        sets: Sequence[Samples],
+        known: Sequence[FloatArray],
+        v: FloatArray,
+        extra: FloatArray,
+        pressure: float,
+    ) -> list[FloatArray]:
+        everything, weights = self.space.all_unknowns(v), np.append(extra, pressure)
+        return [
+            (samples.gradient @ everything[self.space.dofs[samples.triangle]][..., None])[..., 0] + extra @ weights
+            for samples, extra in zip(sets, known, strict=True)
+        ]
 
     def heights(self, state: Coefficients) -> FloatArray:
         """w at the actuators (J,)."""

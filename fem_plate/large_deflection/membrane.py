@@ -24,10 +24,14 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
+AIRY, PLANE_STRESS = "airy", "plane-stress"
+
+
 @dataclass(frozen=True, eq=False)
 class Membrane:
     """One discretisation of a plate's stretching."""
 
+    name: str  # "airy" or "plane-stress"
     samples: tuple[Samples, ...]
     dofs: IntArray  # (triangles, m), all unknowns of each triangle
     stiffness: csc_matrix  # S, of the independent ones
@@ -69,4 +73,6 @@ class Membrane:
     def _by_law(self, strain: FloatArray) -> FloatArray:
         """A times stacked strains (k, 3 n)."""
         assert self.law is not None
-        return np.concatenate([sum(a * part for a, part in zip(row, thirds(strain), strict=True)) for row in self.law], axis=1)
+        return np.concatenate(
+            [sum(a * part for a, part in zip(row, thirds(strain), strict=True)) for row in self.law], axis=1
+        )

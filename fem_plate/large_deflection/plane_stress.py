@@ -8,17 +8,16 @@ It bounds the membrane energy from above.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csc_matrix
+from numpy.typing import NDArray
 from skfem import Basis, BilinearForm, ElementTriP4, ElementVector, MeshTri1, MeshTri2
 from skfem.helpers import ddot, sym_grad
 
 from fem_plate.elements import PlateSpace
 from fem_plate.large_deflection.factor import factorised
-from fem_plate.large_deflection.membrane import Membrane
+from fem_plate.large_deflection.membrane import PLANE_STRESS, Membrane
 from fem_plate.large_deflection.samples import Samples
 from meshes import PlateMesh
 
@@ -28,46 +27,57 @@ IntArray = NDArray[np.int64]
 DEGREE = 14  # of the quadrature
 
 
-def plane_stress(
-    mesh: PlateMesh, space: PlateSpace, movable: Mapping[str, bool], poisson_ratio: float
-) -> tuple[Membrane, Basis]:
-    """The membrane of a plate with rims that are free to move in the plane or not, and the basis of its motion.
+class PlaneStress:
+    """The in-plane motion of a plate, dimensionless.
 
-    space: of the plate's deflection, on the same cells.
+    space: of its deflection, on the same cells.  movable: by boundary.
     """
-    basis = Basis(curved(mesh), ElementVector(ElementTriP4()), intorder=DEGREE)
-    law = 12 * np.array([[1, 0, poisson_ratio], [0, (1 - poisson_ratio) / 2, 0], [poisson_ratio, 0, 1]])
-    free = np.setdiff1d(np.arange(basis.N), _held(mesh, basis, movable))
-    whole = _stiffness(poisson_ratio).assemble(basis)
-    stiffness = whole[free][:, free].tocsc()
-    strain = [np.stack([g[0, 0], g[0, 1] + g[1, 0], g[1, 1]]) for g in (f[0].grad for f in basis.basis)]
-    operator = np.einsum("ab,fbkn->kanf", law, np.stack(strain), optimize=True)
-    points = np.moveaxis(np.asarray(basis.global_coordinates()), 0, -1)
-    every = np.arange(len(points))
-    flat = operator.reshape(len(points), -1, operator.shape[-1])
-    samples = Samples.at(space, every, points, np.asarray(basis.dx), np.ascontiguousarray(flat))
 
-    def expand(u: FloatArray) -> FloatArray:
-        everything = np.zeros((basis.N, *u.shape[1:]))
-        everything[free] = u
+    def __init__(self, mesh: PlateMesh, space: PlateSpace, movable: Mapping[str, bool], poisson_ratio: float) -> None:
+        self.space = space
+        self.basis = basis = Basis(curved(mesh), ElementVector(ElementTriP4()), intorder=DEGREE)
+        self.law = 12 * np.array([[1, 0, poisson_ratio], [0, (1 - poisson_ratio) / 2, 0], [poisson_ratio, 0, 1]])
+        self._free = np.setdiff1d(np.arange(basis.N), _held(mesh, basis, movable))
+        strain = np.stack([np.stack([g[0, 0], g[0, 1] + g[1, 0], g[1, 1]]) for g in (f[0].grad for f in basis.basis)])
+        force = np.einsum("ab,fbkn->kanf", self.law, strain, optimize=True)  # (k, 3, n, 30)
+        points = np.moveaxis(np.asarray(basis.global_coordinates()), 0, -1)
+        operator = force.reshape(len(points), -1, force.shape[-1])
+        samples = Samples.at(space, np.arange(len(points)), points, np.asarray(basis.dx), operator)
+        stiffness = _stiffness(poisson_ratio).assemble(basis)[self._free][:, self._free].tocsc()
+        self.membrane = Membrane(
+            name=PLANE_STRESS,
+            samples=(samples,),
+            dofs=np.ascontiguousarray(basis.element_dofs.T).astype(np.int64),
+            stiffness=stiffness,
+            solve=factorised(stiffness),
+            sign=1.0,
+            law=self.law,
+            expand=self._expand,
+            reduce=lambda rows: rows[self._free],
+        )
+
+    def _expand(self, u: FloatArray) -> FloatArray:
+        everything = np.zeros((self.basis.N, *u.shape[1:]))
+        everything[self._free] = u
         return everything
 
-    membrane = Membrane(
-        samples=(samples,),
-        dofs=np.ascontiguousarray(basis.element_dofs.T).astype(np.int64),
-        stiffness=stiffness,
-        solve=factorised(stiffness),
-        sign=1.0,
-        law=law,
-        expand=expand,
-        reduce=lambda rows: rows[free],
-    )
-    return membrane, basis
+    def evaluate(self, x: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The motion (n, 2) and its gradient (n, 2, 2) at points (n, 2), from its unknowns."""
+        basis, everything = self.basis, self._expand(u)
+        triangle = self.space.triangle_of(x)
+        local = basis.mapping.invF(x.T[:, :, None], triangle)
+        value, gradient = np.zeros((2, len(x))), np.zeros((2, 2, len(x)))
+        for i in range(basis.Nbfun):
+            (function,) = basis.elem.gbasis(basis.mapping, local, i, triangle)
+            weight = everything[basis.element_dofs[i, triangle]]
+            value += weight * np.asarray(function)[..., 0]
+            gradient += weight * function.grad[..., 0]
+        return value.T, gradient.transpose(2, 0, 1)
 
 
 def curved(mesh: PlateMesh) -> MeshTri2:
     """The mesh for scikit-fem, lengths by the plate's size, with the middles of its rim's sides on the true rim."""
-    bent = MeshTri2.from_mesh(MeshTri1(mesh.points.T / mesh.size, mesh.triangles.T, sort_t=False))
+    bent = MeshTri2.from_mesh(MeshTri1(mesh.points.T / mesh.size, np.sort(mesh.triangles, axis=1).T))
     places = bent.doflocs.copy()
     for name, pairs in mesh.boundaries.items():
         middles = mesh.arcs(name, np.array([0.5]))[0][:, 0] / mesh.size

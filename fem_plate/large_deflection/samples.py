@@ -27,7 +27,9 @@ class Samples:
     operator: FloatArray  # (k, 3 n, m), membrane forces of the membrane's functions
 
     @staticmethod
-    def at(space: PlateSpace, triangle: IntArray, points: FloatArray, weights: FloatArray, operator: FloatArray) -> Samples:
+    def at(
+        space: PlateSpace, triangle: IntArray, points: FloatArray, weights: FloatArray, operator: FloatArray
+    ) -> Samples:
         """Samples at points of triangles (k,)."""
         x, y = space.triangles.derivatives(points, triangle, 1)
         return Samples(triangle, points, weights, np.concatenate([x, y], axis=1), operator)

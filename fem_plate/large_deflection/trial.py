@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate.elements import PlateFunctions, PlateModel, point_load, point_value
+from fem_plate.elements import PlateFunctions, PlateModel, point_value
 from fem_plate.large_deflection.samples import Samples
 
 FloatArray = NDArray[np.float64]
@@ -29,11 +29,11 @@ class Trial:
     Extra functions are the J responses, then the r rigid motions.
     """
 
-    def __init__(self, model: PlateModel, x: FloatArray, pressure: bool) -> None:
+    def __init__(self, model: PlateModel, x: FloatArray) -> None:
         self.model, self.x = model, x
         space = model.space
         responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))
-        pushed = model.under_pressure() if pressure else np.zeros((model.unknowns, 1))
+        pushed = model.under_pressure()
         self.motions = model.motions(x)  # (J, r)
         r = self.motions.shape[1]
         self.at_actuators = space.point_values(x)  # B
@@ -49,19 +49,21 @@ class Trial:
             x,
             np.concatenate([np.eye(len(x)), np.zeros((len(x), r + 1))], axis=1),
             np.concatenate([np.zeros((3, len(x))), model.rigid, np.zeros((3, 1))], axis=1),
-            np.concatenate([np.zeros(extra), [float(pressure)]]),
+            np.append(np.zeros(extra), 1.0),
         )
         self.pressure_heights = self.extra.values(x)[:, -1] if len(x) else np.zeros(0)
         # Bending energies: of finite elements with the extra functions, and of these.
         mean = model.mean
-        self.cross = np.concatenate([self.at_actuators.toarray().T - mean @ self.motions.T, np.zeros((len(mean), r))], axis=1)
+        self.cross = np.concatenate(
+            [self.at_actuators.toarray().T - mean @ self.motions.T, np.zeros((len(mean), r))], axis=1
+        )
         self.inner = np.zeros((extra, extra))
         self.inner[: len(x), : len(x)] = green - self.motions @ self.motions.T
         # What pressure does that phi leaves: the load that the spread springs bear.
         points, weights = space.quadrature
-        borne = weights @ model.motions(points)  # (r,)
-        self.load = -mean @ borne
-        self.extra_load = -np.concatenate([self.motions @ borne, borne])
+        self.borne = weights @ model.motions(points)  # (r,)
+        self.load = -mean @ self.borne
+        self.extra_load = -np.concatenate([self.motions @ self.borne, self.borne])
 
     @property
     def count(self) -> int:
