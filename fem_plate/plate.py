@@ -16,7 +16,7 @@ from fem_plate.elements import Fineness, PlateModel, SingularCorner, by_boundary
 from fem_plate.estimated import refined
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.inputs import as_points, check_points, one_per_point, stiffness_per_point
-from fem_plate.large_deflection import LargeDeflection, movable_by_boundary
+from fem_plate.large_deflection import DeflectedPlate, LargeDeflection, movable_by_boundary
 from fem_plate.section import PlateSection
 from fem_plate.vibration import Modes
 from meshes import PlateMesh
@@ -206,7 +206,13 @@ class Plate:
         """The lowest natural frequencies (count,) [Hz], ascending, repeated ones repeated; raises as `modes` does."""
         return self.modes(count, held, stiffness).frequencies
 
-    def modes(self, count: int, held: ArrayLike | None = None, stiffness: ArrayLike | None = None) -> Modes:
+    def modes(
+        self,
+        count: int,
+        held: ArrayLike | None = None,
+        stiffness: ArrayLike | None = None,
+        deflected: DeflectedPlate | None = None,
+    ) -> Modes:
         """The lowest modes of vibration, without motions that bend nothing and stretch no spring.
 
         Parameters
@@ -217,12 +223,16 @@ class Plate:
             Points that actuators hold still [m].
         stiffness : float or (N,) array_like, optional
             Stiffness of those actuators [N/m]; inf is rigid (the default).
+        deflected : DeflectedPlate, optional
+            A state of `large_deflection` to vibrate about; by default the flat plate. Held points are among its
+            actuators; the others keep their force.
 
         Raises
         ------
         ValueError
             The section has no density, the count or a stiffness is not positive, a held point is not inside the rim or
-            coincides with another, or there are more than 2 000 of them.
+            coincides with another, or there are more than 2 000 of them; or the
+            deflected state has no actuator at a held point, or is not stable.
         """
         density = self.section.density
         if density is None:
@@ -233,13 +243,15 @@ class Plate:
         if points.size:
             check_points("modes", points, self.mesh.outline.gap(points), self.mesh.size)
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "modes", may_float=False)
-        model = self.model(points)
+        model = self.model(points) if deflected is None else deflected.discrete.model
         max_count = model.unknowns // 2 - 1
         if not (isinstance(count, int | np.integer) and 1 <= count <= max_count):
             raise ValueError(f"Input count of modes must be a whole number from 1 to {max_count}; got {count!r}")
         inertia = density * self.section.thickness * self.mesh.size**4
         rigidity = self.section.rigidity
         compliance = rigidity / self.mesh.size**2 / actuator_stiffness
+        if deflected is not None:
+            return deflected.modes(count, points, compliance, rigidity / inertia)
         return vibration.modes(model, points, compliance, count, rigidity / inertia)
 
     def __repr__(self) -> str:

@@ -1,7 +1,8 @@
 """The membrane by Airy's stress function: force xx = F_yy, yy = F_xx, xy = -F_xy.
 
 Its energy 1/(2 E t) int (laplace F)^2 - (1 + nu) [F, F] is that of a plate of Poisson's ratio -nu: where the rim is
-immovable, as a free plate's, and where it is free to move, as a clamped one's. It bounds the membrane energy from below.
+immovable, as a free plate's, and where it is free to move, as a clamped one's. It bounds the
+membrane energy from below.
 """
 
 from __future__ import annotations

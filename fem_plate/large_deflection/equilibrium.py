@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import bmat, coo_matrix, csc_matrix
 
-from fem_plate.large_deflection.factor import factorised
+from fem_plate.large_deflection.bordered import BorderedSolver
 from fem_plate.large_deflection.membrane import Membrane
 from fem_plate.large_deflection.samples import Samples, strains, times
 from fem_plate.large_deflection.trial import Trial
@@ -208,41 +208,6 @@ class Equilibrium:
         column = np.broadcast_to(self.space.dofs[:, None, :], element.shape)
         return coo_matrix((element.ravel(), (row.ravel(), column.ravel())), shape=(rows, columns)).tocsc()
 
-    def bordered(
-        self, block: csc_matrix, border: FloatArray, inner: FloatArray
-    ) -> Callable[[FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]:
-        """Solves the linearised plate with the held actuators' heights as constraints.
-
-        The solver takes what drives v, what drives the extra coefficients and the heights missing at held actuators;
-        it returns v, extra coefficients and the held actuators' forces.
-        """
-        trial, held, n = self.trial, self.held, self.space.unknowns
-        solve = factorised(block)
-        pins, count = self._pins, trial.count
-        pinned = np.zeros((len(border), pins.shape[0]))
-        pinned[:n] = pins.toarray().T
-        holds = np.zeros((len(border), held.sum()))
-        holds[:n] = trial.at_actuators[held].toarray().T
-        columns = np.concatenate([border, -holds, pinned], axis=1)
-        corner = np.zeros((columns.shape[1], columns.shape[1]))
-        at, last = count + held.sum(), columns.shape[1]
-        corner[:count, :count] = inner
-        corner[:count, count:at] = -trial.heights[held].T
-        corner[count:at, :count] = -trial.heights[held]
-        corner[count:at, count:at] = -np.diag(self.compliance[held])
-        solved = solve(columns)
-        schur = corner - columns.T @ solved
-
-        def answer(of_v: FloatArray, of_extra: FloatArray, missing: FloatArray) -> tuple[FloatArray, ...]:
-            load = np.zeros(len(border))
-            load[:n] = of_v
-            first = solve(load)
-            rest = np.concatenate([of_extra, -missing, np.zeros(last - at)]) - columns.T @ first
-            outer = np.linalg.solve(schur, rest)
-            return (first - solved @ outer)[:n], outer[:count], outer[count:at]
-
-        return answer
-
     def _step(self, now: Coefficients, loads: Loads) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Newton's step in v and in the extra coefficients, and the actuators' forces after it."""
         block, border, inner, of_v, of_extra = self.tangent(now)
@@ -251,7 +216,8 @@ class Equilibrium:
         of_v = self.trial.at_actuators.T @ given - of_v - bent_v
         of_extra = self.trial.heights.T @ given - of_extra - bent_extra
         missing = (loads.strokes - self.heights(now))[self.held]
-        dv, de, held_forces = self.bordered(block, border, inner)(of_v, of_extra, missing)
+        solver = BorderedSolver(self.trial, block, border, inner, self.held, self.compliance)
+        dv, de, held_forces = solver.solve(of_v, of_extra, missing)
         given[self.held] = held_forces
         return dv, de, given
 

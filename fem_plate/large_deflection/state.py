@@ -9,9 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from fem_plate.elements import Derivatives
 from fem_plate.estimated import Estimated
-from fem_plate.inputs import check_on_plate
+from fem_plate.inputs import SAME_PLACE, check_on_plate
 from fem_plate.large_deflection.discrete import DiscretePlate
 from fem_plate.large_deflection.equilibrium import Coefficients
+from fem_plate.large_deflection.vibration import modes_about
+from fem_plate.vibration import Modes
 
 FloatArray = NDArray[np.float64]
 
@@ -101,6 +103,24 @@ class DeflectedPlate(Estimated):
     def _motion(self) -> FloatArray:
         """The unknowns of the in-plane motion."""
         return self.discrete.in_plane_motion(self.coefficients)
+
+    def modes(self, count: int, held: FloatArray, compliance: FloatArray, unit: float) -> Modes:
+        """The lowest modes about this state, as `Plate.modes`.
+
+        held: (k, 2) m.  compliance: (k,) dimensionless.  unit: 1/s^2, of squared angular frequencies.
+        """
+        discrete, x = self.discrete, self.functions.sources
+        holds = np.full(len(x), np.inf)
+        for point, c in zip(held / self.size, compliance, strict=True):
+            near = np.flatnonzero(np.hypot(*(x - point).T) < SAME_PLACE)
+            if not near.size:
+                raise ValueError(
+                    f"Input held of modes must be actuators of the deflected state; it has none at "
+                    f"{(point * self.size).tolist()} m"
+                )
+            holds[near] = c
+        squares, functions = modes_about(discrete, self.coefficients, holds, count)
+        return Modes(np.sqrt(squares * unit) / (2 * np.pi), discrete.model, functions)
 
     def _dimensionless(self, xy: ArrayLike) -> FloatArray:
         xy = np.asarray(xy, dtype=float)
