@@ -46,6 +46,15 @@ class Coefficients:
     stretching: float  # energy
 
 
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A plate in equilibrium."""
+
+    state: Coefficients
+    forces: FloatArray  # (J,), of the actuators, up
+    solver: BorderedSolver  # of small changes about it
+
+
 class Equilibrium:
     """The plate on one mesh.
 
@@ -58,20 +67,20 @@ class Equilibrium:
         self.space = trial.model.space
         self.bending = self.space.stiffness(trial.model.poisson_ratio)
         self._pins = trial.model.pins
-        self._known = [trial.slopes(samples) for samples in membrane.samples]
+        self.known = [trial.slopes(samples) for samples in membrane.samples]
         points = self.space.points
         self._values = self.space.point_values(points)
         self._extra_values = trial.extra.values(points)[:, :-1]
 
-    def solve(self, loads: Loads, start: Coefficients | None = None) -> tuple[Coefficients, FloatArray]:
-        """The equilibrium, and the actuators' forces (J,).
+    def solve(self, loads: Loads, start: Coefficients | None = None) -> Solution:
+        """The plate in equilibrium.
 
-        start: where to begin, with its loads' strokes; by default the linear plate.
+        start: where to begin, at the heights of the loads; by default the linear plate.
         """
-        now = self.linear(loads)[0] if start is None else start
+        now = self.linear(loads) if start is None else start
         energy = self.energy(now, loads)
         for _ in range(MAX_STEPS):
-            dv, de, forces = self._step(now, loads)
+            dv, de, forces, solver = self._step(now, loads)
             share, change = 1.0, self._change(now, dv, de)
             for _ in range(MAX_HALVINGS):
                 there = self.at(now.v + share * dv, now.extra + share * de, loads.pressure)
@@ -81,16 +90,15 @@ class Equilibrium:
                 share /= 2
             now, energy = there, new_energy
             if share == 1.0 and change < CONVERGED:
-                return now, forces
+                return Solution(now, forces, solver)
         raise NotConverged(f"no equilibrium after {MAX_STEPS} steps; the last one changed w by {change:.1e} of itself")
 
-    def moved(self, start: Coefficients, by: Loads, pressure: float) -> Coefficients:
-        """A state with what the linear plate adds under further strokes."""
-        linear = self.linear(by)[0]
-        return self.at(start.v + linear.v, start.extra + linear.extra, pressure)
+    def linear(self, loads: Loads) -> Coefficients:
+        """The plate without stretching."""
+        return self.at(np.zeros(self.space.unknowns), self.linear_extra(loads), loads.pressure)
 
-    def linear(self, loads: Loads) -> tuple[Coefficients, FloatArray]:
-        """The plate without stretching, and the actuators' forces."""
+    def linear_extra(self, loads: Loads) -> FloatArray:
+        """The extra coefficients (J + r,) of the plate without stretching, of which the first are the forces."""
         trial, held = self.trial, self.held
         count, r = len(held), trial.count - len(held)
         forces = np.where(held, 0.0, loads.strokes)
@@ -101,13 +109,16 @@ class Equilibrium:
         balance = loads.pressure * trial.extra_load[count:] - trial.heights[:, count:].T @ forces
         solution = np.linalg.solve(matrix, np.concatenate([missing[held], balance]))
         forces[held] = solution[: held.sum()]
-        extra = np.concatenate([forces, solution[held.sum() :]])
-        return self.at(np.zeros(self.space.unknowns), extra, loads.pressure), forces
+        return np.concatenate([forces, solution[held.sum() :]])
 
     def slopes_at(self, sets: Sequence[Samples], state: Coefficients) -> list[FloatArray]:
         """The slopes (k, 2 n) of a state at other samples."""
         known = [self.trial.slopes(samples) for samples in sets]
         return self._slopes(sets, known, state.v, state.extra, state.pressure)
+
+    def change(self, v: FloatArray, extra: FloatArray) -> float:
+        """The largest |w| of coefficients, at the mesh's points."""
+        return float(np.abs(self._values @ v + self._extra_values @ extra).max())
 
     def bending_energy(self, state: Coefficients) -> float:
         """The energy of bending alone."""
@@ -125,7 +136,7 @@ class Equilibrium:
 
     def at(self, v: FloatArray, extra: FloatArray, pressure: float) -> Coefficients:
         """The plate with given coefficients."""
-        slopes = self._slopes(self.membrane.samples, self._known, v, extra, pressure)
+        slopes = self._slopes(self.membrane.samples, self.known, v, extra, pressure)
         membrane, stretching = self.membrane.respond(slopes)
         return Coefficients(v, extra, pressure, slopes, membrane, stretching)
 
@@ -170,25 +181,32 @@ class Equilibrium:
         work = loads.strokes[~self.held] @ heights[~self.held]
         return float(bending + state.stretching + 0.5 * stretched.sum() - work)
 
-    def tangent(self, state: Coefficients) -> tuple[csc_matrix, FloatArray, FloatArray, FloatArray, FloatArray]:
-        """The energy's second derivatives: of v and membrane, of these with the extra functions, of the extra ones.
+    def imbalance(self, state: Coefficients, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What drives v and the extra coefficients: forces (J,) less the energy's derivatives."""
+        of_v, of_extra = np.zeros(self.space.all_count), np.zeros(self.trial.count)
+        everything = self.membrane.expand(state.membrane)
+        for samples, known, p in zip(self.membrane.samples, self.known, state.slopes, strict=True):
+            of_p = samples.weighted(times(self.membrane.force(samples, everything, p), p[..., None]))[..., 0]
+            element = np.einsum("kni,kn->ki", samples.gradient, of_p, optimize=True)
+            np.add.at(of_v, self.space.dofs[samples.triangle], element)
+            of_extra += np.einsum("knj,kn->j", known[..., :-1], of_p, optimize=True)
+        bent_v, bent_extra = self.bending_forces(state)
+        return (
+            self.trial.at_actuators.T @ forces - bent_v - self.space.to_independent(of_v),
+            self.trial.heights.T @ forces - bent_extra - of_extra,
+        )
 
-        Also the stretching energy's derivative in v and in the extra coefficients.
-        """
+    def tangent(self, state: Coefficients) -> tuple[csc_matrix, FloatArray, FloatArray]:
+        """The energy's second derivatives: of v and membrane, of these with the extra functions, of the extra ones."""
         membrane, dofs, count = self.membrane, self.space.dofs, self.trial.count
         everything = membrane.expand(state.membrane)
         all_w, all_m = self.space.all_count, len(everything)
         element = np.zeros((len(dofs), dofs.shape[1], dofs.shape[1]))
         couplings = np.zeros((len(dofs), membrane.dofs.shape[1], dofs.shape[1]))
-        with_w, with_m = np.zeros((all_w, count)), np.zeros((all_m, count))
-        inner, of_v, of_extra = np.zeros((count, count)), np.zeros(all_w), np.zeros(count)
-        for samples, known, p in zip(membrane.samples, self._known, state.slopes, strict=True):
-            force, known = membrane.force(samples, everything, p), known[..., :-1]
-            of_p = samples.weighted(times(force, p[..., None]))[..., 0]
-            np.add.at(of_v, dofs[samples.triangle], np.einsum("kni,kn->ki", samples.gradient, of_p))
-            of_extra += np.einsum("knj,kn->j", known, of_p)
-            stiff = samples.weighted(force + membrane.stiffening(p))
-            transposed = samples.gradient.transpose(0, 2, 1)
+        with_w, with_m, inner = np.zeros((all_w, count)), np.zeros((all_m, count)), np.zeros((count, count))
+        for samples, with_pressure, p in zip(membrane.samples, self.known, state.slopes, strict=True):
+            known, transposed = with_pressure[..., :-1], samples.gradient.transpose(0, 2, 1)
+            stiff = samples.weighted(membrane.force(samples, everything, p) + membrane.stiffening(p))
             np.add.at(element, samples.triangle, transposed @ times(stiff, samples.gradient))
             of_known = times(stiff, known)
             np.add.at(with_w, dofs[samples.triangle], transposed @ of_known)
@@ -200,7 +218,7 @@ class Equilibrium:
         coupling = membrane.reduce(self.space.to_independent(self._assembled(couplings, all_m, all_w).T).T)
         block = bmat([[stiffness, coupling.T], [coupling, membrane.sign * membrane.stiffness]], format="csc")
         border = np.concatenate([self.space.to_independent(with_w) + self.trial.cross, membrane.reduce(with_m)])
-        return block, border, inner + self.trial.inner, self.space.to_independent(of_v), of_extra
+        return block, border, inner + self.trial.inner
 
     def _assembled(self, element: FloatArray, rows: int, columns: int) -> csc_matrix:
         """The sum of element matrices from all unknowns of w to all of the membrane."""
@@ -208,20 +226,16 @@ class Equilibrium:
         column = np.broadcast_to(self.space.dofs[:, None, :], element.shape)
         return coo_matrix((element.ravel(), (row.ravel(), column.ravel())), shape=(rows, columns)).tocsc()
 
-    def _step(self, now: Coefficients, loads: Loads) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Newton's step in v and in the extra coefficients, and the actuators' forces after it."""
-        block, border, inner, of_v, of_extra = self.tangent(now)
-        bent_v, bent_extra = self.bending_forces(now)
+    def _step(self, now: Coefficients, loads: Loads) -> tuple[FloatArray, FloatArray, FloatArray, BorderedSolver]:
+        """Newton's step in v and in the extra coefficients, the actuators' forces after it, and what solved for it."""
+        solver = BorderedSolver(self.trial, *self.tangent(now), self.held, self.compliance)
         given = np.where(self.held, 0.0, loads.strokes)
-        of_v = self.trial.at_actuators.T @ given - of_v - bent_v
-        of_extra = self.trial.heights.T @ given - of_extra - bent_extra
+        of_v, of_extra = self.imbalance(now, given)
         missing = (loads.strokes - self.heights(now))[self.held]
-        solver = BorderedSolver(self.trial, block, border, inner, self.held, self.compliance)
         dv, de, held_forces = solver.solve(of_v, of_extra, missing)
         given[self.held] = held_forces
-        return dv, de, given
+        return dv, de, given, solver
 
     def _change(self, now: Coefficients, dv: FloatArray, de: FloatArray) -> float:
         """The largest change of w over the largest w, at the mesh's points."""
-        w = self._values @ now.v + self._extra_values @ now.extra
-        return float(np.abs(self._values @ dv + self._extra_values @ de).max() / max(np.abs(w).max(), 1e-300))
+        return self.change(dv, de) / max(self.change(now.v, now.extra), 1e-300)

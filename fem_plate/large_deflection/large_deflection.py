@@ -91,8 +91,8 @@ class LargeDeflection:
     def solved(self, strokes: FloatArray, pressure: float, level: int, halvings: int) -> DeflectedPlate:
         """The plate in equilibrium on cells of a level of fineness, halved."""
         discrete = self.discrete(level, halvings)
-        coefficients, forces = discrete.equilibrium.solve(discrete.loads(strokes, pressure))
-        return DeflectedPlate(discrete, coefficients, forces)
+        solution = discrete.equilibrium.solve(discrete.loads(strokes, pressure))
+        return DeflectedPlate(discrete, solution.state, solution.forces)
 
     def discrete(self, level: int, halvings: int) -> DiscretePlate:
         """The plate on cells of a level of fineness (see `cells`), halved."""

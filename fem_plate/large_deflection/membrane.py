@@ -55,9 +55,13 @@ class Membrane:
         m = -self.sign * self.solve(t)
         return m, 0.5 * float(m @ t) + beyond
 
+    def linear_force(self, samples: Samples, everything: FloatArray) -> FloatArray:
+        """The membrane force (k, 3 n, c) of all unknowns (all, c)."""
+        return np.asarray(samples.operator @ everything[self.dofs[samples.triangle]])
+
     def force(self, samples: Samples, everything: FloatArray, p: FloatArray) -> FloatArray:
         """The membrane force (k, 3 n), from all unknowns and the plate's slopes p (k, 2 n)."""
-        force = (samples.operator @ everything[self.dofs[samples.triangle]][..., None])[..., 0]
+        force = self.linear_force(samples, everything[:, None])[..., 0]
         return np.asarray(force if self.law is None else force + 0.5 * self._by_law(squares(p)))
 
     def stiffening(self, p: FloatArray) -> FloatArray:

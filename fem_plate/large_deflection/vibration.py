@@ -27,9 +27,8 @@ def modes_about(
     """
     equilibrium = discrete.equilibrium
     trial, n = equilibrium.trial, discrete.model.unknowns
-    block, border, inner, _, _ = equilibrium.tangent(state)
     held = np.isfinite(compliance)
-    solver = BorderedSolver(trial, block, border, inner, held, compliance)
+    solver = BorderedSolver(trial, *equilibrium.tangent(state), held, compliance)
     mass, cross, own = discrete.model.space.mass(), *_masses(trial)
     still = np.zeros(int(held.sum()))
 
