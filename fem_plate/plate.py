@@ -16,7 +16,6 @@ from fem_plate.elements import Fineness, PlateModel, SingularCorner, by_boundary
 from fem_plate.estimated import refined
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.inputs import as_points, check_points, one_per_point, stiffness_per_point
-from fem_plate.large_deflection import DeflectedPlate, LargeDeflection, movable_by_boundary
 from fem_plate.section import PlateSection
 from fem_plate.vibration import Modes
 from meshes import PlateMesh
@@ -24,6 +23,8 @@ from meshes import PlateMesh
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from fem_plate.large_deflection import DeflectedPlate, LargeDeflection
 
 FloatArray = NDArray[np.float64]
 
@@ -159,6 +160,8 @@ class Plate:
         ValueError
             As for `influence`; an in-plane support or boundary is unknown; the membrane does not apply.
         """
+        from fem_plate.large_deflection import LargeDeflection, movable_by_boundary  # here: scikit-fem takes a while
+
         points = as_points(points, "points of large_deflection")
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "large_deflection", may_float=True)
         if points.size:

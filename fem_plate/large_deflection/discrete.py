@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +12,10 @@ from fem_plate.elements import PlateModel, corner_rows
 from fem_plate.large_deflection.airy import airy, airy_corners
 from fem_plate.large_deflection.cells import refined_for
 from fem_plate.large_deflection.equilibrium import Coefficients, Equilibrium, Loads
+from fem_plate.large_deflection.given_plate import GivenPlate
 from fem_plate.large_deflection.membrane import AIRY
 from fem_plate.large_deflection.plane_stress import PlaneStress
 from fem_plate.large_deflection.trial import Trial
-
-if TYPE_CHECKING:
-    from fem_plate.plate import Plate
 
 FloatArray = NDArray[np.float64]
 
@@ -31,7 +28,7 @@ class DiscretePlate:
 
     def __init__(
         self,
-        plate: Plate,
+        plate: GivenPlate,
         points: FloatArray,
         stiffness: FloatArray,
         movable: Mapping[str, bool],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,12 +12,10 @@ from fem_plate.estimated import refined
 from fem_plate.inputs import one_per_point
 from fem_plate.large_deflection.cells import level_of
 from fem_plate.large_deflection.discrete import DiscretePlate
+from fem_plate.large_deflection.given_plate import GivenPlate
 from fem_plate.large_deflection.membrane import AIRY, PLANE_STRESS
 from fem_plate.large_deflection.state import DeflectedPlate
 from meshes import edge_numbers, sides
-
-if TYPE_CHECKING:
-    from fem_plate.plate import Plate
 
 FloatArray = NDArray[np.float64]
 
@@ -39,7 +36,12 @@ class LargeDeflection:
     """
 
     def __init__(
-        self, plate: Plate, points: FloatArray, stiffness: FloatArray, movable: Mapping[str, bool], membrane: str | None
+        self,
+        plate: GivenPlate,
+        points: FloatArray,
+        stiffness: FloatArray,
+        movable: Mapping[str, bool],
+        membrane: str | None,
     ) -> None:
         self.plate, self.points, self.stiffness, self.movable = plate, points, stiffness, dict(movable)
         by_airy = _airy_applies(plate, movable)
@@ -104,7 +106,7 @@ class LargeDeflection:
         return self._discrete[key]
 
 
-def _airy_applies(plate: Plate, movable: Mapping[str, bool]) -> bool:
+def _airy_applies(plate: GivenPlate, movable: Mapping[str, bool]) -> bool:
     """Whether there are no holes and the whole rim is held alike; also clamped, if it is movable.
 
     Where a rim both slopes and moves, the stress function's test functions do not vanish there as they should.
@@ -113,7 +115,7 @@ def _airy_applies(plate: Plate, movable: Mapping[str, bool]) -> bool:
     return len(kinds) == 1 and (kinds == {False} or supports == {CLAMPED}) and not _has_holes(plate)
 
 
-def _has_holes(plate: Plate) -> bool:
+def _has_holes(plate: GivenPlate) -> bool:
     """By Euler's formula: a plate without holes has one point and one triangle more than edges."""
     mesh = plate.mesh
     edges = len(np.unique(edge_numbers(sides(mesh.triangles), len(mesh.points))))

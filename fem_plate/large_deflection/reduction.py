@@ -29,6 +29,7 @@ CANDIDATES = 40  # places for a further full solution
 CHECKED = 8  # of them, at which the error is estimated after each
 HELD_OUT = 4  # full solutions that only measure the error
 TANGENT = 0.3  # of each stroke's largest height: how much of a change counts beside a full solution
+FEW = 4  # actuators with which each stroke's change is added, too
 MAX_SOLUTIONS = 60
 
 
@@ -140,9 +141,13 @@ class _Reducer:
 
     def _learn(self, strokes: FloatArray, solution: Solution) -> None:
         state, linear = solution.state, self.linear.weighted(strokes[:, None])
-        changes = tangents(self.discrete, solution)
-        weights = TANGENT * self._spread
-        moved = Columns((changes.v - self.linear.v) * weights, (changes.extra - self.linear.extra) * weights)
+        few = len(strokes) <= FEW
+        changes = tangents(self.discrete, solution) if few else self.linear.weighted(np.zeros((len(strokes), 0)))
+        weights = TANGENT * self._spread if few else np.zeros(0)
+        further = slice(None if few else 0)
+        moved = Columns(
+            (changes.v - self.linear.v[:, further]) * weights, (changes.extra - self.linear.extra[:, further]) * weights
+        )
         own = Columns(state.v[:, None] - linear.v, state.extra[:, None] - linear.extra)
         self._corrections += [own, moved]
         scaled = changes.weighted(np.diag(weights))
