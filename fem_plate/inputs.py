@@ -58,7 +58,7 @@ def check_points(caller: str, points: FloatArray, gap: FloatArray, size: float) 
 
 
 def check_held(caller: str, motions: FloatArray, held: NDArray[np.bool_]) -> None:
-    """Raise ValueError when the held ones of the actuators leave one of the rigid motions (N, r) that supports leave."""
+    """Raise ValueError when the held actuators do not stop the rigid motions (N, r, at all of them) of the supports."""
     r = motions.shape[1]
     if r and (held.sum() < r or np.linalg.matrix_rank(motions[held], tol=1e-9) < r):
         raise ValueError(

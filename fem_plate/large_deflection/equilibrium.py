@@ -18,8 +18,8 @@ FloatArray = NDArray[np.float64]
 
 MAX_STEPS = 40
 CONVERGED = 1e-8  # of the largest deflection: what the last step may change; Newton's next would change its square
-# Newton's next step would square so small a change. Where it is not a tenth of it, the rest is rounding; the energy's own
-# rounding may be larger than what such a step gains.
+# Newton's next step would square so small a change. Where it does not, the rest is rounding, and so may be what the
+# energy changes by.
 NEAR = 1e-5
 MAX_HALVINGS = 12  # of a step, while the energy grows
 ROUNDING = 1e-12  # of the energy
