@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,10 @@ class PlateFunctions:
             self.rigid @ weights,
             self.pressure @ weights,
         )
+
+    def raised(self, unknowns: FloatArray) -> PlateFunctions:
+        """The functions with more of finite elements, (unknowns, k)."""
+        return replace(self, unknowns=self.unknowns + unknowns)
 
     def values(self, x: FloatArray) -> FloatArray:
         """The functions' values alone, (n, k)."""

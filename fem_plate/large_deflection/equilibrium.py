@@ -45,6 +45,11 @@ class Coefficients:
     membrane: FloatArray  # (m,)
     stretching: float  # energy
 
+    @property
+    def columns(self) -> tuple[FloatArray, FloatArray]:
+        """v and the extra coefficients as one column each."""
+        return self.v[:, None], self.extra[:, None]
+
 
 @dataclass(frozen=True, eq=False)
 class Solution:

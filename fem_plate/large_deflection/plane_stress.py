@@ -62,17 +62,20 @@ class PlaneStress:
         return everything
 
     def evaluate(self, x: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The motion (n, 2) and its gradient (n, 2, 2) at points (n, 2), from its unknowns."""
+        """Motions (n, 2, c) and their gradients (n, 2, 2, c), the last but one the direction, at points x (n, 2).
+
+        u: (unknowns, c).
+        """
         basis, everything = self.basis, self._expand(u)
         triangle = self.space.triangle_of(x)
         local = basis.mapping.invF(x.T[:, :, None], triangle)
-        value, gradient = np.zeros((2, len(x))), np.zeros((2, 2, len(x)))
+        value, gradient = np.zeros((len(x), 2, u.shape[1])), np.zeros((len(x), 2, 2, u.shape[1]))
         for i in range(basis.Nbfun):
             (function,) = basis.elem.gbasis(basis.mapping, local, i, triangle)
             weight = everything[basis.element_dofs[i, triangle]]
-            value += weight * np.asarray(function)[..., 0]
-            gradient += weight * function.grad[..., 0]
-        return value.T, gradient.transpose(2, 0, 1)
+            value += np.asarray(function)[..., 0].T[:, :, None] * weight[:, None]
+            gradient += np.moveaxis(function.grad[..., 0], 2, 0)[..., None] * weight[:, None, None]
+        return value, gradient
 
 
 def curved(mesh: PlateMesh) -> MeshTri2:

@@ -83,9 +83,7 @@ class Trial:
             slopes[part] += known.reshape(len(known), 2 * n, -1)
         return np.asarray(slopes)
 
-    def functions(self, v: FloatArray, extra: FloatArray, pressure: float) -> PlateFunctions:
-        """w of its coefficients."""
-        total = self.extra.weighted(np.append(extra, pressure))
-        return PlateFunctions(
-            total.space, total.unknowns + v[:, None], total.sources, total.forces, total.rigid, total.pressure
-        )
+    def functions(self, v: FloatArray, extra: FloatArray, pressure: FloatArray | None = None) -> PlateFunctions:
+        """k functions of their coefficients v (unknowns, k), extra (e, k) and pressure (k,), 0 by default."""
+        pushed = np.zeros(extra.shape[1]) if pressure is None else pressure
+        return self.extra.weighted(np.vstack([extra, pushed])).raised(v)
