@@ -30,14 +30,17 @@ class Schedule(NamedTuple):
 
 def schedule_of(drives: Sequence[AnyDrive], end: float) -> Schedule:
     """The breakpoints from 0 to `end` [s], to the first end of a common period, or until all drives have ended."""
-    table = drive_table(drives)
-    begin, period = _period(drives, table)
+    moving = [drive for drive in drives if drive.segments().coefficients[:, 1:].any()]
+    table, marks = drive_table(drives), drive_table(moving)
+    begin, period = _period(moving)
+    if not moving:
+        return Schedule(np.array([0.0, end]), -1, table)
     if period is None:
-        return Schedule(_edges(table, min(end, begin) or end), -1, table)
+        return Schedule(_edges(marks, min(end, begin)), -1, table)
     if not begin + period < end:
-        return Schedule(_edges(table, end), -1, table)
-    lead = _edges(table, begin) if begin > 0 else np.zeros(1)
-    cycle = _edges(table, begin + period, begin)
+        return Schedule(_edges(marks, end), -1, table)
+    lead = _edges(marks, begin) if begin > 0 else np.zeros(1)
+    cycle = _edges(marks, begin + period, begin)
     return Schedule(np.concatenate([lead, cycle[1:]]), len(lead) - 1, table)
 
 
@@ -62,21 +65,19 @@ def _breakpoints(table: DriveTable, begin: float, end: float) -> FloatArray:
     return times[:count].copy()
 
 
-def _period(drives: Sequence[AnyDrive], table: DriveTable) -> tuple[float, float | None]:
+def _period(moving: Sequence[AnyDrive]) -> tuple[float, float | None]:
     """From which time [s] on drives only repeat or rest, and the common period [s]; None: they rest, or there is none.
 
     Without a common period, but with drives that repeat, that time is inf.
     """
     begin, period = 0.0, None
-    for i, drive in enumerate(drives):
+    for drive in moving:
         pieces = drive.segments()
-        if not pieces.coefficients[:, 1:].any():
-            continue
         if math.isfinite(pieces.duration):
             begin = max(begin, drive.delay + pieces.duration)
             continue
         begin = max(begin, drive.delay + pieces.lead_time)
-        period = _common(period, float(table.span[i]))
+        period = _common(period, pieces.span)
         if math.isinf(period):
             return math.inf, None
     return begin, period
