@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from coupling.stretch.newton import FINE, NOT_STABLE
 from coupling.stretch.pieces import MAX_HALVINGS, Walk, find_nodes, lay_pieces
-from coupling.stretch.reduced import Forms, ReducedPlate
 from coupling.stretch.schedule import Schedule, schedule_of
+from fem_plate.large_deflection import Forms, ReducedPlate
 from particle import AnyDrive
 from particle.drives import ORDER, QuinticDrive, quintic_drives
 

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.stretch.reduced import Forms
 from coupling.stretch.vectors import add_rows, clear
+from fem_plate.large_deflection import Forms
 from particle import kernel, kernel_no_arrays
 from particle.drives import ORDER, DriveTable, drive_piece
 

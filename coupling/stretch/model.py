@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from coupling.drives import moments, reach, stroke_heights
+from coupling.drives import reach, stroke_heights
 from coupling.stretch.corrections import Corrections, correction_drives
 from fem_plate import LargeDeflection, StretchedShapes
 from fem_plate.large_deflection import ReducedPlate, Reduction, reduced_equilibrium

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.stretch.interval import Moment
-from coupling.stretch.reduced import Forms
 from coupling.stretch.vectors import add_rows, clear, copy, dot
+from fem_plate.large_deflection import Forms
 from particle import kernel, kernel_no_arrays
 
 FloatArray = NDArray[np.float64]

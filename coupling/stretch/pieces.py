@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from coupling.stretch.interval import Interval, Moment, enter_interval, enter_moment, new_interval, new_moment
 from coupling.stretch.newton import FINE, State, find_equilibrium, find_rates, new_state
-from coupling.stretch.reduced import Forms
+from fem_plate.large_deflection import Forms
 from particle import kernel, kernel_no_arrays
 from particle.drives import ORDER, DriveTable
 

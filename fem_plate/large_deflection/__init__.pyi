@@ -1,7 +1,7 @@
 from .cells import level_of as level_of
 from .equilibrium import NotConverged as NotConverged
 from .large_deflection import LargeDeflection as LargeDeflection
-from .reduced import ReducedPlate as ReducedPlate
+from .reduced import Forms as Forms, ReducedPlate as ReducedPlate
 from .reduced_solver import (
     ReducedEquilibrium as ReducedEquilibrium,
     energy as energy,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coupling.stretch import ReducedPlate
+from fem_plate.large_deflection import ReducedPlate
 
 ALPHA, BETA, STIFFNESS = 1.3, 0.7, 0.9  # of the plate with one drive and one correction
 OWN, MIXED, SQUARE, OFFSET = 0.4, -0.3, 0.8, 0.1  # of its in-plane motion

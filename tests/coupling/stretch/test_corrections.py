@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from reduced_plates import one_correction, one_in_plane, one_plate, random_plate
 
-from coupling.stretch import ReducedPlate, correction_drives, equilibrium
+from coupling.stretch import correction_drives
+from fem_plate.large_deflection import ReducedPlate, reduced_equilibrium
 from particle import Drive, Segment, SegmentDrive
 from particle.drives import drive_table
 
@@ -19,7 +20,7 @@ def rows(drives, times):
 
 
 def oracle(plate, drives, time):
-    return equilibrium(plate, *rows(drives, np.array([time]))[:, :, 0])
+    return reduced_equilibrium(plate, *rows(drives, np.array([time]))[:, :, 0])
 
 
 @pytest.fixture(scope="module")

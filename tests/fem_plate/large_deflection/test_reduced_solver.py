@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from reduced_plates import one_correction, one_in_plane, one_plate, random_plate
 
-from coupling.stretch import ReducedPlate, energy, equilibrium
+from fem_plate.large_deflection import ReducedPlate, energy, reduced_equilibrium
 
 STIFFNESS, OWN, SQUARE, LOAD = 2.0, 1.5, 0.8, -3.0  # of a cubic spring
 
@@ -41,13 +41,13 @@ def test_a_cubic_spring_and_its_derivatives_are_cardanos():
         t = mpmath.mpf("0.37")
         truth = [float(mpmath.diff(motion, t, order)) for order in range(3)]
     rate, bend = 5.1 * math.cos(1.11), -15.3 * math.sin(1.11)
-    found = equilibrium(plate, [0.3 + 1.7 * math.sin(1.11)], [rate], [bend]).corrections
+    found = reduced_equilibrium(plate, [0.3 + 1.7 * math.sin(1.11)], [rate], [bend]).corrections
     assert found[:, 0] == pytest.approx(truth, rel=1e-13)
 
 
 @pytest.mark.parametrize("d", [-3.0, -0.2, 0.0, 1e-9, 0.7, 40.0])
 def test_a_plate_of_one_correction_is_its_closed_form(d):
-    found = equilibrium(one_plate(), [d])
+    found = reduced_equilibrium(one_plate(), [d])
     assert found.corrections[0, 0] == pytest.approx(one_correction(d), rel=1e-13)
     assert found.in_plane[0, 0] == pytest.approx(one_in_plane(d), rel=1e-13)
 
@@ -56,7 +56,7 @@ def test_a_plate_of_one_correction_is_its_closed_form(d):
 def test_the_energy_is_least(size):
     plate, rng = random_plate(3, 6, 5, size=size), np.random.default_rng(1)
     d = rng.normal(size=3)
-    found = equilibrium(plate, d)
+    found = reduced_equilibrium(plate, d)
     c = found.corrections[0]
     least = energy(plate, c, d)
     assert least == pytest.approx(direct_energy(plate, c, d), rel=1e-13)
@@ -71,10 +71,10 @@ def test_the_energy_is_least(size):
 def test_derivatives_are_those_of_differences_in_time():
     plate, rng = random_plate(2, 5, 4, 3), np.random.default_rng(2)
     d, d_t, d_tt = rng.normal(size=(3, 2))
-    exact = equilibrium(plate, d, d_t, d_tt)
+    exact = reduced_equilibrium(plate, d, d_t, d_tt)
 
     def both(t):
-        found = equilibrium(plate, d + t * d_t + 0.5 * t**2 * d_tt, start=exact.corrections[0])
+        found = reduced_equilibrium(plate, d + t * d_t + 0.5 * t**2 * d_tt, start=exact.corrections[0])
         return np.concatenate([found.corrections[0], found.in_plane[0]])
 
     h, truth = 4e-3, np.concatenate([exact.corrections, exact.in_plane], axis=1)
@@ -86,15 +86,17 @@ def test_derivatives_are_those_of_differences_in_time():
 
 def test_the_answer_does_not_depend_on_where_newton_begins():
     plate, d = random_plate(3, 6, 5, size=5.0), [1.0, -2.0, 1.5]
-    found = [equilibrium(plate, d, start=start).corrections[0] for start in (None, np.full(6, 2.0))]
+    found = [reduced_equilibrium(plate, d, start=start).corrections[0] for start in (None, np.full(6, 2.0))]
     assert found[0] == pytest.approx(found[1], rel=1e-9)
 
 
 def test_a_plate_pressed_beyond_its_buckling_load_is_refused():
     plate = ReducedPlate([[1.0]], [[[0.0, 0.0], [0.0, 1.0]]], prestress=[-1.5])
     with pytest.raises(ValueError, match="not stable"):
-        equilibrium(plate, [0.0])
-    assert equilibrium(plate, [0.0], start=[0.1]).corrections[0, 0] == pytest.approx(1.0, rel=1e-12)  # buckled: c^2 = 1
+        reduced_equilibrium(plate, [0.0])
+    assert reduced_equilibrium(plate, [0.0], start=[0.1]).corrections[0, 0] == pytest.approx(
+        1.0, rel=1e-12
+    )
 
 
 SOUND = {"stiffness": np.eye(2), "membrane": np.zeros((3, 4, 4))}
