@@ -6,7 +6,7 @@ the surface times s^2, and s^2 itself. Positive Bernstein coefficients of
     Q^2 s^2 - (m s x force along the surface)^2     with the least Q that the subinterval's loads allow,
 
 prove that the part sticks throughout it. What is not proved is halved, the earlier half first. A centre of mass off the
-mid-plane adds to these polynomials (`stick_raised`), and so does a mid-plane that moves in its plane (`stick_stretched`).
+mid-plane adds to these polynomials (`stick_raised`); they are others where it moves in its plane (`stick_stretched`).
 """
 
 from __future__ import annotations

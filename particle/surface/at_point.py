@@ -12,6 +12,7 @@ from particle.drives import ORDER
 from particle.jit import jit, jit_no_arrays
 from particle.surface.cells import UNBUILT
 from particle.surface.local import Frame, LocalSurface
+from particle.surface.planar import planar_at
 from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
 from particle.surface.span import enter
@@ -68,30 +69,6 @@ class SurfacePoint(NamedTuple):
     y_yy: float
 
 
-class Planar(NamedTuple):
-    """One component of the motion u of a material point in the plane, with its derivatives, in SI units."""
-
-    u: float
-    t: float
-    tt: float
-    x: float
-    y: float
-    xt: float
-    yt: float
-    xx: float
-    xy: float
-    yy: float
-    xtt: float
-    ytt: float
-    xxt: float
-    xyt: float
-    yyt: float
-    xxx: float
-    xxy: float
-    xyy: float
-    yyy: float
-
-
 @jit_no_arrays
 def at_time(local: LocalSurface, time: float) -> None:
     """The cell's polynomial and logarithms at `time` [s], with two derivatives, into `at`."""
@@ -117,15 +94,6 @@ def quintic(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
 @jit_no_arrays
 def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfacePoint:
     """The surface at a point [m] of the prepared cell and a time [s] of the prepared span."""
-    f = height_at(local, x, y, time)
-    if local.frame[0].in_plane > 0:
-        return _carried(local, f, x, y, time)
-    return f
-
-
-@jit_no_arrays
-def height_at(local: LocalSurface, x: float, y: float, time: float) -> SurfacePoint:
-    """The same without its motion in the plane, that of a base excepted."""
     at_time(local, time)
     frame: Frame = local.frame[0]
     at, size = local.at, frame.surface_size
@@ -211,92 +179,29 @@ def height_at(local: LocalSurface, x: float, y: float, time: float) -> SurfacePo
         s, unit = (time - frame.time) / frame.unit, frame.unit
         base_px, base_vx, base_ax = quintic(local.base[:, 0], s, unit)
         base_py, base_vy, base_ay = quintic(local.base[:, 1], s, unit)
+    x_x, x_y, y_x, y_y = 1.0, 0.0, 0.0, 1.0
+    x_xt = x_yt = y_xt = y_yt = x_xx = x_xy = x_yy = y_xx = y_xy = y_yy = 0.0
+    if frame.in_plane > 0:
+        along_x, along_y = planar_at(local, 0, x, y, time), planar_at(local, frame.plane_monomials, x, y, time)
+        x_x, x_y, y_x, y_y = 1 + along_x.x, along_x.y, along_y.x, 1 + along_y.y
+        x_xt, x_yt, y_xt, y_yt = along_x.xt, along_x.yt, along_y.xt, along_y.yt
+        x_xx, x_xy, x_yy, y_xx, y_xy, y_yy = along_x.xx, along_x.xy, along_x.yy, along_y.xx, along_y.xy, along_y.yy
+        base_px, base_vx, base_ax = base_px + along_x.u, base_vx + along_x.t, base_ax + along_x.tt
+        base_py, base_vy, base_ay = base_py + along_y.u, base_vy + along_y.t, base_ay + along_y.tt
+        # The slope seen in space: grad w = (I + grad u)^T g.
+        det = x_x * y_y - x_y * y_x
+        g_x, g_y = (y_y * g_x - y_x * g_y) / det, (x_x * g_y - x_y * g_x) / det
+        g_xt, g_yt = g_xt - g_x * along_x.xt - g_y * along_y.xt, g_yt - g_x * along_x.yt - g_y * along_y.yt
+        g_xtt, g_ytt = g_xtt - g_x * along_x.xtt - g_y * along_y.xtt, g_ytt - g_x * along_x.ytt - g_y * along_y.ytt
+        h_xx, h_xy = h_xx - g_x * along_x.xx - g_y * along_y.xx, h_xy - g_x * along_x.xy - g_y * along_y.xy
+        h_yy, h_xxt = h_yy - g_x * along_x.yy - g_y * along_y.yy, h_xxt - g_x * along_x.xxt - g_y * along_y.xxt
+        h_xyt, h_yyt = h_xyt - g_x * along_x.xyt - g_y * along_y.xyt, h_yyt - g_x * along_x.yyt - g_y * along_y.yyt
+        t_xxx, t_xxy = t_xxx - g_x * along_x.xxx - g_y * along_y.xxx, t_xxy - g_x * along_x.xxy - g_y * along_y.xxy
+        t_xyy, t_yyy = t_xyy - g_x * along_x.xyy - g_y * along_y.xyy, t_yyy - g_x * along_x.yyy - g_y * along_y.yyy
     return SurfacePoint(
         *(w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, g_xtt, g_ytt),
         *(h_xxt, h_xyt, h_yyt, t_xxx, t_xxy, t_xyy, t_yyy, base_px, base_py, base_vx, base_vy, base_ax, base_ay),
-        *(1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-    )
-
-
-@jit_no_arrays
-def _carried(local: LocalSurface, f: SurfacePoint, x: float, y: float, time: float) -> SurfacePoint:
-    """The surface at a point that moves in its plane, too; f: without that."""
-    frame: Frame = local.frame[0]
-    a, b = planar_at(local, 0, x, y, time), planar_at(local, frame.plane_monomials, x, y, time)
-    x_x, x_y, y_x, y_y = 1 + a.x, a.y, b.x, 1 + b.y
-    # The slope seen in space: grad w = (I + grad u)^T g.
-    det = x_x * y_y - x_y * y_x
-    g_x, g_y = (y_y * f.w_x - y_x * f.w_y) / det, (x_x * f.w_y - x_y * f.w_x) / det
-    return SurfacePoint(
-        *(f.w, f.w_t, f.w_tt, g_x, g_y),
-        *(f.w_xt - g_x * a.xt - g_y * b.xt, f.w_yt - g_x * a.yt - g_y * b.yt),
-        *(f.w_xx - g_x * a.xx - g_y * b.xx, f.w_xy - g_x * a.xy - g_y * b.xy, f.w_yy - g_x * a.yy - g_y * b.yy),
-        *(f.w_xtt - g_x * a.xtt - g_y * b.xtt, f.w_ytt - g_x * a.ytt - g_y * b.ytt),
-        *(f.w_xxt - g_x * a.xxt - g_y * b.xxt, f.w_xyt - g_x * a.xyt - g_y * b.xyt),
-        *(f.w_yyt - g_x * a.yyt - g_y * b.yyt, f.w_xxx - g_x * a.xxx - g_y * b.xxx),
-        *(f.w_xxy - g_x * a.xxy - g_y * b.xxy, f.w_xyy - g_x * a.xyy - g_y * b.xyy),
-        *(f.w_yyy - g_x * a.yyy - g_y * b.yyy, f.base_px + a.u, f.base_py + b.u),
-        *(f.base_vx + a.t, f.base_vy + b.t, f.base_ax + a.tt, f.base_ay + b.tt),
-        *(x_x, x_y, y_x, y_y, a.xt, a.yt, b.xt, b.yt, a.xx, a.xy, a.yy, b.xx, b.xy, b.yy),
-    )
-
-
-@jit_no_arrays
-def planar_at(local: LocalSurface, first: int, x: float, y: float, time: float) -> Planar:
-    """One component of the motion in the plane; first: the first of its monomials."""
-    frame: Frame = local.frame[0]
-    unit, degree = frame.unit, frame.plane_degree
-    half_x, half_y = frame.half_x, frame.half_y
-    u, v = (x - frame.x) / half_x, (y - frame.y) / half_y
-    s = (time - frame.time) / unit
-    p, at = local.plane, local.plane_at
-    w = w_u = w_uu = w_uuu = w_v = w_uv = w_uuv = w_vv = w_uvv = w_vvv = 0.0
-    w_t = w_ut = w_uut = w_vt = w_uvt = w_vvt = w_tt = w_utt = w_vtt = 0.0
-    for m in range(first, first + frame.plane_monomials):
-        at[0, m] = ((((p[5, m] * s + p[4, m]) * s + p[3, m]) * s + p[2, m]) * s + p[1, m]) * s + p[0, m]
-        at[1, m] = (((5 * p[5, m] * s + 4 * p[4, m]) * s + 3 * p[3, m]) * s + 2 * p[2, m]) * s + p[1, m]
-        at[2, m] = ((20 * p[5, m] * s + 12 * p[4, m]) * s + 6 * p[3, m]) * s + 2 * p[2, m]
-    m = first + frame.plane_monomials
-    # As in `height_at`.
-    for i in range(degree, -1, -1):
-        a = a_v = a_vv = a_vvv = b = b_v = b_vv = c = c_v = 0.0
-        for _ in range(degree + 1 - i):
-            m -= 1
-            a_vvv = a_vvv * v + a_vv
-            a_vv = a_vv * v + a_v
-            a_v = a_v * v + a
-            a = a * v + at[0, m]
-            b_vv = b_vv * v + b_v
-            b_v = b_v * v + b
-            b = b * v + at[1, m]
-            c_v = c_v * v + c
-            c = c * v + at[2, m]
-        w_uuu = w_uuu * u + w_uu
-        w_uu = w_uu * u + w_u
-        w_u = w_u * u + w
-        w = w * u + a
-        w_uuv = w_uuv * u + w_uv
-        w_uv = w_uv * u + w_v
-        w_v = w_v * u + a_v
-        w_uvv = w_uvv * u + w_vv
-        w_vv = w_vv * u + a_vv
-        w_vvv = w_vvv * u + a_vvv
-        w_uut = w_uut * u + w_ut
-        w_ut = w_ut * u + w_t
-        w_t = w_t * u + b
-        w_uvt = w_uvt * u + w_vt
-        w_vt = w_vt * u + b_v
-        w_vvt = w_vvt * u + b_vv
-        w_utt = w_utt * u + w_tt
-        w_tt = w_tt * u + c
-        w_vtt = w_vtt * u + c_v
-    r_x, r_y, rate, bend = 1 / half_x, 1 / half_y, 1 / unit, 1 / (unit * unit)
-    return Planar(
-        *(w, w_t * rate, w_tt * bend, w_u * r_x, w_v * r_y, w_ut * r_x * rate, w_vt * r_y * rate),
-        *(2 * w_uu * r_x * r_x, w_uv * r_x * r_y, 2 * w_vv * r_y * r_y, w_utt * r_x * bend, w_vtt * r_y * bend),
-        *(2 * w_uut * r_x * r_x * rate, w_uvt * r_x * r_y * rate, 2 * w_vvt * r_y * r_y * rate),
-        *(6 * w_uuu * r_x * r_x * r_x, 2 * w_uuv * r_x * r_x * r_y),
-        *(2 * w_uvv * r_x * r_y * r_y, 6 * w_vvv * r_y * r_y * r_y),
+        *(x_x, x_y, y_x, y_y, x_xt, x_yt, y_xt, y_yt, x_xx, x_xy, x_yy, y_xx, y_xy, y_yy),
     )
 
 
@@ -308,31 +213,6 @@ def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     """
     bounded = max(square, floor * floor)
     return bounded, (square - bounded) / bounded, math.log(bounded)
-
-
-@jit_no_arrays
-def planar_motion_at(local: LocalSurface, x: float, y: float, out: FloatArray) -> None:
-    """The motion in the plane of a fixed point [m] as polynomials in time into `out` (6, 6), the base excluded.
-
-    Rows: u along x, its derivatives by x and y; the same along y.
-    """
-    frame: Frame = local.frame[0]
-    u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
-    for component in range(2):
-        for k in range(ORDER):
-            w = w_u = w_v = 0.0
-            m = (component + 1) * frame.plane_monomials
-            for i in range(frame.plane_degree, -1, -1):
-                a = a_v = 0.0
-                for _ in range(frame.plane_degree + 1 - i):
-                    m -= 1
-                    a_v = a_v * v + a
-                    a = a * v + local.plane[k, m]
-                w_u = w_u * u + w
-                w = w * u + a
-                w_v = w_v * u + a_v
-            row = 3 * component
-            out[row, k], out[row + 1, k], out[row + 2, k] = w, w_u / frame.half_x, w_v / frame.half_y
 
 
 @jit_no_arrays
@@ -384,12 +264,15 @@ def evaluate_points(
         cell = enter(surface, local, x, y, time, math.inf)
         missing[n] = cell == UNBUILT
         if cell >= 0:
-            f = height_at(local, x, y, time)
+            f = surface_at(local, x, y, time)
             out[n, :10] = np.array([f.w, f.w_t, f.w_tt, f.w_x, f.w_y, f.w_xt, f.w_yt, f.w_xx, f.w_xy, f.w_yy])
             out[n, 10:12] = np.array([f.w_xtt, f.w_ytt])
             out[n, 12:] = 0.0
             if local.frame[0].in_plane > 0:
                 a = planar_at(local, 0, x, y, time)
                 b = planar_at(local, local.frame[0].plane_monomials, x, y, time)
+                out[n, 3:5] = np.array([f.x_x * f.w_x + f.y_x * f.w_y, f.x_y * f.w_x + f.y_y * f.w_y])
+                out[n, 5:12] += f.w_x * np.array([a.xt, a.yt, a.xx, a.xy, a.yy, a.xtt, a.ytt])
+                out[n, 5:12] += f.w_y * np.array([b.xt, b.yt, b.xx, b.xy, b.yy, b.xtt, b.ytt])
                 out[n, 12:] = np.array([a.u, b.u, a.t, b.t, a.tt, b.tt])
     return out, missing

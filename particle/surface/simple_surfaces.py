@@ -72,7 +72,7 @@ def polynomial_surface(
 
 
 def _rows(c: NDArray[np.float64], size: float) -> tuple[NDArray[np.float64], int]:
-    """Monomials (K, M) in x/size and y/size, one row for each power of time, of coefficients (I, J, K); their degree."""
+    """Monomials (K, M) in x/size and y/size of coefficients (I, J, K), and their degree."""
     degree = c.shape[0] + c.shape[1] - 2
     square = np.zeros((degree + 1, degree + 1, c.shape[2]))
     square[: c.shape[0], : c.shape[1]] = c

@@ -63,6 +63,10 @@ class Case:
     def height(self) -> top_face.Jets:
         raise NotImplementedError
 
+    def in_plane(self) -> list[top_face.Jets]:
+        """The mid-plane's motion in its plane, along x and y."""
+        return []
+
     def package(self) -> SurfaceMotion:
         raise NotImplementedError
 
@@ -72,7 +76,7 @@ class Case:
     def trace(self) -> motion_oracle.Path:
         """The oracle's path."""
         problem = motion_oracle.Problem(
-            top_face.top_face(self.height(), self.contact, self.centre, self.base()),
+            top_face.top_face(self.height(), self.contact, self.centre, self.base(), self.in_plane()),
             self.mass,
             limit_of(self.law),
             breakpoints(self.strokes, self.duration),
@@ -120,6 +124,10 @@ class Polynomial(Case):
     """On a polynomial, on a base that moves in its plane."""
 
     coefficients: np.ndarray | None = None
+    stretch: np.ndarray | None = None  # of the mid-plane in its plane, (2, I, J, K)
+
+    def in_plane(self) -> list[top_face.Jets]:
+        return [] if self.stretch is None else [top_face.polynomial(along) for along in self.stretch]
 
     def base(self) -> list[motion_oracle.Height]:
         return self.heights()
@@ -128,7 +136,7 @@ class Polynomial(Case):
         return top_face.polynomial(self.coefficients)
 
     def package(self) -> SurfaceMotion:
-        return polynomial_surface(self.coefficients, self.drives())
+        return polynomial_surface(self.coefficients, self.drives(), in_plane=self.stretch)
 
 
 PAIR = ((75e-6, 10e-6), (-75e-6, 10e-6))
