@@ -54,9 +54,7 @@ def polynomial_surface(
     u = np.zeros((2, 1, 1, 0)) if in_plane is None else np.asarray(in_plane, dtype=float)
     u = u[..., None] if u.ndim == 3 else u
     if u.ndim != 4 or len(u) != 2 or u.shape[3] > ORDER:
-        raise ValueError(
-            f"Input in_plane must have shape (2, I, J) or (2, I, J, K) with K <= 6; got {np.shape(in_plane)}"
-        )
+        raise ValueError(f"Input in_plane must have shape (2, I, J) or (2, I, J, K) with K <= 6; got {u.shape}")
     if base is not None and len(base) != 2:
         raise ValueError(f"Input base of polynomial_surface must be two drives, for x and y; got {len(base)}")
     shapes, degree = _rows(c, size)

@@ -108,6 +108,17 @@ def polynomial(coefficients) -> Jets:
     return w
 
 
+def driven(shapes: Sequence[np.ndarray], size: float, heights: Sequence[Height]) -> Jets:
+    """The sum of polynomials sum c[i, j] (x / size)^i (y / size)^j, each times its height."""
+    fixed = [polynomial(c / size ** np.add.outer(*map(np.arange, c.shape))) for c in shapes]
+
+    def u(x: float, y: float, time: float) -> np.ndarray:
+        terms = [times(shape(x, y, time), drive(height, time)) for shape, height in zip(fixed, heights, strict=True)]
+        return np.sum(terms, axis=0)
+
+    return u
+
+
 def top_face(
     w: Jets, contact: float, centre: float, base: Sequence[Height] = (still, still), u: Sequence[Jets] = ()
 ) -> Surface:

@@ -11,6 +11,7 @@ import numpy as np
 import top_face
 from motion_cases import Strokes, breakpoints, limit_of, ratio_of
 from motion_surfaces import still, up_down
+from numpy.polynomial.polynomial import polyval2d
 
 from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
@@ -46,6 +47,7 @@ class Case:
     squeeze: float = 0.0
     mass: float = MASS
     flies: bool = False
+    strains: Strokes = ()
 
     def at(self, contact: float, centre: float) -> Case:
         """The same with other heights."""
@@ -79,7 +81,7 @@ class Case:
             top_face.top_face(self.height(), self.contact, self.centre, self.base(), self.in_plane()),
             self.mass,
             limit_of(self.law),
-            breakpoints(self.strokes, self.duration),
+            breakpoints([*self.strokes, *self.strains], self.duration),
             self.gravity,
             self.squeeze,
             self.law.pull_off,
@@ -102,18 +104,48 @@ class Case:
         )
 
 
+class StretchedDisc(DiscShapes):
+    """A disc whose mid-plane moves in its plane by polynomials (M, 2, I, J) in places over the radius."""
+
+    def __init__(self, points: list[list[float]], radius: float, stretch: np.ndarray) -> None:
+        super().__init__(points, radius)
+        self.stretch = stretch
+
+    def in_plane_values(self, xy: np.ndarray) -> np.ndarray:
+        x, y = (xy / self.size).T
+        return np.moveaxis(np.array([[polyval2d(x, y, c) for c in pair] for pair in self.stretch]), 2, 0)
+
+    def in_plane_heights(self) -> np.ndarray:
+        return np.ones(len(self.stretch))
+
+
 @dataclass(frozen=True)
 class Disc(Case):
     """On a clamped disc."""
 
     actuators: Sequence[Sequence[float]] = ((0.0, 0.0),)
     radius: float = 300e-6
+    strains: Strokes = ()  # of the drives of shapes in the plane, over the radius
+    stretch: np.ndarray | None = None  # these shapes, polynomials (M, 2, I, J) in places over the radius
+
+    def in_plane_heights(self) -> list[motion_oracle.Height]:
+        return [up_down(strain * self.radius, f, delay) for strain, f, delay in self.strains]
+
+    def in_plane(self) -> list[top_face.Jets]:
+        if self.stretch is None:
+            return []
+        return [top_face.driven(self.stretch[:, axis], self.radius, self.in_plane_heights()) for axis in range(2)]
 
     def height(self) -> top_face.Jets:
         return top_face.boggio(self.actuators, self.radius, self.heights())
 
     def package(self) -> SurfaceMotion:
-        return surface_motion(DiscShapes([list(place) for place in self.actuators], self.radius), self.drives(), 1e-11)
+        points = [list(place) for place in self.actuators]
+        if self.stretch is None:
+            return surface_motion(DiscShapes(points, self.radius), self.drives(), 1e-11)
+        in_plane = [Drive(strain * self.radius, f, delay=delay) for strain, f, delay in self.strains]
+        shapes = StretchedDisc(points, self.radius, self.stretch)
+        return surface_motion(shapes, self.drives(), 1e-11, in_plane_drives=in_plane)
 
     def gap(self, x: float, y: float) -> float:
         return self.radius - math.hypot(x, y)
