@@ -1,8 +1,8 @@
 """The first moments of sliding, on the slow manifold.
 
 At a small sliding speed u friction turns the contact's velocity at the rate Q/u, so that explicit steps from rest fall
-to first order. The slow solution is known. With K = (I - z_k S)(I - z_c S)^-1, which takes a force per kg to the
-contact's acceleration, the contact begins to slide along e, where
+to first order. The slow solution is known. With K = (I - z_k S)(I - z_c S)^-1, F for I where the mid-plane stretches,
+which takes a force per kg to the contact's acceleration, the contact begins to slide along e, where
 
     K (A d - Q e) = r e,     |e| = 1,     r = u' at first,
 

@@ -12,6 +12,11 @@ of w at that point and time, and S, n' and n'' (for x'' = y'' = 0) of `particle.
 
 and it sticks while m |p|_M at v = 0 is at most Q(N). With z_k = z_c = 0 the part is a point on the mid-plane.
 
+Where the mid-plane moves in its plane by u, (x, y) is a point of the material, F = I + grad u, and grad w the slope as
+seen in space, F^-T grad w; the second derivatives of w are those of P times (-grad w, 1). Then a holds u_tt, the pull p
+also holds -2 grad u_t v - v.grad grad u.v, and F takes the place of I in front of the curvature S: (3.8) to (3.11) in
+docs/motion.md. So they do at u = 0, where F = I.
+
 The surface does the work of the contact's force at its own velocity, and that of the moment that turns the part with
 it; friction dissipates Q u; the rest is kinetic and potential energy of the part, both as seen by one at rest.
 """

@@ -1,8 +1,9 @@
 """A part that has come off: free flight to where it next meets the surface, and the impact there.
 
-The centre of mass flies exactly, seen from the base: gravity, and the squeeze straight down. The part's attitude stays
-that of the surface under it: (x, y, z) is the centre of mass less its height along the normal at (x, y), so that a part
-on the surface has z = w. The height over the surface, z - w, is followed by quintics that meet it with two derivatives
+The centre of mass flies exactly, seen from the base, and from the material where that moves in its plane: gravity, and
+the squeeze straight down. The part's attitude stays that of the surface under it: (x, y) is the point of the mid-plane
+whose normal goes through the centre of mass, and z the latter's height less its share of that normal, so that a part on
+the surface has z = w. The height over the surface, z - w, is followed by quintics that meet it with two derivatives
 at both ends of a step; where the first of them becomes negative the part lands. The impact takes away the centre's
 normal velocity relative to the surface, and at most `impact_coefficient` times as much of the tangential one. A surface
 whose velocity jumps under the part hits it, or leaves it behind, in the same way.

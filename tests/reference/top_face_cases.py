@@ -242,3 +242,27 @@ CASES = {
         actuators=PAIR,
     ),
 }
+
+# Shapes in the plane of a disc, over its radius: (1 - r^2) (x, y), (1 - r^2) (1/2 + y, x) and (x y, 0.3 - y^2).
+IN_PLANE = np.zeros((3, 2, 4, 4))
+IN_PLANE[0, 0, [1, 3, 1], [0, 0, 2]] = IN_PLANE[0, 1, [0, 0, 2], [1, 3, 1]] = 1.0, -1.0, -1.0
+IN_PLANE[1, 0, [0, 2, 0, 0, 2, 0], [0, 0, 2, 1, 1, 3]] = 0.5, -0.5, -0.5, 1.0, -1.0, -1.0
+IN_PLANE[1, 1, [1, 3, 1], [0, 0, 2]] = 1.0, -1.0, -1.0
+IN_PLANE[2, 0, 1, 1], IN_PLANE[2, 1, 0, [0, 2]] = 1.0, (0.3, -1.0)
+WARPS = np.zeros((2, 3, 3, 4))  # of a bowl, over time
+WARPS[0, 1, 0, 1:], WARPS[1, 0, 1, 1:] = (0.5, -0.8, 0.6), (-0.4, 0.9, -0.5)
+WARPS[0, 0, 2, 2], WARPS[1, 1, 1, 3], WARPS[0, 0, 0, 2:], WARPS[1, 0, 0, 2] = 0.7, -0.6, (0.3, -0.2), 0.25
+
+
+def stretched(case: Case, strain: float) -> Case:
+    """The same with a mid-plane that moves in its plane, by such gradients of u."""
+    if isinstance(case, Polynomial):
+        return replace(case, stretch=strain * WARPS)
+    f = max(f for _, f, _ in case.strokes)
+    strains = ((strain, f, 0.0), (-strain, f / 2, 0.1 / f), (strain / 2, 1.5 * f, 0.3 / f))
+    return replace(case, stretch=IN_PLANE, strains=strains)
+
+
+STRAIN = 5e-3
+for _name in ("two actuators", "static friction", "tilted, squeezed, on a base", "flight"):
+    CASES[f"{_name}, stretched"] = stretched(CASES[_name], STRAIN)
