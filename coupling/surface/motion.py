@@ -34,7 +34,7 @@ def surface_motion(
         points. With `in_plane_values(xy)`, an array (n, M, 2), and `in_plane_heights()`, an array (M,), M more shapes
         move the mid-plane in its plane, u(x, t) = sum_m g_m(t) U_m(x).
     drives : sequence of drives
-        One for each actuator, or for each shape.
+        One for each actuator, then one for each further shape.
     surface_tolerance : float
         Largest error of a unit shape's fit in w; the surface's `error` states what was measured.
     half_thickness : float

@@ -44,7 +44,7 @@ class SurfaceState(NamedTuple):
 class SurfaceMotion:
     """A moving surface; made by `coupling.surface_motion`, `platform_surface` or `polynomial_surface`."""
 
-    drives: DriveTable  # those of its shapes, of its shapes in the plane, and its base's x and y where it moves
+    drives: DriveTable  # of its shapes, actuators first, of its shapes in the plane, and of its base where that moves
     store: CellStore  # its cells; those of a large plate are built where a part comes to
     sources: FloatArray  # (J, 2) m, the centres of the logarithms
     size: float  # m, that tolerances refer to
@@ -59,7 +59,6 @@ class SurfaceMotion:
     @property
     def record(self) -> Surface:
         """The surface for kernels, with the cells that are built so far."""
-        strokes = self.drives.stroke_time[np.isfinite(self.drives.stroke_time)]
         return Surface(
             drives=self.drives,
             cells=self.store.cells,
@@ -72,13 +71,26 @@ class SurfaceMotion:
             conics=self.conics,
             edges=self.edges,
             moving_base=self.moving_base,
-            unit=float(strokes.min(initial=1.0)),
+            unit=float(self.stroke_times.min(initial=1.0)),
         )
 
     def __repr__(self) -> str:
         cells = int((self.store.cells.first_row != NOWHERE).sum())
         error = f"{self.error:.1e}" if cells else "not measured"
         return f"<SurfaceMotion: drives {len(self.drives.delay)}, cells built {cells}, error {error}>"
+
+    @property
+    def stroke_times(self) -> FloatArray:
+        """The shortest strokes [s] of its actuators and of its base; of all its drives where none of these has one.
+
+        Further shapes, and those in the plane, follow from the strokes of the actuators, which come first.
+        """
+        times = self.drives.stroke_time
+        own = times[: len(self.sources) or self.shape_count]
+        strokes = np.concatenate([own, times[len(times) - 2 * self.moving_base :]])
+        if not np.isfinite(strokes).any():
+            strokes = times
+        return strokes[np.isfinite(strokes)]
 
     @property
     def tilts(self) -> bool:

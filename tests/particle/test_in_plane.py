@@ -19,12 +19,14 @@ from particle import (
     simulate,
     simulate_many,
 )
+from particle.drives import drive_table, monomial_table
 from particle.events.equations import Part, energy, length, pull, rising
 from particle.events.parallel import from_height, normal_bend, normal_bend_along, normal_rate, shape_operator, to_height
 from particle.events.stick import leaves_rest, new_rest
 from particle.events.stick_stretched import fill_stretched, safe_by_extremes_stretched
 from particle.surface.at_point import surface_at
 from particle.surface.local import new_local
+from particle.surface.simple_surfaces import _joined
 from particle.surface.span import enter
 
 G = 9.80665
@@ -345,3 +347,15 @@ def test_other_drives_share_the_cells():
     assert (state.w[0], state.w_tt[0]) == pytest.approx((float(h[0]), float(h[2])))
     for found, rate in zip((state.u, state.u_t, state.u_tt), g, strict=True):
         assert found[0] == pytest.approx(float(rate) * np.array([0.3, 0.5]))
+
+
+def test_only_strokes_of_actuators_and_base_set_the_pace():
+    """What follows from them may wiggle much faster; where nothing else moves it counts, too."""
+    shape = [np.array([[[1.0]], [[0.0]]])]
+    slow, fast = Drive(1.0, 1.0), Drive(0.1, 50.0)
+    assert driven([slow], in_plane_drives=[fast], in_plane=shape).stroke_times.tolist() == [0.5]
+    assert driven([slow], base=[fast] * 2, in_plane_drives=[fast], in_plane=shape).stroke_times.min() == 0.01
+    alone = replace(
+        polynomial_surface([[1.0]], in_plane=shape[0]), drives=_joined(monomial_table(1), drive_table([fast]))
+    )
+    assert alone.stroke_times.tolist() == [0.01]
