@@ -120,6 +120,8 @@ def moving(drives: DriveTable) -> BoolArray:
 def _states(surface: SurfaceMotion, points: FloatArray, moments: FloatArray) -> Callable[[], Iterable[State]]:
     """w_tt (n,), slopes and their two rates (n, 2), and the acceleration in the plane (n, 2), moment by moment.
 
+    On a mid-plane that stretches these are the material's slopes, off by its strain.
+
     They are kept where they take little memory, else found again.
     """
 
