@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fem_plate import vibration
 from fem_plate.arrays import CELL, FINER_CELL, ActuatorArray, Cutter, PatchedShapes, ProgressCallback, spacing
+from fem_plate.buckling import buckling_compression, check_tension
 from fem_plate.deflection import Deflection
 from fem_plate.elements import Fineness, PlateModel, by_boundary, corner_rows, graded, singular_corners
 from fem_plate.estimated import refined
@@ -45,11 +46,15 @@ class Plate:
         Refine shapes and deflections until their error estimate, relative to the largest deflection, meets it, or until
         100 000 unknowns; `error_estimate` is what was reached. Shapes on patches get somewhat finer cells instead.
         Modes ignore it.
+    tension : float
+        Residual force per length N0 in the plate's plane, the same in all directions [N/m]: positive pulls, negative
+        presses. It stays what it is while the plate bends. Every boundary must be held then.
 
     Raises
     ------
     ValueError
-        Names every unknown support and boundary; or the tolerance is not positive.
+        Names every unknown support and boundary; the tolerance is not positive; or there is a tension where a boundary
+        is free, or a compression at which the plate buckles without actuators, whose buckling load is named.
     """
 
     def __init__(
@@ -58,6 +63,7 @@ class Plate:
         section: PlateSection,
         supports: str | Mapping[str, str] = "clamped",
         tolerance: float | None = None,
+        tension: float = 0.0,
     ) -> None:
         if tolerance is not None and not tolerance > 0:
             raise ValueError(f"Input tolerance of Plate must be greater than 0; got {tolerance!r}")
@@ -65,9 +71,15 @@ class Plate:
         self.mesh = mesh
         self.section = section
         self.tolerance = tolerance
-        self._fineness = Fineness.of(mesh)
+        check_tension(tension, self.supports)
+        self.tension = float(tension)
+        self._fineness = Fineness.of(mesh, self._tension)
         self._corners = singular_corners(mesh, self.supports, section.poisson_ratio)
         self._last: tuple[bytes, PlateModel] | None = None
+        if tension < 0 and -tension >= (load := self.buckling_load()):
+            raise ValueError(
+                f"Input tension of Plate must exceed {-load:.6g} N/m, at which it buckles; got {self.tension!r}"
+            )
 
     def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
         """The plate on halved cells, graded towards its corners and for actuators at points (N, 2) [m]."""
@@ -78,8 +90,29 @@ class Plate:
         key = mesh.points.tobytes()
         if self._last is None or self._last[0] != key:
             rows = corner_rows(mesh, self._corners)
-            self._last = key, PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)
+            self._last = key, PlateModel(mesh, self.supports, self.section.poisson_ratio, rows, self._tension)
         return self._last[1]
+
+    @property
+    def _tension(self) -> float:
+        """The tension over the plate's rigidity [1/m^2]."""
+        return self.tension / self.section.rigidity
+
+    def buckling_load(self) -> float:
+        """The compression, the same in all directions, at which the plate buckles without actuators [N/m].
+
+        It is D mu with the lowest mu of int M(v):H(q) = mu int grad v.grad q, whatever tension the plate has.
+
+        Raises
+        ------
+        ValueError
+            A boundary is free.
+        """
+        check_tension(1.0, self.supports)
+        mesh = graded(self.mesh, Fineness.of(self.mesh), self._corners)
+        rows = corner_rows(mesh, self._corners)
+        model = PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)
+        return buckling_compression(model) * self.section.rigidity
 
     def influence(
         self,
@@ -199,7 +232,8 @@ class Plate:
     def __repr__(self) -> str:
         width, height = np.ptp(self.mesh.outline.box, axis=0)
         rims = ", ".join(f"{name} {support}" for name, support in self.supports.items())
-        return f"Plate of {width:.4g} m x {height:.4g} m, {self.section.thickness:.4g} m thick; {rims}"
+        tension = f"; tension {self.tension:.4g} N/m" if self.tension else ""
+        return f"Plate of {width:.4g} m x {height:.4g} m, {self.section.thickness:.4g} m thick; {rims}{tension}"
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rim by its supports and the mesh, into axes in m or new ones."""
@@ -220,5 +254,8 @@ class Plate:
         fineness = replace(self._fineness, cell=cell)
         pitches = CELL if self.tolerance is None else FINER_CELL
         cutter = Cutter(self.mesh, self.supports, fineness, self._corners, points, spacing(points), pitches)
-        array = ActuatorArray(cutter, points, actuator_stiffness, self.section.rigidity, self.section.poisson_ratio)
+        section = self.section
+        array = ActuatorArray(
+            cutter, points, actuator_stiffness, section.rigidity, section.poisson_ratio, self._tension
+        )
         return PatchedShapes(array, truncation, self.mesh.size, self.mesh.outline, tell)

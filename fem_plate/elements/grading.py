@@ -1,4 +1,4 @@
-"""Where cells must be small: towards corners, and where an actuator is close to the rim."""
+"""Where cells must be small: towards corners, where an actuator is close to the rim, and at the rim under tension."""
 
 from __future__ import annotations
 
@@ -17,6 +17,9 @@ FloatArray = NDArray[np.float64]
 FAR = 0.7  # of the plate's half width: an actuator that far from the rim needs no smaller cells there
 CORNER_GROWTH = 4.0  # of cells with the distance from a corner, times the plate's cells over its size
 CORNER_ERROR = 1e-2  # of the error of the plate's other cells
+LAYER_CELLS = 8.0  # of the plate's cells over its half width: cells at a stretched rim over the width of its layer
+LAYER_ORDER = 6.0  # of the error in the cell: cells grow as this root of the layer's decay
+MAX_LAYER_CELLS = 4000.0  # about: more are not spent on layers before any halving
 MIN_CELL = 1e-6  # of the plate's size: smaller cells add more rounding than accuracy
 
 
@@ -46,28 +49,42 @@ class Fineness:
     cell: float  # m, mean size over the area
     half_width: float  # m, the largest distance of the plate from its rim
     size: float  # m, the scale of corners: the plate's size, or three half widths of a slender plate
+    layer: float = np.inf  # m, over which a tension's boundary layer decays
+    at_layer: float = np.inf  # m, of the cells there
 
     @staticmethod
-    def of(mesh: PlateMesh) -> Fineness:
+    def of(mesh: PlateMesh, tension: float = 0.0) -> Fineness:
+        """The fineness of a mesh's cells; tension: 1/m^2, over the plate's rigidity."""
         area = np.abs(areas(mesh.points, mesh.triangles))
         a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
         half_width = mesh.outline.gap(np.concatenate([mesh.points, (a + b + c) / 3])).max()
         size = min(mesh.size, 3 * half_width)
-        return Fineness(float(np.average(mesh.cell_sizes, weights=area)), float(half_width), float(size))
+        cell = float(np.average(mesh.cell_sizes, weights=area))
+        layer = at_layer = np.inf
+        if tension > 0:
+            layer = tension**-0.5
+            rim = sum(
+                np.linalg.norm(np.diff(mesh.points[edges], axis=1), axis=2).sum() for edges in mesh.boundaries.values()
+            )
+            # Cells of h exp(d / (LAYER_ORDER layer)) at distances d, each of .43 h^2.
+            fewest = np.sqrt(LAYER_ORDER / 2 * layer * rim / 0.43 / MAX_LAYER_CELLS)
+            at_layer = max(LAYER_CELLS * cell / half_width * layer, fewest)
+        return Fineness(cell, float(half_width), float(size), layer, float(at_layer))
 
     def halved(self, times: int = 1) -> Fineness:
         """The fineness of cells halved so many times."""
-        return replace(self, cell=self.cell / 2**times)
+        return replace(self, cell=self.cell / 2**times, at_layer=self.at_layer / 2**times)
 
 
 def graded(
     mesh: PlateMesh, fine: Fineness, corners: list[SingularCorner], points: FloatArray | None = None
 ) -> PlateMesh:
-    """The mesh with smaller cells at corners, and at the rim where actuators at points (N, 2) [m] are close to it.
+    """The mesh with smaller cells at corners, at a stretched rim, and where actuators at points (N, 2) [m] are close.
 
     The smooth part of the response to a force varies over the distance to its mirror images beyond the rim: cells are
     as small in proportion as the plate's are for an actuator at FAR of the half width from the rim. Towards a corner
     they shrink in proportion to their distance, until they change w there by less than the plate's other cells do.
+    Under a large tension the plate bends in a layer along its rim only.
     """
     images, nearest = None, 0.0
     if points is not None and len(points):
@@ -84,6 +101,10 @@ def graded(
         for corner, floor in zip(corners, smallest, strict=True):
             distance = np.hypot(*(centre - corner.point).T)
             allowed = np.minimum(allowed, np.maximum(min(CORNER_GROWTH * share, 1.0) * distance, floor))
+        if fine.at_layer < fine.cell:
+            with np.errstate(over="ignore"):
+                growth = np.exp(np.maximum(mesh.outline.gap(centre), 0.0) / (LAYER_ORDER * fine.layer))
+            allowed = np.minimum(allowed, fine.at_layer * growth)
         large = mesh.cell_sizes > allowed
         if not large.any():
             return mesh

@@ -1,0 +1,201 @@
+"""Kirchhoff plates of rigidity 1 under a tension, the same in all directions: closed forms and quick series.
+
+They solve laplace^2 w - tension laplace w = load, which splits into laplace (laplace - tension). Negative tensions
+press. Discs have a radius of 1. Functions of xy (n, 2) return w (n,), gradient (n, 2), Hessian (n, 2, 2).
+"""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+from plate_modes import _side
+from plate_theory import CLAMPED, SIMPLY_SUPPORTED, radial
+from scipy.linalg import eigh
+from scipy.optimize import brentq
+from scipy.special import i0e, i1e, ive, jv
+
+DIGITS = 50
+MIN_MODE = 1e-17  # of what a mode adds
+
+
+def disc_force(xy, source, support, tension, nu=0.3, modes=90):
+    """Disc under a force of 1 at `source` (2,), where the Hessian means nothing.
+
+    For each number m of nodal diameters w is a ring force's known response, by Graf's addition theorems, plus a r^m and
+    b I_m(beta r) (in compression J_m), which meet the two conditions at the rim.
+    """
+    source = np.asarray(source, dtype=float)
+    rho, turn = np.hypot(*source), np.arctan2(source[1], source[0])
+    x, y = np.asarray(xy, dtype=float).T
+    radius, angle = np.hypot(x, y), np.arctan2(y, x) - turn
+    parts = [np.zeros(len(x)) for _ in range(6)]  # w, w_r, w_rr, w_a / r, w_ra, w_aa as seen along r
+    for m in range(1 if rho == 0 else modes):
+        a, b = _coefficients(m, rho, support, tension, nu)
+        f, f1, f2 = (a * p + b * q for p, q in zip(_powers(m, radius), _bessels(m, radius, tension), strict=True))
+        cos, sin = np.cos(m * angle), np.sin(m * angle)
+        parts[0] += f * cos
+        parts[1] += f1 * cos
+        parts[2] += f2 * cos
+        parts[3] -= m * f / radius * sin
+        parts[4] -= m * (f1 / radius - f / radius**2) * sin
+        parts[5] += (f1 / radius - m**2 * f / radius**2) * cos
+    w, first, second, around, mixed, across = parts
+    e, t = np.stack([x, y], 1) / radius[:, None], np.stack([-y, x], 1) / radius[:, None]
+    ee, et, tt = (p[:, :, None] * q[:, None, :] for p, q in ((e, e), (e, t), (t, t)))
+    hessian = second[:, None, None] * ee + mixed[:, None, None] * (et + np.swapaxes(et, 1, 2))
+    smooth = w, first[:, None] * e + around[:, None] * t, hessian + across[:, None, None] * tt
+    known = _infinite(np.asarray(xy, dtype=float) - source, tension)
+    return tuple(p + q for p, q in zip(smooth, known, strict=True))
+
+
+def _infinite(offset, tension):
+    """The infinite plate's response to a unit force, of which `_coefficients` has the modes; in 50 digits."""
+    r = np.hypot(*offset.T)
+    with mpmath.workdps(DIGITS):
+        rows = np.array([[float(v) for v in _infinite_radial(mpmath.mpf(float(d)), tension)] for d in r])
+    return radial(offset, *rows.T)
+
+
+def _infinite_radial(r, tension):
+    k = mpmath.sqrt(abs(tension))
+    scale = -1 / (2 * mpmath.pi * mpmath.mpf(tension))
+    if tension > 0:
+        f, f1 = mpmath.besselk(0, k * r), -k * mpmath.besselk(1, k * r)
+        f2 = k**2 * f - f1 / r
+    else:
+        f, f1 = (-mpmath.pi / 2 * s * mpmath.bessely(m, k * r) for m, s in ((0, 1), (1, -k)))
+        f2 = -(k**2) * f - f1 / r
+    return scale * (mpmath.log(r) + f), scale * (1 / r + f1), scale * (f2 - 1 / r**2)
+
+
+def _coefficients(m, rho, support, tension, nu):
+    with mpmath.workdps(DIGITS):
+        k, tension = mpmath.sqrt(abs(mpmath.mpf(tension))), mpmath.mpf(tension)
+        pulls, rho = tension > 0, mpmath.mpf(rho)
+        inner, outer = (mpmath.besseli, mpmath.besselk) if pulls else (mpmath.besselj, mpmath.bessely)
+        weight = (2 if m else 1) * (1 if pulls else -mpmath.pi / 2) * inner(m, k * rho)
+
+        def jet(order, x):  # of outer(m, x) or inner(m, x), its value and two derivatives by r at r = 1
+            f, f1 = order(m, x), x * mpmath.diff(lambda s: order(m, s), x)
+            return f, f1, (m**2 + (x**2 if pulls else -(x**2))) * f - f1
+
+        bend = [weight * v for v in jet(outer, k)]
+        log = (-(rho**m) / m, rho**m, -(m + 1) * rho**m) if m else (mpmath.mpf(0), mpmath.mpf(1), mpmath.mpf(-1))
+        ring = [-(u + v) / (2 * mpmath.pi * tension) for u, v in zip(log, bend, strict=True)]
+        basis = jet(inner, k)
+        scale = mpmath.besseli(m, k) if pulls else mpmath.mpf(1)
+        own = [v / scale for v in basis]
+        power = (mpmath.mpf(1), mpmath.mpf(m), mpmath.mpf(m * (m - 1)))
+
+        def condition(f, f1, f2):
+            return f1 if support == CLAMPED else f2 + nu * (f1 - m**2 * f)
+
+        matrix = mpmath.matrix([[power[0], own[0]], [condition(*power), condition(*own)]])
+        a, b = mpmath.lu_solve(matrix, mpmath.matrix([-ring[0], -condition(*ring)]))
+        return float(a), float(b)
+
+
+def _powers(m, r):
+    return r**m, m * r ** max(m - 1, 0), m * (m - 1) * r ** max(m - 2, 0)
+
+
+def _bessels(m, r, tension):
+    """I_m(beta r) / I_m(beta), or J_m(kappa r), and its first two derivatives."""
+    k = np.sqrt(abs(tension))
+    if tension > 0:
+        scale = np.exp(k * (r - 1)) / ive(m, k)
+        f, f1 = scale * ive(m, k * r), scale * k * (ive(m + 1, k * r) + m / (k * r) * ive(m, k * r))
+        return f, f1, (m**2 / r**2 + k**2) * f - f1 / r
+    f, f1 = jv(m, k * r), -k * jv(m + 1, k * r) + m / r * jv(m, k * r)
+    return f, f1, (m**2 / r**2 - k**2) * f - f1 / r
+
+
+def disc_pressure(xy, support, tension, nu=0.3):
+    """Disc under a pressure of 1 and a tension that pulls: -r^2 / (4 tension) + a + b I_0(beta r)."""
+    xy = np.asarray(xy, dtype=float)
+    r, k = np.hypot(*xy.T), np.sqrt(tension)
+    ratio = i1e(k) / i0e(k)  # I_0 is scaled to 1 at the rim
+    slope, bend = k * ratio, k**2 - k * ratio
+    p1, p2 = -1 / (2 * tension), -1 / (2 * tension)
+    b = -p1 / slope if support == CLAMPED else -(p2 + nu * p1) / (bend + nu * slope)
+    a = 1 / (4 * tension) - b
+    scale = np.exp(k * (r - 1)) / i0e(k)
+    f, f1 = scale * i0e(k * r), scale * k * i1e(k * r)
+    with np.errstate(invalid="ignore"):
+        f2 = np.where(r > 0, k**2 * f - f1 / r, k**2 / 2 * f)
+    return radial(xy, a - r**2 / (4 * tension) + b * f, b * f1 + p1 * r, b * f2 + p2)
+
+
+def supported_square_force(xy, source, side, tension, terms=400):
+    """Simply supported square around the origin under a force of 1 at `source`: w (n,) alone, off the line y = source's.
+
+    There (laplace - tension) and laplace have Green's functions G of their own, both 0 at the rim, and w is the
+    difference of those over the tension.
+    """
+    (x, y), (u, v) = np.asarray(xy, dtype=float).T[:, :, None] + side / 2, np.asarray(source) + side / 2
+    k = np.arange(1, terms) * np.pi / side
+    waves = 2 / side * np.sin(k * x) * np.sin(k * u)
+    low, high = np.minimum(y, v), np.maximum(y, v)
+
+    def green(q):  # sinh(q low) sinh(q (side - high)) / (q sinh(q side)) without overflow
+        rise, fall = -np.expm1(-2 * q * low), -np.expm1(-2 * q * (side - high))
+        return np.exp(q * (low - high)) * rise * fall / (-2 * q * np.expm1(-2 * q * side))
+
+    return (waves * (green(k) - green(np.sqrt(k**2 + tension)))).sum(axis=1) / tension
+
+
+def disc_frequencies(support, tension, count, nu=0.3):
+    """omega (count,) of J_m(p r) and I_m(q r) with q^2 - p^2 = tension and omega = p q; repeated ones repeated."""
+    found, m = [], 0
+    while True:
+        roots = _roots(support, m, tension, count, nu)
+        if len(found) >= count and roots[0] > sorted(found)[count - 1] and m > 2:
+            return np.sort(found)[:count]
+        found += [root for root in roots for _ in range(2 if m else 1)]
+        m += 1
+
+
+def _roots(support, m, tension, count, nu):
+    def determinant(p):
+        q = np.sqrt(p**2 + tension)
+        rows = []
+        for k, sign, f, f1 in (
+            (p, -1, jv(m, p), m * jv(m, p) - p * jv(m + 1, p)),
+            (q, 1, ive(m, q), m * ive(m, q) + q * ive(m + 1, q)),
+        ):
+            moment = sign * k**2 * f - (1 - nu) * (f1 - m**2 * f)
+            rows.append((f, f1 if support == CLAMPED else moment / k**2))
+        return np.linalg.det(np.array(rows))
+
+    grid = np.arange(max(0.05, 0.01 + np.sqrt(max(-tension, 0.0))), m + np.pi * (count + 2), 0.05)
+    sign = np.sign([determinant(p) for p in grid])
+    roots = [brentq(determinant, *grid[i : i + 2], xtol=1e-14) for i in np.flatnonzero(sign[1:] != sign[:-1])]
+    return [p * np.sqrt(p**2 + tension) for p in roots]
+
+
+def disc_buckling(support, nu=0.3):
+    """kappa^2 with J_1(kappa) = 0 (clamped) or kappa J_0 = (1 - nu) J_1 (simply supported): the axisymmetric one."""
+    if support == CLAMPED:
+        return brentq(lambda k: jv(1, k), 3, 4.5, xtol=1e-15) ** 2
+    return brentq(lambda k: k * jv(0, k) - (1 - nu) * jv(1, k), 1, 3, xtol=1e-15) ** 2
+
+
+def rectangle_buckling(width, height, supports, degree=16, nu=0.3):
+    """Rayleigh and Ritz: an upper bound. supports: (left, right, bottom, top)."""
+    _, mx, cx, bx, sx = _side(width, supports[:2], degree)
+    _, my, cy, by, sy = _side(height, supports[2:], degree)
+    stiffness = np.kron(bx, my) + np.kron(mx, by) + 2 * (1 - nu) * np.kron(sx, sy)
+    stiffness += nu * (np.kron(cx, cy.T) + np.kron(cx.T, cy))
+    return 1 / eigh(np.kron(sx, my) + np.kron(mx, sy), stiffness, eigvals_only=True)[-1]
+
+
+__all__ = [
+    "CLAMPED",
+    "SIMPLY_SUPPORTED",
+    "disc_buckling",
+    "disc_force",
+    "disc_frequencies",
+    "disc_pressure",
+    "rectangle_buckling",
+    "supported_square_force",
+]
