@@ -151,6 +151,7 @@ class Plate:
         return refined(
             lambda halvings: InfluenceShapes(self.model(points, halvings), points, rigidity, actuator_stiffness),
             self.tolerance,
+            self._fineness.gain,
         )
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
@@ -183,6 +184,7 @@ class Plate:
         return refined(
             lambda halvings: Deflection(self.model(points, halvings), points, loads, float(pressure), rigidity),
             self.tolerance,
+            self._fineness.gain,
         )
 
     def pressure(self, load: float) -> Deflection:

@@ -18,8 +18,11 @@ FAR = 0.7  # of the plate's half width: an actuator that far from the rim needs 
 CORNER_GROWTH = 4.0  # of cells with the distance from a corner, times the plate's cells over its size
 CORNER_ERROR = 1e-2  # of the error of the plate's other cells
 LAYER_CELLS = 8.0  # of the plate's cells over its half width: cells at a stretched rim over the width of its layer
-LAYER_ORDER = 6.0  # of the error in the cell: cells grow as this root of the layer's decay
-MAX_LAYER_CELLS = 4000.0  # about: more are not spent on layers before any halving
+LAYER_GROWTH = 4.0  # widths of the layer over which cells grow e-fold
+MAX_LAYER_CELLS = 1000.0  # spent on layers before any halving, about
+# What halving the cells divides the error of w by at least: the fewer cells in a layer, the less. Observed, without a
+# layer, with cells at the rim of up to COARSE_LAYER widths, and with larger ones: 2^5.5, 6 and 4 and more.
+GAIN, LAYER_GAIN, COARSE_GAIN, COARSE_LAYER = 32.0, 4.0, 2.0, 6.0
 MIN_CELL = 1e-6  # of the plate's size: smaller cells add more rounding than accuracy
 
 
@@ -60,16 +63,22 @@ class Fineness:
         half_width = mesh.outline.gap(np.concatenate([mesh.points, (a + b + c) / 3])).max()
         size = min(mesh.size, 3 * half_width)
         cell = float(np.average(mesh.cell_sizes, weights=area))
-        layer = at_layer = np.inf
-        if tension > 0:
-            layer = tension**-0.5
-            rim = sum(
-                np.linalg.norm(np.diff(mesh.points[edges], axis=1), axis=2).sum() for edges in mesh.boundaries.values()
-            )
-            # Cells of h exp(d / (LAYER_ORDER layer)) at distances d, each of .43 h^2.
-            fewest = np.sqrt(LAYER_ORDER / 2 * layer * rim / 0.43 / MAX_LAYER_CELLS)
-            at_layer = max(LAYER_CELLS * cell / half_width * layer, fewest)
+        if tension <= 0:
+            return Fineness(cell, float(half_width), float(size))
+        layer = tension**-0.5
+        ends = mesh.points[np.concatenate(list(mesh.boundaries.values()))]
+        # Cells of size h at the rim are 8 rim / h (1 + layer / h) as measured, from which h follows.
+        half = 4 * float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum()) / MAX_LAYER_CELLS
+        coarsest = half + np.sqrt(half**2 + 2 * half * layer)
+        at_layer = max(LAYER_CELLS * cell / half_width * layer, coarsest)
         return Fineness(cell, float(half_width), float(size), layer, float(at_layer))
+
+    @property
+    def gain(self) -> float:
+        """What halving the cells divides the error of w by, at least."""
+        if self.at_layer >= self.cell:
+            return GAIN
+        return LAYER_GAIN if self.at_layer <= COARSE_LAYER * self.layer else COARSE_GAIN
 
     def halved(self, times: int = 1) -> Fineness:
         """The fineness of cells halved so many times."""
@@ -103,7 +112,8 @@ def graded(
             allowed = np.minimum(allowed, np.maximum(min(CORNER_GROWTH * share, 1.0) * distance, floor))
         if fine.at_layer < fine.cell:
             with np.errstate(over="ignore"):
-                growth = np.exp(np.maximum(mesh.outline.gap(centre), 0.0) / (LAYER_ORDER * fine.layer))
+                nearest_corner = mesh.outline.gap(mesh.points)[mesh.triangles].min(axis=1)
+                growth = np.exp(np.maximum(nearest_corner, 0.0) / (LAYER_GROWTH * fine.layer))
             allowed = np.minimum(allowed, fine.at_layer * growth)
         large = mesh.cell_sizes > allowed
         if not large.any():

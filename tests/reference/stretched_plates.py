@@ -12,13 +12,13 @@ from plate_modes import _side
 from plate_theory import CLAMPED, SIMPLY_SUPPORTED, radial
 from scipy.linalg import eigh
 from scipy.optimize import brentq
-from scipy.special import i0e, i1e, ive, jv
+from scipy.special import i0e, i1e, ive, jv, k0, k1, y0, y1
 
 DIGITS = 50
-MIN_MODE = 1e-17  # of what a mode adds
+MIN_MODE = 1e-17  # rho^m of the last mode
 
 
-def disc_force(xy, source, support, tension, nu=0.3, modes=90):
+def disc_force(xy, source, support, tension, nu=0.3):
     """Disc under a force of 1 at `source` (2,), where the Hessian means nothing.
 
     For each number m of nodal diameters w is a ring force's known response, by Graf's addition theorems, plus a r^m and
@@ -29,7 +29,7 @@ def disc_force(xy, source, support, tension, nu=0.3, modes=90):
     x, y = np.asarray(xy, dtype=float).T
     radius, angle = np.hypot(x, y), np.arctan2(y, x) - turn
     parts = [np.zeros(len(x)) for _ in range(6)]  # w, w_r, w_rr, w_a / r, w_ra, w_aa as seen along r
-    for m in range(1 if rho == 0 else modes):
+    for m in range(1 if rho == 0 else int(np.ceil(np.log(MIN_MODE) / np.log(rho)))):
         a, b = _coefficients(m, rho, support, tension, nu)
         f, f1, f2 = (a * p + b * q for p, q in zip(_powers(m, radius), _bessels(m, radius, tension), strict=True))
         cos, sin = np.cos(m * angle), np.sin(m * angle)
@@ -49,50 +49,45 @@ def disc_force(xy, source, support, tension, nu=0.3, modes=90):
 
 
 def _infinite(offset, tension):
-    """The infinite plate's response to a unit force, of which `_coefficients` has the modes; in 50 digits."""
-    r = np.hypot(*offset.T)
-    with mpmath.workdps(DIGITS):
-        rows = np.array([[float(v) for v in _infinite_radial(mpmath.mpf(float(d)), tension)] for d in r])
-    return radial(offset, *rows.T)
-
-
-def _infinite_radial(r, tension):
-    k = mpmath.sqrt(abs(tension))
-    scale = -1 / (2 * mpmath.pi * mpmath.mpf(tension))
+    """The infinite plate's response to a unit force, of which `_coefficients` has the modes."""
+    r, k = np.hypot(*offset.T), np.sqrt(abs(tension))
     if tension > 0:
-        f, f1 = mpmath.besselk(0, k * r), -k * mpmath.besselk(1, k * r)
-        f2 = k**2 * f - f1 / r
+        f, f1 = k0(k * r), -k * k1(k * r)
     else:
-        f, f1 = (-mpmath.pi / 2 * s * mpmath.bessely(m, k * r) for m, s in ((0, 1), (1, -k)))
-        f2 = -(k**2) * f - f1 / r
-    return scale * (mpmath.log(r) + f), scale * (1 / r + f1), scale * (f2 - 1 / r**2)
+        f, f1 = -np.pi / 2 * y0(k * r), np.pi / 2 * k * y1(k * r)
+    f2 = tension * f - f1 / r
+    scale = -1 / (2 * np.pi * tension)
+    return radial(offset, scale * (np.log(r) + f), scale * (1 / r + f1), scale * (f2 - 1 / r**2))
 
 
 def _coefficients(m, rho, support, tension, nu):
     with mpmath.workdps(DIGITS):
-        k, tension = mpmath.sqrt(abs(mpmath.mpf(tension))), mpmath.mpf(tension)
-        pulls, rho = tension > 0, mpmath.mpf(rho)
+        k, tension, rho = mpmath.sqrt(abs(tension)), mpmath.mpf(tension), mpmath.mpf(rho)
+        pulls = tension > 0
         inner, outer = (mpmath.besseli, mpmath.besselk) if pulls else (mpmath.besselj, mpmath.bessely)
+
+        def jet(order, way):  # of a Bessel function of k r: value and two derivatives by r at r = 1
+            f = order(m, k)
+            f1 = m * f + way * k * order(m + 1, k)
+            return f, f1, (m**2 + tension) * f - f1
+
         weight = (2 if m else 1) * (1 if pulls else -mpmath.pi / 2) * inner(m, k * rho)
-
-        def jet(order, x):  # of outer(m, x) or inner(m, x), its value and two derivatives by r at r = 1
-            f, f1 = order(m, x), x * mpmath.diff(lambda s: order(m, s), x)
-            return f, f1, (m**2 + (x**2 if pulls else -(x**2))) * f - f1
-
-        bend = [weight * v for v in jet(outer, k)]
-        log = (-(rho**m) / m, rho**m, -(m + 1) * rho**m) if m else (mpmath.mpf(0), mpmath.mpf(1), mpmath.mpf(-1))
-        ring = [-(u + v) / (2 * mpmath.pi * tension) for u, v in zip(log, bend, strict=True)]
-        basis = jet(inner, k)
-        scale = mpmath.besseli(m, k) if pulls else mpmath.mpf(1)
-        own = [v / scale for v in basis]
-        power = (mpmath.mpf(1), mpmath.mpf(m), mpmath.mpf(m * (m - 1)))
+        log = (-(rho**m) / m, rho**m, -(m + 1) * rho**m) if m else (0, 1, -1)
+        known = zip(log, jet(outer, -1), strict=True)
+        ring = [-(u + weight * v) / (2 * mpmath.pi * tension) for u, v in known]
+        own = [v / mpmath.mpf(_scale(m, k, pulls)) for v in jet(inner, 1 if pulls else -1)]
+        power = (1, m, m * (m - 1))
 
         def condition(f, f1, f2):
             return f1 if support == CLAMPED else f2 + nu * (f1 - m**2 * f)
 
         matrix = mpmath.matrix([[power[0], own[0]], [condition(*power), condition(*own)]])
-        a, b = mpmath.lu_solve(matrix, mpmath.matrix([-ring[0], -condition(*ring)]))
-        return float(a), float(b)
+        return [float(c) for c in mpmath.lu_solve(matrix, mpmath.matrix([-ring[0], -condition(*ring)]))]
+
+
+def _scale(m, k, pulls):
+    """What I_m(k r) is divided by, its value at 1; J_m(k r) by its leading term there, which is never 0."""
+    return mpmath.besseli(m, k) if pulls else (k / 2) ** m / mpmath.factorial(m)
 
 
 def _powers(m, r):
@@ -100,14 +95,16 @@ def _powers(m, r):
 
 
 def _bessels(m, r, tension):
-    """I_m(beta r) / I_m(beta), or J_m(kappa r), and its first two derivatives."""
+    """I_m(k r) or J_m(k r) over `_scale`, and its first two derivatives."""
     k = np.sqrt(abs(tension))
     if tension > 0:
         scale = np.exp(k * (r - 1)) / ive(m, k)
-        f, f1 = scale * ive(m, k * r), scale * k * (ive(m + 1, k * r) + m / (k * r) * ive(m, k * r))
-        return f, f1, (m**2 / r**2 + k**2) * f - f1 / r
-    f, f1 = jv(m, k * r), -k * jv(m + 1, k * r) + m / r * jv(m, k * r)
-    return f, f1, (m**2 / r**2 - k**2) * f - f1 / r
+        f, after = scale * ive(m, k * r), scale * ive(m + 1, k * r)
+    else:
+        scale = float(_scale(m, mpmath.mpf(k), False))
+        f, after = jv(m, k * r) / scale, -jv(m + 1, k * r) / scale
+    f1 = k * after + m / r * f
+    return f, f1, (m**2 / r**2 + tension) * f - f1 / r
 
 
 def disc_pressure(xy, support, tension, nu=0.3):
@@ -187,15 +184,3 @@ def rectangle_buckling(width, height, supports, degree=16, nu=0.3):
     stiffness = np.kron(bx, my) + np.kron(mx, by) + 2 * (1 - nu) * np.kron(sx, sy)
     stiffness += nu * (np.kron(cx, cy.T) + np.kron(cx.T, cy))
     return 1 / eigh(np.kron(sx, my) + np.kron(mx, sy), stiffness, eigvals_only=True)[-1]
-
-
-__all__ = [
-    "CLAMPED",
-    "SIMPLY_SUPPORTED",
-    "disc_buckling",
-    "disc_force",
-    "disc_frequencies",
-    "disc_pressure",
-    "rectangle_buckling",
-    "supported_square_force",
-]
