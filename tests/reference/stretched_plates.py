@@ -9,7 +9,7 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 from plate_modes import _side
-from plate_theory import CLAMPED, SIMPLY_SUPPORTED, radial
+from plate_theory import CLAMPED, radial
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 from scipy.special import i0e, i1e, ive, jv, k0, k1, y0, y1
@@ -124,10 +124,10 @@ def disc_pressure(xy, support, tension, nu=0.3):
 
 
 def supported_square_force(xy, source, side, tension, terms=400):
-    """Simply supported square around the origin under a force of 1 at `source`: w (n,) alone, off the line y = source's.
+    """Simply supported square around the origin under a force of 1 at `source`: w (n,) alone.
 
-    There (laplace - tension) and laplace have Green's functions G of their own, both 0 at the rim, and w is the
-    difference of those over the tension.
+    Away from the line through the source along x: (laplace - tension) and laplace have Green's functions of their own,
+    both 0 at the rim, and w is their difference over the tension.
     """
     (x, y), (u, v) = np.asarray(xy, dtype=float).T[:, :, None] + side / 2, np.asarray(source) + side / 2
     k = np.arange(1, terms) * np.pi / side
@@ -138,7 +138,7 @@ def supported_square_force(xy, source, side, tension, terms=400):
         rise, fall = -np.expm1(-2 * q * low), -np.expm1(-2 * q * (side - high))
         return np.exp(q * (low - high)) * rise * fall / (-2 * q * np.expm1(-2 * q * side))
 
-    return (waves * (green(k) - green(np.sqrt(k**2 + tension)))).sum(axis=1) / tension
+    return (waves * (green(k) - green(np.sqrt(k**2 + tension + 0j)).real)).sum(axis=1) / tension
 
 
 def disc_frequencies(support, tension, count, nu=0.3):
@@ -161,7 +161,7 @@ def _roots(support, m, tension, count, nu):
             (q, 1, ive(m, q), m * ive(m, q) + q * ive(m + 1, q)),
         ):
             moment = sign * k**2 * f - (1 - nu) * (f1 - m**2 * f)
-            rows.append((f, f1 if support == CLAMPED else moment / k**2))
+            rows.append((f, f1 if support == CLAMPED else moment))
         return np.linalg.det(np.array(rows))
 
     grid = np.arange(max(0.05, 0.01 + np.sqrt(max(-tension, 0.0))), m + np.pi * (count + 2), 0.05)
