@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 PATCH_FINENESS = 0.16  # of the half width, eight cells: shapes at the rim are then good to 1e-6
+PATCH_RIM = 30.0  # pitches, about, that a patch extends along the rim
 TRUNCATION = 1e-6  # of unit shapes on patches, by default
 
 
@@ -253,9 +253,10 @@ class Plate:
         self, points: FloatArray, actuator_stiffness: FloatArray, truncation: float, tell: ProgressCallback
     ) -> PatchedShapes:
         cell = min(self._fineness.cell, PATCH_FINENESS * self._fineness.half_width)
-        fineness = replace(self._fineness, cell=cell)
+        pitch = spacing(points)
+        fineness = self._fineness.on_patches(cell, PATCH_RIM * min(float(pitch.max()), self.mesh.size))
         pitches = CELL if self.tolerance is None else FINER_CELL
-        cutter = Cutter(self.mesh, self.supports, fineness, self._corners, points, spacing(points), pitches)
+        cutter = Cutter(self.mesh, self.supports, fineness, self._corners, points, pitch, pitches)
         section = self.section
         array = ActuatorArray(
             cutter, points, actuator_stiffness, section.rigidity, section.poisson_ratio, self._tension

@@ -65,13 +65,14 @@ class Fineness:
         cell = float(np.average(mesh.cell_sizes, weights=area))
         if tension <= 0:
             return Fineness(cell, float(half_width), float(size))
-        layer = tension**-0.5
         ends = mesh.points[np.concatenate(list(mesh.boundaries.values()))]
-        # Cells of size h at the rim are 8 rim / h (1 + layer / h) as measured, from which h follows.
-        half = 4 * float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum()) / MAX_LAYER_CELLS
-        coarsest = half + np.sqrt(half**2 + 2 * half * layer)
-        at_layer = max(LAYER_CELLS * cell / half_width * layer, coarsest)
-        return Fineness(cell, float(half_width), float(size), layer, float(at_layer))
+        rim = float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum())
+        layer = tension**-0.5
+        return Fineness(cell, float(half_width), float(size), layer, _at_layer(cell / float(half_width), layer, rim))
+
+    def on_patches(self, cell: float, rim: float) -> Fineness:
+        """The same with another size of cell, for patches that extend `rim` along the plate's rim; all in m."""
+        return replace(self, cell=cell, at_layer=_at_layer(cell / self.half_width, self.layer, rim))
 
     @property
     def gain(self) -> float:
@@ -83,6 +84,18 @@ class Fineness:
     def halved(self, times: int = 1) -> Fineness:
         """The fineness of cells halved so many times."""
         return replace(self, cell=self.cell / 2**times, at_layer=self.at_layer / 2**times)
+
+
+def _at_layer(share: float, layer: float, rim: float) -> float:
+    """The size [m] of cells in a boundary layer.
+
+    share: the plate's cells over its half width.  layer, rim: m, how wide and long the layer is.
+    """
+    if not np.isfinite(layer):
+        return float(np.inf)
+    # As measured, cells of size h at the rim take 8 rim / h (1 + layer / h) of them.
+    half = 4 * rim / MAX_LAYER_CELLS
+    return max(LAYER_CELLS * share * layer, half + float(np.sqrt(half**2 + 2 * half * layer)))
 
 
 def graded(

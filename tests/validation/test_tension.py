@@ -109,7 +109,7 @@ def test_frequencies_of_discs(support, tension, bound):
 
 
 def test_frequencies_of_a_simply_supported_square():
-    """omega^2 = k^4 + tension k^2 with k^2 = pi^2 (m^2 + n^2) / side^2; that of a membrane where the tension is large."""
+    """omega^2 = k^4 + tension k^2, k^2 = pi^2 (m^2 + n^2) / side^2; that of a membrane where the tension is large."""
     m, n = np.meshgrid(np.arange(1, 6), np.arange(1, 6))
     k2 = np.sort((np.pi**2 * (m**2 + n**2) / 4).ravel())[:5]
     for tension, bound in ((-4.0, 3e-7), (50.0, 1e-7), (1e4, 1e-9)):
