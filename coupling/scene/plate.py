@@ -55,7 +55,7 @@ def build_plate(plate: PlateCase) -> Plate:
     """The plate of a case, without loads."""
     section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
     tolerance = None if plate.cell_size_given else PLATE_TOLERANCE
-    return Plate(plate.build_mesh(), section, plate.supports, tolerance)
+    return Plate(plate.build_mesh(), section, plate.supports, tolerance, plate.tension)
 
 
 def actuator_stiffness(case: Case) -> NDArray[np.float64]:

@@ -43,7 +43,7 @@ class DiscretePlate:
         self.mesh = refined_for(mesh, points, plate.fineness.half_width, level)
         rows = corner_rows(self.mesh, [*plate.corners, *corners])
         self.size, self.thickness, self.rigidity = self.mesh.size, section.thickness, section.rigidity
-        self.model = PlateModel(self.mesh, plate.supports, section.poisson_ratio, rows)
+        self.model = PlateModel(self.mesh, plate.supports, section.poisson_ratio, rows, plate.relative_tension)
         self.in_plane_supports, self.poisson_ratio = dict(movable), section.poisson_ratio
         if by_airy:
             self.membrane = airy(self.mesh, every_rim_moves, section.poisson_ratio, rows)

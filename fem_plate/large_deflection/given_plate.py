@@ -25,6 +25,10 @@ class GivenPlate(Protocol):
     corners: list[SingularCorner]
     fineness: Fineness
 
+    @property
+    def relative_tension(self) -> float:
+        """The tension over the plate's rigidity [1/m^2]."""
+
     def cells(
         self, points: FloatArray | None = None, halvings: int = 0, corners: Sequence[SingularCorner] = ()
     ) -> PlateMesh:

@@ -97,6 +97,7 @@ class DeflectedPlate(Estimated):
             strain = (strain + strain.transpose(0, 2, 1) + slope[:, :, None] * slope[:, None]) / 2
             xx, xy_, yy = discrete.membrane.law @ np.stack([strain[:, 0, 0], 2 * strain[:, 0, 1], strain[:, 1, 1]])
             force = np.stack([np.stack([xx, xy_], -1), np.stack([xy_, yy], -1)], -1)
+        force += discrete.model.tension * np.eye(2)
         return np.asarray(force * discrete.membrane_unit)
 
     @cached_property

@@ -94,9 +94,7 @@ def test_a_plate_pressed_beyond_its_buckling_load_is_refused():
     plate = ReducedPlate([[1.0]], [[[0.0, 0.0], [0.0, 1.0]]], prestress=[-1.5])
     with pytest.raises(ValueError, match="not stable"):
         reduced_equilibrium(plate, [0.0])
-    assert reduced_equilibrium(plate, [0.0], start=[0.1]).corrections[0, 0] == pytest.approx(
-        1.0, rel=1e-12
-    )
+    assert reduced_equilibrium(plate, [0.0], start=[0.1]).corrections[0, 0] == pytest.approx(1.0, rel=1e-12)
 
 
 SOUND = {"stiffness": np.eye(2), "membrane": np.zeros((3, 4, 4))}
