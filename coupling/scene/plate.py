@@ -27,15 +27,26 @@ MAX_WHOLE = 250
 
 @dataclass(frozen=True, eq=False)
 class PlateScene:
-    """A plate on actuators."""
+    """A plate on actuators; stretch: what bends and stretches it, None in linear theory."""
 
     plate: Plate
     shapes: PlateShapes
     lifts: Sequence[AnyDrive]  # N, one for each actuator
     surface: SurfaceMotion
+    stretch: Stretch | None = None
     base: Sequence[AnyDrive] = field(default=(), init=False)  # it stays in its plane
     origin: str = field(default="the plate", init=False)  # what positions are counted from
     fits: tuple[MotionFit, ...] = field(default=(), init=False)
+
+    @property
+    def moving_shapes(self) -> Shapes:
+        """The shapes of the moving surface."""
+        return self.shapes if self.stretch is None else self.stretch.shapes
+
+    @property
+    def moving_drives(self) -> Sequence[AnyDrive]:
+        """The drive of each of them."""
+        return self.lifts if self.stretch is None else self.stretch.moving_drives
 
 
 def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:

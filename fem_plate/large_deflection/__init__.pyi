@@ -9,5 +9,7 @@ from .reduced_solver import (
 )
 from .reduction import Reduction as Reduction, reduce as reduce
 from .shapes import StretchedShapes as StretchedShapes
+from .discrete import DiscretePlate as DiscretePlate
+from .snapshots import Columns as Columns
 from .state import DeflectedPlate as DeflectedPlate
 from .supports import movable_by_boundary as movable_by_boundary

@@ -35,7 +35,7 @@ class StretchedShapes(Shapes):
         linear = reduction.linear.weighted(np.diag(units))
         v = np.concatenate([linear.v, reduction.corrections.v], axis=1)
         extra = np.concatenate([linear.extra, reduction.corrections.extra], axis=1)
-        self.functions: PlateFunctions = discrete.equilibrium.trial.functions(v, extra)
+        self.functions: PlateFunctions = discrete.trial.functions(v, extra)
         self.strengths = self.functions.forces
         self._reduction, self._scales, self._in_plane_scales = reduction, scales, in_plane_scales
 
@@ -56,6 +56,11 @@ class StretchedShapes(Shapes):
         """The in-plane motions (n, 2, M) at points (n, 2) [m]."""
         plane_stress = self._reduction.discrete.plane_stress
         return plane_stress.evaluate(np.asarray(xy, dtype=float) / self.size, self._reduction.motions)[0]
+
+    def in_plane_gradients(self, xy: FloatArray) -> FloatArray:
+        """The gradients (n, 2, 2, M) [1/m] of in-plane motions at points (n, 2) [m]; the second index is the direction."""
+        plane_stress = self._reduction.discrete.plane_stress
+        return plane_stress.evaluate(np.asarray(xy) / self.size, self._reduction.motions)[1] / self.size
 
     def in_plane_heights(self) -> FloatArray:
         """What the errors of in-plane motions are relative to, (M,)."""
