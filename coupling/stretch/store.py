@@ -30,7 +30,7 @@ def key_of(large: LargeDeflection, heights: FloatArray, level: int, tolerance: f
     plate, mesh = large.plate, large.plate.mesh
     digest = hashlib.sha256()
     for package in (fem_plate, meshes):
-        digest.update(source_digest(Path(package.__file__).parent).encode())
+        digest.update(source_digest(Path(package.__path__[0])).encode())
     text = (
         *(plate.section, plate.tension, sorted(plate.supports.items()), plate.tolerance),
         *(sorted(large.movable.items()), large.membrane, level, tolerance),

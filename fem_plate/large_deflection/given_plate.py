@@ -22,6 +22,7 @@ class GivenPlate(Protocol):
     section: PlateSection
     supports: dict[str, str]
     tolerance: float | None
+    tension: float  # N/m
     corners: list[SingularCorner]
     fineness: Fineness
 

@@ -58,7 +58,7 @@ class StretchedShapes(Shapes):
         return plane_stress.evaluate(np.asarray(xy, dtype=float) / self.size, self._reduction.motions)[0]
 
     def in_plane_gradients(self, xy: FloatArray) -> FloatArray:
-        """The gradients (n, 2, 2, M) [1/m] of in-plane motions at points (n, 2) [m]; the second index is the direction."""
+        """The gradients (n, 2, 2, M) [1/m] of in-plane motions at points (n, 2) [m]: component, direction, motion."""
         plane_stress = self._reduction.discrete.plane_stress
         return plane_stress.evaluate(np.asarray(xy) / self.size, self._reduction.motions)[1] / self.size
 
