@@ -66,7 +66,7 @@ class StretchModel:
         shapes = self.shapes
         points = shapes.functions.space.points * shapes.size
         heights = np.abs(shapes.values(points))[:, len(self.large.points) :].max(axis=0)
-        return heights, np.abs(shapes.in_plane_values(points)).max(axis=(0, 1))
+        return heights, np.abs(shapes.in_plane_values(points)).max(axis=(0, 2))
 
     def corrections(self, drives: Sequence[AnyDrive], end: float) -> Corrections:
         """What corrects the linear shapes under drives, from 0 to `end` [s]."""

@@ -53,9 +53,10 @@ class StretchedShapes(Shapes):
         return self._scales
 
     def in_plane_values(self, xy: FloatArray) -> FloatArray:
-        """The in-plane motions (n, 2, M) at points (n, 2) [m]."""
+        """The in-plane motions (n, M, 2) at points (n, 2) [m]."""
         plane_stress = self._reduction.discrete.plane_stress
-        return plane_stress.evaluate(np.asarray(xy, dtype=float) / self.size, self._reduction.motions)[0]
+        motions = plane_stress.evaluate(np.asarray(xy, dtype=float) / self.size, self._reduction.motions)[0]
+        return np.ascontiguousarray(motions.transpose(0, 2, 1))
 
     def in_plane_gradients(self, xy: FloatArray) -> FloatArray:
         """The gradients (n, 2, 2, M) [1/m] of in-plane motions at points (n, 2) [m]: component, direction, motion."""
