@@ -73,6 +73,14 @@ WRONG = [
         },
         "plate.supports leave the plate free to move as a whole",
     ),
+    (
+        {"shape": SHAPES["annulus"], "plate": 'tension = "5 N/m"\nsupports = { outer = "clamped" }'},
+        'plate.tension must be 0 where a boundary is free, as a free rim carries none; got "5 N/m", and inner is free',
+    ),
+    (
+        {"shape": SHAPES["disc"], "plate": 'tension = "5 MPa"'},
+        'plate.tension must be a force per length such as "50 N/m"; got "5 MPa", a pressure',
+    ),
     # Places
     (
         {"shape": SHAPES["annulus"], "places": ["0 um, 40 um"]},
