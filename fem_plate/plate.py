@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,7 @@ from fem_plate import vibration
 from fem_plate.arrays import CELL, FINER_CELL, ActuatorArray, Cutter, PatchedShapes, ProgressCallback, spacing
 from fem_plate.buckling import buckling_compression, check_tension
 from fem_plate.deflection import Deflection
-from fem_plate.elements import Fineness, PlateModel, by_boundary, corner_rows, graded, singular_corners
+from fem_plate.elements import Fineness, PlateModel, SingularCorner, by_boundary, corner_rows, graded, singular_corners
 from fem_plate.estimated import refined
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.inputs import as_points, check_points, one_per_point, stiffness_per_point
@@ -23,6 +23,8 @@ from meshes import PlateMesh
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from fem_plate.large_deflection import DeflectedPlate, LargeDeflection
 
 FloatArray = NDArray[np.float64]
 
@@ -73,23 +75,29 @@ class Plate:
         self.tolerance = tolerance
         check_tension(tension, self.supports)
         self.tension = float(tension)
-        self._fineness = Fineness.of(mesh, self._tension)
-        self._corners = singular_corners(mesh, self.supports, section.poisson_ratio)
+        self.fineness = Fineness.of(mesh, self._tension)
+        self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
         self._last: tuple[bytes, PlateModel] | None = None
         if tension < 0 and -tension >= (load := self.buckling_load()):
             raise ValueError(
                 f"Input tension of Plate must exceed {-load:.6g} N/m, at which it buckles; got {self.tension!r}"
             )
 
-    def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
-        """The plate on halved cells, graded towards its corners and for actuators at points (N, 2) [m]."""
+    def cells(
+        self, points: FloatArray | None = None, halvings: int = 0, corners: Sequence[SingularCorner] = ()
+    ) -> PlateMesh:
+        """Halved cells, graded towards the plate's corners, further ones, and for actuators at points (N, 2) [m]."""
         mesh = self.mesh
         for _ in range(halvings):
             mesh = mesh.refined()
-        mesh = graded(mesh, self._fineness.halved(halvings), self._corners, points)
+        return graded(mesh, self.fineness.halved(halvings), [*self.corners, *corners], points)
+
+    def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
+        """The plate on such cells."""
+        mesh = self.cells(points, halvings)
         key = mesh.points.tobytes()
         if self._last is None or self._last[0] != key:
-            rows = corner_rows(mesh, self._corners)
+            rows = corner_rows(mesh, self.corners)
             self._last = key, PlateModel(mesh, self.supports, self.section.poisson_ratio, rows, self._tension)
         return self._last[1]
 
@@ -109,8 +117,8 @@ class Plate:
             A boundary is free.
         """
         check_tension(1.0, self.supports)
-        mesh = graded(self.mesh, Fineness.of(self.mesh), self._corners)
-        rows = corner_rows(mesh, self._corners)
+        mesh = graded(self.mesh, Fineness.of(self.mesh), self.corners)
+        rows = corner_rows(mesh, self.corners)
         model = PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)
         return buckling_compression(model) * self.section.rigidity
 
@@ -151,8 +159,52 @@ class Plate:
         return refined(
             lambda halvings: InfluenceShapes(self.model(points, halvings), points, rigidity, actuator_stiffness),
             self.tolerance,
-            self._fineness.gain,
+            self.fineness.gain,
         )
+
+    def large_deflection(
+        self,
+        points: ArrayLike,
+        in_plane_supports: str | Mapping[str, str] = "immovable",
+        stiffness: ArrayLike | None = None,
+        membrane: str | None = None,
+    ) -> LargeDeflection:
+        """The plate with actuators in von Karman's theory, which stretches as it bends.
+
+        Parameters
+        ----------
+        points : (N, 2) array_like
+            Places of the actuators [m]; there may be none.
+        in_plane_supports : str or mapping of str to str
+            "immovable" or "movable", whether the rim is held in its plane: of all boundaries that `supports` hold, or
+            by boundary. Free boundaries, and those that a mapping leaves out, are movable.
+        stiffness : float or (N,) array_like, optional
+            As for `influence`.
+        membrane : str, optional
+            How to compute stretching: "airy", by Airy's stress function, the default where it applies (plates without
+            holes whose rim is immovable, or movable and clamped); or "plane-stress", by in-plane motion.
+
+        Returns
+        -------
+        large_deflection : LargeDeflection
+            Solves for strokes and a pressure.
+
+        Raises
+        ------
+        ValueError
+            As for `influence`; an in-plane support or boundary is unknown; the membrane does not apply; the plate has a
+            tension.
+        """
+        if self.tension:
+            raise ValueError(f"Input tension of Plate must be 0 for large_deflection; got {self.tension!r} N/m")
+        from fem_plate.large_deflection import LargeDeflection, movable_by_boundary  # here: scikit-fem takes a while
+
+        points = as_points(points, "points of large_deflection")
+        actuator_stiffness = stiffness_per_point(stiffness, len(points), "large_deflection", may_float=True)
+        if points.size:
+            check_points("large_deflection", points, self.mesh.outline.gap(points), self.mesh.size)
+        movable = movable_by_boundary(in_plane_supports, self.supports)
+        return LargeDeflection(self, points, actuator_stiffness, movable, membrane)
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
         """The plate under forces and a uniform pressure, both positive up.
@@ -184,7 +236,7 @@ class Plate:
         return refined(
             lambda halvings: Deflection(self.model(points, halvings), points, loads, float(pressure), rigidity),
             self.tolerance,
-            self._fineness.gain,
+            self.fineness.gain,
         )
 
     def pressure(self, load: float) -> Deflection:
@@ -195,7 +247,13 @@ class Plate:
         """The lowest natural frequencies (count,) [Hz], ascending, repeated ones repeated; raises as `modes` does."""
         return self.modes(count, held, stiffness).frequencies
 
-    def modes(self, count: int, held: ArrayLike | None = None, stiffness: ArrayLike | None = None) -> Modes:
+    def modes(
+        self,
+        count: int,
+        held: ArrayLike | None = None,
+        stiffness: ArrayLike | None = None,
+        deflected: DeflectedPlate | None = None,
+    ) -> Modes:
         """The lowest modes of vibration, without motions that bend nothing and stretch no spring.
 
         Parameters
@@ -206,12 +264,16 @@ class Plate:
             Points that actuators hold still [m].
         stiffness : float or (N,) array_like, optional
             Stiffness of those actuators [N/m]; inf is rigid (the default).
+        deflected : DeflectedPlate, optional
+            A state of `large_deflection` to vibrate about; by default the flat plate. Held points are among its
+            actuators; the others keep their force.
 
         Raises
         ------
         ValueError
             The section has no density, the count or a stiffness is not positive, a held point is not inside the rim or
-            coincides with another, or there are more than 2 000 of them.
+            coincides with another, or there are more than 2 000 of them; or the
+            deflected state has no actuator at a held point, or is not stable.
         """
         density = self.section.density
         if density is None:
@@ -222,13 +284,15 @@ class Plate:
         if points.size:
             check_points("modes", points, self.mesh.outline.gap(points), self.mesh.size)
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "modes", may_float=False)
-        model = self.model(points)
+        model = self.model(points) if deflected is None else deflected.discrete.model
         max_count = model.unknowns // 2 - 1
         if not (isinstance(count, int | np.integer) and 1 <= count <= max_count):
             raise ValueError(f"Input count of modes must be a whole number from 1 to {max_count}; got {count!r}")
         inertia = density * self.section.thickness * self.mesh.size**4
         rigidity = self.section.rigidity
         compliance = rigidity / self.mesh.size**2 / actuator_stiffness
+        if deflected is not None:
+            return deflected.modes(count, points, compliance, rigidity / inertia)
         return vibration.modes(model, points, compliance, count, rigidity / inertia)
 
     def __repr__(self) -> str:
@@ -252,11 +316,11 @@ class Plate:
     def _patched(
         self, points: FloatArray, actuator_stiffness: FloatArray, truncation: float, tell: ProgressCallback
     ) -> PatchedShapes:
-        cell = min(self._fineness.cell, PATCH_FINENESS * self._fineness.half_width)
+        cell = min(self.fineness.cell, PATCH_FINENESS * self.fineness.half_width)
         pitch = spacing(points)
-        fineness = self._fineness.on_patches(cell, PATCH_RIM * min(float(pitch.max()), self.mesh.size))
+        fineness = self.fineness.on_patches(cell, PATCH_RIM * min(float(pitch.max()), self.mesh.size))
         pitches = CELL if self.tolerance is None else FINER_CELL
-        cutter = Cutter(self.mesh, self.supports, fineness, self._corners, points, pitch, pitches)
+        cutter = Cutter(self.mesh, self.supports, fineness, self.corners, points, pitch, pitches)
         section = self.section
         array = ActuatorArray(
             cutter, points, actuator_stiffness, section.rigidity, section.poisson_ratio, self._tension

@@ -70,6 +70,14 @@ class PlateFunctions:
             hessian += w_hess[:, None] * self.pressure[:, None, None]
         return value, gradient, hessian
 
+    def known_slopes(self, x: FloatArray) -> FloatArray:
+        """The slopes (n, 2, k) of all but the finite elements at points (n, 2)."""
+        slopes = np.einsum("njd,jk->ndk", self.infinite.point_load(x, self.sources)[1], self.forces, optimize=True)
+        slopes += self.rigid[1:]
+        if np.any(self.pressure):
+            slopes += self.infinite.pressure_derivatives(x - self.space.middle)[1].T[:, :, None] * self.pressure
+        return np.asarray(slopes)
+
     def evaluate(self, x: FloatArray) -> Derivatives:
         """The functions at points (n, 2); at a source the Hessian is infinite."""
         value, gradient, hessian = self.smooth(x)

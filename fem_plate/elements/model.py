@@ -64,7 +64,7 @@ class PlateModel:
         return np.asarray(self.space.mass() @ (self.space.linear() @ self.rigid))
 
     @cached_property
-    def _pins(self) -> csc_matrix:
+    def pins(self) -> csc_matrix:
         """(r, unknowns), the deflections at r points that would stop every rigid motion if held."""
         xy = self.mesh.points / self.mesh.size
         chosen: list[int] = []
@@ -77,13 +77,18 @@ class PlateModel:
         return self.space.point_values(xy[chosen])
 
     @cached_property
+    def pinned_stiffness(self) -> csc_matrix:
+        """The stiffness, with the rigid motions held by springs at a few points."""
+        return (self.space.stiffness(self.poisson_ratio, self.tension) + self.pins.T @ self.pins).tocsc()
+
+    @cached_property
     def solve(self) -> Callable[[FloatArray], FloatArray]:
         """Solves for the plate's response (unknowns, ...) to a load (unknowns, ...).
 
         A plate that can move rigidly rests on springs spread evenly under all of it, whose reactions are rigid motions
         too; balanced loads do not feel them.
         """
-        matrix = self.space.stiffness(self.poisson_ratio, self.tension) + self._pins.T @ self._pins
+        matrix = self.pinned_stiffness
         # Scaled, because unknowns of small and large cells differ by many powers of ten. Symmetric ordering without
         # pivoting: the matrix is positive definite, and rounding stays at 1e-11.
         scale = 1 / np.sqrt(matrix.diagonal())

@@ -77,7 +77,7 @@ class PlateSpace:
         coupling = forms.rim_tension_forms(self.rim)[0][..., used, used]
         at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)
         np.add.at(matrices, self.rim.triangle, at_rim)
-        return self._assemble(matrices)
+        return self.assembled(matrices)
 
     def _bending(self, poisson_ratio: float) -> csc_matrix:
         """The matrix of int M(v):H(q) - R(v; q) - R(q; v) + S(v; q)."""
@@ -89,26 +89,32 @@ class PlateSpace:
         at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)  # c: of q, d: of v
         if self._relative is None:
             np.add.at(matrices, self.rim.triangle, at_rim)
-            return self._assemble(matrices)
+            return self.assembled(matrices)
         at_corners = np.where(self._relative.inside[:, None, None], matrices, 0.0)
         matrices -= at_corners
         np.add.at(matrices, self.rim.triangle, at_rim)
         bent = sum_up(at_corners, self._entities, self._first)
-        return (self._bent.T @ bent @ self._bent + self._assemble(matrices)).tocsc()
+        return (self._bent.T @ bent @ self._bent + self.assembled(matrices)).tocsc()
 
     def mass(self) -> csc_matrix:
         """The matrix of int v q."""
         matrices = forms.mass(self.triangles)
         triangle, points, weights = self.slivers
         np.add.at(matrices, triangle, forms.mass_at(self.triangles.derivatives(points, triangle, 0)[0], weights))
-        return self._assemble(matrices)
+        return self.assembled(matrices)
 
-    def _assemble(self, matrices: FloatArray) -> csc_matrix:
-        return self._to_independent(self._to_independent(sum_up(matrices, self._entities, self._first)).T).tocsc()
+    def assembled(self, matrices: FloatArray) -> csc_matrix:
+        """The sum of element matrices (m, 21, 21), in the independent unknowns."""
+        return self.to_independent(self.to_independent(sum_up(matrices, self._entities, self._first)).T).tocsc()
 
-    def _to_independent(self, matrix: csc_matrix) -> csc_matrix:
+    def to_independent(self, matrix: csc_matrix) -> csc_matrix:
         """Sum the rows of every triangle's own unknowns into those of the independent ones."""
         return matrix if self._relative is None else self._absolute.T @ matrix
+
+    @property
+    def all_count(self) -> int:
+        """How many unknowns the triangles have together, the dependent ones included."""
+        return int(self._first[-1])
 
     def all_unknowns(self, unknowns: FloatArray) -> FloatArray:
         """The unknowns of every triangle's own points from the independent ones (unknowns, ...)."""
@@ -130,19 +136,19 @@ class PlateSpace:
         shape = (self._first[-1], columns[..., 0].size)
         matrix = coo_matrix((data.ravel(), (rows.ravel(), columns.ravel())), shape=shape).tocsc()
         matrix.eliminate_zeros()
-        return self._to_independent(matrix)
+        return self.to_independent(matrix)
 
     def point_values(self, xy: FloatArray, triangle: IntArray | None = None) -> csc_matrix:
         """The matrix (n, unknowns) whose product with a function's unknowns is its value at points (n, 2).
 
         triangle: (n,), that of each point where they are known.
         """
-        triangle = self._locate(xy) if triangle is None else triangle
+        triangle = self.triangle_of(xy) if triangle is None else triangle
         data = self.triangles.derivatives(xy[:, None], triangle, 0)[0, :, 0]
         columns = self.dofs[triangle]
         rows = np.broadcast_to(np.arange(len(xy))[:, None], columns.shape)
         matrix = coo_matrix((data.ravel(), (columns.ravel(), rows.ravel())), shape=(self._first[-1], len(xy))).tocsc()
-        return self._to_independent(matrix).T.tocsc()
+        return self.to_independent(matrix).T.tocsc()
 
     def evaluate(self, xy: FloatArray, unknowns: FloatArray, orders: int) -> list[FloatArray]:
         """Functions given by their unknowns (unknowns, k) at points (n, 2).
@@ -156,7 +162,7 @@ class PlateSpace:
         step = max(1, CHUNK // k)
         for start in range(0, n, step):
             part = slice(start, start + step)
-            triangle = self._locate(xy[part])
+            triangle = self.triangle_of(xy[part])
             of_triangle = unknowns[self.dofs[triangle]]  # (n, 21, k)
             for order, result in enumerate(results):
                 table = self.triangles.derivatives(xy[part, None], triangle, order)[:, :, 0]
@@ -172,7 +178,7 @@ class PlateSpace:
         step = max(1, CHUNK // result.shape[1])
         for start in range(0, len(xy), step):
             part = slice(start, start + step)
-            triangle = self._locate(xy[part])
+            triangle = self.triangle_of(xy[part])
             xx, _, yy = self.triangles.derivatives(xy[part, None], triangle, 2)
             result[part] = ((xx + yy) @ unknowns[self.dofs[triangle]])[:, 0]
         return result
@@ -222,7 +228,7 @@ class PlateSpace:
         """Whether points (n, 2) lie in the mesh or just beyond it, (n,)."""
         return self._find(xy)[1] > -BEYOND
 
-    def _locate(self, xy: FloatArray) -> IntArray:
+    def triangle_of(self, xy: FloatArray) -> IntArray:
         """The triangle of each point (n, 2), the closest one for a point between a chord and the rim."""
         return self._find(xy)[0]
 

@@ -1,0 +1,5 @@
+"""Large deflection: von Karman's plate, which stretches as it bends."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,97 @@
+"""The stretching plate on one mesh, and its units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_plate.elements import PlateModel, corner_rows
+from fem_plate.large_deflection.airy import airy, airy_corners
+from fem_plate.large_deflection.cells import refined_for
+from fem_plate.large_deflection.equilibrium import Coefficients, Equilibrium, Loads
+from fem_plate.large_deflection.given_plate import GivenPlate
+from fem_plate.large_deflection.membrane import AIRY
+from fem_plate.large_deflection.plane_stress import PlaneStress
+from fem_plate.large_deflection.trial import Trial
+
+FloatArray = NDArray[np.float64]
+
+
+class DiscretePlate:
+    """A plate with actuators at points (N, 2) [m] on one mesh.
+
+    stiffness: (N,) N/m of the actuators.  movable: by boundary.  membrane: AIRY or PLANE_STRESS.
+    """
+
+    def __init__(
+        self,
+        plate: GivenPlate,
+        points: FloatArray,
+        stiffness: FloatArray,
+        movable: Mapping[str, bool],
+        membrane: str,
+        level: int,
+        halvings: int,
+    ) -> None:
+        section, by_airy = plate.section, membrane == AIRY
+        every_rim_moves = all(movable.values())
+        corners = airy_corners(plate.mesh, every_rim_moves, section.poisson_ratio) if by_airy else []
+        mesh = plate.cells(points, halvings, corners)
+        self.mesh = refined_for(mesh, points, plate.fineness.half_width, level)
+        rows = corner_rows(self.mesh, [*plate.corners, *corners])
+        self.size, self.thickness, self.rigidity = self.mesh.size, section.thickness, section.rigidity
+        self.model = PlateModel(self.mesh, plate.supports, section.poisson_ratio, rows)
+        self.in_plane_supports, self.poisson_ratio = dict(movable), section.poisson_ratio
+        if by_airy:
+            self.membrane = airy(self.mesh, every_rim_moves, section.poisson_ratio, rows)
+        else:
+            self.membrane = self.plane_stress.membrane
+        with np.errstate(divide="ignore"):
+            compliance = self.membrane_unit / stiffness
+        self._stroke_units = np.where(stiffness > 0, self.thickness, self.force_unit)
+        self.equilibrium = Equilibrium(Trial(self.model, points / self.size), self.membrane, compliance)
+
+    @cached_property
+    def plane_stress(self) -> PlaneStress:
+        """The plate's in-plane motion."""
+        return PlaneStress(self.mesh, self.model.space, self.in_plane_supports, self.poisson_ratio)
+
+    def loads(self, strokes: FloatArray, pressure: float) -> Loads:
+        """Strokes [m], or forces [N], and a pressure [Pa] without dimensions."""
+        return Loads(strokes / self._stroke_units, pressure / self.pressure_unit)
+
+    def in_plane_motion(self, state: Coefficients) -> FloatArray:
+        """The unknowns of `plane_stress` in a state."""
+        plane_stress = self.plane_stress
+        if self.membrane is plane_stress.membrane:
+            return state.membrane
+        slopes = self.equilibrium.slopes_at(plane_stress.membrane.samples, state)
+        return plane_stress.membrane.respond(slopes)[0]
+
+    @property
+    def force_unit(self) -> float:
+        """N, of dimensionless forces."""
+        return self.rigidity * self.thickness / self.size**2
+
+    @property
+    def pressure_unit(self) -> float:
+        """Pa."""
+        return self.force_unit / self.size**2
+
+    @property
+    def membrane_unit(self) -> float:
+        """N/m, of membrane forces."""
+        return self.rigidity / self.size**2
+
+    @property
+    def motion_unit(self) -> float:
+        """m, of in-plane motion."""
+        return self.thickness**2 / self.size
+
+    @property
+    def energy_unit(self) -> float:
+        """J."""
+        return self.force_unit * self.thickness

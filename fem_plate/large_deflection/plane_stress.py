@@ -1,0 +1,115 @@
+"""The membrane by in-plane motion u: plane stress, force = A : (sym grad u + 1/2 grad w grad w).
+
+scikit-fem's triangles of degree four for each component of u, on cells whose sides along the rim are parabolas through
+the true rim's middles. It serves plates with holes too, and those of which only part of the rim is held in the plane.
+It bounds the membrane energy from above.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import Basis, BilinearForm, ElementTriP4, ElementVector, MeshTri1, MeshTri2
+from skfem.helpers import ddot, sym_grad
+
+from fem_plate.elements import PlateSpace
+from fem_plate.large_deflection.factor import factorised
+from fem_plate.large_deflection.membrane import PLANE_STRESS, Membrane
+from fem_plate.large_deflection.samples import Samples
+from meshes import PlateMesh
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+DEGREE = 14  # of the quadrature
+
+
+class PlaneStress:
+    """The in-plane motion of a plate, dimensionless.
+
+    space: of its deflection, on the same cells.  movable: by boundary.
+    """
+
+    def __init__(self, mesh: PlateMesh, space: PlateSpace, movable: Mapping[str, bool], poisson_ratio: float) -> None:
+        self.space = space
+        self.basis = basis = Basis(curved(mesh), ElementVector(ElementTriP4()), intorder=DEGREE)
+        self.law = 12 * np.array([[1, 0, poisson_ratio], [0, (1 - poisson_ratio) / 2, 0], [poisson_ratio, 0, 1]])
+        self._free = np.setdiff1d(np.arange(basis.N), _held(mesh, basis, movable))
+        strain = np.stack([np.stack([g[0, 0], g[0, 1] + g[1, 0], g[1, 1]]) for g in (f[0].grad for f in basis.basis)])
+        force = np.einsum("ab,fbkn->kanf", self.law, strain, optimize=True)  # (k, 3, n, 30)
+        points = np.moveaxis(np.asarray(basis.global_coordinates()), 0, -1)
+        operator = force.reshape(len(points), -1, force.shape[-1])
+        samples = Samples.at(space, np.arange(len(points)), points, np.asarray(basis.dx), operator)
+        stiffness = _stiffness(poisson_ratio).assemble(basis)[self._free][:, self._free].tocsc()
+        self.membrane = Membrane(
+            name=PLANE_STRESS,
+            samples=(samples,),
+            dofs=np.ascontiguousarray(basis.element_dofs.T).astype(np.int64),
+            stiffness=stiffness,
+            solve=factorised(stiffness),
+            sign=1.0,
+            law=self.law,
+            expand=self._expand,
+            reduce=lambda rows: rows[self._free],
+        )
+
+    def _expand(self, u: FloatArray) -> FloatArray:
+        everything = np.zeros((self.basis.N, *u.shape[1:]))
+        everything[self._free] = u
+        return everything
+
+    def evaluate(self, x: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The motion (n, 2) and its gradient (n, 2, 2) at points (n, 2), from its unknowns."""
+        basis, everything = self.basis, self._expand(u)
+        triangle = self.space.triangle_of(x)
+        local = basis.mapping.invF(x.T[:, :, None], triangle)
+        value, gradient = np.zeros((2, len(x))), np.zeros((2, 2, len(x)))
+        for i in range(basis.Nbfun):
+            (function,) = basis.elem.gbasis(basis.mapping, local, i, triangle)
+            weight = everything[basis.element_dofs[i, triangle]]
+            value += weight * np.asarray(function)[..., 0]
+            gradient += weight * function.grad[..., 0]
+        return value.T, gradient.transpose(2, 0, 1)
+
+
+def curved(mesh: PlateMesh) -> MeshTri2:
+    """The mesh for scikit-fem, lengths by the plate's size, with the middles of its rim's sides on the true rim."""
+    bent = MeshTri2.from_mesh(MeshTri1(mesh.points.T / mesh.size, np.sort(mesh.triangles, axis=1).T))
+    places = bent.doflocs.copy()
+    for name, pairs in mesh.boundaries.items():
+        middles = mesh.arcs(name, np.array([0.5]))[0][:, 0] / mesh.size
+        places[:, bent.dofs.facet_dofs[0, facets_of(bent, pairs)]] = middles.T
+    return replace(bent, doflocs=places)
+
+
+def facets_of(mesh: MeshTri1, pairs: IntArray) -> IntArray:
+    """The facets between pairs of points (k, 2)."""
+    count = mesh.p.shape[1]
+    number = mesh.facets.min(axis=0).astype(np.int64) * count + mesh.facets.max(axis=0)
+    order = np.argsort(number)
+    wanted = pairs.min(axis=1).astype(np.int64) * count + pairs.max(axis=1)
+    return np.asarray(order[np.searchsorted(number[order], wanted)])
+
+
+def _held(mesh: PlateMesh, basis: Basis, movable: Mapping[str, bool]) -> IntArray:
+    """The unknowns that rims hold, or three that keep a plate in place that no rim holds."""
+    pairs = [mesh.boundaries[name] for name, moves in movable.items() if not moves]
+    if pairs:
+        return np.asarray(basis.get_dofs(facets_of(basis.mesh, np.concatenate(pairs))).flatten())
+    x = basis.mesh.p[:, : len(mesh.points)]
+    first = int(np.argmin(x[0]))
+    second = int(np.argmax(np.abs(x[0] - x[0, first])))
+    return np.array([*basis.nodal_dofs[:, first], basis.nodal_dofs[1, second]])
+
+
+def _stiffness(poisson_ratio: float) -> BilinearForm:
+    """int (A : sym grad u) : sym grad q."""
+
+    def form(u, q, _):  # type: ignore[no-untyped-def]
+        e, d = sym_grad(u), sym_grad(q)
+        return 12 * ((1 - poisson_ratio) * ddot(e, d) + poisson_ratio * (e[0, 0] + e[1, 1]) * (d[0, 0] + d[1, 1]))
+
+    return BilinearForm(form)

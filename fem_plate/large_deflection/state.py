@@ -1,0 +1,128 @@
+"""A deflected plate: its shape, its membrane and its reactions, in SI units."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fem_plate.elements import Derivatives
+from fem_plate.estimated import Estimated
+from fem_plate.inputs import SAME_PLACE, check_on_plate
+from fem_plate.large_deflection.discrete import DiscretePlate
+from fem_plate.large_deflection.equilibrium import Coefficients
+from fem_plate.large_deflection.vibration import modes_about
+from fem_plate.vibration import Modes
+
+FloatArray = NDArray[np.float64]
+
+
+class DeflectedPlate(Estimated):
+    """A plate that is bent and stretched; made by `LargeDeflection.solve`.
+
+    Attributes
+    ----------
+    reactions : (N,) array
+        Force of each actuator on the plate, positive up [N].
+    energy : float
+        Elastic energy of the plate, of bending and stretching [J].
+    stretching_energy : float
+        Its part of stretching [J].
+    membrane : str
+        "airy" or "plane-stress": how its stretching was computed.
+    """
+
+    def __init__(self, discrete: DiscretePlate, coefficients: Coefficients, forces: FloatArray) -> None:
+        self.discrete, self.coefficients = discrete, coefficients
+        self.size = discrete.size
+        self.reactions = forces * discrete.force_unit
+        trial = discrete.equilibrium.trial
+        unscaled = trial.functions(coefficients.v, coefficients.extra, coefficients.pressure)
+        self.functions = unscaled.weighted(np.array([discrete.thickness]))
+        self.stretching_energy = coefficients.stretching * discrete.energy_unit
+        self.membrane = discrete.membrane.name
+
+    @cached_property
+    def largest(self) -> float:
+        """The largest |w| [m] at the mesh's points and the actuators."""
+        points = np.concatenate([self.functions.space.points, self.functions.sources])
+        return float(np.abs(self.functions.values(points)).max())
+
+    @cached_property
+    def energy(self) -> float:
+        bending = self.discrete.equilibrium.bending_energy(self.coefficients)
+        return bending * self.discrete.energy_unit + self.stretching_energy
+
+    def evaluate(self, xy: ArrayLike) -> Derivatives:
+        """The deflection with first and second derivatives.
+
+        Parameters
+        ----------
+        xy : (n, 2) array_like
+            Points on the plate [m].
+
+        Returns
+        -------
+        w : (n,) array
+            [m].
+        gradient : (n, 2) array
+            [1].
+        hessian : (n, 2, 2) array
+            [1/m]; infinite at an actuator.
+
+        Raises
+        ------
+        ValueError
+            A point lies beyond the rim.
+        """
+        value, gradient, hessian = self.functions.evaluate(self._dimensionless(xy))
+        return value[:, 0], gradient[:, 0] / self.size, hessian[:, 0] / self.size**2
+
+    def in_plane(self, xy: ArrayLike) -> FloatArray:
+        """The in-plane motion u (n, 2) [m] of the mid-plane at points (n, 2) [m]; raises as `evaluate` does."""
+        x = self._dimensionless(xy)
+        return self.discrete.plane_stress.evaluate(x, self._motion)[0] * self.discrete.motion_unit
+
+    def membrane_force(self, xy: ArrayLike) -> FloatArray:
+        """The membrane force (n, 2, 2) [N/m], positive: pulls, at points (n, 2) [m]; raises as `evaluate` does."""
+        x = self._dimensionless(xy)
+        discrete, membrane = self.discrete, self.coefficients.membrane
+        if discrete.membrane.law is None:
+            hessian = discrete.model.space.evaluate(x, membrane[:, None], orders=3)[2][:, 0]
+            force = np.trace(hessian, axis1=1, axis2=2)[:, None, None] * np.eye(2) - hessian
+        else:
+            strain = discrete.plane_stress.evaluate(x, membrane)[1]
+            slope = self.functions.evaluate(x)[1][:, 0] / discrete.thickness
+            strain = (strain + strain.transpose(0, 2, 1) + slope[:, :, None] * slope[:, None]) / 2
+            xx, xy_, yy = discrete.membrane.law @ np.stack([strain[:, 0, 0], 2 * strain[:, 0, 1], strain[:, 1, 1]])
+            force = np.stack([np.stack([xx, xy_], -1), np.stack([xy_, yy], -1)], -1)
+        return np.asarray(force * discrete.membrane_unit)
+
+    @cached_property
+    def _motion(self) -> FloatArray:
+        """The unknowns of the in-plane motion."""
+        return self.discrete.in_plane_motion(self.coefficients)
+
+    def modes(self, count: int, held: FloatArray, compliance: FloatArray, unit: float) -> Modes:
+        """The lowest modes about this state, as `Plate.modes`.
+
+        held: (k, 2) m.  compliance: (k,) dimensionless.  unit: 1/s^2, of squared angular frequencies.
+        """
+        discrete, x = self.discrete, self.functions.sources
+        holds = np.full(len(x), np.inf)
+        for point, c in zip(held / self.size, compliance, strict=True):
+            near = np.flatnonzero(np.hypot(*(x - point).T) < SAME_PLACE)
+            if not near.size:
+                raise ValueError(
+                    f"Input held of modes must be actuators of the deflected state; it has none at "
+                    f"{(point * self.size).tolist()} m"
+                )
+            holds[near] = c
+        squares, functions = modes_about(discrete, self.coefficients, holds, count)
+        return Modes(np.sqrt(squares * unit) / (2 * np.pi), discrete.model, functions)
+
+    def _dimensionless(self, xy: ArrayLike) -> FloatArray:
+        xy = np.asarray(xy, dtype=float)
+        check_on_plate(self.discrete.mesh.outline, xy, self.size)
+        return xy / self.size
