@@ -130,7 +130,7 @@ def test_the_models_are_named_as_in_the_discriminated_union():
 
 
 def test_a_tension_is_read_and_makes_another_plate(tmp_path):
-    from coupling.scene import build_plate
+    from coupling.scene.plate import build_plate
 
     plain = read(tmp_path, text(SHAPES["disc"])).plate
     pulled = read(tmp_path, text(SHAPES["disc"], plate='tension = "0.05 N/mm"')).plate
@@ -142,7 +142,7 @@ def test_a_tension_is_read_and_makes_another_plate(tmp_path):
 
 
 def test_a_plate_that_would_buckle_is_refused_with_its_load(tmp_path):
-    from coupling.scene import build_plate
+    from coupling.scene.plate import build_plate
 
     case = read(tmp_path, text(SHAPES["disc"], plate='tension = "-1000 N/m"'))
     with pytest.raises(ValueError, match=r"Input tension of Plate must exceed -710\.\d+ N/m, at which it buckles"):
