@@ -8,7 +8,7 @@ from typing import Self, TypeVar
 
 import numpy as np
 
-from fem_plate.elements import PlateFunctions
+from fem_plate.elements import GAIN, PlateFunctions
 
 MAX_UNKNOWNS = 100_000  # refinement to a tolerance stops here
 
@@ -46,7 +46,7 @@ class Estimated:
 Solution = TypeVar("Solution", bound=Estimated)
 
 
-def refined(solve: Callable[[int], Solution], tolerance: float | None, gain: float) -> Solution:
+def refined(solve: Callable[[int], Solution], tolerance: float | None, gain: float = GAIN) -> Solution:
     """The solution on cells halved as often as the tolerance requires; without one, on the cells as they are.
 
     solve: takes the number of halvings.  gain: what a halving divides the error of w by, at least.

@@ -192,8 +192,11 @@ class Plate:
         Raises
         ------
         ValueError
-            As for `influence`; an in-plane support or boundary is unknown; the membrane does not apply.
+            As for `influence`; an in-plane support or boundary is unknown; the membrane does not apply; the plate has a
+            tension.
         """
+        if self.tension:
+            raise ValueError(f"Input tension of Plate must be 0 for large_deflection; got {self.tension!r} N/m")
         from fem_plate.large_deflection import LargeDeflection, movable_by_boundary  # here: scikit-fem takes a while
 
         points = as_points(points, "points of large_deflection")

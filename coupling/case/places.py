@@ -87,7 +87,9 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
     held = _held(parts, spots, stand)
     if supports is not None:
         supported = outline.model_copy(update={"supports": supports})
-        yield from _free_tension(supported, mesh, right_value(PlateCase, "tension", plate, parts.context, 0.0), plate)
+        yield from _free_tension(
+            supported, mesh, right_value(PlateCase, "tension", plate, parts.context, 0.0), written_plate
+        )
         if held is not None:
             yield from _rigid_motion(supported, mesh, held)
 

@@ -37,7 +37,7 @@ from fem_plate.elements.rim import RimQuadrature, unit_gauss
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Anything within (100..2000, 5000..4e5) gives the same digits; far less loses definiteness.
+# Anything within (20..2e4, 100..2000, 5000..4e5) gives the same digits; far less loses definiteness.
 GAMMA_0 = 200.0
 GAMMA_1 = 400.0
 GAMMA_2 = 40000.0

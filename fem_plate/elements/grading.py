@@ -20,9 +20,9 @@ CORNER_ERROR = 1e-2  # of the error of the plate's other cells
 LAYER_CELLS = 8.0  # of the plate's cells over its half width: cells at a stretched rim over the width of its layer
 LAYER_GROWTH = 4.0  # widths of the layer over which cells grow e-fold
 MAX_LAYER_CELLS = 1000.0  # spent on layers before any halving, about
-# What halving the cells divides the error of w by at least: the fewer cells in a layer, the less. Observed, without a
-# layer, with cells at the rim of up to COARSE_LAYER widths, and with larger ones: 2^5.5, 6 and 4 and more.
-GAIN, LAYER_GAIN, COARSE_GAIN, COARSE_LAYER = 32.0, 4.0, 2.0, 6.0
+# What halving the cells is sure to divide the error of w by: without layers (observed: 2^5.5 and more), with cells at
+# the rim of up to COARSE_LAYER widths of a layer, and with larger ones.
+GAIN, LAYER_GAIN, COARSE_GAIN, COARSE_LAYER = 2.0**5, 8.0, 2.0, 6.0
 MIN_CELL = 1e-6  # of the plate's size: smaller cells add more rounding than accuracy
 
 
