@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,38 @@ PLATE_TOLERANCE = 1e-8
 MAX_WHOLE = 250
 
 
+class Stretch(Protocol):
+    """How a plate stretches under its drives. Errors are relative to the largest deflection."""
+
+    @property
+    def mesh_error(self) -> float:
+        """Estimated, of the full solutions."""
+
+    @property
+    def reduction_error(self) -> float:
+        """Measured, of the few shapes that stand for these, by full solutions that were held out."""
+
+    @property
+    def piece_error(self) -> float:
+        """Measured, of the corrections' pieces in time."""
+
+    @property
+    def solutions(self) -> int:
+        """How many full solutions there are."""
+
+    @property
+    def deflection(self) -> float:
+        """m, the largest."""
+
+    @property
+    def slope(self) -> float:
+        """The largest."""
+
+    @property
+    def largest_strain(self) -> float:
+        """The largest on either face, half a thickness or more from the actuators."""
+
+
 @dataclass(frozen=True, eq=False)
 class PlateScene:
     """A plate on actuators."""
@@ -36,6 +69,17 @@ class PlateScene:
     base: Sequence[AnyDrive] = field(default=(), init=False)  # it stays in its plane
     origin: str = field(default="the plate", init=False)  # what positions are counted from
     fits: tuple[MotionFit, ...] = field(default=(), init=False)
+    stretch: Stretch | None = None  # None: linear theory
+
+    @property
+    def moving_shapes(self) -> PlateShapes:
+        """The shapes of the moving surface, those of the actuators first."""
+        return self.shapes
+
+    @property
+    def moving_drives(self) -> Sequence[AnyDrive]:
+        """One for each of them."""
+        return self.lifts
 
 
 def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:
