@@ -12,7 +12,8 @@ from scipy.spatial import cKDTree
 
 from coupling.case import SAME_PLACE, Case
 from coupling.drives import moments, stroke_heights, travel
-from coupling.scene import PlateScene, Stretch
+from coupling.scene import PlateScene
+from coupling.stretch import Stretch
 from coupling.steepest import around, circles, steepest
 from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes
 from meshes import Outline
@@ -76,7 +77,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         slope, deflection, curvature = _extremes(shapes, drives, case.run.duration, plate.section.thickness / 2)
         strain = None if curvature is None else plate.section.thickness / 2 * curvature
     else:
-        slope, deflection, strain = stretch.slope, stretch.deflection, stretch.largest_strain
+        deflection, slope, strain = stretch.extremes
     thickness = plate.section.thickness
     over_thickness = deflection / thickness
     contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
@@ -209,6 +210,6 @@ def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: 
     if isinstance(shapes, PatchedShapes):
         return shapes.compliance_at(start[0]) * force
     springs = np.append(shapes.springs, 0.0)
-    coarse = Plate(plate.mesh, plate.section, plate.supports)  # three digits are enough
+    coarse = Plate(plate.mesh, plate.section, plate.supports, tension=plate.tension)  # three digits are enough
     with_part = coarse.influence(np.concatenate([shapes.points, start]), springs)
     return float(with_part.evaluate(start)[0][0, -1]) * force

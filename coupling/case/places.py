@@ -85,8 +85,13 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
         yield from _stretching(parts, len(spots) + (len(stand.spots) if stand else 0))
     supports = right_value(PlateCase, "supports", plate, parts.context, "clamped")
     held = _held(parts, spots, stand)
-    if supports is not None and held is not None:
-        yield from _rigid_motion(outline.model_copy(update={"supports": supports}), mesh, held)
+    if supports is not None:
+        supported = outline.model_copy(update={"supports": supports})
+        yield from _free_tension(
+            supported, mesh, right_value(PlateCase, "tension", plate, parts.context, 0.0), written_plate
+        )
+        if held is not None:
+            yield from _rigid_motion(supported, mesh, held)
 
 
 class _Spot(NamedTuple):
@@ -115,6 +120,17 @@ def _cell_size(outline: PlateCase, cell_size: float | None, plate: Any) -> Mista
         limit = f"half of the plate's smallest width, {length_text(most, written_unit(written))}"
         got = quoted(written) if isinstance(written, str) else length_text(written)
         yield ("plate", "cell_size"), f"must not exceed {limit}; got {got}"
+
+
+def _free_tension(outline: PlateCase, mesh: PlateMesh, tension: float | None, plate: Any) -> Mistakes:
+    free = [name for name, support in outline.supports_of(list(mesh.boundaries)).items() if support == "free"]
+    if tension and free:
+        got = quoted(_written(plate, "tension"))
+        rims = f"{' and '.join(free)} {'is' if len(free) == 1 else 'are'} free"
+        yield (
+            ("plate", "tension"),
+            f"must be 0 where a boundary is free, as a free rim carries none; got {got}, and {rims}",
+        )
 
 
 def _boundary_names(key: str, supports: Any, names: list[str]) -> Mistakes:

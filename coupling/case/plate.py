@@ -23,7 +23,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, core_schema
 
 from coupling.case.table import Contradictions, KeyedTable
-from coupling.case.values import Angle, Density, FileBeside, Length, Point, Pressure, length_text, quoted
+from coupling.case.values import Angle, Density, FileBeside, Length, Point, Pressure, Tension, length_text, quoted
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -68,6 +68,8 @@ class PlateCase(KeyedTable, ABC):
     """How thick it is."""
     density: Density | None = Field(default=None, gt=0)
     """With it drives are compared with the plate's first frequency."""
+    tension: Tension = Field(default=0.0, examples=["50 N/m"])
+    """A residual force per length in its plane, the same in all directions: positive pulls, negative presses."""
     top_face: StrictBool = True
     """Whether parts lie on the top face, which bending also moves in its plane, or, if false, on the mid-plane."""
 

@@ -26,6 +26,7 @@ RIM_STAYS = (
     "poisson_ratio",
     "thickness",
     "density",
+    "tension",
     "cell_size",
     "top_face",
 )

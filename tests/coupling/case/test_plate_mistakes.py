@@ -94,6 +94,15 @@ WRONG = [
         {"shape": SHAPES["rectangle"], "plate": 'theory = "von-karman"\nin_plane_supports = { lft = "movable" }'},
         "plate.in_plane_supports.lft is no boundary of the plate; did you mean left? It has ",
     ),
+    # Tension
+    (
+        {"shape": SHAPES["annulus"], "plate": 'tension = "5 N/m"\nsupports = { outer = "clamped" }'},
+        'plate.tension must be 0 where a boundary is free, as a free rim carries none; got "5 N/m", and inner is free',
+    ),
+    (
+        {"shape": SHAPES["disc"], "plate": 'tension = "5 MPa"'},
+        'plate.tension must be a force per length such as "50 N/m"; got "5 MPa", a pressure',
+    ),
     # Places
     (
         {"shape": SHAPES["annulus"], "places": ["0 um, 40 um"]},
