@@ -13,8 +13,8 @@ from scipy.spatial import cKDTree
 from coupling.case import SAME_PLACE, Case
 from coupling.drives import moments, stroke_heights, travel
 from coupling.scene import PlateScene
-from coupling.stretch import Stretch
 from coupling.steepest import around, circles, steepest
+from coupling.stretch import Stretch
 from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes
 from meshes import Outline
 from particle import AnyDrive, ContactSamples, SurfaceMotion, Trajectory

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
@@ -30,11 +32,11 @@ class Stretching:
         near = np.flatnonzero(distance < NEAR * half)
         around = shapes.points[nearest[near], None] + half * STAR
         inside = (shapes.outline.gap(around.reshape(-1, 2)) >= 0).reshape(-1, len(STAR))
-        around = np.where(inside[..., None], around, points[near, None])
-        self._near, self._counts = near, np.maximum(inside.sum(axis=1), 1)
         self._far = np.setdiff1d(np.arange(len(points)), near)
         every = np.concatenate([points[self._far], around[inside]])
-        self._owner = np.repeat(np.arange(len(near)), inside.sum(axis=1))
+        counts = inside.sum(axis=1)
+        owner = np.repeat(np.arange(len(near)), counts)
+        self._near, self._means = near, np.eye(len(near))[owner].T / np.maximum(counts, 1)[:, None]
         _, gradient, hessian = shapes.evaluate(every)
         in_plane = shapes.in_plane_gradients(every)
         self._gradient = [np.ascontiguousarray(gradient[..., k]) for k in (0, 1)]
@@ -56,12 +58,10 @@ class Stretching:
         strain = [e - half * (heights @ h.T) for e, h in zip(middle, self._hessian, strict=True)]
         return {"membrane_force": self._at_points(force), "strain": self._at_points(strain)}
 
-    def _at_points(self, parts: tuple[FloatArray, ...] | list[FloatArray]) -> FloatArray:
+    def _at_points(self, parts: Sequence[FloatArray]) -> FloatArray:
         sampled = np.stack(parts, axis=-1)
         count = len(self._far)
-        values = np.zeros((len(sampled), count + len(self._near), 3))
+        values = np.empty((len(sampled), count + len(self._near), 3))
         values[:, self._far] = sampled[:, :count]
-        means = np.zeros((len(sampled), len(self._near), 3))
-        np.add.at(means, (slice(None), self._owner), sampled[:, count:])
-        values[:, self._near] = means / self._counts[:, None]
+        values[:, self._near] = self._means @ sampled[:, count:]
         return values

@@ -47,7 +47,7 @@ def display_surface(scene: Scene, trajectory: Trajectory) -> DisplaySurface:
 
 
 def moving_heights(scene: Scene, times: FloatArray, derivative: int = 0) -> FloatArray:
-    """The heights (k, K) [m] of the surface's moving drives at times (k,) [s], the actuators' first, or a derivative."""
+    """The heights (k, K) [m] of the surface's drives at times (k,) [s], the actuators' first, or a derivative."""
     drives = scene.moving_drives if isinstance(scene, PlateScene) else scene.lifts
     return stroke_heights(drives, times, derivative)
 
