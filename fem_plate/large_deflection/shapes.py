@@ -52,6 +52,10 @@ class StretchedShapes(Shapes):
     def own_heights(self) -> FloatArray:
         return self._scales
 
+    def laplacians(self, xy: ArrayLike, floor: float) -> FloatArray:
+        """The Laplacians (n, N + n) [1/m^2], as `InfluenceShapes.laplacians`."""
+        return self.functions.laplacians(np.asarray(xy, dtype=float) / self.size, floor / self.size) / self.size**2
+
     def in_plane_values(self, xy: FloatArray) -> FloatArray:
         """The in-plane motions (n, M, 2) at points (n, 2) [m]."""
         plane_stress = self._reduction.discrete.plane_stress
