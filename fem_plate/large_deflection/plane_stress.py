@@ -85,7 +85,6 @@ class PlaneStress:
             gradient += np.moveaxis(function.grad[..., 0], 2, 0)[..., None] * weight[:, None, None]
         return value, gradient
 
-
     def _local(self, x: FloatArray, triangle: IntArray) -> FloatArray:
         """The reference coordinates (2, n, 1) of points (n, 2) on triangles (n,), curved ones by Newton's method."""
         mapping = self.basis.mapping
