@@ -168,6 +168,6 @@ def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: 
     if isinstance(shapes, PatchedShapes):
         return shapes.compliance_at(start[0]) * force
     springs = np.append(shapes.springs, 0.0)
-    coarse = Plate(plate.mesh, plate.section, plate.supports)  # three digits are enough
+    coarse = Plate(plate.mesh, plate.section, plate.supports, tension=plate.tension)  # three digits are enough
     with_part = coarse.influence(np.concatenate([shapes.points, start]), springs)
     return float(with_part.evaluate(start)[0][0, -1]) * force
