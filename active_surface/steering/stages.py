@@ -49,7 +49,7 @@ def searched(
 
 
 def prepared(case: Case, settings: Settings) -> SurfaceMotion:
-    """The moving surface for all drives of a search; compiles all that paths need, so that Ctrl-C works from then on."""
+    """The moving surface for all drives of a search; compiles all that paths need, so that Ctrl-C works then."""
     chosen = able(case, settings)
     together = len(chosen) if settings.actuators is not None else settings.nearest
     sets = spread_drives(case, settings, chosen, together)
