@@ -89,7 +89,14 @@ def _marks(drive: AnyDrive) -> tuple[FloatArray, FloatArray]:
 
 def travel(drive: AnyDrive) -> float:
     """The distance [m] between the lowest and the highest of its marks."""
-    return float(np.ptp(_marks(drive)[1]))
+    low, high = reach(drive)
+    return high - low
+
+
+def reach(drive: AnyDrive) -> tuple[float, float]:
+    """The lowest and the highest of its marks [m]."""
+    heights = _marks(drive)[1]
+    return float(heights.min()), float(heights.max())
 
 
 def first_jump(drives: Sequence[AnyDrive], end: float) -> float | None:

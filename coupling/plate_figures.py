@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
+from scipy.spatial import cKDTree
 
 from coupling.case import SAME_PLACE, Case
 from coupling.drives import moments, stroke_heights, travel
 from coupling.scene import PlateScene
-from coupling.steepest import around, steepest
+from coupling.steepest import around, circles, steepest
+from coupling.stretch import Stretch
 from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes
 from meshes import Outline
 from particle import AnyDrive, ContactSamples, SurfaceMotion, Trajectory
@@ -29,16 +31,29 @@ QUASI_STATIC_ERROR = 1.65
 
 
 @dataclass(frozen=True)
+class StretchError:
+    """The errors of a plate that stretches, relative to its largest deflection."""
+
+    mesh: float  # estimated, of the full solutions
+    reduction: float  # measured, of the few shapes that stand for these
+    pieces: float  # measured, of these shapes' drives, piece by piece in time
+
+
+@dataclass(frozen=True)
 class PlateFigures:
     """What a plate adds to the summary."""
 
+    theory: str  # "linear" or "von-karman"
     plate_unknowns: int
     plate_error: float  # of unit shapes, estimated
     hold_residual: float  # largest |phi_i(x_j) - delta_ij|, what springs give added; 0 where only forces act
     surface_error: float  # of unit shapes' fit, measured
+    stretch_error: StretchError | None  # None: linear theory
+    stretch_solutions: int | None  # full solutions that the few shapes are taken from; None likewise
     deflection_over_thickness: float
-    linear_path_error: float  # relative, of small-deflection theory
+    linear_path_error: float | None  # relative, of small-deflection theory; None: von Karman's
     largest_slope: float
+    largest_strain: float | None  # of either face, in linear theory by bending alone; None: too many actuators to look
     top_face_share: (
         float | None
     )  # what the top face and the centre of mass add to the pull on the part, over the rest; None: there is none
@@ -57,23 +72,32 @@ class PlateFigures:
 def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, friction: Contact) -> PlateFigures:
     """The figures of a plate under its drives and a part's path over it."""
     plate, shapes, drives, surface = scene.plate, scene.shapes, scene.lifts, scene.surface
-    slope, deflection = _extremes(shapes, drives, case.run.duration)
+    stretch = scene.stretch
+    if stretch is None:
+        slope, deflection, curvature = _extremes(shapes, drives, case.run.duration, plate.section.thickness / 2)
+        strain = None if curvature is None else plate.section.thickness / 2 * curvature
+    else:
+        deflection, slope, strain = stretch.extremes
     thickness = plate.section.thickness
     over_thickness = deflection / thickness
     contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
     tipping = _tipping(case, contact)
     first = _first_frequency(plate, shapes)
     moving = [drive for drive in drives if travel(drive) > 0] or drives
-    rings = bool((surface.drives.jump[: surface.shape_count, :2] > 0).any())
+    rings = bool((surface.drives.jump[: len(drives), :2] > 0).any())
     strokes = None if first is None else _range([1 / drive.stroke_time / first for drive in moving])
     return PlateFigures(
+        theory="linear" if stretch is None else "von-karman",
         plate_unknowns=shapes.unknowns,
         plate_error=shapes.error_estimate,
         hold_residual=_hold_residual(shapes),
         surface_error=surface.error,
+        stretch_error=None if stretch is None else _stretch_error(stretch),
+        stretch_solutions=None if stretch is None else stretch.solutions,
         deflection_over_thickness=over_thickness,
-        linear_path_error=LINEAR_ERROR * over_thickness**2,
+        linear_path_error=LINEAR_ERROR * over_thickness**2 if stretch is None else None,
         largest_slope=slope,
+        largest_strain=strain,
         top_face_share=_top_face_share(contact),
         tipping=tipping,
         tips=tipping is not None and tipping > 1 and friction.law.pull_off == 0,
@@ -86,6 +110,10 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force)))),
     )
+
+
+def _stretch_error(stretch: Stretch) -> StretchError:
+    return StretchError(stretch.mesh_error, stretch.reduction_error, stretch.piece_error)
 
 
 def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:
@@ -115,18 +143,32 @@ def _hold_residual(shapes: PlateShapes) -> float:
     return float(np.abs(heights - np.eye(len(shapes.points))[held]).max())
 
 
-def _extremes(shapes: PlateShapes, drives: Sequence[AnyDrive], end: float) -> tuple[float, float]:
-    """The largest slope and deflection [m] over the time asked for, wherever the run ended.
+def _extremes(
+    shapes: PlateShapes, drives: Sequence[AnyDrive], end: float, off: float
+) -> tuple[float, float, float | None]:
+    """The largest slope, deflection [m] and curvature [1/m] over the time asked for, wherever the run ended.
 
-    They are those at the mesh's points and on circles around the actuators, where the slope is largest. Of very many
-    actuators, over the neighbourhood of those where they must be.
+    They are those at the mesh's points and on circles around the actuators, where the slope is largest. Curvatures are
+    principal ones, farther than `off` [m] from the actuators. Of very many actuators, slope and deflection over the
+    neighbourhood of those where they must be.
     """
     heights = stroke_heights(drives, moments(drives, end))
     if not isinstance(shapes, InfluenceShapes):
-        return steepest(shapes, heights)
-    value, gradient, _ = shapes.evaluate(np.concatenate([shapes.model.mesh.points, around(shapes)]))
+        return *steepest(shapes, heights), None
+    steep = np.concatenate([shapes.model.mesh.points, around(shapes)])
+    points = np.concatenate([steep, circles(shapes, off)])
+    value, gradient, hessian = shapes.evaluate(points)
+    value, gradient = value[: len(steep)], gradient[: len(steep)]
     slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
-    return slope, float(np.abs(heights @ value.T).max())
+    far = cKDTree(shapes.points).query(points)[0] >= off * (1 - SAME_PLACE)
+    rows = np.stack([hessian[far, :, 0, 0], hessian[far, :, 0, 1], hessian[far, :, 1, 1]])
+    curvature = max(float(_principal(*(rows @ h)).max()) for h in heights)
+    return slope, float(np.abs(heights @ value.T).max()), curvature
+
+
+def _principal(xx: FloatArray, xy: FloatArray, yy: FloatArray) -> FloatArray:
+    """The larger one of a symmetric tensor's two principal values, without its sign."""
+    return np.asarray(np.abs(xx + yy) / 2 + np.hypot((xx - yy) / 2, xy))
 
 
 def _part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, trajectory: Trajectory) -> float | None:
@@ -168,6 +210,6 @@ def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: 
     if isinstance(shapes, PatchedShapes):
         return shapes.compliance_at(start[0]) * force
     springs = np.append(shapes.springs, 0.0)
-    coarse = Plate(plate.mesh, plate.section, plate.supports)  # three digits are enough
+    coarse = Plate(plate.mesh, plate.section, plate.supports, tension=plate.tension)  # three digits are enough
     with_part = coarse.influence(np.concatenate([shapes.points, start]), springs)
     return float(with_part.evaluate(start)[0][0, -1]) * force

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from coupling.case import MAX_STRETCHING, VON_KARMAN
 from coupling.measured import MotionFit
+from coupling.plate_figures import StretchError
 from coupling.summary import PlateSummary, Summary
 
 MICRO, MILLI = 1e6, 1e3
 
 # The model holds to about a per cent up to these.
 MAX_DEFLECTION = 0.2  # of the thickness
+MAX_LINEAR_ERROR = 0.01  # of the path: beyond it a run names the theory that has stretching
 MAX_SLOPE = 0.2
+MAX_STRAIN = 0.005  # silicon breaks near twice that
 MAX_CURVATURE = 0.1  # of one over the part's size
-MAX_QUASI_STATIC_ERROR = 0.01  # of the acceleration
-MAX_FREQUENCY = 0.003  # of the first one: strokes up and down reach that error there
+MAX_QUASI_STATIC_ERROR = 0.05  # of the acceleration
+MAX_FREQUENCY = 0.015  # of the first one: strokes up and down reach that error there
 MAX_NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
+MAX_STRETCH_ERROR = 1e-3  # of the deflection of a plate that stretches
 MIN_STEPS_PER_CYCLE = 8
 GROWTH = 100  # of the error of one step, that is no sign of chaos
 
@@ -54,6 +59,7 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
                 f"{s.plate_unknowns} unknowns; unit shapes good to {s.plate_error:.1e} (estimated), "
                 f"held at the actuators to {s.hold_residual:.1e}",
             ),
+            *([("", _stretching(s.stretch_error, s.stretch_solutions or 0))] if s.stretch_error else []),
             ("surface", f"fitted to {s.surface_error:.1e} of a unit stroke{tabulated}"),
         ]
     else:
@@ -72,9 +78,10 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
     rows = [
         (
             "model",
-            f"deflection {s.deflection_over_thickness:.3g} times the thickness (path error of linear theory "
-            f"{_percent(s.linear_path_error)}), slope {s.largest_slope:.3g}",
+            f"deflection {s.deflection_over_thickness:.3g} times the thickness ({_theory(s)}), slope "
+            f"{s.largest_slope:.3g}",
         ),
+        *([] if s.largest_strain is None else [("", f"strain {100 * s.largest_strain:.2g} %{_bending(s)}")]),
         ("", _dynamics(s)),
         *([("", _drives(s))] if s.drives_over_first else []),
         *([] if s.top_face_share is None else [("", _top_face(s.top_face_share))]),
@@ -85,6 +92,24 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
     if s.part_curvature is not None:
         rows.append(("", f"part size times curvature {s.part_curvature:.2g}"))
     return rows
+
+
+def _theory(s: PlateSummary) -> str:
+    if s.linear_path_error is None:
+        return "von Karman's theory"
+    return f"path error of linear theory {_percent(s.linear_path_error)}"
+
+
+def _bending(s: PlateSummary) -> str:
+    return " by bending alone" if s.theory == "linear" else ""
+
+
+def _stretching(error: StretchError, solutions: int) -> str:
+    """How exact a plate that stretches is."""
+    return (
+        f"stretching from {_count(solutions, 'full solution')}, good to {error.mesh:.1e} (estimated); few shapes for "
+        f"them to {error.reduction:.1e}, over time to {error.pieces:.1e}"
+    )
 
 
 def warnings(summary: Summary) -> list[str]:
@@ -130,6 +155,11 @@ def _of_solver(s: PlateSummary) -> list[str]:
             f"The plate's shapes are accurate to {s.plate_error:.1e} of a stroke only; reduce plate.cell_size, or move "
             "actuators away from the rim."
         )
+    if s.stretch_error and (worst := max(vars(s.stretch_error).values())) > MAX_STRETCH_ERROR:
+        texts.append(
+            f"The plate that stretches is accurate to {worst:.1e} of its deflection only; reduce "
+            + ("plate.cell_size." if worst == s.stretch_error.mesh else "the strokes.")
+        )
     if s.surface_error > max(MAX_NUMERICAL_ERROR, s.plate_error):
         texts.append(
             f"The fitted surface follows the plate's shapes to {s.surface_error:.1e} of a stroke only, as happens at "
@@ -140,14 +170,25 @@ def _of_solver(s: PlateSummary) -> list[str]:
 
 def _of_model(s: PlateSummary) -> list[str]:
     texts = []
-    if s.deflection_over_thickness > MAX_DEFLECTION:
+    if s.linear_path_error is not None and s.deflection_over_thickness > MAX_DEFLECTION:
+        remedy = (
+            f" {VON_KARMAN} in [plate] has the plate stretch, with up to {MAX_STRETCHING} actuators."
+            if s.linear_path_error > MAX_LINEAR_ERROR
+            else ""
+        )
         texts.append(
             f"The plate deflects by {s.deflection_over_thickness:.3g} times its thickness; small-deflection theory "
-            f"holds to about {MAX_DEFLECTION}. Expect a path error of {_percent(s.linear_path_error)}."
+            f"holds to about {MAX_DEFLECTION}. Expect a path error of {_percent(s.linear_path_error)}.{remedy}"
         )
     if s.largest_slope > MAX_SLOPE:
+        remedy = "; smaller strokes or a wider plate reduce it" if s.theory == "von-karman" else ""
         texts.append(
-            f"The surface is as steep as {s.largest_slope:.2g}; small-slope theory holds to about {MAX_SLOPE}."
+            f"The surface is as steep as {s.largest_slope:.2g}; small-slope theory holds to about {MAX_SLOPE}{remedy}."
+        )
+    if s.largest_strain is not None and s.largest_strain > MAX_STRAIN:
+        texts.append(
+            f"The plate is strained by {100 * s.largest_strain:.2g} %{_bending(s)}; silicon breaks near 1 %, and "
+            f"{100 * MAX_STRAIN:g} % is prudent."
         )
     if s.quasi_static_error is not None and s.quasi_static_error > MAX_QUASI_STATIC_ERROR:
         texts.append(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
@@ -51,11 +53,21 @@ def around(shapes: PlateShapes) -> FloatArray:
     return _circles(shapes, np.arange(len(shapes.points)), np.minimum(others, shapes.outline.gap(shapes.points)))
 
 
+def circles(shapes: PlateShapes, radius: float) -> FloatArray:
+    """Points (n, 2) [m] of the plate on circles of a radius [m] around all actuators."""
+    return _stars(shapes, shapes.points, np.full(len(shapes.points), radius), (1.0,))
+
+
 def _circles(shapes: PlateShapes, centres: NDArray[np.int64], nearest: FloatArray) -> FloatArray:
     """Points (n, 2) [m] of the plate around actuators in these rows, whose nearest neighbours are so far [m]."""
+    return _stars(shapes, shapes.points[centres], nearest, RADII)
+
+
+def _stars(shapes: PlateShapes, centres: FloatArray, lengths: FloatArray, radii: Sequence[float]) -> FloatArray:
+    """Points (n, 2) [m] of the plate on circles around centres (k, 2), with radii in lengths (k,) [m] of each."""
     angle = 2 * np.pi * np.arange(AROUND) / AROUND
-    star = np.multiply.outer(RADII, np.stack([np.cos(angle), np.sin(angle)], axis=1)).reshape(-1, 2)
-    xy = (shapes.points[centres, None] + nearest[:, None, None] * star).reshape(-1, 2)
+    star = np.multiply.outer(radii, np.stack([np.cos(angle), np.sin(angle)], axis=1)).reshape(-1, 2)
+    xy = (centres[:, None] + lengths[:, None, None] * star).reshape(-1, 2)
     return np.asarray(xy[shapes.outline.gap(xy) >= 0])
 
 

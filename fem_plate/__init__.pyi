@@ -2,7 +2,11 @@ from . import analytic as analytic
 from .arrays.patched import PatchedShapes as PatchedShapes, PlateShapes as PlateShapes
 from .deflection import Deflection as Deflection
 from .export import neighbour_coupling as neighbour_coupling, save_influence as save_influence
-from .large_deflection import DeflectedPlate as DeflectedPlate, LargeDeflection as LargeDeflection
+from .large_deflection import (
+    DeflectedPlate as DeflectedPlate,
+    LargeDeflection as LargeDeflection,
+    StretchedShapes as StretchedShapes,
+)
 from .influence import InfluenceShapes as InfluenceShapes
 from .plate import Plate as Plate
 from .section import PlateSection as PlateSection

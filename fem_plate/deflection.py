@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -38,8 +40,8 @@ class Deflection(Estimated):
         if len(x):
             unknowns = unknowns + model.under_forces(x) @ scaled_forces
         pressures = np.array([scaled_pressure])
-        unmoved = PlateFunctions(model.space, unknowns, x, scaled_forces, np.zeros((3, 1)), pressures)
-        self.functions = PlateFunctions(model.space, unknowns, x, scaled_forces, self._levelling(unmoved), pressures)
+        unmoved = PlateFunctions(model.space, unknowns, x, scaled_forces, np.zeros((3, 1)), pressures, model.infinite)
+        self.functions = replace(unmoved, rigid=self._levelling(unmoved))
 
     def _check_balance(self, x: FloatArray, forces: FloatArray, pressure: float) -> None:
         model = self.model

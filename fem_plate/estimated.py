@@ -8,10 +8,9 @@ from typing import Self, TypeVar
 
 import numpy as np
 
-from fem_plate.elements import PlateFunctions
+from fem_plate.elements import GAIN, PlateFunctions
 
 MAX_UNKNOWNS = 100_000  # refinement to a tolerance stops here
-REFINEMENT_GAIN = 2.0**5  # halving the cells divides the error of w by this at least (observed: 2^5.5 and more)
 
 
 class Estimated:
@@ -47,10 +46,10 @@ class Estimated:
 Solution = TypeVar("Solution", bound=Estimated)
 
 
-def refined(solve: Callable[[int], Solution], tolerance: float | None) -> Solution:
+def refined(solve: Callable[[int], Solution], tolerance: float | None, gain: float = GAIN) -> Solution:
     """The solution on cells halved as often as the tolerance requires; without one, on the cells as they are.
 
-    solve: takes the number of halvings.
+    solve: takes the number of halvings.  gain: what a halving divides the error of w by, at least.
     """
     solution = solve(0)
     solution.refine = lambda: solve(1)
@@ -61,7 +60,7 @@ def refined(solve: Callable[[int], Solution], tolerance: float | None) -> Soluti
         halvings += 1
         coarse, solution = solution, solve(halvings)
         last_change, change = change, solution.difference(coarse)
-        solution.error_estimate = change * max(change / last_change, 1 / REFINEMENT_GAIN)
+        solution.error_estimate = change * max(change / last_change, 1 / gain)
         if change > last_change / 2:
             # Halving gains no more: the rest is rounding, or the estimates were too optimistic.
             coarse.error_estimate, solution.error_estimate = last_change, change

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_plate.elements import Derivatives, PlateFunctions, PlateModel, point_value
+from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
 from fem_plate.estimated import Estimated
 from fem_plate.inputs import check_held
 from fem_plate.shapes import Shapes
@@ -101,7 +101,7 @@ def held_shapes(
     Raises ValueError when supports and actuators leave the plate a rigid motion.
     """
     responses = model.under_forces(x)
-    green = point_value(x, x) + np.asarray(model.space.point_values(x) @ responses)
+    green = model.infinite.point_value(x, x) + np.asarray(model.space.point_values(x) @ responses)
     green = (green + green.T) / 2
     held = stiffness > 0
     motions = model.motions(x)
@@ -121,4 +121,5 @@ def held_shapes(
             responses[start : start + CHUNK] = responses[start : start + CHUNK] @ forces
     else:
         responses = responses @ forces
-    return PlateFunctions(model.space, responses, x, forces, rigid, np.zeros(forces.shape[1])), green
+    no_pressure = np.zeros(forces.shape[1])
+    return PlateFunctions(model.space, responses, x, forces, rigid, no_pressure, model.infinite), green

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fem_plate import vibration
 from fem_plate.arrays import CELL, FINER_CELL, ActuatorArray, Cutter, PatchedShapes, ProgressCallback, spacing
+from fem_plate.buckling import buckling_compression, check_tension
 from fem_plate.deflection import Deflection
 from fem_plate.elements import Fineness, PlateModel, SingularCorner, by_boundary, corner_rows, graded, singular_corners
 from fem_plate.estimated import refined
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 PATCH_FINENESS = 0.16  # of the half width, eight cells: shapes at the rim are then good to 1e-6
+PATCH_RIM = 30.0  # pitches, about, that a patch extends along the rim
 TRUNCATION = 1e-6  # of unit shapes on patches, by default
 
 
@@ -47,11 +48,15 @@ class Plate:
         Refine shapes and deflections until their error estimate, relative to the largest deflection, meets it, or until
         100 000 unknowns; `error_estimate` is what was reached. Shapes on patches get somewhat finer cells instead.
         Modes ignore it.
+    tension : float
+        Residual force per length N0 in the plate's plane, the same in all directions [N/m]: positive pulls, negative
+        presses. It stays what it is while the plate bends. Every boundary must be held then.
 
     Raises
     ------
     ValueError
-        Names every unknown support and boundary; or the tolerance is not positive.
+        Names every unknown support and boundary; the tolerance is not positive; or there is a tension where a boundary
+        is free, or a compression at which the plate buckles without actuators, whose buckling load is named.
     """
 
     def __init__(
@@ -60,6 +65,7 @@ class Plate:
         section: PlateSection,
         supports: str | Mapping[str, str] = "clamped",
         tolerance: float | None = None,
+        tension: float = 0.0,
     ) -> None:
         if tolerance is not None and not tolerance > 0:
             raise ValueError(f"Input tolerance of Plate must be greater than 0; got {tolerance!r}")
@@ -67,9 +73,15 @@ class Plate:
         self.mesh = mesh
         self.section = section
         self.tolerance = tolerance
-        self.fineness = Fineness.of(mesh)
+        check_tension(tension, self.supports)
+        self.tension = float(tension)
+        self.fineness = Fineness.of(mesh, self.relative_tension)
         self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
         self._last: tuple[bytes, PlateModel] | None = None
+        if tension < 0 and -tension >= (load := self.buckling_load()):
+            raise ValueError(
+                f"Input tension of Plate must exceed {-load:.6g} N/m, at which it buckles; got {self.tension!r}"
+            )
 
     def cells(
         self, points: FloatArray | None = None, halvings: int = 0, corners: Sequence[SingularCorner] = ()
@@ -86,8 +98,29 @@ class Plate:
         key = mesh.points.tobytes()
         if self._last is None or self._last[0] != key:
             rows = corner_rows(mesh, self.corners)
-            self._last = key, PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)
+            self._last = key, PlateModel(mesh, self.supports, self.section.poisson_ratio, rows, self.relative_tension)
         return self._last[1]
+
+    @property
+    def relative_tension(self) -> float:
+        """The tension over the plate's rigidity [1/m^2]."""
+        return self.tension / self.section.rigidity
+
+    def buckling_load(self) -> float:
+        """The compression, the same in all directions, at which the plate buckles without actuators [N/m].
+
+        It is D mu with the lowest mu of int M(v):H(q) = mu int grad v.grad q, whatever tension the plate has.
+
+        Raises
+        ------
+        ValueError
+            A boundary is free.
+        """
+        check_tension(1.0, self.supports)
+        mesh = graded(self.mesh, Fineness.of(self.mesh), self.corners)
+        rows = corner_rows(mesh, self.corners)
+        model = PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)
+        return buckling_compression(model) * self.section.rigidity
 
     def influence(
         self,
@@ -126,6 +159,7 @@ class Plate:
         return refined(
             lambda halvings: InfluenceShapes(self.model(points, halvings), points, rigidity, actuator_stiffness),
             self.tolerance,
+            self.fineness.gain,
         )
 
     def large_deflection(
@@ -158,8 +192,11 @@ class Plate:
         Raises
         ------
         ValueError
-            As for `influence`; an in-plane support or boundary is unknown; the membrane does not apply.
+            As for `influence`; an in-plane support or boundary is unknown; the membrane does not apply; the plate has a
+            tension.
         """
+        if self.tension:
+            raise ValueError(f"Input tension of Plate must be 0 for large_deflection; got {self.tension!r} N/m")
         from fem_plate.large_deflection import LargeDeflection, movable_by_boundary  # here: scikit-fem takes a while
 
         points = as_points(points, "points of large_deflection")
@@ -199,6 +236,7 @@ class Plate:
         return refined(
             lambda halvings: Deflection(self.model(points, halvings), points, loads, float(pressure), rigidity),
             self.tolerance,
+            self.fineness.gain,
         )
 
     def pressure(self, load: float) -> Deflection:
@@ -260,7 +298,8 @@ class Plate:
     def __repr__(self) -> str:
         width, height = np.ptp(self.mesh.outline.box, axis=0)
         rims = ", ".join(f"{name} {support}" for name, support in self.supports.items())
-        return f"Plate of {width:.4g} m x {height:.4g} m, {self.section.thickness:.4g} m thick; {rims}"
+        tension = f"; tension {self.tension:.4g} N/m" if self.tension else ""
+        return f"Plate of {width:.4g} m x {height:.4g} m, {self.section.thickness:.4g} m thick; {rims}{tension}"
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rim by its supports and the mesh, into axes in m or new ones."""
@@ -278,8 +317,12 @@ class Plate:
         self, points: FloatArray, actuator_stiffness: FloatArray, truncation: float, tell: ProgressCallback
     ) -> PatchedShapes:
         cell = min(self.fineness.cell, PATCH_FINENESS * self.fineness.half_width)
-        fineness = replace(self.fineness, cell=cell)
+        pitch = spacing(points)
+        fineness = self.fineness.on_patches(cell, PATCH_RIM * min(float(pitch.max()), self.mesh.size))
         pitches = CELL if self.tolerance is None else FINER_CELL
-        cutter = Cutter(self.mesh, self.supports, fineness, self.corners, points, spacing(points), pitches)
-        array = ActuatorArray(cutter, points, actuator_stiffness, self.section.rigidity, self.section.poisson_ratio)
+        cutter = Cutter(self.mesh, self.supports, fineness, self.corners, points, pitch, pitches)
+        section = self.section
+        array = ActuatorArray(
+            cutter, points, actuator_stiffness, section.rigidity, section.poisson_ratio, self.relative_tension
+        )
         return PatchedShapes(array, truncation, self.mesh.size, self.mesh.outline, tell)

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from fem_plate.elements import Derivatives, PlateFunctions, PlateModel, point_value
+from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
 from fem_plate.inputs import check_on_plate
 
 FloatArray = NDArray[np.float64]
@@ -77,7 +77,7 @@ def modes(model: PlateModel, held: FloatArray, compliance: FloatArray, count: in
     mass = space.mass()
     responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without its singular part
     at_held = space.point_values(x)  # B
-    green = point_value(x, x) + at_held @ responses
+    green = model.infinite.point_value(x, x) + at_held @ responses
     yielding = (green + green.T) / 2 + np.diag(compliance)  # G + 1/k
     to_forces = -np.linalg.solve(yielding, at_held.toarray())  # v -> c, (N, unknowns)
     cross, inner = _masses(model, x, responses, mass)
@@ -112,7 +112,9 @@ def modes(model: PlateModel, held: FloatArray, compliance: FloatArray, count: in
     order = np.argsort(squares)
     squares, vectors = squares[order], vectors[:, order]
     forces = to_forces @ vectors
-    functions = PlateFunctions(space, vectors + responses @ forces, x, forces, np.zeros((3, count)), np.zeros(count))
+    functions = PlateFunctions(
+        space, vectors + responses @ forces, x, forces, np.zeros((3, count)), np.zeros(count), model.infinite
+    )
     scale = 1 / np.abs(functions.values(space.points)).max(axis=0)
     return Modes(np.sqrt(squares * unit) / (2 * np.pi), model, functions.weighted(np.diag(scale)))
 
@@ -124,7 +126,7 @@ def _masses(model: PlateModel, x: FloatArray, responses: FloatArray, mass: csc_m
     with_singular, of_singular = np.zeros((space.unknowns, len(x))), np.zeros((len(x), len(x)))
     for start in range(0, len(points), CHUNK):
         part = slice(start, start + CHUNK)
-        value = point_value(points[part], x)
+        value = model.infinite.point_value(points[part], x)
         weighted = weights[part, None] * value
         with_singular += space.point_values(points[part], triangles[part]).T @ weighted  # int q F
         of_singular += value.T @ weighted  # int F F

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numba
 from numba.core import config
 
-from particle.kernel_cache import FOLDER, KernelCache
+from particle.kernel_cache import KernelCache, place_of
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
@@ -25,6 +25,10 @@ def jit_no_arrays(kernel: Kernel) -> Kernel:
 
 def _compiled(kernel: Kernel, **options: bool) -> Kernel:
     dispatcher = numba.njit(error_model="numpy", nogil=True, **options)(kernel)
-    if FOLDER and not config.DISABLE_JIT:
+    if not config.DISABLE_JIT and place_of(kernel).folder:
         dispatcher._cache = KernelCache(dispatcher)
     return dispatcher  # type: ignore[no-any-return]
+
+
+# For other packages: at the door of this one, `jit` is the module.
+kernel, kernel_no_arrays = jit, jit_no_arrays

@@ -1,6 +1,7 @@
 """Where compiled kernels are kept: a folder named by the hash of the package's sources, so that none can be stale.
 
-numba compares a kernel's own file only, and would go on with old code of the kernels that it calls.
+numba compares a kernel's own file only, and would go on with old code of the kernels that it calls. Kernels of rooms
+outside the package may call those of their room and of the package, and are kept by the hash of both.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ import sys
 import tempfile
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from numba.core import config
 from numba.core.caching import Cache, CompileResultCacheImpl, _CacheLocator, _SourceFileBackedLocatorMixin
@@ -31,23 +33,26 @@ def _sources(package: Path) -> list[Path]:
     return sorted(path for path in package.rglob("*.py") if path.is_file())
 
 
-def source_digest(package: Path) -> str:
-    """A hash of all sources of a package; empty where there are none."""
-    sources = _sources(package)
+def source_digest(*packages: Path) -> str:
+    """A hash of all sources of packages; empty where one has none."""
     digest = hashlib.sha256()
-    for path in sources:
-        digest.update(path.relative_to(package).as_posix().encode() + b"\0")
-        digest.update(hashlib.sha256(path.read_bytes()).digest())
-    return digest.hexdigest()[:32] if sources else ""
+    for package in packages:
+        sources = _sources(package)
+        if not sources:
+            return ""
+        for path in sources:
+            digest.update(path.relative_to(package).as_posix().encode() + b"\0")
+            digest.update(hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()[:32]
 
 
-def source_stamps(package: Path) -> frozenset[tuple[str, int, int]]:
+def source_stamps(*packages: Path) -> frozenset[tuple[str, int, int]]:
     """What changes when any source is edited: its name, time and size."""
-    stats = ((str(path), path.stat()) for path in _sources(package))
+    stats = ((str(path), path.stat()) for package in packages for path in _sources(package))
     return frozenset((name, stat.st_mtime_ns, stat.st_size) for name, stat in stats)
 
 
-def cache_folder(package: Path, digest: str) -> Path | None:
+def cache_folder(package: Path, digest: str, prefix: str = PREFIX) -> Path | None:
     """The folder for kernels of these sources; None where no place can be written to.
 
     It lies in NUMBA_CACHE_DIR if that is set, else beside the sources, else in the user's folder of caches.
@@ -55,9 +60,9 @@ def cache_folder(package: Path, digest: str) -> Path | None:
     user = Path(AppDirs(appname="active-surface", appauthor=False).user_cache_dir)
     places = [Path(config.CACHE_DIR) / "active-surface"] if config.CACHE_DIR else []
     for place in [*places, package / "__pycache__", user] if digest else []:
-        folder = place / f"{PREFIX}{digest}"
+        folder = place / f"{prefix}{digest}"
         if _can_write(folder):
-            _remove_unused(place)
+            _remove_unused(place, prefix)
             return folder
     return None
 
@@ -73,27 +78,50 @@ def _can_write(folder: Path) -> bool:
     return True
 
 
-def _remove_unused(place: Path) -> None:
+def _remove_unused(place: Path, prefix: str) -> None:
     """Keep the folders used last; a process that still uses another one compiles anew what it lacks."""
     with suppress(OSError):
-        folders = sorted(place.glob(f"{PREFIX}*"), key=lambda folder: folder.stat().st_mtime, reverse=True)
+        folders = sorted(place.glob(f"{prefix}*"), key=lambda folder: folder.stat().st_mtime, reverse=True)
         for folder in folders[MAX_FOLDERS:]:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-STAMPS = source_stamps(PACKAGE)
-FOLDER = cache_folder(PACKAGE, source_digest(PACKAGE))
+class Place(NamedTuple):
+    """Where kernels that depend on the same sources are kept."""
+
+    packages: tuple[Path, ...]  # the sources
+    stamps: frozenset[tuple[str, int, int]]  # theirs when they were loaded
+    folder: Path | None  # None: nowhere
+
+    @property
+    def is_current(self) -> bool:
+        """Whether no source has been edited since."""
+        return source_stamps(*self.packages) == self.stamps
+
+
+@cache
+def _place(packages: tuple[Path, ...], prefix: str) -> Place:
+    return Place(packages, source_stamps(*packages), cache_folder(packages[0], source_digest(*packages), prefix))
+
+
+def place_of(kernel: Callable[..., Any]) -> Place:
+    """Where a kernel is kept: with those of the package, or of the room outside it that has its file."""
+    room = Path(kernel.__code__.co_filename).parent
+    if room == PACKAGE or PACKAGE in room.parents:
+        return _place((PACKAGE,), PREFIX)
+    return _place((room, PACKAGE), f"{room.name}-{PREFIX}")
 
 
 class _Locator(_SourceFileBackedLocatorMixin, _CacheLocator):  # type: ignore[misc]
     """Files of one kernel in the folder."""
 
     def __init__(self, kernel: Callable[..., Any]) -> None:
+        self._folder = str(place_of(kernel).folder)
         self._py_file = kernel.__code__.co_filename
         self._name = f"{kernel.__module__}-{kernel.__code__.co_firstlineno}"
 
     def get_cache_path(self) -> str:
-        return str(FOLDER)
+        return self._folder
 
     def get_disambiguator(self) -> str:
         return self._name
@@ -121,10 +149,11 @@ class KernelCache(Cache):  # type: ignore[misc]
     def __init__(self, dispatcher: Any) -> None:
         super().__init__(dispatcher.py_func)
         self._dispatcher = dispatcher
+        self._place = place_of(dispatcher.py_func)
         self._lock: Any = None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        if source_stamps(PACKAGE) != STAMPS:
+        if not self._place.is_current:
             return None
         kernel = self._load(sig, target_context)
         if kernel is not None or not self._begin():
@@ -142,7 +171,7 @@ class KernelCache(Cache):  # type: ignore[misc]
 
     def save_overload(self, sig: Any, data: Any) -> None:
         try:
-            if source_stamps(PACKAGE) == STAMPS:
+            if self._place.is_current:
                 super().save_overload(sig, data)
         finally:
             if KernelCache._compiling is self:

@@ -65,7 +65,8 @@ _scratch = _Scratch()
 def _memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
     """Scratch memory for a path over the surface."""
     cells = surface.cells
-    measures = cells.highest, cells.most_near, cells.most_drives, len(pairs.long.c)
+    planar = cells.plane_highest, surface.in_plane_count
+    measures = cells.highest, cells.most_near, cells.most_drives, *planar, len(pairs.long.c)
     if _scratch.measures != measures:
         _scratch.measures, _scratch.memory = measures, new_memory(surface, pairs, stop)
         return _scratch.memory

@@ -76,6 +76,10 @@ def simulate(
         wrong.append(f"Input time_step of simulate must be a positive time in s; got {time_step!r}")
     if scheme in _FIXED_STEPS and after_detachment == "fly":
         wrong.append(f"Input after_detachment of simulate must be 'stop' with the scheme {scheme!r}; got 'fly'")
+    if scheme == "paper" and surface.in_plane_count:
+        wrong.append(
+            "Input scheme of simulate must be 'events' or 'fixed' where the mid-plane moves in its plane; got 'paper'"
+        )
     wrong += faults(surface, duration, gravity, tolerance, after_detachment)
     if not rim_gap(surface.record, *map(float, part.position)) >= 0:
         wrong.append(f"Input position of Micropart must lie on the plate; got {tuple(part.position)!r} m")

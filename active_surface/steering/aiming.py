@@ -55,10 +55,10 @@ def aim(
         Ctrl-C before there are any drives.
     """
     if output is None:
-        return aim_over(prepared(task.case), task, threads, tell)
+        return aim_over(prepared(task.case, task.settings), task, threads, tell)
     file, picture = Path(output) / f"{task.name}_aimed.toml", Path(output) / f"{task.name}_aim.png"
     check_free((file, picture), overwrite)
-    return drawn(aim_over(prepared(task.case), task, threads, tell, file), draw_aim, picture)
+    return drawn(aim_over(prepared(task.case, task.settings), task, threads, tell, file), draw_aim, picture)
 
 
 def aim_over(

@@ -58,10 +58,10 @@ def plan(
         Ctrl-C before there are any legs.
     """
     if output is None:
-        return plan_over(prepared(route.case), route, threads, tell)
+        return plan_over(prepared(route.case, route.settings), route, threads, tell)
     file, picture = Path(output) / f"{route.name}_planned.toml", Path(output) / f"{route.name}_plan.png"
     check_free((file, picture), overwrite)
-    return drawn(plan_over(prepared(route.case), route, threads, tell, file), draw_plan, picture)
+    return drawn(plan_over(prepared(route.case, route.settings), route, threads, tell, file), draw_plan, picture)
 
 
 def plan_over(

@@ -13,8 +13,10 @@ from active_surface.steering.paths import Paths
 from active_surface.steering.result import SteeringResult
 from active_surface.steering.route import Place
 from active_surface.steering.scatter import REPORTED, Scatter, disturbances
+from active_surface.steering.spread import spread_drives
 from active_surface.steering.tables import Settings
-from coupling import build_friction, build_scene, follow_part, run_case, warnings
+from active_surface.steering.task import able
+from coupling import build_friction, follow_part, run_case, shared_surface, warnings
 from coupling.case import Case, write_case
 from particle import SurfaceMotion, interruptible, unbroken
 
@@ -46,9 +48,12 @@ def searched(
     return result
 
 
-def prepared(case: Case) -> SurfaceMotion:
-    """The moving surface of a case; compiles all that paths need, so that Ctrl-C works from then on."""
-    surface = interruptible(build_scene, case).surface
+def prepared(case: Case, settings: Settings) -> SurfaceMotion:
+    """The moving surface for all drives of a search; compiles all that paths need, so that Ctrl-C works then."""
+    chosen = able(case, settings)
+    together = len(chosen) if settings.actuators is not None else settings.nearest
+    sets = spread_drives(case, settings, chosen, together)
+    surface = interruptible(shared_surface, case, sets, case.run.duration)
     interruptible(follow_part, case, surface, build_friction(case))
     return surface
 

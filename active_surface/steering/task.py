@@ -69,10 +69,17 @@ def movers(case: Case, settings: Settings, target: tuple[float, float]) -> tuple
     """The numbers of the actuators that take part on the way to a target [m]: those that are told, or the nearest."""
     if settings.actuators is not None:
         return tuple(sorted(settings.actuators))
-    fit = [k for k, actuator in enumerate(case.actuators) if not _unfit(actuator, settings)]
+    fit = able(case, settings)
     away = _from_way(np.array([case.actuators[k].position for k in fit]), case.part.position, target)
     order = np.argsort(away, kind="stable")[: settings.nearest].tolist()
     return tuple(sorted(fit[k] for k in order))
+
+
+def able(case: Case, settings: Settings) -> list[int]:
+    """The numbers of the actuators that can take part, ascending: those that are told, or all that fit."""
+    if settings.actuators is not None:
+        return sorted(settings.actuators)
+    return [k for k, actuator in enumerate(case.actuators) if not _unfit(actuator, settings)]
 
 
 def mistakes(case: Case, settings: Settings, target: tuple[float, float] | None) -> Iterator[Mistake]:

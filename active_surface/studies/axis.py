@@ -28,6 +28,12 @@ class Axis:
         """The type of its values in arrays."""
         return {"number": np.float64, "whole": np.int64, "text": object}[self.field.kind]
 
+    def end(self, which: int) -> Any:
+        """The lowest value (0) or the highest (-1), as a point has it; of texts the first or the last."""
+        if not self.values:
+            return (self.low, self.high)[which]
+        return (self.values if self.kind is object else sorted(self.values))[which]
+
     def spread(self, units: FloatArray) -> NDArray[Any]:
         """Its values (n,) at places (n,) in [0, 1)."""
         if self.values:

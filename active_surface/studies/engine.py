@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from contextlib import suppress
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -19,10 +20,10 @@ from active_surface.studies.record import Records, new_records, put
 from active_surface.studies.refusal import contact_of, mistakes_of, start_faults
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Base, Variants
-from coupling import build_drives, build_part, build_scene, silent
+from coupling import build_drives, build_part, shared_surface, silent
 from coupling.case import Case, PlatformCase, RunCase
 from coupling.scene import platform_scene
-from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
+from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact
 
 AT_ONCE: Final = 1.0  # s, about, of work in a chunk
@@ -30,6 +31,7 @@ A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about: of work for a path, and for each cycle
 A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about: of work for one of these
 SURFACES: Final = 16  # kept at most: each takes some 5 MB
 HELD: Final = 256  # trajectories in memory at a time: each takes 0.13 MB, however short
+SPREAD: Final = 48  # points whose drives stand for those of all, where the plate stretches
 TOGETHER: Final = 64  # paths that `follow` computes side by side
 FAILURES: Final = (ValueError, ArithmeticError, RuntimeError)
 
@@ -55,6 +57,7 @@ class Engine:
         self.variants = Variants(study.case, study.points.axes)
         self._surfaces: dict[str, SurfaceMotion | str] = {}
         self._kept = min(self.variants.grounds(study.points), SURFACES)
+        self._duration = max(_largest(study.points, "run.duration"), default=study.case.run.duration)
         self.paths = len(study.points)
         self.chunk_length = self._chunk_length()
 
@@ -76,8 +79,7 @@ class Engine:
         else:
             drives, base = build_drives(case), A_PLATE
         fastest = max((*(drive.frequency for drive in drives), *_largest(points, "frequency")), default=0.0)
-        duration = max(_largest(points, "run.duration"), default=case.run.duration)
-        each = A_PATH + A_CYCLE * duration * fastest + base / self.variants.paths_of_a_base(points)
+        each = A_PATH + A_CYCLE * self._duration * fastest + base / self.variants.paths_of_a_base(points)
         return max(int(AT_ONCE / each), 1)
 
     def records_of(self, chunks: Iterable[int]) -> Generator[tuple[int, Records], None, None]:
@@ -194,10 +196,30 @@ class Engine:
             if len(self._surfaces) == self._kept:
                 del self._surfaces[next(iter(self._surfaces))]
             try:
-                self._surfaces[base.ground] = build_scene(base.case).surface
+                self._surfaces[base.ground] = shared_surface(base.case, self._sets(base), self._duration)
             except FAILURES as error:
                 self._surfaces[base.ground] = f"what the part moves over cannot be made: {error}"
         return self._surfaces[base.ground]
+
+    def _sets(self, base: Base) -> list[list[AnyDrive]]:
+        """Drives that stand for those of all paths over a plate that stretches.
+
+        They depend on the study alone: those where all axes are lowest, where all are highest, and spread between.
+        """
+        if not self.variants.stretches(base.case):
+            return []
+        own = build_drives(base.case)
+        if not self.variants.drives_vary:
+            return [own]
+        points, count = self.study.points, len(self.study.points)
+        rows = np.unique(np.linspace(0, count - 1, SPREAD).astype(np.int64)).tolist()
+        ends = [tuple(axis.end(which) for axis in points.axes) for which in (0, -1)]
+        sets = []
+        for values in [*ends, *(points.values(row, row + 1)[0] for row in rows)]:
+            with suppress(ValidationError, ArithmeticError):
+                case = self.variants.at(values)[0]
+                sets += [build_drives(case)] if len(case.actuators) == len(own) else []
+        return sets or [own]
 
 
 def _largest(points: Points, path: str) -> list[float]:

@@ -24,6 +24,7 @@ FIGURES: Final = (
     "deflection_over_thickness",
     "linear_path_error",
     "largest_slope",
+    "largest_strain",
     "drive_over_first",
     "quasi_static_error",
     "plate_rings",

@@ -13,7 +13,18 @@ from pydantic import TypeAdapter, ValidationError
 from active_surface.studies.axis import Axis
 from active_surface.studies.field import LEFT_OUT
 from active_surface.studies.points import Points
-from coupling.case import ActuatorCase, AnyFriction, Case, LatticeCase, Location, PartCase, PlatformCase, RunCase, Table
+from coupling.case import (
+    ActuatorCase,
+    AnyFriction,
+    Case,
+    LatticeCase,
+    Location,
+    PartCase,
+    PlateCase,
+    PlatformCase,
+    RunCase,
+    Table,
+)
 from coupling.scene import actuator_stiffness
 
 Values = tuple[Any, ...]
@@ -53,6 +64,11 @@ class Variants:
         self.drives_vary = any(axis.field.locations[0][0] in ("actuators", "lattice") for axis in axes)
         self.base = lru_cache(16)(self._base)
         self._tables: dict[tuple[str, str], Any] = {}
+
+    @staticmethod
+    def stretches(case: Case) -> bool:
+        """Whether a case has a plate that stretches."""
+        return isinstance(case.plate, PlateCase) and case.plate.theory == "von-karman"
 
     def paths_of_a_base(self, points: Points) -> int:
         """How many paths that follow each other share what they move over, about."""

@@ -14,7 +14,9 @@ from coupling.case.friction import (
 from coupling.case.lattice import LatticeCase
 from coupling.case.lattice_places import SAME_PLACE, beyond, gaps, half_size
 from coupling.case.messages import InputError, Location, Mistake, in_file, location_text, message_of, mistakes_in
+from coupling.case.places import MAX_STRETCHING
 from coupling.case.plate import (
+    VON_KARMAN,
     AnnulusCase,
     DiscCase,
     EllipseCase,

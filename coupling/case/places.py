@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from coupling.case.drive import ActuatorCase
 from coupling.case.lattice import LatticeCase
 from coupling.case.lattice_places import SAME_PLACE, Place, Stand, beyond, gaps, half_size, shared_places
 from coupling.case.messages import Location, Mistake, location_text
-from coupling.case.plate import PlateCase, ShapeCase
+from coupling.case.plate import VON_KARMAN, PlateCase, ShapeCase
 from coupling.case.table import right_value
-from coupling.case.tables import PartCase
+from coupling.case.tables import PartCase, RunCase
 from coupling.case.values import length_text, quoted, unreadable, written_unit
 from coupling.suggestion import near
 
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from meshes import PlateMesh
 
 Mistakes = Iterator[Mistake]
+
+MAX_STRETCHING: Final = 200
+"""Actuators of a plate that stretches."""
 
 
 class Parts(NamedTuple):
@@ -62,7 +65,8 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
     """
     plate, written_plate = parts.tables["plate"], parts.written["plate"]
     yield from _cell_size(outline, right_value(ShapeCase, "cell_size", plate, parts.context), written_plate)
-    yield from _boundary_names(_written(plate, "supports"), list(mesh.boundaries))
+    for key in ("supports", "in_plane_supports"):
+        yield from _boundary_names(key, _written(plate, key), list(mesh.boundaries))
     spots = [
         _Spot.of(("actuators", index), ActuatorCase, *both, parts.context)
         for index, both in enumerate(parts.items("actuators"))
@@ -77,10 +81,17 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
         yield there, f"must differ from {location_text(here)}; got the same point"
     if stand:
         yield from stand.crowded(places, least)
+    if right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
+        yield from _stretching(parts, len(spots) + (len(stand.spots) if stand else 0))
     supports = right_value(PlateCase, "supports", plate, parts.context, "clamped")
     held = _held(parts, spots, stand)
-    if supports is not None and held is not None:
-        yield from _rigid_motion(outline.model_copy(update={"supports": supports}), mesh, held)
+    if supports is not None:
+        supported = outline.model_copy(update={"supports": supports})
+        yield from _free_tension(
+            supported, mesh, right_value(PlateCase, "tension", plate, parts.context, 0.0), written_plate
+        )
+        if held is not None:
+            yield from _rigid_motion(supported, mesh, held)
 
 
 class _Spot(NamedTuple):
@@ -111,13 +122,39 @@ def _cell_size(outline: PlateCase, cell_size: float | None, plate: Any) -> Mista
         yield ("plate", "cell_size"), f"must not exceed {limit}; got {got}"
 
 
-def _boundary_names(supports: Any, names: list[str]) -> Mistakes:
+def _free_tension(outline: PlateCase, mesh: PlateMesh, tension: float | None, plate: Any) -> Mistakes:
+    free = [name for name, support in outline.supports_of(list(mesh.boundaries)).items() if support == "free"]
+    if tension and free:
+        got = quoted(_written(plate, "tension"))
+        rims = f"{' and '.join(free)} {'is' if len(free) == 1 else 'are'} free"
+        yield (
+            ("plate", "tension"),
+            f"must be 0 where a boundary is free, as a free rim carries none; got {got}, and {rims}",
+        )
+
+
+def _boundary_names(key: str, supports: Any, names: list[str]) -> Mistakes:
     for name in supports if isinstance(supports, dict) else ():
         if name not in names:
             meant = near(name, names)
             hint = f"did you mean {meant}? " if meant else ""
             has = f"It has {', '.join(names)}" if hint else f"it has {', '.join(names)}"
-            yield ("plate", "supports", name), f"is no boundary of the plate; {hint}{has}"
+            yield ("plate", key, name), f"is no boundary of the plate; {hint}{has}"
+
+
+def _stretching(parts: Parts, count: int) -> Mistakes:
+    """Yield what a plate with so many actuators that stretches does not go with."""
+    if count > MAX_STRETCHING:
+        yield (
+            ("plate", "theory"),
+            f'must be "linear" with more than {MAX_STRETCHING} actuators, as a plate that stretches is solved in one '
+            f"dense model of all of them; got {count}; a piece of the array with {MAX_STRETCHING} can stretch",
+        )
+    if right_value(RunCase, "scheme", parts.tables.get("run"), parts.context) == "paper":
+        yield (
+            ("run", "scheme"),
+            f'must be "events" or "fixed" with {VON_KARMAN}, whose mid-plane also moves in its plane; got "paper"',
+        )
 
 
 def _beyond_rim(spots: Sequence[_Spot], mesh: PlateMesh, least: float) -> Mistakes:

@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import (
     Discriminator,
@@ -23,7 +23,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, core_schema
 
 from coupling.case.table import Contradictions, KeyedTable
-from coupling.case.values import Angle, Density, FileBeside, Length, Point, Pressure, length_text, quoted
+from coupling.case.values import Angle, Density, FileBeside, Length, Point, Pressure, Tension, length_text, quoted
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -32,10 +32,18 @@ CELLS_OF_A_DISC = 64 * math.pi
 """Without a cell size a plate has as many cells as a disc with 8 from centre to rim."""
 
 
+Theory = Literal["linear", "von-karman"]
+VON_KARMAN: Final = 'theory = "von-karman"'
+
 SupportName = Literal["clamped", "simply-supported", "free"]
 ONE_SUPPORT, SUPPORT_OF_EACH = "one support", "a support of each boundary"
 Supports = Annotated[
     Annotated[SupportName, Tag(ONE_SUPPORT)] | Annotated[dict[str, SupportName], Tag(SUPPORT_OF_EACH)],
+    Discriminator(lambda value: SUPPORT_OF_EACH if isinstance(value, dict) else ONE_SUPPORT),
+]
+InPlaneName = Literal["immovable", "movable"]
+InPlaneSupports = Annotated[
+    Annotated[InPlaneName, Tag(ONE_SUPPORT)] | Annotated[dict[str, InPlaneName], Tag(SUPPORT_OF_EACH)],
     Discriminator(lambda value: SUPPORT_OF_EACH if isinstance(value, dict) else ONE_SUPPORT),
 ]
 
@@ -48,6 +56,10 @@ class PlateCase(KeyedTable, ABC):
 
     supports: Supports = "clamped"
     """How the whole rim is held, or a table with how each boundary is; those left out are free."""
+    theory: Theory = "linear"
+    """Whether the plate only bends, or also stretches as it deflects."""
+    in_plane_supports: InPlaneSupports = "immovable"
+    """How boundaries that are not free are held in the plane, or a table with how each is; those left out can move."""
     youngs_modulus: Pressure = Field(gt=0)
     """Young's modulus."""
     poisson_ratio: StrictFloat = Field(ge=0, lt=0.5, examples=[0.3])
@@ -56,6 +68,8 @@ class PlateCase(KeyedTable, ABC):
     """How thick it is."""
     density: Density | None = Field(default=None, gt=0)
     """With it drives are compared with the plate's first frequency."""
+    tension: Tension = Field(default=0.0, examples=["50 N/m"])
+    """A residual force per length in its plane, the same in all directions: positive pulls, negative presses."""
     top_face: StrictBool = True
     """Whether parts lie on the top face, which bending also moves in its plane, or, if false, on the mid-plane."""
 
@@ -64,6 +78,11 @@ class PlateCase(KeyedTable, ABC):
     def _from_word(cls, value: Any) -> Any:
         """Sweeps write truth values as words."""
         return {"true": True, "false": False}.get(value, value) if isinstance(value, str) else value
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        if "in_plane_supports" in given and given.get("theory", "linear") == "linear":
+            yield "in_plane_supports", f"must not be given without {VON_KARMAN}; a linear plate does not stretch"
 
     @abstractmethod
     def build_mesh(self) -> PlateMesh:
@@ -157,6 +176,7 @@ class AnnulusCase(ShapeCase):
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        yield from super().contradictions(given)
         inner, outer = given.get("inner_radius"), given.get("outer_radius")
         if isinstance(inner, float) and isinstance(outer, float) and outer <= inner:
             yield "outer_radius", f"must exceed inner_radius, {length_text(inner)}; got {length_text(outer)}"
@@ -220,6 +240,7 @@ class PolygonCase(ShapeCase):
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        yield from super().contradictions(given)
         corners, sides = given.get("corners"), given.get("sides")
         if isinstance(corners, tuple) and isinstance(sides, tuple) and len(sides) != len(corners):
             yield "sides", f"must be {len(corners)} names, one a side; got {quoted(sides)}"

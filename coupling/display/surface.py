@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.display.mesh import display_mesh
+from coupling.display.stretching import Stretching
+from coupling.drives import stroke_heights
 from coupling.scene import PlateScene, PlatformScene, Scene
 from coupling.surface import FLOOR
-from fem_plate import PatchedShapes, PlateShapes
+from fem_plate import InfluenceShapes, PatchedShapes, Shapes, StretchedShapes
 from meshes import Outline
 from particle import Trajectory
 
@@ -29,8 +31,9 @@ class DisplaySurface(NamedTuple):
 
     points: FloatArray  # (n, 2) m
     triangles: NDArray[np.int64]  # (m, 3)
-    deflection: Callable[[FloatArray], FloatArray]  # from heights (k, N) [m] of the drives to deflections (k, n) [m]
+    deflection: Callable[[FloatArray], FloatArray]  # from heights (k, K) [m] of the moving drives to w (k, n) [m]
     curvature: Callable[[FloatArray], FloatArray] | None = None  # likewise to Laplacians [1/m]; None: always flat
+    stretching: Stretching | None = None  # None: linear theory, or a platform
 
 
 def display_surface(scene: Scene, trajectory: Trajectory) -> DisplaySurface:
@@ -38,7 +41,15 @@ def display_surface(scene: Scene, trajectory: Trajectory) -> DisplaySurface:
     if isinstance(scene, PlatformScene):
         return _square(scene, trajectory)
     points, triangles = display_mesh(scene.plate.mesh, scene.shapes.points)
-    return DisplaySurface(points, triangles, deflections(scene.shapes, points), _curvatures(scene.shapes, points))
+    shapes = scene.moving_shapes
+    stretching = None if scene.stretch is None else Stretching(scene, scene.stretch, points)
+    return DisplaySurface(points, triangles, deflections(shapes, points), _curvatures(shapes, points), stretching)
+
+
+def moving_heights(scene: Scene, times: FloatArray, derivative: int = 0) -> FloatArray:
+    """The heights (k, K) [m] of the surface's drives at times (k,) [s], the actuators' first, or a derivative."""
+    drives = scene.moving_drives if isinstance(scene, PlateScene) else scene.lifts
+    return stroke_heights(drives, times, derivative)
 
 
 def onto_surface(scene: Scene, xy: FloatArray) -> FloatArray:
@@ -60,13 +71,13 @@ def most_deflected(mean_squares: FloatArray) -> int:
     return int(np.argmax(mean_squares >= AS_MUCH**2 * mean_squares.max()))
 
 
-def deflections(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
-    """The deflections (k, n) [m] at points (n, 2) [m] as a function of the actuators' heights (k, N) [m]."""
+def deflections(shapes: Shapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    """The deflections (k, n) [m] at points (n, 2) [m] as a function of the shapes' heights (k, K) [m]."""
     values = shapes.matrix(points, TRUNCATED_HEIGHT) if isinstance(shapes, PatchedShapes) else shapes.values(points)
     return lambda heights: np.asarray((values @ heights.T).T)
 
 
-def _curvatures(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
+def _curvatures(shapes: Shapes, points: FloatArray) -> Callable[[FloatArray], FloatArray]:
     """Likewise the Laplacians (k, n) [1/m], bounded at actuators as the part's surface is; built at the first call."""
 
     @cache
@@ -74,6 +85,7 @@ def _curvatures(shapes: PlateShapes, points: FloatArray) -> Callable[[FloatArray
         floor = FLOOR * shapes.size
         if isinstance(shapes, PatchedShapes):
             return shapes.laplacians(points, floor, TRUNCATED_CURVATURE)
+        assert isinstance(shapes, InfluenceShapes | StretchedShapes)
         return shapes.laplacians(points, floor)
 
     return lambda heights: np.asarray((laplacians() @ heights.T).T)

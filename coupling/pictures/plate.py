@@ -17,7 +17,7 @@ from matplotlib.tri import Triangulation, UniformTriRefiner
 from numpy.typing import NDArray
 
 from coupling.display import onto_plate
-from fem_plate import PlateShapes, distance_drawn, extent, frame_around, mark_actuators
+from fem_plate import Shapes, distance_drawn, extent, frame_around, mark_actuators
 from meshes import STEPS, Unit, draw_rim, rim_curves, unit_for
 
 if TYPE_CHECKING:
@@ -77,8 +77,8 @@ class Relief(NamedTuple):
         return frame_around(self.box)
 
 
-def relief_of(shapes: PlateShapes, surface: DisplaySurface, heights: FloatArray) -> Relief:
-    """The plate with its drives at heights (N,) [m]."""
+def relief_of(shapes: Shapes, surface: DisplaySurface, heights: FloatArray) -> Relief:
+    """The plate with its moving drives at heights (K,) [m]."""
     return Relief(
         shapes.outline.box,
         shapes.points,
@@ -108,7 +108,7 @@ def draw_plate(
     return mark_actuators(axes, relief.actuators, frame, unit.per_si, width)
 
 
-def fine_piece(shapes: PlateShapes, surface: DisplaySurface, heights: FloatArray, frame: FloatArray) -> Piece:
+def fine_piece(shapes: Shapes, surface: DisplaySurface, heights: FloatArray, frame: FloatArray) -> Piece:
     """The plate within a frame (2, 2) [m]: the display mesh, refined until contours look smooth."""
     points, triangles, used = cut_out(surface.points, surface.triangles, frame)
     fine = refined(points, triangles)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.display import most_deflected
-from coupling.drives import stroke_heights
+from coupling.display import most_deflected, moving_heights
 from coupling.pictures.plate import Relief, relief_of
 from meshes import unit_for
 from particle import AnyDrive, Event, Rows, Samples, Trajectory
@@ -68,15 +67,21 @@ def portrait_of(name: str, scene: Scene, trajectory: Trajectory, surface: Displa
         trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)),
         trajectory.events,
         np.stack([surface.points.min(axis=0), surface.points.max(axis=0)]),
-        relief_of(scene.shapes, surface, stroke_heights(scene.lifts, np.array([moment]))[0]) if scene.shapes else None,
+        _relief(scene, surface, moment),
         moment,
         scene.base,
     )
 
 
+def _relief(scene: Scene, surface: DisplaySurface, moment: float) -> Relief | None:
+    if scene.shapes is None:
+        return None
+    return relief_of(scene.moving_shapes, surface, moving_heights(scene, np.array([moment]))[0])
+
+
 def deflected_most(scene: Scene, surface: DisplaySurface, times: FloatArray) -> float:
     """The first of times (k,) [s] at which the surface is deflected the most."""
-    heights = stroke_heights(scene.lifts, times)
+    heights = moving_heights(scene, times)
     batches = (heights[start : start + BATCH] for start in range(0, len(times), BATCH))
     mean_squares = [np.square(surface.deflection(batch)).mean(axis=1) for batch in batches]
     return float(times[most_deflected(np.concatenate(mean_squares))])

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
-from coupling.display import DisplaySurface, display_surface, most_deflected, onto_surface
-from coupling.drives import frame_times, stroke_heights
+from coupling.display import DisplaySurface, display_surface, most_deflected, moving_heights, onto_surface
+from coupling.drives import frame_times
 from coupling.environment import versions
 from coupling.progress import ProgressCallback, no_progress
 from coupling.results.case_record import CaseRecord
@@ -35,6 +35,9 @@ UNITS = {
     "curvature": "1/m, the Laplacian of the deflection, positive where the plate is bent like a bowl; at an actuator, "
     "where it has no bound, that at a millionth of the plate's half length from it",
     "drive": "m (N where a force drives) at actuators, 0 elsewhere",
+    "membrane_force": "N/m, xx, xy and yy, positive where it pulls; of a plate that stretches",
+    "strain": "1, xx, xy and yy, of the top face of a plate that stretches; within half a thickness of an actuator, "
+    "that at this distance",
     "normal_force": "N",
     "friction_force": "N",
     "contact": "m, in space, where the part touches the surface",
@@ -70,7 +73,7 @@ def write_results(
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
     ground = display_surface(scene, trajectory)
-    heights, speeds = stroke_heights(scene.lifts, times), stroke_heights(scene.lifts, times, 1)
+    heights, speeds = moving_heights(scene, times), moving_heights(scene, times, 1)
     metadata: dict[str, str | int] = {
         "run": uuid4().hex,  # the same in both files, which so find each other
         "case": case.source or record.text,
@@ -94,7 +97,7 @@ def write_results(
         for first in range(0, len(times), AT_ONCE):
             tell(first, len(times))
             some = slice(first, first + AT_ONCE)
-            fields = _fields(ground, heights[some], speeds[some])
+            fields = _fields(ground, heights[some], speeds[some], len(scene.lifts), times[some])
             spread.append(np.square(fields["deflection"], dtype=np.float64).mean(axis=1))
             plate.append(times[some], **fields)
             part.append(
@@ -129,8 +132,10 @@ def _contact_fields(trajectory: Trajectory, times: FloatArray, friction: KogutEt
     return {name: np.nan_to_num(getattr(contact, name)) for name in names}
 
 
-def _fields(ground: DisplaySurface, heights: FloatArray, speeds: FloatArray) -> dict[str, NDArray[np.float32]]:
-    """The fields (k, n) of the surface as drawn under heights [m] and speeds [m/s] (k, N) of its drives."""
+def _fields(
+    ground: DisplaySurface, heights: FloatArray, speeds: FloatArray, actuators: int, times: FloatArray
+) -> dict[str, NDArray[np.float32]]:
+    """The fields (k, n) of the surface as drawn under heights [m] and speeds [m/s] (k, K) of its drives."""
     single = np.float32
     fields = {
         "deflection": ground.deflection(heights).astype(single),
@@ -139,7 +144,9 @@ def _fields(ground: DisplaySurface, heights: FloatArray, speeds: FloatArray) -> 
     if ground.curvature is not None:
         fields["curvature"] = ground.curvature(heights).astype(single)
         fields["drive"] = np.zeros_like(fields["curvature"])
-        fields["drive"][:, : heights.shape[1]] = heights  # the actuators are the first of the points
+        fields["drive"][:, :actuators] = heights[:, :actuators]  # the actuators are the first of the points
+    if ground.stretching is not None:
+        fields |= {name: values.astype(single) for name, values in ground.stretching.fields(times).items()}
     return fields
 
 

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from coupling.case import Case, PlateCase
 from coupling.drives import build_drives
 from coupling.measured import MotionFit
-from coupling.progress import Progress
+from coupling.progress import Progress, ProgressCallback
+from coupling.stretch import Stretch, StretchModel, make_model
 from coupling.surface import surface_motion
-from fem_plate import TRUNCATION, Plate, PlateSection, PlateShapes
-from particle import AnyDrive, SurfaceMotion
+from fem_plate import TRUNCATION, Plate, PlateSection, PlateShapes, Shapes
+from particle import AnyDrive, SurfaceMotion, interruptible
 
 FloatArray = NDArray[np.float64]
 
@@ -27,35 +28,61 @@ MAX_WHOLE = 250
 
 @dataclass(frozen=True, eq=False)
 class PlateScene:
-    """A plate on actuators."""
+    """A plate on actuators; stretch: what bends and stretches it, None in linear theory."""
 
     plate: Plate
     shapes: PlateShapes
     lifts: Sequence[AnyDrive]  # N, one for each actuator
     surface: SurfaceMotion
+    stretch: Stretch | None = None
     base: Sequence[AnyDrive] = field(default=(), init=False)  # it stays in its plane
     origin: str = field(default="the plate", init=False)  # what positions are counted from
     fits: tuple[MotionFit, ...] = field(default=(), init=False)
 
+    @property
+    def moving_shapes(self) -> Shapes:
+        """The shapes of the moving surface."""
+        return self.shapes if self.stretch is None else self.stretch.shapes
+
+    @property
+    def moving_drives(self) -> Sequence[AnyDrive]:
+        """The drive of each of them."""
+        return self.lifts if self.stretch is None else self.stretch.moving_drives
+
 
 def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:
     """The scene of a case with a plate."""
+    tolerance, top = case.run.surface_tolerance, plate_case.thickness / 2 if plate_case.top_face else 0.0
+    drives = build_drives(case)
     with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
         points = [actuator.position for actuator in case.actuators]
         truncation = TRUNCATION if len(points) > MAX_WHOLE else None
         shapes = plate.influence(points, actuator_stiffness(case), truncation, tell)
+    if plate_case.theory == "linear":
+        with progress("Fitting the surface"):
+            return PlateScene(plate, shapes, drives, surface_motion(shapes, drives, tolerance, top))
+    with progress("Solving the stretching plate") as tell:
+        model = stretch_model(case, plate_case, plate, [drives], tell)
     with progress("Fitting the surface"):
-        drives = build_drives(case)
-        top = plate_case.thickness / 2 if plate_case.top_face else 0.0
-        return PlateScene(plate, shapes, drives, surface_motion(shapes, drives, case.run.surface_tolerance, top))
+        stretch = Stretch.under(model, drives, case.run.duration)
+        return PlateScene(plate, shapes, drives, stretch.surface(tolerance, top), stretch)
+
+
+def stretch_model(
+    case: Case, plate_case: PlateCase, plate: Plate, sets: Sequence[Sequence[AnyDrive]], tell: ProgressCallback
+) -> StretchModel:
+    """The model of a case's plate as it stretches, for several sets of drives."""
+    points = [actuator.position for actuator in case.actuators]
+    large = plate.large_deflection(points, plate_case.in_plane_supports, actuator_stiffness(case))
+    return interruptible(make_model, large, sets, case.run.duration, tell)
 
 
 def build_plate(plate: PlateCase) -> Plate:
     """The plate of a case, without loads."""
     section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
-    tolerance = None if plate.cell_size_given else PLATE_TOLERANCE
-    return Plate(plate.build_mesh(), section, plate.supports, tolerance)
+    refined = plate.theory == "linear" and not plate.cell_size_given
+    return Plate(plate.build_mesh(), section, plate.supports, PLATE_TOLERANCE if refined else None, plate.tension)
 
 
 def actuator_stiffness(case: Case) -> NDArray[np.float64]:

@@ -3,15 +3,57 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate import Shapes
 from fem_plate.elements import UNIT_STRENGTH, point_value
+from meshes import Outline
 from particle.surface import CellFit
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+class Fitted(Protocol):
+    """Shapes that cells are fitted to: `fem_plate.Shapes`, or K shapes with logarithms at J points."""
+
+    @property
+    def points(self) -> FloatArray:
+        """(J, 2) m."""
+
+    @property
+    def strengths(self) -> Any:
+        """(J, K), the force at each point in each shape, dense or sparse."""
+
+    @property
+    def size(self) -> float:
+        """m, of the logarithms."""
+
+    @property
+    def outline(self) -> Outline:
+        """The rim."""
+
+    def own_heights(self) -> FloatArray:
+        """(K,) what the errors of each shape are relative to.
+
+        A shape that is driven by a c-th of the others' strokes at most may be off by 1/c of what they may.
+        """
+
+    def nonzero_values(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
+        """The shapes (k,) that do not vanish at all of the points (n, 2) [m], and their values (n, k)."""
+
+
+@runtime_checkable
+class InPlane(Protocol):
+    """Shapes that also move the mid-plane in its plane."""
+
+    def in_plane_values(self, xy: FloatArray) -> FloatArray:
+        """(n, M, 2), M motions at points (n, 2) [m]."""
+
+    def in_plane_heights(self) -> FloatArray:
+        """(M,) what the errors of each motion are relative to."""
 
 
 @dataclass(eq=False)
@@ -30,16 +72,16 @@ class Cell:
         return [leaf for quarter in self.quarters for leaf in quarter.leaves()] if self.quarters else [self]
 
 
-def misfit(cell: Cell, local: FloatArray, shapes: Shapes, heights: FloatArray) -> tuple[float, float]:
+def misfit(cell: Cell, local: FloatArray, shapes: Fitted, heights: FloatArray) -> tuple[float, float]:
     """The largest error of a cell's fit, and the sum of the shapes left out, at points (n, 2) in half widths.
 
-    heights: (N,), what both are relative to.
+    heights: (K,), what both are relative to.
     """
     fit = cell.fit
     assert fit
     at = cell.centre + local * cell.half
     rows, values = shapes.nonzero_values(at)
-    column = np.full(len(shapes.points), len(rows))  # of zeros, for those that are not near
+    column = np.full(len(heights), len(rows))  # of zeros, for those that are not near
     column[rows] = np.arange(len(rows))
     exact = np.concatenate([values, np.zeros((len(at), 1))], axis=1)[:, column[fit.drive]]
     table = monomials(local, fit.degree)

@@ -7,6 +7,7 @@ good enough is divided into four, and so is one with too many logarithms.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,8 +15,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from threadpoolctl import threadpool_limits
 
-from coupling.surface.cell import Cell, monomials, powers
-from fem_plate import PatchedShapes, Shapes
+from coupling.surface.cell import Cell, Fitted, InPlane, monomials, powers
 from fem_plate.elements import UNIT_STRENGTH, point_value
 from meshes import rim_curves
 from particle.surface import CellFit
@@ -25,6 +25,7 @@ IntArray = NDArray[np.int64]
 
 DEGREES = range(2, 11)  # of the polynomials: the lowest that does, as it costs least
 SPARE = 0.01  # of the tolerance: how good it must then be
+PLANE_SPARE = 0.1  # the same of motions in the plane, whose second derivatives matter less
 OVERHANG = 1.25  # cells are fitted over this many half widths, so that a step may end a little outside
 NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
 CHECKS = 48  # points between those, at which its error is measured
@@ -44,17 +45,18 @@ MAX_VALUES = 4_000_000  # points times shapes that are evaluated at once
 class CellMaker:
     """Makes the cells of a plate's shapes.
 
-    tolerance: largest error of a unit shape's fit.
-    heights: (N,) each shape's height at its own actuator, what errors are relative to.  worth: the error that is good
+    tolerance: largest error of a unit shape's fit.  Shapes with a `truncation_error` are not worth a fit that is much
+    better than that.
+    heights: (K,) each shape's height at its own actuator, what errors are relative to.  worth: the error that is good
     enough.  checks: (CHECKS, 2) where it is measured, in half widths.  tree: of the actuators.
     """
 
-    def __init__(self, shapes: Shapes, tolerance: float) -> None:
+    def __init__(self, shapes: Fitted, tolerance: float) -> None:
         self.shapes, self.heights = shapes, shapes.own_heights()
         self.tree = cKDTree(shapes.points)
         self.few = len(shapes.points) <= FEW
-        # Shapes that are cut off are not worth a fit that is much better than that.
-        truncation = shapes.truncation_error if isinstance(shapes, PatchedShapes) else 0.0
+        self._plane_heights = shapes.in_plane_heights() if isinstance(shapes, InPlane) else np.zeros(0)
+        truncation = float(getattr(shapes, "truncation_error", 0.0))
         self.worth = max(tolerance, truncation)
         self._aim, self._negligible = max(tolerance, 0.1 * truncation), self.worth / 4
         self._reach = REACH * (REACHED / self._aim) ** (1 / REACH_ORDER)
@@ -95,7 +97,7 @@ class CellMaker:
 
     def _fit(self, cells: Sequence[Cell]) -> None:
         """Fit cells of one size."""
-        some = max(1, MAX_VALUES // (len(self.shapes.points) * (len(self._nodes) + CHECKS)))
+        some = max(1, MAX_VALUES // ((len(self.heights) + 2 * len(self._plane_heights)) * (len(self._nodes) + CHECKS)))
         for start in range(0, len(cells), some):
             self._fit_some(cells[start : start + some])
 
@@ -117,11 +119,14 @@ class CellMaker:
         if not len(at):
             return
         rows, values = self.shapes.nonzero_values(at)
+        planar = self.shapes.in_plane_values(at) if isinstance(self.shapes, InPlane) else None
         for k, cell in enumerate(cells):
             if len(samples[k]):
                 here = slice(first[k], first[k + 1])
                 clear = float(gap[k]) - OVERHANG * radius if inside[k] else 0.0
                 self._fit_one(cell, local[k], len(samples[k]), rows, values[here], clear)
+                if planar is not None:
+                    self._fit_plane(cell, local[k], len(samples[k]), planar[here])
 
     def _inverse(self, degree: int) -> FloatArray:
         """What turns values at the nodes into the polynomial that fits them best."""
@@ -170,6 +175,28 @@ class CellMaker:
         cell.error, cell.left_out = error, left_out
         polynomials_and_logarithms = np.concatenate([fitted, UNIT_STRENGTH * forces]).T.copy()
         cell.fit = CellFit(degree, rows, weight[kept], near, polynomials_and_logarithms, clear)
+
+    def _fit_plane(self, cell: Cell, local: FloatArray, samples: int, values: FloatArray) -> None:
+        """Fit the motions in the plane, values (n, M, 2), by the lowest degree that does."""
+        assert cell.fit
+        heights = np.repeat(self._plane_heights, 2)
+        target = values.reshape(len(values), -1)
+        highest, total = monomials(local, DEGREES[-1]), powers(DEGREES[-1]).sum(axis=1)
+        best = math.inf
+        for degree in DEGREES:
+            table = highest[:, total <= degree]
+            if cell.fit.clear > 0:
+                fitted: FloatArray = self._inverse(degree) @ target[:samples]
+            else:
+                fitted = np.asarray(np.linalg.lstsq(table[:samples], target[:samples], rcond=RCOND)[0])
+            error = float((np.abs(table[samples:] @ fitted - target[samples:]) / heights).max(initial=0.0))
+            if error < best:
+                best = error
+                plane = fitted.T.reshape(len(self._plane_heights), 2, -1).copy()
+                cell.fit = cell.fit._replace(plane=plane, plane_degree=degree)
+            if error <= PLANE_SPARE * self._aim:
+                break
+        cell.error = max(cell.error, best)
 
     def _at_rim(self, cell: Cell, reach: float, spacing: float) -> FloatArray:
         """Points of a cell that the rim cuts, on the plate and on the rim, in half widths from its centre."""

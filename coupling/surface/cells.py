@@ -11,10 +11,9 @@ from threading import Lock
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.surface.cell import Cell, misfit
+from coupling.surface.cell import Cell, Fitted, misfit
 from coupling.surface.cell_maker import OVERHANG, CellMaker
 from coupling.surface.translates import PER_PITCH, Lattice, lattice_of
-from fem_plate import Shapes
 from particle.surface import NOWHERE, UNBUILT, WHOLE, CellPool, Cells
 
 FloatArray = NDArray[np.float64]
@@ -35,7 +34,7 @@ class PlateCells:
     heights at their own actuators.
     """
 
-    def __init__(self, shapes: Shapes, tolerance: float) -> None:
+    def __init__(self, shapes: Fitted, tolerance: float) -> None:
         self.shapes, self.error = shapes, 0.0
         self._maker = CellMaker(shapes, tolerance)
         self._lattice = None if self._maker.few else lattice_of(shapes)

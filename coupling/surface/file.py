@@ -14,7 +14,7 @@ from particle import SurfaceMotion
 from particle.drives import DriveTable
 from particle.surface import BuiltCells, Cells
 
-KIND, VERSION = "active-surface surface motion", 2
+KIND, VERSION = "active-surface surface motion", 3
 
 LENGTHS = ("size", "floor", "overhang", "half_thickness")
 
@@ -47,6 +47,7 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
     check_surface(path)
     with whole_file(path) as partial, h5py.File(partial, "w") as file:
         file.attrs.update(kind=KIND, version=VERSION, error=surface.error, moving_base=surface.moving_base)
+        file.attrs["in_plane_count"] = surface.in_plane_count
         file.attrs.update({name: getattr(surface, name) for name in LENGTHS})
         for name in ("sources", "conics", "edges"):
             file[name] = getattr(surface, name)
@@ -98,6 +99,7 @@ def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
             drives=DriveTable(**tables["drives"]),
             store=BuiltCells(Cells(**tables["cells"]), float(file.attrs["error"])),
             moving_base=bool(file.attrs["moving_base"]),
+            in_plane_count=int(file.attrs["in_plane_count"]),
             **rest,
         )
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate import InfluenceShapes, PatchedShapes, Shapes
+from coupling.surface.cell import Fitted
+from fem_plate import InfluenceShapes, PatchedShapes
 from fem_plate.arrays import PITCH_DIGITS, spacing
 from particle.surface import CellFit
 
@@ -87,7 +88,7 @@ class Lattice:
         return np.asarray(self._rows[tuple((self._sites[rows] + pitches).T)])
 
 
-def lattice_of(shapes: Shapes) -> Lattice | None:
+def lattice_of(shapes: Fitted) -> Lattice | None:
     """The lattice on which all actuators stand, if they do, hold the plate alike and are enough for an inside."""
     if not isinstance(shapes, InfluenceShapes | PatchedShapes) or len(shapes.points) < MIN_ACTUATORS:
         return None

@@ -63,14 +63,20 @@ class Tile:
 class ActuatorArray:
     """The actuators of a plate, to be solved tile by tile.
 
-    points: (N, 2) m.  actuator_stiffness: (N,) N/m.
+    points: (N, 2) m.  actuator_stiffness: (N,) N/m.  tension: 1/m^2, over the rigidity.
     """
 
     def __init__(
-        self, cutter: Cutter, points: FloatArray, actuator_stiffness: FloatArray, rigidity: float, nu: float
+        self,
+        cutter: Cutter,
+        points: FloatArray,
+        actuator_stiffness: FloatArray,
+        rigidity: float,
+        nu: float,
+        tension: float = 0.0,
     ) -> None:
         self.cutter, self.points, self.actuator_stiffness = cutter, points, actuator_stiffness
-        self.rigidity, self.poisson_ratio = rigidity, nu
+        self.rigidity, self.poisson_ratio, self.tension = rigidity, nu, tension
         self._tree = cKDTree(points)
         self._solved: dict[bytes, Patch] = {}
 
@@ -156,7 +162,7 @@ class ActuatorArray:
     def compliance_at(self, place: FloatArray) -> float:
         """The deflection [m/N] under a unit force at a place (2,) [m] clear of actuators, to three digits."""
         points, stiffness = np.concatenate([self.points, place[None]]), np.append(self.actuator_stiffness, 0.0)
-        loaded = ActuatorArray(self.cutter, points, stiffness, self.rigidity, self.poisson_ratio)
+        loaded = ActuatorArray(self.cutter, points, stiffness, self.rigidity, self.poisson_ratio, self.tension)
         tile = loaded._wide_tile(place, np.array([len(self.points)]), 0.0, COMPLIANCE_TRUNCATION)
         return float(tile.patch.functions.values((place - tile.cut.origin)[None] / tile.patch.size)[0, 0])
 
@@ -184,7 +190,7 @@ class ActuatorArray:
     def model(self, cutter: Cutter, cut: Cut, actuators: FloatArray) -> PlateModel:
         """The plate on a patch, for actuators at points (n, 2) [m] from its origin."""
         mesh, supports, corners = cutter.mesh(cut, actuators)
-        return PlateModel(mesh, supports, self.poisson_ratio, corners)
+        return PlateModel(mesh, supports, self.poisson_ratio, corners, self.tension)
 
     def _solve(self, cutter: Cutter, cut: Cut, rows: IntArray, core: IntArray) -> Patch:
         actuators, stiffness = self.points[rows] - cut.origin, self.actuator_stiffness[rows]
@@ -203,13 +209,15 @@ class ActuatorArray:
         """Which of the points (n, 2) [m] feel that the plate is clamped along the cut.
 
         They are within 1.5 pitches of it, or closer to it than to what holds the plate: an actuator or, where that
-        yields, the plate around it, over a length l with D / l^4 = k / pitch^2.
+        yields, the plate around it, over a length l with D / l^4 + N / l^2 = k / pitch^2, N a tension.
         """
         pitch, held = self.cutter.pitch.max(), stiffness > 0
         to_cut = cKDTree(cut.edge).query(xy)[0]
         if not held.any():
             return np.full(len(xy), True)
         length = (self.rigidity * pitch**2 / stiffness[held]) ** 0.25
+        pull = self.tension * length**2 / 2
+        length = length * np.sqrt(pull + np.sqrt(pull**2 + 1))
         distance, row = cKDTree(actuators[held]).query(xy, k=range(1, min(NEIGHBOURS, len(length)) + 1))
         return np.asarray(to_cut < np.maximum(1.5 * pitch, (distance + length[row]).min(axis=1)))
 

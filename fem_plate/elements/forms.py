@@ -18,6 +18,11 @@ The ends are those of free edges at held ones, + where such an edge ends and - w
 not the twist t.M n vanishes but the shear (d/dt)(t.M n) + div M.n; integrating by parts along the edge leaves the twist
 at its ends, as a force on the corner.
 
+Under a tension beta^2 the form of a stretched membrane is added, imposed in the same way where c = 1:
+
+    beta^2 ( int grad v.grad q - rim[ c (dv/dn q + dq/dn (v - g)) ] + rim[ gamma0/h c (v - g) q ] )
+        = beta^2 rim[ (1 - c) dg/dn q ].
+
 The rim is its true curve: only there does a curved clamped plate have no slope.
 """
 
@@ -32,7 +37,8 @@ from fem_plate.elements.rim import RimQuadrature, unit_gauss
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# Anything within (100..2000, 5000..4e5) gives the same digits; far less loses definiteness.
+# Anything within (20..2e4, 100..2000, 5000..4e5) gives the same digits; far less loses definiteness.
+GAMMA_0 = 200.0
 GAMMA_1 = 400.0
 GAMMA_2 = 40000.0
 # The channels of a function on the rim: value, gradient, M n, div M.n.
@@ -55,18 +61,24 @@ def triangle_quadrature(count: int) -> tuple[FloatArray, FloatArray]:
     return xy, np.outer(x * w, w).reshape(-1)
 
 
-def _reference_matrices() -> tuple[FloatArray, FloatArray]:
-    """int h_a h_b of the reference functions' second derivatives, symmetrised (6, 21, 21); int v q (21, 21)."""
+def _reference_matrices() -> tuple[FloatArray, FloatArray, FloatArray]:
+    """int h_a h_b of the reference functions' second derivatives, symmetrised (6, 21, 21); likewise of the first
+    (3, 21, 21); int v q (21, 21)."""
     xy, weights = triangle_quadrature(7)
     x, y = xy.T
     second = np.stack([monomials(x, y, *d) @ REFERENCE for d in DERIVATIVES[2]])
     value = monomials(x, y) @ REFERENCE
+    first = np.stack([monomials(x, y, *d) @ REFERENCE for d in DERIVATIVES[1]])
     curvature = np.einsum("n,anj,bnk->abjk", weights, second, second)
-    pairs = np.stack([curvature[a, b] if a == b else curvature[a, b] + curvature[b, a] for a, b in PAIRS])
-    return pairs, np.einsum("n,nj,nk->jk", weights, value, value)
+    slopes = np.einsum("n,anj,bnk->abjk", weights, first, first)
+    return (
+        np.stack([curvature[a, b] if a == b else curvature[a, b] + curvature[b, a] for a, b in PAIRS]),
+        np.stack([slopes[0, 0], slopes[0, 1] + slopes[1, 0], slopes[1, 1]]),
+        np.einsum("n,nj,nk->jk", weights, value, value),
+    )
 
 
-REFERENCE_BENDING, REFERENCE_MASS = _reference_matrices()
+REFERENCE_BENDING, REFERENCE_STRETCHING, REFERENCE_MASS = _reference_matrices()
 
 
 def bending(triangles: Triangles, poisson_ratio: float) -> FloatArray:
@@ -75,6 +87,15 @@ def bending(triangles: Triangles, poisson_ratio: float) -> FloatArray:
     law = chain.transpose(0, 2, 1) @ bending_law(poisson_ratio) @ chain * triangles.determinant[:, None, None]
     pairs = np.stack([law[:, a, b] for a, b in PAIRS], axis=1)
     return _to_unknowns(triangles, (pairs @ REFERENCE_BENDING.reshape(6, -1)).reshape(-1, FUNCTIONS, FUNCTIONS))
+
+
+def stretching(triangles: Triangles) -> FloatArray:
+    """int grad v.grad q on straight-sided triangles, (m, 21, 21)."""
+    inverse = triangles.inverse
+    law = inverse @ inverse.transpose(0, 2, 1) * triangles.determinant[:, None, None]
+    pairs = np.stack([law[:, 0, 0], law[:, 0, 1], law[:, 1, 1]], axis=1)
+    matrices = pairs @ REFERENCE_STRETCHING.reshape(3, -1)
+    return _to_unknowns(triangles, matrices.reshape(-1, FUNCTIONS, FUNCTIONS))
 
 
 def mass(triangles: Triangles) -> FloatArray:
@@ -90,6 +111,11 @@ def bending_at(hessian: FloatArray, weights: FloatArray, poisson_ratio: float) -
     """int M(v):H(q) by quadrature: second derivatives (3, k, n, 21) and weights (k, n) give (k, 21, 21)."""
     moments = np.einsum("ab,bknj->aknj", bending_law(poisson_ratio), hessian)  # M(v)
     return np.einsum("kn,aknj,aknl->kjl", weights, moments, hessian, optimize=True)
+
+
+def stretching_at(gradient: FloatArray, weights: FloatArray) -> FloatArray:
+    """int grad v.grad q by quadrature: gradients (2, k, n, 21) and weights (k, n) give (k, 21, 21)."""
+    return np.einsum("kn,aknj,aknl->kjl", weights, gradient, gradient, optimize=True)
 
 
 def mass_at(value: FloatArray, weights: FloatArray) -> FloatArray:
@@ -129,3 +155,15 @@ def rim_forms(rim: RimQuadrature) -> tuple[FloatArray, FloatArray]:
     R = weights * R + ends
     R_swapped = np.swapaxes(R, -1, -2)  # R(q; v)
     return weights * S - R - R_swapped, weights * (S + L) - R_swapped - ends
+
+
+def rim_tension_forms(rim: RimQuadrature) -> tuple[FloatArray, FloatArray]:
+    """What a unit tension adds to `rim_forms`."""
+    k, n = rim.weights.shape
+    R, S, L = np.zeros((3, k, n, CHANNELS, CHANNELS))
+    R[..., VALUE, GRADIENT] = rim.c[..., None] * rim.normal
+    S[..., VALUE, VALUE] = GAMMA_0 / rim.h[:, None] * rim.c
+    L[..., VALUE, GRADIENT] = (1 - rim.c)[..., None] * rim.normal
+    weights = rim.weights[..., None, None]
+    R_swapped = np.swapaxes(R, -1, -2)
+    return weights * (S - R - R_swapped), weights * (S + L - R_swapped)

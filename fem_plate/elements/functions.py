@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate.elements.singular import point_laplacian, point_load, point_value, pressure_derivatives
+from fem_plate.elements.infinite import InfinitePlate
 from fem_plate.elements.space import PlateSpace
 
 FloatArray = NDArray[np.float64]
@@ -16,9 +16,9 @@ Derivatives = tuple[FloatArray, FloatArray, FloatArray]  # value, gradient, Hess
 
 @dataclass(frozen=True, eq=False)
 class PlateFunctions:
-    """k functions w = v + sum_j forces_j F(x - sources_j) + pressure r^4 / 64 + rigid . (1, x, y), dimensionless.
+    """k functions w = v + sum_j forces_j F(x - sources_j) + pressure Q(r) + rigid . (1, x, y), dimensionless.
 
-    r is the distance from the middle of the plate's box.
+    F and Q are the infinite plate's responses; r is the distance from the middle of the plate's box.
     """
 
     space: PlateSpace
@@ -27,32 +27,37 @@ class PlateFunctions:
     forces: FloatArray  # (N, k)
     rigid: FloatArray  # (3, k)
     pressure: FloatArray  # (k,)
+    infinite: InfinitePlate = InfinitePlate()
 
     def weighted(self, weights: FloatArray) -> PlateFunctions:
         """The sum of the functions times weights (k,) or (k, m)."""
         weights = weights.reshape(len(weights), -1)
-        return PlateFunctions(
-            self.space,
-            self.unknowns @ weights,
-            self.sources,
-            self.forces @ weights,
-            self.rigid @ weights,
-            self.pressure @ weights,
+        return replace(
+            self,
+            unknowns=self.unknowns @ weights,
+            forces=self.forces @ weights,
+            rigid=self.rigid @ weights,
+            pressure=self.pressure @ weights,
         )
+
+    def raised(self, unknowns: FloatArray) -> PlateFunctions:
+        """The functions with more of finite elements, (unknowns, k)."""
+        return replace(self, unknowns=self.unknowns + unknowns)
 
     def values(self, x: FloatArray) -> FloatArray:
         """The functions' values alone, (n, k)."""
         (value,) = self.space.evaluate(x, self.unknowns, orders=1)
         value += np.column_stack([np.ones(len(x)), x]) @ self.rigid
         if np.any(self.pressure):
-            value += np.outer(pressure_derivatives(x - self.space.middle)[0][0], self.pressure)
-        return value + point_value(x, self.sources) @ self.forces
+            value += np.outer(self.infinite.pressure_derivatives(x - self.space.middle)[0][0], self.pressure)
+        return value + self.infinite.point_value(x, self.sources) @ self.forces
 
     def laplacians(self, x: FloatArray, floor: float) -> FloatArray:
         """The functions' Laplacians, (n, k), bounded within the radius `floor` of each source."""
-        laplacian = self.space.laplacians(x, self.unknowns) + point_laplacian(x, self.sources, floor) @ self.forces
+        laplacian = self.space.laplacians(x, self.unknowns)
+        laplacian = laplacian + self.infinite.point_laplacian(x, self.sources, floor) @ self.forces
         if np.any(self.pressure):
-            xx, _, yy = pressure_derivatives(x - self.space.middle)[2]
+            xx, _, yy = self.infinite.pressure_derivatives(x - self.space.middle)[2]
             laplacian += np.outer(xx + yy, self.pressure)
         return laplacian
 
@@ -62,7 +67,7 @@ class PlateFunctions:
         value += np.column_stack([np.ones(len(x)), x]) @ self.rigid
         gradient += self.rigid[1:].T
         if np.any(self.pressure):
-            (w,), w_grad, (w_xx, w_xy, w_yy), _ = pressure_derivatives(x - self.space.middle)
+            (w,), w_grad, (w_xx, w_xy, w_yy), _ = self.infinite.pressure_derivatives(x - self.space.middle)
             w_hess = np.stack([np.stack([w_xx, w_xy], -1), np.stack([w_xy, w_yy], -1)], -1)
             value += np.outer(w, self.pressure)
             gradient += w_grad.T[:, None] * self.pressure[:, None]
@@ -71,16 +76,16 @@ class PlateFunctions:
 
     def known_slopes(self, x: FloatArray) -> FloatArray:
         """The slopes (n, 2, k) of all but the finite elements at points (n, 2)."""
-        slopes = np.einsum("njd,jk->ndk", point_load(x, self.sources)[1], self.forces, optimize=True)
+        slopes = np.einsum("njd,jk->ndk", self.infinite.point_load(x, self.sources)[1], self.forces, optimize=True)
         slopes += self.rigid[1:]
         if np.any(self.pressure):
-            slopes += pressure_derivatives(x - self.space.middle)[1].T[:, :, None] * self.pressure
+            slopes += self.infinite.pressure_derivatives(x - self.space.middle)[1].T[:, :, None] * self.pressure
         return np.asarray(slopes)
 
     def evaluate(self, x: FloatArray) -> Derivatives:
         """The functions at points (n, 2); at a source the Hessian is infinite."""
         value, gradient, hessian = self.smooth(x)
-        F, F_grad, F_hess = point_load(x, self.sources)
+        F, F_grad, F_hess = self.infinite.point_load(x, self.sources)
         with np.errstate(invalid="ignore"):  # inf - inf and 0 inf at sources
             return (
                 value + F @ self.forces,

@@ -1,4 +1,4 @@
-"""Where cells must be small: towards corners, and where an actuator is close to the rim."""
+"""Where cells must be small: towards corners, where an actuator is close to the rim, and at the rim under tension."""
 
 from __future__ import annotations
 
@@ -17,6 +17,12 @@ FloatArray = NDArray[np.float64]
 FAR = 0.7  # of the plate's half width: an actuator that far from the rim needs no smaller cells there
 CORNER_GROWTH = 4.0  # of cells with the distance from a corner, times the plate's cells over its size
 CORNER_ERROR = 1e-2  # of the error of the plate's other cells
+LAYER_CELLS = 8.0  # of the plate's cells over its half width: cells at a stretched rim over the width of its layer
+LAYER_GROWTH = 4.0  # widths of the layer over which cells grow e-fold
+MAX_LAYER_CELLS = 1000.0  # spent on layers before any halving, about
+# What halving the cells is sure to divide the error of w by: without layers (observed: 2^5.5 and more), with cells at
+# the rim of up to COARSE_LAYER widths of a layer, and with larger ones.
+GAIN, LAYER_GAIN, COARSE_GAIN, COARSE_LAYER = 2.0**5, 8.0, 2.0, 6.0
 MIN_CELL = 1e-6  # of the plate's size: smaller cells add more rounding than accuracy
 
 
@@ -46,28 +52,61 @@ class Fineness:
     cell: float  # m, mean size over the area
     half_width: float  # m, the largest distance of the plate from its rim
     size: float  # m, the scale of corners: the plate's size, or three half widths of a slender plate
+    layer: float = np.inf  # m, over which a tension's boundary layer decays
+    at_layer: float = np.inf  # m, of the cells there
 
     @staticmethod
-    def of(mesh: PlateMesh) -> Fineness:
+    def of(mesh: PlateMesh, tension: float = 0.0) -> Fineness:
+        """The fineness of a mesh's cells; tension: 1/m^2, over the plate's rigidity."""
         area = np.abs(areas(mesh.points, mesh.triangles))
         a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
         half_width = mesh.outline.gap(np.concatenate([mesh.points, (a + b + c) / 3])).max()
         size = min(mesh.size, 3 * half_width)
-        return Fineness(float(np.average(mesh.cell_sizes, weights=area)), float(half_width), float(size))
+        cell = float(np.average(mesh.cell_sizes, weights=area))
+        if tension <= 0:
+            return Fineness(cell, float(half_width), float(size))
+        ends = mesh.points[np.concatenate(list(mesh.boundaries.values()))]
+        rim = float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum())
+        layer = tension**-0.5
+        return Fineness(cell, float(half_width), float(size), layer, _at_layer(cell / float(half_width), layer, rim))
+
+    def on_patches(self, cell: float, rim: float) -> Fineness:
+        """The same with another size of cell, for patches that extend `rim` along the plate's rim; all in m."""
+        return replace(self, cell=cell, at_layer=_at_layer(cell / self.half_width, self.layer, rim))
+
+    @property
+    def gain(self) -> float:
+        """What halving the cells divides the error of w by, at least."""
+        if self.at_layer >= self.cell:
+            return GAIN
+        return LAYER_GAIN if self.at_layer <= COARSE_LAYER * self.layer else COARSE_GAIN
 
     def halved(self, times: int = 1) -> Fineness:
         """The fineness of cells halved so many times."""
-        return replace(self, cell=self.cell / 2**times)
+        return replace(self, cell=self.cell / 2**times, at_layer=self.at_layer / 2**times)
+
+
+def _at_layer(share: float, layer: float, rim: float) -> float:
+    """The size [m] of cells in a boundary layer.
+
+    share: the plate's cells over its half width.  layer, rim: m, how wide and long the layer is.
+    """
+    if not np.isfinite(layer):
+        return float(np.inf)
+    # As measured, cells of size h at the rim take 8 rim / h (1 + layer / h) of them.
+    half = 4 * rim / MAX_LAYER_CELLS
+    return max(LAYER_CELLS * share * layer, half + float(np.sqrt(half**2 + 2 * half * layer)))
 
 
 def graded(
     mesh: PlateMesh, fine: Fineness, corners: list[SingularCorner], points: FloatArray | None = None
 ) -> PlateMesh:
-    """The mesh with smaller cells at corners, and at the rim where actuators at points (N, 2) [m] are close to it.
+    """The mesh with smaller cells at corners, at a stretched rim, and where actuators at points (N, 2) [m] are close.
 
     The smooth part of the response to a force varies over the distance to its mirror images beyond the rim: cells are
     as small in proportion as the plate's are for an actuator at FAR of the half width from the rim. Towards a corner
     they shrink in proportion to their distance, until they change w there by less than the plate's other cells do.
+    Under a large tension the plate bends in a layer along its rim only.
     """
     images, nearest = None, 0.0
     if points is not None and len(points):
@@ -84,6 +123,11 @@ def graded(
         for corner, floor in zip(corners, smallest, strict=True):
             distance = np.hypot(*(centre - corner.point).T)
             allowed = np.minimum(allowed, np.maximum(min(CORNER_GROWTH * share, 1.0) * distance, floor))
+        if fine.at_layer < fine.cell:
+            with np.errstate(over="ignore"):
+                nearest_corner = mesh.outline.gap(mesh.points)[mesh.triangles].min(axis=1)
+                growth = np.exp(np.maximum(nearest_corner, 0.0) / (LAYER_GROWTH * fine.layer))
+            allowed = np.minimum(allowed, fine.at_layer * growth)
         large = mesh.cell_sizes > allowed
         if not large.any():
             return mesh

@@ -11,8 +11,9 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
 from fem_plate.elements.forms import rim_traces
+from fem_plate.elements.infinite import infinite_plate
 from fem_plate.elements.rim import rigid_motions
-from fem_plate.elements.singular import point_derivatives, potential, pressure_derivatives
+from fem_plate.elements.singular import potential
 from fem_plate.elements.space import PlateSpace
 from meshes import PlateMesh
 
@@ -25,13 +26,21 @@ class PlateModel:
     """A plate on one mesh.
 
     supports: of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
+    tension: 1/m^2, over the plate's rigidity; 0 where a boundary is free.
     """
 
     def __init__(
-        self, mesh: PlateMesh, supports: Mapping[str, str], poisson_ratio: float, free_corners: Iterable[int] = ()
+        self,
+        mesh: PlateMesh,
+        supports: Mapping[str, str],
+        poisson_ratio: float,
+        free_corners: Iterable[int] = (),
+        tension: float = 0.0,
     ) -> None:
         self.mesh = mesh
         self.poisson_ratio = poisson_ratio
+        self.tension = tension * mesh.size**2  # dimensionless
+        self.infinite = infinite_plate(self.tension)  # what is known of it in closed form
         self.space = PlateSpace(mesh, supports, list(free_corners))
         self.rigid = self._orthonormal(rigid_motions(self.space.rim))  # (3, r), coefficients of 1, x, y
 
@@ -70,7 +79,7 @@ class PlateModel:
     @cached_property
     def pinned_stiffness(self) -> csc_matrix:
         """The stiffness, with the rigid motions held by springs at a few points."""
-        return (self.space.stiffness(self.poisson_ratio) + self.pins.T @ self.pins).tocsc()
+        return (self.space.stiffness(self.poisson_ratio, self.tension) + self.pins.T @ self.pins).tocsc()
 
     @cached_property
     def solve(self) -> Callable[[FloatArray], FloatArray]:
@@ -104,7 +113,7 @@ class PlateModel:
 
     @cached_property
     def _load(self) -> csc_matrix:
-        return self.space.load(self.poisson_ratio)
+        return self.space.load(self.poisson_ratio, self.tension)
 
     def _smooth_parts(self, known: list[list[FloatArray]]) -> FloatArray:
         """The parts (unknowns, k) that make k known functions, by their derivatives at the rim, meet the supports."""
@@ -116,7 +125,7 @@ class PlateModel:
         responses = np.empty((self.unknowns, len(sources)), order="F")
         for start in range(0, len(sources), CHUNK):
             part = slice(start, start + CHUNK)
-            known = [point_derivatives(self.space.rim.points, source) for source in sources[part]]
+            known = [self.infinite.point_derivatives(self.space.rim.points, source) for source in sources[part]]
             responses[:, part] = self._smooth_parts(known)
         if not self.rigid.size:
             return responses
@@ -127,6 +136,7 @@ class PlateModel:
         """The integrals of F around sources (N, 2) with the rigid motions, (r, N).
 
         F = laplace P and rigid motions R are harmonic: int F R = rim[R dP/dn - P dR/dn].
+        A plate under tension has no rigid motions.
         """
         rim = self.space.rim
         motions = self.motions(rim.points.reshape(-1, 2)).reshape(*rim.weights.shape, -1)
@@ -141,7 +151,7 @@ class PlateModel:
 
     def under_pressure(self) -> FloatArray:
         """The smooth part (unknowns, 1) of the response to a unit pressure."""
-        return self._smooth_parts([pressure_derivatives(self.space.rim.points - self.space.middle)])
+        return self._smooth_parts([self.infinite.pressure_derivatives(self.space.rim.points - self.space.middle)])
 
     def motions(self, xy: FloatArray) -> FloatArray:
         """The rigid motions at points (n, 2): (n, r)."""

@@ -59,11 +59,28 @@ class PlateSpace:
         self._relative = relative(self.triangles, triangles, edges, corners, self.unknowns)
         self._absolute, self._bent = joined @ self._relative.absolute, joined @ self._relative.bent
 
-    def stiffness(self, poisson_ratio: float) -> csc_matrix:
-        """The symmetric matrix of int M(v):H(q) - R(v; q) - R(q; v) + S(v; q), see `forms`.
+    def stiffness(self, poisson_ratio: float, tension: float = 0.0) -> csc_matrix:
+        """The symmetric matrix of a plate under a dimensionless tension, see `forms`.
 
-        The rigid motions that the supports allow have no energy.
+        The rigid motions that the supports allow have no energy where there is no tension.
         """
+        bending = self._bending(poisson_ratio)
+        return bending + tension * self.stretching() if tension else bending
+
+    def stretching(self) -> csc_matrix:
+        """The symmetric matrix that a unit tension adds to the stiffness."""
+        matrices = forms.stretching(self.triangles)
+        triangle, points, weights = self.slivers
+        np.add.at(matrices, triangle, forms.stretching_at(self.triangles.derivatives(points, triangle, 1), weights))
+        value, gradient = (self.triangles.derivatives(self.rim.points, self.rim.triangle, k) for k in range(2))
+        traces, used = np.concatenate([value, gradient]), slice(forms.GRADIENT.stop)
+        coupling = forms.rim_tension_forms(self.rim)[0][..., used, used]
+        at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)
+        np.add.at(matrices, self.rim.triangle, at_rim)
+        return self.assembled(matrices)
+
+    def _bending(self, poisson_ratio: float) -> csc_matrix:
+        """The matrix of int M(v):H(q) - R(v; q) - R(q; v) + S(v; q)."""
         matrices = forms.bending(self.triangles, poisson_ratio)
         triangle, points, weights = self.slivers
         hessian = self.triangles.derivatives(points, triangle, 2)
@@ -107,9 +124,11 @@ class PlateSpace:
         derivatives = [self.triangles.derivatives(self.rim.points, self.rim.triangle, k) for k in range(4)]
         return forms.rim_traces(derivatives, self.rim.normal, poisson_ratio)
 
-    def load(self, poisson_ratio: float) -> csc_matrix:
-        """The matrix (unknowns, 6 points) of S(g; q) - R(q; g) + L(q) for the traces (6, points) of g, see `forms`."""
+    def load(self, poisson_ratio: float, tension: float = 0.0) -> csc_matrix:
+        """The matrix (unknowns, 6 points) of the right side of `forms` for the traces (6, points) of g."""
         traces, (_, coupling) = self._traces(poisson_ratio), forms.rim_forms(self.rim)
+        if tension:
+            coupling += tension * forms.rim_tension_forms(self.rim)[1]
         data = np.einsum("ckni,kncd->dkni", traces, coupling, optimize=True)  # (6, k, n, 21)
         columns = np.arange(data[..., 0].size).reshape(data.shape[:3])
         rows = np.broadcast_to(self.dofs[self.rim.triangle][:, None], data.shape)

@@ -1,7 +1,15 @@
+from .cells import level_of as level_of
 from .equilibrium import NotConverged as NotConverged
 from .large_deflection import LargeDeflection as LargeDeflection
-from .reduced import ReducedPlate as ReducedPlate
-from .reduced_equilibrium import energy as energy, equilibrium as equilibrium
+from .reduced import Forms as Forms, ReducedPlate as ReducedPlate
+from .reduced_solver import (
+    ReducedEquilibrium as ReducedEquilibrium,
+    energy as energy,
+    reduced_equilibrium as reduced_equilibrium,
+)
 from .reduction import Reduction as Reduction, reduce as reduce
+from .shapes import StretchedShapes as StretchedShapes
+from .discrete import DiscretePlate as DiscretePlate
+from .snapshots import Columns as Columns
 from .state import DeflectedPlate as DeflectedPlate
 from .supports import movable_by_boundary as movable_by_boundary

@@ -13,7 +13,7 @@ from fem_plate.large_deflection.airy import airy, airy_corners
 from fem_plate.large_deflection.cells import refined_for
 from fem_plate.large_deflection.equilibrium import Coefficients, Equilibrium, Loads
 from fem_plate.large_deflection.given_plate import GivenPlate
-from fem_plate.large_deflection.membrane import AIRY
+from fem_plate.large_deflection.membrane import AIRY, Membrane
 from fem_plate.large_deflection.plane_stress import PlaneStress
 from fem_plate.large_deflection.trial import Trial
 
@@ -45,17 +45,31 @@ class DiscretePlate:
         self.mesh = refined_for(mesh, points, plate.fineness.half_width, level)
         rows = corner_rows(self.mesh, [*plate.corners, *corners])
         self.size, self.thickness, self.rigidity = self.mesh.size, section.thickness, section.rigidity
-        self.model = PlateModel(self.mesh, plate.supports, section.poisson_ratio, rows)
+        self.model = PlateModel(self.mesh, plate.supports, section.poisson_ratio, rows, plate.relative_tension)
         hold_firmly(self.model)
         self.in_plane_supports, self.poisson_ratio = dict(movable), section.poisson_ratio
-        if by_airy:
-            self.membrane = airy(self.mesh, every_rim_moves, section.poisson_ratio, rows)
-        else:
-            self.membrane = self.plane_stress.membrane
+        self._by_airy, self._corner_rows, self.x = by_airy, rows, points / self.size
         with np.errstate(divide="ignore"):
-            compliance = self.membrane_unit / stiffness
-        self._stroke_units = np.where(stiffness > 0, self.thickness, self.force_unit)
-        self.equilibrium = Equilibrium(Trial(self.model, points / self.size), self.membrane, compliance)
+            self.compliance = self.membrane_unit / stiffness
+        # Of the actuators' strokes, m, or of forces, N.
+        self.units = np.where(stiffness > 0, self.thickness, self.force_unit)
+
+    @cached_property
+    def membrane(self) -> Membrane:
+        """How it stretches."""
+        if not self._by_airy:
+            return self.plane_stress.membrane
+        return airy(self.mesh, all(self.in_plane_supports.values()), self.poisson_ratio, self._corner_rows)
+
+    @cached_property
+    def trial(self) -> Trial:
+        """What its deflection is made of."""
+        return Trial(self.model, self.x)
+
+    @cached_property
+    def equilibrium(self) -> Equilibrium:
+        """What deflects it."""
+        return Equilibrium(self.trial, self.membrane, self.compliance)
 
     @cached_property
     def plane_stress(self) -> PlaneStress:
@@ -64,7 +78,7 @@ class DiscretePlate:
 
     def loads(self, strokes: FloatArray, pressure: float) -> Loads:
         """Strokes [m], or forces [N], and a pressure [Pa] without dimensions."""
-        return Loads(strokes / self._stroke_units, pressure / self.pressure_unit)
+        return Loads(strokes / self.units, pressure / self.pressure_unit)
 
     def in_plane_motion(self, state: Coefficients) -> FloatArray:
         """The unknowns of `plane_stress` in a state."""

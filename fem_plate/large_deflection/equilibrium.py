@@ -48,6 +48,11 @@ class Coefficients:
     membrane: FloatArray  # (m,)
     stretching: float  # energy
 
+    @property
+    def columns(self) -> tuple[FloatArray, FloatArray]:
+        """v and the extra coefficients as one column each."""
+        return self.v[:, None], self.extra[:, None]
+
 
 @dataclass(frozen=True, eq=False)
 class Solution:
@@ -68,7 +73,7 @@ class Equilibrium:
         self.trial, self.membrane, self.compliance = trial, membrane, compliance
         self.held = np.isfinite(compliance)
         self.space = trial.model.space
-        self.bending = self.space.stiffness(trial.model.poisson_ratio)
+        self.bending = self.space.stiffness(trial.model.poisson_ratio, trial.model.tension)
         self._pins = trial.model.pins
         self.known = [trial.slopes(samples) for samples in membrane.samples]
         points = self.space.points

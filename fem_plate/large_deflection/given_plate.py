@@ -22,8 +22,13 @@ class GivenPlate(Protocol):
     section: PlateSection
     supports: dict[str, str]
     tolerance: float | None
+    tension: float  # N/m
     corners: list[SingularCorner]
     fineness: Fineness
+
+    @property
+    def relative_tension(self) -> float:
+        """The tension over the plate's rigidity [1/m^2]."""
 
     def cells(
         self, points: FloatArray | None = None, halvings: int = 0, corners: Sequence[SingularCorner] = ()

@@ -89,7 +89,10 @@ class LargeDeflection:
             level = needed
 
     def _refined(self, strokes: FloatArray, pressure: float, level: int) -> DeflectedPlate:
-        return refined(lambda halvings: self.solved(strokes, pressure, level, halvings), self.plate.tolerance)
+        plate = self.plate
+        return refined(
+            lambda halvings: self.solved(strokes, pressure, level, halvings), plate.tolerance, plate.fineness.gain
+        )
 
     def solved(self, strokes: FloatArray, pressure: float, level: int, halvings: int) -> DeflectedPlate:
         """The plate in equilibrium on cells of a level of fineness, halved."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 DEGREE = 14  # of the quadrature
+NEWTON = 4  # steps to reference coordinates; cells at the rim are curved a little
 
 
 class PlaneStress:
@@ -38,13 +40,19 @@ class PlaneStress:
         self.basis = basis = Basis(curved(mesh), ElementVector(ElementTriP4()), intorder=DEGREE)
         self.law = 12 * np.array([[1, 0, poisson_ratio], [0, (1 - poisson_ratio) / 2, 0], [poisson_ratio, 0, 1]])
         self._free = np.setdiff1d(np.arange(basis.N), _held(mesh, basis, movable))
+        self._poisson_ratio = poisson_ratio
+
+    @cached_property
+    def membrane(self) -> Membrane:
+        """How the plate stretches."""
+        basis = self.basis
         strain = np.stack([np.stack([g[0, 0], g[0, 1] + g[1, 0], g[1, 1]]) for g in (f[0].grad for f in basis.basis)])
         force = np.einsum("ab,fbkn->kanf", self.law, strain, optimize=True)  # (k, 3, n, 30)
         points = np.moveaxis(np.asarray(basis.global_coordinates()), 0, -1)
         operator = force.reshape(len(points), -1, force.shape[-1])
-        samples = Samples.at(space, np.arange(len(points)), points, np.asarray(basis.dx), operator)
-        stiffness = _stiffness(poisson_ratio).assemble(basis)[self._free][:, self._free].tocsc()
-        self.membrane = Membrane(
+        samples = Samples.at(self.space, np.arange(len(points)), points, np.asarray(basis.dx), operator)
+        stiffness = _stiffness(self._poisson_ratio).assemble(basis)[self._free][:, self._free].tocsc()
+        return Membrane(
             name=PLANE_STRESS,
             samples=(samples,),
             dofs=np.ascontiguousarray(basis.element_dofs.T).astype(np.int64),
@@ -62,17 +70,31 @@ class PlaneStress:
         return everything
 
     def evaluate(self, x: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The motion (n, 2) and its gradient (n, 2, 2) at points (n, 2), from its unknowns."""
+        """Motions (n, 2, c) and their gradients (n, 2, 2, c), the last but one the direction, at points x (n, 2).
+
+        u: (unknowns, c).
+        """
         basis, everything = self.basis, self._expand(u)
         triangle = self.space.triangle_of(x)
-        local = basis.mapping.invF(x.T[:, :, None], triangle)
-        value, gradient = np.zeros((2, len(x))), np.zeros((2, 2, len(x)))
+        local = self._local(x, triangle)
+        value, gradient = np.zeros((len(x), 2, u.shape[1])), np.zeros((len(x), 2, 2, u.shape[1]))
         for i in range(basis.Nbfun):
             (function,) = basis.elem.gbasis(basis.mapping, local, i, triangle)
             weight = everything[basis.element_dofs[i, triangle]]
-            value += weight * np.asarray(function)[..., 0]
-            gradient += weight * function.grad[..., 0]
-        return value.T, gradient.transpose(2, 0, 1)
+            value += np.asarray(function)[..., 0].T[:, :, None] * weight[:, None]
+            gradient += np.moveaxis(function.grad[..., 0], 2, 0)[..., None] * weight[:, None, None]
+        return value, gradient
+
+    def _local(self, x: FloatArray, triangle: IntArray) -> FloatArray:
+        """The reference coordinates (2, n, 1) of points (n, 2) on triangles (n,), curved ones by Newton's method."""
+        mapping = self.basis.mapping
+        corners = mapping.mesh.p[:, mapping.mesh.t[:3, triangle]]  # (2, 3, n)
+        sides = np.moveaxis(corners[:, 1:] - corners[:, :1], 2, 0)
+        local = np.linalg.solve(sides, (x - corners[:, 0].T)[..., None]).transpose(1, 0, 2)
+        for _ in range(NEWTON):
+            missed = mapping.F(local, triangle) - x.T[:, :, None]
+            local = local - np.einsum("ijnk,jnk->ink", mapping.invDF(local, triangle), missed)
+        return np.asarray(local)
 
 
 def curved(mesh: PlateMesh) -> MeshTri2:

@@ -18,7 +18,7 @@ from fem_plate.large_deflection.discrete import DiscretePlate
 from fem_plate.large_deflection.equilibrium import Coefficients, Loads, Solution
 from fem_plate.large_deflection.membrane import Membrane
 from fem_plate.large_deflection.reduced import ReducedPlate
-from fem_plate.large_deflection.reduced_equilibrium import equilibrium as reduced_equilibrium
+from fem_plate.large_deflection.reduced_solver import reduced_equilibrium
 from fem_plate.large_deflection.samples import Samples, thirds, times
 from fem_plate.large_deflection.snapshots import Columns, bending_products, linear_shapes, slopes, tangents
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate.elements import PlateFunctions, PlateModel, point_value
+from fem_plate.elements import PlateFunctions, PlateModel
 from fem_plate.large_deflection.samples import Samples
 
 FloatArray = NDArray[np.float64]
@@ -37,7 +37,7 @@ class Trial:
         self.motions = model.motions(x)  # (J, r)
         r = self.motions.shape[1]
         self.at_actuators = space.point_values(x)  # B
-        green = point_value(x, x) + np.asarray(self.at_actuators @ responses)
+        green = model.infinite.point_value(x, x) + np.asarray(self.at_actuators @ responses)
         green = (green + green.T) / 2
         # Heights of the extra functions at the actuators, (J, J + r), and of phi, (J,).
         self.heights = np.concatenate([green, self.motions], axis=1)
@@ -50,6 +50,7 @@ class Trial:
             np.concatenate([np.eye(len(x)), np.zeros((len(x), r + 1))], axis=1),
             np.concatenate([np.zeros((3, len(x))), model.rigid, np.zeros((3, 1))], axis=1),
             np.append(np.zeros(extra), 1.0),
+            model.infinite,
         )
         self.pressure_heights = self.extra.values(x)[:, -1] if len(x) else np.zeros(0)
         # Bending energies: of finite elements with the extra functions, and of these.
@@ -83,9 +84,7 @@ class Trial:
             slopes[part] += known.reshape(len(known), 2 * n, -1)
         return np.asarray(slopes)
 
-    def functions(self, v: FloatArray, extra: FloatArray, pressure: float) -> PlateFunctions:
-        """w of its coefficients."""
-        total = self.extra.weighted(np.append(extra, pressure))
-        return PlateFunctions(
-            total.space, total.unknowns + v[:, None], total.sources, total.forces, total.rigid, total.pressure
-        )
+    def functions(self, v: FloatArray, extra: FloatArray, pressure: FloatArray | None = None) -> PlateFunctions:
+        """k functions of their coefficients v (unknowns, k), extra (e, k) and pressure (k,), 0 by default."""
+        pushed = np.zeros(extra.shape[1]) if pressure is None else pressure
+        return self.extra.weighted(np.vstack([extra, pushed])).raised(v)

@@ -53,12 +53,8 @@ def modes_about(
     squares, vectors = squares[order], vectors[:, order]
     if squares[0] <= 0:
         raise ValueError("Input deflected of modes must be a stable state; it is not: it has a growing motion")
-    extra = np.concatenate([vectors[n:], np.zeros((1, count))])
-    known = trial.extra.weighted(extra)
-    functions = PlateFunctions(
-        known.space, known.unknowns + vectors[:n], known.sources, known.forces, known.rigid, known.pressure
-    )
-    scale = 1 / np.abs(functions.values(known.space.points)).max(axis=0)
+    functions = trial.functions(vectors[:n], vectors[n:])
+    scale = 1 / np.abs(functions.values(functions.space.points)).max(axis=0)
     return squares, functions.weighted(np.diag(scale))
 
 

@@ -1,8 +1,8 @@
 """The first moments of sliding, on the slow manifold.
 
 At a small sliding speed u friction turns the contact's velocity at the rate Q/u, so that explicit steps from rest fall
-to first order. The slow solution is known. With K = (I - z_k S)(I - z_c S)^-1, which takes a force per kg to the
-contact's acceleration, the contact begins to slide along e, where
+to first order. The slow solution is known. With K = (I - z_k S)(I - z_c S)^-1, F for I where the mid-plane stretches,
+which takes a force per kg to the contact's acceleration, the contact begins to slide along e, where
 
     K (A d - Q e) = r e,     |e| = 1,     r = u' at first,
 
@@ -21,7 +21,14 @@ from typing import NamedTuple
 
 from particle.events.equations import Part, Pull, drag, length, over_plane, pull, push, turning
 from particle.events.motion import Motion
-from particle.events.parallel import from_height, inner, normal_bend_along, shape_operator, to_height
+from particle.events.parallel import (
+    from_height,
+    inner,
+    normal_bend_along,
+    shape_operator,
+    stretch_rate,
+    to_height,
+)
 from particle.friction import friction_limit
 from particle.jit import jit_no_arrays
 from particle.surface import LocalSurface, SurfacePoint, surface_at
@@ -122,7 +129,7 @@ def heading(
     local: LocalSurface, part: Part, time: float, x: float, y: float, u: float, f: SurfacePoint, a: RestPull
 ) -> Heading:
     """Where a part slides at the speed u [m/s] of its contact."""
-    if part.centre > 0.0:
+    if part.centre > 0.0 or local.frame[0].in_plane > 0:
         return _raised_heading(local, part, time, x, y, u, f, a)
     return Heading(a.d_x, a.d_y, a.n_x, a.n_y, _lag(local, part, time, x, y, u, f, a))
 
@@ -161,7 +168,7 @@ def _lag(
 def _raised_heading(
     local: LocalSurface, part: Part, time: float, x: float, y: float, u: float, f: SurfacePoint, a: RestPull
 ) -> Heading:
-    """Where a part slides whose contact or centre of mass is off the mid-plane.
+    """Where a part slides whose contact or centre of mass is off the mid-plane, or on a mid-plane that stretches.
 
     How e turns, and how the pull on a moving part differs from that on one at rest, are taken from small steps.
     """
@@ -195,7 +202,8 @@ def _contact_acceleration(
     a_x, a_y = moved(k, p.x - q_x, p.y - q_y)
     n, s = normal_bend_along(f, v_x, v_y), math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
     z = part.contact
-    return a_x + z * (n.x + n.down * f.w_x / s), a_y + z * (n.y + n.down * f.w_y / s)
+    c_x, c_y = stretch_rate(f, v_x, v_y, v_x, v_y)
+    return a_x + z * (n.x + n.down * f.w_x / s) + c_x, a_y + z * (n.y + n.down * f.w_y / s) + c_y
 
 
 @jit_no_arrays
@@ -227,13 +235,15 @@ def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float,
     limit = friction_limit(part.law, p.normal)
     climb = d_x * f.w_x + d_y * f.w_y
     rate.x, rate.y = v_x, v_y
-    if part.centre > 0.0:
+    if part.centre > 0.0 or local.frame[0].in_plane > 0:
         q = limit / part.mass
         a_x, a_y = moved(mobility(f, part), p.x - q * d_x, p.y - q * d_y)
         n = normal_bend_along(f, v_x, v_y)
         # With what the surface adds by its own height, w_pq along the motion.
         lift = v_x * f.w_xt + v_y * f.w_yt + v_x * (f.w_xx * v_x + 2 * f.w_xy * v_y) + v_y * f.w_yy * v_y
-        rate.v_x = inner(f, d_x, d_y, a_x + part.contact * n.x, a_y + part.contact * n.y) + climb * lift
+        c_x, c_y = stretch_rate(f, v_x, v_y, v_x, v_y)
+        a_x, a_y = a_x + part.contact * n.x + c_x, a_y + part.contact * n.y + c_y
+        rate.v_x = inner(f, d_x, d_y, a_x, a_y) + climb * lift
     else:
         upright = part.gravity + f.w_tt + v_x * f.w_xt + v_y * f.w_yt
         along = d_x * (f.base_ax - part.tilt_x) + d_y * (f.base_ay - part.tilt_y)

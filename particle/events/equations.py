@@ -12,6 +12,11 @@ of w at that point and time, and S, n' and n'' (for x'' = y'' = 0) of `particle.
 
 and it sticks while m |p|_M at v = 0 is at most Q(N). With z_k = z_c = 0 the part is a point on the mid-plane.
 
+Where the mid-plane moves in its plane by u, (x, y) is a point of the material, F = I + grad u, and grad w the slope as
+seen in space, F^-T grad w; the second derivatives of w are those of P times (-grad w, 1). Then a holds u_tt, the pull p
+also holds -2 grad u_t v - v.grad grad u.v, and F takes the place of I in front of the curvature S: (3.8) to (3.11) in
+docs/motion.md. So they do at u = 0, where F = I.
+
 The surface does the work of the contact's force at its own velocity, and that of the moment that turns the part with
 it; friction dissipates Q u; the rest is kinetic and potential energy of the part, both as seen by one at rest.
 """
@@ -28,7 +33,9 @@ from particle.events.parallel import (
     normal_bend,
     normal_rate,
     shape_operator,
+    stretched,
     to_height,
+    unstretched,
 )
 from particle.friction import FrictionLaw, friction_limit
 from particle.jit import jit_no_arrays
@@ -61,16 +68,33 @@ class Pull(NamedTuple):
 def pull(f: SurfacePoint, v_x: float, v_y: float, part: Part) -> Pull:
     """Acceleration without friction, normal force and sliding speed."""
     a_x, a_y = f.base_ax - part.tilt_x, f.base_ay - part.tilt_y
+    c_x, c_y = carried(f, v_x, v_y)
     bend = v_x * (f.w_xx * v_x + 2 * f.w_xy * v_y) + v_y * f.w_yy * v_y
     b = part.gravity + f.w_tt + 2 * (v_x * f.w_xt + v_y * f.w_yt) + bend - a_x * f.w_x - a_y * f.w_y
     square = 1 + f.w_x * f.w_x + f.w_y * f.w_y
-    p_x, p_y = -a_x - b * f.w_x / square, -a_y - b * f.w_y / square
+    p_x, p_y = -(a_x + c_x) - b * f.w_x / square, -(a_y + c_y) - b * f.w_y / square
     normal = part.mass * b / math.sqrt(square) + part.squeeze
     if part.centre > 0.0:
         n = normal_bend(f, v_x, v_y)
         p_x, p_y = p_x - part.centre * n.x, p_y - part.centre * n.y
         normal -= part.mass * part.centre * n.down
     return Pull(p_x, p_y, normal, slip_speed(f, part, v_x, v_y))
+
+
+@jit_no_arrays
+def carried(f: SurfacePoint, v_x: float, v_y: float) -> tuple[float, float]:
+    """2 grad u_t v + v.grad grad u v: what the mid-plane's motion in its plane adds to u_tt at a steady v [m/s^2]."""
+    return (
+        2 * (f.x_xt * v_x + f.x_yt * v_y) + v_x * (f.x_xx * v_x + 2 * f.x_xy * v_y) + v_y * f.x_yy * v_y,
+        2 * (f.y_xt * v_x + f.y_yt * v_y) + v_x * (f.y_xx * v_x + 2 * f.y_xy * v_y) + v_y * f.y_yy * v_y,
+    )
+
+
+@jit_no_arrays
+def rising(f: SurfacePoint, v_x: float, v_y: float) -> float:
+    """w_t + v.grad w: how fast [m/s] a point that moves over the mid-plane by v rises."""
+    s_x, s_y = stretched(f, v_x, v_y)
+    return f.w_t + s_x * f.w_x + s_y * f.w_y
 
 
 @jit_no_arrays
@@ -83,25 +107,25 @@ def slip_speed(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> float:
 @jit_no_arrays
 def slip(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> tuple[float, float]:
     """The velocity [m/s] of the contact over the surface."""
-    return to_height(shape_operator(f), part.contact, v_x, v_y) if part.contact > 0.0 else (v_x, v_y)
+    return to_height(shape_operator(f), part.contact, v_x, v_y) if part.contact > 0.0 else stretched(f, v_x, v_y)
 
 
 @jit_no_arrays
 def over_plane(f: SurfacePoint, part: Part, k_x: float, k_y: float) -> tuple[float, float]:
     """The velocity (x', y') [m/s] of a part from that of its contact."""
-    return from_height(shape_operator(f), part.contact, k_x, k_y) if part.contact > 0.0 else (k_x, k_y)
+    return from_height(shape_operator(f), part.contact, k_x, k_y) if part.contact > 0.0 else unstretched(f, k_x, k_y)
 
 
 @jit_no_arrays
 def by_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
     """(x', y') from the centre of mass's velocity [m/s] along the surface; also (x'', y'') from its acceleration."""
-    return from_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else (x, y)
+    return from_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else unstretched(f, x, y)
 
 
 @jit_no_arrays
 def of_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
     """The velocity [m/s] of the centre of mass along the surface from (x', y'): the inverse of `by_centre`."""
-    return to_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else (x, y)
+    return to_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else stretched(f, x, y)
 
 
 @jit_no_arrays
@@ -160,7 +184,8 @@ def energy(
     f: SurfacePoint, x: float, y: float, v_x: float, v_y: float, z: float, v_z: float, part: Part
 ) -> tuple[float, float]:
     """Kinetic and potential energy [J] of a part on the surface, or over it, where z [m] is not w."""
-    s_x, s_y, s_z = v_x + f.base_vx, v_y + f.base_vy, v_z
+    s_x, s_y = stretched(f, v_x, v_y)
+    s_x, s_y, s_z = s_x + f.base_vx, s_y + f.base_vy, v_z
     height = part.gravity * z - part.tilt_x * (x + f.base_px) - part.tilt_y * (y + f.base_py)
     if part.centre > 0.0:
         n_x, n_y, n_z = normal_rate(f, v_x, v_y)

@@ -1,8 +1,9 @@
 """A part that has come off: free flight to where it next meets the surface, and the impact there.
 
-The centre of mass flies exactly, seen from the base: gravity, and the squeeze straight down. The part's attitude stays
-that of the surface under it: (x, y, z) is the centre of mass less its height along the normal at (x, y), so that a part
-on the surface has z = w. The height over the surface, z - w, is followed by quintics that meet it with two derivatives
+The centre of mass flies exactly, seen from the base, and from the material where that moves in its plane: gravity, and
+the squeeze straight down. The part's attitude stays that of the surface under it: (x, y) is the point of the mid-plane
+whose normal goes through the centre of mass, and z the latter's height less its share of that normal, so that a part on
+the surface has z = w. The height over the surface, z - w, is followed by quintics that meet it with two derivatives
 at both ends of a step; where the first of them becomes negative the part lands. The impact takes away the centre's
 normal velocity relative to the surface, and at most `impact_coefficient` times as much of the tangential one. A surface
 whose velocity jumps under the part hits it, or leaves it behind, in the same way.
@@ -16,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.events.bernstein import first_negative
-from particle.events.equations import Part, by_centre, of_centre
+from particle.events.equations import Part, by_centre, carried, of_centre, rising
 from particle.events.memory import Memory
 from particle.events.motion import Counts, Motion, Now
-from particle.events.parallel import normal_bend, normal_rate, shape_operator, to_height
+from particle.events.parallel import normal_bend, normal_rate, shape_operator, stretched, to_height, unstretched
 from particle.events.request import Request
 from particle.events.slide import MIN_STEP
 from particle.jit import jit
@@ -37,7 +38,7 @@ MAX_NEWTON, PLACED = 20, 1e-15  # of the place and of the height of the centre o
 def take_off(local: LocalSurface, time: float, motion: Motion) -> None:
     """Completes `motion` by the height and the vertical velocity with which a part comes off."""
     f = surface_at(local, motion.x, motion.y, time)
-    motion.z, motion.v_z = f.w, f.w_t + motion.v_x * f.w_x + motion.v_y * f.w_y
+    motion.z, motion.v_z = f.w, rising(f, motion.v_x, motion.v_y)
 
 
 @jit
@@ -66,7 +67,7 @@ def fly(surface: Surface, request: Request, memory: Memory) -> None:
         memory.motion[0] = memory.step.end[0]
         now.time = now.span_end if lands == 1.0 and h == remaining else time + lands * h
         f = surface_at(local, motion.x, motion.y, now.time)
-        if motion.v_z - f.w_t - motion.v_x * f.w_x - motion.v_y * f.w_y >= 0.0:
+        if motion.v_z - rising(f, motion.v_x, motion.v_y) >= 0.0:
             motion.z = f.w  # on its way up: cells that differ by their error are no landing
         else:
             now.mode = land(f, part, MIN_JUMP * surface.size / request.stroke_time, motion)
@@ -137,12 +138,13 @@ def land(f: SurfacePoint, part: Part, slack: float, motion: Motion) -> int:
     A velocity along the surface of up to `slack` [m/s] is none.
     """
     s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
-    v_x, v_y, v_z = motion.v_x, motion.v_y, motion.v_z - f.w_t
+    v_x, v_y = stretched(f, motion.v_x, motion.v_y)
+    v_z = motion.v_z - f.w_t
     into = (v_z - v_x * f.w_x - v_y * f.w_y) / s
     # Velocity of the centre along the surface, before friction's impulse takes its share.
     t_x, t_y, t_z = v_x + into * f.w_x / s, v_y + into * f.w_y / s, v_z - into / s
     if part.centre > 0.0:
-        c_x, c_y = of_centre(f, part, v_x, v_y)
+        c_x, c_y = of_centre(f, part, motion.v_x, motion.v_y)
         t_x, t_y = t_x + c_x - v_x, t_y + c_y - v_y
         t_z = t_x * f.w_x + t_y * f.w_y
     speed = math.sqrt(t_x * t_x + t_y * t_y + t_z * t_z)
@@ -156,7 +158,7 @@ def land(f: SurfacePoint, part: Part, slack: float, motion: Motion) -> int:
     motion.work += part.mass * (p_x * (f.base_vx + z * n_x) + p_y * (f.base_vy + z * n_y) + p_z * (f.w_t + z * n_z))
     motion.dissipated -= 0.5 * part.mass * (p_x * (v_x + after_x) + p_y * (v_y + after_y) + p_z * (v_z + after_z))
     motion.v_x, motion.v_y = by_centre(f, part, after_x, after_y)
-    motion.z, motion.v_z = f.w, f.w_t + motion.v_x * f.w_x + motion.v_y * f.w_y if z > 0.0 else f.w_t + after_z
+    motion.z, motion.v_z = f.w, rising(f, motion.v_x, motion.v_y) if z > 0.0 else f.w_t + after_z
     return Mode.SLIDING if kept > 0.0 else Mode.RESTING
 
 
@@ -175,12 +177,12 @@ def cross_jump(before: SurfacePoint, after: SurfacePoint, part: Part, mode: int,
     A surface that drops from under a part, by more than `slack` [m/s], lets go of it unless nothing can pull it off.
     """
     if mode != Mode.FLYING:
-        motion.z, motion.v_z = before.w, before.w_t + motion.v_x * before.w_x + motion.v_y * before.w_y
+        motion.z, motion.v_z = before.w, rising(before, motion.v_x, motion.v_y)
     u_x, u_y, u_z = _centre_velocity(before, part, motion)
     u_x -= after.base_vx - before.base_vx
     u_y -= after.base_vy - before.base_vy
     _from_centre_velocity(after, part, u_x, u_y, u_z, motion)
-    away = motion.v_z - after.w_t - motion.v_x * after.w_x - motion.v_y * after.w_y
+    away = motion.v_z - rising(after, motion.v_x, motion.v_y)
     if mode == Mode.FLYING or (away > slack and math.isfinite(part.law.pull_off)):
         return Mode.FLYING
     return land(after, part, slack, motion)
@@ -197,30 +199,47 @@ def _fly_ahead(
     x, y = motion.x + n_x + h * (u_x + 0.5 * h * part.tilt_x), motion.y + n_y + h * (u_y + 0.5 * h * part.tilt_y)
     z = motion.z + n_z + h * (u_z - 0.5 * h * down)
     u_x, u_y, u_z = u_x + h * part.tilt_x, u_y + h * part.tilt_y, u_z - h * down
-    if local.frame[0].base_drives > 0:
-        # x and y are counted from the base, which moves on under the part.
+    later = here
+    if local.frame[0].base_drives > 0 or local.frame[0].in_plane > 0:
+        # x and y are counted from the base, which moves on under the part, or from where X is.
         later = surface_at(local, motion.x, motion.y, time + h)
         x -= later.base_px - here.base_px - h * here.base_vx
         y -= later.base_py - here.base_py - h * here.base_vy
         u_x -= later.base_vx - here.base_vx
         u_y -= later.base_vy - here.base_vy
     out.work, out.dissipated = motion.work - part.squeeze * (z - motion.z - n_z), motion.dissipated
-    _put_place(local, part, time + h, x, y, z, out)
-    if part.centre > 0.0:
-        _from_centre_velocity(surface_at(local, out.x, out.y, time + h), part, u_x, u_y, u_z, out)
+    out.x, out.y, out.z = x, y, z
+    if part.centre > 0.0 or local.frame[0].in_plane > 0:
+        _put_place(local, part, time + h, (later.base_px, later.base_py), x, y, z, out)
+        f = surface_at(local, out.x, out.y, time + h)
+        if local.frame[0].in_plane > 0:
+            u_x, u_y = u_x - (f.base_vx - later.base_vx), u_y - (f.base_vy - later.base_vy)
+        _from_centre_velocity(f, part, u_x, u_y, u_z, out)
     else:
         out.v_x, out.v_y, out.v_z = u_x, u_y, u_z
 
 
 @jit
-def _put_place(local: LocalSurface, part: Part, time: float, x: float, y: float, z: float, out: Motion) -> None:
-    """The place in `out` of a part whose centre of mass is at (x, y, z) [m]: Newton's steps from straight below."""
-    out.x, out.y, out.z = x, y, z
-    if part.centre == 0.0:
-        return
+def _put_place(
+    local: LocalSurface,
+    part: Part,
+    time: float,
+    base: tuple[float, float],
+    x: float,
+    y: float,
+    z: float,
+    out: Motion,
+) -> None:
+    """The place in `out` of a part whose centre of mass is at (x, y, z) [m], counted from `base` (x, y) [m].
+
+    Newton's steps from straight below.
+    """
+    in_plane = local.frame[0].in_plane > 0
     for _ in range(MAX_NEWTON):
         f = surface_at(local, out.x, out.y, time)
         n_x, n_y, n_z = _centre_height(f, part)
+        if in_plane:
+            n_x, n_y = n_x + f.base_px - base[0], n_y + f.base_py - base[1]
         step_x, step_y = by_centre(f, part, x - n_x - out.x, y - n_y - out.y)
         out.x, out.y, out.z = out.x + step_x, out.y + step_y, z - n_z
         if abs(step_x) + abs(step_y) <= PLACED * (part.centre + abs(out.x) + abs(out.y)):
@@ -237,16 +256,18 @@ def _centre_height(f: SurfacePoint, part: Part) -> tuple[float, float, float]:
 @jit
 def _centre_velocity(f: SurfacePoint, part: Part, motion: Motion) -> tuple[float, float, float]:
     """The velocity [m/s] of the centre of mass of a flying part, seen from the base."""
+    s_x, s_y = stretched(f, motion.v_x, motion.v_y)
     if part.centre == 0.0:
-        return motion.v_x, motion.v_y, motion.v_z
+        return s_x, s_y, motion.v_z
     n_x, n_y, n_z = normal_rate(f, motion.v_x, motion.v_y)
-    return motion.v_x + part.centre * n_x, motion.v_y + part.centre * n_y, motion.v_z + part.centre * n_z
+    return s_x + part.centre * n_x, s_y + part.centre * n_y, motion.v_z + part.centre * n_z
 
 
 @jit
 def _from_centre_velocity(f: SurfacePoint, part: Part, u_x: float, u_y: float, u_z: float, out: Motion) -> None:
     """The velocity of a flying part's place, from that [m/s] of its centre of mass, into `out`."""
-    out.v_x, out.v_y, out.v_z = u_x, u_y, u_z
+    out.v_x, out.v_y = unstretched(f, u_x, u_y)
+    out.v_z = u_z
     if part.centre > 0.0:
         n_x, n_y, _ = normal_rate(f, 0.0, 0.0)
         out.v_x, out.v_y = by_centre(f, part, u_x - part.centre * n_x, u_y - part.centre * n_y)
@@ -258,19 +279,22 @@ def _from_centre_velocity(f: SurfacePoint, part: Part, u_x: float, u_y: float, u
 def _height(f: SurfacePoint, part: Part, motion: Motion) -> tuple[float, float, float]:
     """The height [m] over the surface of a flying part and its two derivatives in time."""
     v_x, v_y = motion.v_x, motion.v_y
+    u_x, u_y = carried(f, v_x, v_y)
     bend = v_x * (f.w_xx * v_x + 2 * f.w_xy * v_y) + v_y * f.w_yy * v_y
     a_x, a_y, a_z = part.tilt_x - f.base_ax, part.tilt_y - f.base_ay, part.gravity + part.squeeze / part.mass
+    a_x, a_y, b_x, b_y = a_x - u_x, a_y - u_y, u_x, u_y
     if part.centre > 0.0:
         n, s = normal_bend(f, v_x, v_y), math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
         a_x -= part.centre * (n.x + n.down * f.w_x / s)
         a_y -= part.centre * (n.y + n.down * f.w_y / s)
         a_x, a_y = by_centre(f, part, a_x, a_y)
         c_x, c_y = to_height(shape_operator(f), part.centre, a_x, a_y)
+        a_x, a_y = stretched(f, a_x, a_y)
         a_z += (c_x - a_x) * f.w_x + (c_y - a_y) * f.w_y
         a_z += part.centre * (n.x * f.w_x + n.y * f.w_y - n.down / s)
-    turn = a_x * f.w_x + a_y * f.w_y
+    turn = (a_x + b_x) * f.w_x + (a_y + b_y) * f.w_y
     falls = a_z + f.w_tt + 2 * (v_x * f.w_xt + v_y * f.w_yt) + bend + turn
-    return motion.z - f.w, motion.v_z - f.w_t - v_x * f.w_x - v_y * f.w_y, -falls
+    return motion.z - f.w, motion.v_z - rising(f, v_x, v_y), -falls
 
 
 @jit

@@ -8,6 +8,7 @@ from particle.events.breakaway import RestPull, heading, rest_pull, velocity
 from particle.events.equations import Part, energy_at_rest, length, slip_speed
 from particle.events.memory import Memory
 from particle.events.motion import Motion, Now
+from particle.events.parallel import stretched
 from particle.events.request import Request
 from particle.events.runge_kutta import motion_rate
 from particle.friction import friction_limit
@@ -45,7 +46,7 @@ def joins_manifold(
     h = heading(local, request.part, time, motion.x, motion.y, u, f, a)
     v_x, v_y = velocity(f, request.part, u, h)
     # What is off the manifold turns into it within u / Q.
-    off = length(f, motion.v_x - v_x, motion.v_y - v_y) * u / a.limit
+    off = length(f, *stretched(f, motion.v_x - v_x, motion.v_y - v_y)) * u / a.limit
     return bool(off <= 0.01 * tolerance and 3 * abs(h.kappa) * u**3 / a.limit <= 0.01 * tolerance)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.events.breakaway import heading, rest_pull, velocity
-from particle.events.equations import Part, energy, pull
+from particle.events.equations import Part, energy, pull, rising
 from particle.events.motion import Motion
 from particle.friction import friction_limit
 from particle.jit import jit
@@ -86,7 +86,7 @@ def fill_row(local: LocalSurface, part: Part, mode: int, time: float, motion: Mo
         v_x, v_y = velocity(f, part, motion.v_x, heading(local, part, time, x, y, motion.v_x, f, a))
     elif mode == Mode.RESTING:
         v_x = v_y = 0.0
-    row.v_x, row.v_y, row.z, row.v_z = v_x, v_y, f.w, f.w_t + v_x * f.w_x + v_y * f.w_y
+    row.v_x, row.v_y, row.z, row.v_z = v_x, v_y, f.w, rising(f, v_x, v_y)
     row.load = pull(f, v_x, v_y, part).normal
     row.friction = part.mass * a.demand if mode == Mode.RESTING else friction_limit(part.law, row.load)
     row.kinetic, row.potential = energy(f, x, y, v_x, v_y, row.z, row.v_z, part)

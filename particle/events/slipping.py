@@ -30,6 +30,7 @@ def load_and_demand(
     f = SurfacePoint(
         *(0.0, 0.0, w_tt, slope[0], slope[1], slope_t[0], slope_t[1], 0.0, 0.0, 0.0, slope_tt[0], slope_tt[1]),
         *(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, base[0], base[1]),
+        *(1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     )
     p = pull(f, 0.0, 0.0, part)
     return p.normal, length(f, p.x, p.y)
@@ -46,7 +47,7 @@ def find_lost(
 ) -> None:
     """Mark in `lost` (F, n) the places where a part at rest is not held by its contact at this moment.
 
-    slopes: (n, 2), the slope and its two rates.  base: (2,) m/s^2, the acceleration of the surface's base.  Rates grow
+    slopes: (n, 2), the slope and its two rates.  base: (n, 2) m/s^2, the acceleration in the plane.  Rates grow
     with the factors (F,) of the drives' frequencies, accelerations with their squares.
     """
     for i in range(len(factors)):
@@ -97,6 +98,6 @@ def _at_factor(
         (slope[n, 0], slope[n, 1]),
         (factor * slope_t[n, 0], factor * slope_t[n, 1]),
         (k * slope_tt[n, 0], k * slope_tt[n, 1]),
-        (k * base[0], k * base[1]),
+        (k * base[n, 0], k * base[n, 1]),
         part,
     )

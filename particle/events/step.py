@@ -50,6 +50,20 @@ class Seen(Record):
     base_vy: float
     base_ax: float
     base_ay: float
+    x_x: float
+    x_y: float
+    y_x: float
+    y_y: float
+    x_xt: float
+    x_yt: float
+    y_xt: float
+    y_yt: float
+    x_xx: float
+    x_xy: float
+    x_yy: float
+    y_xx: float
+    y_xy: float
+    y_yy: float
 
 
 class Step(NamedTuple):
@@ -92,6 +106,8 @@ def surface_at_start(local: LocalSurface, step: Step, counts: Counts, time: floa
             *(s.w, s.w_t, s.w_tt, s.w_x, s.w_y, s.w_xt, s.w_yt, s.w_xx, s.w_xy, s.w_yy, s.w_xtt, s.w_ytt),
             *(s.w_xxt, s.w_xyt, s.w_yyt, s.w_xxx, s.w_xxy, s.w_xyy, s.w_yyy),
             *(s.base_px, s.base_py, s.base_vx, s.base_vy, s.base_ax, s.base_ay),
+            *(s.x_x, s.x_y, s.y_x, s.y_y, s.x_xt, s.x_yt, s.y_xt, s.y_yt),
+            *(s.x_xx, s.x_xy, s.x_yy, s.y_xx, s.y_xy, s.y_yy),
         )
     counts.evaluations += 1
     return surface_at(local, motion.x, motion.y, time)
@@ -107,3 +123,14 @@ def keep_surface(local: LocalSurface, step: Step, time: float, f: SurfacePoint) 
     s.w_xtt, s.w_ytt, s.w_xxt, s.w_xyt, s.w_yyt = f.w_xtt, f.w_ytt, f.w_xxt, f.w_xyt, f.w_yyt
     s.w_xxx, s.w_xxy, s.w_xyy, s.w_yyy = f.w_xxx, f.w_xxy, f.w_xyy, f.w_yyy
     s.base_vx, s.base_vy, s.base_ax, s.base_ay = f.base_vx, f.base_vy, f.base_ax, f.base_ay
+    s.x_x, s.x_y, s.y_x, s.y_y, s.x_xt, s.x_yt, s.y_xt, s.y_yt = (
+        f.x_x,
+        f.x_y,
+        f.y_x,
+        f.y_y,
+        f.x_xt,
+        f.x_yt,
+        f.y_xt,
+        f.y_yt,
+    )
+    s.x_xx, s.x_xy, s.x_yy, s.y_xx, s.y_xy, s.y_yy = f.x_xx, f.x_xy, f.x_yy, f.y_xx, f.y_xy, f.y_yy

@@ -6,7 +6,7 @@ the surface times s^2, and s^2 itself. Positive Bernstein coefficients of
     Q^2 s^2 - (m s x force along the surface)^2     with the least Q that the subinterval's loads allow,
 
 prove that the part sticks throughout it. What is not proved is halved, the earlier half first. A centre of mass off the
-mid-plane adds to these polynomials (`stick_raised`).
+mid-plane adds to these polynomials (`stick_raised`); they are others where it moves in its plane (`stick_stretched`).
 """
 
 from __future__ import annotations
@@ -23,9 +23,11 @@ from particle.events.equations import Part
 from particle.events.polynomials import dot, product, second_derivative, total
 from particle.events.stick_raised import DEGREE as RAISED_DEGREE
 from particle.events.stick_raised import X, Y, fill_raised, holds_raised, is_safe_raised
+from particle.events.stick_stretched import DEGREE as STRETCHED_DEGREE
+from particle.events.stick_stretched import fill_stretched, safe_by_extremes_stretched
 from particle.friction import friction_limit
 from particle.jit import jit, jit_no_arrays
-from particle.surface import LocalSurface, motion_at
+from particle.surface import Frame, LocalSurface, motion_at, planar_motion_at
 
 FloatArray = NDArray[np.float64]
 
@@ -33,6 +35,7 @@ DEGREE = 16  # of the squared force along the surface; everything else is raised
 # A part sticks up to the limit itself, as on a slope at the angle of friction: rounding must not decide.
 ROUNDING = 1 + 1e-14
 SLACK = 1e-15  # of the largest squared force in the span
+LEVEL, RAISED, STRETCHED = range(3)  # a point on the mid-plane; off it; on or off one that moves in its plane
 
 
 class Rest(NamedTuple):
@@ -40,9 +43,11 @@ class Rest(NamedTuple):
 
     polynomials: FloatArray  # (MAX_HALVINGS + 2, 3, DEGREE + 1): C, squared force times s^2, s^2, in Bernstein form
     raised: FloatArray  # (MAX_HALVINGS + 2, 6, RAISED_DEGREE + 1), those of `stick_raised`
+    stretched: FloatArray  # (MAX_HALVINGS + 2, 6, STRETCHED_DEGREE + 1), those of `stick_stretched`
     low: FloatArray  # (MAX_HALVINGS + 2,)
     width: FloatArray  # (MAX_HALVINGS + 2,)
     motion: FloatArray  # (3, 6), w, w_x and w_y at the place as polynomials of the share of the time
+    plane: FloatArray  # (6, 6), motion in the plane and its gradient there
     bounds: FloatArray  # (6,), one of these in Bernstein form
 
 
@@ -50,9 +55,11 @@ def new_rest() -> Rest:
     return Rest(
         np.zeros((MAX_HALVINGS + 2, 3, DEGREE + 1)),
         np.zeros((MAX_HALVINGS + 2, 6, RAISED_DEGREE + 1)),
+        np.zeros((MAX_HALVINGS + 2, 6, STRETCHED_DEGREE + 1)),
         np.zeros(MAX_HALVINGS + 2),
         np.zeros(MAX_HALVINGS + 2),
         np.zeros((3, ORDER)),
+        np.zeros((6, ORDER)),
         np.zeros(ORDER),
     )
 
@@ -67,15 +74,23 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
     low, width = (begin - local.frame[0].time) / local.frame[0].unit, (end - begin) / local.frame[0].unit
     for row in range(3):
         _move(rest.motion[row], low, width)
-    straight = local.frame[0].base_drives == 0 and part.tilt_x == 0.0 and part.tilt_y == 0.0
-    if straight and _safe_by_extremes(part, rest, end - begin):
-        return math.inf
-    raised = part.centre > 0.0
-    polynomials = rest.raised if raised else rest.polynomials
-    _polynomials(local, part, rest.motion, begin, end, polynomials[0])
+    frame: Frame = local.frame[0]
+    kind = STRETCHED if frame.in_plane > 0 else RAISED if part.centre > 0.0 else LEVEL
+    if kind == STRETCHED:
+        _plane(local, rest, x, y, low, width)
+        if safe_by_extremes_stretched(part, rest.motion, rest.plane, end - begin, rest.bounds):
+            return math.inf
+        polynomials = rest.stretched
+        fill_stretched(part, rest.motion, rest.plane, end - begin, polynomials[0])
+    else:
+        straight = frame.base_drives == 0 and part.tilt_x == 0.0 and part.tilt_y == 0.0
+        if straight and _safe_by_extremes(part, rest, end - begin):
+            return math.inf
+        polynomials = rest.raised if kind == RAISED else rest.polynomials
+        _polynomials(local, part, rest.motion, begin, end, polynomials[0])
     # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
     largest = np.abs(polynomials[0, 1]).max()
-    if raised:
+    if kind != LEVEL:
         z = part.centre
         largest += 2 * z * np.abs(polynomials[0, X]).max() + z * z * np.abs(polynomials[0, Y]).max()
     slack = SLACK * largest
@@ -83,11 +98,11 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
     narrowest = 0.5**MAX_HALVINGS
     top = 0
     while top >= 0:
-        if _safe_by_bernstein(part, polynomials[top], slack):
+        if _safe_by_bernstein(part, kind, polynomials[top], slack):
             top -= 1
         elif rest.width[top] <= narrowest:
             # Neither provable nor divisible: a slip if the far end says so, else the limit was only touched.
-            if not _holds_at_end(part, polynomials[top], slack):
+            if not _holds_at_end(part, kind, polynomials[top], slack):
                 return float(begin + (rest.low[top] + rest.width[top]) * (end - begin))
             top -= 1
         else:
@@ -99,6 +114,17 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
                 halve(polynomials[top, row], polynomials[top + 1, row])
             top += 1
     return math.inf
+
+
+@jit_no_arrays
+def _plane(local: LocalSurface, rest: Rest, x: float, y: float, low: float, width: float) -> None:
+    """The motion in the plane, the base's included, and its gradient into rest.plane."""
+    planar_motion_at(local, x, y, rest.plane)
+    for k in range(ORDER):
+        rest.plane[0, k] += local.base[k, 0]
+        rest.plane[3, k] += local.base[k, 1]
+    for row in range(6):
+        _move(rest.plane[row], low, width)
 
 
 @jit_no_arrays
@@ -158,18 +184,19 @@ def holds(part: Part, c: float, force: float, square: float) -> bool:
 
 
 @jit_no_arrays
-def _holds_at_end(part: Part, rest: FloatArray, slack: float) -> bool:
+def _holds_at_end(part: Part, kind: int, rest: FloatArray, slack: float) -> bool:
     """Whether the part stays at the end of a subinterval."""
-    if part.centre > 0.0:
+    if kind != LEVEL:
         return holds_raised(part, rest, slack)
     return holds(part, rest[0, -1], rest[1, -1] - slack, rest[2, -1])
 
 
 @jit
-def _safe_by_bernstein(part: Part, rest: FloatArray, slack: float) -> bool:
+def _safe_by_bernstein(part: Part, kind: int, rest: FloatArray, slack: float) -> bool:
     """Whether the Bernstein coefficients of a subinterval prove that the part stays."""
-    if part.centre > 0.0:
-        return is_safe_raised(part, rest, slack)
+    if kind != LEVEL:
+        # Where the mid-plane keeps its area, s is at least 1.
+        return rest[2].min() > 0.0 and is_safe_raised(part, rest, slack, 0.0 if kind == STRETCHED else 1.0)
     c_low, c_high = rest[0].min(), rest[0].max()
     s_low, s_high = math.sqrt(max(1.0, rest[2].min())), math.sqrt(max(1.0, rest[2].max()))
     load_low = part.mass * c_low / (s_high if c_low > 0 else s_low) + part.squeeze

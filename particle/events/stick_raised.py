@@ -74,9 +74,13 @@ def over(value: float, low: float, high: float) -> tuple[float, float]:
 
 
 @jit
-def is_safe_raised(part: Part, rest: FloatArray, slack: float) -> bool:
-    """Whether the Bernstein coefficients (6, 37) of a subinterval prove that the part stays."""
-    z, low, high = part.centre, math.sqrt(max(1.0, rest[SQUARE].min())), math.sqrt(max(1.0, rest[SQUARE].max()))
+def is_safe_raised(part: Part, rest: FloatArray, slack: float, least_square: float) -> bool:
+    """Whether the Bernstein coefficients (6, n) of a subinterval prove that the part stays.
+
+    least_square: what s^2 cannot be less than, whatever its coefficients.
+    """
+    low, high = math.sqrt(max(least_square, rest[SQUARE].min())), math.sqrt(max(least_square, rest[SQUARE].max()))
+    z = part.centre
     least, most = over(rest[C].min(), low, high)[0], over(rest[C].max(), low, high)[1]
     least -= z * over(rest[E].max(), low**4, high**4)[1]
     most -= z * over(max(0.0, rest[E].min()), low**4, high**4)[0]
@@ -84,7 +88,7 @@ def is_safe_raised(part: Part, rest: FloatArray, slack: float) -> bool:
     if load_low < -part.law.pull_off or load_high > part.law.largest_load:
         return False
     limit = part.law.static_ratio * friction_limit(part.law, load_low) / part.mass
-    for i in range(DEGREE + 1):
+    for i in range(rest.shape[1]):
         force = rest[F, i] + 2 * z * over(rest[X, i], low**3, high**3)[1] + z * z * over(rest[Y, i], low**6, high**6)[1]
         if force - slack > limit * limit * rest[SQUARE, i]:
             return False
@@ -94,7 +98,8 @@ def is_safe_raised(part: Part, rest: FloatArray, slack: float) -> bool:
 @jit
 def holds_raised(part: Part, rest: FloatArray, slack: float) -> bool:
     """Whether the part stays at the end of a subinterval."""
-    z, square, last = part.centre, rest[SQUARE, DEGREE], DEGREE
+    last = rest.shape[1] - 1
+    z, square = part.centre, rest[SQUARE, last]
     s = math.sqrt(square)
     load = part.mass * (rest[C, last] / s - z * rest[E, last] / square**2) + part.squeeze
     limit = part.law.static_ratio * friction_limit(part.law, load) / part.mass

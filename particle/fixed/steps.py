@@ -51,8 +51,8 @@ HALVINGS = 50
 
 
 def shortest_stroke(surface: SurfaceMotion, duration: float) -> float:
-    """The time [s] of the shortest stroke of any drive, at most the run's duration."""
-    return min(float(surface.drives.stroke_time.min(initial=math.inf)), float(duration))
+    """The time [s] of the surface's shortest stroke, at most the run's duration."""
+    return min(float(surface.stroke_times.min(initial=math.inf)), float(duration))
 
 
 def default_step(surface: SurfaceMotion, duration: float) -> float:

@@ -12,6 +12,7 @@ from particle.drives import ORDER
 from particle.jit import jit, jit_no_arrays
 from particle.surface.cells import UNBUILT
 from particle.surface.local import Frame, LocalSurface
+from particle.surface.planar import planar_at
 from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
 from particle.surface.span import enter
@@ -20,7 +21,12 @@ FloatArray = NDArray[np.float64]
 
 
 class SurfacePoint(NamedTuple):
-    """The surface at one point and time, in SI units, with the base's place, velocity and acceleration in its plane."""
+    """The surface at the material point X = (x, y) and one time, in SI units.
+
+    Its place in space is P = (X + u + base, w). Where it moves in its plane, w_x and w_y are the slope g as seen in
+    space, and the second and third derivatives of w, w_tt excepted, stand for (-g, 1).P_.. with the same derivatives
+    of P. `base_...` are those of u + base.
+    """
 
     w: float
     w_t: float
@@ -47,6 +53,20 @@ class SurfacePoint(NamedTuple):
     base_vy: float
     base_ax: float
     base_ay: float
+    x_x: float  # derivatives of X + u by X: 1, 0, 0, 1 where u = 0
+    x_y: float
+    y_x: float
+    y_y: float
+    x_xt: float
+    x_yt: float
+    y_xt: float
+    y_yt: float
+    x_xx: float
+    x_xy: float
+    x_yy: float
+    y_xx: float
+    y_xy: float
+    y_yy: float
 
 
 @jit_no_arrays
@@ -159,9 +179,29 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
         s, unit = (time - frame.time) / frame.unit, frame.unit
         base_px, base_vx, base_ax = quintic(local.base[:, 0], s, unit)
         base_py, base_vy, base_ay = quintic(local.base[:, 1], s, unit)
+    x_x, x_y, y_x, y_y = 1.0, 0.0, 0.0, 1.0
+    x_xt = x_yt = y_xt = y_yt = x_xx = x_xy = x_yy = y_xx = y_xy = y_yy = 0.0
+    if frame.in_plane > 0:
+        along_x, along_y = planar_at(local, 0, x, y, time), planar_at(local, frame.plane_monomials, x, y, time)
+        x_x, x_y, y_x, y_y = 1 + along_x.x, along_x.y, along_y.x, 1 + along_y.y
+        x_xt, x_yt, y_xt, y_yt = along_x.xt, along_x.yt, along_y.xt, along_y.yt
+        x_xx, x_xy, x_yy, y_xx, y_xy, y_yy = along_x.xx, along_x.xy, along_x.yy, along_y.xx, along_y.xy, along_y.yy
+        base_px, base_vx, base_ax = base_px + along_x.u, base_vx + along_x.t, base_ax + along_x.tt
+        base_py, base_vy, base_ay = base_py + along_y.u, base_vy + along_y.t, base_ay + along_y.tt
+        # The slope seen in space: grad w = (I + grad u)^T g.
+        det = x_x * y_y - x_y * y_x
+        g_x, g_y = (y_y * g_x - y_x * g_y) / det, (x_x * g_y - x_y * g_x) / det
+        g_xt, g_yt = g_xt - g_x * along_x.xt - g_y * along_y.xt, g_yt - g_x * along_x.yt - g_y * along_y.yt
+        g_xtt, g_ytt = g_xtt - g_x * along_x.xtt - g_y * along_y.xtt, g_ytt - g_x * along_x.ytt - g_y * along_y.ytt
+        h_xx, h_xy = h_xx - g_x * along_x.xx - g_y * along_y.xx, h_xy - g_x * along_x.xy - g_y * along_y.xy
+        h_yy, h_xxt = h_yy - g_x * along_x.yy - g_y * along_y.yy, h_xxt - g_x * along_x.xxt - g_y * along_y.xxt
+        h_xyt, h_yyt = h_xyt - g_x * along_x.xyt - g_y * along_y.xyt, h_yyt - g_x * along_x.yyt - g_y * along_y.yyt
+        t_xxx, t_xxy = t_xxx - g_x * along_x.xxx - g_y * along_y.xxx, t_xxy - g_x * along_x.xxy - g_y * along_y.xxy
+        t_xyy, t_yyy = t_xyy - g_x * along_x.xyy - g_y * along_y.xyy, t_yyy - g_x * along_x.yyy - g_y * along_y.yyy
     return SurfacePoint(
         *(w, w_t, w_tt, g_x, g_y, g_xt, g_yt, h_xx, h_xy, h_yy, g_xtt, g_ytt),
         *(h_xxt, h_xyt, h_yyt, t_xxx, t_xxy, t_xyy, t_yyy, base_px, base_py, base_vx, base_vy, base_ax, base_ay),
+        *(x_x, x_y, y_x, y_y, x_xt, x_yt, y_xt, y_yt, x_xx, x_xy, x_yy, y_xx, y_xy, y_yy),
     )
 
 
@@ -211,11 +251,12 @@ def motion_at(local: LocalSurface, x: float, y: float, out: FloatArray) -> None:
 def evaluate_points(
     surface: Surface, local: LocalSurface, xy: FloatArray, time: float
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """The first twelve of `SurfacePoint` at points (n, 2) [m] and one time [s]: (n, 12), nan beyond the rim.
+    """Height and slopes at points (n, 2) [m] and one time [s], nan beyond the rim: (n, 18).
 
-    Also (n,) which of the points have no cell yet.
+    The first twelve of `SurfacePoint`, derivatives of w itself; then u, u_t and u_tt. Also (n,) which of the points
+    have no cell yet.
     """
-    out, missing = np.full((len(xy), 12), math.nan), np.zeros(len(xy), dtype=np.bool_)
+    out, missing = np.full((len(xy), 18), math.nan), np.zeros(len(xy), dtype=np.bool_)
     for n in range(len(xy)):
         x, y = xy[n]
         if rim_gap(surface, x, y) < -1e-9 * surface.size:
@@ -225,5 +266,13 @@ def evaluate_points(
         if cell >= 0:
             f = surface_at(local, x, y, time)
             out[n, :10] = np.array([f.w, f.w_t, f.w_tt, f.w_x, f.w_y, f.w_xt, f.w_yt, f.w_xx, f.w_xy, f.w_yy])
-            out[n, 10:] = np.array([f.w_xtt, f.w_ytt])
+            out[n, 10:12] = np.array([f.w_xtt, f.w_ytt])
+            out[n, 12:] = 0.0
+            if local.frame[0].in_plane > 0:
+                a = planar_at(local, 0, x, y, time)
+                b = planar_at(local, local.frame[0].plane_monomials, x, y, time)
+                out[n, 3:5] = np.array([f.x_x * f.w_x + f.y_x * f.w_y, f.x_y * f.w_x + f.y_y * f.w_y])
+                out[n, 5:12] += f.w_x * np.array([a.xt, a.yt, a.xx, a.xy, a.yy, a.xtt, a.ytt])
+                out[n, 5:12] += f.w_y * np.array([b.xt, b.yt, b.xx, b.xy, b.yy, b.xtt, b.ytt])
+                out[n, 12:] = np.array([a.u, b.u, a.t, b.t, a.tt, b.tt])
     return out, missing

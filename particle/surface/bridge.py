@@ -30,12 +30,18 @@ def allow_bridges(local: LocalSurface, velocity_error: float, acceleration_error
 
 @jit_no_arrays
 def drive_of(surface: Surface, local: LocalSurface, i: int) -> int:
-    """The drive that is i-th in the cell; the base's two follow the cell's."""
+    """The drive that is i-th in the cell; those of shapes in the plane and the base's two follow the cell's."""
     frame: Frame = local.frame[0]
-    beyond = i - (frame.drives - frame.base_drives)
+    beyond = i - shapes_in_cell(frame)
     if beyond >= 0:
         return int(surface.shape_count + beyond)
     return int(surface.cells.drive[surface.cells.first_drive[frame.cell] + i])
+
+
+@jit_no_arrays
+def shapes_in_cell(frame: Frame) -> int:
+    """How many drives of shapes count in the cell."""
+    return int(frame.drives - frame.in_plane - frame.base_drives)
 
 
 @jit_no_arrays
@@ -43,7 +49,7 @@ def find_jump(surface: Surface, local: LocalSurface, i: int) -> None:
     """By how much the third derivative of what the i-th drive does in this cell jumps."""
     frame: Frame = local.frame[0]
     cells, jump = surface.cells, surface.drives.rough[drive_of(surface, local, i)]
-    counted = i < frame.drives - frame.base_drives
+    counted = i < shapes_in_cell(frame)
     weight = cells.weight[cells.first_drive[frame.cell] + i] if counted else math.inf
     local.clock[i].jump = weight * jump if jump > 0.0 else 0.0
 

@@ -18,6 +18,7 @@ IntArray = NDArray[np.int64]
 
 NOWHERE, UNBUILT = -1, -2  # the cell of points where there is no plate, and of those that nobody has asked for yet
 WHOLE = -1  # what a cell that is not divided has in place of its quarters
+NO_PLANE = np.zeros((0, 2, 1))  # the shapes in the plane of a surface that stays in place there
 
 
 class Cells(NamedTuple):
@@ -41,26 +42,32 @@ class Cells(NamedTuple):
     first_row: IntArray  # (c,) where its first shape begins in `rows`; NOWHERE off the plate
     degree: IntArray  # (c,) of its polynomials
     rows: FloatArray  # a shape after the other: monomials in (x - centre) / half, then the strengths of the logarithms
+    first_plane: IntArray  # (c,) where its first shape in the plane begins in `plane_rows`
+    plane_degree: IntArray  # (c,) of these shapes
+    plane_rows: FloatArray  # a shape in the plane after the other: monomials along x, then along y
     most_drives: int  # of any cell
     most_near: int
     highest: int  # degree of any cell
+    plane_highest: int  # of any cell's shapes in the plane
 
 
 class CellFit(NamedTuple):
     """What one cell is made of.
 
     drive: (k,) drives.  weight: (k,), near: (j,) actuators, clear: m, as in `Cells`.  rows: (k, monomials + j).
-    shared: whether other cells are made of the same `rows`.
+    shared: whether other cells are made of the same `rows`.  plane: (m, 2, monomials of `plane_degree`), all shapes in
+    the plane.
     """
 
     degree: int
-
     drive: IntArray
     weight: FloatArray
     near: IntArray
     rows: FloatArray
     clear: float
     shared: bool = False
+    plane: FloatArray = NO_PLANE
+    plane_degree: int = 0
 
 
 class CellStore(Protocol):
@@ -83,10 +90,13 @@ class OneCell:
 
     error = 0.0
 
-    def __init__(self, shapes: FloatArray, degree: int, size: float) -> None:
+    def __init__(
+        self, shapes: FloatArray, degree: int, size: float, plane: FloatArray = NO_PLANE, plane_degree: int = 0
+    ) -> None:
         pool = CellPool(np.zeros(2), np.full(2, math.inf), np.array([[UNBUILT]]))
         weight, near = np.full(len(shapes), math.inf), np.zeros(0, dtype=np.int64)
-        fit = CellFit(degree, np.arange(len(shapes)), weight, near, shapes, clear=0.0)
+        drive = np.arange(len(shapes))
+        fit = CellFit(degree, drive, weight, near, shapes, clear=0.0, plane=plane, plane_degree=plane_degree)
         pool.roots[0, 0] = pool.add(np.zeros(2), np.full(2, size), fit)
         self.cells = pool.cells()
 
@@ -122,7 +132,9 @@ class CellPool:
         self._first_near.append([0])
         self._shared: dict[int, tuple[FloatArray, int]] = {}
         self._degree = _Growing(np.int64)
-        self._most_drives, self._most_near, self._highest = 1, 0, 0
+        self._first_plane, self._plane_degree = _Growing(np.int64), _Growing(np.int64)
+        self._plane_rows = _Growing(np.float64)
+        self._most_drives, self._most_near, self._highest, self._plane_highest = 1, 0, 0, 0
 
     def add(self, centre: FloatArray, half: FloatArray, fit: CellFit | None, quarters: int = WHOLE) -> int:
         """A cell around a centre (2,) [m], half as wide as (2,) [m]; its row.
@@ -135,6 +147,8 @@ class CellPool:
         self._clear.append([fit.clear if fit else 0.0])
         self._degree.append([fit.degree if fit else 0])
         self._first_row.append([self._place(fit) if fit else NOWHERE])
+        self._first_plane.append([len(self._plane_rows)])
+        self._plane_degree.append([fit.plane_degree if fit else 0])
         if fit:
             self._drive.append(fit.drive)
             self._weight.append(fit.weight)
@@ -142,6 +156,8 @@ class CellPool:
             self._most_drives = max(self._most_drives, len(fit.drive))
             self._most_near = max(self._most_near, len(fit.near))
             self._highest = max(self._highest, fit.degree)
+            self._plane_rows.append(fit.plane.ravel())
+            self._plane_highest = max(self._plane_highest, fit.plane_degree)
         self._first_drive.append([len(self._drive)])
         self._first_near.append([len(self._near)])
         return len(self._quarters) - 1
@@ -174,9 +190,13 @@ class CellPool:
             self._first_row.view(),
             self._degree.view(),
             self._rows.view(),
+            self._first_plane.view(),
+            self._plane_degree.view(),
+            self._plane_rows.view(),
             self._most_drives,
             self._most_near,
             self._highest,
+            self._plane_highest,
         )
 
 

@@ -43,11 +43,14 @@ class Frame(Record):
     min_jump: float  # m/s^3, drives whose third derivative jumps by as much end a span at their breakpoints
     max_bridge: float  # s, how long the others may be bridged
     cell: int
-    drives: int  # those that count in the cell, and the base's
+    drives: int  # those that count in the cell, those of shapes in the plane, and the base's
     logarithms: int
     monomials: int
     degree: int
     base_drives: int
+    in_plane: int  # shapes in the plane
+    plane_degree: int
+    plane_monomials: int
 
 
 class Clock(Record):
@@ -69,13 +72,16 @@ class LocalSurface(NamedTuple):
     at: FloatArray  # (3, M + J) m, these and their first two derivatives in time, at one time
     sources: FloatArray  # (J, 2) m, where the logarithms are
     base: FloatArray  # (6, 2) m, where the base is
+    plane: FloatArray  # (6, 2 M) m, the cell's motion in its plane: polynomials along x, then along y
+    plane_at: FloatArray  # (3, 2 M) m, as `at`
     ahead: FloatArray  # (6,) m, a drive's quintic at the end of the span
 
 
 def new_local(surface: Surface) -> LocalSurface:
     """Scratch memory that fits the surface, with no cell and no time yet."""
     cells = surface.cells
-    width, drives = monomial_count(cells.highest) + cells.most_near, cells.most_drives + 2
+    width, drives = monomial_count(cells.highest) + cells.most_near, cells.most_drives + surface.in_plane_count + 2
+    plane = 2 * monomial_count(cells.plane_highest)
     local = LocalSurface(
         frame=new_records(Frame),
         clock=new_records(Clock, drives),
@@ -84,6 +90,8 @@ def new_local(surface: Surface) -> LocalSurface:
         at=np.zeros((3, width)),
         sources=np.zeros((cells.most_near, 2)),
         base=np.zeros((ORDER, 2)),
+        plane=np.zeros((ORDER, plane)),
+        plane_at=np.zeros((3, plane)),
         ahead=np.zeros(ORDER),
     )
     prepare(surface, local)
@@ -95,7 +103,7 @@ def prepare(surface: Surface, local: LocalSurface) -> None:
     local.frame[:] = np.zeros_like(local.frame)
     frame: Frame = local.frame[0]
     frame.surface_size, frame.floor, frame.overhang = surface.size, surface.floor / surface.size, surface.overhang
-    frame.base_drives, frame.cell = 2 * surface.moving_base, NOWHERE
+    frame.base_drives, frame.in_plane, frame.cell = 2 * surface.moving_base, surface.in_plane_count, NOWHERE
 
 
 def missing_place(local: LocalSurface) -> FloatArray:

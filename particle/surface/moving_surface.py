@@ -1,8 +1,9 @@
 """SurfaceMotion: the moving surface w(x, y, t) = sum_i h_i(t) phi_i(x, y), and its record of arrays for kernels.
 
-Each h_i is a drive: one quintic in time between two breakpoints. Each phi_i is the shape of one actuator: on a cell of
-a background grid one polynomial, and the logarithms r^2 ln(r) around the actuators close by. So a cell's whole smooth
-part is one polynomial in x, y, t.
+Each h_i is a drive: one quintic in time between two breakpoints. Each phi_i is the shape of one actuator, or a further
+one: on a cell of a background grid one polynomial, and the logarithms r^2 ln(r) around the actuators close by. So a
+cell's whole smooth part is one polynomial in x, y, t. A mid-plane that stretches also moves in its plane, by
+u(x, y, t) = sum_m g_m(t) U_m(x, y) with drives g_m and polynomials U_m on the same cells; (x, y) is a material point.
 """
 
 from __future__ import annotations
@@ -34,13 +35,16 @@ class SurfaceState(NamedTuple):
     gradient_t: FloatArray  # (n, 2) 1/s
     hessian: FloatArray  # (n, 2, 2) 1/m
     gradient_tt: FloatArray  # (n, 2) 1/s^2
+    u: FloatArray  # (n, 2) m, the mid-plane's motion in its plane, its base's excluded
+    u_t: FloatArray  # (n, 2) m/s
+    u_tt: FloatArray  # (n, 2) m/s^2
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SurfaceMotion:
     """A moving surface; made by `coupling.surface_motion`, `platform_surface` or `polynomial_surface`."""
 
-    drives: DriveTable  # its base's x and y are the last two where it moves
+    drives: DriveTable  # of its shapes, actuators first, of its shapes in the plane, and of its base where that moves
     store: CellStore  # its cells; those of a large plate are built where a part comes to
     sources: FloatArray  # (J, 2) m, the centres of the logarithms
     size: float  # m, that tolerances refer to
@@ -50,15 +54,16 @@ class SurfaceMotion:
     edges: FloatArray = field(default_factory=lambda: np.zeros((0, 3, 2)))  # (m, 3, 2) m, as in `Outline`
     moving_base: bool = False  # whether two more drives carry the base in its plane
     half_thickness: float = 0.0  # m, height over the mid-plane of the face that parts lie on
+    in_plane_count: int = 0  # how many drives move the mid-plane in its plane, each its own shape
 
     @property
     def record(self) -> Surface:
         """The surface for kernels, with the cells that are built so far."""
-        strokes = self.drives.stroke_time[np.isfinite(self.drives.stroke_time)]
         return Surface(
             drives=self.drives,
             cells=self.store.cells,
             shape_count=self.shape_count,
+            in_plane_count=self.in_plane_count,
             sources=self.sources,
             size=self.size,
             floor=self.floor,
@@ -66,7 +71,7 @@ class SurfaceMotion:
             conics=self.conics,
             edges=self.edges,
             moving_base=self.moving_base,
-            unit=float(strokes.min(initial=1.0)),
+            unit=float(self.stroke_times.min(initial=1.0)),
         )
 
     def __repr__(self) -> str:
@@ -75,27 +80,42 @@ class SurfaceMotion:
         return f"<SurfaceMotion: drives {len(self.drives.delay)}, cells built {cells}, error {error}>"
 
     @property
+    def stroke_times(self) -> FloatArray:
+        """The shortest strokes [s] of its actuators and of its base; of all its drives where none of these has one.
+
+        Further shapes, and those in the plane, follow from the strokes of the actuators, which come first.
+        """
+        times = self.drives.stroke_time
+        own = times[: len(self.sources) or self.shape_count]
+        strokes = np.concatenate([own, times[len(times) - 2 * self.moving_base :]])
+        if not np.isfinite(strokes).any():
+            strokes = times
+        return strokes[np.isfinite(strokes)]
+
+    @property
     def tilts(self) -> bool:
         """Whether it can be anything but level."""
         return self.store.cells.highest > 0 or len(self.sources) > 0
 
     @property
     def shape_count(self) -> int:
-        """How many drives move shapes, not its base."""
-        return len(self.drives.delay) - 2 * self.moving_base
+        """How many drives move shapes up and down."""
+        return len(self.drives.delay) - self.in_plane_count - 2 * self.moving_base
 
     @property
     def error(self) -> float:
         """The largest error measured in its cells, relative to each shape's height at its own actuator."""
         return self.store.error
 
-    def driven_by(self, drives: Sequence[AnyDrive]) -> SurfaceMotion:
+    def driven_by(self, drives: Sequence[AnyDrive], in_plane_drives: Sequence[AnyDrive] = ()) -> SurfaceMotion:
         """The same surface with other drives, sharing its cells.
 
         Parameters
         ----------
         drives : sequence of drives
-            One for each actuator.
+            One for each shape: for each actuator, unless the surface has more.
+        in_plane_drives : sequence of drives
+            One for each shape in the plane.
 
         Returns
         -------
@@ -105,23 +125,33 @@ class SurfaceMotion:
         Raises
         ------
         ValueError
-            There is not one drive for each actuator, or the surface is on a moving base, such as a platform.
+            There is not one drive for each shape, or the surface is on a moving base, such as a platform.
         """
-        wrong = self.drive_faults({"drives": drives})
+        wrong = self.drive_faults({"drives": drives}, {"in_plane_drives": in_plane_drives})
         if wrong:
             raise ValueError("; ".join(wrong))
-        return replace(self, drives=drive_table(drives))
+        return replace(self, drives=drive_table([*drives, *in_plane_drives]))
 
-    def drive_faults(self, given: Mapping[str, Sequence[AnyDrive]]) -> list[str]:
-        """What is wrong with drives that are to replace its own; given: by the name of the input."""
+    def drive_faults(
+        self, given: Mapping[str, Sequence[AnyDrive]], in_plane: Mapping[str, Sequence[AnyDrive]] | None = None
+    ) -> list[str]:
+        """What is wrong with drives that are to replace its own; given, in_plane: by the name of the input.
+
+        in_plane: for the shapes in the plane; None: there are none.
+        """
         if self.moving_base and given:
             return [
                 f"Input {next(iter(given))} must stay the surface's own: the drives of a platform, or of another "
                 "surface on a moving base, cannot be exchanged; make a surface with the drives wanted"
             ]
-        count = self.shape_count
-        sizes = {name: len(row) if isinstance(row, Sized) else repr(row) for name, row in given.items()}
-        return [f"Input {name} must be one an actuator, {count}; got {n}" for name, n in sizes.items() if n != count]
+        if in_plane is None and self.in_plane_count and given:
+            return [
+                f"Input {next(iter(given))} must stay the surface's own, as its mid-plane moves in its plane by drives "
+                "that follow from them; make a surface with driven_by(drives, in_plane_drives)"
+            ]
+        kind = "shape" if 0 < len(self.sources) != self.shape_count else "actuator"
+        wrong = _miscounts(given, self.shape_count, kind)
+        return wrong + _miscounts(in_plane or {}, self.in_plane_count, "shape in the plane")
 
     def evaluate(self, xy: ArrayLike, time: float) -> SurfaceState:
         """The surface at points and one time.
@@ -136,7 +166,7 @@ class SurfaceMotion:
         Returns
         -------
         state : SurfaceState
-            Height, velocity, slopes and curvatures.
+            Height, velocity, slopes and curvatures at the material points `xy`, and their motion in the plane.
 
         Raises
         ------
@@ -153,10 +183,11 @@ class SurfaceMotion:
         if np.isnan(rows).any():
             beyond = xy[np.isnan(rows).any(axis=1)][0].tolist()
             raise ValueError(f"Input xy of evaluate must lie on the surface; got {beyond} m")
-        w, w_t, w_tt, x, y, xt, yt, xx, xy_, yy, xtt, ytt = rows.T
+        w, w_t, w_tt, x, y, xt, yt, xx, xy_, yy, xtt, ytt = rows.T[:12]
         hessian = np.stack([np.stack([xx, xy_], axis=-1), np.stack([xy_, yy], axis=-1)], axis=-2)
         gradient, gradient_t, gradient_tt = (np.stack(pair, axis=-1) for pair in ((x, y), (xt, yt), (xtt, ytt)))
-        return SurfaceState(w, w_t, w_tt, gradient, gradient_t, hessian, gradient_tt)
+        u, u_t, u_tt = rows[:, 12:14], rows[:, 14:16], rows[:, 16:]
+        return SurfaceState(w, w_t, w_tt, gradient, gradient_t, hessian, gradient_tt, u, u_t, u_tt)
 
     def _points(self, xy: FloatArray, time: float) -> tuple[FloatArray, NDArray[np.bool_]]:
         surface = self.record
@@ -166,4 +197,11 @@ class SurfaceMotion:
         """The acceleration (2,) [m/s^2] of its base along x and y at a time [s]; zero where it does not move."""
         if not self.moving_base:
             return np.zeros(2)
-        return accelerations(self.drives, time)[self.shape_count :]
+        return accelerations(self.drives, time)[-2:]
+
+
+def _miscounts(given: Mapping[str, Sequence[AnyDrive]], count: int, kind: str) -> list[str]:
+    """What is wrong where there is not one drive for each of so many."""
+    sizes = {name: len(row) if isinstance(row, Sized) else repr(row) for name, row in given.items()}
+    one = "one an actuator" if kind == "actuator" else f"one a {kind}"
+    return [f"Input {name} must be {one}, {count}; got {n}" for name, n in sizes.items() if n != count]

@@ -16,9 +16,10 @@ FloatArray = NDArray[np.float64]
 class Surface(NamedTuple):
     """A moving surface as kernels read it: arrays and numbers only."""
 
-    drives: DriveTable  # `shape_count` drives, then the base's x and y where it moves
+    drives: DriveTable  # `shape_count` drives, `in_plane_count` ones, then the base's x and y where it moves
     cells: Cells
     shape_count: int
+    in_plane_count: int  # shapes of the mid-plane's motion in its plane
     sources: FloatArray  # (J, 2) m, the centres of the logarithms
     size: float  # m, the length in the logarithms and that tolerances refer to
     floor: float  # m, radius below which the Hessian of a logarithm grows no more

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import reduce
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from particle.drives import ORDER, AnyDrive, DriveTable, drive_table, monomial_table
 from particle.surface.cells import OneCell
@@ -16,7 +16,10 @@ from particle.surface.moving_surface import SurfaceMotion
 
 
 def polynomial_surface(
-    coefficients: ArrayLike, base: Sequence[AnyDrive] | None = None, size: float = 1.0
+    coefficients: ArrayLike,
+    base: Sequence[AnyDrive] | None = None,
+    size: float = 1.0,
+    in_plane: ArrayLike | None = None,
 ) -> SurfaceMotion:
     """A polynomial surface without rim and actuators, w = sum c[i, j, k] x^i y^j t^k in SI units: bowls, inclines,
     tests.
@@ -29,6 +32,8 @@ def polynomial_surface(
         Length that the integrator's tolerance refers to, m.
     base : pair of drives, optional
         Motion of the base along x and y.
+    in_plane : array (2, I, J) or (2, I, J, K), optional
+        Motion of the mid-plane in its plane, along x and y, as polynomials like w.
 
     Returns
     -------
@@ -46,20 +51,33 @@ def polynomial_surface(
         raise ValueError(
             f"Input coefficients must have shape (I, J) or (I, J, K) with K <= 6; got {np.shape(coefficients)}"
         )
+    u = np.zeros((2, 1, 1, 0)) if in_plane is None else np.asarray(in_plane, dtype=float)
+    u = u[..., None] if u.ndim == 3 else u
+    if u.ndim != 4 or len(u) != 2 or u.shape[3] > ORDER:
+        raise ValueError(f"Input in_plane must have shape (2, I, J) or (2, I, J, K) with K <= 6; got {u.shape}")
     if base is not None and len(base) != 2:
         raise ValueError(f"Input base of polynomial_surface must be two drives, for x and y; got {len(base)}")
+    shapes, degree = _rows(c, size)
+    (along_x, plane_degree), (along_y, _) = (_rows(component, size) for component in u)
+    return SurfaceMotion(
+        drives=reduce(_joined, [monomial_table(c.shape[2]), monomial_table(u.shape[3]), drive_table(base or [])]),
+        store=OneCell(shapes, degree, size, np.stack([along_x, along_y], axis=1), plane_degree),
+        sources=np.zeros((0, 2)),
+        size=size,
+        moving_base=base is not None,
+        in_plane_count=u.shape[3],
+    )
+
+
+def _rows(c: NDArray[np.float64], size: float) -> tuple[NDArray[np.float64], int]:
+    """Monomials (K, M) in x/size and y/size of coefficients (I, J, K), and their degree."""
     degree = c.shape[0] + c.shape[1] - 2
     square = np.zeros((degree + 1, degree + 1, c.shape[2]))
     square[: c.shape[0], : c.shape[1]] = c
     powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
-    shapes = np.array([[square[i, j, k] * size ** (i + j) for i, j in powers] for k in range(c.shape[2])])
-    return SurfaceMotion(
-        drives=_joined(monomial_table(c.shape[2]), drive_table(base or [])),
-        store=OneCell(shapes, degree, size),
-        sources=np.zeros((0, 2)),
-        size=size,
-        moving_base=base is not None,
-    )
+    return np.array([[square[i, j, k] * size ** (i + j) for i, j in powers] for k in range(c.shape[2])]).reshape(
+        c.shape[2], len(powers)
+    ), degree
 
 
 def platform_surface(

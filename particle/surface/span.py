@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from particle.drives import ORDER, breakpoint_slack, drive_breakpoint, drive_piece
 from particle.jit import jit_no_arrays
-from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_bridged
+from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_bridged, shapes_in_cell
 from particle.surface.cells import UNBUILT
 from particle.surface.local import Clock, Frame, LocalSurface, cell_at, monomial_count
 from particle.surface.record import Surface
@@ -63,7 +63,8 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
     frame.clear, frame.time, frame.unit = cells.clear[cell], time, surface.unit
     frame.cell, frame.begun = cell, time
     frame.degree, frame.monomials = cells.degree[cell], monomial_count(cells.degree[cell])
-    frame.drives = cells.first_drive[cell + 1] - cells.first_drive[cell] + frame.base_drives
+    frame.drives = cells.first_drive[cell + 1] - cells.first_drive[cell] + frame.in_plane + frame.base_drives
+    frame.plane_degree, frame.plane_monomials = cells.plane_degree[cell], monomial_count(cells.plane_degree[cell])
     first = cells.first_near[cell]
     frame.logarithms = cells.first_near[cell + 1] - first
     for j in range(frame.logarithms):
@@ -73,6 +74,9 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
         for m in range(frame.monomials + frame.logarithms):
             local.smooth[k, m] = 0.0
         local.base[k, 0] = local.base[k, 1] = 0.0
+        if frame.in_plane > 0:
+            for m in range(2 * frame.plane_monomials):
+                local.plane[k, m] = 0.0
     for i in range(frame.drives):
         _find_piece(surface, local, i)
         find_jump(surface, local, i)
@@ -96,6 +100,8 @@ def _move_on(surface: Surface, local: LocalSurface, time: float, end: float) -> 
     shift = (time - frame.time) / frame.unit
     _shift(local.smooth, shift, frame.monomials + frame.logarithms)
     _shift(local.base, shift, 2)
+    if frame.in_plane > 0:
+        _shift(local.plane, shift, 2 * frame.plane_monomials)
     frame.time = time
     for i in range(frame.drives):
         if _has_passed(clock[i], time):
@@ -149,18 +155,28 @@ def _add(surface: Surface, local: LocalSurface, i: int, sign: float) -> None:
     """Add the quintic of the i-th drive times its shape."""
     frame: Frame = local.frame[0]
     cells, piece = surface.cells, local.pieces[i]
-    shapes = frame.drives - frame.base_drives
-    if i >= shapes:
+    shapes = shapes_in_cell(frame)
+    if i >= shapes + frame.in_plane:
         for k in range(ORDER):
-            local.base[k, i - shapes] += sign * piece[k]
-        return
-    width = frame.monomials + frame.logarithms
-    first = cells.first_row[frame.cell] + i * width
+            local.base[k, i - shapes - frame.in_plane] += sign * piece[k]
+    elif i >= shapes:
+        width = 2 * frame.plane_monomials
+        _add_row(
+            local.plane, cells.plane_rows, cells.first_plane[frame.cell] + (i - shapes) * width, width, piece, sign
+        )
+    else:
+        width = frame.monomials + frame.logarithms
+        _add_row(local.smooth, cells.rows, cells.first_row[frame.cell] + i * width, width, piece, sign)
+
+
+@jit_no_arrays
+def _add_row(out: FloatArray, rows: FloatArray, first: int, width: int, piece: FloatArray, sign: float) -> None:
+    """Add a quintic times the shape that begins at `first`."""
     for k in range(ORDER):
         c = sign * piece[k]
         if c != 0.0:
             for m in range(width):
-                local.smooth[k, m] += cells.rows[first + m] * c
+                out[k, m] += rows[first + m] * c
 
 
 @jit_no_arrays

@@ -1,5 +1,6 @@
 """The summary of runs with springs, forces and slow and fast drives."""
 
+import json
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -9,6 +10,8 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from coupling import report, run_case
 from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
+from coupling.plate_figures import StretchError
+from coupling.summary import summary_of
 from fem_plate.analytic import DiscShapes
 
 PLATE = {
@@ -181,3 +184,48 @@ def test_a_run_keeps_blas_on_one_thread_and_gives_the_others_back():
         run_case(case, progress=watched)
         assert threads() == {2}
     assert seen and all(found == {1} for found in seen)
+
+
+def test_the_strain_of_bending_is_that_of_the_closed_form_half_a_thickness_from_the_actuator():
+    """w = w0 (1 - r^2 + 2 r^2 ln r) bends by 4 w0 ln(r) / a^2 around the actuator: by 4 w0 / a^2 at the rim."""
+    s = summary_with(ActuatorCase(position=(0.0, 0.0), stroke=5e-6, frequency=1000))
+    curvature = 4 * np.log(300 / 2.5) * 5e-6 / 300e-6**2
+    assert s.largest_strain == pytest.approx(2.5e-6 * curvature, rel=1e-4)
+    assert s.theory == "linear"
+    assert s.stretch_error is None
+    assert ("", f"strain {100 * s.largest_strain:.2g} % by bending alone") in report.lines(s)
+    assert not any("strained" in text for text in report.warnings(s))
+    assert any(
+        "strained by 0.51 % by bending alone" in text for text in report.warnings(replace(s, largest_strain=0.0051))
+    )
+
+
+def test_a_plate_beyond_linear_theory_names_the_line_to_add():
+    s = summary_with(ActuatorCase(position=(0.0, 0.0), stroke=5e-6, frequency=1000))
+    (text,) = [text for text in report.warnings(s) if "times its thickness" in text]
+    assert 'theory = "von-karman" in [plate]' in text
+    assert "path error of about 8 %" in text
+    mild = replace(s, deflection_over_thickness=0.3, linear_path_error=0.08 * 0.3**2)
+    (text,) = [text for text in report.warnings(mild) if "times its thickness" in text]
+    assert "von-karman" not in text
+
+
+def test_of_a_plate_that_stretches_the_summary_has_errors_and_strain():
+    s = summary_with(ActuatorCase(position=(0.0, 0.0), stroke=5e-6, frequency=1000))
+    error = StretchError(mesh=2e-4, reduction=3e-5, pieces=4e-6)
+    new = {"theory": "von-karman", "linear_path_error": None, "stretch_error": error, "stretch_solutions": 7}
+    s = replace(s, largest_strain=0.004, **new)
+    texts = [text for _, text in report.lines(s)]
+    assert (
+        "stretching from 7 full solutions, good to 2.0e-04 (estimated); few shapes for them to 3.0e-05, over time to "
+        "4.0e-06"
+    ) in texts
+    assert any(text.startswith("deflection 1 times the thickness (von Karman's theory), slope") for text in texts)
+    assert "strain 0.4 %" in texts
+    assert not any("times its thickness" in text or "accurate to" in text for text in report.warnings(s))
+    assert summary_of(json.loads(json.dumps(s.as_dict()))) == s
+    coarse = replace(s, stretch_error=replace(error, mesh=2e-3), largest_strain=0.006, largest_slope=0.3)
+    texts = report.warnings(coarse)
+    assert "The plate that stretches is accurate to 2.0e-03 of its deflection only; reduce plate.cell_size." in texts
+    assert "The plate is strained by 0.6 %; silicon breaks near 1 %, and 0.5 % is prudent." in texts
+    assert any("as steep as 0.3" in text for text in texts)

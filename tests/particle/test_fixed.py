@@ -49,7 +49,7 @@ def breathing_bowl():
 
 def some_point(rng):
     values = rng.normal(size=10)
-    return SurfacePoint(*values, *np.zeros(15))
+    return SurfacePoint(*values, *np.zeros(15), *(1.0, 0.0, 0.0, 1.0), *np.zeros(10))
 
 
 @pytest.mark.parametrize("seed", range(5))

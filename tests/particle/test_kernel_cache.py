@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from particle import kernel_cache
-from particle.kernel_cache import MAX_FOLDERS, PACKAGE, cache_folder, source_digest
+from particle.kernel_cache import MAX_FOLDERS, PACKAGE, cache_folder, place_of, source_digest
 
 ROOMS = ("", "drives", "friction", "surface", "events", "fixed")
 USE = """
@@ -22,6 +22,32 @@ part, LEVEL = Part(1.0, 9.0, 0.0, 0.0, 2.0, ConstantFriction(1.0).law), (0.0, 0.
 import particle
 assert particle.__file__.startswith(os.getcwd())
 print(load_and_demand(1.0, LEVEL, LEVEL, LEVEL, LEVEL, part)[0], sum(load_and_demand.stats.cache_misses.values()))
+"""
+# A room of another package, with a kernel that calls one of its own and one of `particle`.
+ROOM = {
+    "one.py": """
+from particle import kernel_no_arrays
+@kernel_no_arrays
+def twice(x):
+    return 2.0 * x
+""",
+    "two.py": """
+from particle import kernel
+from particle.drives import breakpoint_slack
+from other.room.one import twice
+@kernel
+def answer(table):
+    return twice(1.0) + breakpoint_slack(table, 0, 0.0)
+""",
+}
+USE_ROOM = """
+import os
+from particle import Drive
+from particle.drives import drive_table
+from other.room.two import answer
+import particle
+assert particle.__file__.startswith(os.getcwd())
+print(answer(drive_table([Drive(1.0, 0.5)])), sum(answer.stats.cache_misses.values()))
 """
 
 
@@ -76,10 +102,31 @@ def test_only_the_folders_used_last_are_kept(package):
     assert kept == {"2", "new", *(f"{k}" for k in range(4, MAX_FOLDERS + 2))}
 
 
-def start(package: Path, cache: Path) -> subprocess.Popen[str]:
+def test_kernels_of_other_rooms_have_folders_of_their_own(tmp_path, monkeypatch):
+    from coupling.stretch.newton import find_rates
+    from particle.drives import drive_piece
+
+    def place(kernel):
+        return place_of(getattr(kernel, "py_func", kernel))
+
+    monkeypatch.setattr(kernel_cache.config, "CACHE_DIR", str(tmp_path))
+    inside, outside = place(drive_piece), place(find_rates)
+    assert inside.packages == (PACKAGE,)
+    assert outside.packages == (PACKAGE.parent / "coupling" / "stretch", PACKAGE)
+    assert inside.folder.name == f"kernels-{source_digest(PACKAGE)}"
+    assert outside.folder.name == f"stretch-kernels-{source_digest(*outside.packages)}"
+    # One kind of folders does not drive out the other.
+    for k in range(MAX_FOLDERS + 2):
+        cache_folder(PACKAGE, f"{k}")
+    assert cache_folder(PACKAGE, "of a room", "stretch-kernels-").exists()
+    kept = [folder.name for folder in (tmp_path / "active-surface").iterdir()]
+    assert "stretch-kernels-of a room" in kept and len(kept) == MAX_FOLDERS + 1
+
+
+def start(package: Path, cache: Path, use: str = USE) -> subprocess.Popen[str]:
     """A process in the folder of the package, so that it imports that."""
     settings = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
-    command = [sys.executable, "-c", USE]
+    command = [sys.executable, "-c", use]
     return subprocess.Popen(command, cwd=package.parent, env=settings, stdout=subprocess.PIPE, text=True)
 
 
@@ -106,3 +153,21 @@ def test_a_kernel_is_compiled_once_and_anew_when_one_that_it_calls_has_changed(p
     time.sleep(1.1)
     source.write_text(text)
     assert result(start(package, cache)) == (12.0, 0)
+
+
+@pytest.mark.compiled
+def test_a_kernel_of_another_room_is_compiled_anew_when_its_room_or_the_package_has_changed(package, tmp_path):
+    room, cache = tmp_path / "other" / "room", tmp_path / "own"
+    room.mkdir(parents=True)
+    for name, text in ROOM.items():
+        (room / name).write_text(text)
+    assert result(start(package, cache, USE_ROOM)) == (2.0 + 1e-12, 1)
+    assert result(start(package, cache, USE_ROOM)) == (2.0 + 1e-12, 0)
+    time.sleep(1.1)  # Python itself looks at the second of an edit and at its size
+    (room / "one.py").write_text(ROOM["one.py"].replace("2.0", "3.0"))
+    assert result(start(package, cache, USE_ROOM)) == (3.0 + 1e-12, 1)
+    record = package / "drives" / "record.py"
+    text = record.read_text()
+    assert text.count("MERGED = 1e-12") == 1
+    record.write_text(text.replace("MERGED = 1e-12", "MERGED = 1e-11"))
+    assert result(start(package, cache, USE_ROOM)) == (3.0 + 1e-11, 1)

@@ -16,7 +16,7 @@ MASS, G = 2e-9, 9.80665
 
 
 def point_of(**values):
-    return SurfacePoint(**(dict.fromkeys(SurfacePoint._fields, 0.0) | values))
+    return SurfacePoint(**(dict.fromkeys(SurfacePoint._fields, 0.0) | {"x_x": 1.0, "y_y": 1.0} | values))
 
 
 def part_with(limit, gravity=0.0):

@@ -1,4 +1,4 @@
-"""Surfaces w = sum_k h_k(t) p_k(x, y) of any drives h_k and polynomials p_k, to try a part's motion on."""
+"""Surfaces w = sum_k h_k(t) p_k(x, y), u = sum_m g_m(t) q_m(x, y) of any drives and polynomials."""
 
 from __future__ import annotations
 
@@ -18,15 +18,25 @@ def driven(
     base: Sequence[AnyDrive] = (),
     size: float = 1.0,
     rim: float | None = None,
+    in_plane_drives: Sequence[AnyDrive] = (),
+    in_plane: Sequence[ArrayLike] = (),
 ) -> SurfaceMotion:
-    """drives: K <= 6; shapes: K times the coefficients (I, J) of x^i y^j; base: none or two; rim: m, of a disc."""
+    """drives: K <= 6; shapes: K times the coefficients (I, J) of x^i y^j; base: none or two; rim: m, of a disc.
+
+    in_plane: coefficients (2, I, J) along x and y, one pair for each of its drives.
+    """
     c = np.zeros((4, 4, len(shapes)))
     for k, shape in enumerate(shapes):
         p = np.asarray(shape, dtype=float)
         c[: p.shape[0], : p.shape[1], k] = p
-    surface = polynomial_surface(c, size=size)
+    u = np.zeros((2, 4, 4, len(in_plane)))
+    for m, pair in enumerate(in_plane):
+        q = np.asarray(pair, dtype=float)
+        u[:, : q.shape[1], : q.shape[2], m] = q
+    surface = polynomial_surface(c, size=size, in_plane=u if in_plane else None)
     conics = np.array([[0.0, 0.0, rim, rim]]) if rim is not None else surface.conics
-    return replace(surface, drives=drive_table([*drives, *base]), moving_base=bool(base), conics=conics)
+    table = drive_table([*drives, *in_plane_drives, *base])
+    return replace(surface, drives=table, moving_base=bool(base), conics=conics)
 
 
 def level(height: float = 1.0) -> TableDrive:

@@ -84,7 +84,7 @@ def recorded(surface) -> Surface:
 
     def point(x: float, y: float, time: float) -> Point:
         f = surface.evaluate((x, y), time)
-        return Point(*(np.asarray(value)[0] for value in f))
+        return Point(*(np.asarray(value)[0] for value in f[:6]))
 
     return point
 

@@ -1,6 +1,6 @@
 """Surfaces of `motion_oracle` off the mid-plane, by Taylor arithmetic of the places in space alone.
 
-    r(X, t) = (X + base(t), w(X, t)) + z n(X, t),  n = (-w_x, -w_y, 1)/s,  s^2 = 1 + w_x^2 + w_y^2
+    r(X, t) = P(X, t) + z n(X, t),  P = (X + u(X, t) + base(t), w(X, t)),  n = P_x x P_y / |P_x x P_y|
 
 A jet is an array (20, ...) of Taylor coefficients in (x, y, t) about a place and time, up to the third order: w needs
 three for the two of n, and its t^3 enters nowhere. Boggio's function and polynomials are put together from jets of x, y
@@ -32,6 +32,7 @@ X, Y, T, TT, XX, YY = (INDEX[m] for m in [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0
 SECOND = [INDEX[m] for m in MONOMIALS if sum(m) == 2]
 SECOND_POWERS = POWERS[SECOND]
 RAISED = np.array([[INDEX.get((i + 1, j, k), 0), INDEX.get((i, j + 1, k), 0)] for i, j, k in MONOMIALS])
+TURNS = ((1, 2), (2, 0), (0, 1))
 FACTORS = np.where(RAISED > 0, POWERS[:, :2] + 1, 0)
 Jets = Callable[[float, float, float], np.ndarray]  # x, y, t -> w (20,)
 
@@ -57,11 +58,6 @@ def log(a: np.ndarray) -> np.ndarray:
 def inverse_root(a: np.ndarray) -> np.ndarray:
     f = a[0] ** -0.5
     return of((f, -(f**3) / 2, 3 * f**5 / 4, -15 * f**7 / 8), a)
-
-
-def slopes(a: np.ndarray) -> np.ndarray:
-    """The derivatives (20, 2) along x and y; their third order is not known, and 0."""
-    return FACTORS * a[RAISED]
 
 
 def drive(height: Height, time: float) -> np.ndarray:
@@ -112,23 +108,41 @@ def polynomial(coefficients) -> Jets:
     return w
 
 
-def top_face(w: Jets, contact: float, centre: float, base: Sequence[Height] = (still, still)) -> Surface:
-    """The contact and the centre of mass at these heights [m] over the mid-plane, along its normal."""
+def driven(shapes: Sequence[np.ndarray], size: float, heights: Sequence[Height]) -> Jets:
+    """The sum of polynomials sum c[i, j] (x / size)^i (y / size)^j, each times its height."""
+    fixed = [polynomial(c / size ** np.add.outer(*map(np.arange, c.shape))) for c in shapes]
+
+    def u(x: float, y: float, time: float) -> np.ndarray:
+        terms = [times(shape(x, y, time), drive(height, time)) for shape, height in zip(fixed, heights, strict=True)]
+        return np.sum(terms, axis=0)
+
+    return u
+
+
+def top_face(
+    w: Jets, contact: float, centre: float, base: Sequence[Height] = (still, still), u: Sequence[Jets] = ()
+) -> Surface:
+    """The contact and the centre of mass at these heights [m] over the mid-plane, along its normal.
+
+    u: the mid-plane's motion in its plane along x and y; none: it only moves up and down.
+    """
 
     def surface(x: float, y: float, time: float) -> _Lifted:
-        jet = w(x, y, time)
-        gradient = slopes(jet)
-        square = times(gradient, gradient).sum(1)
-        square[0] += 1
-        inverse = inverse_root(square)[:, None]
-        normal = np.hstack([-times(gradient, inverse), inverse])
-        place = np.empty_like(normal)
+        place = np.empty((len(MONOMIALS), 3))
         for axis, height in enumerate(base):
             place[:, axis] = drive(height, time)
-        place[:, 2] = jet
+        for axis, component in enumerate(u):
+            place[:, axis] += component(x, y, time)
+        place[:, 2] = w(x, y, time)
         place[0, :2] += x, y
         place[X, 0] += 1
         place[Y, 1] += 1
+        along = [FACTORS[:, axis, None] * place[RAISED[:, axis]] for axis in range(2)]
+        across = np.stack(
+            [times(along[0][:, i], along[1][:, j]) - times(along[0][:, j], along[1][:, i]) for i, j in TURNS]
+        )
+        inverse = inverse_root(sum(times(a, a) for a in across))
+        normal = np.stack([times(a, inverse) for a in across], axis=1)
         return _Lifted(place + contact * normal, place + centre * normal, normal[0])
 
     return surface

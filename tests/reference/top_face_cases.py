@@ -11,6 +11,7 @@ import numpy as np
 import top_face
 from motion_cases import Strokes, breakpoints, limit_of, ratio_of
 from motion_surfaces import still, up_down
+from numpy.polynomial.polynomial import polyval2d
 
 from coupling.surface.motion import surface_motion
 from fem_plate.analytic import DiscShapes
@@ -46,6 +47,7 @@ class Case:
     squeeze: float = 0.0
     mass: float = MASS
     flies: bool = False
+    strains: Strokes = ()
 
     def at(self, contact: float, centre: float) -> Case:
         """The same with other heights."""
@@ -63,6 +65,10 @@ class Case:
     def height(self) -> top_face.Jets:
         raise NotImplementedError
 
+    def in_plane(self) -> list[top_face.Jets]:
+        """The mid-plane's motion in its plane, along x and y."""
+        return []
+
     def package(self) -> SurfaceMotion:
         raise NotImplementedError
 
@@ -72,10 +78,10 @@ class Case:
     def trace(self) -> motion_oracle.Path:
         """The oracle's path."""
         problem = motion_oracle.Problem(
-            top_face.top_face(self.height(), self.contact, self.centre, self.base()),
+            top_face.top_face(self.height(), self.contact, self.centre, self.base(), self.in_plane()),
             self.mass,
             limit_of(self.law),
-            breakpoints(self.strokes, self.duration),
+            breakpoints([*self.strokes, *self.strains], self.duration),
             self.gravity,
             self.squeeze,
             self.law.pull_off,
@@ -98,18 +104,48 @@ class Case:
         )
 
 
+class StretchedDisc(DiscShapes):
+    """A disc whose mid-plane moves in its plane by polynomials (M, 2, I, J) in places over the radius."""
+
+    def __init__(self, points: list[list[float]], radius: float, stretch: np.ndarray) -> None:
+        super().__init__(points, radius)
+        self.stretch = stretch
+
+    def in_plane_values(self, xy: np.ndarray) -> np.ndarray:
+        x, y = (xy / self.size).T
+        return np.moveaxis(np.array([[polyval2d(x, y, c) for c in pair] for pair in self.stretch]), 2, 0)
+
+    def in_plane_heights(self) -> np.ndarray:
+        return np.ones(len(self.stretch))
+
+
 @dataclass(frozen=True)
 class Disc(Case):
     """On a clamped disc."""
 
     actuators: Sequence[Sequence[float]] = ((0.0, 0.0),)
     radius: float = 300e-6
+    strains: Strokes = ()  # of the drives of shapes in the plane, over the radius
+    stretch: np.ndarray | None = None  # these shapes, polynomials (M, 2, I, J) in places over the radius
+
+    def in_plane_heights(self) -> list[motion_oracle.Height]:
+        return [up_down(strain * self.radius, f, delay) for strain, f, delay in self.strains]
+
+    def in_plane(self) -> list[top_face.Jets]:
+        if self.stretch is None:
+            return []
+        return [top_face.driven(self.stretch[:, axis], self.radius, self.in_plane_heights()) for axis in range(2)]
 
     def height(self) -> top_face.Jets:
         return top_face.boggio(self.actuators, self.radius, self.heights())
 
     def package(self) -> SurfaceMotion:
-        return surface_motion(DiscShapes([list(place) for place in self.actuators], self.radius), self.drives(), 1e-11)
+        points = [list(place) for place in self.actuators]
+        if self.stretch is None:
+            return surface_motion(DiscShapes(points, self.radius), self.drives(), 1e-11)
+        in_plane = [Drive(strain * self.radius, f, delay=delay) for strain, f, delay in self.strains]
+        shapes = StretchedDisc(points, self.radius, self.stretch)
+        return surface_motion(shapes, self.drives(), 1e-11, in_plane_drives=in_plane)
 
     def gap(self, x: float, y: float) -> float:
         return self.radius - math.hypot(x, y)
@@ -120,6 +156,10 @@ class Polynomial(Case):
     """On a polynomial, on a base that moves in its plane."""
 
     coefficients: np.ndarray | None = None
+    stretch: np.ndarray | None = None  # of the mid-plane in its plane, (2, I, J, K)
+
+    def in_plane(self) -> list[top_face.Jets]:
+        return [] if self.stretch is None else [top_face.polynomial(along) for along in self.stretch]
 
     def base(self) -> list[motion_oracle.Height]:
         return self.heights()
@@ -128,7 +168,7 @@ class Polynomial(Case):
         return top_face.polynomial(self.coefficients)
 
     def package(self) -> SurfaceMotion:
-        return polynomial_surface(self.coefficients, self.drives())
+        return polynomial_surface(self.coefficients, self.drives(), in_plane=self.stretch)
 
 
 PAIR = ((75e-6, 10e-6), (-75e-6, 10e-6))
@@ -202,3 +242,27 @@ CASES = {
         actuators=PAIR,
     ),
 }
+
+# Shapes in the plane of a disc, over its radius: (1 - r^2) (x, y), (1 - r^2) (1/2 + y, x) and (x y, 0.3 - y^2).
+IN_PLANE = np.zeros((3, 2, 4, 4))
+IN_PLANE[0, 0, [1, 3, 1], [0, 0, 2]] = IN_PLANE[0, 1, [0, 0, 2], [1, 3, 1]] = 1.0, -1.0, -1.0
+IN_PLANE[1, 0, [0, 2, 0, 0, 2, 0], [0, 0, 2, 1, 1, 3]] = 0.5, -0.5, -0.5, 1.0, -1.0, -1.0
+IN_PLANE[1, 1, [1, 3, 1], [0, 0, 2]] = 1.0, -1.0, -1.0
+IN_PLANE[2, 0, 1, 1], IN_PLANE[2, 1, 0, [0, 2]] = 1.0, (0.3, -1.0)
+WARPS = np.zeros((2, 3, 3, 4))  # of a bowl, over time
+WARPS[0, 1, 0, 1:], WARPS[1, 0, 1, 1:] = (0.5, -0.8, 0.6), (-0.4, 0.9, -0.5)
+WARPS[0, 0, 2, 2], WARPS[1, 1, 1, 3], WARPS[0, 0, 0, 2:], WARPS[1, 0, 0, 2] = 0.7, -0.6, (0.3, -0.2), 0.25
+
+
+def stretched(case: Case, strain: float) -> Case:
+    """The same with a mid-plane that moves in its plane, by such gradients of u."""
+    if isinstance(case, Polynomial):
+        return replace(case, stretch=strain * WARPS)
+    f = max(f for _, f, _ in case.strokes)
+    strains = ((strain, f, 0.0), (-strain, f / 2, 0.1 / f), (strain / 2, 1.5 * f, 0.3 / f))
+    return replace(case, stretch=IN_PLANE, strains=strains)
+
+
+STRAIN = 5e-3
+for _name in ("two actuators", "static friction", "tilted, squeezed, on a base", "flight"):
+    CASES[f"{_name}, stretched"] = stretched(CASES[_name], STRAIN)

@@ -118,7 +118,9 @@ def moving(drives: DriveTable) -> BoolArray:
 
 
 def _states(surface: SurfaceMotion, points: FloatArray, moments: FloatArray) -> Callable[[], Iterable[State]]:
-    """w_tt (n,), slopes and their two rates (n, 2), and the base's acceleration (2,), moment by moment.
+    """w_tt (n,), slopes and their two rates (n, 2), and the acceleration in the plane (n, 2), moment by moment.
+
+    On a mid-plane that stretches these are the material's slopes, off by its strain.
 
     They are kept where they take little memory, else found again.
     """
@@ -127,9 +129,9 @@ def _states(surface: SurfaceMotion, points: FloatArray, moments: FloatArray) -> 
         for time in moments.tolist():
             state = surface.evaluate(points, time)
             slopes = state.gradient, state.gradient_t, state.gradient_tt
-            yield state.w_tt, slopes, surface.base_acceleration(time)
+            yield state.w_tt, slopes, state.u_tt + surface.base_acceleration(time)
 
-    if 7 * len(points) * len(moments) > MAX_KEPT:
+    if 9 * len(points) * len(moments) > MAX_KEPT:
         return find
     kept = list(find())
     return lambda: kept

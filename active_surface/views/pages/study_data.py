@@ -18,7 +18,18 @@ from meshes import Unit, rim_curves, unit_for
 
 MAX_ENDS = 100_000  # of all starts; of more only the first of each point
 MAX_ACTUATORS = 400  # that are drawn
-RIM_STAYS = ("supports", "youngs_modulus", "poisson_ratio", "thickness", "density", "cell_size", "top_face")
+RIM_STAYS = (
+    "supports",
+    "theory",
+    "in_plane_supports",
+    "youngs_modulus",
+    "poisson_ratio",
+    "thickness",
+    "density",
+    "tension",
+    "cell_size",
+    "top_face",
+)
 STOPS = 9  # of the colour scale
 
 

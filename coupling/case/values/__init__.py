@@ -28,6 +28,7 @@ from coupling.case.values.quantities import (
     Pressure,
     Stiffness,
     SurfaceEnergy,
+    Tension,
     Time,
     Velocity,
 )

@@ -79,15 +79,19 @@ _NOT_FINITE: Final = ", which is not finite"
 
 @dataclass(frozen=True)
 class Quantity:
-    """Marks a float as a quantity in the SI unit `unit`, a key of `DIMENSIONS`; `example` shows how to write one."""
+    """Marks a float as a quantity in the SI unit `unit`, a key of `DIMENSIONS`; `example` shows how to write one.
+
+    name: what it is called, where that is not its unit's name in `DIMENSIONS`.
+    """
 
     unit: str
     example: str
+    name: str = ""
 
     @property
     def expected(self) -> str:
         """What a value must be, in words: a length such as "150 um"."""
-        return f'{DIMENSIONS[self.unit]} such as "{self.example}"'
+        return f'{self.name or DIMENSIONS[self.unit]} such as "{self.example}"'
 
     def parse(self, text: str) -> float:
         """Return the quantity that `text` states, in `unit`; ValueError unless it is a finite one of this dimension."""

@@ -1,7 +1,7 @@
 """Mistakes in plates, their supports and the places on them, each named."""
 
 import pytest
-from plate_cases import DRIVE, SHAPES, problems, text
+from plate_cases import DRIVE, SHAPES, problems, read, text
 
 WRONG = [
     (
@@ -72,6 +72,36 @@ WRONG = [
             "drive": 'force = "1 uN"\nfrequency = "1 Hz"\n',
         },
         "plate.supports leave the plate free to move as a whole",
+    ),
+    # Theory
+    (
+        {"shape": SHAPES["disc"], "plate": 'theory = "karman"'},
+        'plate.theory must be "linear" or "von-karman"; got "karman"; did you mean "von-karman"?',
+    ),
+    (
+        {"shape": SHAPES["annulus"], "plate": 'in_plane_supports = "movable"'},
+        'plate.in_plane_supports must not be given without theory = "von-karman"; a linear plate does not stretch',
+    ),
+    (
+        {"shape": SHAPES["polygon"], "plate": 'theory = "linear"\nin_plane_supports = "immovable"'},
+        'plate.in_plane_supports must not be given without theory = "von-karman"',
+    ),
+    (
+        {"shape": SHAPES["disc"], "plate": 'theory = "von-karman"\nin_plane_supports = "sliding"'},
+        'plate.in_plane_supports must be "immovable" or "movable"; got "sliding"',
+    ),
+    (
+        {"shape": SHAPES["rectangle"], "plate": 'theory = "von-karman"\nin_plane_supports = { lft = "movable" }'},
+        "plate.in_plane_supports.lft is no boundary of the plate; did you mean left? It has ",
+    ),
+    # Tension
+    (
+        {"shape": SHAPES["annulus"], "plate": 'tension = "5 N/m"\nsupports = { outer = "clamped" }'},
+        'plate.tension must be 0 where a boundary is free, as a free rim carries none; got "5 N/m", and inner is free',
+    ),
+    (
+        {"shape": SHAPES["disc"], "plate": 'tension = "5 MPa"'},
+        'plate.tension must be a force per length such as "50 N/m"; got "5 MPa", a pressure',
     ),
     # Places
     (
@@ -149,3 +179,39 @@ def test_mistakes_in_the_outline_and_elsewhere_come_together(tmp_path):
 def test_a_misspelt_stroke_is_not_missing_as_well(tmp_path):
     found = problems(tmp_path, text(SHAPES["disc"], drive='strok = "1 um"\nfrequency = "1 Hz"\n'))
     assert found == ["actuators[0].strok is not known; did you mean stroke?"]
+
+
+STRETCHING = 'theory = "von-karman"'
+
+
+@pytest.mark.parametrize("rows", [10, 11])
+def test_more_than_200_actuators_cannot_stretch(tmp_path, rows):
+    places = [f"{x} um, {10 * y} um" for x in range(-95, 100, 10) for y in range(rows)]
+    content = text(SHAPES["rectangle"].replace('"200 um"', '"400 um"'), *places, plate=STRETCHING, part="1 um, 1 um")
+    if rows == 10:
+        assert len(read(tmp_path, content).actuators) == 200
+        return
+    (found,) = problems(tmp_path, content)
+    assert found.startswith('plate.theory must be "linear" with more than 200 actuators, as ')
+    assert "got 220; a piece of the array with 200 can stretch" in found
+
+
+def test_those_of_a_lattice_count_too(tmp_path):
+    lattice = '[lattice]\npitch = "9 um"\nrows = 15\ncolumns = 15\n' + DRIVE
+    (found,) = problems(tmp_path, text(SHAPES["disc"], "100 um, 0 um", plate=STRETCHING) + lattice)
+    assert found.startswith('plate.theory must be "linear" with more than 200 actuators')
+    assert "got 226" in found
+
+
+def test_the_papers_scheme_does_not_follow_a_plate_that_stretches(tmp_path):
+    content = text(SHAPES["disc"], plate=STRETCHING)
+    assert read(tmp_path, content + 'scheme = "fixed"\n').plate.theory == "von-karman"
+    (found,) = problems(tmp_path, content + 'scheme = "paper"\n')
+    assert found.startswith('run.scheme must be "events" or "fixed" with theory = "von-karman"')
+
+
+def test_a_plate_may_be_held_in_its_plane_by_boundary(tmp_path):
+    plate = STRETCHING + '\nin_plane_supports = { left = "immovable", right = "movable" }'
+    case = read(tmp_path, text(SHAPES["rectangle"], plate=plate))
+    assert case.plate.in_plane_supports == {"left": "immovable", "right": "movable"}
+    assert read(tmp_path, text(SHAPES["rectangle"])).plate.theory == "linear"

@@ -127,3 +127,23 @@ def test_the_models_are_named_as_in_the_discriminated_union():
         ),
         *("MeshCase", "ShapelessCase"),
     }
+
+
+def test_a_tension_is_read_and_makes_another_plate(tmp_path):
+    from coupling.scene.plate import build_plate
+
+    plain = read(tmp_path, text(SHAPES["disc"])).plate
+    pulled = read(tmp_path, text(SHAPES["disc"], plate='tension = "0.05 N/mm"')).plate
+    pressed = read(tmp_path, text(SHAPES["disc"], plate='tension = "-50 N/m"')).plate
+    assert (plain.tension, pulled.tension, pressed.tension) == (0.0, 50.0, -50.0)
+    assert len({plate.model_dump_json() for plate in (plain, pulled, pressed)}) == 3  # what sweeps know plates by
+    heights = [build_plate(plate).pressure(1e3).evaluate([[0.0, 0.0]])[0][0] for plate in (pulled, plain, pressed)]
+    assert heights[0] < 0.97 * heights[1] < 0.97**2 * heights[2]
+
+
+def test_a_plate_that_would_buckle_is_refused_with_its_load(tmp_path):
+    from coupling.scene.plate import build_plate
+
+    case = read(tmp_path, text(SHAPES["disc"], plate='tension = "-1000 N/m"'))
+    with pytest.raises(ValueError, match=r"Input tension of Plate must exceed -710\.\d+ N/m, at which it buckles"):
+        build_plate(case.plate)

@@ -16,7 +16,7 @@ SUFFICIENT, MIN_STEP = 1e-4, 1e-10  # the share of the slope by which the energy
 ENERGY_ROUNDING = 1e-13  # of the energy's terms
 
 
-class Equilibrium(NamedTuple):
+class ReducedEquilibrium(NamedTuple):
     """Corrections and in-plane motions with their derivatives in time."""
 
     corrections: FloatArray  # (3, n): c, c', c''
@@ -31,13 +31,13 @@ def energy(plate: ReducedPlate, corrections: ArrayLike, drives: ArrayLike) -> fl
     return float(0.5 * c @ plate.stiffness @ c + plate.load @ c + 0.5 * forces @ forces)
 
 
-def equilibrium(
+def reduced_equilibrium(
     plate: ReducedPlate,
     drives: ArrayLike,
     rates: ArrayLike | None = None,
     accelerations: ArrayLike | None = None,
     start: ArrayLike | None = None,
-) -> Equilibrium:
+) -> ReducedEquilibrium:
     """Find the corrections that make the energy least, by Newton's method with a line search.
 
     Parameters
@@ -51,7 +51,7 @@ def equilibrium(
 
     Returns
     -------
-    equilibrium : Equilibrium
+    equilibrium : ReducedEquilibrium
         c and g, with the derivatives that g(c; d) = 0 has in time.
 
     Raises
@@ -94,7 +94,7 @@ def equilibrium(
     g = 0.5 * (in_plane @ b) @ b + plate.in_plane_offset
     g_t = (in_plane @ b) @ b_t
     g_tt = (in_plane @ b_t) @ b_t + (in_plane @ b) @ b_tt
-    return Equilibrium(np.stack([c, b_t[count:], b_tt[count:]]), np.stack([g, g_t, g_tt]), hessian)
+    return ReducedEquilibrium(np.stack([c, b_t[count:], b_tt[count:]]), np.stack([g, g_t, g_tt]), hessian)
 
 
 def _membrane(plate: ReducedPlate, b: FloatArray) -> tuple[FloatArray, FloatArray]:

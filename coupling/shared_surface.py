@@ -1,0 +1,92 @@
+"""Shared surface: what many runs of a case with different drives move over, solved once for all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from coupling.case import Case, PlateCase
+from coupling.drives import reach
+from coupling.progress import Progress, silent
+from coupling.run import build_scene
+from coupling.scene.plate import build_plate, stretch_model
+from coupling.stretch import Stretch, StretchModel
+from particle import AnyDrive, SurfaceMotion
+
+BEYOND = 0.02  # of its range: how far a drive may pass the heights that a model is good for
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StretchedSurface(SurfaceMotion):
+    """The moving surface of a plate that stretches: the drives of its actuators determine all others."""
+
+    model: StretchModel | None = None
+    end: float = 0.0  # s, of the time that is needed
+
+    @staticmethod
+    def under(
+        model: StretchModel, drives: Sequence[AnyDrive], end: float, tolerance: float, half_thickness: float
+    ) -> StretchedSurface:
+        """The surface of a model under drives, one an actuator."""
+        surface = Stretch.under(model, drives, end).surface(tolerance, half_thickness)
+        own = {one.name: getattr(surface, one.name) for one in fields(SurfaceMotion)}
+        return StretchedSurface(**own, model=model, end=end)
+
+    def driven_by(self, drives: Sequence[AnyDrive], in_plane_drives: Sequence[AnyDrive] = ()) -> SurfaceMotion:
+        """The same surface with other drives of its actuators, sharing its cells; raises as `SurfaceMotion` does.
+
+        Also ValueError where these pass the heights that its model is good for, or find no equilibrium.
+        """
+        assert self.model is not None
+        if wrong := self.drive_faults({"drives": drives}) + self._strokes_beyond(drives):
+            raise ValueError("; ".join(wrong))
+        corrections = self.model.corrections(drives, self.end)
+        return super().driven_by([*drives, *corrections.drives], corrections.in_plane)
+
+    def drive_faults(
+        self, given: Mapping[str, Sequence[AnyDrive]], in_plane: Mapping[str, Sequence[AnyDrive]] | None = None
+    ) -> list[str]:
+        if in_plane is not None:
+            return super().drive_faults(given, in_plane)
+        count = len(self.sources)
+        return [
+            f"Input {name} must be one an actuator, {count}; got {len(row)}"
+            for name, row in given.items()
+            if len(row) != count
+        ]
+
+    def _strokes_beyond(self, drives: Sequence[AnyDrive]) -> list[str]:
+        assert self.model is not None
+        low, high = self.model.heights.min(axis=0), self.model.heights.max(axis=0)
+        wrong = []
+        for k, drive in enumerate(drives):
+            least, most = reach(drive)
+            room = BEYOND * max(high[k] - low[k], abs(high[k]), abs(low[k]))
+            if least < low[k] - room or most > high[k] + room:
+                wrong.append(
+                    f"drive {k} must stay within the heights that the stretching plate is solved for, {low[k]:g} to "
+                    f"{high[k]:g}; it goes from {least:g} to {most:g}"
+                )
+        return wrong
+
+
+def shared_surface(
+    case: Case, sets: Sequence[Sequence[AnyDrive]], duration: float, progress: Progress = silent
+) -> SurfaceMotion:
+    """The moving surface of a case whose drives are exchanged by `driven_by`.
+
+    sets: of drives that stand for all that are to come, one an actuator each; they count where the plate stretches.
+    duration: s, of the longest run.
+    Raises ValueError where the plate cannot be solved, RuntimeError where so many heights take too many solutions.
+    """
+    plate = case.plate
+    if not isinstance(plate, PlateCase) or plate.theory == "linear":
+        return build_scene(case, progress).surface
+    longest = case.model_copy(update={"run": case.run.model_copy(update={"duration": duration})})
+    with progress("Solving the stretching plate") as tell:
+        model = stretch_model(longest, plate, build_plate(plate), sets, tell)
+    with progress("Fitting the surface"):
+        top = plate.thickness / 2 if plate.top_face else 0.0
+        options: dict[str, Any] = {"tolerance": case.run.surface_tolerance, "half_thickness": top}
+        return StretchedSurface.under(model, sets[0], duration, **options)

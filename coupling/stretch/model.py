@@ -1,0 +1,75 @@
+"""The reduced model of a plate that stretches, in SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.stretch.corrections import Corrections, correction_drives
+from fem_plate import LargeDeflection, StretchedShapes
+from fem_plate.large_deflection import ReducedPlate, Reduction, reduced_equilibrium
+from particle import AnyDrive
+
+FloatArray = NDArray[np.float64]
+
+TOLERANCE = 1e-5  # of the largest w of the reduction, and of the largest correction of time pieces
+CELLS = 10.0  # times the surface's tolerance: how well cells follow corrections
+IN_PLANE = 100.0  # times it: in-plane motions, which carry a part less than slopes do
+
+
+class StretchModel:
+    """A plate that stretches, in a few shapes.
+
+    heights: (S, N) m or N, that it is good for.  mesh_error: of a full solution, over its largest w.
+    """
+
+    def __init__(self, large: LargeDeflection, reduction: Reduction, heights: FloatArray, mesh_error: float) -> None:
+        self.large, self.reduction, self.heights, self.mesh_error = large, reduction, heights, mesh_error
+
+    @cached_property
+    def plate(self) -> ReducedPlate:
+        """The reduced plate: drives in m or N, corrections and in-plane motions in m."""
+        discrete, plate = self.reduction.discrete, self.reduction.plate
+        unit = np.concatenate([discrete.units, np.full(len(plate.stiffness), discrete.thickness)])
+        scale = 1 / np.outer(unit, unit)
+        return ReducedPlate(
+            plate.stiffness / discrete.thickness**2,
+            plate.membrane * scale,
+            in_plane=plate.in_plane * scale * discrete.motion_unit,
+        )
+
+    @cached_property
+    def largest(self) -> tuple[FloatArray, FloatArray]:
+        """The largest corrections (n,) and in-plane motions (M,) at the heights [m]."""
+        states = [reduced_equilibrium(self.plate, row) for row in self.heights]
+        return (
+            np.max([np.abs(state.corrections[0]) for state in states], axis=0),
+            np.max([np.abs(state.in_plane[0]) for state in states], axis=0),
+        )
+
+    @cached_property
+    def shapes(self) -> StretchedShapes:
+        """Shapes of actuators, corrections and in-plane motions, with scales for the cells of the moving surface."""
+        (corrections, motions), springs = self.largest, self.large.stiffness
+        strokes = np.abs(self.heights).max(axis=0)
+        stroke = float(strokes[springs > 0].max(initial=0.0)) or self.reduction.discrete.thickness
+        own = np.where(springs > 0, 1.0, stroke / np.where(strokes > 0, strokes, 1.0))
+        scales = np.concatenate([own, CELLS * stroke / corrections])
+        return StretchedShapes(self.reduction, self.large.points, springs, scales, IN_PLANE * motions.max() / motions)
+
+    @cached_property
+    def _weights(self) -> tuple[FloatArray, FloatArray]:
+        """How high each correction is for a metre of its coefficient, and how far each in-plane motion goes."""
+        shapes = self.shapes
+        points = shapes.functions.space.points * shapes.size
+        heights = np.abs(shapes.values(points))[:, len(self.large.points) :].max(axis=0)
+        return heights, np.abs(shapes.in_plane_values(points)).max(axis=(0, 2))
+
+    def corrections(self, drives: Sequence[AnyDrive], end: float) -> Corrections:
+        """What corrects the linear shapes under drives, from 0 to `end` [s]."""
+        (heights, in_plane), (corrections, motions) = self._weights, self.largest
+        floors = float((heights * corrections).max()), float((in_plane * motions).max())
+        return correction_drives(self.plate, drives, end, TOLERANCE, heights, in_plane, *floors)

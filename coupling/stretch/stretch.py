@@ -1,0 +1,139 @@
+"""Stretch: a plate that stretches under the drives of one run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.drives import moments, stroke_heights
+from coupling.stretch.corrections import Corrections
+from coupling.stretch.model import StretchModel
+from coupling.surface import surface_motion
+from fem_plate import StretchedShapes
+from particle import AnyDrive, SurfaceMotion
+
+FloatArray = NDArray[np.float64]
+
+AROUND = 16  # directions around an actuator in which strains are sampled
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """A plate that stretches under N drives up to a time `end` [s]."""
+
+    model: StretchModel
+    drives: Sequence[AnyDrive]
+    corrections: Corrections
+    end: float
+
+    @staticmethod
+    def under(model: StretchModel, drives: Sequence[AnyDrive], end: float) -> Stretch:
+        """The plate under drives."""
+        return Stretch(model, drives, model.corrections(drives, end), end)
+
+    @property
+    def shapes(self) -> StretchedShapes:
+        """Shapes of the actuators, then of corrections."""
+        return self.model.shapes
+
+    @property
+    def moving_drives(self) -> list[AnyDrive]:
+        """The drive of each of these."""
+        return [*self.drives, *self.corrections.drives]
+
+    def surface(self, tolerance: float, half_thickness: float) -> SurfaceMotion:
+        """The moving surface."""
+        return surface_motion(self.shapes, self.moving_drives, tolerance, half_thickness, self.corrections.in_plane)
+
+    @property
+    def solutions(self) -> int:
+        """How many full solutions the model is made of."""
+        return self.model.reduction.solutions
+
+    @property
+    def mesh_error(self) -> float:
+        """Of a full solution, over the largest w."""
+        return self.model.mesh_error
+
+    @property
+    def reduction_error(self) -> float:
+        """Of the model against full solutions that were held out, over the largest w."""
+        return self.model.reduction.error
+
+    @property
+    def piece_error(self) -> float:
+        """Of the corrections' quintics in time, over the largest correction."""
+        return self.corrections.error
+
+    def field(self, xy: FloatArray) -> StretchField:
+        """The plate at points (n, 2) [m]."""
+        return StretchField(self, xy)
+
+    @cached_property
+    def extremes(self) -> Extremes:
+        """The largest deflection, slope and strain, at the mesh's points and half a thickness from each actuator."""
+        mesh, thickness = self.model.reduction.discrete.mesh, self.model.large.plate.section.thickness
+        angle = 2 * np.pi * np.arange(AROUND) / AROUND
+        circle = thickness / 2 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        around = (self.shapes.points[:, None] + circle).reshape(-1, 2)
+        off = np.hypot(*(mesh.points[:, None] - self.shapes.points).transpose(2, 0, 1)).min(axis=1) > thickness / 2
+        field = self.field(np.concatenate([mesh.points[off], around[self.shapes.outline.inside(around)]]))
+        times = moments(self.drives, self.end)
+        largest = [field.extremes(time) for time in times]
+        return Extremes(*np.max(largest, axis=0))
+
+
+class Extremes(NamedTuple):
+    """The largest of some points and times."""
+
+    deflection: float  # m
+    slope: float
+    strain: float  # the largest principal strain, at the top or the bottom face
+
+
+class StretchField:
+    """A plate that stretches at points (n, 2) [m]."""
+
+    def __init__(self, stretch: Stretch, xy: FloatArray) -> None:
+        shapes, self._stretch = stretch.shapes, stretch
+        self._value, self._gradient, self._hessian = shapes.evaluate(xy)
+        self._in_plane = shapes.in_plane_gradients(xy)
+
+    def strain(self, time: float) -> tuple[FloatArray, FloatArray]:
+        """The strain of the mid-plane, and what bending adds at the top face, (n, 2, 2) each."""
+        b, g = self._heights(time)
+        slope = self._gradient.transpose(0, 2, 1) @ b
+        stretched = self._in_plane @ g
+        middle = (stretched + stretched.transpose(0, 2, 1) + slope[:, :, None] * slope[:, None]) / 2
+        return middle, -self._stretch.model.large.plate.section.thickness / 2 * np.einsum(
+            "nkij,k->nij", self._hessian, b
+        )
+
+    def membrane_force(self, time: float) -> FloatArray:
+        """The membrane force (n, 2, 2) [N/m]."""
+        plate = self._stretch.model.large.plate
+        section, strain = plate.section, self.strain(time)[0]
+        nu = section.poisson_ratio
+        trace = np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(2)
+        stiffness = section.youngs_modulus * section.thickness / (1 - nu**2)
+        return np.asarray(stiffness * ((1 - nu) * strain + nu * trace) + plate.tension * np.eye(2))
+
+    def extremes(self, time: float) -> Extremes:
+        """The largest deflection, slope and strain of the points at a time [s]."""
+        b, _ = self._heights(time)
+        middle, bending = self.strain(time)
+        slope = np.linalg.norm(self._gradient.transpose(0, 2, 1) @ b, axis=1)
+        strain = max(float(np.abs(np.linalg.eigvalsh(middle + sign * bending)).max()) for sign in (-1, 1))
+        return Extremes(float(np.abs(self._value @ b).max()), float(slope.max()), strain)
+
+    def _heights(self, time: float) -> tuple[FloatArray, FloatArray]:
+        corrections = self._stretch.corrections
+        return (
+            stroke_heights(self._stretch.moving_drives, np.array([time]))[0],
+            stroke_heights(corrections.in_plane, np.array([time]))[0],
+        )

@@ -1,0 +1,75 @@
+"""Drives given by their quintics: many with common breakpoints, alone and beside others."""
+
+import numpy as np
+import pytest
+
+from particle import Drive
+from particle.drives import drive_table, next_breakpoint, quintic_drives
+
+EDGES = np.array([0.0, 0.5, 0.75, 2.0])
+
+
+def smooth(s):
+    """A motion with period 1.5 after 0.5, with its derivatives by their formulas."""
+    rate = 2 * np.pi / 1.5
+    return np.sin(rate * s), rate * np.cos(rate * s), -(rate**2) * np.sin(rate * s)
+
+
+def coefficients(count):
+    return np.random.default_rng(0).normal(size=(count, len(EDGES) - 1, 6))
+
+
+def test_each_is_its_polynomials_and_holds_the_last_value():
+    rows = coefficients(3)
+    drives = quintic_drives(EDGES, rows, None, 0.5, 1.0, np.zeros(3))
+    for drive, row in zip(drives, rows, strict=True):
+        for k in range(3):
+            s = np.array([0.0, 0.3, 0.9])
+            values = np.polynomial.polynomial.polyval(s, row[k])
+            assert drive.evaluate(EDGES[k] + s * np.diff(EDGES)[k])[0] == pytest.approx(values, rel=1e-12, abs=1e-12)
+        assert drive.evaluate(5.0)[0] == pytest.approx(row[-1].sum(), rel=1e-14)
+
+
+def test_a_pass_repeats_after_the_pieces_that_come_once():
+    rows = coefficients(2)
+    drive = quintic_drives(EDGES, rows, 1, 0.5, 1.0, np.zeros(2))[1]
+    times = np.array([0.51, 0.9, 1.99])
+    assert drive.evaluate(times + 7 * 1.5)[0] == pytest.approx(drive.evaluate(times)[0], rel=1e-12)
+    assert drive.evaluate(0.25)[0] == pytest.approx(np.polynomial.polynomial.polyval(0.5, rows[1, 0]), rel=1e-14)
+
+
+def test_they_are_rows_of_a_table_beside_other_drives():
+    rows = coefficients(2)
+    ours = quintic_drives(EDGES, rows, 1, 0.5, 1.0, np.array([1e-7, 2e-7]))
+    table = drive_table([Drive(1.0, 0.4), *ours])
+    assert table.stroke_time.tolist() == [1.25, 0.5, 0.5]
+    assert [drive.error for drive in ours] == [1e-7, 2e-7]
+    times, time = [], 0.0
+    while (time := next_breakpoint(table, time)) < 3.0:
+        times.append(time)
+    assert times == pytest.approx([0.5, 0.75, 1.25, 2.0, 2.25, 2.5], rel=1e-14)
+    assert (table.jump > 0).tolist() == [[False, False], [True, True], [True, True]]
+
+
+def test_a_smooth_loop_does_not_jump():
+    begin, end = smooth(EDGES[:-1]), smooth(EDGES[1:])
+    length = np.diff(EDGES)
+    rows = np.zeros((1, 3, 6))
+    for k in range(3):
+        # The quintic with the values and two derivatives at both ends, by a linear solve.
+        ends = [[s**n for n in range(6)] for s in (0, 1)]
+        slopes = [[n * s ** max(n - 1, 0) for n in range(6)] for s in (0, 1)]
+        bends = [[n * (n - 1) * s ** max(n - 2, 0) for n in range(6)] for s in (0, 1)]
+        right = [side[order][k] * length[k] ** order for order in range(3) for side in (begin, end)]
+        rows[0, k] = np.linalg.solve(np.array([*ends, *slopes, *bends], dtype=float), right)
+    table = drive_table(quintic_drives(EDGES, rows, 1, 0.5, 1.0, np.zeros(1)))
+    assert (table.jump == 0).all() and table.rough[0] > 0
+
+
+def test_thousands_of_pieces_of_many_drives_share_their_times():
+    edges = np.linspace(0.0, 1.0, 5001)
+    rows = np.zeros((40, 5000, 6))
+    rows[:, :, 1] = np.arange(40.0)[:, None]
+    drives = quintic_drives(edges, rows, None, 0.5, 1.0, np.zeros(40))
+    assert all(drive.segments().start is drives[0].segments().start for drive in drives)
+    assert drive_table(drives).coefficients.shape == (200_000, 6)
