@@ -88,8 +88,8 @@ def test_energy_bracket_closes():
 
 
 def test_energy_is_the_work_of_the_reactions():
-    large, heights = Plate(disc(1.0, 0.25), UNIT).large_deflection(TWO), np.array([2.0, -1.0])
-    nodes, weights = np.polynomial.legendre.leggauss(5)
+    large, heights = Plate(disc(1.0, 0.4), UNIT).large_deflection(TWO), np.array([2.0, -1.0])
+    nodes, weights = np.polynomial.legendre.leggauss(4)
     work = 0.0
     for node, weight in zip((nodes + 1) / 2, weights / 2, strict=True):
         work += weight * heights @ large.solve(node * heights).reactions
@@ -113,11 +113,9 @@ def test_pressure_on_a_free_plate_is_borne_by_its_actuators():
     assert np.abs(points.T @ state.reactions).max() < 1e-6 * 20 * np.pi
 
 
-@pytest.mark.parametrize("shape", ["disc", "square"])
-def test_the_estimate_is_honest(shape):
+def test_the_estimate_is_honest():
     """Within a factor of five of the error, by cells halved twice more."""
-    mesh = disc(1.0, 0.4) if shape == "disc" else rectangle(2.0, 2.0, 0.7)
-    large = Plate(mesh, UNIT).large_deflection(TWO)
+    large = Plate(disc(1.0, 0.5), UNIT).large_deflection(TWO)
     heights = np.array([2.0, -1.0])
     state = large.solve(heights)
     error = large.solved(heights, 0.0, 0, 2).difference(state)
