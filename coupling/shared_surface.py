@@ -71,6 +71,11 @@ class StretchedSurface(SurfaceMotion):
         return wrong
 
 
+def stretches(case: Case) -> bool:
+    """Whether a case has a plate that stretches."""
+    return isinstance(case.plate, PlateCase) and case.plate.theory == "von-karman"
+
+
 def shared_surface(
     case: Case, sets: Sequence[Sequence[AnyDrive]], duration: float, progress: Progress = silent
 ) -> SurfaceMotion:
