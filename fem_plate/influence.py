@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
 from fem_plate.estimated import Estimated
+from fem_plate.inputs import check_held
 from fem_plate.shapes import Shapes
 
 FloatArray = NDArray[np.float64]
@@ -105,11 +106,7 @@ def held_shapes(
     held = stiffness > 0
     motions = model.motions(x)
     r = motions.shape[1]
-    if r and (held.sum() < r or np.linalg.matrix_rank(motions[held], tol=1e-9) < r):
-        raise ValueError(
-            "Input points of influence leave the plate a rigid motion: its supports and the actuators that hold "
-            f"it, {int(held.sum())}, must fix three points that are not on one line"
-        )
+    check_held("influence", motions, held)
     columns = np.arange(len(x)) if chosen is None else chosen
     drives = np.eye(len(x))[:, columns] * np.where(held[columns], 1.0, 1 / stiffness_unit)
     yielding = green[np.ix_(held, held)] + np.diag(stiffness_unit / stiffness[held])

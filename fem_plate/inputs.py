@@ -57,6 +57,16 @@ def check_points(caller: str, points: FloatArray, gap: FloatArray, size: float) 
         raise ValueError(f"Input points of {caller}: " + "; ".join(mistakes))
 
 
+def check_held(caller: str, motions: FloatArray, held: NDArray[np.bool_]) -> None:
+    """Raise ValueError when the held actuators do not stop the rigid motions (N, r, at all of them) of the supports."""
+    r = motions.shape[1]
+    if r and (held.sum() < r or np.linalg.matrix_rank(motions[held], tol=1e-9) < r):
+        raise ValueError(
+            f"Input points of {caller} leave the plate a rigid motion: its supports and the actuators that hold "
+            f"it, {int(held.sum())}, must fix three points that are not on one line"
+        )
+
+
 def check_on_plate(outline: Outline, xy: FloatArray, size: float) -> None:
     """Raise ValueError when one of the points (n, 2) [m] lies beyond the rim."""
     beyond = outline.gap(xy) < -SAME_PLACE * size

@@ -37,6 +37,7 @@ from .interrupt import (
     wait as wait,
 )
 from .jit import kernel as kernel, kernel_no_arrays as kernel_no_arrays
+from .kernel_cache import source_digest as source_digest
 from .pictures import (
     HALO as HALO,
     PATH_COLOUR as PATH_COLOUR,

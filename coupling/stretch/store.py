@@ -17,7 +17,7 @@ import fem_plate
 import meshes
 from fem_plate import LargeDeflection
 from fem_plate.large_deflection import Columns, DiscretePlate, ReducedPlate, Reduction
-from particle.kernel_cache import source_digest
+from particle import source_digest
 
 FloatArray = NDArray[np.float64]
 

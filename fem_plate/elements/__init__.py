@@ -4,6 +4,7 @@ from fem_plate.elements.functions import Derivatives, PlateFunctions
 from fem_plate.elements.grading import GAIN, Fineness, SingularCorner, corner_rows, graded, singular_corners
 from fem_plate.elements.infinite import InfinitePlate, infinite_plate
 from fem_plate.elements.model import PlateModel
-from fem_plate.elements.singular import UNIT_STRENGTH, point_load, point_value, pressure_derivatives
+from fem_plate.elements.rim import rigid_motions, rim_quadrature
+from fem_plate.elements.singular import UNIT_STRENGTH, point_load, point_value
 from fem_plate.elements.space import PlateSpace
 from fem_plate.elements.supports import CLAMPED, FREE, SIMPLY_SUPPORTED, by_boundary

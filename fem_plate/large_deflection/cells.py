@@ -11,15 +11,16 @@ from meshes import PlateMesh
 FloatArray = NDArray[np.float64]
 
 # Around an actuator the plate also bends as r^4 ln r, which halved cells take up: how often, and how near (in cells).
-AROUND, NEAR = 2, 1.2
+AROUND, NEAR = 2, 2.0
 # From so many thicknesses on: the bands at the rim whose cells are halved, over the half width, and the halvings added
 # around actuators.
+ROUNDING = 1e-6  # of that many
 LEVELS = ((0.0, (), 0), (5.0, (0.16,), 1), (15.0, (0.2, 0.08), 2))
 
 
 def level_of(thicknesses: float) -> int:
     """The level of fineness for a largest deflection over the thickness."""
-    return sum(thicknesses > least for least, _, _ in LEVELS[1:])
+    return sum(thicknesses > least * (1 + ROUNDING) for least, _, _ in LEVELS[1:])
 
 
 def refined_for(mesh: PlateMesh, points: FloatArray, half_width: float, level: int) -> PlateMesh:

@@ -18,6 +18,9 @@ FloatArray = NDArray[np.float64]
 
 MAX_STEPS = 40
 CONVERGED = 1e-8  # of the largest deflection: what the last step may change; Newton's next would change its square
+# Newton's next step would square so small a change. Where it does not, the rest is rounding, and so may be what the
+# energy changes by.
+NEAR = 1e-5
 MAX_HALVINGS = 12  # of a step, while the energy grows
 ROUNDING = 1e-12  # of the energy
 
@@ -83,18 +86,18 @@ class Equilibrium:
         start: where to begin, at the heights of the loads; by default the linear plate.
         """
         now = self.linear(loads) if start is None else start
-        energy = self.energy(now, loads)
+        energy, change = self.energy(now, loads), np.inf
         for _ in range(MAX_STEPS):
             dv, de, forces, solver = self._step(now, loads)
-            share, change = 1.0, self._change(now, dv, de)
+            share, last_change, change = 1.0, change, self._change(now, dv, de)
             for _ in range(MAX_HALVINGS):
                 there = self.at(now.v + share * dv, now.extra + share * de, loads.pressure)
                 new_energy = self.energy(there, loads)
-                if new_energy <= energy + ROUNDING * abs(energy) or change < 10 * CONVERGED:
+                if new_energy <= energy + ROUNDING * abs(energy) or change < NEAR:
                     break
                 share /= 2
             now, energy = there, new_energy
-            if share == 1.0 and change < CONVERGED:
+            if share == 1.0 and (change < CONVERGED or last_change / 10 < change < NEAR):
                 return Solution(now, forces, solver)
         raise NotConverged(f"no equilibrium after {MAX_STEPS} steps; the last one changed w by {change:.1e} of itself")
 

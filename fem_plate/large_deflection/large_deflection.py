@@ -7,9 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_plate.elements import CLAMPED
+from fem_plate.elements import CLAMPED, rigid_motions, rim_quadrature
 from fem_plate.estimated import refined
-from fem_plate.inputs import one_per_point
+from fem_plate.inputs import check_held, one_per_point
 from fem_plate.large_deflection.cells import level_of
 from fem_plate.large_deflection.discrete import DiscretePlate
 from fem_plate.large_deflection.given_plate import GivenPlate
@@ -44,6 +44,7 @@ class LargeDeflection:
         membrane: str | None,
     ) -> None:
         self.plate, self.points, self.stiffness, self.movable = plate, points, stiffness, dict(movable)
+        check_held("large_deflection", _motions(plate, points), stiffness > 0)
         by_airy = _airy_applies(plate, movable)
         if membrane not in (None, AIRY, PLANE_STRESS) or (membrane == AIRY and not by_airy):
             raise ValueError(
@@ -107,6 +108,12 @@ class LargeDeflection:
                 key: DiscretePlate(self.plate, self.points, self.stiffness, self.movable, self.membrane, *key)
             }
         return self._discrete[key]
+
+
+def _motions(plate: GivenPlate, points: FloatArray) -> FloatArray:
+    """The rigid motions that the supports allow, at points (N, 2) [m]: (N, r)."""
+    rigid = rigid_motions(rim_quadrature(plate.mesh, plate.supports)[0])
+    return np.column_stack([np.ones(len(points)), points / plate.mesh.size]) @ rigid
 
 
 def _airy_applies(plate: GivenPlate, movable: Mapping[str, bool]) -> bool:

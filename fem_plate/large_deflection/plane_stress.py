@@ -26,6 +26,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 DEGREE = 14  # of the quadrature
+NEWTON = 4  # steps to reference coordinates; cells at the rim are curved a little
 
 
 class PlaneStress:
@@ -75,7 +76,7 @@ class PlaneStress:
         """
         basis, everything = self.basis, self._expand(u)
         triangle = self.space.triangle_of(x)
-        local = basis.mapping.invF(x.T[:, :, None], triangle)
+        local = self._local(x, triangle)
         value, gradient = np.zeros((len(x), 2, u.shape[1])), np.zeros((len(x), 2, 2, u.shape[1]))
         for i in range(basis.Nbfun):
             (function,) = basis.elem.gbasis(basis.mapping, local, i, triangle)
@@ -83,6 +84,17 @@ class PlaneStress:
             value += np.asarray(function)[..., 0].T[:, :, None] * weight[:, None]
             gradient += np.moveaxis(function.grad[..., 0], 2, 0)[..., None] * weight[:, None, None]
         return value, gradient
+
+    def _local(self, x: FloatArray, triangle: IntArray) -> FloatArray:
+        """The reference coordinates (2, n, 1) of points (n, 2) on triangles (n,), curved ones by Newton's method."""
+        mapping = self.basis.mapping
+        corners = mapping.mesh.p[:, mapping.mesh.t[:3, triangle]]  # (2, 3, n)
+        sides = np.moveaxis(corners[:, 1:] - corners[:, :1], 2, 0)
+        local = np.linalg.solve(sides, (x - corners[:, 0].T)[..., None]).transpose(1, 0, 2)
+        for _ in range(NEWTON):
+            missed = mapping.F(local, triangle) - x.T[:, :, None]
+            local = local - np.einsum("ijnk,jnk->ink", mapping.invDF(local, triangle), missed)
+        return np.asarray(local)
 
 
 def curved(mesh: PlateMesh) -> MeshTri2:

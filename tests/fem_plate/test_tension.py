@@ -37,6 +37,11 @@ def test_compression_is_refused_where_the_plate_buckles():
     )
 
 
+def test_large_deflections_have_no_tension_yet():
+    with pytest.raises(ValueError, match="Input tension of Plate must be 0 for large_deflection; got 1.0 N/m"):
+        Plate(disc(1.0, 0.5), UNIT, tension=1.0).large_deflection([[0.0, 0.0]])
+
+
 def test_a_plate_says_its_tension():
     assert repr(Plate(disc(1.0, 0.5), UNIT, tension=3.0)).endswith("rim clamped; tension 3 N/m")
     assert "tension" not in repr(Plate(disc(1.0, 0.5), UNIT))
