@@ -143,8 +143,9 @@ SOFT = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["1 um", "60 um", "0.1 
 @pytest.mark.compiled
 def test_the_command_warns_where_the_model_stops_holding(tmp_path):
     case = PLATE.replace('"60 um"', '"0.1 um"')
-    warning, slope = run_study(read_study(written(tmp_path, SOFT, case))).warnings
+    warning, slope, strain = run_study(read_study(written(tmp_path, SOFT, case))).warnings
     assert slope.startswith("The surface is as steep as ")
+    assert strain.startswith("The plate is strained by ")
     assert re.match(r"The plate deflects by 1\d(\.\d)? times its thickness", warning)
     done = CliRunner().invoke(main, ["sweep", str(written(tmp_path, SOFT, case)), "-o", str(tmp_path / "out")])
     assert f"warning     {warning}\n" in done.output
