@@ -10,7 +10,7 @@ from coupling.case import Case, PlateCase
 from coupling.drives import reach
 from coupling.progress import Progress, silent
 from coupling.run import build_scene
-from coupling.scene.plate import build_plate, stretch_model
+from coupling.scene import build_plate, stretch_model
 from coupling.stretch import Stretch, StretchModel
 from particle import AnyDrive, SurfaceMotion
 
