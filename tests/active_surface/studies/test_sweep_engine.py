@@ -94,8 +94,8 @@ def test_memory_does_not_grow_with_plates(tmp_path):
 
 def test_plates_that_come_again_are_solved_once(tmp_path, monkeypatch):
     axes = '[[axes]]\nfield = "plate.motion.x.stroke"\nvalues = ["5 um", "6 um", "7 um", "8 um", "9 um", "10 um"]\n'
-    made, build = [], engine.build_scene
-    monkeypatch.setattr(engine, "build_scene", lambda case: made.append(case) or build(case))
+    made, build = [], engine.shared_surface
+    monkeypatch.setattr(engine, "shared_surface", lambda *of: made.append(of) or build(*of))
     one = Engine(read_study(written(tmp_path, f'sampling = "random"\npoints = 40\nseed = 1\n{axes}', PLATFORM)))
     for k in range(40):
         one.records(k, k + 1)
