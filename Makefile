@@ -58,6 +58,7 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/evaluation.py
 	$(BIN)/python benchmarks/cycles.py
 	$(BIN)/python benchmarks/top_face.py
+	$(BIN)/python benchmarks/with_ngsolve_large_deflection.py
 	$(BIN)/python benchmarks/in_plane.py
 	$(BIN)/python benchmarks/corrections.py
 	$(BIN)/python benchmarks/paths.py
