@@ -25,8 +25,8 @@ MAX_HALVINGS = 12  # of a step, while the energy grows
 ROUNDING = 1e-12  # of the energy
 
 
-class NotConverged(RuntimeError):
-    """Newton's method ended without an equilibrium."""
+class NotConverged(ValueError):
+    """No equilibrium was found, or no model that is good enough."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,10 @@ class Equilibrium:
             now, energy = there, new_energy
             if share == 1.0 and (change < CONVERGED or last_change / 10 < change < NEAR):
                 return Solution(now, forces, solver)
-        raise NotConverged(f"no equilibrium after {MAX_STEPS} steps; the last one changed w by {change:.1e} of itself")
+        raise NotConverged(
+            f"The stretching plate has no equilibrium after {MAX_STEPS} steps; the last one changed w by {change:.1e} of "
+            "itself. Lower the strokes"
+        )
 
     def linear(self, loads: Loads) -> Coefficients:
         """The plate without stretching."""

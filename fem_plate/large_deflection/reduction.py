@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from fem_plate.large_deflection.bordered import BorderedSolver
 from fem_plate.large_deflection.discrete import DiscretePlate
-from fem_plate.large_deflection.equilibrium import Coefficients, Loads, Solution
+from fem_plate.large_deflection.equilibrium import Coefficients, Loads, NotConverged, Solution
 from fem_plate.large_deflection.membrane import Membrane
 from fem_plate.large_deflection.reduced import ReducedPlate
 from fem_plate.large_deflection.reduced_solver import reduced_equilibrium
@@ -65,7 +65,7 @@ def reduce(
     """Reduce a plate for strokes (S, N) that it is to be good for.
 
     tell: called after each full solution with their number and the error estimated so far.
-    Raises RuntimeError when the tolerance takes more than MAX_SOLUTIONS full solutions.
+    Raises NotConverged when the tolerance takes more than MAX_SOLUTIONS full solutions.
     """
     reducer = _Reducer(discrete, np.abs(strokes).max(axis=0), tolerance)
     size = np.array([reducer.size(row) for row in strokes])
@@ -89,7 +89,10 @@ def reduce(
         else:
             reducer.add(candidates[np.argmax(errors)])
         if reducer.solutions >= MAX_SOLUTIONS:
-            raise RuntimeError(f"the plate is not reduced to {tolerance:.0e} after {MAX_SOLUTIONS} full solutions")
+            raise NotConverged(
+                f"The stretching plate needs more than {MAX_SOLUTIONS} full solutions; the last model was off by "
+                f"{worst:.0e} of the largest deflection. Lower the strokes, or let fewer actuators move"
+            )
         model = reducer.model()
 
 
