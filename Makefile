@@ -19,7 +19,7 @@ MARCHES += $(addprefix tests/validation/test_, motion_oracle.py single_stroke.py
 .PHONY: demo test test-all plain long-tests forget-coverage lint kernels docs site paper benchmark clean
 
 demo: .venv/installed
-	$(BIN)/active-surface run examples/two_actuators.toml
+	$(BIN)/active-surface run examples/transport.toml
 
 test: .venv/developer
 	@$(MAKE) --no-print-directory -j2 kernels plain COVERAGE="$(COVERAGE)"
@@ -43,7 +43,7 @@ long-tests: .venv/developer
 
 # Compiled once, on one processor, before several processes would do so at a time.
 kernels: .venv/developer
-	@$(BIN)/active-surface run examples/two_actuators.toml --quiet --output build/kernels
+	@$(BIN)/active-surface run examples/transport.toml --quiet --output build/kernels
 
 lint: .venv/developer
 	$(BIN)/ruff check .
@@ -58,6 +58,7 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/evaluation.py
 	$(BIN)/python benchmarks/cycles.py
 	$(BIN)/python benchmarks/top_face.py
+	$(BIN)/python benchmarks/with_ngsolve_large_deflection.py
 	$(BIN)/python benchmarks/in_plane.py
 	$(BIN)/python benchmarks/corrections.py
 	$(BIN)/python benchmarks/paths.py

@@ -17,8 +17,10 @@ from coupling import (
     write_surface as write_surface,
 )
 from fem_plate import (
+    DeflectedPlate as DeflectedPlate,
     Deflection as Deflection,
     InfluenceShapes as InfluenceShapes,
+    LargeDeflection as LargeDeflection,
     Modes as Modes,
     PatchedShapes as PatchedShapes,
     Plate as Plate,

@@ -10,7 +10,7 @@ from coupling.case import Case, PlateCase
 from coupling.drives import reach
 from coupling.progress import Progress, silent
 from coupling.run import build_scene
-from coupling.scene.plate import build_plate, stretch_model
+from coupling.scene import build_plate, stretch_model
 from coupling.stretch import Stretch, StretchModel
 from particle import AnyDrive, SurfaceMotion
 
@@ -39,7 +39,7 @@ class StretchedSurface(SurfaceMotion):
         Also ValueError where these pass the heights that its model is good for, or find no equilibrium.
         """
         assert self.model is not None
-        if wrong := self.drive_faults({"drives": drives}) + self._strokes_beyond(drives):
+        if wrong := self.drive_faults({"drives": drives}) or self._strokes_beyond(drives):
             raise ValueError("; ".join(wrong))
         corrections = self.model.corrections(drives, self.end)
         return super().driven_by([*drives, *corrections.drives], corrections.in_plane)
@@ -69,6 +69,11 @@ class StretchedSurface(SurfaceMotion):
                     f"{high[k]:g}; it goes from {least:g} to {most:g}"
                 )
         return wrong
+
+
+def stretches(case: Case) -> bool:
+    """Whether a case has a plate that stretches."""
+    return isinstance(case.plate, PlateCase) and case.plate.theory == "von-karman"
 
 
 def shared_surface(

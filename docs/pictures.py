@@ -37,7 +37,7 @@ COLOURS = {"clamped": "black", "simply-supported": "#1b4f9c", "free": "#c8371b"}
 
 def draw_runs() -> None:
     with TemporaryDirectory() as folder:
-        for name in ("two_actuators",):
+        for name in ("transport", "two_actuators"):
             run_case(read_case(ROOT / "examples" / f"{name}.toml"), output=folder)
             copy(Path(folder) / f"{name}.png", ROOT / "docs")
 

@@ -16,9 +16,9 @@ from active_surface.steering.scatter import REPORTED, Scatter, disturbances
 from active_surface.steering.spread import spread_drives
 from active_surface.steering.tables import Settings
 from active_surface.steering.task import able
-from coupling import build_friction, follow_part, run_case, shared_surface, warnings
+from coupling import build_friction, follow_part, run_case, shared_surface, stretches, warnings
 from coupling.case import Case, write_case
-from particle import SurfaceMotion, interruptible, unbroken
+from particle import AnyDrive, SurfaceMotion, interruptible, unbroken
 
 Kind = TypeVar("Kind", bound=SteeringResult)
 
@@ -49,10 +49,11 @@ def searched(
 
 
 def prepared(case: Case, settings: Settings) -> SurfaceMotion:
-    """The moving surface for all drives of a search; compiles all that paths need, so that Ctrl-C works then."""
-    chosen = able(case, settings)
-    together = len(chosen) if settings.actuators is not None else settings.nearest
-    sets = spread_drives(case, settings, chosen, together)
+    """The moving surface for a search; compiles all that paths need, so that Ctrl-C works from then on."""
+    sets: list[list[AnyDrive]] = []
+    if stretches(case):
+        chosen = able(case, settings)
+        sets = spread_drives(case, settings, chosen, len(chosen) if settings.actuators else settings.nearest)
     surface = interruptible(shared_surface, case, sets, case.run.duration)
     interruptible(follow_part, case, surface, build_friction(case))
     return surface

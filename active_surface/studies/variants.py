@@ -20,7 +20,6 @@ from coupling.case import (
     LatticeCase,
     Location,
     PartCase,
-    PlateCase,
     PlatformCase,
     RunCase,
     Table,
@@ -64,11 +63,6 @@ class Variants:
         self.drives_vary = any(axis.field.locations[0][0] in ("actuators", "lattice") for axis in axes)
         self.base = lru_cache(16)(self._base)
         self._tables: dict[tuple[str, str], Any] = {}
-
-    @staticmethod
-    def stretches(case: Case) -> bool:
-        """Whether a case has a plate that stretches."""
-        return isinstance(case.plate, PlateCase) and case.plate.theory == "von-karman"
 
     def paths_of_a_base(self, points: Points) -> int:
         """How many paths that follow each other share what they move over, about."""

@@ -3,4 +3,4 @@
 from coupling.stretch.corrections import Corrections, correction_drives
 from coupling.stretch.making import MAX_ACTUATORS, make_model
 from coupling.stretch.model import StretchModel
-from coupling.stretch.stretch import Stretch, StretchField
+from coupling.stretch.stretch import Stretch

@@ -48,7 +48,7 @@ def read_model(key: str, discrete: DiscretePlate) -> tuple[Reduction, float] | N
     if folder is None:
         return None
     try:
-        with np.load(folder / f"{key}.npz", allow_pickle=False) as file:
+        with open(folder / f"{key}.npz", "rb") as raw, np.load(raw, allow_pickle=False) as file:
             arrays = dict(file)
         os.utime(folder / f"{key}.npz")
     except (OSError, ValueError, EOFError, zipfile.BadZipFile):

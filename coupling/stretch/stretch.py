@@ -70,9 +70,9 @@ class Stretch:
         """Of the corrections' quintics in time, over the largest correction."""
         return self.corrections.error
 
-    def field(self, xy: FloatArray) -> StretchField:
-        """The plate at points (n, 2) [m]."""
-        return StretchField(self, xy)
+    def states(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Heights of actuators and corrections (k, N + n), and in-plane motions (k, M) [m], at times (k,) [s]."""
+        return stroke_heights(self.moving_drives, times), stroke_heights(self.corrections.in_plane, times)
 
     @cached_property
     def extremes(self) -> Extremes:
@@ -82,10 +82,9 @@ class Stretch:
         circle = thickness / 2 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         around = (self.shapes.points[:, None] + circle).reshape(-1, 2)
         off = np.hypot(*(mesh.points[:, None] - self.shapes.points).transpose(2, 0, 1)).min(axis=1) > thickness / 2
-        field = self.field(np.concatenate([mesh.points[off], around[self.shapes.outline.inside(around)]]))
-        times = moments(self.drives, self.end)
-        largest = [field.extremes(time) for time in times]
-        return Extremes(*np.max(largest, axis=0))
+        field = StretchField(self, np.concatenate([mesh.points[off], around[self.shapes.outline.inside(around)]]))
+        states = zip(*self.states(moments(self.drives, self.end)), strict=True)
+        return Extremes(*np.max([field.extremes(b, g) for b, g in states], axis=0).tolist())
 
 
 class Extremes(NamedTuple):
@@ -97,43 +96,34 @@ class Extremes(NamedTuple):
 
 
 class StretchField:
-    """A plate that stretches at points (n, 2) [m]."""
+    """A plate that stretches at points (n, 2) [m].
+
+    Its state at a time is b, the heights of actuators and corrections (N + n,), and g, the in-plane motions (M,), in m.
+    """
 
     def __init__(self, stretch: Stretch, xy: FloatArray) -> None:
-        shapes, self._stretch = stretch.shapes, stretch
+        shapes, self._plate = stretch.shapes, stretch.model.large.plate
         self._value, self._gradient, self._hessian = shapes.evaluate(xy)
         self._in_plane = shapes.in_plane_gradients(xy)
 
-    def strain(self, time: float) -> tuple[FloatArray, FloatArray]:
+    def strain(self, b: FloatArray, g: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The strain of the mid-plane, and what bending adds at the top face, (n, 2, 2) each."""
-        b, g = self._heights(time)
         slope = self._gradient.transpose(0, 2, 1) @ b
         stretched = self._in_plane @ g
         middle = (stretched + stretched.transpose(0, 2, 1) + slope[:, :, None] * slope[:, None]) / 2
-        return middle, -self._stretch.model.large.plate.section.thickness / 2 * np.einsum(
-            "nkij,k->nij", self._hessian, b
-        )
+        curvature = np.tensordot(self._hessian, b, (1, 0))
+        return middle, -self._plate.section.thickness / 2 * curvature
 
-    def membrane_force(self, time: float) -> FloatArray:
-        """The membrane force (n, 2, 2) [N/m]."""
-        plate = self._stretch.model.large.plate
-        section, strain = plate.section, self.strain(time)[0]
-        nu = section.poisson_ratio
-        trace = np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(2)
-        stiffness = section.youngs_modulus * section.thickness / (1 - nu**2)
-        return np.asarray(stiffness * ((1 - nu) * strain + nu * trace) + plate.tension * np.eye(2))
-
-    def extremes(self, time: float) -> Extremes:
-        """The largest deflection, slope and strain of the points at a time [s]."""
-        b, _ = self._heights(time)
-        middle, bending = self.strain(time)
+    def extremes(self, b: FloatArray, g: FloatArray) -> Extremes:
+        """The largest deflection, slope and strain of the points."""
+        middle, bending = self.strain(b, g)
         slope = np.linalg.norm(self._gradient.transpose(0, 2, 1) @ b, axis=1)
-        strain = max(float(np.abs(np.linalg.eigvalsh(middle + sign * bending)).max()) for sign in (-1, 1))
+        strain = max(_largest_principal(middle + sign * bending) for sign in (-1, 1))
         return Extremes(float(np.abs(self._value @ b).max()), float(slope.max()), strain)
 
-    def _heights(self, time: float) -> tuple[FloatArray, FloatArray]:
-        corrections = self._stretch.corrections
-        return (
-            stroke_heights(self._stretch.moving_drives, np.array([time]))[0],
-            stroke_heights(corrections.in_plane, np.array([time]))[0],
-        )
+
+def _largest_principal(tensors: FloatArray) -> float:
+    """The largest eigenvalue, by size, of symmetric tensors (n, 2, 2)."""
+    middle = (tensors[:, 0, 0] + tensors[:, 1, 1]) / 2
+    radius = np.hypot((tensors[:, 0, 0] - tensors[:, 1, 1]) / 2, tensors[:, 0, 1])
+    return float((np.abs(middle) + radius).max())

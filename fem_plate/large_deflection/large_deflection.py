@@ -80,7 +80,7 @@ class LargeDeflection:
         if not (np.isfinite(strokes).all() and np.isfinite(pressure)):
             raise ValueError("Input heights and pressure of solve must be finite; got some that are not")
         thickness = self.plate.section.thickness
-        level = level_of(float(np.abs(strokes[self.stiffness > 0]).max(initial=0.0)) / thickness)
+        level = level_of(float(np.abs(strokes[np.isinf(self.stiffness)]).max(initial=0.0)) / thickness)
         while True:
             state = self._refined(strokes, pressure, level)
             needed = level_of(state.largest / thickness)

@@ -45,7 +45,7 @@ class DeflectedPlate(Estimated):
 
     @cached_property
     def largest(self) -> float:
-        """The largest |w| [m] at the mesh's points and the actuators."""
+        """The largest deflection [m], up or down, at the mesh's points and the actuators."""
         points = np.concatenate([self.functions.space.points, self.functions.sources])
         return float(np.abs(self.functions.values(points)).max())
 

@@ -58,7 +58,9 @@ def test_the_drawn_plate_is_the_plate(result):
     """Its area is that of the solved mesh, and no cell of it is turned over."""
     grid = pyvista.read(str(result.files[0]))
     drawn = areas(grid.points[:, :2].astype(float), grid.cells_dict[5])
-    solved = result.shapes.model.mesh
+    stretch = result.scene.stretch
+    # Cells of a plate that stretches are not refined for a tolerance: their chords cut off more of the rim.
+    solved = result.shapes.model.mesh if stretch is None else stretch.model.reduction.discrete.mesh.refined()
     assert (drawn > 0).all()
     assert drawn.sum() == pytest.approx(areas(solved.points, solved.triangles).sum(), rel=1e-3)
 
@@ -85,8 +87,9 @@ def test_plate_is_lifted_by_the_drives_at_every_step(result):
 
 
 def test_summary_warns_where_the_model_ends(result):
-    holds = result.case.name in ("array_10x10", "wave")
-    assert (result.summary.deflection_over_thickness < 0.2) == holds
+    holds = result.case.name in ("array_10x10", "wave", "transport")
+    stretches = result.summary.theory == "von-karman"
+    assert (result.summary.deflection_over_thickness < 0.2) == (holds and not stretches)
     assert any("times its thickness" in warning for warning in report.warnings(result.summary)) != holds
     assert (result.summary.largest_slope < 0.2) == holds
 

@@ -26,21 +26,20 @@ def test_python_of_the_readme_runs(block, tmp_path, monkeypatch, capsys):
 
 @pytest.mark.compiled
 def test_main_job_prints_the_lines_of_the_readme(tmp_path):
-    case = ROOT / "examples/two_actuators.toml"
+    case = ROOT / "examples/transport.toml"
     printed = CliRunner().invoke(main, ["run", str(case), "--output", str(tmp_path)]).output
     lines = [FIGURE.sub("#", line) for line in printed.splitlines()]
     shown = re.search(r"```\n(outcome .*?)```", README, flags=re.DOTALL)[1].splitlines()
     assert len(shown) == 6
     assert [line for line in shown if FIGURE.sub("#", line) not in lines] == []
+    assert "warning" not in printed  # the run is within all bounds of the model
     # The path is good to 1e-4 um, so its figures are those of any processor.
     assert set(shown[:4]) <= set(printed.splitlines())
 
 
-def test_readme_is_short_and_says_where_its_result_does_not_hold():
+def test_readme_is_short_and_begins_with_what_to_do():
     assert len(README.split()) < MAX_WORDS
     first_screen = README.splitlines()[:24]
-    result = next(k for k, line in enumerate(first_screen) if line.startswith(("![", "```")))
-    assert "Outside the model's validity" in "".join(first_screen[:result])
     assert any("make demo" in line for line in first_screen) and any("make test" in line for line in first_screen)
 
 

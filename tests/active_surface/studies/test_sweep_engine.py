@@ -94,8 +94,8 @@ def test_memory_does_not_grow_with_plates(tmp_path):
 
 def test_plates_that_come_again_are_solved_once(tmp_path, monkeypatch):
     axes = '[[axes]]\nfield = "plate.motion.x.stroke"\nvalues = ["5 um", "6 um", "7 um", "8 um", "9 um", "10 um"]\n'
-    made, build = [], engine.build_scene
-    monkeypatch.setattr(engine, "build_scene", lambda case: made.append(case) or build(case))
+    made, build = [], engine.shared_surface
+    monkeypatch.setattr(engine, "shared_surface", lambda *of: made.append(of) or build(*of))
     one = Engine(read_study(written(tmp_path, f'sampling = "random"\npoints = 40\nseed = 1\n{axes}', PLATFORM)))
     for k in range(40):
         one.records(k, k + 1)
@@ -143,8 +143,9 @@ SOFT = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["1 um", "60 um", "0.1 
 @pytest.mark.compiled
 def test_the_command_warns_where_the_model_stops_holding(tmp_path):
     case = PLATE.replace('"60 um"', '"0.1 um"')
-    warning, slope = run_study(read_study(written(tmp_path, SOFT, case))).warnings
+    warning, slope, strain = run_study(read_study(written(tmp_path, SOFT, case))).warnings
     assert slope.startswith("The surface is as steep as ")
+    assert strain.startswith("The plate is strained by ")
     assert re.match(r"The plate deflects by 1\d(\.\d)? times its thickness", warning)
     done = CliRunner().invoke(main, ["sweep", str(written(tmp_path, SOFT, case)), "-o", str(tmp_path / "out")])
     assert f"warning     {warning}\n" in done.output

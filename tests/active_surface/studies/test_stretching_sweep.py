@@ -1,0 +1,98 @@
+"""Sweeps over a plate that stretches: one model for all their drives, and the paths of single runs."""
+
+import numpy as np
+import pytest
+from sweeps import written
+
+from active_surface.studies import read_study
+from active_surface.studies.engine import Engine
+from coupling import build_drives, run_case, shared_surface
+
+pytestmark = pytest.mark.compiled
+
+CASE = """\
+[plate]
+shape = "disc"
+radius = "300 um"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+cell_size = "75 um"
+theory = "von-karman"
+
+[[actuators]]
+position = ["0 um", "0 um"]
+stroke = "10 um"
+frequency = "2000 Hz"
+
+[part]
+mass = "2e-9 kg"
+position = ["50 um", "60 um"]
+
+[friction]
+model = "constant"
+limit = "2 nN"
+
+[run]
+duration = "2 ms"
+"""
+AXES = """\
+[[axes]]
+field = "actuators.0.stroke"
+values = ["5 um", "10 um"]
+[[axes]]
+field = "actuators.0.frequency"
+values = ["1500 Hz", "2500 Hz"]
+"""
+
+
+@pytest.fixture(scope="module")
+def engine(tmp_path_factory):
+    return Engine(read_study(written(tmp_path_factory.mktemp("sweep"), AXES, CASE)))
+
+
+def test_paths_are_those_of_single_runs(engine):
+    records = engine.records(0, 4)
+    assert not records["mistakes"].any()
+    for k, values in enumerate(engine.study.points.values(0, 4)):
+        case = engine.variants.at(values)[0]
+        path = run_case(case).trajectory
+        assert path.path_length > 1e-7
+        end = records["end_x"][k], records["end_y"][k]
+        assert end == pytest.approx(path.position[-1], abs=3e-4 * path.path_length)
+
+
+def test_records_do_not_depend_on_the_chunk(engine):
+    together = engine.records(0, 4)
+    other = Engine(engine.study, threads=1)
+    assert np.concatenate([other.records(2, 4), other.records(0, 2)])[[2, 3, 0, 1]].tobytes() == together.tobytes()
+
+
+def test_the_plate_stretches(engine):
+    """The linear plate's paths are others."""
+    case = engine.study.case
+    linear = case.model_copy(update={"plate": case.plate.model_copy(update={"theory": "linear"})})
+    one, other = run_case(case).trajectory, run_case(linear).trajectory
+    assert np.hypot(*(one.position[-1] - other.position[-1])) > 0.05 * one.path_length
+
+
+def test_longer_runs_than_the_base_cases_are_followed(tmp_path):
+    text = '[[axes]]\nfield = "run.duration"\nvalues = ["1 ms", "4 ms"]\n'
+    engine = Engine(read_study(written(tmp_path, text, CASE.replace('"2000 Hz"', '"2000 Hz"\ncycles = 20'))))
+    records = engine.records(0, 2)
+    longer = run_case(engine.variants.at((4e-3,))[0]).trajectory
+    end = records["end_x"][1], records["end_y"][1]
+    assert end == pytest.approx(longer.position[-1], abs=3e-4 * longer.path_length)
+
+
+def test_drives_beyond_the_heights_of_the_model_are_refused(engine):
+    case = engine.study.case
+    surface = shared_surface(case, [build_drives(case)], case.run.duration)
+    actuator = case.actuators[0].model_copy(update={"stroke": 12e-6})
+    higher = build_drives(case.model_copy(update={"actuators": (actuator,)}))
+    with pytest.raises(
+        ValueError, match=r"drive 0 must stay within the heights .*0 to 1e-05; it goes from 0 to 1.2e-05"
+    ):
+        surface.driven_by(higher)
+    with pytest.raises(ValueError, match="Input drives must be one an actuator, 1; got 2"):
+        surface.driven_by(2 * higher)
