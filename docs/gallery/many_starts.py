@@ -9,24 +9,26 @@ from matplotlib.patches import Circle
 from coupling import surface_motion
 from fem_plate import Plate, PlateSection
 from meshes import disc
-from particle import Drive, KogutEtsion, Micropart, Outcome, simulate_many
+from particle import ConstantFriction, Drive, Micropart, Outcome, simulate_many
 
-RADIUS = 300e-6  # m
-ACTUATORS = [(-75e-6, 0.0), (75e-6, 0.0)]  # m
-SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6)
+RADIUS = 1e-3  # m
+ACTUATORS = [(-300e-6, 0.0), (300e-6, 0.0)]  # m
+SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=100e-6)
 
 
 def draw(quick: bool = False) -> Figure:
-    shapes = Plate(disc(RADIUS, 60e-6), SECTION).influence(ACTUATORS)
-    surface = surface_motion(shapes, [Drive(80e-6, 400.0), Drive(80e-6, 300.0)], half_thickness=SECTION.thickness / 2)
+    shapes = Plate(disc(RADIUS, 200e-6), SECTION).influence(ACTUATORS)
+    surface = surface_motion(
+        shapes, [Drive(5e-6, 3000.0, cycles=270), Drive(5e-6, 2600.0, cycles=234)], half_thickness=SECTION.thickness / 2
+    )
     count = 5 if quick else 80
     angle, radius = (
         np.pi * (3 - np.sqrt(5)) * np.arange(count),
         0.6 * RADIUS * np.sqrt((np.arange(count) + 0.5) / count),
     )
     starts = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    parts = [Micropart(2e-9, (x, y)) for x, y in starts]
-    paths = simulate_many(surface, parts, KogutEtsion.paper(), 2e-3 if quick else 40e-3, tolerance=1e-6)
+    parts = [Micropart(2e-9, (x, y), centre_height=45e-6) for x, y in starts]
+    paths = simulate_many(surface, parts, ConstantFriction(4e-9), 2e-3 if quick else 120e-3, tolerance=1e-6)
 
     figure = Figure(figsize=(6, 5.6), layout="constrained")
     axes = figure.subplots()

@@ -8,6 +8,7 @@ import pytest
 
 from active_surface.steering import aim, plan, read_route, read_task
 from active_surface.steering.read import read_place
+from coupling import run_case, warnings
 
 ROOT = Path(__file__).parents[2]
 AIMS = ROOT / "examples" / "aims"
@@ -17,6 +18,13 @@ pytestmark = pytest.mark.compiled
 def test_the_aim_reaches_its_target():
     found = aim(read_task(AIMS / "to_target.toml"))
     assert found.reached and not found.scatter.lost and found.scatter.quantile(0.9) < 10e-6
+
+
+@pytest.mark.slow
+def test_the_aim_on_a_thick_plate_stays_within_every_bound_of_the_model():
+    found = aim(read_task(AIMS / "glide.toml"))
+    assert found.reached and not found.scatter.lost and found.scatter.quantile(0.9) < 5e-6
+    assert not warnings(run_case(found.case).summary)
 
 
 @pytest.mark.slow

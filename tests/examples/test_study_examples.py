@@ -21,6 +21,7 @@ def found(tmp_path_factory):
 def test_each_leaves_its_results_and_a_picture(found):
     for name, sweep in found.items():
         assert sorted(file.name for file in sweep.files) == [f"{name}.nc", f"{name}.sweep.png"]
+        assert not sweep.warnings
         assert (sweep.dataset["mistakes"].values > 0).sum() == sweep.outcomes.get("refused", 0)
 
 
@@ -34,18 +35,18 @@ def test_a_larger_stroke_moves_the_part_at_a_lower_frequency(found):
 
 def test_parts_near_an_actuator_are_carried_to_it_and_far_ones_stay(found):
     data = found["starts"].dataset
-    far = np.hypot(data["start_x"] + 75e-6, data["start_y"])
-    away = np.hypot(data["end_x"] + 75e-6, data["end_y"])
-    assert (away.values[far.values < 60e-6] < 35e-6).all()
-    at_rim = np.hypot(data["start_x"], data["start_y"]).values > 280e-6
+    far = np.hypot(data["start_x"] + 300e-6, data["start_y"])
+    away = np.hypot(data["end_x"] + 300e-6, data["end_y"])
+    assert (away.values[far.values < 150e-6] < 60e-6).all()
+    at_rim = np.hypot(data["start_x"], data["start_y"]).values > 900e-6
     at_rim &= data["mistakes"].values == 0
-    assert (data["distance"].values[at_rim] < 1e-9).all()
-    outside = np.hypot(data["x"], data["y"]).values > 300.1e-6
+    assert (data["distance"].values[at_rim] < 1e-6).all()
+    outside = np.hypot(data["x"], data["y"]).values > 1.001e-3
     assert (data["mistakes"].values[outside] == 1).all()
 
 
 def test_jittered_starts_end_close_to_each_other_below_the_threshold(found):
     data = found["jittered_starts"].dataset
     assert data.sizes == {"frequency": 41, "repeat": 40}
-    assert (data["distance"].sel(frequency=250).values < 1e-6).all()
-    assert (data["distance"].sel(frequency=650).values > 100e-6).all()
+    assert (data["distance"].sel(frequency=500).values < 1e-6).all()
+    assert (data["distance"].sel(frequency=4500).values > 100e-6).all()
