@@ -100,8 +100,8 @@ class Equilibrium:
             if share == 1.0 and (change < CONVERGED or last_change / 10 < change < NEAR):
                 return Solution(now, forces, solver)
         raise NotConverged(
-            f"The stretching plate has no equilibrium after {MAX_STEPS} steps; the last one changed w by {change:.1e} of "
-            "itself. Lower the strokes"
+            f"The stretching plate has no equilibrium after {MAX_STEPS} steps; the last one changed w by {change:.1e} "
+            "of itself. Lower the strokes"
         )
 
     def linear(self, loads: Loads) -> Coefficients:
