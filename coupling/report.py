@@ -81,7 +81,7 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
             f"deflection {s.deflection_over_thickness:.3g} times the thickness ({_theory(s)}), slope "
             f"{s.largest_slope:.3g}",
         ),
-        *([] if s.largest_strain is None else [("", f"strain {100 * s.largest_strain:.2g} %{_bending(s)}")]),
+        *([] if s.largest_strain is None else [("", f"strain {_strain(s.largest_strain)}{_bending(s)}")]),
         ("", _dynamics(s)),
         *([("", _drives(s))] if s.drives_over_first else []),
         *([] if s.top_face_share is None else [("", _top_face(s.top_face_share))]),
@@ -98,6 +98,11 @@ def _theory(s: PlateSummary) -> str:
     if s.linear_path_error is None:
         return "von Karman's theory"
     return f"path error of linear theory {_percent(s.linear_path_error)}"
+
+
+def _strain(strain: float) -> str:
+    percent = 100 * strain
+    return f"{percent:.2g} %" if percent < 99.5 else f"{percent:.0f} %"
 
 
 def _bending(s: PlateSummary) -> str:
@@ -187,7 +192,7 @@ def _of_model(s: PlateSummary) -> list[str]:
         )
     if s.largest_strain is not None and s.largest_strain > MAX_STRAIN:
         texts.append(
-            f"The plate is strained by {100 * s.largest_strain:.2g} %{_bending(s)}; silicon breaks near 1 %, and "
+            f"The plate is strained by {_strain(s.largest_strain)}{_bending(s)}; silicon breaks near 1 %, and "
             f"{100 * MAX_STRAIN:g} % is prudent."
         )
     if s.quasi_static_error is not None and s.quasi_static_error > MAX_QUASI_STATIC_ERROR:

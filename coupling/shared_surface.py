@@ -83,7 +83,7 @@ def shared_surface(
 
     sets: of drives that stand for all that are to come, one an actuator each; they count where the plate stretches.
     duration: s, of the longest run.
-    Raises ValueError where the plate cannot be solved, RuntimeError where so many heights take too many solutions.
+    Raises ValueError where the plate cannot be solved, or its heights take too many full solutions.
     """
     plate = case.plate
     if not isinstance(plate, PlateCase) or plate.theory == "linear":

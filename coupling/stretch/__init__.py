@@ -1,6 +1,6 @@
 """A plate that stretches: its reduced model, kept on disk, and the drives of its corrections over time."""
 
 from coupling.stretch.corrections import Corrections, correction_drives
-from coupling.stretch.making import MAX_ACTUATORS, make_model
+from coupling.stretch.making import make_model
 from coupling.stretch.model import StretchModel
 from coupling.stretch.stretch import Stretch

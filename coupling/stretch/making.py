@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from coupling.case import MAX_STRETCHING
 from coupling.drives import reach, stroke_heights
 from coupling.stretch.model import TOLERANCE, StretchModel
 from coupling.stretch.store import keep_model, key_of, read_model
@@ -22,7 +23,6 @@ Tell = Callable[[int, int], object]
 FEW = 3  # actuators whose model serves all heights between their drives' extremes; with more, it serves the drives' own
 PLACES = 32  # heights for each of them among which full solutions are chosen
 MOMENTS = 400  # of the drives, where there are more actuators
-MAX_ACTUATORS = 200
 PARTS = 100  # of the progress that is told
 
 
@@ -43,19 +43,20 @@ def make_model(large: LargeDeflection, sets: Sequence[Sequence[AnyDrive]], end: 
     """The model of a plate for several sets of drives, from 0 to `end` [s].
 
     tell: gets how much is done, of PARTS.
-    Raises ValueError for more than MAX_ACTUATORS actuators, or drives that never move.
+    Raises ValueError for more than MAX_STRETCHING actuators, or drives that never move.
     """
-    if len(large.points) > MAX_ACTUATORS:
+    if len(large.points) > MAX_STRETCHING:
         raise ValueError(
-            f"Input theory of Plate must be linear for more than {MAX_ACTUATORS} actuators, as a von Karman plate is "
+            f"Input theory of Plate must be linear for more than {MAX_STRETCHING} actuators, as a von Karman plate is "
             f"solved for all of them at once; got {len(large.points)} of them"
         )
     heights = training(sets, end)
     largest = heights[np.argmax(np.abs(heights).sum(axis=1))]
     if not largest.any():
         raise ValueError("Input drives of a plate that stretches must move it; they never do")
-    state = None if (large.stiffness > 0).all() else large.solve(largest)
-    reached = np.abs(heights[:, large.stiffness > 0]).max(initial=0.0 if state is None else state.largest)
+    rigid = np.isinf(large.stiffness)
+    state = None if rigid.all() else large.solve(largest)
+    reached = np.abs(heights[:, rigid]).max(initial=0.0 if state is None else state.largest)
     level = level_of(float(reached) / large.plate.section.thickness)
     discrete = large.discrete(level, 0)
     key = key_of(large, heights, level, TOLERANCE)

@@ -161,8 +161,8 @@ class Equilibrium:
     ) -> list[FloatArray]:
         everything, weights = self.space.all_unknowns(v), np.append(extra, pressure)
         return [
-            (samples.gradient @ everything[self.space.dofs[samples.triangle]][..., None])[..., 0] + extra @ weights
-            for samples, extra in zip(sets, known, strict=True)
+            (samples.gradient @ everything[self.space.dofs[samples.triangle]][..., None])[..., 0] + slopes @ weights
+            for samples, slopes in zip(sets, known, strict=True)
         ]
 
     def heights(self, state: Coefficients) -> FloatArray:

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from coupling.case import MAX_STRETCHING
 from coupling.drives import stroke_heights
-from coupling.stretch import MAX_ACTUATORS, Stretch, make_model
+from coupling.stretch import Stretch, make_model
 from coupling.stretch.making import training
 from coupling.stretch.store import FOLDER
 from fem_plate import Plate, PlateSection
@@ -138,7 +139,7 @@ def test_too_many_actuators_are_refused():
     points = np.stack(np.meshgrid(x, x), axis=-1).reshape(-1, 2)
     points = points[np.hypot(*points.T) < 0.95 * RADIUS]
     large = PLATE.large_deflection(points)
-    with pytest.raises(ValueError, match=f"more than {MAX_ACTUATORS} actuators"):
+    with pytest.raises(ValueError, match=f"more than {MAX_STRETCHING} actuators"):
         make_model(large, [[DRIVES[0]] * len(points)], END, lambda done, of: None)
 
 
