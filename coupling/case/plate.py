@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from meshes import PlateMesh
 
 CELLS_OF_A_DISC = 64 * math.pi
+COARSER = 2.0  # times: the cells that refinement of a stretching plate begins with
 """Without a cell size a plate has as many cells as a disc with 8 from centre to rim."""
 
 
@@ -122,7 +123,8 @@ class ShapeCase(PlateCase):
 
     def build_mesh(self) -> PlateMesh:
         width, area = self.measures
-        return self.mesh_of(self.cell_size or min(width / 4, math.sqrt(area / CELLS_OF_A_DISC)))
+        times = 1.0 if self.theory == "linear" else COARSER
+        return self.mesh_of(self.cell_size or min(width / 4, times * math.sqrt(area / CELLS_OF_A_DISC)))
 
     @cached_property
     def coarse_mesh(self) -> PlateMesh:
