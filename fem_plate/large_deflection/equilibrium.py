@@ -92,7 +92,7 @@ class Equilibrium:
         energy, change, solver = self.energy(now, loads), np.inf, None
         for _ in range(MAX_STEPS):
             fresh = solver is None
-            solver = solver or self._solver(now)
+            solver = solver or self.solver(now)
             dv, de, forces = self._step(solver, now, loads)
             last_change, change = change, self._change(now, dv, de)
             if not fresh and change > SLOW * last_change:
@@ -257,7 +257,7 @@ class Equilibrium:
         column = np.broadcast_to(self.space.dofs[:, None, :], element.shape)
         return coo_matrix((element.ravel(), (row.ravel(), column.ravel())), shape=(rows, columns)).tocsc()
 
-    def _solver(self, now: Coefficients) -> BorderedSolver:
+    def solver(self, now: Coefficients) -> BorderedSolver:
         """What solves for small changes about a state."""
         return BorderedSolver(self.trial, *self.tangent(now), self.held, self.compliance)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 
 import numpy as np
@@ -16,6 +17,7 @@ from fem_plate.large_deflection.snapshots import Columns, linear_shapes, slopes,
 FloatArray = NDArray[np.float64]
 
 TANGENT = 0.3  # of each stroke's largest height: how much of a change counts beside a full solution
+MATRICES = 8  # factorised ones of the last solutions that are kept; with 25 actuators each takes 0.2 GB
 FEW = 4  # actuators with which each stroke's change is added, too
 
 
@@ -31,10 +33,11 @@ class FullSolutions:
         self.forces: list[FloatArray] = []  # of the membrane, at all its samples in a row
         self.motions: list[FloatArray] = []  # in the plane
         self._spread, self._membranes = spread, _membranes(discrete)
-        self._solvers: list[tuple[FloatArray, BorderedSolver]] = []
+        self._solvers: deque[tuple[FloatArray, BorderedSolver]] = deque(maxlen=MATRICES)
+        self._count = 0
 
     def __len__(self) -> int:
-        return len(self._solvers)
+        return self._count
 
     def add(self, strokes: FloatArray, start: Coefficients | None) -> Coefficients:
         """The plate under strokes (N,), found from a start, by default the linear plate; it is known from then on."""
@@ -45,10 +48,11 @@ class FullSolutions:
         self.forces += self._learned(self._force, 0, solution.state, scaled)
         self.motions += self._learned(self._motion, 1, solution.state, scaled)
         self._solvers.append((strokes, solution.solver))
+        self._count += 1
         return solution.state
 
     def nearest(self, strokes: FloatArray) -> BorderedSolver:
-        """What solves for small changes about the solution with the most similar strokes, or opposite ones."""
+        """What solves for small changes about the last solution with similar strokes, or opposite ones."""
         return min(
             self._solvers, key=lambda known: min(np.abs(known[0] - strokes).max(), np.abs(known[0] + strokes).max())
         )[1]
