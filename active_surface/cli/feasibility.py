@@ -10,7 +10,7 @@ import click
 from active_surface.cli import options
 from active_surface.cli.group import DEFAULT_OUTPUT, main, read, refusing
 
-STAGES = 3
+STAGES = 3  # of a plate that only bends
 
 
 @main.command()
@@ -38,13 +38,13 @@ def feasibility(
     parsed = read(case)
     from active_surface.studies.feasibility import feasibility as find
     from active_surface.studies.feasibility import lines, warnings
-    from coupling import StageBar, silent
+    from coupling import StageBar, silent, stretches
     from coupling.results import check_folder
 
     ends = [refusing(_frequency, text, name) for text, name in ((lowest, "--lowest"), (highest, "--highest"))]
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
+    with nullcontext(silent) if quiet else StageBar(STAGES + stretches(parsed)) as bar:
         result = refusing(find, parsed, *ends, across, bar)
         files = refusing(result.write, folder)
     figures = result.figures()

@@ -58,16 +58,16 @@ def read_model(key: str, large: LargeDeflection) -> tuple[Reduction, float] | No
     try:
         with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
             arrays = dict(file)
-        plate = ReducedPlate(*(arrays[name] for name in ("stiffness", "membrane")), in_plane=arrays["in_plane"])
+        plate = ReducedPlate(arrays["stiffness"], arrays["membrane"], in_plane=arrays["in_plane"])
         level, halvings, solutions, error, mesh_error = (float(arrays[name]) for name in FIGURES)
-        shapes = [Columns(arrays[f"{name}_v"], arrays[f"{name}_extra"]) for name in SHAPES]
+        linear, corrections = (Columns(arrays[f"{name}_v"], arrays[f"{name}_extra"]) for name in SHAPES)
         motions = arrays["motions"]
     except BROKEN:
         return None
     with suppress(OSError):
         os.utime(path)
     discrete = large.discrete(int(level), int(halvings))
-    return Reduction(discrete, plate, *shapes, motions, int(solutions), error), mesh_error
+    return Reduction(discrete, plate, linear, corrections, motions, int(solutions), error), mesh_error
 
 
 def keep_model(key: str, reduction: Reduction, mesh_error: float) -> None:
@@ -90,11 +90,10 @@ def keep_model(key: str, reduction: Reduction, mesh_error: float) -> None:
 
 def _tidy(folder: Path) -> None:
     """Remove all but the models used last, and what processes left that were killed while they wrote."""
-    models, partial = [], []
-    for path in folder.glob("*.npz"):
-        (partial if path.stem.endswith(".partial") else models).append((path.stat().st_mtime, path))
-    old = [path for _, path in sorted(models)[:-MAX_FILES]]
-    for path in old + [path for changed, path in partial if changed < time.time() - STALE]:
+    files = {path: path.stat().st_mtime for path in folder.glob("*.npz")}
+    partial = {path for path in files if path.stem.endswith(".partial")}
+    old = sorted(files.keys() - partial, key=files.__getitem__)[:-MAX_FILES]
+    for path in [*old, *(path for path in partial if files[path] < time.time() - STALE)]:
         path.unlink(missing_ok=True)
 
 
