@@ -60,6 +60,8 @@ class Clock(Record):
     until: float  # s, its next breakpoint, or the end of its bridge
     slack: float  # s, how close to that is as good as there
     jump: float  # m/s^3, by how much the third derivative of what it does in the cell jumps at its breakpoints
+    passes: float  # that it had behind it
+    segment: int  # of the drive, NO_SEGMENT: it holds
 
 
 class LocalSurface(NamedTuple):
