@@ -19,7 +19,7 @@ FloatArray = NDArray[np.float64]
 TOLERANCE = 1e-5  # of the largest w of the reduction, and of the largest correction of time pieces
 RESPONSE = 0.1  # times it: of the response to heights
 CELLS = 10.0  # times the surface's tolerance: how well cells follow corrections
-IN_PLANE = 100.0  # times it: in-plane motions, which carry a part less than slopes do
+IN_PLANE = 1000.0  # times it: in-plane motions, which carry a part less than slopes do
 
 
 class StretchModel:

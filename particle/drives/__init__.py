@@ -6,9 +6,9 @@ from particle.drives.pieces import (
     drive_breakpoint,
     drive_piece,
     expand_piece,
+    find_alike,
     find_piece,
     next_breakpoint,
-    segment_alike,
 )
 from particle.drives.quintics import QuinticDrive, quintic_drives
 from particle.drives.record import ORDER, DriveTable

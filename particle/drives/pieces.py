@@ -42,28 +42,31 @@ def find_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatAr
 
 
 @jit_no_arrays
-def segment_alike(table: DriveTable, i: int, other: int, segment: int) -> int:
-    """The segment of drive i while another drive is at `segment`, if these come at the same times; else NO_SEGMENT."""
-    first, first_other = table.first[i], table.first[other]
-    at = int(first + (segment - first_other))
-    last, last_other = table.first[i + 1] - 1, table.first[other + 1] - 1
+def find_alike(table: DriveTable, out: NDArray[np.bool_]) -> None:
+    """Whether all pieces of each drive begin and end when those of the drive before it do, into `out` (N,)."""
+    for i in range(len(out)):
+        out[i] = i > 0 and _is_alike(table, i, i - 1)
+
+
+@jit_no_arrays
+def _is_alike(table: DriveTable, i: int, other: int) -> bool:
+    first, first_other, count = table.first[i], table.first[other], table.first[i + 1] - table.first[i]
     if (
-        last - first != last_other - first_other
+        table.first[other + 1] - first_other != count
         or table.loop[i, 0] - first != table.loop[other, 0] - first_other
         or table.loop[i, 1] - first != table.loop[other, 1] - first_other
         or table.delay[i] != table.delay[other]
         or table.span[i] != table.span[other]
         or table.repeats[i] != table.repeats[other]
         or table.stroke_time[i] != table.stroke_time[other]
-        or table.start[first] != table.start[first_other]
-        or table.start[last] != table.start[last_other]
-        or table.scale[last] != table.scale[last_other]
-        or table.start[at] != table.start[segment]
-        or table.scale[at] != table.scale[segment]
-        or (at < last and table.start[at + 1] != table.start[segment + 1])
     ):
-        return NO_SEGMENT
-    return at
+        return False
+    for k in range(count):
+        if table.start[first + k] != table.start[first_other + k]:
+            return False
+        if table.scale[first + k] != table.scale[first_other + k]:
+            return False
+    return True
 
 
 @jit_no_arrays

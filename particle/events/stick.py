@@ -51,7 +51,7 @@ class Rest(NamedTuple):
     part_motion: FloatArray  # (3, 6), the same over a part of the time
     part_plane: FloatArray  # (6, 6)
     bounds: FloatArray  # (6,), one of these in Bernstein form
-    force: FloatArray  # (2, BOUND_DEGREE + 1), of `stick_stretched`
+    force: FloatArray  # (BOUND_DEGREE + 1,), of `stick_stretched`
 
 
 def new_rest() -> Rest:
@@ -66,7 +66,7 @@ def new_rest() -> Rest:
         np.zeros((3, ORDER)),
         np.zeros((6, ORDER)),
         np.zeros(ORDER),
-        np.zeros((2, BOUND_DEGREE + 1)),
+        np.zeros(BOUND_DEGREE + 1),
     )
 
 

@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER
-from particle.events.bernstein import to_bernstein
+from particle.events.bernstein import quintic_to_bernstein, to_bernstein
 from particle.events.equations import Part
 from particle.events.polynomials import derivative, second_derivative, total
 from particle.events.stick_raised import SQUARE, C, E, F, X, Y
@@ -44,6 +44,9 @@ Vector = tuple[FloatArray, FloatArray, FloatArray]
 # like (1 - s)^5 is C(75, 15) = 2^51 times the constant one.
 NARROW, DEGREE = 2.0**-7, 14
 BOUND_DEGREE = 8  # of the bound's polynomials
+_TO_BERNSTEIN = np.array(
+    [[math.comb(i, k) / math.comb(BOUND_DEGREE, k) for k in range(BOUND_DEGREE + 1)] for i in range(BOUND_DEGREE + 1)]
+)
 MOST_STRETCH = 0.5  # of the gradient of u, up to which the quick bounds are of use
 
 
@@ -123,7 +126,7 @@ def fill_stretched(part: Part, motion: FloatArray, plane: FloatArray, lasting: f
 @jit_no_arrays
 def _extremes(row: FloatArray, lasting: float, b: FloatArray) -> tuple[float, float, float]:
     """Bounds of the size of a quintic (6,) of the share of `lasting` [s] and of its two derivatives; b: scratch."""
-    to_bernstein(row, b)
+    quintic_to_bernstein(row, b)
     largest = fastest = sharpest = 0.0
     for k in range(ORDER):
         largest = max(largest, abs(b[k]))
@@ -138,7 +141,7 @@ def _extremes(row: FloatArray, lasting: float, b: FloatArray) -> tuple[float, fl
 def is_safe_stretched(
     part: Part, motion: FloatArray, plane: FloatArray, lasting: float, b: FloatArray, force: FloatArray
 ) -> bool:
-    """Whether the bound leaves the part at rest; b (6,), force (2, 9): scratch.
+    """Whether the bound leaves the part at rest; b (6,), force (9,): scratch.
 
     With G the slope seen in space, |G| <= |grad w| / (1 - |grad u|), and so on for its derivatives.
     """
@@ -160,7 +163,7 @@ def is_safe_stretched(
     a_x = _extremes(plane[0], lasting, b)[2] + abs(part.tilt_x)
     a_y = _extremes(plane[3], lasting, b)[2] + abs(part.tilt_y)
     a = math.hypot(a_x, a_y)
-    to_bernstein(motion[0], b)
+    quintic_to_bernstein(motion[0], b)
     least, most = math.inf, -math.inf
     for k in range(ORDER - 2):
         upright = part.gravity + 20 * (b[k] - 2 * b[k + 1] + b[k + 2]) / (lasting * lasting)
@@ -182,19 +185,20 @@ def largest_force(part: Part, motion: FloatArray, plane: FloatArray, lasting: fl
     """What |a + U grad w - z grad w''| is at most [m/s^2]; force: scratch."""
     rate, square = 1.0 / (lasting * lasting), 0.0
     for row, along, tilt in ((1, 0, part.tilt_x), (2, 3, part.tilt_y)):
-        powers, coefficients = force[0], force[1]
         for k in range(BOUND_DEGREE + 1):
-            powers[k] = 0.0
-        powers[0] = -tilt
+            force[k] = 0.0
+        force[0] = -tilt
         for k in range(ORDER - 2):
             twice = (k + 2) * (k + 1) * rate
-            powers[k] += twice * (plane[along, k + 2] - part.centre * motion[row, k + 2])
+            force[k] += twice * (plane[along, k + 2] - part.centre * motion[row, k + 2])
             upright = twice * motion[0, k + 2] + (part.gravity if k == 0 else 0.0)
             for j in range(ORDER):
-                powers[k + j] += upright * motion[row, j]
-        to_bernstein(powers, coefficients)
+                force[k + j] += upright * motion[row, j]
         most = 0.0
-        for k in range(BOUND_DEGREE + 1):
-            most = max(most, abs(coefficients[k]))
+        for i in range(BOUND_DEGREE + 1):
+            coefficient = 0.0
+            for k in range(i + 1):
+                coefficient += _TO_BERNSTEIN[i, k] * force[k]
+            most = max(most, abs(coefficient))
         square += most * most
     return math.sqrt(square)

@@ -19,7 +19,6 @@ from particle.drives import (
     drive_breakpoint,
     expand_piece,
     find_piece,
-    segment_alike,
 )
 from particle.jit import jit_no_arrays
 from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_bridged, shapes_in_cell
@@ -139,18 +138,17 @@ def _find_piece(surface: Surface, local: LocalSurface, i: int) -> None:
     frame: Frame = local.frame[0]
     time, unit, drive = frame.time, frame.unit, drive_of(surface, local, i)
     clock, piece, table = local.clock[i], local.pieces[i], surface.drives
-    if i > 0:
+    if i > 0 and local.alike[drive] and drive_of(surface, local, i - 1) == drive - 1:
         # Corrections of a plate that stretches have common breakpoints, which are searched once.
         before = local.clock[i - 1]
         if before.since == time and before.segment != NO_SEGMENT:
-            segment = segment_alike(table, drive, drive_of(surface, local, i - 1), before.segment)
-            if segment != NO_SEGMENT:
-                ahead = 0.5 * min(before.until - time, unit)
-                expand_piece(table, drive, before.passes, segment, time + ahead, unit, piece)
-                _shift_one(piece, -ahead / unit)
-                clock.since, clock.until, clock.slack = time, before.until, before.slack
-                clock.passes, clock.segment = before.passes, segment
-                return
+            ahead, segment = 0.5 * min(before.until - time, unit), before.segment + table.first[drive]
+            segment -= table.first[drive - 1]
+            expand_piece(table, drive, before.passes, segment, time + ahead, unit, piece)
+            _shift_one(piece, -ahead / unit)
+            clock.since, clock.until, clock.slack = time, before.until, before.slack
+            clock.passes, clock.segment = before.passes, segment
+            return
     until = drive_breakpoint(table, drive, time)
     # It is chosen in the middle of the span, where rounding at its ends cannot mistake it.
     ahead = 0.5 * min(until - time, unit)
