@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
+from threading import Lock
 from typing import Any
 
 from coupling.case import Case, PlateCase
@@ -11,7 +12,7 @@ from coupling.drives import reach
 from coupling.progress import Progress, silent
 from coupling.run import build_scene
 from coupling.scene import build_plate, stretch_model
-from coupling.stretch import Stretch, StretchModel
+from coupling.stretch import Response, Stretch, StretchModel
 from particle import AnyDrive, SurfaceMotion
 
 BEYOND = 0.02  # of its range: how far a drive may pass the heights that a model is good for
@@ -23,6 +24,8 @@ class StretchedSurface(SurfaceMotion):
 
     model: StretchModel | None = None
     end: float = 0.0  # s, of the time that is needed
+
+    _lock: Lock = field(default_factory=Lock)  # of the response
 
     @staticmethod
     def under(
@@ -41,8 +44,15 @@ class StretchedSurface(SurfaceMotion):
         assert self.model is not None
         if wrong := self.drive_faults({"drives": drives}) or self._strokes_beyond(drives):
             raise ValueError("; ".join(wrong))
-        corrections = self.model.corrections(drives, self.end)
+        corrections = self.model.corrections(drives, self.end, self._response)
         return super().driven_by([*drives, *corrections.drives], corrections.in_plane)
+
+    @property
+    def _response(self) -> Response | None:
+        """What the plate answers to heights, found once for all drives."""
+        assert self.model is not None
+        with self._lock:
+            return self.model.response
 
     def drive_faults(
         self, given: Mapping[str, Sequence[AnyDrive]], in_plane: Mapping[str, Sequence[AnyDrive]] | None = None
