@@ -72,7 +72,9 @@ def draw(results: list[Result]) -> Figure:
         keys += draw_plate(figure, axes, one.relief, unit, frame)
         line = one.samples.position
         keys = draw_path(axes, one.rows, line, unit, is_visible(line, frame)) + keys
-        axes.set_title(f"{THEORIES[result.summary.theory]}, the plate at {one.when}\n{end(result.summary)}", fontsize=10)
+        axes.set_title(
+            f"{THEORIES[result.summary.theory]}, the plate at {one.when}\n{end(result.summary)}", fontsize=10
+        )
     labelled = {key.get_label(): key for key in keys}
     figure.legend(handles=list(labelled.values()), loc="outside lower center", ncols=len(labelled), frameon=False)
     return figure
