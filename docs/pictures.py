@@ -67,7 +67,7 @@ def draw_aims() -> None:
         copy(Path(folder) / "around_the_corner_plan.png", ROOT / "docs/plan.png")
         run_case(read_case(Path(folder) / "around_the_corner_planned.toml"), folder)
         film = ROOT / "docs/plan.gif"
-        animate(Path(folder) / "around_the_corner_planned", film, size="640x400", fps=12, slow_motion=120)
+        animate(Path(folder) / "around_the_corner_planned", film, size="640x400", fps=12, slow_motion=200)
 
 
 def draw_plates() -> None:
