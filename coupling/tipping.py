@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
-from particle import ContactSamples, KogutEtsion, Trajectory
+from particle import KogutEtsion, Trajectory
 from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
+
+SEPARATIONS = 1001  # of a rough contact, from pull-off to the largest load: linear between them to 1e-4
 
 
 def tipping_of(case: Case, trajectory: Trajectory, friction: Contact, times: FloatArray) -> float | None:
@@ -25,8 +27,8 @@ def tipping_of(case: Case, trajectory: Trajectory, friction: Contact, times: Flo
         return None
     if case.part.centre_height == 0:
         return 0.0
-    samples = trajectory.contact_at(times, friction if isinstance(friction, KogutEtsion) else None)
-    pressing = pressing_force(samples, friction)
+    samples = trajectory.contact_at(times)
+    pressing = pressing_force(samples.normal_force, friction)
     touching = pressing > 0  # neither in flight nor at pull-off, where friction ends as well
     forces = np.linalg.norm(samples.friction[touching], axis=1)
     shift = case.part.centre_height * forces / pressing[touching]
@@ -38,12 +40,13 @@ def states_adhesion(friction: Contact) -> bool:
     return friction.pull_off < math.inf
 
 
-def pressing_force(samples: ContactSamples, friction: Contact) -> FloatArray:
-    """What presses the part's face on the plate, N + adhesion, (k,) N.
+def pressing_force(load: FloatArray, friction: Contact) -> FloatArray:
+    """What presses the part's face on the plate, load + adhesion [N], under net loads (k,) [N].
 
     The adhesion is that of the separation in a rough contact, the pull-off force in other laws, and 0 with a constant
     limit, which states none.
     """
     if isinstance(friction, KogutEtsion):
-        return samples.contact_load
-    return samples.normal_force + (friction.pull_off if states_adhesion(friction) else 0.0)
+        contact, adhesion, _ = friction.forces(np.linspace(*friction.branch[::-1], SEPARATIONS))
+        return np.asarray(np.interp(load, contact - adhesion, contact))
+    return load + (friction.pull_off if states_adhesion(friction) else 0.0)
