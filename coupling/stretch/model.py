@@ -17,6 +17,7 @@ from particle import AnyDrive
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-5  # of the largest w of the reduction, and of the largest correction of time pieces
+MANY = 3e-5  # the same of time pieces in sweeps and aims, where each piece costs as much as ten evaluations
 RESPONSE = 0.1  # times it: of the response to heights
 CELLS = 10.0  # times the surface's tolerance: how well cells follow corrections
 IN_PLANE = 1000.0  # times it: in-plane motions, which carry a part less than slopes do
@@ -72,15 +73,13 @@ class StretchModel:
 
     def corrections(self, drives: Sequence[AnyDrive], end: float, response: Response | None = None) -> Corrections:
         """What corrects the linear shapes under drives, from 0 to `end` [s]; response: to make many of them."""
-        weights, floors = self._weights, self._floors
-        return correction_drives(self.plate, drives, end, TOLERANCE, *weights, *floors, response)
+        weights, floors, tolerance = self._weights, self._floors, TOLERANCE if response is None else MANY
+        return correction_drives(self.plate, drives, end, tolerance, *weights, *floors, response)
 
     @cached_property
     def response(self) -> Response | None:
         """Corrections and in-plane motions over all heights, much better than the pieces; None: there is none."""
-        limits = [
-            RESPONSE * TOLERANCE * floor / weights for floor, weights in zip(self._floors, self._weights, strict=True)
-        ]
+        limits = [RESPONSE * MANY * floor / weights for floor, weights in zip(self._floors, self._weights, strict=True)]
         return find_response(self.plate, self.heights, np.concatenate(limits))
 
     @cached_property
