@@ -3,4 +3,5 @@
 from particle.drives.pieces import breakpoint_slack, drive_breakpoint, drive_piece, next_breakpoint
 from particle.drives.quintics import QuinticDrive, quintic_drives
 from particle.drives.record import ORDER, DriveTable
+from particle.drives.strokes import begun_at
 from particle.drives.table import AnyDrive, Segments, accelerations, drive_table, monomial_table
