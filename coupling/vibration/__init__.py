@@ -4,4 +4,4 @@ from coupling.vibration.choice import Damping
 from coupling.vibration.motion import ModalMotion, modal_motion
 from coupling.vibration.oscillators import Oscillators
 from coupling.vibration.steady import always_running
-from coupling.vibration.vibration import Vibration, VibrationModel, make_vibration_model
+from coupling.vibration.vibration import PIECES, Vibration, VibrationModel, make_vibration_model

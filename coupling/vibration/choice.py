@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from coupling.drives import stroke_heights
 from coupling.vibration.motion import ModalMotion, modal_motion
 from coupling.vibration.oscillators import Oscillators
-from fem_plate import ExcitedModes, Excitation, InfluenceShapes
+from fem_plate import Excitation, ExcitedModes, InfluenceShapes
 from particle import AnyDrive
 
 FloatArray = NDArray[np.float64]
@@ -51,7 +51,7 @@ def choose_modes(
     """
     xy = shapes.model.mesh.points
     xy = xy[:: max(len(xy) // MAX_POINTS, 1)]
-    times = end * (np.arange(1, SAMPLES + 1) * GOLDEN % 1.0)
+    times = np.asarray(end * (np.arange(1, SAMPLES + 1) * GOLDEN % 1.0))
     static = shapes.values(xy)
     carried = [stroke_heights(drives, times, 2) @ static.T for drives in sets]  # (k, points) of each set
     before: list[FloatArray] | None = None
@@ -87,7 +87,8 @@ def motion_of(
     together = np.zeros((len(drives), len(distinct)))
     together[np.arange(len(drives)), [numbers[drive] for drive in drives]] = 1.0
     oscillators = Oscillators(
-        np.ascontiguousarray(modes.omega), damping(modes.frequencies), np.ascontiguousarray(modes.participation @ together)
+        np.ascontiguousarray(modes.omega),
+        damping(modes.frequencies),
+        np.ascontiguousarray(modes.participation @ together),
     )
     return modal_motion(oscillators, distinct, end, steady)
-

@@ -1,8 +1,11 @@
 """Kernels: oscillators under drives, in closed form between the drives' breakpoints.
 
-Between two breakpoints h'' is a cubic, and eta'' + 2 zeta omega eta' + omega^2 eta = -sum_i m_i h_i'' has a cubic of its
-own as one solution, the forced part. What is left rings freely and decays. At a breakpoint where h or h' jumps, eta and
-eta' jump by -m times that, since the plate's mass does not jump.
+Between two breakpoints h'' is a cubic, and
+
+    eta'' + 2 zeta omega eta' + omega^2 eta = -sum_i m_i h_i''
+
+has a cubic as one solution, the forced part. What is left rings freely and decays. At a breakpoint where h or h' jumps,
+eta and eta' jump by -m times that, since the plate's mass does not jump.
 """
 
 from __future__ import annotations

@@ -65,10 +65,10 @@ def _of_one(oscillators: Oscillators, drive: AnyDrive) -> tuple[FloatArray, Floa
     if (stuck := singular < RESONANT).any():
         frequency = oscillators.omega[np.argmax(stuck)] / (2 * math.pi)
         raise ValueError(
-            f'Input start must not be "steady" where a mode without damping resonates: that of {frequency:.6g} Hz does; '
-            "give it damping"
+            f'Input start must not be "steady" where a mode without damping resonates, as that of {frequency:.6g} Hz '
+            "does; give it damping"
         )
-    return np.linalg.solve(remaining, added[:, :, None])[:, :, 0], before[0]
+    return np.asarray(np.linalg.solve(remaining, added[:, :, None])[:, :, 0]), before[0]
 
 
 def _over(oscillators: Oscillators, time: float) -> FloatArray:

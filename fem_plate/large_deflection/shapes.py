@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from fem_plate.large_deflection.reduction import Reduction
 from fem_plate.moving_shapes import MovingShapes
