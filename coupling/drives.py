@@ -87,6 +87,14 @@ def _marks(drive: AnyDrive) -> tuple[FloatArray, FloatArray]:
     return times, (pieces.coefficients @ np.power.outer(part, np.arange(ORDER)).T).ravel()
 
 
+def fastest_acceleration(drive: AnyDrive) -> float:
+    """The largest acceleration [m/s^2] at the begin, middle and end of its pieces."""
+    pieces, part = drive.segments(), np.array([0.0, 0.5, 1.0])
+    powers = np.arange(2, ORDER)
+    bends = (pieces.coefficients[:, 2:] * powers * (powers - 1)) @ np.power.outer(part, powers - 2).T
+    return float(np.abs(bends / pieces.scale[:, None] ** 2).max())
+
+
 def travel(drive: AnyDrive) -> float:
     """The distance [m] between the lowest and the highest of its marks."""
     low, high = reach(drive)

@@ -173,8 +173,8 @@ def _of_solver(s: PlateSummary) -> list[str]:
         )
     if s.vibration and s.vibration.mode_error > MAX_MODE_ERROR:
         texts.append(
-            f"The plate's acceleration is accurate to {s.vibration.mode_error:.1e} of its largest only, as a drive whose "
-            "velocity or acceleration jumps excites modes without end; a ramp avoids that."
+            f"The plate's acceleration is accurate to {s.vibration.mode_error:.1e} of its largest only, as a drive "
+            "whose velocity or acceleration jumps excites modes without end; a ramp avoids that."
         )
     if s.stretch_error and (worst := max(vars(s.stretch_error).values())) > MAX_STRETCH_ERROR:
         texts.append(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 
-from fem_plate import PlateShapes, Shapes
+from fem_plate import Shapes
 
 FloatArray = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ Damping = Callable[[FloatArray], FloatArray]
 """The damping ratios (n,) of modes with natural frequencies (n,) [Hz]."""
 
 TOLERANCE = 1e-3  # of the largest acceleration: what more modes may change
-DROPPED = 1e-4  # of it: what modes may add together that are left out
+DROPPED = 3e-4  # of it: what modes may add together that are left out
 MAX_MODES = 400
 SAMPLES, MAX_POINTS = 400, 400
 GOLDEN = (5**0.5 - 1) / 2
@@ -31,7 +31,6 @@ class ChosenModes:
 
     modes: ExcitedModes
     error: float  # of the largest acceleration: what the last modes change, and what is left out
-    acceleration: float  # m/s^2, the largest
 
 
 def choose_modes(
@@ -75,7 +74,7 @@ def choose_modes(
     kept = np.ones(len(most), dtype=bool)
     kept[few[: len(most) - 1]] = False
     dropped = float(most[~kept].sum()) / largest if largest > 0 else 0.0
-    return ChosenModes(modes.chosen(kept), (error if np.isfinite(error) else 0.0) + dropped, largest)
+    return ChosenModes(modes.chosen(kept), (error if np.isfinite(error) else 0.0) + dropped)
 
 
 def motion_of(

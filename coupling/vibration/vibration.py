@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.drives import stroke_heights
+from coupling.drives import fastest_acceleration, stroke_heights
 from coupling.surface import surface_motion
 from coupling.vibration.choice import ChosenModes, Damping, choose_modes, motion_of
 from coupling.vibration.motion import ModalMotion
@@ -19,7 +19,7 @@ from particle.drives import QuinticDrive
 
 FloatArray = NDArray[np.float64]
 
-PIECES = 1e-5  # of the largest acceleration: what pieces in time may be off by
+PIECES = 1e-5  # of the largest acceleration of an actuator: what pieces in time may be off by
 TALLEST = 1e4  # how much less exact the shapes of modes may be that hardly move
 
 
@@ -43,7 +43,9 @@ class VibrationModel:
 
     def modal_drives(self, drives: Sequence[AnyDrive]) -> list[QuinticDrive]:
         """The drives of the modes; raises ValueError likewise, or where they take too many pieces."""
-        return self.motion(drives).modal_drives(PIECES * self.chosen.acceleration)
+        own = self.shapes.own_heights()
+        fastest = max(height * fastest_acceleration(drive) for height, drive in zip(own, drives, strict=False))
+        return self.motion(drives).modal_drives(PIECES * fastest)
 
 
 @dataclass(frozen=True, eq=False)
