@@ -2,6 +2,7 @@ from . import analytic as analytic
 from .arrays.patched import PatchedShapes as PatchedShapes, PlateShapes as PlateShapes
 from .deflection import Deflection as Deflection
 from .export import neighbour_coupling as neighbour_coupling, save_influence as save_influence
+from .large_deflection.backbone import backbone as backbone
 from .large_deflection import (
     DeflectedPlate as DeflectedPlate,
     LargeDeflection as LargeDeflection,
