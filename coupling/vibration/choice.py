@@ -18,9 +18,10 @@ FloatArray = NDArray[np.float64]
 Damping = Callable[[FloatArray], FloatArray]
 """The damping ratios (n,) of modes with natural frequencies (n,) [Hz]."""
 
-TOLERANCE = 1e-3  # of the largest acceleration: what more modes may change
-DROPPED = 3e-4  # of it: what modes may add together that are left out
+TOLERANCE = 5e-4  # of the largest acceleration: what more modes may change
+DROPPED = 5e-4  # of it: what the modes that are left out may add together
 MAX_MODES = 400
+MORE = 1.25  # times as many are tried next
 SAMPLES, MAX_POINTS = 400, 400
 GOLDEN = (5**0.5 - 1) / 2
 
@@ -44,7 +45,7 @@ def choose_modes(
 ) -> ChosenModes:
     """The modes that the plate needs under several sets of drives, up to an end [s].
 
-    Modes are added until they change the acceleration by less than 1e-3 of its largest; then those that hardly move
+    Modes are added until they change the acceleration by less than 5e-4 of its largest; then those that hardly move
     are left out. tell: takes how much is done, and of how much.
     Raises ValueError when a mode without damping resonates.
     """
@@ -66,15 +67,33 @@ def choose_modes(
         if largest == 0 or error < TOLERANCE or excitation.exhausted or len(modes.omega) >= MAX_MODES:
             break
         before = after
-        excitation.grow()
+        while excitation.blocks[-1] < MORE * len(modes.omega) and not excitation.exhausted:
+            excitation.grow()
         tell(min(len(modes.omega), MAX_MODES - 1), MAX_MODES)
+    kept, dropped = _few(rung, values, DROPPED * largest)
+    return ChosenModes(modes.chosen(kept), (error if np.isfinite(error) else 0.0) + dropped / (largest or 1.0))
+
+
+def _few(rung: Sequence[FloatArray], values: FloatArray, allowed: float) -> tuple[NDArray[np.bool_], float]:
+    """The modes (n,) to keep, so that what the others add to the acceleration is at most allowed; and what that is.
+
+    rung: accelerations (k, n) of the modes under each set of drives.  values: (points, n), of the modes.
+    """
     most = np.max([np.abs(own).max(axis=0) for own in rung], axis=0)
     order = np.argsort(most)
-    few = order[np.cumsum(most[order]) <= DROPPED * largest]
+
+    def added(count: int) -> float:
+        """By the `count` modes that move least."""
+        weak = order[:count]
+        return max(float(np.abs(own[:, weak] @ values[:, weak].T).max(initial=0.0)) for own in rung)
+
+    low, high = 0, len(order)  # added(low) is allowed; as many as `high` are too many
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if added(middle) <= allowed else (low, middle)
     kept = np.ones(len(most), dtype=bool)
-    kept[few[: len(most) - 1]] = False
-    dropped = float(most[~kept].sum()) / largest if largest > 0 else 0.0
-    return ChosenModes(modes.chosen(kept), (error if np.isfinite(error) else 0.0) + dropped)
+    kept[order[:low]] = False
+    return kept, added(low)
 
 
 def motion_of(

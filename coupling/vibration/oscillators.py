@@ -25,6 +25,7 @@ CUBIC = 4  # coefficients of the forced part
 # A quintic with the value and first two derivatives of a sine of angular frequency w at both ends, t apart, is off in
 # the second by this times (w t)^4 of the sine's: 3/8 of 1/720.
 HERMITE_ERROR = 3 / 8 / 720
+SILENT = 0.1  # of the error allowed: weaker ringing need not be followed
 
 
 class Oscillators(NamedTuple):
@@ -149,14 +150,14 @@ def at_times(oscillators: Oscillators, course: Course, intervals: NDArray[np.int
 @kernel_no_arrays
 def _step(oscillators: Oscillators, course: Course, k: int, since: float, allowed: float) -> float:
     """How long [s] pieces may be from a time [s] after an interval's begin on; allowed: m/s^2, their error."""
-    longest = math.inf
-    for j in range(len(oscillators.omega)):
+    fourth, n = 0.0, len(oscillators.omega)
+    for j in range(n):
         omega, ringing = oscillators.omega[j], course.ringing[k, j]
         amplitude = omega * math.hypot(omega * ringing[0], ringing[1])
         amplitude *= math.exp(-oscillators.damping[j] * omega * since)
-        if amplitude * HERMITE_ERROR > allowed * 1e-12:
-            longest = min(longest, (allowed / (HERMITE_ERROR * amplitude)) ** 0.25 / omega)
-    return longest
+        if amplitude * n > SILENT * allowed:
+            fourth += amplitude * omega**4
+    return (allowed / (HERMITE_ERROR * fourth)) ** 0.25 if fourth > 0.0 else math.inf
 
 
 @kernel

@@ -19,7 +19,7 @@ from particle.drives import QuinticDrive
 
 FloatArray = NDArray[np.float64]
 
-PIECES = 1e-5  # of the largest acceleration of an actuator: what pieces in time may be off by
+PIECES = 5e-5  # of the largest acceleration of an actuator: what pieces in time may be off by
 TALLEST = 1e4  # how much less exact the shapes of modes may be that hardly move
 
 
