@@ -18,10 +18,12 @@ FloatArray = NDArray[np.float64]
 Damping = Callable[[FloatArray], FloatArray]
 """The damping ratios (n,) of modes with natural frequencies (n,) [Hz]."""
 
-TOLERANCE = 5e-4  # of the largest acceleration: what more modes may change
-DROPPED = 5e-4  # of it: what the modes that are left out may add together
+TOLERANCE = 5e-4  # of the largest acceleration: what half as many responses more may change
+REMAINING = (
+    2.0  # times that: what is still missing, where the error falls as one over the number of responses or faster
+)
+DROPPED = 3e-4  # of it: what the modes that are left out may add together
 MAX_MODES = 400
-MORE = 1.25  # times as many are tried next
 SAMPLES, MAX_POINTS = 400, 400
 GOLDEN = (5**0.5 - 1) / 2
 
@@ -45,8 +47,9 @@ def choose_modes(
 ) -> ChosenModes:
     """The modes that the plate needs under several sets of drives, up to an end [s].
 
-    Modes are added until they change the acceleration by less than 5e-4 of its largest; then those that hardly move
-    are left out. tell: takes how much is done, and of how much.
+    Responses are added, half as many as there are at a time, until they change the acceleration by less than 5e-4 of
+    its largest: a single one may change nothing before others do. Then modes that hardly move are left out.
+    tell: takes how much is done, and of how much.
     Raises ValueError when a mode without damping resonates.
     """
     xy = shapes.model.mesh.points
@@ -63,12 +66,14 @@ def choose_modes(
         after = [fixed + own @ values.T for fixed, own in zip(carried, rung, strict=True)]
         largest = max(float(np.abs(w_tt).max()) for w_tt in after)
         if before is not None and largest > 0:
-            error = max(float(np.abs(one - other).max()) for one, other in zip(after, before, strict=True)) / largest
-        if largest == 0 or error < TOLERANCE or excitation.exhausted or len(modes.omega) >= MAX_MODES:
+            change = max(float(np.abs(one - other).max()) for one, other in zip(after, before, strict=True)) / largest
+            error = REMAINING * change
+        if largest == 0 or error < REMAINING * TOLERANCE or excitation.exhausted or len(modes.omega) >= MAX_MODES:
             break
         before = after
-        while excitation.blocks[-1] < MORE * len(modes.omega) and not excitation.exhausted:
-            excitation.grow()
+        for _ in range(max(len(excitation.blocks) // 2, 1)):
+            if not excitation.exhausted and excitation.blocks[-1] < MAX_MODES:
+                excitation.grow()
         tell(min(len(modes.omega), MAX_MODES - 1), MAX_MODES)
     kept, dropped = _few(rung, values, DROPPED * largest)
     return ChosenModes(modes.chosen(kept), (error if np.isfinite(error) else 0.0) + dropped / (largest or 1.0))

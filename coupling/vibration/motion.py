@@ -19,6 +19,7 @@ FloatArray = NDArray[np.float64]
 
 SETTLED = 1e-10  # of the largest acceleration: what still changes from pass to pass
 MAX_PIECES = 2_000_000
+MAX_EDGES = 500  # of intervals in which the largest acceleration is sought
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +46,12 @@ class ModalMotion:
         oscillators = Oscillators(o.omega[rows], o.damping[rows], np.ascontiguousarray(o.participation[rows]))
         course = Course(c.edges, np.ascontiguousarray(c.forced[:, rows]), np.ascontiguousarray(c.ringing[:, rows]))
         return ModalMotion(oscillators, course, self.loop, self.drives)
+
+    def largest_acceleration(self) -> float:
+        """The modes' largest acceleration [m/s^2], where intervals begin and between; 0 without modes."""
+        edges = self.course.edges[:MAX_EDGES]
+        times = (edges[:-1, None] + np.diff(edges)[:, None] * np.linspace(0.0, 1.0, 8, endpoint=False)).ravel()
+        return float(np.abs(self.evaluate(times)[2]).max(initial=0.0))
 
     def modal_drives(self, allowed: float) -> list[QuinticDrive]:
         """A drive for each mode [m]; allowed: m/s^2, what their accelerations may be off by.

@@ -19,7 +19,7 @@ from particle.drives import QuinticDrive
 
 FloatArray = NDArray[np.float64]
 
-PIECES = 5e-5  # of the largest acceleration of an actuator: what pieces in time may be off by
+PIECES = 3e-5  # of the largest acceleration of an actuator or a mode: what pieces in time may be off by
 TALLEST = 1e4  # how much less exact the shapes of modes may be that hardly move
 
 
@@ -43,9 +43,9 @@ class VibrationModel:
 
     def modal_drives(self, drives: Sequence[AnyDrive]) -> list[QuinticDrive]:
         """The drives of the modes; raises ValueError likewise, or where they take too many pieces."""
-        own = self.shapes.own_heights()
+        own, motion = self.shapes.own_heights(), self.motion(drives)
         fastest = max(height * fastest_acceleration(drive) for height, drive in zip(own, drives, strict=False))
-        return self.motion(drives).modal_drives(PIECES * fastest)
+        return motion.modal_drives(PIECES * max(fastest, motion.largest_acceleration()))
 
 
 @dataclass(frozen=True, eq=False)
