@@ -17,7 +17,8 @@ from particle.drives import QuinticDrive, drive_table, quintic_drives
 
 FloatArray = NDArray[np.float64]
 
-SETTLED = 1e-10  # of the largest acceleration: what still changes from pass to pass
+SETTLED = 1e-10  # of the largest acceleration: what all later passes still change
+LEAST_LOST = 1e-2  # of a mode's ringing, in a pass: without damping nothing more than rounding may change
 MAX_PIECES = 2_000_000
 MAX_EDGES = 500  # of intervals in which the largest acceleration is sought
 
@@ -135,9 +136,11 @@ def _room(edges: FloatArray, oscillators: Oscillators) -> Course:
 
 
 def _settled(oscillators: Oscillators, course: Course, begun: FloatArray, state: FloatArray) -> bool:
-    """Whether a pass ends as it began."""
-    omega = oscillators.omega
+    """Whether a pass ends as it began, as will all later ones together."""
+    omega, length = oscillators.omega, np.diff(course.edges)
     change = omega**2 * np.abs(state[:, 0] - begun[:, 0]) + omega * np.abs(state[:, 1] - begun[:, 1])
-    forced = np.abs(course.forced).sum(axis=2).max(axis=0)
-    rung = np.hypot(course.ringing[:, :, 0], course.ringing[:, :, 1] / omega).max(axis=0)
-    return bool(change.max() <= SETTLED * (omega**2 * (forced + rung)).max())
+    lost = -np.expm1(-oscillators.damping * omega * (course.edges[-1] - course.edges[0]))
+    intervals = np.repeat(np.arange(len(length)), 4)
+    times = course.edges[:-1, None] + length[:, None] * np.linspace(0.0, 1.0, 4, endpoint=False)
+    acceleration = at_times(oscillators, course, intervals, times.ravel())[2]
+    return bool((change / np.maximum(lost, LEAST_LOST)).max() <= SETTLED * np.abs(acceleration).max())

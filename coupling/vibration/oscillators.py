@@ -21,6 +21,7 @@ from particle.drives import ORDER, DriveTable, drive_piece
 
 FloatArray = NDArray[np.float64]
 
+ROUNDING = 1e-13  # of a drive's height or velocity: what is no jump
 CUBIC = 4  # coefficients of the forced part
 # A quintic with the value and first two derivatives of a sine of angular frequency w at both ends, t apart, is off in
 # the second by this times (w t)^4 of the sine's: 3/8 of 1/720.
@@ -64,16 +65,25 @@ def follow(oscillators: Oscillators, table: DriveTable, course: Course, before: 
 
 @kernel_no_arrays
 def _jump(piece: FloatArray, half: float, before: FloatArray, jump: FloatArray) -> None:
-    """By how much height and velocity jump where a piece begins; `before` becomes what they are at its end."""
-    begin = begin_rate = end = end_rate = 0.0
+    """By how much height and velocity jump where a piece begins; `before` becomes what they are at its end.
+
+    Rounding is no jump: it would outweigh the acceleration of slow drives.
+    """
+    begin = begin_rate = end = end_rate = extent = extent_rate = 0.0
     sign = 1.0  # powers of -1
     for m in range(ORDER):
         begin += sign * piece[m]
         begin_rate -= sign * m * piece[m]
         end += piece[m]
         end_rate += m * piece[m]
+        extent += abs(piece[m])
+        extent_rate += m * abs(piece[m])
         sign = -sign
     jump[0], jump[1] = begin - before[0], begin_rate / half - before[1]
+    if abs(jump[0]) <= ROUNDING * (extent + abs(before[0])):
+        jump[0] = 0.0
+    if abs(jump[1]) <= ROUNDING * (extent_rate / half + abs(before[1])):
+        jump[1] = 0.0
     before[0], before[1] = end, end_rate / half
 
 

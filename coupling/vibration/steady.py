@@ -15,6 +15,7 @@ from particle.drives import QuinticDrive, begun_at, drive_table
 
 FloatArray = NDArray[np.float64]
 
+MERGED = 1e-12  # of a period: a breakpoint that is its end
 RESONANT = 1e-9  # of a mode's state: less of it that a period takes away is none
 
 
@@ -54,7 +55,7 @@ def steady_state(oscillators: Oscillators, drives: Sequence[AnyDrive]) -> tuple[
 
 def _of_one(oscillators: Oscillators, drive: AnyDrive) -> tuple[FloatArray, FloatArray]:
     """The same under one drive that moves: its state after a period is that before it."""
-    edges = schedule_of([drive], math.inf).edges
+    edges = _one_period(drive)
     n, table, last = len(oscillators.omega), drive_table([drive]), np.zeros((1, 2))
     course = Course(edges, np.zeros((len(edges) - 1, n, 4)), np.zeros((len(edges) - 1, n, 2)))
     follow(oscillators, table, course, last, np.zeros((n, 2)))
@@ -69,6 +70,15 @@ def _of_one(oscillators: Oscillators, drive: AnyDrive) -> tuple[FloatArray, Floa
             "does; give it damping"
         )
     return np.asarray(np.linalg.solve(remaining, added[:, :, None])[:, :, 0]), before[0]
+
+
+def _one_period(drive: AnyDrive) -> FloatArray:
+    """Its breakpoints from 0 to its period [s], also where it begins within a pass."""
+    schedule = schedule_of([drive], math.inf)
+    edges, period = schedule.edges, drive.segments().span
+    if schedule.loop == 0:
+        return edges
+    return np.append(edges[edges < period * (1 - MERGED)], period)
 
 
 def _over(oscillators: Oscillators, time: float) -> FloatArray:

@@ -54,7 +54,7 @@ class RadialDisc:
     rim: str = "clamped"
     nu: float = 0.3
     stiffness: float = HELD
-    count: int = 200
+    count: int = 120
 
     def _conditions(self, k: float) -> np.ndarray:
         """Rows of conditions on (A, B exp(k), C)."""
@@ -113,8 +113,8 @@ class RadialDisc:
     @cached_property
     def norms(self) -> np.ndarray:
         """(count,) int psi^2 dA."""
-        s, weights = np.polynomial.legendre.leggauss(12)
-        pieces = 4 * self.count + 100
+        s, weights = np.polynomial.legendre.leggauss(8)
+        pieces = 2 * self.count + 100
         edges = np.linspace(0, 1, pieces + 1) ** 1.5  # finer at the centre, where S is not smooth
         half, middle = np.diff(edges) / 2, (edges[1:] + edges[:-1]) / 2
         r, dr = (middle[:, None] + half[:, None] * s).ravel(), (half[:, None] * weights).ravel()
