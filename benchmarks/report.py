@@ -107,9 +107,9 @@ def draw(figures: Sequence[Figures], unit: int) -> None:
     axes[0].figure.savefig(PICTURE, dpi=150)
 
 
-def write(block: str, lines: Sequence[str]) -> None:
-    """Replaces what stands between the page's markers of a block."""
+def write(block: str, lines: Sequence[str], page: Path = PAGE) -> None:
+    """Replaces what stands between a page's markers of a block."""
     begin, end = f"<!-- {block}: generated -->", f"<!-- {block}: end -->"
-    before, rest = PAGE.read_text().split(begin)
+    before, rest = page.read_text().split(begin)
     _, after = rest.split(end)
-    PAGE.write_text(f"{before}{begin}\n\n" + "\n".join(lines) + f"\n\n{end}{after}")
+    page.write_text(f"{before}{begin}\n\n" + "\n".join(lines) + f"\n\n{end}{after}")

@@ -15,6 +15,7 @@ from coupling.drives import moments, stroke_heights, travel
 from coupling.scene import PlateScene
 from coupling.steepest import around, circles, steepest
 from coupling.stretch import Stretch
+from coupling.tipping import states_adhesion, tipping_of
 from coupling.vibration import PIECES, Vibration
 from fem_plate import InfluenceShapes, MovingShapes, PatchedShapes, Plate, PlateShapes, Shapes
 from meshes import Outline
@@ -70,7 +71,7 @@ class PlateFigures:
         float | None
     )  # what the top face and the centre of mass add to the pull on the part, over the rest; None: there is none
     tipping: float | None  # largest shift of the pressure centre over half the part's size; None: size not given
-    tips: bool  # whether it is more than 1, without adhesion to hold the part
+    tips: bool  # whether it is more than 1, and the friction law states the adhesion
     first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
     drive_over_first: float | None  # fastest drive over that frequency
     drives_over_first: tuple[float, float] | None  # the slowest and the fastest drive over it
@@ -93,8 +94,9 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         deflection, slope, strain = stretch.extremes
     thickness = plate.section.thickness
     over_thickness = deflection / thickness
-    contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
-    tipping = _tipping(case, contact)
+    times = moments(drives, float(trajectory.time[-1]))
+    contact = trajectory.contact_at(times)
+    tipping = tipping_of(case, trajectory, friction, times)
     first = _first_frequency(plate, shapes)
     driven = [drive for drive in drives if travel(drive) > 0] or drives
     rings = scene.vibration is None and bool((surface.drives.jump[: len(drives), :2] > 0).any())
@@ -114,7 +116,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         largest_strain=strain,
         top_face_share=_top_face_share(contact),
         tipping=tipping,
-        tips=tipping is not None and tipping > 1 and friction.law.pull_off == 0,
+        tips=tipping is not None and tipping > 1 and states_adhesion(friction),
         first_frequency=first,
         drive_over_first=None if first is None else max(drive.frequency for drive in driven) / first,
         drives_over_first=None if first is None else _range([drive.frequency / first for drive in driven]),
@@ -207,17 +209,6 @@ def _top_face_share(contact: ContactSamples) -> float | None:
     """
     rest, added = (float(np.sqrt(np.nanmean(np.square(pull)))) for pull in (contact.point_pull, contact.added_pull))
     return added / rest if rest > 0 else None
-
-
-def _tipping(case: Case, contact: ContactSamples) -> float | None:
-    """The largest shift of the pressure centre over half the part's size: friction times the centre's height over N."""
-    size = case.footprint
-    if size is None:
-        return None
-    pressed = contact.normal_force > 0
-    friction = np.linalg.norm(contact.friction[pressed], axis=1)
-    shift = case.part.centre_height * friction / contact.normal_force[pressed]
-    return float(shift.max(initial=0.0)) / (size / 2)
 
 
 def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: float) -> float:

@@ -91,7 +91,8 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
         ("", f"the part's own force deflects the plate by {s.part_sag * MICRO:.1e} um"),
     ]
     if s.tipping:
-        rows.append(("", f"centre of pressure shifts by {s.tipping:.2g} times half the part's size"))
+        unless = ", if nothing adheres" if s.tipping > 1 and not s.tips else ""
+        rows.append(("", f"centre of pressure shifts by {s.tipping:.2g} times half the part's size{unless}"))
     if s.part_curvature is not None:
         rows.append(("", f"part size times curvature {s.part_curvature:.2g}"))
     return rows

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
+from threading import Lock
 from typing import Any
 
 from coupling.case import Case, PlateCase
@@ -11,7 +12,7 @@ from coupling.drives import reach
 from coupling.progress import Progress, silent
 from coupling.run import build_scene
 from coupling.scene import actuator_stiffness, build_plate, stretch_model, vibration_model
-from coupling.stretch import Stretch, StretchModel
+from coupling.stretch import Response, Stretch, StretchModel
 from coupling.vibration import Vibration, VibrationModel, always_running
 from particle import AnyDrive, SurfaceMotion
 
@@ -68,6 +69,8 @@ class StretchedSurface(ActuatedSurface):
     model: StretchModel | None = None
     end: float = 0.0  # s, of the time that is needed
 
+    _lock: Lock = field(default_factory=Lock)  # of the response
+
     @staticmethod
     def under(
         model: StretchModel, drives: Sequence[AnyDrive], end: float, tolerance: float, half_thickness: float
@@ -85,8 +88,15 @@ class StretchedSurface(ActuatedSurface):
         assert self.model is not None
         if wrong := self.drive_faults({"drives": drives}) or self._strokes_beyond(drives):
             raise ValueError("; ".join(wrong))
-        corrections = self.model.corrections(drives, self.end)
+        corrections = self.model.corrections(drives, self.end, self._response)
         return super().driven_by([*drives, *corrections.drives], corrections.in_plane)
+
+    @property
+    def _response(self) -> Response | None:
+        """What the plate answers to heights, found once for all drives."""
+        assert self.model is not None
+        with self._lock:
+            return self.model.response
 
     def _strokes_beyond(self, drives: Sequence[AnyDrive]) -> list[str]:
         assert self.model is not None

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 CELLS_OF_A_DISC = 64 * math.pi
 """Without a cell size a plate has as many cells as a disc with 8 from centre to rim."""
+COARSER = 2.0  # times: the cells that refinement of a stretching plate begins with
 
 
 class ShapeCase(PlateCase):
@@ -40,7 +41,8 @@ class ShapeCase(PlateCase):
 
     def build_mesh(self) -> PlateMesh:
         width, area = self.measures
-        return self.mesh_of(self.cell_size or min(width / 4, math.sqrt(area / CELLS_OF_A_DISC)))
+        times = 1.0 if self.theory == "linear" else COARSER
+        return self.mesh_of(self.cell_size or min(width / 4, times * math.sqrt(area / CELLS_OF_A_DISC)))
 
     @cached_property
     def coarse_mesh(self) -> PlateMesh:

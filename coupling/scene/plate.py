@@ -23,6 +23,8 @@ FloatArray = NDArray[np.float64]
 # Without a cell size, refine the plate until the estimated error of the unit shapes is below this. It keeps the end
 # point of a typical path accurate to 1e-6 of the path.
 PLATE_TOLERANCE = 1e-8
+# The same of a plate that stretches: half of what its reduced model adds.
+STRETCHED_TOLERANCE = 5e-6
 # More actuators than this are solved on patches: 625 on the whole plate took longer than 10 000 on patches.
 MAX_WHOLE = 250
 
@@ -123,8 +125,9 @@ def lifts_of(case: Case) -> list[AnyDrive]:
 def build_plate(plate: PlateCase) -> Plate:
     """The plate of a case, without loads."""
     section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
-    refined = plate.theory == "linear" and not plate.cell_size_given
-    return Plate(plate.build_mesh(), section, plate.supports, PLATE_TOLERANCE if refined else None, plate.tension)
+    tolerance = PLATE_TOLERANCE if plate.theory == "linear" else STRETCHED_TOLERANCE
+    given = plate.cell_size_given
+    return Plate(plate.build_mesh(), section, plate.supports, None if given else tolerance, plate.tension)
 
 
 def actuator_stiffness(case: Case) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from coupling.stretch.newton import FINE, NOT_STABLE
 from coupling.stretch.pieces import MAX_HALVINGS, Walk, find_nodes, lay_pieces
+from coupling.stretch.response import NO_RESPONSE, Response
 from coupling.stretch.schedule import Schedule, schedule_of
 from fem_plate.large_deflection import Forms, ReducedPlate
 from particle import AnyDrive
@@ -45,6 +46,7 @@ def correction_drives(
     in_plane_weights: ArrayLike | None = None,
     floor: float = 0.0,
     in_plane_floor: float = 0.0,
+    response: Response | None = None,
 ) -> Corrections:
     """Find the corrections over time as quintics between common breakpoints.
 
@@ -68,6 +70,8 @@ def correction_drives(
         The same for in-plane motions, whose errors are compared among themselves.
     floor, in_plane_floor : float
         What errors are at least compared with, weighted: corrections far below need no digits.
+    response : Response, optional
+        Of the plate to heights; no equilibria are solved then. The drives must stay within these.
 
     Returns
     -------
@@ -94,15 +98,15 @@ def correction_drives(
             wrong.append(f"Input {name} must be 0 or positive; got {least!r}")
     if wrong:
         raise ValueError("; ".join(wrong))
-    distinct = dict.fromkeys(drives)  # many of a lattice are equal
+    distinct = list(drives if response else dict.fromkeys(drives))  # many of a lattice are equal
     numbers = {drive: k for k, drive in enumerate(distinct)}
-    forms = plate.forms_of([numbers[drive] for drive in drives])
-    times = schedule_of(list(distinct), float(end))
+    forms = plate.forms if response else plate.forms_of([numbers[drive] for drive in drives])
+    times = schedule_of(distinct, float(end))
     scale = np.concatenate([scale for scale in scales if not isinstance(scale, str)])
-    nodes, solved = _nodes(forms, times)
+    nodes, solved = _nodes(forms, response or NO_RESPONSE, times)
     largest = scale * np.abs(nodes[:, :, 0]).max(axis=(0, 1))
     references = np.repeat([max(largest[:n].max(), floor), max(largest[n:].max(initial=0.0), in_plane_floor)], [n, m])
-    walk, pieces, more = _pieces(forms, times, nodes, tolerance * references / scale)
+    walk, pieces, more = _pieces(forms, response or NO_RESPONSE, times, nodes, tolerance * references / scale)
     errors = np.divide(walk.errors * scale, references, out=np.zeros(n + m), where=references > 0)
     rows = np.ascontiguousarray(walk.coefficients[:pieces].transpose(1, 0, 2))
     edges = np.append(walk.edges[:pieces], times.edges[-1])
@@ -142,22 +146,24 @@ def _weights(name: str, given: ArrayLike | None, count: int) -> FloatArray | str
     return weights
 
 
-def _nodes(forms: Forms, times: Schedule) -> tuple[FloatArray, int]:
+def _nodes(forms: Forms, response: Response, times: Schedule) -> tuple[FloatArray, int]:
     """The nodes of all intervals, and the number of equilibria."""
     nodes = np.zeros((len(times.edges) - 1, 3, 3, len(forms.load) + len(forms.constant) - forms.membranes))
-    outcome, time, solved = find_nodes(forms, times.table, times.edges, times.loop, nodes)
+    outcome, time, solved = find_nodes(forms, response, times.table, times.edges, times.loop, nodes)
     if outcome != FINE:
         raise _failure(time, outcome == NOT_STABLE)
     return nodes, solved
 
 
-def _pieces(forms: Forms, times: Schedule, nodes: FloatArray, limits: FloatArray) -> tuple[Walk, int, int]:
+def _pieces(
+    forms: Forms, response: Response, times: Schedule, nodes: FloatArray, limits: FloatArray
+) -> tuple[Walk, int, int]:
     """The pieces, how many there are, and the number of equilibria."""
-    width, most = len(limits), 1 << MAX_HALVINGS
+    width, most = len(limits), 2 << MAX_HALVINGS
     walk = _new_walk(most + ROOM * len(nodes), width)
     k = laid = solved = 0
     while True:
-        k, laid, failed, more = lay_pieces(forms, times.table, times.edges, nodes, limits, walk, k, laid)
+        k, laid, failed, more = lay_pieces(forms, response, times.table, times.edges, nodes, limits, walk, k, laid)
         solved += more
         if failed >= 0:
             raise _failure(failed, False)

@@ -14,8 +14,10 @@ INSIDE = {  # scripts that measure or describe parts of rooms, which are not pub
     "benchmarks/aims.py",
     "benchmarks/assembly.py",
     "benchmarks/contact.py",
+    "benchmarks/full_solutions.py",
     "benchmarks/results.py",
     "benchmarks/rivals/ours.py",
+    "benchmarks/stretched_paths.py",
     "docs/extensions/fields.py",
     "docs/paper_sensitivity.py",
 }

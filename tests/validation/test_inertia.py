@@ -3,12 +3,9 @@
 The series are those of `radial_vibration`; printed figures are of another implementation of the same.
 """
 
-import json
-
 import numpy as np
 import pytest
 from radial_vibration import FORCE, HELD, Piece, RadialDisc, Wave, strokes
-from scipy.special import jn_zeros
 
 from active_surface.studies.response import response
 from coupling import build_surface, run_case
