@@ -305,8 +305,8 @@ def row(layout: Layout) -> str:
     errors = nodes.errors()
     print(
         f"{layout.name}: {nodes.shapes.v.shape[1]} further shapes, {nodes.motions.shape[1]} motions; "
-        f"paths of {1e6 * length[moved].min():.1f} to {1e6 * length.max():.1f} um, {moved.sum()} move, {losses} lost; errors of "
-        f"w_tt {errors[2]:.1e} and its gradient {errors[3]:.1e}; time pieces {corrections.error:.1e}, mesh "
+        f"paths of {1e6 * length[moved].min():.1f} to {1e6 * length.max():.1f} um, {moved.sum()} move, {losses} lost; "
+        f"errors of w_tt {errors[2]:.1e} and its gradient {errors[3]:.1e}; time pieces {corrections.error:.1e}, mesh "
         f"{model.mesh_error:.1e}; full solution {full:.2f} s, linear path {1e3 * unit:.1f} ms",
         flush=True,
     )
