@@ -135,13 +135,15 @@ class RadialDisc:
         answer = omega**2 / (own**2 - omega**2 + 2j * ratio * own * omega)
         return self.phi(r)[:, None] + self.psi(r) @ (self.participation[:, None] * answer)
 
-    def motion(self, pieces: Sequence[Piece | Wave], r: np.ndarray, time: float, unit: float, ratio: float) -> np.ndarray:
-        """(3, n) w, w_t and w_tt at a time [s], at rest before the first piece; unit: rad/s."""
+    def motion(
+        self, pieces: Sequence[Piece | Wave], r: np.ndarray, time: float, unit: float, ratio: float
+    ) -> np.ndarray:
+        """(3, n) w, w_t and w_tt at a time [s], at rest at the height where the first piece begins; unit: rad/s."""
         omega = self.k**2 * unit
         turn = omega * np.sqrt(1 - ratio**2)
         p = -ratio * omega + 1j * turn
         z, height = np.zeros(len(p), complex), np.zeros(3)
-        last = np.zeros(2)
+        last = np.array([pieces[0].evaluate(pieces[0].begin)[0], 0.0])
         for piece in (one for one in pieces if one.begin <= time):
             begun = piece.evaluate(piece.begin)
             jump = begun[:2] - last  # h'' is then jump[0] delta' + jump[1] delta
@@ -191,9 +193,7 @@ class Wave:
     def evaluate(self, time: float) -> np.ndarray:
         """h, h', h''."""
         angle = self.omega * (time - self.begin) + self.phase
-        return self.stroke * np.array(
-            [np.sin(angle), self.omega * np.cos(angle), -(self.omega**2) * np.sin(angle)]
-        )
+        return self.stroke * np.array([np.sin(angle), self.omega * np.cos(angle), -(self.omega**2) * np.sin(angle)])
 
     def duhamel(self, p: np.ndarray, until: float) -> np.ndarray:
         """int exp(p (until - s)) h''(s) ds, from its begin."""
@@ -209,6 +209,13 @@ def strokes(height: float, frequency: float, count: int, begin: float = 0.0) -> 
     half, pieces = 0.5 / frequency, []
     for number in range(2 * count):
         rise = -height if number % 2 else height
-        powers = (height if number % 2 else 0.0, 0.0, 0.0, 10 * rise / half**3, -15 * rise / half**4, 6 * rise / half**5)
+        powers = (
+            height if number % 2 else 0.0,
+            0.0,
+            0.0,
+            10 * rise / half**3,
+            -15 * rise / half**4,
+            6 * rise / half**5,
+        )
         pieces.append(Piece(begin + number * half, begin + (number + 1) * half, powers))
     return pieces
