@@ -14,9 +14,9 @@ from time import process_time
 import numpy as np
 import report
 
-from coupling.scene import plate_scene
 from coupling.case import Case
 from coupling.progress import silent
+from coupling.scene import plate_scene
 from particle import ConstantFriction, Micropart, simulate
 
 RADIUS, THICKNESS, DURATION = 1e-3, 20e-6, 20e-3  # m, m, s
