@@ -84,7 +84,7 @@ def test_printed_figures(surface, time, w, w_tt):
     assert own[0] == pytest.approx(w, rel=1e-9) and own[2] == pytest.approx(w_tt, rel=1e-7)
 
 
-@pytest.mark.parametrize("share, cycles", [(0.2, 8), (0.95, 20)])
+@pytest.mark.parametrize("share, cycles", [pytest.param(0.2, 8, marks=pytest.mark.slow), (0.95, 20)])
 def test_strokes_near_the_first_frequency(share, cycles):
     end = cycles / (share * FIRST)
     surface = build_surface(case_of(up_down(share * FIRST), end))
@@ -112,7 +112,9 @@ def test_frequencies_of_held_discs():
     assert 2 * np.pi * plate.frequencies(1, two)[0] == pytest.approx(19.077528, rel=1e-6)
 
 
-@pytest.mark.parametrize("stiffness", [HELD, FORCE, 40.0, 4000.0])
+@pytest.mark.parametrize(
+    "stiffness", [HELD, *(pytest.param(stiffness, marks=pytest.mark.slow) for stiffness in (FORCE, 40.0, 4000.0))]
+)
 def test_responses_of_a_clamped_disc(stiffness):
     """Held, on springs or under a force at its centre: resonances, amplitude and phase, on and beside resonances."""
     exact = RadialDisc("clamped", NU, stiffness, 100)
@@ -134,6 +136,7 @@ def test_responses_of_a_clamped_disc(stiffness):
         assert exact.k[:1] == pytest.approx([3.196220617], rel=1e-9)  # J0 I1 + J1 I0 = 0
 
 
+@pytest.mark.slow
 def test_a_clamped_disc_under_a_force_moves_as_its_series():
     exact = RadialDisc("clamped", NU, FORCE)
     frequency = 0.3 * exact.k[0] ** 2 * UNIT / (2 * np.pi)
@@ -144,6 +147,7 @@ def test_a_clamped_disc_under_a_force_moves_as_its_series():
     assert in_w < 1e-5 and in_w_tt < 1e-3
 
 
+@pytest.mark.slow
 def test_a_disc_on_a_spring_moves_as_its_series():
     exact = RadialDisc("clamped", NU, 40.0)
     frequency, stiffness = 0.3 * exact.k[0] ** 2 * UNIT / (2 * np.pi), 40.0 * RIGIDITY / RADIUS**2
@@ -153,6 +157,7 @@ def test_a_disc_on_a_spring_moves_as_its_series():
     assert in_w < 1e-5 and in_w_tt < 1e-3
 
 
+@pytest.mark.slow
 def test_without_haste_the_plate_is_quasi_static():
     """Its modes' heights fall as f^2, down to rounding of a stroke, and then the surface is the one without inertia."""
     heights, shares, times = [], np.array([1e-2, 1e-3, 1e-4, 1e-8]), np.linspace(0, 1, 101)

@@ -16,8 +16,14 @@ PLACES = np.array([[0.3, 0.1], [-0.25, -0.35], [-0.2, 0.4]]) * RADIUS
 GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
-@pytest.mark.parametrize("stiffness", [np.inf, [np.inf, 2e3, np.inf]], ids=["rigid", "a spring"])
-@pytest.mark.parametrize("ratio", [0.02, 0.0])
+@pytest.mark.parametrize(
+    "stiffness, ratio",
+    [
+        pytest.param([np.inf, 2e3, np.inf], 0.02, id="a spring"),
+        pytest.param(np.inf, 0.02, id="rigid", marks=pytest.mark.slow),
+        pytest.param(np.inf, 0.0, id="undamped", marks=pytest.mark.slow),
+    ],
+)
 def test_energy_is_conserved(stiffness, ratio):
     """Strokes that end, and the ringing after them.
 
