@@ -2,11 +2,13 @@
 
 import re
 
+import numpy as np
 import pytest
 from case_files import DURATION, STROKE, changed, problems, python_case, read
 from click.testing import CliRunner
 
 from active_surface.cli import main
+from coupling.scene import damping_of
 
 THICKNESS = 'thickness = "5 um"'
 VIBRATES = THICKNESS + '\ndensity = "2330 kg/m^3"\ninertia = true\n'
@@ -111,3 +113,9 @@ def test_the_commands_refuse_with_exit_code_2(tmp_path):
     file.write_text(changed())
     result = CliRunner().invoke(main, ["response", str(file)])
     assert result.exit_code == 2 and "plate.density of response must be given; got none" in result.output
+
+
+def test_a_table_of_damping_goes_on_beyond_its_ends():
+    plate = python_case().plate.model_copy(update={"damping": ((20e3, 0.02), (80e3, 0.01))})
+    ratios = damping_of(plate)(np.array([1e3, 20e3, 50e3, 80e3, 1e6]))
+    assert ratios == pytest.approx([0.02, 0.02, 0.015, 0.01, 0.01], rel=1e-12)
