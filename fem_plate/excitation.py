@@ -25,6 +25,7 @@ from fem_plate.vibration import HeldPlate
 FloatArray = NDArray[np.float64]
 
 ROUNDING = 1e-10  # of a response: less of it that is new counts as nothing
+ASYMMETRY = 1e-6  # of a stiffness: what rounding may leave
 DEPENDENT = 1e-13  # of the longest of a block, squared
 
 
@@ -79,9 +80,11 @@ class Excitation:
             response, stiff = response - self._basis @ shares, stiff - self._stiff @ shares
         heavy = self._plate.with_mass(response)
         combine = _orthonormalising(response.T @ heavy)
-        self._basis = np.concatenate([self._basis, response @ combine], axis=1)
-        self._stiff = np.concatenate([self._stiff, stiff @ combine], axis=1)
-        self._heavy = np.concatenate([self._heavy, heavy @ combine], axis=1)
+        basis = np.concatenate([self._basis, response @ combine], axis=1)
+        stiffness = np.concatenate([self._stiff, stiff @ combine], axis=1)
+        if _is_symmetric(basis.T @ stiffness):
+            self._basis, self._stiff = basis, stiffness
+            self._heavy = np.concatenate([self._heavy, heavy @ combine], axis=1)
         self.blocks.append(self._basis.shape[1])
 
     def modes(self, blocks: int | None = None) -> ExcitedModes:
@@ -94,6 +97,14 @@ class Excitation:
         functions, largest = self._plate.functions(vectors)
         participation = largest[:, None] * (vectors.T @ self._load)
         return ExcitedModes(np.sqrt(squares * self._unit), functions, participation)
+
+
+def _is_symmetric(stiffness: FloatArray) -> bool:
+    """Whether rounding, which grows from block to block, leaves a matrix (k, k) symmetric and positive."""
+    own = np.diag(stiffness)
+    if not (own > 0).all():
+        return False
+    return bool((np.abs(stiffness - stiffness.T) <= ASYMMETRY * np.sqrt(own * own[:, None])).all())
 
 
 def _orthonormalising(gram: FloatArray) -> FloatArray:

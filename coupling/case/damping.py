@@ -29,7 +29,7 @@ class _Damping:
             try:
                 frequency = _FREQUENCY.validate_python(written, context=info.context)
             except ValidationError as error:
-                raise ValueError(f"must have frequencies that are right: each {error.errors()[0]['msg']}") from None
+                raise ValueError(f"in each pair {error.errors()[0]['msg'].removeprefix('Value error, ')}") from None
             if not frequency > last:
                 raise ValueError(f"must have increasing, positive frequencies; got {quoted(written)}")
             if not _is_ratio(ratio):

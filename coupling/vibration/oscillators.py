@@ -27,6 +27,7 @@ CUBIC = 4  # coefficients of the forced part
 # the second by this times (w t)^4 of the sine's: 3/8 of 1/720.
 HERMITE_ERROR = 3 / 8 / 720
 SILENT = 0.1  # of the error allowed: weaker ringing need not be followed
+LONGEST = 30.0  # radians of the slowest mode, squared, that pieces over ringing of that last share may take
 
 
 class Oscillators(NamedTuple):
@@ -159,15 +160,22 @@ def at_times(oscillators: Oscillators, course: Course, intervals: NDArray[np.int
 
 @kernel_no_arrays
 def _step(oscillators: Oscillators, course: Course, k: int, since: float, allowed: float) -> float:
-    """How long [s] pieces may be from a time [s] after an interval's begin on; allowed: m/s^2, their error."""
-    fourth, n = 0.0, len(oscillators.omega)
+    """How long [s] pieces may be from a time [s] after an interval's begin on; allowed: m/s^2, their error.
+
+    What is too faint for the acceleration still shifts heights, by as much as its acceleration in the time squared.
+    """
+    fourth, silent, slowest, n = 0.0, 0.0, math.inf, len(oscillators.omega)
     for j in range(n):
         omega, ringing = oscillators.omega[j], course.ringing[k, j]
         amplitude = omega * math.hypot(omega * ringing[0], ringing[1])
         amplitude *= math.exp(-oscillators.damping[j] * omega * since)
         if amplitude * n > SILENT * allowed:
             fourth += amplitude * omega**4
-    return (allowed / (HERMITE_ERROR * fourth)) ** 0.25 if fourth > 0.0 else math.inf
+        else:
+            silent = max(silent, amplitude * n)
+        slowest = min(slowest, omega)
+    step = (allowed / (HERMITE_ERROR * fourth)) ** 0.25 if fourth > 0.0 else math.inf
+    return min(step, math.sqrt(LONGEST * SILENT * allowed / silent) / slowest) if silent > 0.0 else step
 
 
 @kernel

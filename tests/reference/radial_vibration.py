@@ -5,10 +5,10 @@ S = Y0 + 2/pi K0, which a force -8 k^2 at the centre bends, modes and static sha
 
     psi = A J0(k r) + B I0(k r) + C S(k r),  omega = k^2,     phi = p + q r^2 + P r^2 ln r / (8 pi).
 
-Three conditions determine each: two at the rim, clamped (psi = psi' = 0) or free (no moment, no shear force), and one at
-the centre: psi(0) = 0 if it is held, C = 0 if nothing holds it, 8 k^2 C / (2 pi) times 2 pi = stiffness psi(0) on a
-spring. Green's identity gives the shares of the modes in phi: k^4 int phi psi dA = 8 k^2 C / height that is prescribed
-(or psi(0) where a force is). Time responses are Duhamel's integrals, in closed form by parts, in complex numbers.
+Three conditions determine each: two at the rim, clamped (psi = psi' = 0) or free (no moment, no shear force), and one
+at the centre: psi(0) = 0 if it is held, C = 0 if nothing holds it, 8 k^2 C = stiffness psi(0) on a spring. Green's
+identity gives the shares of the modes in phi: k^4 int phi psi dA = 8 k^2 C, or psi(0) where a force pushes. Time
+responses are Duhamel's integrals, in closed form by parts, in complex numbers.
 """
 
 from __future__ import annotations
@@ -97,10 +97,7 @@ class RadialDisc:
         if self.rim == "free":
             return 1.0, 0.0, 0.0  # it rides on the actuator
         per_force = 1 / (16 * np.pi)  # the deflection at the centre: r^2 ln r / 8 pi + (1 - r^2) / 16 pi
-        if self.stiffness == FORCE:
-            force = 1.0
-        else:
-            force = 1 / (per_force + 1 / self.stiffness)  # 1 / inf = 0
+        force = 1.0 if self.stiffness == FORCE else 1 / (per_force + 1 / self.stiffness)  # 1 / inf = 0
         return force / (16 * np.pi), -force / (16 * np.pi), force
 
     def phi(self, r: np.ndarray) -> np.ndarray:
@@ -123,10 +120,7 @@ class RadialDisc:
     @cached_property
     def participation(self) -> np.ndarray:
         """(count,) (phi, psi) / (psi, psi)."""
-        if self.stiffness == FORCE:
-            work = self.psi(np.zeros(1))[0]
-        else:
-            work = 8 * self.k**2 * self._coefficients[:, 2]
+        work = self.psi(np.zeros(1))[0] if self.stiffness == FORCE else 8 * self.k**2 * self._coefficients[:, 2]
         return work / self.k**4 / self.norms
 
     def transfer(self, r: np.ndarray, omega: np.ndarray, ratio: float) -> np.ndarray:
@@ -138,12 +132,12 @@ class RadialDisc:
     def motion(
         self, pieces: Sequence[Piece | Wave], r: np.ndarray, time: float, unit: float, ratio: float
     ) -> np.ndarray:
-        """(3, n) w, w_t and w_tt at a time [s], at rest before the first piece; unit: rad/s."""
+        """(3, n) w, w_t and w_tt at a time [s], at rest at the height where the first piece begins; unit: rad/s."""
         omega = self.k**2 * unit
         turn = omega * np.sqrt(1 - ratio**2)
         p = -ratio * omega + 1j * turn
         z, height = np.zeros(len(p), complex), np.zeros(3)
-        last = np.zeros(2)
+        last = np.array([pieces[0].evaluate(pieces[0].begin)[0], 0.0])
         for piece in (one for one in pieces if one.begin <= time):
             begun = piece.evaluate(piece.begin)
             jump = begun[:2] - last  # h'' is then jump[0] delta' + jump[1] delta

@@ -8,7 +8,7 @@ import pytest
 from radial_vibration import FORCE, HELD, Piece, RadialDisc, Wave, strokes
 
 from active_surface.studies.response import response
-from coupling import build_surface, run_case
+from coupling import build_surface
 from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
 from coupling.run import build_scene
 from fem_plate import Excitation, Plate, PlateSection
@@ -84,7 +84,7 @@ def test_printed_figures(surface, time, w, w_tt):
     assert own[0] == pytest.approx(w, rel=1e-9) and own[2] == pytest.approx(w_tt, rel=1e-7)
 
 
-@pytest.mark.parametrize("share, cycles", [(0.2, 8), (0.95, 20)])
+@pytest.mark.parametrize("share, cycles", [pytest.param(0.2, 8, marks=pytest.mark.slow), (0.95, 20)])
 def test_strokes_near_the_first_frequency(share, cycles):
     end = cycles / (share * FIRST)
     surface = build_surface(case_of(up_down(share * FIRST), end))
@@ -95,7 +95,7 @@ def test_strokes_near_the_first_frequency(share, cycles):
 
 def test_frequencies_of_held_discs():
     """Those of the centre to all printed digits, and of two actuators; also as the modes that actuators excite."""
-    plate = Plate(disc(1.0, 0.15), UNIT_SECTION)
+    plate = Plate(disc(1.0, 0.1), UNIT_SECTION)
     shapes = plate.influence([CENTRE])
     excitation = Excitation(shapes, 1.0, 1.0)
     for _ in range(15):
@@ -106,13 +106,15 @@ def test_frequencies_of_held_discs():
     assert modes.omega[radial][:3] == pytest.approx(DISC.k[:3] ** 2, rel=1e-6)
     psi = DISC.psi(np.array([0.37]))[0, :3] * DISC.participation[:3]
     found = modes.functions.values(np.array([[0.37 * np.cos(1), 0.37 * np.sin(1)]]))[0] * modes.participation[:, 0]
-    assert found[radial][:3] == pytest.approx(psi, rel=1e-5)
+    assert found[radial][:3] == pytest.approx(psi, rel=1e-4)
     two = [(0.3, 0.1), (-0.25, -0.35)]
     assert 2 * np.pi * plate.frequencies(2, two) == pytest.approx([19.077528, 26.1383], rel=2e-6)
     assert 2 * np.pi * plate.frequencies(1, two)[0] == pytest.approx(19.077528, rel=1e-6)
 
 
-@pytest.mark.parametrize("stiffness", [HELD, FORCE, 40.0, 4000.0])
+@pytest.mark.parametrize(
+    "stiffness", [HELD, *(pytest.param(stiffness, marks=pytest.mark.slow) for stiffness in (FORCE, 40.0, 4000.0))]
+)
 def test_responses_of_a_clamped_disc(stiffness):
     """Held, on springs or under a force at its centre: resonances, amplitude and phase, on and beside resonances."""
     exact = RadialDisc("clamped", NU, stiffness, 100)
@@ -134,6 +136,7 @@ def test_responses_of_a_clamped_disc(stiffness):
         assert exact.k[:1] == pytest.approx([3.196220617], rel=1e-9)  # J0 I1 + J1 I0 = 0
 
 
+@pytest.mark.slow
 def test_a_clamped_disc_under_a_force_moves_as_its_series():
     exact = RadialDisc("clamped", NU, FORCE)
     frequency = 0.3 * exact.k[0] ** 2 * UNIT / (2 * np.pi)
@@ -144,6 +147,7 @@ def test_a_clamped_disc_under_a_force_moves_as_its_series():
     assert in_w < 1e-5 and in_w_tt < 1e-3
 
 
+@pytest.mark.slow
 def test_a_disc_on_a_spring_moves_as_its_series():
     exact = RadialDisc("clamped", NU, 40.0)
     frequency, stiffness = 0.3 * exact.k[0] ** 2 * UNIT / (2 * np.pi), 40.0 * RIGIDITY / RADIUS**2
@@ -153,51 +157,51 @@ def test_a_disc_on_a_spring_moves_as_its_series():
     assert in_w < 1e-5 and in_w_tt < 1e-3
 
 
+@pytest.mark.slow
 def test_without_haste_the_plate_is_quasi_static():
-    """Its modes' heights fall as f^2 down to rounding of a stroke, and then the surface is the one without inertia."""
-    heights = []
-    for share in (1e-2, 1e-3, 1e-4, 1e-8):
-        frequency = share * FIRST
-        scene = build_scene(case_of(up_down(frequency), 1 / frequency))
-        times = np.linspace(0, 1 / frequency, 101)
-        modal = sum(np.abs(drive.evaluate(times)[0]).max() for drive in scene.vibration.modal_drives)
-        heights.append(modal / 1e-6 / share**2)
-    assert heights[1:] == pytest.approx([heights[2]] * 3, rel=1e-3)
-    assert heights[0] == pytest.approx(heights[2], rel=0.05)
-    assert heights[3] * share**2 < 1e-15
-    static = build_surface(case_of(up_down(frequency), 1 / frequency, {"inertia": False}))
-    for time in times[1::17]:
+    """Its modes' heights fall as f^2, down to rounding of a stroke, and then the surface is the one without inertia."""
+    heights, shares, times = [], np.array([1e-2, 1e-3, 1e-4, 1e-8]), np.linspace(0, 1, 101)
+    for share in shares:
+        scene = build_scene(case_of(up_down(share * FIRST), 1 / (share * FIRST), {"cell_size": 60e-6}))
+        drive = scene.vibration.modal_drives[0]
+        heights.append(np.abs(drive.evaluate(times / (share * FIRST))[0]).max() / 1e-6)
+    assert heights[:3] / shares[:3] ** 2 == pytest.approx([heights[2] / shares[2] ** 2] * 3, rel=0.05)
+    assert heights[3] < 1e-15
+    static = build_surface(case_of(up_down(share * FIRST), 1 / (share * FIRST), {"cell_size": 60e-6, "inertia": False}))
+    for time in times[1::17] / (share * FIRST):
         moving, resting = scene.surface.evaluate(on_radii(), time), static.evaluate(on_radii(), time)
-        assert np.abs(moving.w - resting.w).max() < 1e-14 * 1e-6 * 100
+        assert np.abs(moving.w - resting.w).max() < 1e-13 * 1e-6
         assert moving.w_tt == pytest.approx(resting.w_tt, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_jump_of_velocity_sends_out_waves():
     """A sine after a delay: w is continuous and its series converges; the summary says that w_tt's does not."""
     frequency, delay = 0.3 * FIRST, 2e-6
-    end = delay + 2 / frequency
-    run = run_case(case_of(up_down(frequency, cycle="sine", delay=delay), end), None)
-    surface = run.scene.surface
+    end = delay + 1 / frequency
+    drive = up_down(frequency, cycle="sine", delay=delay)
+    scene = build_scene(case_of(drive, end, {"cell_size": 60e-6}))
+    surface = scene.surface
     pieces = [Piece(0.0, delay, (0.0,)), Wave(delay, np.inf, 1e-6, 2 * np.pi * frequency)]
     times = np.random.default_rng(3).uniform(delay, end, 20)
     in_w, _ = off(surface, pieces, times, RadialDisc(count=400))
     assert in_w < 1e-4
-    before, after = (surface.evaluate(on_radii(), delay + step).w for step in (-1e-12, 1e-12))
-    assert np.abs(after - before).max() < 1e-3 * 2e-12 * 1e-6 * 2 * np.pi * frequency / 1e-12
-    assert run.summary.vibration.mode_error > 0.1
-    assert any("jumps" in text and "acceleration is accurate to" in text for text in run.warnings)
+    before, after = (surface.evaluate(on_radii(), delay + step).w for step in (-1e-13, 1e-13))
+    assert np.abs(after - before).max() < 1e-6 * 1e-6
+    assert scene.vibration.model.chosen.error > 0.1
 
 
+@pytest.mark.slow
 def test_a_jump_of_acceleration_rings():
-    """A cosine from rest: its acceleration jumps, and w_tt converges in the mean only."""
-    frequency = 0.3 * FIRST
-    end, half = 2 / frequency, 0.5e-6
-    surface = build_surface(case_of(up_down(frequency, cycle="cosine", delay=1e-6), end))
-    rate = 2 * np.pi * frequency
-    pieces = [Piece(0.0, 1e-6, (0.0,)), Wave(1e-6, np.inf, half, rate, -np.pi / 2)]
-    times = np.random.default_rng(4).uniform(1e-6, end, 20)
-    disc = RadialDisc(count=400)
-    found = np.array([surface.evaluate(on_radii(), time).w for time in times])
-    truth = np.array([disc.motion([Piece(0, 1e-6, (-half,)), pieces[1]], R, t, UNIT, 0.02)[0] for t in times])
-    truth = truth + half * disc.phi(R)  # a constant has no inertia
+    """A cosine after a delay: its acceleration jumps, and that of the plate converges slowly, unlike its height."""
+    frequency, delay, half = 0.3 * FIRST, 1e-6, 0.5e-6
+    end = delay + 1 / frequency
+    drive = up_down(frequency, cycle="cosine", delay=delay)
+    scene = build_scene(case_of(drive, end, {"cell_size": 60e-6}))
+    pieces = [Piece(0.0, delay, (-half,)), Wave(delay, np.inf, half, 2 * np.pi * frequency, -np.pi / 2)]
+    times, exact = np.random.default_rng(4).uniform(delay, end, 20), RadialDisc(count=400)
+    found = np.array([scene.surface.evaluate(on_radii(), time).w for time in times])
+    truth = np.array([exact.motion(pieces, R, time, UNIT, 0.02)[0] for time in times])
+    truth += half * exact.phi(R)  # the constant part moves no mass
     assert np.abs(found - truth).max() < 1e-5 * np.abs(truth).max()
+    assert scene.vibration.model.chosen.error > 1e-3
