@@ -14,8 +14,8 @@ from time import process_time
 import numpy as np
 import report
 
+from coupling import silent
 from coupling.case import Case
-from coupling.progress import silent
 from coupling.scene import plate_scene
 from particle import ConstantFriction, Micropart, simulate
 
