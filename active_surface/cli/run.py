@@ -26,12 +26,12 @@ def run(
 ) -> None:
     """Run CASE and write its results."""
     parsed = read(case)
-    from coupling import StageBar, report, run_case, silent, stretches
+    from coupling import StageBar, answers_drives, report, run_case, silent
     from coupling.results import check_folder
 
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(silent) if quiet else StageBar(STAGES + stretches(parsed)) as bar:
+    with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(parsed)) as bar:
         result = refusing(run_case, parsed, folder, bar, csv, save_surface, forces)
     warnings = report.warnings(result.summary)
     figures = result.summary.as_dict() | {"warnings": warnings, "files": [str(file) for file in result.files]}

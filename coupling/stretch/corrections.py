@@ -20,7 +20,6 @@ FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-6
 TOLERANCES = (1e-11, 1e-1)  # below is rounding
-RESTS = 1e-12  # of the corrections, over a piece: slower ones rest
 ROOM = 8  # pieces of an interval that room is made for at first
 
 
@@ -112,8 +111,6 @@ def correction_drives(
     rows = np.ascontiguousarray(walk.coefficients[:pieces].transpose(1, 0, 2))
     edges = np.append(walk.edges[:pieces], times.edges[-1])
     loop = None if times.loop < 0 else int(np.searchsorted(edges, times.edges[times.loop]))
-    if loop is None:
-        edges, rows = _to_rest(edges, rows, float(times.table.stroke_time.min()))
     found = quintic_drives(
         edges,
         rows,
@@ -179,20 +176,6 @@ def _pieces(
 
 def _new_walk(room: int, width: int) -> Walk:
     return Walk(np.empty(room), np.empty((room, width, ORDER)), *np.zeros((4, width)))
-
-
-def _to_rest(edges: FloatArray, rows: FloatArray, stroke_time: float) -> tuple[FloatArray, FloatArray]:
-    """The pieces with one more that brings what still moves at the end to rest there, so that nothing jumps."""
-    scale = edges[-1] - edges[-2]
-    last, powers = rows[:, -1], np.arange(ORDER)
-    value, velocity = last.sum(axis=1), last @ powers / scale
-    acceleration = last @ (powers * (powers - 1)) / scale**2
-    still = RESTS * np.abs(last).max()
-    if np.abs(velocity * scale).max() <= still and np.abs(acceleration * scale**2).max() <= still:
-        return edges, rows
-    v, a = velocity * stroke_time, acceleration * stroke_time**2
-    brake = np.stack([value, v, a / 2, -6 * v - 1.5 * a, 8 * v + 1.5 * a, -3 * v - 0.5 * a], axis=1)
-    return np.append(edges, edges[-1] + stroke_time), np.concatenate([rows, brake[:, None]], axis=1)
 
 
 def _failure(time: float, unstable: bool) -> ValueError:

@@ -12,4 +12,5 @@ from particle.drives.pieces import (
 )
 from particle.drives.quintics import QuinticDrive, quintic_drives
 from particle.drives.record import ORDER, DriveTable
+from particle.drives.strokes import begun_at
 from particle.drives.table import AnyDrive, Segments, accelerations, drive_table, monomial_table

@@ -190,11 +190,13 @@ def _add(surface: Surface, local: LocalSurface, i: int, sign: float) -> None:
 @jit_no_arrays
 def _add_row(out: FloatArray, rows: FloatArray, first: int, width: int, piece: FloatArray, sign: float) -> None:
     """Add a quintic times the shape that begins at `first`."""
+    row = rows[first : first + width]  # as slices, these loops fill the processor's vector units
     for k in range(ORDER):
         c = sign * piece[k]
         if c != 0.0:
-            for m in range(width):
-                out[k, m] += rows[first + m] * c
+            total = out[k, :width]
+            for m in range(len(row)):
+                total[m] += row[m] * c
 
 
 @jit_no_arrays
