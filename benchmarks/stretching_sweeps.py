@@ -22,8 +22,7 @@ import numpy as np
 import report
 from numpy.typing import NDArray
 
-from active_surface.studies import Study, read_study, run_study
-from active_surface.studies.engine import Engine
+from active_surface.studies import Engine, Study, read_study, run_study
 from coupling import read_case, run_case
 
 FloatArray = NDArray[np.float64]
