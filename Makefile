@@ -63,6 +63,7 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/corrections.py
 	$(BIN)/python benchmarks/stretching_sweeps.py
 	$(BIN)/python benchmarks/stretched_paths.py
+	$(BIN)/python benchmarks/inertia.py
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many
 
