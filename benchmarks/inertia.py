@@ -89,7 +89,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, help="only so many actuators")
     only = parser.parse_args().count
     lines = [
-        "| actuators | drive / first frequency | modes | their error | pieces | evaluations, over quasi-static | time, too |",
+        "| actuators | drive / first frequency | modes | their error | pieces | evaluations, ratio | time, ratio |",
         "|---:|---:|---:|---:|---:|---:|---:|",
     ]
     for count in COUNTS if only is None else (only,):

@@ -5,8 +5,8 @@
     .venv/bin/python benchmarks/stretching_sweeps.py --whole       also whole sweeps, from study to results
 
 Random strokes, frequencies, delays and starts around examples/transport.toml, so that no two points share drives. The
-part adheres twice as strongly, with half the coefficient of friction, so that none comes off a linear plate. The reduced
-model is made, or read from disk, before the clock runs. First the linear paths must be those of single runs to
+part adheres twice as strongly, with half the coefficient of friction, so that none comes off a linear plate. The
+reduced model is made, or read from disk, before the clock runs. First the linear paths must be those of single runs to
 the bit, and the others those of single runs, each with a model of its own, to `AGREEMENT` of their length. Then blocks
 of both sweeps take turns.
 """
