@@ -48,7 +48,7 @@ class FullSolutions:
         """The plate with strokes (N,) over its thickness."""
         return self.equilibrium.solve(Loads(strokes, 0.0), start)
 
-    def node(self, strokes: FloatArray, start: Coefficients) -> Node:
+    def node(self, strokes: FloatArray, start: Coefficients | None) -> Node:
         """The plate with strokes (3, N) over its thickness, and their derivatives."""
         solution = self.solve(strokes[0], start)
         state, no_load = solution.state, (np.zeros(self.discrete.model.unknowns), np.zeros(self.discrete.trial.count))

@@ -48,6 +48,7 @@ SAMPLES, AWAY = 1500, 0.02  # of the radius, from actuators
 STEP, AGREEMENT = 1e-3, 1e-4  # of a stroke's time, of differences that the derivatives must agree with
 CELLS = 3e-3  # what cells may smooth of a gradient: it is as exact as that on the mesh at 30 t
 REPEATS = 20
+AT_REST = 1e-12  # of the thickness
 MOVED = 1e-7  # m: paths shorter than this are not compared
 HEADS = (
     " full solutions ",
@@ -131,6 +132,8 @@ class Nodes:
     def node(self, time: float, c: FloatArray) -> Node:
         """The full plate at a time, from the model's corrections (n, 3)."""
         strokes = self.strokes(time)
+        if np.abs(strokes[0]).max() < AT_REST:  # what Newton's method changes is relative to w
+            return self.full.node(strokes * [[0], [1], [1]], None)
         near = self._model_columns(strokes, c)
         start = self.full.equilibrium.at(near.v[:, 0], near.extra[:, 0], 0.0)
         return self.full.node(strokes, start)
