@@ -19,7 +19,7 @@ FloatArray = NDArray[np.float64]
 
 SETTLED = 1e-10  # of the largest acceleration: what all later passes still change
 LEAST_LOST = 1e-2  # of a mode's ringing, in a pass: without damping nothing more than rounding may change
-MAX_PIECES = 2_000_000
+MAX_PIECES = 20_000_000  # of all modes: about 2 GB
 MAX_EDGES = 500  # of intervals in which the largest acceleration is sought
 
 
@@ -60,10 +60,11 @@ class ModalMotion:
         Raises ValueError when that takes too many pieces.
         """
         begins, intervals = lay_edges(self.oscillators, self.course, allowed)
-        if len(begins) > MAX_PIECES:
+        n = len(self.oscillators.omega)
+        if len(begins) * n > MAX_PIECES:
             raise ValueError(
-                f"The plate's ringing takes {len(begins)} pieces in time, more than {MAX_PIECES}; raise plate.damping, "
-                "or reduce run.duration"
+                f"The plate's ringing takes {len(begins)} pieces in time for each of {n} modes, more than {MAX_PIECES} "
+                "in all; raise plate.damping, reduce run.duration, or give drives frequencies with a common period"
             )
         rows = lay_pieces(self.oscillators, self.course, begins, intervals)
         edges = np.append(self.course.edges[intervals] + begins, self.course.edges[-1])
