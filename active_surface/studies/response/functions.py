@@ -17,7 +17,7 @@ from fem_plate import Excitation, ExcitedModes, InfluenceShapes
 
 ComplexArray = NDArray[np.complex128]
 
-TOLERANCE = 1e-4  # of the largest response: what more modes may change
+TOLERANCE = 1e-4  # of the largest of each curve: what more modes may change
 MAX_MODES = 400
 
 
@@ -30,7 +30,7 @@ def frequency_response(
 ) -> tuple[ComplexArray, ExcitedModes, float]:
     """H (points, actuators, frequencies) [m/m, of forces m/N] at points (k, 2) [m] and frequencies (F,) [Hz].
 
-    Also the modes that it is made of, and what the last of them changed, over the largest response.
+    Also the modes that it is made of, and the largest change of a curve by the last of them, over its largest.
     """
     static = shapes.values(xy)
     before, change = None, np.inf
