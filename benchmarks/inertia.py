@@ -4,7 +4,8 @@
     .venv/bin/python benchmarks/inertia.py --count 2     only so many actuators; writes nothing
 
 A clamped disc of silicon under 2 and 25 actuators, strokes up and down for 20 ms at one frequency, each with a delay
-of its own, damping ratio 0.02. Friction grows with the square of the frequency, so that the part slips alike. First the surface must be the sum of its shapes.
+of its own, damping ratio 0.02. Friction grows with the square of the frequency, so that the part slips alike. First the
+surface must be the sum of its shapes.
 """
 
 from __future__ import annotations

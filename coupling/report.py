@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coupling.case import INERTIA, MAX_STRETCHING, VON_KARMAN
+from coupling.case import INERTIA, MAX_STRETCHING, MAX_VIBRATING, VON_KARMAN
 from coupling.measured import MotionFit
 from coupling.plate_figures import StretchError, VibrationFigures
 from coupling.summary import PlateSummary, Summary
@@ -84,7 +84,7 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
             f"deflection {s.deflection_over_thickness:.3g} times the thickness ({_theory(s)}), slope "
             f"{s.largest_slope:.3g}",
         ),
-        *([] if s.largest_strain is None else [("", f"strain {_strain(s.largest_strain)}{_bending(s)}")]),
+        *([] if s.largest_strain is None else [("", f"strain {_in_percent(s.largest_strain)}{_bending(s)}")]),
         ("", _dynamics(s)),
         *([("", _drives(s))] if s.drives_over_first else []),
         *([] if s.top_face_share is None else [("", _top_face(s.top_face_share))]),
@@ -104,8 +104,8 @@ def _theory(s: PlateSummary) -> str:
     return f"path error of linear theory {_percent(s.linear_path_error)}"
 
 
-def _strain(strain: float) -> str:
-    percent = 100 * strain
+def _in_percent(share: float) -> str:
+    percent = 100 * share
     return f"{percent:.2g} %" if percent < 99.5 else f"{percent:.0f} %"
 
 
@@ -116,15 +116,15 @@ def _bending(s: PlateSummary) -> str:
 def _stretching(error: StretchError, solutions: int) -> str:
     """How exact a plate that stretches is."""
     return (
-        f"stretching from {_count(solutions, 'full solution')}, good to {error.mesh:.1e} (estimated); few shapes for "
-        f"them to {error.reduction:.1e}, over time to {error.pieces:.1e}"
+        f"stretching from {_count(solutions, 'full solution')}, good to {error.mesh:.1e} (estimated); the reduced "
+        f"model adds {error.reduction:.1e}, its pieces in time {error.pieces:.1e}"
     )
 
 
 def _vibrating(figures: VibrationFigures) -> str:
     """How exact a plate with inertia is."""
     return (
-        f"{_count(figures.modes, 'mode')} up to {figures.highest / 1e3:.4g} kHz; acceleration good to "
+        f"{_count(figures.modes, 'mode')} up to {figures.highest / 1e6:.4g} MHz; acceleration good to "
         f"{figures.mode_error:.1e} (estimated), over time to {figures.piece_error:.1e}"
     )
 
@@ -182,7 +182,7 @@ def _of_solver(s: PlateSummary) -> list[str]:
             f"The plate that stretches is accurate to {worst:.1e} of its deflection only; reduce "
             + ("plate.cell_size." if worst == s.stretch_error.mesh else "the strokes.")
         )
-    if s.surface_error > max(MAX_NUMERICAL_ERROR, s.plate_error):
+    if s.surface_error > max(MAX_NUMERICAL_ERROR, s.plate_error, s.vibration.mode_error if s.vibration else 0.0):
         texts.append(
             f"The fitted surface follows the plate's shapes to {s.surface_error:.1e} of a stroke only, as happens at "
             "re-entrant corners, where supports change, in narrow slots, and at actuators near the rim."
@@ -195,7 +195,7 @@ def _of_model(s: PlateSummary) -> list[str]:
     if s.linear_path_error is not None and s.deflection_over_thickness > MAX_DEFLECTION:
         remedy = (
             f" {VON_KARMAN} in [plate] has the plate stretch, with up to {MAX_STRETCHING} actuators."
-            if s.linear_path_error > MAX_LINEAR_ERROR
+            if s.linear_path_error > MAX_LINEAR_ERROR and not s.vibration
             else ""
         )
         texts.append(
@@ -209,20 +209,25 @@ def _of_model(s: PlateSummary) -> list[str]:
         )
     if s.largest_strain is not None and s.largest_strain > MAX_STRAIN:
         texts.append(
-            f"The plate is strained by {_strain(s.largest_strain)}{_bending(s)}; silicon breaks near 1 %, and "
+            f"The plate is strained by {_in_percent(s.largest_strain)}{_bending(s)}; silicon breaks near 1 %, and "
             f"{100 * MAX_STRAIN:g} % is prudent."
         )
     if s.quasi_static_error is not None and s.quasi_static_error > MAX_QUASI_STATIC_ERROR:
         texts.append(
             f"The drive is at {s.drive_over_first:.2g} of the plate's first frequency; the quasi-static model holds up "
-            f"to about {MAX_FREQUENCY}. Expect an acceleration error of {_percent(s.quasi_static_error)}. "
-            f"{INERTIA} in [plate] has the plate vibrate."
+            f"to about {MAX_FREQUENCY}. Expect an acceleration error of {_percent(s.quasi_static_error)}."
+            + (
+                f" {INERTIA} in [plate] has the plate vibrate, with up to {MAX_VIBRATING} actuators."
+                if s.theory == "linear"
+                else ""
+            )
         )
     if s.plate_rings:
         texts.append(
             "A drive's velocity or acceleration jumps, as at the end of a sine or cosine, or at its start after a "
             "delay; a ramp avoids both. The plate then rings, by as much as its acceleration jumps, until damping ends "
-            f"it. The quasi-static model leaves that out; {INERTIA} in [plate] has it."
+            "it. The quasi-static model leaves that out"
+            + (f"; {INERTIA} in [plate] has it." if s.theory == "linear" else ".")
         )
     if s.tips:
         texts.append(
@@ -273,7 +278,8 @@ def _dynamics(s: PlateSummary) -> str:
     elif s.quasi_static_error is None:
         dynamics = "it rings where a drive jumps"
     else:
-        remedy = f" ({INERTIA} has none)" if s.quasi_static_error > MAX_QUASI_STATIC_SHARE else ""
+        linear = s.theory == "linear"  # only such a plate can have inertia
+        remedy = f" ({INERTIA} has none)" if linear and s.quasi_static_error > MAX_QUASI_STATIC_SHARE else ""
         dynamics = f"quasi-static error of the acceleration {_percent(s.quasi_static_error)}{remedy}"
     return f"first frequency, actuators held: {s.first_frequency / 1e3:.4g} kHz; {dynamics}"
 
@@ -289,7 +295,7 @@ def _range(ratios: Sequence[float]) -> str:
 
 
 def _top_face(share: float) -> str:
-    added = f"{100 * share:.2g} % of" if share < 2 else f"{share:.3g} times"
+    added = f"{_in_percent(share)} of" if share < 2 else f"{share:.3g} times"
     return f"top face and centre of mass add {added} the mid-plane's pull on the part"
 
 

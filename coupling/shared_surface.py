@@ -12,11 +12,9 @@ from coupling.drives import reach
 from coupling.progress import Progress, silent
 from coupling.run import build_scene
 from coupling.scene import actuator_stiffness, build_plate, stretch_model, vibration_model
-from coupling.stretch import Response, Stretch, StretchModel
+from coupling.stretch import Response, Stretch, StretchModel, room_beyond
 from coupling.vibration import Vibration, VibrationModel, always_running
 from particle import AnyDrive, SurfaceMotion
-
-BEYOND = 0.02  # of its range: how far a drive may pass the heights that a model is good for
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -101,11 +99,10 @@ class StretchedSurface(ActuatedSurface):
     def _strokes_beyond(self, drives: Sequence[AnyDrive]) -> list[str]:
         assert self.model is not None
         low, high = self.model.heights.min(axis=0), self.model.heights.max(axis=0)
-        wrong = []
+        room, wrong = room_beyond(low, high), []
         for k, drive in enumerate(drives):
             least, most = reach(drive)
-            room = BEYOND * max(high[k] - low[k], abs(high[k]), abs(low[k]))
-            if least < low[k] - room or most > high[k] + room:
+            if least < low[k] - room[k] or most > high[k] + room[k]:
                 wrong.append(
                     f"drive {k} must stay within the heights that the stretching plate is solved for, {low[k]:g} to "
                     f"{high[k]:g}; it goes from {least:g} to {most:g}"

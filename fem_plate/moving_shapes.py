@@ -16,7 +16,8 @@ IntArray = NDArray[np.int64]
 class MovingShapes(Shapes):
     """The shapes of N actuators and n further ones.
 
-    functions: N + n.  points: (N, 2) m.  springs: (N,) N/m.  scales: (N + n,), what errors of each are relative to.
+    functions: N + n, of places over `size`.  points: (N, 2) m.  springs: (N,) N/m, inf where rigid, 0 of forces.
+    size: m, half of the longer side.  scales: (N + n,), what errors of each are relative to.
     """
 
     def __init__(

@@ -81,4 +81,7 @@ def _on_platform(parts: Parts, platform: PlatformCase) -> list[Mistake]:
         for key, absent in (("actuators", ((), [])), ("lattice", (None,)))
         if parts.tables.get(key) not in absent
     ]
-    return mistakes + list(platform.mistakes(right_value(RunCase, "duration", parts.tables.get("run"), parts.context)))
+    run = parts.tables.get("run")
+    if right_value(RunCase, "start", run, parts.context) == "steady":
+        mistakes.append((("run", "start"), f'must be "rest" with {PLATFORM}, which does not vibrate; got "steady"'))
+    return mistakes + list(platform.mistakes(right_value(RunCase, "duration", run, parts.context)))

@@ -25,7 +25,7 @@ FloatArray = NDArray[np.float64]
 MAX_DRIVES = 3
 POINTS = (16, 24, 32)  # a drive on the grid, until that is fine enough
 CHECKS = 200  # heights at which the error is measured
-ROOM = 0.02  # of a drive's range: how far the grid goes beyond it
+ROOM = 0.02  # of a drive's range: how far beyond it a model is good for, and the grid goes
 
 
 class Response(NamedTuple):
@@ -49,6 +49,11 @@ class Blend(NamedTuple):
 NO_RESPONSE = Response(np.zeros(0), np.zeros(0), np.zeros((0, ORDER, ORDER)), np.zeros((0, 0)))
 
 
+def room_beyond(low: FloatArray, high: FloatArray) -> FloatArray:
+    """How far beyond the lowest and highest heights (N,) of its drives a model is good for (N,)."""
+    return ROOM * np.maximum(high - low, np.maximum(np.abs(low), np.abs(high)))
+
+
 def find_response(plate: ReducedPlate, heights: FloatArray, limits: FloatArray) -> Response | None:
     """Splines over the box of `heights` (S, N); limits (n + M,): the largest errors, which are measured.
 
@@ -57,7 +62,7 @@ def find_response(plate: ReducedPlate, heights: FloatArray, limits: FloatArray) 
     """
     count, forms = plate.drive_count, plate.forms
     low, high = heights.min(axis=0), heights.max(axis=0)
-    room = ROOM * np.maximum(high - low, np.maximum(np.abs(low), np.abs(high)))
+    room = room_beyond(low, high)
     low, high = low - room, high + room
     if count > MAX_DRIVES or not (high > low).all():
         return None

@@ -19,9 +19,8 @@ Damping = Callable[[FloatArray], FloatArray]
 """The damping ratios (n,) of modes with natural frequencies (n,) [Hz]."""
 
 TOLERANCE = 5e-4  # of the largest acceleration: what half as many responses more may change
-REMAINING = (
-    2.0  # times that: what is still missing, where the error falls as one over the number of responses or faster
-)
+# Times that: what is still missing, where the error falls as one over the number of responses or faster.
+REMAINING = 2.0
 DROPPED = 3e-4  # of it: what the modes that are left out may add together
 MAX_MODES = 400
 SAMPLES, MAX_POINTS = 400, 400

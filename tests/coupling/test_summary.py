@@ -217,8 +217,8 @@ def test_of_a_plate_that_stretches_the_summary_has_errors_and_strain():
     s = replace(s, largest_strain=0.004, **new)
     texts = [text for _, text in report.lines(s)]
     assert (
-        "stretching from 7 full solutions, good to 2.0e-04 (estimated); few shapes for them to 3.0e-05, over time to "
-        "4.0e-06"
+        "stretching from 7 full solutions, good to 2.0e-04 (estimated); the reduced model adds 3.0e-05, its "
+        "pieces in time 4.0e-06"
     ) in texts
     assert any(text.startswith("deflection 1 times the thickness (von Karman's theory), slope") for text in texts)
     assert "strain 0.4 %" in texts

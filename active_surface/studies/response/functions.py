@@ -17,7 +17,8 @@ from fem_plate import Excitation, ExcitedModes, InfluenceShapes
 
 ComplexArray = NDArray[np.complex128]
 
-TOLERANCE = 1e-4  # of the largest response: what more modes may change
+STILL = 1e-6  # of a shape: points that move less stand still
+TOLERANCE = 1e-4  # of the largest of each curve: what more modes may change
 MAX_MODES = 400
 
 
@@ -30,7 +31,7 @@ def frequency_response(
 ) -> tuple[ComplexArray, ExcitedModes, float]:
     """H (points, actuators, frequencies) [m/m, of forces m/N] at points (k, 2) [m] and frequencies (F,) [Hz].
 
-    Also the modes that it is made of, and what the last of them changed, over the largest response.
+    Also the modes that it is made of, and the largest change of any curve by the last of them, over the largest H.
     """
     static = shapes.values(xy)
     before, change = None, np.inf
@@ -38,7 +39,9 @@ def frequency_response(
         modes = excitation.modes()
         answers = _of_modes(static, modes.functions.values(xy / shapes.size), modes, damping, frequencies)
         if before is not None:
-            change = float((np.abs(answers - before).max(axis=2) / np.abs(answers).max(axis=2)).max())
+            known = np.isfinite(answers) & np.isfinite(before)  # not so at resonances without damping
+            largest = max(float(np.abs(answers[known]).max()), STILL * float(shapes.own_heights().max()))
+            change = float(np.abs(answers - before)[known].max()) / largest
         if change < TOLERANCE or excitation.exhausted or len(modes.omega) >= MAX_MODES:
             return answers, modes, change
         before = answers

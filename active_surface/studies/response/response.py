@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.response.functions import ComplexArray, frequency_response
+from active_surface.studies.response.functions import MAX_MODES, STILL, ComplexArray, frequency_response
 from coupling import Progress, silent, whole_file
-from coupling.case import Case, PlateCase
+from coupling.case import SAME_PLACE, Case, PlateCase
 from coupling.scene import actuator_stiffness, build_plate, damping_of
 from fem_plate import Excitation, InfluenceShapes
 from meshes import Outline
@@ -29,7 +29,7 @@ SPAN: Final = 0.05, 5.0  # of the first resonance
 AROUND: Final = np.concatenate([-np.geomspace(20, 0.05, 24), [0.0], np.geomspace(0.05, 20, 24)])  # damping ratios
 NARROWEST: Final = 1e-4  # a damping ratio, for frequencies around a resonance
 MARKED: Final = 1e-3  # of the largest peak of a mode: lower ones are not marked
-MAX_MODES: Final = 400
+MAX_ACTUATORS: Final = MAX_MODES // 2  # so that there are two blocks of responses to compare
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class Response:
     values: ComplexArray  # (k, N, F) m/m, of actuators that push with a force m/N
     resonances: FloatArray  # Hz, of the modes that answer, within the frequencies
     dampings: FloatArray  # the ratio of each
-    error: float  # what the last modes changed, over the largest response
+    error: float  # the largest change of a curve (point, actuator) by the last modes, over its largest
     outline: Outline
     actuators: FloatArray  # (N, 2) m
 
@@ -150,8 +150,8 @@ def response(
     Raises
     ------
     ValueError
-        The case has a platform, a plate without density, or one that stretches; a point lies beyond the rim; or
-        frequencies make no sense.
+        The case has a platform, more than 200 actuators, or a plate that has no density or stretches; a point lies
+        beyond the rim; or frequencies make no sense.
     """
     plate_case = _checked(case)
     given = None if frequencies is None else np.atleast_1d(np.asarray(frequencies, dtype=float))
@@ -174,11 +174,18 @@ def _checked(case: Case) -> PlateCase:
         wrong.append("plate.density of response must be given; got none")
     if case.plate.theory != "linear":
         wrong.append(f'plate.theory of response must be "linear"; got "{case.plate.theory}"')
-    if len(case.actuators) > MAX_MODES // 2:
-        wrong.append(f"actuators of response must be at most {MAX_MODES // 2}; got {len(case.actuators)}")
+    if len(case.actuators) > MAX_ACTUATORS:
+        wrong.append(f"actuators of response must be at most {MAX_ACTUATORS}; got {len(case.actuators)}")
     if wrong:
         raise ValueError("; ".join(f"Input {text}" for text in wrong))
     return case.plate
+
+
+def _check_points(xy: FloatArray, shapes: InfluenceShapes) -> None:
+    beyond = shapes.outline.gap(xy) < -SAME_PLACE * shapes.size
+    if beyond.any():
+        places = ", ".join(f"({x * 1e6:g}, {y * 1e6:g}) um" for x, y in xy[beyond])
+        raise ValueError(f"Input points of response must lie on the plate; got {places}")
 
 
 def _found(
@@ -196,7 +203,7 @@ def _found(
         places = [actuator.position for actuator in case.actuators]
         shapes = plate.influence(places, actuator_stiffness(case), tell=tell)
         assert isinstance(shapes, InfluenceShapes)
-        shapes.evaluate(xy)  # refuses points beyond the rim
+        _check_points(xy, shapes)
     with progress("Finding the modes"):
         section = plate.section
         assert section.density is not None
@@ -204,7 +211,8 @@ def _found(
         for _ in range(2):
             excitation.grow()
         first = float(excitation.modes().frequencies[0])
-        low, high = lowest or SPAN[0] * first, highest or SPAN[1] * first
+        low = SPAN[0] * first if lowest is None else lowest
+        high = SPAN[1] * first if highest is None else highest
         if given is None and not 0 < low < high < np.inf:
             raise ValueError(
                 f"Input lowest of response must be positive and below the highest; got {low:g} Hz and {high:g} Hz"
@@ -214,13 +222,14 @@ def _found(
         ratios = damping(modes.frequencies)
         peaks = np.abs(modes.functions.values(xy / shapes.size)).max(axis=0) * np.abs(modes.participation).max(axis=1)
         within = (modes.frequencies >= chosen.min()) & (modes.frequencies <= chosen.max())
-        marked = within & (peaks > MARKED * peaks.max())
+        marked = within & (peaks > max(MARKED * peaks.max(), STILL * shapes.own_heights().max()))
         found = Response(
             case, xy, chosen, values, modes.frequencies[marked], ratios[marked], error, shapes.outline, shapes.points
         )
         if given is not None:
             return found
         near = found.resonances[:, None] * (1 + np.maximum(found.dampings, NARROWEST)[:, None] * AROUND)
+        near = near[(AROUND != 0) | (found.dampings[:, None] > 0)]  # without damping it has no bound
         finer = np.unique(np.concatenate([chosen, near[(near > low) & (near < high)]]))
         values, _, error = frequency_response(shapes, excitation, damping, xy, finer)
         return replace(found, frequencies=finer, values=values, error=max(error, found.error) if error < 1 else error)

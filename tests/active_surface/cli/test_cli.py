@@ -122,7 +122,7 @@ def pressed(command, cache):
 def test_ctrl_c_ends_a_command_that_compiles(command, file, end, tmp_path):
     words = [command, EXAMPLES / file, "--output", tmp_path / "out"]
     line, code, output, errors, seconds = pressed(words, tmp_path / "cache")
-    assert line == "Compiling the kernels (once, a minute or two)\n"
+    assert line == "Compiling the kernels (once, some minutes)\n"
     assert (code, output, errors) == (130, "", end) and seconds < LATEST
     assert ctrl_c.PATIENCE + ctrl_c.EXIT < 3
     # No result; a sweep may have begun the folder from which it goes on.

@@ -119,3 +119,11 @@ def test_a_table_of_damping_goes_on_beyond_its_ends():
     plate = python_case().plate.model_copy(update={"damping": ((20e3, 0.02), (80e3, 0.01))})
     ratios = damping_of(plate)(np.array([1e3, 20e3, 50e3, 80e3, 1e6]))
     assert ratios == pytest.approx([0.02, 0.02, 0.015, 0.01, 0.01], rel=1e-12)
+
+
+def test_a_platform_has_no_steady_state(tmp_path):
+    platform = '[plate]\nshape = "platform"\nmotion.z = { stroke = "1 um", frequency = "900 Hz" }\n'
+    text = changed(STEADY)
+    text = platform + text[text.index("[part]") :]
+    (problem,) = problems(tmp_path, text)
+    assert 'run.start must be "rest" with shape = "platform", which does not vibrate; got "steady"' in problem
