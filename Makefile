@@ -61,6 +61,7 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/with_ngsolve_large_deflection.py
 	$(BIN)/python benchmarks/in_plane.py
 	$(BIN)/python benchmarks/corrections.py
+	$(BIN)/python benchmarks/stretching_sweeps.py
 	$(BIN)/python benchmarks/stretched_paths.py
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many

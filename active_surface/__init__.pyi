@@ -28,6 +28,7 @@ from fem_plate import (
     PlateShapes as PlateShapes,
     Shapes as Shapes,
     analytic as analytic,
+    backbone as backbone,
     neighbour_coupling as neighbour_coupling,
     save_influence as save_influence,
 )

@@ -17,6 +17,7 @@ FloatArray = NDArray[np.float64]
 SAMPLES, MAX_BREAKPOINTS = 201, 101  # moments at which extremes are sought
 MAX_ADDED, ENOUGH = 256, 0.99  # moments added for extremes that lie elsewhere; this share of an extreme is enough
 GOLDEN = (5**0.5 - 1) / 2
+PARTS = 8  # of a piece, between which its largest acceleration is sought
 FRAMES_PER_CYCLE = 20
 FRAMES = (100, 1000)  # the fewest and the most unless the case states a number
 MAX_HEIGHTS = 3_000_000  # frames times drives, beyond the fewest frames: it bounds the files of large arrays
@@ -85,6 +86,14 @@ def _marks(drive: AnyDrive) -> tuple[FloatArray, FloatArray]:
     part = np.array([0.0, 0.5, 1.0])
     times = drive.delay + (pieces.since[:, None] + pieces.scale[:, None] * part).ravel()
     return times, (pieces.coefficients @ np.power.outer(part, np.arange(ORDER)).T).ravel()
+
+
+def fastest_acceleration(drive: AnyDrive) -> float:
+    """The largest acceleration [m/s^2] at points within its pieces: strokes have none at their ends and middles."""
+    pieces, part = drive.segments(), np.linspace(0.0, 1.0, PARTS + 1)
+    powers = np.arange(2, ORDER)
+    bends = (pieces.coefficients[:, 2:] * powers * (powers - 1)) @ np.power.outer(part, powers - 2).T
+    return float(np.abs(bends / pieces.scale[:, None] ** 2).max())
 
 
 def travel(drive: AnyDrive) -> float:

@@ -15,7 +15,9 @@ from coupling.drives import moments, stroke_heights, travel
 from coupling.scene import PlateScene
 from coupling.steepest import around, circles, steepest
 from coupling.stretch import Stretch
-from fem_plate import InfluenceShapes, PatchedShapes, Plate, PlateShapes
+from coupling.tipping import states_adhesion, tipping_of
+from coupling.vibration import PIECES, Vibration
+from fem_plate import InfluenceShapes, MovingShapes, PatchedShapes, Plate, PlateShapes, Shapes
 from meshes import Outline
 from particle import AnyDrive, ContactSamples, SurfaceMotion, Trajectory
 from particle.friction import Contact
@@ -40,6 +42,16 @@ class StretchError:
 
 
 @dataclass(frozen=True)
+class VibrationFigures:
+    """The modes of a plate with inertia; errors are of the surface's acceleration, over its largest."""
+
+    modes: int
+    highest: float  # Hz
+    mode_error: float  # estimated, of having no more of them
+    piece_error: float  # bounded, of their drives, piece by piece in time
+
+
+@dataclass(frozen=True)
 class PlateFigures:
     """What a plate adds to the summary."""
 
@@ -50,6 +62,7 @@ class PlateFigures:
     surface_error: float  # of unit shapes' fit, measured
     stretch_error: StretchError | None  # None: linear theory
     stretch_solutions: int | None  # full solutions that the few shapes are taken from; None likewise
+    vibration: VibrationFigures | None  # None: without inertia
     deflection_over_thickness: float
     linear_path_error: float | None  # relative, of small-deflection theory; None: von Karman's
     largest_slope: float
@@ -58,7 +71,7 @@ class PlateFigures:
         float | None
     )  # what the top face and the centre of mass add to the pull on the part, over the rest; None: there is none
     tipping: float | None  # largest shift of the pressure centre over half the part's size; None: size not given
-    tips: bool  # whether it is more than 1, without adhesion to hold the part
+    tips: bool  # whether it is more than 1, and the friction law states the adhesion
     first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
     drive_over_first: float | None  # fastest drive over that frequency
     drives_over_first: tuple[float, float] | None  # the slowest and the fastest drive over it
@@ -74,18 +87,20 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     plate, shapes, drives, surface = scene.plate, scene.shapes, scene.lifts, scene.surface
     stretch = scene.stretch
     if stretch is None:
-        slope, deflection, curvature = _extremes(shapes, drives, case.run.duration, plate.section.thickness / 2)
+        moving = scene.moving_shapes, scene.moving_drives
+        slope, deflection, curvature = _extremes(*moving, case.run.duration, plate.section.thickness / 2)
         strain = None if curvature is None else plate.section.thickness / 2 * curvature
     else:
         deflection, slope, strain = stretch.extremes
     thickness = plate.section.thickness
     over_thickness = deflection / thickness
-    contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
-    tipping = _tipping(case, contact)
+    times = moments(drives, float(trajectory.time[-1]))
+    contact = trajectory.contact_at(times)
+    tipping = tipping_of(case, trajectory, friction, times)
     first = _first_frequency(plate, shapes)
-    moving = [drive for drive in drives if travel(drive) > 0] or drives
-    rings = bool((surface.drives.jump[: len(drives), :2] > 0).any())
-    strokes = None if first is None else _range([1 / drive.stroke_time / first for drive in moving])
+    driven = [drive for drive in drives if travel(drive) > 0] or drives
+    rings = scene.vibration is None and bool((surface.drives.jump[: len(drives), :2] > 0).any())
+    strokes = None if first is None else _range([1 / drive.stroke_time / first for drive in driven])
     return PlateFigures(
         theory="linear" if stretch is None else "von-karman",
         plate_unknowns=shapes.unknowns,
@@ -94,19 +109,20 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         surface_error=surface.error,
         stretch_error=None if stretch is None else _stretch_error(stretch),
         stretch_solutions=None if stretch is None else stretch.solutions,
+        vibration=None if scene.vibration is None else _vibration(scene.vibration),
         deflection_over_thickness=over_thickness,
         linear_path_error=LINEAR_ERROR * over_thickness**2 if stretch is None else None,
         largest_slope=slope,
         largest_strain=strain,
         top_face_share=_top_face_share(contact),
         tipping=tipping,
-        tips=tipping is not None and tipping > 1 and friction.law.pull_off == 0,
+        tips=tipping is not None and tipping > 1 and states_adhesion(friction),
         first_frequency=first,
-        drive_over_first=None if first is None else max(drive.frequency for drive in moving) / first,
-        drives_over_first=None if first is None else _range([drive.frequency / first for drive in moving]),
+        drive_over_first=None if first is None else max(drive.frequency for drive in driven) / first,
+        drives_over_first=None if first is None else _range([drive.frequency / first for drive in driven]),
         strokes_over_first=strokes,
         plate_rings=rings,
-        quasi_static_error=None if rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
+        quasi_static_error=None if scene.vibration or rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force)))),
     )
@@ -114,6 +130,11 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
 
 def _stretch_error(stretch: Stretch) -> StretchError:
     return StretchError(stretch.mesh_error, stretch.reduction_error, stretch.piece_error)
+
+
+def _vibration(vibration: Vibration) -> VibrationFigures:
+    frequencies = vibration.frequencies
+    return VibrationFigures(len(frequencies), float(frequencies.max()), vibration.model.chosen.error, PIECES)
 
 
 def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:
@@ -143,9 +164,7 @@ def _hold_residual(shapes: PlateShapes) -> float:
     return float(np.abs(heights - np.eye(len(shapes.points))[held]).max())
 
 
-def _extremes(
-    shapes: PlateShapes, drives: Sequence[AnyDrive], end: float, off: float
-) -> tuple[float, float, float | None]:
+def _extremes(shapes: Shapes, drives: Sequence[AnyDrive], end: float, off: float) -> tuple[float, float, float | None]:
     """The largest slope, deflection [m] and curvature [1/m] over the time asked for, wherever the run ended.
 
     They are those at the mesh's points and on circles around the actuators, where the slope is largest. Curvatures are
@@ -153,9 +172,10 @@ def _extremes(
     neighbourhood of those where they must be.
     """
     heights = stroke_heights(drives, moments(drives, end))
-    if not isinstance(shapes, InfluenceShapes):
+    if isinstance(shapes, PatchedShapes):
         return *steepest(shapes, heights), None
-    steep = np.concatenate([shapes.model.mesh.points, around(shapes)])
+    assert isinstance(shapes, InfluenceShapes | MovingShapes)
+    steep = np.concatenate([shapes.functions.space.points * shapes.size, around(shapes)])
     points = np.concatenate([steep, circles(shapes, off)])
     value, gradient, hessian = shapes.evaluate(points)
     value, gradient = value[: len(steep)], gradient[: len(steep)]
@@ -189,17 +209,6 @@ def _top_face_share(contact: ContactSamples) -> float | None:
     """
     rest, added = (float(np.sqrt(np.nanmean(np.square(pull)))) for pull in (contact.point_pull, contact.added_pull))
     return added / rest if rest > 0 else None
-
-
-def _tipping(case: Case, contact: ContactSamples) -> float | None:
-    """The largest shift of the pressure centre over half the part's size: friction times the centre's height over N."""
-    size = case.footprint
-    if size is None:
-        return None
-    pressed = contact.normal_force > 0
-    friction = np.linalg.norm(contact.friction[pressed], axis=1)
-    shift = case.part.centre_height * friction / contact.normal_force[pressed]
-    return float(shift.max(initial=0.0)) / (size / 2)
 
 
 def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: float) -> float:

@@ -14,7 +14,10 @@ from typing import Any
 ProgressCallback = Callable[[int, int], object]  # gets how many of the stage's pieces are done, and of how many
 Progress = Callable[[str], AbstractContextManager[ProgressCallback]]
 
+_open_bars: list[_Bar] = []
+
 PATIENCE = 2.0  # s of silence
+PARTS = 100  # of what is done before pieces are counted
 COMPILING = "Compiling the kernels (once, a minute or two)"
 
 
@@ -25,6 +28,12 @@ def no_progress(done: int, of: int) -> None:
 def silent(stage: str) -> AbstractContextManager[ProgressCallback]:
     """No progress."""
     return nullcontext(no_progress)
+
+
+def doing(text: str, share: float) -> None:
+    """Say on the bars that are open what is being done, and how much of it is, at a point that knows none of them."""
+    for bar in list(_open_bars):
+        bar.show(text, share)
 
 
 class _Bar:
@@ -46,6 +55,12 @@ class _Bar:
             self._timer = threading.Timer(PATIENCE, self._bar.start)
             self._timer.daemon = True
             self._timer.start()
+        _open_bars.append(self)
+
+    def show(self, text: str, share: float) -> None:
+        """Show what is being done."""
+        if self._bar:
+            self._bar.update(self._task, description=text)
 
     def _announce(self) -> None:
         if self._bar:
@@ -54,6 +69,7 @@ class _Bar:
             print(COMPILING, file=sys.stderr, flush=True)
 
     def __exit__(self, *_: object) -> None:
+        _open_bars.remove(self)
         self._announcing.close()
         if self._bar:
             self._timer.cancel()
@@ -116,6 +132,12 @@ class CountBar(_Bar):
     def __enter__(self) -> ProgressCallback:
         self._start()
         return self._tell if self._bar else no_progress
+
+    def show(self, text: str, share: float) -> None:
+        """Show what is being done; before the first count also how much of it."""
+        if self._bar:
+            done = {} if self._begun else {"completed": round(PARTS * share), "total": PARTS}
+            self._bar.update(self._task, description=text, **done)
 
     def _tell(self, done: int, of: int) -> None:
         assert self._bar

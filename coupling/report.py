@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coupling.case import MAX_STRETCHING, VON_KARMAN
+from coupling.case import INERTIA, MAX_STRETCHING, VON_KARMAN
 from coupling.measured import MotionFit
-from coupling.plate_figures import StretchError
+from coupling.plate_figures import StretchError, VibrationFigures
 from coupling.summary import PlateSummary, Summary
 
 MICRO, MILLI = 1e6, 1e3
@@ -18,8 +18,10 @@ MAX_SLOPE = 0.2
 MAX_STRAIN = 0.005  # silicon breaks near twice that
 MAX_CURVATURE = 0.1  # of one over the part's size
 MAX_QUASI_STATIC_ERROR = 0.05  # of the acceleration
+MAX_QUASI_STATIC_SHARE = 0.01  # of the acceleration: beyond it a run names the line that has inertia
 MAX_FREQUENCY = 0.015  # of the first one: strokes up and down reach that error there
 MAX_NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
+MAX_MODE_ERROR = 1e-2  # of the acceleration of a plate with inertia
 MAX_STRETCH_ERROR = 1e-3  # of the deflection of a plate that stretches
 MIN_STEPS_PER_CYCLE = 8
 GROWTH = 100  # of the error of one step, that is no sign of chaos
@@ -60,6 +62,7 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
                 f"held at the actuators to {s.hold_residual:.1e}",
             ),
             *([("", _stretching(s.stretch_error, s.stretch_solutions or 0))] if s.stretch_error else []),
+            *([("", _vibrating(s.vibration))] if s.vibration else []),
             ("surface", f"fitted to {s.surface_error:.1e} of a unit stroke{tabulated}"),
         ]
     else:
@@ -88,7 +91,8 @@ def _model(s: PlateSummary) -> list[tuple[str, str]]:
         ("", f"the part's own force deflects the plate by {s.part_sag * MICRO:.1e} um"),
     ]
     if s.tipping:
-        rows.append(("", f"centre of pressure shifts by {s.tipping:.2g} times half the part's size"))
+        unless = ", if nothing adheres" if s.tipping > 1 and not s.tips else ""
+        rows.append(("", f"centre of pressure shifts by {s.tipping:.2g} times half the part's size{unless}"))
     if s.part_curvature is not None:
         rows.append(("", f"part size times curvature {s.part_curvature:.2g}"))
     return rows
@@ -114,6 +118,14 @@ def _stretching(error: StretchError, solutions: int) -> str:
     return (
         f"stretching from {_count(solutions, 'full solution')}, good to {error.mesh:.1e} (estimated); few shapes for "
         f"them to {error.reduction:.1e}, over time to {error.pieces:.1e}"
+    )
+
+
+def _vibrating(figures: VibrationFigures) -> str:
+    """How exact a plate with inertia is."""
+    return (
+        f"{_count(figures.modes, 'mode')} up to {figures.highest / 1e3:.4g} kHz; acceleration good to "
+        f"{figures.mode_error:.1e} (estimated), over time to {figures.piece_error:.1e}"
     )
 
 
@@ -160,6 +172,11 @@ def _of_solver(s: PlateSummary) -> list[str]:
             f"The plate's shapes are accurate to {s.plate_error:.1e} of a stroke only; reduce plate.cell_size, or move "
             "actuators away from the rim."
         )
+    if s.vibration and s.vibration.mode_error > MAX_MODE_ERROR:
+        texts.append(
+            f"The plate's acceleration is accurate to {s.vibration.mode_error:.1e} of its largest only, as a drive "
+            "whose velocity or acceleration jumps excites modes without end; a ramp avoids that."
+        )
     if s.stretch_error and (worst := max(vars(s.stretch_error).values())) > MAX_STRETCH_ERROR:
         texts.append(
             f"The plate that stretches is accurate to {worst:.1e} of its deflection only; reduce "
@@ -198,13 +215,14 @@ def _of_model(s: PlateSummary) -> list[str]:
     if s.quasi_static_error is not None and s.quasi_static_error > MAX_QUASI_STATIC_ERROR:
         texts.append(
             f"The drive is at {s.drive_over_first:.2g} of the plate's first frequency; the quasi-static model holds up "
-            f"to about {MAX_FREQUENCY}. Expect an acceleration error of {_percent(s.quasi_static_error)}."
+            f"to about {MAX_FREQUENCY}. Expect an acceleration error of {_percent(s.quasi_static_error)}. "
+            f"{INERTIA} in [plate] has the plate vibrate."
         )
     if s.plate_rings:
         texts.append(
             "A drive's velocity or acceleration jumps, as at the end of a sine or cosine, or at its start after a "
             "delay; a ramp avoids both. The plate then rings, by as much as its acceleration jumps, until damping ends "
-            "it. The model leaves that out."
+            f"it. The quasi-static model leaves that out; {INERTIA} in [plate] has it."
         )
     if s.tips:
         texts.append(
@@ -250,10 +268,14 @@ def _unit(s: Summary) -> tuple[str, float]:
 def _dynamics(s: PlateSummary) -> str:
     if s.first_frequency is None or s.drive_over_first is None:
         return "first frequency unknown: plate.density is not given"
-    error = None if s.quasi_static_error is None else _percent(s.quasi_static_error)
-    return f"first frequency, actuators held: {s.first_frequency / 1e3:.4g} kHz; " + (
-        f"quasi-static error of the acceleration {error}" if error else "it rings where a drive jumps"
-    )
+    if s.vibration:
+        dynamics = "its inertia counts"
+    elif s.quasi_static_error is None:
+        dynamics = "it rings where a drive jumps"
+    else:
+        remedy = f" ({INERTIA} has none)" if s.quasi_static_error > MAX_QUASI_STATIC_SHARE else ""
+        dynamics = f"quasi-static error of the acceleration {_percent(s.quasi_static_error)}{remedy}"
+    return f"first frequency, actuators held: {s.first_frequency / 1e3:.4g} kHz; {dynamics}"
 
 
 def _drives(s: PlateSummary) -> str:

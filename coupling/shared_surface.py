@@ -3,26 +3,73 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
+from threading import Lock
 from typing import Any
 
 from coupling.case import Case, PlateCase
 from coupling.drives import reach
 from coupling.progress import Progress, silent
 from coupling.run import build_scene
-from coupling.scene import build_plate, stretch_model
-from coupling.stretch import Stretch, StretchModel
+from coupling.scene import actuator_stiffness, build_plate, stretch_model, vibration_model
+from coupling.stretch import Response, Stretch, StretchModel
+from coupling.vibration import Vibration, VibrationModel, always_running
 from particle import AnyDrive, SurfaceMotion
 
 BEYOND = 0.02  # of its range: how far a drive may pass the heights that a model is good for
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StretchedSurface(SurfaceMotion):
-    """The moving surface of a plate that stretches: the drives of its actuators determine all others."""
+class ActuatedSurface(SurfaceMotion):
+    """A moving surface with more drives than actuators, whose drives determine all others."""
+
+    def drive_faults(
+        self, given: Mapping[str, Sequence[AnyDrive]], in_plane: Mapping[str, Sequence[AnyDrive]] | None = None
+    ) -> list[str]:
+        if in_plane is not None:
+            return super().drive_faults(given, in_plane)
+        count = len(self.sources)
+        return [
+            f"Input {name} must be one an actuator, {count}; got {len(row)}"
+            for name, row in given.items()
+            if len(row) != count
+        ]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class VibratingSurface(ActuatedSurface):
+    """The moving surface of a plate with inertia."""
+
+    model: VibrationModel | None = None
+
+    @staticmethod
+    def under(
+        model: VibrationModel, drives: Sequence[AnyDrive], tolerance: float, half_thickness: float
+    ) -> VibratingSurface:
+        """The surface of a model under drives, one an actuator."""
+        surface = Vibration.under(model, drives).surface(tolerance, half_thickness)
+        return VibratingSurface(**{one.name: getattr(surface, one.name) for one in fields(SurfaceMotion)}, model=model)
+
+    def driven_by(self, drives: Sequence[AnyDrive], in_plane_drives: Sequence[AnyDrive] = ()) -> SurfaceMotion:
+        """The same surface with other drives of its actuators, sharing its cells; raises as `SurfaceMotion` does.
+
+        Also ValueError where a mode without damping resonates in the steady state.
+        """
+        assert self.model is not None
+        if wrong := self.drive_faults({"drives": drives}):
+            raise ValueError("; ".join(wrong))
+        lifts = [always_running(drive) for drive in drives] if self.model.steady else drives
+        return super().driven_by([*lifts, *self.model.modal_drives(lifts)])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StretchedSurface(ActuatedSurface):
+    """The moving surface of a plate that stretches."""
 
     model: StretchModel | None = None
     end: float = 0.0  # s, of the time that is needed
+
+    _lock: Lock = field(default_factory=Lock)  # of the response
 
     @staticmethod
     def under(
@@ -41,20 +88,15 @@ class StretchedSurface(SurfaceMotion):
         assert self.model is not None
         if wrong := self.drive_faults({"drives": drives}) or self._strokes_beyond(drives):
             raise ValueError("; ".join(wrong))
-        corrections = self.model.corrections(drives, self.end)
+        corrections = self.model.corrections(drives, self.end, self._response)
         return super().driven_by([*drives, *corrections.drives], corrections.in_plane)
 
-    def drive_faults(
-        self, given: Mapping[str, Sequence[AnyDrive]], in_plane: Mapping[str, Sequence[AnyDrive]] | None = None
-    ) -> list[str]:
-        if in_plane is not None:
-            return super().drive_faults(given, in_plane)
-        count = len(self.sources)
-        return [
-            f"Input {name} must be one an actuator, {count}; got {len(row)}"
-            for name, row in given.items()
-            if len(row) != count
-        ]
+    @property
+    def _response(self) -> Response | None:
+        """What the plate answers to heights, found once for all drives."""
+        assert self.model is not None
+        with self._lock:
+            return self.model.response
 
     def _strokes_beyond(self, drives: Sequence[AnyDrive]) -> list[str]:
         assert self.model is not None
@@ -71,9 +113,9 @@ class StretchedSurface(SurfaceMotion):
         return wrong
 
 
-def stretches(case: Case) -> bool:
-    """Whether a case has a plate that stretches."""
-    return isinstance(case.plate, PlateCase) and case.plate.theory == "von-karman"
+def answers_drives(case: Case) -> bool:
+    """Whether a case has a plate that does more than its actuators hold it to: it stretches or vibrates."""
+    return isinstance(case.plate, PlateCase) and (case.plate.theory == "von-karman" or case.plate.inertia)
 
 
 def shared_surface(
@@ -81,17 +123,38 @@ def shared_surface(
 ) -> SurfaceMotion:
     """The moving surface of a case whose drives are exchanged by `driven_by`.
 
-    sets: of drives that stand for all that are to come, one an actuator each; they count where the plate stretches.
+    sets: of drives that stand for all that are to come, one an actuator each; they count where the plate stretches or
+        vibrates.
     duration: s, of the longest run.
     Raises ValueError where the plate cannot be solved, or its heights take too many full solutions.
     """
     plate = case.plate
-    if not isinstance(plate, PlateCase) or plate.theory == "linear":
+    if not isinstance(plate, PlateCase) or not answers_drives(case):
         return build_scene(case, progress).surface
     longest = case.model_copy(update={"run": case.run.model_copy(update={"duration": duration})})
+    top = plate.thickness / 2 if plate.top_face else 0.0
+    options: dict[str, Any] = {"tolerance": case.run.surface_tolerance, "half_thickness": top}
+    if plate.inertia:
+        return _vibrating(longest, plate, sets, options, progress)
     with progress("Solving the stretching plate") as tell:
         model = stretch_model(longest, plate, build_plate(plate), sets, tell)
     with progress("Fitting the surface"):
-        top = plate.thickness / 2 if plate.top_face else 0.0
-        options: dict[str, Any] = {"tolerance": case.run.surface_tolerance, "half_thickness": top}
         return StretchedSurface.under(model, sets[0], duration, **options)
+
+
+def _vibrating(
+    case: Case,
+    plate_case: PlateCase,
+    sets: Sequence[Sequence[AnyDrive]],
+    options: Mapping[str, Any],
+    progress: Progress,
+) -> VibratingSurface:
+    steady = case.run.start == "steady"
+    running = [[always_running(drive) for drive in drives] if steady else list(drives) for drives in sets]
+    with progress("Solving the plate") as tell:
+        plate = build_plate(plate_case)
+        shapes = plate.influence([one.position for one in case.actuators], actuator_stiffness(case), tell=tell)
+    with progress("Finding the modes") as tell:
+        model = vibration_model(case, plate_case, plate, shapes, running, tell)
+    with progress("Fitting the surface"):
+        return VibratingSurface.under(model, running[0], **options)

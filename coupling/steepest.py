@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 
-from fem_plate import PlateShapes
+from fem_plate import Shapes
 
 FloatArray = NDArray[np.float64]
 
@@ -17,7 +17,7 @@ AROUND = 8  # points on each circle around one
 RADII = 0.1, 0.3, 0.5  # of circles, in distances to the nearest other actuator
 
 
-def steepest(shapes: PlateShapes, heights: FloatArray) -> tuple[float, float]:
+def steepest(shapes: Shapes, heights: FloatArray) -> tuple[float, float]:
     """The largest slope and deflection [m] at moments with heights (k, N) [m] of the drives.
 
     Between neighbours, or an actuator and the rim, the mean slope follows from their heights. Where it is largest, in
@@ -47,23 +47,23 @@ def steepest(shapes: PlateShapes, heights: FloatArray) -> tuple[float, float]:
     return largest, highest
 
 
-def around(shapes: PlateShapes) -> FloatArray:
+def around(shapes: Shapes) -> FloatArray:
     """Points (n, 2) [m] on circles around all actuators, as small as the next actuator or the rim is near."""
     others = cKDTree(shapes.points).query(shapes.points, k=[2])[0][:, 0]  # inf where there is none
     return _circles(shapes, np.arange(len(shapes.points)), np.minimum(others, shapes.outline.gap(shapes.points)))
 
 
-def circles(shapes: PlateShapes, radius: float) -> FloatArray:
+def circles(shapes: Shapes, radius: float) -> FloatArray:
     """Points (n, 2) [m] of the plate on circles of a radius [m] around all actuators."""
     return _stars(shapes, shapes.points, np.full(len(shapes.points), radius), (1.0,))
 
 
-def _circles(shapes: PlateShapes, centres: NDArray[np.int64], nearest: FloatArray) -> FloatArray:
+def _circles(shapes: Shapes, centres: NDArray[np.int64], nearest: FloatArray) -> FloatArray:
     """Points (n, 2) [m] of the plate around actuators in these rows, whose nearest neighbours are so far [m]."""
     return _stars(shapes, shapes.points[centres], nearest, RADII)
 
 
-def _stars(shapes: PlateShapes, centres: FloatArray, lengths: FloatArray, radii: Sequence[float]) -> FloatArray:
+def _stars(shapes: Shapes, centres: FloatArray, lengths: FloatArray, radii: Sequence[float]) -> FloatArray:
     """Points (n, 2) [m] of the plate on circles around centres (k, 2), with radii in lengths (k,) [m] of each."""
     angle = 2 * np.pi * np.arange(AROUND) / AROUND
     star = np.multiply.outer(radii, np.stack([np.cos(angle), np.sin(angle)], axis=1)).reshape(-1, 2)

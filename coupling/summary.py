@@ -11,7 +11,7 @@ import numpy as np
 from coupling.case import Case
 from coupling.drives import first_jump, frame_times
 from coupling.measured import MotionFit
-from coupling.plate_figures import PlateFigures, StretchError, plate_figures
+from coupling.plate_figures import PlateFigures, StretchError, VibrationFigures, plate_figures
 from coupling.scene import PlateScene, Scene
 from particle import AnyDrive, EventKind, State, Trajectory
 from particle.friction import Contact
@@ -74,6 +74,8 @@ def summary_of(figures: Mapping[str, Any]) -> Summary:
     plain["motion_fits"] = tuple(MotionFit(**fit) for fit in plain["motion_fits"])
     if plain["stretch_error"] is not None:
         plain["stretch_error"] = StretchError(**plain["stretch_error"])
+    if plain["vibration"] is not None:
+        plain["vibration"] = VibrationFigures(**plain["vibration"])
     kind = Summary if plain["plate_unknowns"] is None else PlateSummary
     return kind(**{field.name: plain[field.name] for field in fields(kind)})
 

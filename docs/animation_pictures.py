@@ -9,13 +9,13 @@ from active_surface.views import still
 from coupling import read_case, run_case
 
 ROOT = Path(__file__).parent.parent
-MOMENT = 2.2e-3  # s
+MOMENT = 63.5e-3  # s
 
 
 def draw_animation() -> None:
     with TemporaryDirectory() as folder:
-        run_case(read_case(ROOT / "examples/two_actuators.toml"), output=folder)
-        picture = still(Path(folder) / "two_actuators", MOMENT)
+        run_case(read_case(ROOT / "examples/transport.toml"), output=folder)
+        picture = still(Path(folder) / "transport", MOMENT)
     Image.fromarray(picture).save(ROOT / "docs/animation.png", optimize=True)
 
 

@@ -21,9 +21,9 @@ def draw_pages() -> None:
         print("there is no chromium: docs/page.png and docs/page_sweep.png stay as they are")
         return
     with TemporaryDirectory() as folder:
-        run_case(read_case(ROOT / "examples/two_actuators.toml"), output=folder)
-        page = write_run_page(read_run(Path(folder, "two_actuators")), Path(folder, "run.html"))
-        _shoot(chromium, f"{page.as_uri()}#t=3.4", ROOT / "docs/page.png")
+        run_case(read_case(ROOT / "examples/transport.toml"), output=folder)
+        page = write_run_page(read_run(Path(folder, "transport")), Path(folder, "run.html"))
+        _shoot(chromium, f"{page.as_uri()}#t=63.5", ROOT / "docs/page.png")
         study = read_study(ROOT / "examples/studies/frequency_stroke.toml")
         sweep = write_study_page(study, run_study(study).dataset, Path(folder, "sweep.html"))
         _shoot(chromium, sweep.as_uri(), ROOT / "docs/page_sweep.png")

@@ -31,7 +31,7 @@ ROOT = Path(__file__).parent.parent
 SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6, density=2330)
 MICRO = 1e6
 PRESSURE, PITCH, ACROSS = 1e3, 100e-6, 100  # Pa, m, actuators along a side
-CORNER = [(-1e-4, -1e-4), (0.0, -1e-4), (1e-4, -1e-4), (1e-4, 0.0), (1e-4, 1e-4)]  # m
+CORNER = [(230e-6, 240e-6), (200e-6, 240e-6), (200e-6, 210e-6), (200e-6, 180e-6)]  # m
 COLOURS = {"clamped": "black", "simply-supported": "#1b4f9c", "free": "#c8371b"}
 
 
@@ -67,7 +67,7 @@ def draw_aims() -> None:
         copy(Path(folder) / "around_the_corner_plan.png", ROOT / "docs/plan.png")
         run_case(read_case(Path(folder) / "around_the_corner_planned.toml"), folder)
         film = ROOT / "docs/plan.gif"
-        animate(Path(folder) / "around_the_corner_planned", film, size="640x400", fps=12, slow_motion=120)
+        animate(Path(folder) / "around_the_corner_planned", film, size="640x400", fps=12, slow_motion=200)
 
 
 def draw_plates() -> None:

@@ -16,8 +16,8 @@ from particle import Drive, SurfaceMotion, Trajectory, simulate
 DOCS = Path(__file__).parent
 PAGE = DOCS / "howto/waves.md"
 WAVELENGTH, RAMP = 4e-3, 3  # m, cycles; of examples/wave.toml
-FREQUENCIES = (60, 120, 180, 240, 300, 340, 360, 370, 380, 390)  # Hz
-DRAWN = (180, 300, 370)  # Hz, of the paths in the picture
+FREQUENCIES = (65, 130, 195, 255, 320, 360, 380, 390, 400, 410)  # Hz
+DRAWN = (195, 320, 390)  # Hz, of the paths in the picture
 SETTLED, CYCLES = 20, 100  # cycles of the wave that are left out, and the last one
 MILLI, MICRO, G = 1e3, 1e6, 9.80665
 

@@ -16,6 +16,7 @@ __all__ = [  # public; the stub beside has also what other packages of the progr
     "PlateShapes",
     "Shapes",
     "analytic",
+    "backbone",
     "neighbour_coupling",
     "save_influence",
 ]

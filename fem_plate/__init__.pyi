@@ -2,6 +2,7 @@ from . import analytic as analytic
 from .arrays.patched import PatchedShapes as PatchedShapes, PlateShapes as PlateShapes
 from .deflection import Deflection as Deflection
 from .export import neighbour_coupling as neighbour_coupling, save_influence as save_influence
+from .large_deflection.backbone import backbone as backbone
 from .large_deflection import (
     DeflectedPlate as DeflectedPlate,
     LargeDeflection as LargeDeflection,
@@ -24,6 +25,8 @@ from .pictures import (
     marker_size as marker_size,
     pitch as pitch,
 )
+from .excitation import ExcitedModes as ExcitedModes, Excitation as Excitation
+from .moving_shapes import MovingShapes as MovingShapes
 from .plate import TRUNCATION as TRUNCATION
 from . import verification as verification
 from .verification import Check as Check

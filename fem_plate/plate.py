@@ -17,7 +17,7 @@ from fem_plate.estimated import refined
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.inputs import as_points, check_points, one_per_point, stiffness_per_point
 from fem_plate.section import PlateSection
-from fem_plate.vibration import Modes
+from fem_plate.vibration import HeldPlate, Modes
 from meshes import PlateMesh
 
 if TYPE_CHECKING:
@@ -293,7 +293,7 @@ class Plate:
         compliance = rigidity / self.mesh.size**2 / actuator_stiffness
         if deflected is not None:
             return deflected.modes(count, points, compliance, rigidity / inertia)
-        return vibration.modes(model, points, compliance, count, rigidity / inertia)
+        return vibration.modes(HeldPlate(model, points, compliance), count, rigidity / inertia)
 
     def __repr__(self) -> str:
         width, height = np.ptp(self.mesh.outline.box, axis=0)

@@ -67,72 +67,102 @@ class Modes:
         return value, gradient / size, hessian / size**2
 
 
-def modes(model: PlateModel, held: FloatArray, compliance: FloatArray, count: int, unit: float) -> Modes:
-    """The lowest modes of a plate held at points (N, 2) [m].
+class HeldPlate:
+    """A plate held at points (N, 2) [m], by the finite elements v of its trial functions.
 
     compliance: (N,) dimensionless, of the springs there, 1/k; 0 where the hold is rigid.
+    """
+
+    def __init__(self, model: PlateModel, held: FloatArray, compliance: FloatArray) -> None:
+        self.model, self.held = model, held / model.mesh.size
+        space, x = model.space, self.held
+        self.mass = space.mass()
+        self.responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without F
+        at_held = space.point_values(x)  # B
+        green = model.infinite.point_value(x, x) + at_held @ self.responses
+        yielding = (green + green.T) / 2 + np.diag(compliance)  # G + 1/k
+        self._to_forces = -np.linalg.solve(yielding, at_held.toarray())  # v -> c, (N, unknowns)
+        self._of_singular, inner = singular_masses(model, x, x)
+        carried = self._of_singular.T @ self.responses
+        self._cross = self.mass @ self.responses + self._of_singular  # int q psi_j
+        self._inner = self.responses.T @ (self.mass @ self.responses) + carried + carried.T + inner  # int psi_i psi_j
+        rigid = _free_motions(model, at_held)
+        inertia = self.with_mass(rigid)
+        if rigid.size:
+            inertia = inertia @ np.linalg.inv(np.linalg.cholesky(rigid.T @ inertia)).T
+        # K's inverse knows the springs spread under the plate and not the held points. Rows of correction turn it into
+        # the inverse of the modes' stiffness: the held points, the load that their forces put on the spread springs
+        # (what psi_j weighs on each motion), and the rigid motions, moved out of the way.
+        on_springs = model.mean.T + model.motions(x).T @ self._to_forces
+        rows = np.concatenate([at_held.toarray(), on_springs, inertia.T])
+        weights = np.zeros((len(rows), len(rows)))
+        weights[: len(x), : len(x)] = yielding
+        weights[len(x) :, len(x) :] = np.diag(
+            np.concatenate([np.ones(len(on_springs)), np.full(inertia.shape[1], -1 / RIGID_SHIFT)])
+        )
+        self.solve = _corrected(model.solve, rows, weights)
+
+    def with_mass(self, v: FloatArray) -> FloatArray:
+        """The inertial load (unknowns, ...) of v, the integrals of its trial functions with all of them."""
+        c = self._to_forces @ v
+        return np.asarray(self.mass @ v + self._cross @ c + self._to_forces.T @ (self._cross.T @ v + self._inner @ c))
+
+    def inertia_of(self, functions: PlateFunctions) -> FloatArray:
+        """The integrals (unknowns, k) of k functions of the same model, without pressure, with all trial functions."""
+        model, forces = self.model, functions.forces
+        smooth = functions.unknowns + model.space.linear() @ functions.rigid
+        with_singular, inner = singular_masses(model, functions.sources, self.held)
+        direct = self.mass @ smooth + with_singular @ forces
+        of_responses = self.responses.T @ direct + self._of_singular.T @ smooth + inner.T @ forces
+        return np.asarray(direct + self._to_forces.T @ of_responses)
+
+    def functions(self, vectors: FloatArray) -> tuple[PlateFunctions, FloatArray]:
+        """The functions of vectors (unknowns, k), each 1 at most over the mesh's points, and what they were (k,)."""
+        forces, count = self._to_forces @ vectors, vectors.shape[1]
+        whole = PlateFunctions(
+            self.model.space,
+            vectors + self.responses @ forces,
+            self.held,
+            forces,
+            np.zeros((3, count)),
+            np.zeros(count),
+            self.model.infinite,
+        )
+        largest = np.abs(whole.values(whole.space.points)).max(axis=0)
+        return whole.weighted(np.diag(1 / largest)), largest
+
+
+def modes(held_plate: HeldPlate, count: int, unit: float) -> Modes:
+    """The lowest modes of a plate held at points.
+
     unit: 1/s^2, the squared angular frequency that makes eigenvalues dimensionless.
     """
-    space, x = model.space, held / model.mesh.size
-    mass = space.mass()
-    responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without its singular part
-    at_held = space.point_values(x)  # B
-    green = model.infinite.point_value(x, x) + at_held @ responses
-    yielding = (green + green.T) / 2 + np.diag(compliance)  # G + 1/k
-    to_forces = -np.linalg.solve(yielding, at_held.toarray())  # v -> c, (N, unknowns)
-    cross, inner = _masses(model, x, responses, mass)
-
-    def with_mass(v: FloatArray) -> FloatArray:
-        c = to_forces @ v
-        return np.asarray(mass @ v + cross @ c + to_forces.T @ (cross.T @ v + inner @ c))
-
-    rigid = _free_motions(model, at_held)
-    inertia = with_mass(rigid)
-    if rigid.size:
-        inertia = inertia @ np.linalg.inv(np.linalg.cholesky(rigid.T @ inertia)).T
-    # K's inverse knows the springs spread under the plate and not the held points. Rows of correction turn it into the
-    # inverse of the modes' stiffness: the held points, the load that their forces put on the spread springs (what psi_j
-    # weighs on each motion), and the rigid motions, moved out of the way.
-    on_springs = model.mean.T + model.motions(x).T @ to_forces
-    rows = np.concatenate([at_held.toarray(), on_springs, inertia.T])
-    weights = np.zeros((len(rows), len(rows)))
-    weights[: len(x), : len(x)] = yielding
-    weights[len(x) :, len(x) :] = np.diag(
-        np.concatenate([np.ones(len(on_springs)), np.full(inertia.shape[1], -1 / RIGID_SHIFT)])
-    )
-    mass_operator = LinearOperator(mass.shape, matvec=with_mass, dtype=float)
+    unknowns = held_plate.model.unknowns
+    mass_operator = LinearOperator((unknowns, unknowns), matvec=held_plate.with_mass, dtype=float)
     squares, vectors = eigsh(
         mass_operator,  # only its shape is used: with sigma = 0 all that is solved with is OPinv
         count,
         M=mass_operator,
         sigma=0,
-        OPinv=LinearOperator(mass.shape, matvec=_corrected(model.solve, rows, weights), dtype=float),
-        v0=np.ones(model.unknowns),  # eigsh would start from a random vector, and differ from run to run
+        OPinv=LinearOperator((unknowns, unknowns), matvec=held_plate.solve, dtype=float),
+        v0=np.ones(unknowns),  # eigsh would start from a random vector, and differ from run to run
     )
     order = np.argsort(squares)
-    squares, vectors = squares[order], vectors[:, order]
-    forces = to_forces @ vectors
-    functions = PlateFunctions(
-        space, vectors + responses @ forces, x, forces, np.zeros((3, count)), np.zeros(count), model.infinite
-    )
-    scale = 1 / np.abs(functions.values(space.points)).max(axis=0)
-    return Modes(np.sqrt(squares * unit) / (2 * np.pi), model, functions.weighted(np.diag(scale)))
+    functions, _ = held_plate.functions(vectors[:, order])
+    return Modes(np.sqrt(squares[order] * unit) / (2 * np.pi), held_plate.model, functions)
 
 
-def _masses(model: PlateModel, x: FloatArray, responses: FloatArray, mass: csc_matrix) -> tuple[FloatArray, FloatArray]:
-    """int q psi_j (unknowns, N) and int psi_i psi_j (N, N) for psi = F + responses, F by quadrature."""
+def singular_masses(model: PlateModel, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """int q F_i (unknowns, N) of F around points x (N, 2), and int F_i F_j (N, M), F_j around y (M, 2)."""
     space = model.space
     (points, weights), triangles = space.quadrature, space.quadrature_triangles
-    with_singular, of_singular = np.zeros((space.unknowns, len(x))), np.zeros((len(x), len(x)))
+    with_singular, of_singular = np.zeros((space.unknowns, len(x))), np.zeros((len(x), len(y)))
     for start in range(0, len(points), CHUNK):
         part = slice(start, start + CHUNK)
-        value = model.infinite.point_value(points[part], x)
-        weighted = weights[part, None] * value
-        with_singular += space.point_values(points[part], triangles[part]).T @ weighted  # int q F
-        of_singular += value.T @ weighted  # int F F
-    cross = mass @ responses + with_singular
-    inner = responses.T @ (mass @ responses) + responses.T @ with_singular + with_singular.T @ responses
-    return cross, inner + of_singular
+        weighted = weights[part, None] * model.infinite.point_value(points[part], x)
+        with_singular += space.point_values(points[part], triangles[part]).T @ weighted
+        of_singular += weighted.T @ model.infinite.point_value(points[part], y)
+    return with_singular, of_singular
 
 
 def _free_motions(model: PlateModel, at_held: csc_matrix) -> FloatArray:

@@ -36,6 +36,7 @@ def end(message: str | None = "interrupted") -> NoReturn:
     if message is not None:
         click.echo(message, err=True)
     _announced.set()
+    remove_partial_files()  # of threads that still write
     sys.exit(INTERRUPTED)
 
 

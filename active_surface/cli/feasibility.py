@@ -9,8 +9,9 @@ import click
 
 from active_surface.cli import options
 from active_surface.cli.group import DEFAULT_OUTPUT, main, read, refusing
+from active_surface.cli.values import frequency_of
 
-STAGES = 3
+STAGES = 3  # of a plate that only bends
 
 
 @main.command()
@@ -38,27 +39,16 @@ def feasibility(
     parsed = read(case)
     from active_surface.studies.feasibility import feasibility as find
     from active_surface.studies.feasibility import lines, warnings
-    from coupling import StageBar, silent
+    from coupling import StageBar, answers_drives, silent
     from coupling.results import check_folder
 
-    ends = [refusing(_frequency, text, name) for text, name in ((lowest, "--lowest"), (highest, "--highest"))]
+    ends = [refusing(frequency_of, text, name) for text, name in ((lowest, "--lowest"), (highest, "--highest"))]
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
+    with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(parsed)) as bar:
         result = refusing(find, parsed, *ends, across, bar)
         files = refusing(result.write, folder)
     figures = result.figures()
     warned = warnings(figures)
     summary = figures | {"warnings": warned, "files": list(map(str, files))}
     options.tell(summary, lines(figures), quiet, as_json, warned, files)
-
-
-def _frequency(text: str | None, option: str) -> float | None:
-    from coupling.case import Quantity
-
-    if text is None:
-        return None
-    try:
-        return Quantity("Hz", "300 Hz").parse(text)
-    except ValueError as error:
-        raise ValueError(f"{option} {error}") from None

@@ -29,12 +29,12 @@ def rerun(result: Path, output: Path, quiet: bool, as_json: bool) -> None:
 
     RESULT is either file of a run, or FOLDER/NAME. Exits with 1 when the part ends elsewhere.
     """
-    from coupling import StageBar, rerun, silent
+    from coupling import StageBar, answers_drives, rerun, silent
     from coupling.results import check_folder, read_run
 
     saved = refusing(read_run, result)
     refusing(check_folder, output)
-    with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
+    with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(saved.case)) as bar:
         done = refusing(rerun, saved, output, bar)
     figures = {"same_end": done.same_end, "moved": done.moved, "versions": done.changed, "complete": saved.complete}
     files = [str(file) for file in done.result.files]

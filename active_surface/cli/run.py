@@ -10,7 +10,7 @@ import click
 from active_surface.cli import options
 from active_surface.cli.group import DEFAULT_OUTPUT, main, read, refusing
 
-STAGES = 5
+STAGES = 5  # of a plate that only bends
 
 
 @main.command()
@@ -26,12 +26,12 @@ def run(
 ) -> None:
     """Run CASE and write its results."""
     parsed = read(case)
-    from coupling import StageBar, report, run_case, silent
+    from coupling import StageBar, answers_drives, report, run_case, silent
     from coupling.results import check_folder
 
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
+    with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(parsed)) as bar:
         result = refusing(run_case, parsed, folder, bar, csv, save_surface, forces)
     warnings = report.warnings(result.summary)
     figures = result.summary.as_dict() | {"warnings": warnings, "files": [str(file) for file in result.files]}

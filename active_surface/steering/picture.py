@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
+from active_surface.arrays import FloatArray
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.scatter import Scatter
 from coupling.case import Case, PlateCase
-from coupling.pictures import draw_path, is_visible, map_axes, save_picture
+from coupling.pictures import draw_path, draw_window, is_visible, join, map_axes, path_window, save_picture
 from fem_plate import frame_around, mark_actuators, marker_size
-from meshes import Drawing, draw_rim, quantity_text, rim_curves, unit_for
+from meshes import Drawing, Unit, draw_rim, quantity_text, rim_curves, unit_for
 from particle import HALO, Trajectory
 
 Place = tuple[float, float]
@@ -61,23 +63,62 @@ def _draw(result: SteeringResult, title: str, targets: Sequence[Place], path: Pa
     """Draw a path over its plate with the targets [m] in their order, and the ends of disturbed runs, into a file."""
     assert result.scatter is not None
     case, trajectory, scatter = result.case, result.trajectory, result.scatter
-    figure = Drawing(figsize=(2 * SIZE + 0.8, SIZE + 0.5))
-    axes = [figure.add_subplot(1, 2, k + 1) for k in range(2)]
-    keys = _draw_plate(axes[0], case, trajectory, targets)
-    keys += _draw_ends(axes[1], trajectory, targets[-1], scatter)
+    way = _way_of(case, trajectory, targets)
+    maps = 1 if way.window is None else 2
+    figure = Drawing(figsize=((maps + 1) * SIZE + 0.8, SIZE + 0.5))
+    axes = [figure.add_subplot(1, maps + 1, k + 1) for k in range(maps + 1)]
+    keys = _draw_plate(figure, axes[:maps], case, way)
+    keys += _draw_ends(axes[-1], trajectory, targets[-1], scatter)
     figure.suptitle(title, parse_math=False)
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
     return save_picture(figure, path)
 
 
-def _draw_plate(axes: Axes, case: Case, trajectory: Trajectory, targets: Sequence[Place]) -> list[Artist]:
+class _Way(NamedTuple):
+    """A path with its targets, and where it lies on its plate."""
+
+    trajectory: Trajectory
+    line: FloatArray  # (k, 2) m, the path with as many points as make it smooth
+    targets: FloatArray  # (n, 2) m, in their order
+    box: FloatArray  # (2, 2) m, around the plate
+    window: FloatArray | None  # (2, 2) m, around path and targets; None: they are long enough to see on the plate
+
+
+def _way_of(case: Case, trajectory: Trajectory, targets: Sequence[Place]) -> _Way:
     assert isinstance(case.plate, PlateCase)
-    outline = case.plate.coarse_mesh.outline
-    box = outline.box
-    unit, frame = unit_for(box, "m"), frame_around(box)
+    box, places = case.plate.coarse_mesh.outline.box, np.array(targets)
+    line = trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)).position
+    actuators = np.array([actuator.position for actuator in case.actuators])
+    return _Way(trajectory, line, places, box, path_window(np.concatenate([line, places]), box, actuators))
+
+
+def _draw_plate(figure: Figure, axes: Sequence[Axes], case: Case, way: _Way) -> list[Artist]:
+    """Draw the path over the plate, or in a window beside it, with the targets; return keys."""
+    frame = frame_around(way.box)
+    unit = unit_for(way.box, "m")
+    keys = _draw_actuators(axes[0], case, frame, unit)
+    axes[0].set_title("The path over the plate, and the actuators by their numbers", fontsize=10)
+    if way.window is not None:
+        axes[0].set_title("The plate, and the actuators by their numbers", fontsize=10)
+        draw_window(axes[0], unit, way.window)
+        frame, whole = way.window, unit
+        unit = unit_for(frame, "m")
+        _draw_actuators(axes[1], case, frame, unit)
+        axes[1].set_title("Around the path", fontsize=10)
+        join(figure, list(axes), whole, frame)
+    keys += draw_path(axes[-1], way.trajectory, way.line, unit, is_visible(way.line, frame))
+    drawn = way.targets * unit.per_si
+    keys += axes[-1].plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
+    for number, place in enumerate(drawn.tolist() if len(drawn) > 1 else []):
+        axes[-1].annotate(str(number), place, (8, 8), color=TARGET["markeredgecolor"], weight="bold", **NUMBER)
+    return keys
+
+
+def _draw_actuators(axes: Axes, case: Case, frame: FloatArray, unit: Unit) -> list[Artist]:
+    """Draw the rim and the actuators within a frame (2, 2) [m], with their numbers; return keys."""
+    assert isinstance(case.plate, PlateCase)
     map_axes(axes, unit)
-    axes.set_title("The path over the plate, and the actuators by their numbers", fontsize=10)
-    draw_rim(axes, rim_curves(outline), unit.per_si)
+    draw_rim(axes, rim_curves(case.plate.coarse_mesh.outline), unit.per_si)
     axes.set_xlim(*(frame[:, 0] * unit.per_si))
     axes.set_ylim(*(frame[:, 1] * unit.per_si))
     keys: list[Artist] = []
@@ -86,14 +127,9 @@ def _draw_plate(axes: Axes, case: Case, trajectory: Trajectory, targets: Sequenc
     size = marker_size(places, frame) or MIN_MARKER
     for some, colour, label in ((moving, "#7fa8c9", "moving actuator"), (~moving, "white", "actuator at rest")):
         keys += mark_actuators(axes, places[some], frame, unit.per_si, size=size, colour=colour, label=label)
-    for number, place in enumerate(places * unit.per_si) if len(places) <= MAX_NUMBERED else ():
-        axes.annotate(str(number), place, (0, -20), ha="center", color="#606060", **NUMBER)
-    line = trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)).position
-    keys += draw_path(axes, trajectory, line, unit, is_visible(line, box))
-    drawn = np.array(targets) * unit.per_si
-    keys += axes.plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
-    for number, place in enumerate(drawn.tolist() if len(targets) > 1 else []):
-        axes.annotate(str(number), place, (8, 8), color=TARGET["markeredgecolor"], weight="bold", **NUMBER)
+    within = ((places > frame[0]) & (places < frame[1])).all(axis=1)
+    for number in np.flatnonzero(within).tolist() if len(places) <= MAX_NUMBERED else ():
+        axes.annotate(str(number), places[number] * unit.per_si, (0, -20), ha="center", color="#606060", **NUMBER)
     return keys
 
 

@@ -16,7 +16,7 @@ from active_surface.steering.scatter import REPORTED, Scatter, disturbances
 from active_surface.steering.spread import spread_drives
 from active_surface.steering.tables import Settings
 from active_surface.steering.task import able
-from coupling import build_friction, follow_part, run_case, shared_surface, stretches, warnings
+from coupling import answers_drives, build_friction, follow_part, run_case, shared_surface, warnings
 from coupling.case import Case, write_case
 from particle import AnyDrive, SurfaceMotion, interruptible, unbroken
 
@@ -51,7 +51,7 @@ def searched(
 def prepared(case: Case, settings: Settings) -> SurfaceMotion:
     """The moving surface for a search; compiles all that paths need, so that Ctrl-C works from then on."""
     sets: list[list[AnyDrive]] = []
-    if stretches(case):
+    if answers_drives(case):
         chosen = able(case, settings)
         sets = spread_drives(case, settings, chosen, len(chosen) if settings.actuators else settings.nearest)
     surface = interruptible(shared_surface, case, sets, case.run.duration)

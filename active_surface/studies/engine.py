@@ -20,7 +20,7 @@ from active_surface.studies.record import Records, new_records, put
 from active_surface.studies.refusal import contact_of, mistakes_of, start_faults
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Base, Variants
-from coupling import build_drives, build_part, shared_surface, silent, stretches
+from coupling import answers_drives, build_drives, build_part, shared_surface, silent
 from coupling.case import Case, PlatformCase, RunCase
 from coupling.scene import platform_scene
 from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, simulate_many
@@ -206,7 +206,7 @@ class Engine:
 
         They depend on the study alone: those where all axes are lowest, where all are highest, and spread between.
         """
-        if not stretches(base.case):
+        if not answers_drives(base.case):
             return []
         own = build_drives(base.case)
         if not self.variants.drives_vary:

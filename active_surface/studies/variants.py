@@ -30,6 +30,8 @@ Values = tuple[Any, ...]
 
 OF_PLATE: Final = ("position", "stiffness")
 """Keys of an actuator that change the plate's shapes."""
+DEEP_OF_RUN: Final = (("run", "surface_tolerance"), ("run", "start"))
+"""Keys of the run that change the surface."""
 KEPT: Final = 4096  # tables
 
 
@@ -117,7 +119,7 @@ class Variants:
             (actuator.position, spring)
             for actuator, spring in zip(case.actuators, actuator_stiffness(case), strict=True)
         ]
-        return Base(case, _plain(case), f"{plate} {held} {case.run.surface_tolerance!r}")
+        return Base(case, _plain(case), f"{plate} {held} {case.run.surface_tolerance!r} {case.run.start}")
 
     def _table(self, deep: Values, head: Location, values: Values) -> Any:
         plain: Any = self.base(deep).plain
@@ -141,7 +143,7 @@ def is_deep(case: Case, axis: Axis) -> bool:
     if first[0] == "actuators":
         return first[2] in OF_PLATE
     on_platform = isinstance(case.plate, PlatformCase) and first == ("run", "duration")  # a measured motion has an end
-    return first[0] in ("plate", "lattice") or first == ("run", "surface_tolerance") or on_platform
+    return first[0] in ("plate", "lattice") or first in DEEP_OF_RUN or on_platform
 
 
 def _reader(head: Location) -> TypeAdapter[Any]:

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 from pydantic import ConfigDict, Discriminator, GetJsonSchemaHandler, Tag
 from pydantic_core import CoreSchema
 
-from coupling.case.plate import (
+from coupling.case.plate import PlateCase
+from coupling.case.platform import PlatformCase
+from coupling.case.shapes import (
     AnnulusCase,
     DiscCase,
     EllipseCase,
     MeshCase,
-    PlateCase,
     PolygonCase,
     RectangleCase,
     RegularPolygonCase,
     ShapeCase,
 )
-from coupling.case.platform import PlatformCase
 from coupling.case.table import adapter
 
 if TYPE_CHECKING:

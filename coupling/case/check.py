@@ -11,7 +11,8 @@ from coupling.case.drive import ActuatorCase
 from coupling.case.friction import TableCase
 from coupling.case.friction_points import Points, read_points
 from coupling.case.messages import Mistake
-from coupling.case.places import Parts, check_places, mesh_of, stand_of
+from coupling.case.parts import Parts
+from coupling.case.places import check_places, mesh_of, stand_of
 from coupling.case.platform import PlatformCase, platform_of
 from coupling.case.table import errors_of, right_value, validate
 from coupling.case.tables import CaseTables, RunCase

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coupling.case.drive import ActuatorCase
 from coupling.case.lattice import LatticeCase
 from coupling.case.lattice_places import SAME_PLACE, Place, Stand, beyond, gaps, half_size, shared_places
 from coupling.case.messages import Location, Mistake, location_text
-from coupling.case.plate import VON_KARMAN, PlateCase, ShapeCase
+from coupling.case.parts import Parts
+from coupling.case.plate import PlateCase
+from coupling.case.shapes import ShapeCase
 from coupling.case.table import right_value
-from coupling.case.tables import PartCase, RunCase
+from coupling.case.tables import PartCase
+from coupling.case.theories import check_theory
 from coupling.case.values import length_text, quoted, unreadable, written_unit
 from coupling.suggestion import near
 
@@ -20,22 +23,6 @@ if TYPE_CHECKING:
     from meshes import PlateMesh
 
 Mistakes = Iterator[Mistake]
-
-MAX_STRETCHING: Final = 200
-"""Actuators of a plate that stretches."""
-
-
-class Parts(NamedTuple):
-    """The tables of a case: models where they are valid, else as they are written; and as they are written anyway."""
-
-    tables: Mapping[str, Any]
-    written: Mapping[str, Any]
-    context: Any  # of their validation
-
-    def items(self, key: str) -> list[tuple[Any, Any]]:
-        """The tables in a list, each with what is written; nothing where that is no list."""
-        several = [one.get(key) for one in (self.tables, self.written)]
-        return list(zip(*several, strict=True)) if all(isinstance(one, (list, tuple)) for one in several) else []
 
 
 def mesh_of(plate: PlateCase) -> tuple[PlateMesh | None, list[Mistake]]:
@@ -81,8 +68,7 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
         yield there, f"must differ from {location_text(here)}; got the same point"
     if stand:
         yield from stand.crowded(places, least)
-    if right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
-        yield from _stretching(parts, len(spots) + (len(stand.spots) if stand else 0))
+    yield from check_theory(parts, len(spots) + (len(stand.spots) if stand else 0))
     supports = right_value(PlateCase, "supports", plate, parts.context, "clamped")
     held = _held(parts, spots, stand)
     if supports is not None:
@@ -140,21 +126,6 @@ def _boundary_names(key: str, supports: Any, names: list[str]) -> Mistakes:
             hint = f"did you mean {meant}? " if meant else ""
             has = f"It has {', '.join(names)}" if hint else f"it has {', '.join(names)}"
             yield ("plate", key, name), f"is no boundary of the plate; {hint}{has}"
-
-
-def _stretching(parts: Parts, count: int) -> Mistakes:
-    """Yield what a plate with so many actuators that stretches does not go with."""
-    if count > MAX_STRETCHING:
-        yield (
-            ("plate", "theory"),
-            f'must be "linear" with more than {MAX_STRETCHING} actuators, as a plate that stretches is solved in one '
-            f"dense model of all of them; got {count}; a piece of the array with {MAX_STRETCHING} can stretch",
-        )
-    if right_value(RunCase, "scheme", parts.tables.get("run"), parts.context) == "paper":
-        yield (
-            ("run", "scheme"),
-            f'must be "events" or "fixed" with {VON_KARMAN}, whose mid-plane also moves in its plane; got "paper"',
-        )
 
 
 def _beyond_rim(spots: Sequence[_Spot], mesh: PlateMesh, least: float) -> Mistakes:

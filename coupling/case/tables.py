@@ -39,6 +39,8 @@ class RunCase(KeyedTable):
 
     duration: Time = Field(gt=0, examples=["50 ms"])
     """How long the part is followed."""
+    start: Literal["rest", "steady"] = "rest"
+    """Whether a plate with inertia begins at rest, or in the steady state of drives that have always been running."""
     gravity: Gravity = 9.80665
     """Towards the plate; or three, along x, y and z, on a tilted device."""
     tolerance: StrictFloat = Field(default=1e-9, ge=1e-12, le=1e-2)

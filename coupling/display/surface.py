@@ -14,7 +14,7 @@ from coupling.display.stretching import Stretching
 from coupling.drives import stroke_heights
 from coupling.scene import PlateScene, PlatformScene, Scene
 from coupling.surface import FLOOR
-from fem_plate import InfluenceShapes, PatchedShapes, Shapes, StretchedShapes
+from fem_plate import InfluenceShapes, MovingShapes, PatchedShapes, Shapes
 from meshes import Outline
 from particle import Trajectory
 
@@ -85,7 +85,7 @@ def _curvatures(shapes: Shapes, points: FloatArray) -> Callable[[FloatArray], Fl
         floor = FLOOR * shapes.size
         if isinstance(shapes, PatchedShapes):
             return shapes.laplacians(points, floor, TRUNCATED_CURVATURE)
-        assert isinstance(shapes, InfluenceShapes | StretchedShapes)
+        assert isinstance(shapes, InfluenceShapes | MovingShapes)
         return shapes.laplacians(points, floor)
 
     return lambda heights: np.asarray((laplacians() @ heights.T).T)

@@ -8,6 +8,7 @@ from .plate import (
     cut_out as cut_out,
     draw_plate as draw_plate,
     draw_window as draw_window,
+    join as join,
     refined as refined,
 )
 from .portrait import Portrait as Portrait

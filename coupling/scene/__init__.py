@@ -1,5 +1,13 @@
 """What a part moves over: a plate on actuators or a platform, as drives and a moving surface."""
 
-from coupling.scene.plate import PlateScene, actuator_stiffness, build_plate, plate_scene, stretch_model
+from coupling.scene.plate import (
+    PlateScene,
+    actuator_stiffness,
+    build_plate,
+    damping_of,
+    plate_scene,
+    stretch_model,
+    vibration_model,
+)
 from coupling.scene.platform import PlatformScene, platform_scene
 from coupling.scene.scene import Scene

@@ -14,7 +14,8 @@ from coupling.measured import MotionFit
 from coupling.progress import Progress, ProgressCallback
 from coupling.stretch import Stretch, StretchModel, make_model
 from coupling.surface import surface_motion
-from fem_plate import TRUNCATION, Plate, PlateSection, PlateShapes, Shapes
+from coupling.vibration import Damping, Vibration, VibrationModel, always_running, make_vibration_model
+from fem_plate import TRUNCATION, InfluenceShapes, Plate, PlateSection, PlateShapes, Shapes
 from particle import AnyDrive, SurfaceMotion, interruptible
 
 FloatArray = NDArray[np.float64]
@@ -22,19 +23,25 @@ FloatArray = NDArray[np.float64]
 # Without a cell size, refine the plate until the estimated error of the unit shapes is below this. It keeps the end
 # point of a typical path accurate to 1e-6 of the path.
 PLATE_TOLERANCE = 1e-8
+# The same of a plate that stretches: half of what its reduced model adds.
+STRETCHED_TOLERANCE = 5e-6
 # More actuators than this are solved on patches: 625 on the whole plate took longer than 10 000 on patches.
 MAX_WHOLE = 250
 
 
 @dataclass(frozen=True, eq=False)
 class PlateScene:
-    """A plate on actuators; stretch: what bends and stretches it, None in linear theory."""
+    """A plate on actuators.
+
+    stretch: what bends and stretches it, None in linear theory.  vibration: None without inertia.
+    """
 
     plate: Plate
     shapes: PlateShapes
     lifts: Sequence[AnyDrive]  # N, one for each actuator
     surface: SurfaceMotion
     stretch: Stretch | None = None
+    vibration: Vibration | None = None
     base: Sequence[AnyDrive] = field(default=(), init=False)  # it stays in its plane
     origin: str = field(default="the plate", init=False)  # what positions are counted from
     fits: tuple[MotionFit, ...] = field(default=(), init=False)
@@ -42,23 +49,31 @@ class PlateScene:
     @property
     def moving_shapes(self) -> Shapes:
         """The shapes of the moving surface."""
-        return self.shapes if self.stretch is None else self.stretch.shapes
+        motion = self.stretch or self.vibration
+        return self.shapes if motion is None else motion.shapes
 
     @property
     def moving_drives(self) -> Sequence[AnyDrive]:
         """The drive of each of them."""
-        return self.lifts if self.stretch is None else self.stretch.moving_drives
+        motion = self.stretch or self.vibration
+        return self.lifts if motion is None else motion.moving_drives
 
 
 def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:
     """The scene of a case with a plate."""
     tolerance, top = case.run.surface_tolerance, plate_case.thickness / 2 if plate_case.top_face else 0.0
-    drives = build_drives(case)
+    drives = lifts_of(case)
     with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
         points = [actuator.position for actuator in case.actuators]
         truncation = TRUNCATION if len(points) > MAX_WHOLE else None
         shapes = plate.influence(points, actuator_stiffness(case), truncation, tell)
+    if plate_case.inertia:
+        with progress("Finding the modes") as tell:
+            modes = vibration_model(case, plate_case, plate, shapes, [drives], tell)
+            vibration = Vibration.under(modes, drives)
+        with progress("Fitting the surface"):
+            return PlateScene(plate, shapes, drives, vibration.surface(tolerance, top), vibration=vibration)
     if plate_case.theory == "linear":
         with progress("Fitting the surface"):
             return PlateScene(plate, shapes, drives, surface_motion(shapes, drives, tolerance, top))
@@ -78,11 +93,41 @@ def stretch_model(
     return interruptible(make_model, large, sets, case.run.duration, tell)
 
 
+def vibration_model(
+    case: Case,
+    plate_case: PlateCase,
+    plate: Plate,
+    shapes: PlateShapes,
+    sets: Sequence[Sequence[AnyDrive]],
+    tell: ProgressCallback,
+) -> VibrationModel:
+    """The modes of a case's plate, for several sets of drives."""
+    assert isinstance(shapes, InfluenceShapes)
+    steady, damping = case.run.start == "steady", damping_of(plate_case)
+    return interruptible(make_vibration_model, shapes, plate.section, damping, sets, case.run.duration, steady, tell)
+
+
+def damping_of(plate: PlateCase) -> Damping:
+    """The damping ratios (n,) of modes by their frequencies (n,) [Hz]: those of a table go on beyond its ends."""
+    if isinstance(plate.damping, float):
+        ratio = plate.damping
+        return lambda frequencies: np.full(len(frequencies), ratio)
+    known = np.array(plate.damping)
+    return lambda frequencies: np.interp(frequencies, *known.T)
+
+
+def lifts_of(case: Case) -> list[AnyDrive]:
+    """The actuators' drives; in a steady state they have always been running."""
+    drives = build_drives(case)
+    return [always_running(drive) for drive in drives] if case.run.start == "steady" else drives
+
+
 def build_plate(plate: PlateCase) -> Plate:
     """The plate of a case, without loads."""
     section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
-    refined = plate.theory == "linear" and not plate.cell_size_given
-    return Plate(plate.build_mesh(), section, plate.supports, PLATE_TOLERANCE if refined else None, plate.tension)
+    tolerance = PLATE_TOLERANCE if plate.theory == "linear" else STRETCHED_TOLERANCE
+    given = plate.cell_size_given
+    return Plate(plate.build_mesh(), section, plate.supports, None if given else tolerance, plate.tension)
 
 
 def actuator_stiffness(case: Case) -> NDArray[np.float64]:

@@ -3,4 +3,6 @@
 from coupling.stretch.corrections import Corrections, correction_drives
 from coupling.stretch.making import make_model
 from coupling.stretch.model import StretchModel
+from coupling.stretch.response import Response
+from coupling.stretch.schedule import Schedule, schedule_of
 from coupling.stretch.stretch import Stretch

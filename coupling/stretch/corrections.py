@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from coupling.stretch.newton import FINE, NOT_STABLE
 from coupling.stretch.pieces import MAX_HALVINGS, Walk, find_nodes, lay_pieces
+from coupling.stretch.response import NO_RESPONSE, Response
 from coupling.stretch.schedule import Schedule, schedule_of
 from fem_plate.large_deflection import Forms, ReducedPlate
 from particle import AnyDrive
@@ -19,7 +20,6 @@ FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-6
 TOLERANCES = (1e-11, 1e-1)  # below is rounding
-RESTS = 1e-12  # of the corrections, over a piece: slower ones rest
 ROOM = 8  # pieces of an interval that room is made for at first
 
 
@@ -46,6 +46,7 @@ def correction_drives(
     in_plane_weights: ArrayLike | None = None,
     floor: float = 0.0,
     in_plane_floor: float = 0.0,
+    response: Response | None = None,
 ) -> Corrections:
     """Find the corrections over time as quintics between common breakpoints.
 
@@ -69,6 +70,8 @@ def correction_drives(
         The same for in-plane motions, whose errors are compared among themselves.
     floor, in_plane_floor : float
         What errors are at least compared with, weighted: corrections far below need no digits.
+    response : Response, optional
+        Of the plate to heights; no equilibria are solved then. The drives must stay within these.
 
     Returns
     -------
@@ -95,21 +98,19 @@ def correction_drives(
             wrong.append(f"Input {name} must be 0 or positive; got {least!r}")
     if wrong:
         raise ValueError("; ".join(wrong))
-    distinct = dict.fromkeys(drives)  # many of a lattice are equal
+    distinct = list(drives if response else dict.fromkeys(drives))  # many of a lattice are equal
     numbers = {drive: k for k, drive in enumerate(distinct)}
-    forms = plate.forms_of([numbers[drive] for drive in drives])
-    times = schedule_of(list(distinct), float(end))
+    forms = plate.forms if response else plate.forms_of([numbers[drive] for drive in drives])
+    times = schedule_of(distinct, float(end))
     scale = np.concatenate([scale for scale in scales if not isinstance(scale, str)])
-    nodes, solved = _nodes(forms, times)
+    nodes, solved = _nodes(forms, response or NO_RESPONSE, times)
     largest = scale * np.abs(nodes[:, :, 0]).max(axis=(0, 1))
     references = np.repeat([max(largest[:n].max(), floor), max(largest[n:].max(initial=0.0), in_plane_floor)], [n, m])
-    walk, pieces, more = _pieces(forms, times, nodes, tolerance * references / scale)
+    walk, pieces, more = _pieces(forms, response or NO_RESPONSE, times, nodes, tolerance * references / scale)
     errors = np.divide(walk.errors * scale, references, out=np.zeros(n + m), where=references > 0)
     rows = np.ascontiguousarray(walk.coefficients[:pieces].transpose(1, 0, 2))
     edges = np.append(walk.edges[:pieces], times.edges[-1])
     loop = None if times.loop < 0 else int(np.searchsorted(edges, times.edges[times.loop]))
-    if loop is None:
-        edges, rows = _to_rest(edges, rows, float(times.table.stroke_time.min()))
     found = quintic_drives(
         edges,
         rows,
@@ -145,22 +146,24 @@ def _weights(name: str, given: ArrayLike | None, count: int) -> FloatArray | str
     return weights
 
 
-def _nodes(forms: Forms, times: Schedule) -> tuple[FloatArray, int]:
+def _nodes(forms: Forms, response: Response, times: Schedule) -> tuple[FloatArray, int]:
     """The nodes of all intervals, and the number of equilibria."""
     nodes = np.zeros((len(times.edges) - 1, 3, 3, len(forms.load) + len(forms.constant) - forms.membranes))
-    outcome, time, solved = find_nodes(forms, times.table, times.edges, times.loop, nodes)
+    outcome, time, solved = find_nodes(forms, response, times.table, times.edges, times.loop, nodes)
     if outcome != FINE:
         raise _failure(time, outcome == NOT_STABLE)
     return nodes, solved
 
 
-def _pieces(forms: Forms, times: Schedule, nodes: FloatArray, limits: FloatArray) -> tuple[Walk, int, int]:
+def _pieces(
+    forms: Forms, response: Response, times: Schedule, nodes: FloatArray, limits: FloatArray
+) -> tuple[Walk, int, int]:
     """The pieces, how many there are, and the number of equilibria."""
-    width, most = len(limits), 1 << MAX_HALVINGS
+    width, most = len(limits), 2 << MAX_HALVINGS
     walk = _new_walk(most + ROOM * len(nodes), width)
     k = laid = solved = 0
     while True:
-        k, laid, failed, more = lay_pieces(forms, times.table, times.edges, nodes, limits, walk, k, laid)
+        k, laid, failed, more = lay_pieces(forms, response, times.table, times.edges, nodes, limits, walk, k, laid)
         solved += more
         if failed >= 0:
             raise _failure(failed, False)
@@ -173,20 +176,6 @@ def _pieces(forms: Forms, times: Schedule, nodes: FloatArray, limits: FloatArray
 
 def _new_walk(room: int, width: int) -> Walk:
     return Walk(np.empty(room), np.empty((room, width, ORDER)), *np.zeros((4, width)))
-
-
-def _to_rest(edges: FloatArray, rows: FloatArray, stroke_time: float) -> tuple[FloatArray, FloatArray]:
-    """The pieces with one more that brings what still moves at the end to rest there, so that nothing jumps."""
-    scale = edges[-1] - edges[-2]
-    last, powers = rows[:, -1], np.arange(ORDER)
-    value, velocity = last.sum(axis=1), last @ powers / scale
-    acceleration = last @ (powers * (powers - 1)) / scale**2
-    still = RESTS * np.abs(last).max()
-    if np.abs(velocity * scale).max() <= still and np.abs(acceleration * scale**2).max() <= still:
-        return edges, rows
-    v, a = velocity * stroke_time, acceleration * stroke_time**2
-    brake = np.stack([value, v, a / 2, -6 * v - 1.5 * a, 8 * v + 1.5 * a, -3 * v - 0.5 * a], axis=1)
-    return np.append(edges, edges[-1] + stroke_time), np.concatenate([rows, brake[:, None]], axis=1)
 
 
 def _failure(time: float, unstable: bool) -> ValueError:

@@ -57,10 +57,7 @@ def new_moment(forms: Forms) -> Moment:
 @kernel
 def enter_interval(forms: Forms, table: DriveTable, begin: float, end: float, interval: Interval) -> None:
     """Find the polynomials between two breakpoints [s]."""
-    half = 0.5 * (end - begin)
-    middle = begin + half
-    for i in range(len(interval.drives)):  # the piece in the middle, where rounding at the ends cannot mistake it
-        drive_piece(table, i, middle, half, interval.drives[i])
+    enter_drives(table, begin, end, interval)
     interval.own[:] = 0.0
     interval.mixed[:] = 0.0
     product, count, n = np.zeros(ORDER), len(interval.drives), len(forms.load)
@@ -75,6 +72,15 @@ def enter_interval(forms: Forms, table: DriveTable, begin: float, end: float, in
                         interval.own[r, k + m] += 0.5 * share * product[m]
                     for j in range(n):
                         interval.mixed[k, r * n + j] += share * forms.mixed[r, i, j]
+
+
+@kernel_no_arrays
+def enter_drives(table: DriveTable, begin: float, end: float, interval: Interval) -> None:
+    """Find those of the drives alone."""
+    half = 0.5 * (end - begin)
+    middle = begin + half
+    for i in range(len(interval.drives)):  # the piece in the middle, where rounding at the ends cannot mistake it
+        drive_piece(table, i, middle, half, interval.drives[i])
 
 
 @kernel_no_arrays

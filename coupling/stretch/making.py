@@ -11,10 +11,11 @@ from scipy.stats import qmc
 
 from coupling.case import MAX_STRETCHING
 from coupling.drives import reach, stroke_heights
+from coupling.progress import doing
 from coupling.stretch.model import TOLERANCE, StretchModel
 from coupling.stretch.store import keep_model, key_of, read_model
 from fem_plate import LargeDeflection
-from fem_plate.large_deflection import level_of, reduce
+from fem_plate.large_deflection import fine_enough, reduce
 from particle import AnyDrive
 
 FloatArray = NDArray[np.float64]
@@ -54,24 +55,33 @@ def make_model(large: LargeDeflection, sets: Sequence[Sequence[AnyDrive]], end: 
     largest = heights[np.argmax(np.abs(heights).sum(axis=1))]
     if not largest.any():
         raise ValueError("Input drives of a plate that stretches must move it; they never do")
-    rigid = np.isinf(large.stiffness)
-    state = None if rigid.all() else large.solve(largest)
-    reached = np.abs(heights[:, rigid]).max(initial=0.0 if state is None else state.largest)
-    level = level_of(float(reached) / large.plate.section.thickness)
-    discrete = large.discrete(level, 0)
-    key = key_of(large, heights, level, TOLERANCE)
-    if (kept := read_model(key, discrete)) is not None:
+    key = key_of(large, heights, TOLERANCE)
+    if (kept := read_model(key, large)) is not None:
         return StretchModel(large, kept[0], heights, kept[1])
-    first: list[float] = []
-
-    def told(_: int, error: float) -> None:
-        first.append(error)
-        span = math.log(max(first) / TOLERANCE)
-        done = math.log(max(first) / max(error, TOLERANCE)) / span if span > 0 else 1.0
-        tell(round((PARTS - 1) * min(max(done, 0.0), 1.0)), PARTS)
-
-    reduction = reduce(discrete, heights / discrete.units, TOLERANCE, told)
-    mesh_error = large.solved(largest, 0.0, level, 1).difference(large.solved(largest, 0.0, level, 0))
+    report = _Report(tell)
+    report.begun()
+    discrete, mesh_error = fine_enough(large, largest)
+    reduction = reduce(discrete, heights / discrete.units, TOLERANCE, report.solved)
     tell(PARTS, PARTS)
     keep_model(key, reduction, mesh_error)
     return StretchModel(large, reduction, heights, mesh_error)
+
+
+class _Report:
+    """Reports on a scale of the error's logarithm."""
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell, self._first = tell, 0.0
+
+    def begun(self) -> None:
+        self._tell(0, PARTS)
+        doing("stretching plate: choosing its cells", 0.0)
+
+    def solved(self, solutions: int, error: float) -> None:
+        """Report full solutions and the error that is left, over the largest w."""
+        self._first = max(error, self._first)
+        span = math.log(self._first / TOLERANCE)
+        share = math.log(self._first / max(error, TOLERANCE)) / span if span > 0 else 1.0
+        self._tell(round((PARTS - 1) * share), PARTS)
+        text = f"{solutions} full solution{'s' * (solutions != 1)}, error {error:.0e}"
+        doing(f"stretching plate: {text.replace('e-0', 'e-')}", share)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.stretch.corrections import Corrections, correction_drives
+from coupling.stretch.response import Response, find_response
 from fem_plate import LargeDeflection, StretchedShapes
 from fem_plate.large_deflection import ReducedPlate, Reduction, reduced_equilibrium
 from particle import AnyDrive
@@ -16,8 +17,10 @@ from particle import AnyDrive
 FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-5  # of the largest w of the reduction, and of the largest correction of time pieces
+MANY = 3e-5  # the same of time pieces in sweeps and aims, where each piece costs as much as ten evaluations
+RESPONSE = 0.1  # times it: of the response to heights
 CELLS = 10.0  # times the surface's tolerance: how well cells follow corrections
-IN_PLANE = 100.0  # times it: in-plane motions, which carry a part less than slopes do
+IN_PLANE = 1000.0  # times it: in-plane motions, which carry a part less than slopes do
 
 
 class StretchModel:
@@ -68,8 +71,19 @@ class StretchModel:
         heights = np.abs(shapes.values(points))[:, len(self.large.points) :].max(axis=0)
         return heights, np.abs(shapes.in_plane_values(points)).max(axis=(0, 2))
 
-    def corrections(self, drives: Sequence[AnyDrive], end: float) -> Corrections:
-        """What corrects the linear shapes under drives, from 0 to `end` [s]."""
+    def corrections(self, drives: Sequence[AnyDrive], end: float, response: Response | None = None) -> Corrections:
+        """What corrects the linear shapes under drives, from 0 to `end` [s]; response: to make many of them."""
+        weights, floors, tolerance = self._weights, self._floors, TOLERANCE if response is None else MANY
+        return correction_drives(self.plate, drives, end, tolerance, *weights, *floors, response)
+
+    @cached_property
+    def response(self) -> Response | None:
+        """Corrections and in-plane motions over all heights, much better than the pieces; None: there is none."""
+        limits = [RESPONSE * MANY * floor / weights for floor, weights in zip(self._floors, self._weights, strict=True)]
+        return find_response(self.plate, self.heights, np.concatenate(limits))
+
+    @cached_property
+    def _floors(self) -> tuple[float, float]:
+        """The largest weighted correction and in-plane motion at the heights."""
         (heights, in_plane), (corrections, motions) = self._weights, self.largest
-        floors = float((heights * corrections).max()), float((in_plane * motions).max())
-        return correction_drives(self.plate, drives, end, TOLERANCE, heights, in_plane, *floors)
+        return float((heights * corrections).max()), float((in_plane * motions).max())

@@ -130,6 +130,14 @@ def find_rates(forms: Forms, moment: Moment, state: State, node: FloatArray) -> 
 
 
 @kernel_no_arrays
+def fill_motions(forms: Forms, moment: Moment, state: State, c: FloatArray, out: FloatArray) -> None:
+    """The in-plane motions (M,) at the equilibrium c."""
+    _enter_forms(forms, moment, state, c, forms.membranes, len(forms.constant))
+    for r in range(len(out)):
+        out[r] = state.values[forms.membranes + r]
+
+
+@kernel_no_arrays
 def _answer(forms: Forms, moment: Moment, state: State, order: int, out: FloatArray) -> None:
     """The corrections' derivative of that order, which keeps the gradient 0; weights (R,): what f has without it."""
     n, membranes = len(out), forms.membranes

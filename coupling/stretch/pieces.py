@@ -5,13 +5,23 @@ A node is c and g at one moment, (3, n+M), with their first and second derivativ
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.stretch.interval import Interval, Moment, enter_interval, enter_moment, new_interval, new_moment
+from coupling.stretch.interval import (
+    Interval,
+    Moment,
+    enter_drives,
+    enter_interval,
+    enter_moment,
+    new_interval,
+    new_moment,
+)
 from coupling.stretch.newton import FINE, State, find_equilibrium, find_rates, new_state
+from coupling.stretch.response import Blend, Response, blend_node, enter_drive, new_blend
 from fem_plate.large_deflection import Forms
 from particle import kernel, kernel_no_arrays
 from particle.drives import ORDER, DriveTable
@@ -22,6 +32,7 @@ MAX_HALVINGS = 10  # of an interval between two breakpoints
 # A quintic's error is s^3 (1-s)^3 times a sixth derivative, largest at its middle, where it is measured. If that
 # derivative changes sign there, the error is largest beside: this share of the error of the first derivative.
 BESIDE = 0.1189
+SPARE = 1.03  # how many more pieces than the sixth order asks for
 SAME = 1e-6  # of the largest jump of a drive's velocity or acceleration: a smaller one is none
 
 
@@ -42,17 +53,38 @@ class Tools(NamedTuple):
     interval: Interval
     moment: Moment
     state: State
+    response: Response
+    blend: Blend
 
 
 @kernel
-def new_tools(forms: Forms) -> Tools:
+def new_tools(forms: Forms, response: Response) -> Tools:
     """Room for it."""
-    return Tools(new_interval(forms), new_moment(forms), new_state(forms))
+    return Tools(new_interval(forms), new_moment(forms), new_state(forms), response, new_blend(response))
+
+
+@kernel
+def _enter(forms: Forms, tools: Tools, table: DriveTable, begin: float, end: float) -> None:
+    """Enter an interval between two breakpoints [s]."""
+    if len(tools.response.rows) > 0:
+        enter_drives(table, begin, end, tools.interval)
+    else:
+        enter_interval(forms, table, begin, end, tools.interval)
 
 
 @kernel_no_arrays
 def find_node(forms: Forms, tools: Tools, s: float, node: FloatArray, largest: float) -> int:
-    """The node at s of the interval, from c as the node has it."""
+    """The node at s of the interval, from c as the node has it unless there is a response."""
+    if len(tools.response.rows) > 0:
+        height = tools.blend.height
+        for i in range(len(tools.interval.drives)):
+            d = tools.interval.drives[i]
+            height[0] = ((((d[5] * s + d[4]) * s + d[3]) * s + d[2]) * s + d[1]) * s + d[0]
+            height[1] = (((5 * d[5] * s + 4 * d[4]) * s + 3 * d[3]) * s + 2 * d[2]) * s + d[1]
+            height[2] = ((20 * d[5] * s + 12 * d[4]) * s + 6 * d[3]) * s + 2 * d[2]
+            enter_drive(tools.response, i, tools.blend)
+        blend_node(tools.response, tools.blend, node)
+        return FINE
     enter_moment(tools.interval, s, tools.moment)
     c = node[0, : len(forms.load)]
     outcome = find_equilibrium(forms, tools.moment, tools.state, c, largest)
@@ -63,7 +95,7 @@ def find_node(forms: Forms, tools: Tools, s: float, node: FloatArray, largest: f
 
 @kernel
 def find_nodes(
-    forms: Forms, table: DriveTable, edges: FloatArray, loop: int, nodes: FloatArray
+    forms: Forms, response: Response, table: DriveTable, edges: FloatArray, loop: int, nodes: FloatArray
 ) -> tuple[int, float, int]:
     """The nodes (I, 3, 3, n+M) at the begin, middle and end of all intervals between breakpoints (I+1,) [s].
 
@@ -71,12 +103,12 @@ def find_nodes(
 
     Returns what came of it, the time [s] where, and the number of equilibria.
     """
-    tools, n = new_tools(forms), len(forms.load)
+    tools, n = new_tools(forms, response), len(forms.load)
     drives, count, largest = tools.interval.drives, len(edges) - 1, 0.0
     before, at_loop, solved = np.zeros_like(drives), np.zeros_like(drives), 0
     for k in range(count):
         half = 0.5 * (edges[k + 1] - edges[k])
-        enter_interval(forms, table, edges[k], edges[k + 1], tools.interval)
+        _enter(forms, tools, table, edges[k], edges[k + 1])
         left, middle, right = nodes[k, 0], nodes[k, 1], nodes[k, 2]
         shared = 0
         if k > 0:
@@ -138,6 +170,7 @@ def _rescale(node: FloatArray, ratio: float, out: FloatArray, orders: int) -> No
 @kernel
 def lay_pieces(
     forms: Forms,
+    response: Response,
     table: DriveTable,
     edges: FloatArray,
     nodes: FloatArray,
@@ -148,83 +181,104 @@ def lay_pieces(
 ) -> tuple[int, int, float, int]:
     """Lay the pieces of the intervals from the k-th on, while there is room in the walk; limits (n+M,): of errors.
 
+    An interval has as many equal pieces as the error of a single one asks for, by the sixth order, and each of them is
+    bisected where it is not good enough.
+
     Returns the interval that comes next, the number of pieces laid, the time [s] of a failure, -1: there is none, and
     how many equilibria it took.
     """
-    tools, width = new_tools(forms), nodes.shape[3]
+    tools, width = new_tools(forms, response), nodes.shape[3]
     stack, places = np.empty((MAX_HALVINGS + 2, 3, width)), np.empty(MAX_HALVINGS + 2)
     left, middle = np.empty((3, width)), np.empty((3, width))
     most, solved = 1 << MAX_HALVINGS, 0
-    while k < len(edges) - 1 and laid + most <= len(walk.edges):
-        half, entered = 0.5 * (edges[k + 1] - edges[k]), False
-        left[:], middle[:], stack[0], places[0] = nodes[k, 0], nodes[k, 1], nodes[k, 2], 1.0
-        at, top, known = -1.0, 0, True
-        while top >= 0:
-            length = places[top] - at
-            if not known:
-                if not entered:
-                    enter_interval(forms, table, edges[k], edges[k + 1], tools.interval)
-                    entered = True
-                _middle(left, stack[top], length, middle)
-                if find_node(forms, tools, at + 0.5 * length, middle, 0.0) != FINE:
-                    return k, laid, edges[k] + (1.0 + at + 0.5 * length) * half, solved
-                solved += 1
-            last = length * most <= 2.0
-            if _measure(left, middle, stack[top], length, half, limits, last, walk):
-                _lay(left, stack[top], length, walk.coefficients[laid])
-                walk.edges[laid] = edges[k] + (1.0 + at) * half
-                laid += 1
-                left[:], at = stack[top], places[top]
-                top -= 1
-            else:
-                top += 1
-                stack[top], places[top] = middle, at + 0.5 * length
+    while k < len(edges) - 1 and laid + 2 * most <= len(walk.edges):
+        half, known = 0.5 * (edges[k + 1] - edges[k]), True
+        left[:], middle[:], at = nodes[k, 0], nodes[k, 1], -1.0
+        over = _measure(left, middle, nodes[k, 2], 2.0, limits)
+        count = 1 if over <= 1.0 else int(math.ceil(min(over ** (1 / 6) * SPARE, float(most))))
+        if count > 1:
+            _enter(forms, tools, table, edges[k], edges[k + 1])
             known = False
+        for p in range(count):
+            top, end = 0, -1.0 + 2.0 * (p + 1) / count
+            if p + 1 == count:
+                stack[0], places[0] = nodes[k, 2], 1.0
+            else:
+                # A guess for Newton's method, from the nodes of the whole interval.
+                _between(nodes[k, 0], nodes[k, 2], 0.5 * (end + 1.0), stack[0])
+                if find_node(forms, tools, end, stack[0], 0.0) != FINE:
+                    return k, laid, edges[k] + (1.0 + end) * half, solved
+                places[0] = end
+                solved += 1
+            while top >= 0:
+                length = places[top] - at
+                if not known:
+                    _between(left, stack[top], 0.5, middle, length)
+                    if find_node(forms, tools, at + 0.5 * length, middle, 0.0) != FINE:
+                        return k, laid, edges[k] + (1.0 + at + 0.5 * length) * half, solved
+                    solved += 1
+                    over = _measure(left, middle, stack[top], length, limits)
+                if over <= 1.0 or length * most <= 2.0:
+                    _keep(left, middle, stack[top], length, half, walk)
+                    _lay(left, stack[top], length, walk.coefficients[laid])
+                    walk.edges[laid] = edges[k] + (1.0 + at) * half
+                    laid += 1
+                    left[:], at = stack[top], places[top]
+                    top -= 1
+                else:
+                    top += 1
+                    stack[top], places[top] = middle, at + 0.5 * length
+                known = False
         k += 1
     return k, laid, -1.0, solved
 
 
 @kernel_no_arrays
-def _middle(left: FloatArray, right: FloatArray, length: float, out: FloatArray) -> None:
-    """The first row of a node as the quintic between two others has it in its middle."""
+def _between(left: FloatArray, right: FloatArray, share: float, out: FloatArray, length: float = 2.0) -> None:
+    """The first row of a node as the quintic between two others has it at a share of their distance in s."""
     for j in range(left.shape[1]):
-        out[0, j] = (
-            0.5 * (left[0, j] + right[0, j])
-            + length * 5 / 32 * (left[1, j] - right[1, j])
-            + length**2 / 64 * (left[2, j] + right[2, j])
-        )
-
-
-@kernel
-def _measure(
-    left: FloatArray,
-    middle: FloatArray,
-    right: FloatArray,
-    length: float,
-    half: float,
-    limits: FloatArray,
-    last: bool,
-    walk: Walk,
-) -> bool:
-    """Whether a quintic between two nodes is good enough, by the node in its middle; then what it is off by is kept."""
-    off = np.empty(left.shape[1])
-    for j in range(left.shape[1]):
+        rise = right[0, j] - left[0, j]
         v_0, v_1 = length * left[1, j], length * right[1, j]
         a_0, a_1 = length**2 * left[2, j], length**2 * right[2, j]
-        value = 0.5 * (left[0, j] + right[0, j]) + 5 / 32 * (v_0 - v_1) + (a_0 + a_1) / 64
-        rate = 15 / 8 * (right[0, j] - left[0, j]) - 7 / 16 * (v_0 + v_1) + (a_1 - a_0) / 32
-        off[j] = abs(middle[0, j] - value) + BESIDE * abs(length * middle[1, j] - rate)
-        if off[j] > limits[j] and not last:
-            return False
+        third = 10 * rise - 6 * v_0 - 4 * v_1 - 1.5 * a_0 + 0.5 * a_1
+        fourth = -15 * rise + 8 * v_0 + 7 * v_1 + 1.5 * a_0 - a_1
+        fifth = 6 * rise - 3 * v_0 - 3 * v_1 - 0.5 * a_0 + 0.5 * a_1
+        value = (((fifth * share + fourth) * share + third) * share + 0.5 * a_0) * share + v_0
+        out[0, j] = value * share + left[0, j]
+
+
+@kernel_no_arrays
+def _error(left: FloatArray, middle: FloatArray, right: FloatArray, length: float, j: int) -> float:
+    """What a quintic between two nodes is off by, by the node in its middle."""
+    v_0, v_1 = length * left[1, j], length * right[1, j]
+    a_0, a_1 = length**2 * left[2, j], length**2 * right[2, j]
+    value = 0.5 * (left[0, j] + right[0, j]) + 5 / 32 * (v_0 - v_1) + (a_0 + a_1) / 64
+    rate = 15 / 8 * (right[0, j] - left[0, j]) - 7 / 16 * (v_0 + v_1) + (a_1 - a_0) / 32
+    return abs(middle[0, j] - value) + BESIDE * abs(length * middle[1, j] - rate)
+
+
+@kernel_no_arrays
+def _measure(left: FloatArray, middle: FloatArray, right: FloatArray, length: float, limits: FloatArray) -> float:
+    """The largest error of a quintic between two nodes over its limit."""
+    over = 0.0
     for j in range(left.shape[1]):
-        walk.errors[j] = max(walk.errors[j], off[j])
+        error = _error(left, middle, right, length, j)
+        if error > over * limits[j]:
+            over = error / limits[j] if limits[j] > 0.0 else math.inf
+    return over
+
+
+@kernel_no_arrays
+def _keep(left: FloatArray, middle: FloatArray, right: FloatArray, length: float, half: float, walk: Walk) -> None:
+    """Keep what a quintic that is laid is off by."""
+    for j in range(left.shape[1]):
+        walk.errors[j] = max(walk.errors[j], _error(left, middle, right, length, j))
         bend = 1.5 * length * (right[1, j] - left[1, j]) - 0.25 * length**2 * (left[2, j] + right[2, j])
         acceleration_off = abs(length**2 * middle[2, j] - bend) / (length * half) ** 2
         walk.acceleration_errors[j] = max(walk.acceleration_errors[j], acceleration_off)
         walk.largest[j] = max(walk.largest[j], abs(left[0, j]), abs(middle[0, j]), abs(right[0, j]))
         acceleration = max(abs(left[2, j]), abs(middle[2, j]), abs(right[2, j])) / half**2
         walk.largest_acceleration[j] = max(walk.largest_acceleration[j], acceleration)
-    return True
 
 
 @kernel_no_arrays

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
+import time
 import zipfile
+import zlib
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,17 +16,23 @@ from numpy.typing import NDArray
 
 import fem_plate
 import meshes
+from coupling.files import whole_file
 from fem_plate import LargeDeflection
-from fem_plate.large_deflection import Columns, DiscretePlate, ReducedPlate, Reduction
+from fem_plate.large_deflection import Columns, ReducedPlate, Reduction
 from particle import source_digest
 
 FloatArray = NDArray[np.float64]
 
 FOLDER = "ACTIVE_SURFACE_CACHE"  # environment variable: the folder of models; empty: they are not kept
 MAX_FILES = 40  # of the models used last
+STALE = 3600.0  # s after which nobody writes to a partial file any more
+SHAPES = ("linear", "corrections")
+FIGURES = ("level", "halvings", "solutions", "error", "mesh_error")
+BROKEN = (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile, zlib.error, NotImplementedError)
+"""What a file raises that is missing, cut off, or changed."""
 
 
-def key_of(large: LargeDeflection, heights: FloatArray, level: int, tolerance: float) -> str:
+def key_of(large: LargeDeflection, heights: FloatArray, tolerance: float) -> str:
     """A hash of plate, actuators, the heights that the model is for, and the sources that make it."""
     plate, mesh = large.plate, large.plate.mesh
     digest = hashlib.sha256()
@@ -33,7 +40,7 @@ def key_of(large: LargeDeflection, heights: FloatArray, level: int, tolerance: f
         digest.update(source_digest(Path(package.__path__[0])).encode())
     text = (
         *(plate.section, plate.tension, sorted(plate.supports.items()), plate.tolerance),
-        *(sorted(large.movable.items()), large.membrane, level, tolerance),
+        *(sorted(large.movable.items()), large.membrane, tolerance),
         *(sorted((name, repr(curve)) for name, curve in mesh.curves.items()), list(mesh.boundaries)),
     )
     digest.update(repr(text).encode())
@@ -42,21 +49,25 @@ def key_of(large: LargeDeflection, heights: FloatArray, level: int, tolerance: f
     return digest.hexdigest()[:32]
 
 
-def read_model(key: str, discrete: DiscretePlate) -> tuple[Reduction, float] | None:
-    """The reduction kept under a key and its mesh error; None where there is none."""
+def read_model(key: str, large: LargeDeflection) -> tuple[Reduction, float] | None:
+    """The reduction kept under a key and its mesh error; None where there is none, or none that can be read."""
     folder = _folder()
     if folder is None:
         return None
+    path = folder / f"{key}.npz"
     try:
-        with open(folder / f"{key}.npz", "rb") as raw, np.load(raw, allow_pickle=False) as file:
+        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
             arrays = dict(file)
-        os.utime(folder / f"{key}.npz")
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile):
+        plate = ReducedPlate(arrays["stiffness"], arrays["membrane"], in_plane=arrays["in_plane"])
+        level, halvings, solutions, error, mesh_error = (float(arrays[name]) for name in FIGURES)
+        linear, corrections = (Columns(arrays[f"{name}_v"], arrays[f"{name}_extra"]) for name in SHAPES)
+        motions = arrays["motions"]
+    except BROKEN:
         return None
-    plate = ReducedPlate(arrays["stiffness"], arrays["membrane"], in_plane=arrays["in_plane"])
-    linear, corrections = (Columns(arrays[f"{name}_v"], arrays[f"{name}_extra"]) for name in ("linear", "corrections"))
-    figures = int(arrays["solutions"]), float(arrays["error"])
-    return Reduction(discrete, plate, linear, corrections, arrays["motions"], *figures), float(arrays["mesh_error"])
+    with suppress(OSError):
+        os.utime(path)
+    discrete = large.discrete(int(level), int(halvings))
+    return Reduction(discrete, plate, linear, corrections, motions, int(solutions), error), mesh_error
 
 
 def keep_model(key: str, reduction: Reduction, mesh_error: float) -> None:
@@ -64,26 +75,26 @@ def keep_model(key: str, reduction: Reduction, mesh_error: float) -> None:
     folder = _folder()
     if folder is None:
         return
+    plate, discrete = reduction.plate, reduction.discrete
+    figures = discrete.level, discrete.halvings, reduction.solutions, reduction.error, mesh_error
+    arrays = {"stiffness": plate.stiffness, "membrane": plate.membrane, "in_plane": plate.in_plane}
+    for name, shapes in zip(SHAPES, (reduction.linear, reduction.corrections), strict=True):
+        arrays |= {f"{name}_v": shapes.v, f"{name}_extra": shapes.extra}
+    arrays |= {"motions": reduction.motions} | {n: np.array(f) for n, f in zip(FIGURES, figures, strict=True)}
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as file:
-            np.savez(
-                file,
-                stiffness=reduction.plate.stiffness,
-                membrane=reduction.plate.membrane,
-                in_plane=reduction.plate.in_plane,
-                linear_v=reduction.linear.v,
-                linear_extra=reduction.linear.extra,
-                corrections_v=reduction.corrections.v,
-                corrections_extra=reduction.corrections.extra,
-                motions=reduction.motions,
-                solutions=reduction.solutions,
-                error=reduction.error,
-                mesh_error=mesh_error,
-            )
-        os.replace(file.name, folder / f"{key}.npz")
-        for old in sorted(folder.glob("*.npz"), key=lambda path: path.stat().st_mtime)[:-MAX_FILES]:
-            old.unlink()
+        with whole_file(folder / f"{key}.npz") as partial, open(partial, "wb") as file:
+            np.savez(file, **arrays)  # type: ignore[arg-type]  # its stub takes the names for those of options
+        _tidy(folder)
+
+
+def _tidy(folder: Path) -> None:
+    """Remove all but the models used last, and what processes left that were killed while they wrote."""
+    files = {path: path.stat().st_mtime for path in folder.glob("*.npz")}
+    partial = {path for path in files if path.stem.endswith(".partial")}
+    old = sorted(files.keys() - partial, key=files.__getitem__)[:-MAX_FILES]
+    for path in [*old, *(path for path in partial if files[path] < time.time() - STALE)]:
+        path.unlink(missing_ok=True)
 
 
 def _folder() -> Path | None:

@@ -76,8 +76,8 @@ class Stretch:
 
     @cached_property
     def extremes(self) -> Extremes:
-        """The largest deflection, slope and strain, at the mesh's points and half a thickness from each actuator."""
-        mesh, thickness = self.model.reduction.discrete.mesh, self.model.large.plate.section.thickness
+        """The largest deflection, slope and strain, on halved cells and half a thickness from each actuator."""
+        mesh, thickness = self.model.reduction.discrete.mesh.refined(), self.model.large.plate.section.thickness
         angle = 2 * np.pi * np.arange(AROUND) / AROUND
         circle = thickness / 2 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         around = (self.shapes.points[:, None] + circle).reshape(-1, 2)

@@ -28,7 +28,7 @@ CONTENTS = {  # the pages below a page, by caption
         "Reference": ["conventions", "api/index"],
         "Inside": ["architecture", "decisions/index", "contributing", "changes"],
     },
-    "theory": {"": ["plate", "surface", "motion", "contact", "large-deflection"]},
+    "theory": {"": ["plate", "surface", "motion", "contact", "large-deflection", "inertia"]},
     "api/index": {"": PACKAGES},
     "decisions/index": {"": sorted(page.stem for page in DOCS.glob("decisions/0*.md"))},
 }

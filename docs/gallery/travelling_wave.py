@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from coupling import surface_motion
 from fem_plate import Plate, PlateSection
 from meshes import rectangle
-from particle import ConstantFriction, Drive, Micropart, simulate
+from particle import CoulombAdhesion, Drive, Micropart, simulate
 
-PITCH, FREQUENCY, START = 150e-6, 1600.0, (100e-6, 80e-6)  # m, Hz, m
+PITCH, FREQUENCY, START = 150e-6, 1600.0, (-30e-6, -40e-6)  # m, Hz, m
 SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=100e-6)
 
 
@@ -18,10 +18,11 @@ def draw(quick: bool = False) -> Figure:
     row, column = np.divmod(np.arange(25), 5)
     actuators = PITCH * np.stack([column - 2, row - 2], axis=1)
     shapes = Plate(rectangle(6 * PITCH, 6 * PITCH, PITCH if quick else PITCH / 2), SECTION).influence(actuators)
-    drives = [Drive(18e-6, FREQUENCY, delay=(k % 6) / 6 / FREQUENCY) for k in row + column]
+    drives = [Drive(0.6e-6, FREQUENCY, delay=(k % 6) / 6 / FREQUENCY) for k in row + column]
     surface = surface_motion(shapes, drives, surface_tolerance=1e-5, half_thickness=SECTION.thickness / 2)
-    duration = 1.5e-3 if quick else 40e-3
-    path = simulate(surface, Micropart(2e-9, START), ConstantFriction(4e-9), duration, tolerance=1e-6)
+    duration = 1.5e-3 if quick else 80e-3
+    part, friction = Micropart(2e-9, START, centre_height=45e-6), CoulombAdhesion(0.1, adhesion=100e-9)
+    path = simulate(surface, part, friction, duration, tolerance=1e-7)
 
     side = 2.9 * PITCH * np.linspace(-1, 1, 20 if quick else 80)
     points = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
@@ -29,13 +30,13 @@ def draw(quick: bool = False) -> Figure:
     panels = figure.subplots(2, 2, sharex=True, sharey=True)
     for axes, time in zip(panels.flat, duration - np.arange(4)[::-1] / 4 / FREQUENCY, strict=True):
         height = surface.evaluate(points, time).w.reshape(len(side), -1)
-        filled = axes.contourf(side * 1e6, side * 1e6, height * 1e6, levels=np.arange(-4, 24, 2), cmap="Blues")
+        filled = axes.contourf(side * 1e6, side * 1e6, height * 1e9, levels=np.arange(-100, 800, 50), cmap="Blues")
         axes.plot(*(actuators.T * 1e6), "^", color="white", markeredgecolor="black", markersize=5)
         axes.plot(*(path.position.T * 1e6), color="#c8371b", linewidth=2)
         axes.plot(*(path.at([time]).position[0] * 1e6), "o", color="#c8371b", markeredgecolor="black", markersize=7)
         axes.set_title(f"{time * 1e3:.2f} ms", fontsize=11)
         axes.set_aspect("equal")
-    figure.colorbar(filled, ax=panels, label="height [µm]", shrink=0.7)
+    figure.colorbar(filled, ax=panels, label="height [nm]", shrink=0.7)
     figure.supxlabel("x [µm]", fontsize=10)
     figure.supylabel("y [µm]", fontsize=10)
     return figure

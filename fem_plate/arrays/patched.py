@@ -14,7 +14,7 @@ from fem_plate.arrays.patches import ActuatorArray, Patch, ProgressCallback, Til
 from fem_plate.elements import Derivatives, PlateFunctions
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.shapes import Shapes
-from fem_plate.vibration import modes
+from fem_plate.vibration import HeldPlate, modes
 from meshes import Outline
 
 FloatArray = NDArray[np.float64]
@@ -176,8 +176,8 @@ class PatchedShapes(Shapes):
         cut, rows = self._array.sparsest()
         held = self.points[rows] - cut.origin
         model, rigidity = self._array.model(self._array.cutter, cut, held), self._array.rigidity
-        compliance = rigidity / model.mesh.size**2 / self.springs[rows]
-        return float(modes(model, held, compliance, 1, rigidity / (inertia * model.mesh.size**4)).frequencies[0])
+        held_plate = HeldPlate(model, held, rigidity / model.mesh.size**2 / self.springs[rows])
+        return float(modes(held_plate, 1, rigidity / (inertia * model.mesh.size**4)).frequencies[0])
 
     def _width(self, x: FloatArray, weights: FloatArray | None) -> int:
         """The number of functions to evaluate; ValueError when they are too many for the points."""

@@ -1,4 +1,5 @@
 from .cells import level_of as level_of
+from .fine_enough import fine_enough as fine_enough
 from .equilibrium import NotConverged as NotConverged
 from .large_deflection import LargeDeflection as LargeDeflection
 from .reduced import Forms as Forms, ReducedPlate as ReducedPlate

@@ -26,6 +26,7 @@ class DiscretePlate:
     """A plate with actuators at points (N, 2) [m] on one mesh.
 
     stiffness: (N,) N/m of the actuators.  movable: by boundary.  membrane: AIRY or PLANE_STRESS.
+    level: of fineness (see `cells`).  halvings: of all cells.
     """
 
     def __init__(
@@ -38,6 +39,7 @@ class DiscretePlate:
         level: int,
         halvings: int,
     ) -> None:
+        self.level, self.halvings = level, halvings
         section, by_airy = plate.section, membrane == AIRY
         every_rim_moves = all(movable.values())
         corners = airy_corners(plate.mesh, every_rim_moves, section.poisson_ratio) if by_airy else []

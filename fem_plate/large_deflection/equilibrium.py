@@ -21,6 +21,9 @@ CONVERGED = 1e-8  # of the largest deflection: what the last step may change; Ne
 # Newton's next step would square so small a change. Where it does not, the rest is rounding, and so may be what the
 # energy changes by.
 NEAR = 1e-5
+# A step's matrix, the costliest part of it, also serves the steps after one that changes w by less than this, as long
+# as each is so much smaller than the last.
+KEEP, SLOW = 0.1, 0.1
 MAX_HALVINGS = 12  # of a step, while the energy grows
 ROUNDING = 1e-12  # of the energy
 
@@ -60,7 +63,7 @@ class Solution:
 
     state: Coefficients
     forces: FloatArray  # (J,), of the actuators, up
-    solver: BorderedSolver  # of small changes about it
+    solver: BorderedSolver  # of small changes about a state that is within KEEP of it
 
 
 class Equilibrium:
@@ -86,23 +89,40 @@ class Equilibrium:
         start: where to begin, at the heights of the loads; by default the linear plate.
         """
         now = self.linear(loads) if start is None else start
-        energy, change = self.energy(now, loads), np.inf
+        energy, change, solver = self.energy(now, loads), np.inf, None
         for _ in range(MAX_STEPS):
-            dv, de, forces, solver = self._step(now, loads)
-            share, last_change, change = 1.0, change, self._change(now, dv, de)
-            for _ in range(MAX_HALVINGS):
-                there = self.at(now.v + share * dv, now.extra + share * de, loads.pressure)
-                new_energy = self.energy(there, loads)
-                if new_energy <= energy + ROUNDING * abs(energy) or change < NEAR:
-                    break
-                share /= 2
-            now, energy = there, new_energy
-            if share == 1.0 and (change < CONVERGED or last_change / 10 < change < NEAR):
+            fresh = solver is None
+            solver = solver or self.solver(now)
+            dv, de, forces = self._step(solver, now, loads)
+            last_change, change = change, self._change(now, dv, de)
+            if not fresh and change > SLOW * last_change:
+                solver, change = None, last_change
+                continue
+            now, energy, share = self._searched(now, energy, dv, de, loads, change < NEAR)
+            if share == 1.0 and (change < CONVERGED or (fresh and last_change / 10 < change < NEAR)):
                 return Solution(now, forces, solver)
+            if share < 1.0 or change > KEEP:
+                solver = None
         raise NotConverged(
             f"The stretching plate has no equilibrium after {MAX_STEPS} steps; the last one changed w by {change:.1e} "
             "of itself. Lower the strokes"
         )
+
+    def _searched(
+        self, now: Coefficients, energy: float, dv: FloatArray, de: FloatArray, loads: Loads, rounding: bool
+    ) -> tuple[Coefficients, float, float]:
+        """The plate after a step, its energy, and the share of the step: halved while the energy grows.
+
+        rounding: whether all that the energy may grow by is rounding.
+        """
+        share = 1.0
+        for _ in range(MAX_HALVINGS):
+            there = self.at(now.v + share * dv, now.extra + share * de, loads.pressure)
+            new_energy = self.energy(there, loads)
+            if rounding or new_energy <= energy + ROUNDING * abs(energy):
+                break
+            share /= 2
+        return there, new_energy, share
 
     def linear(self, loads: Loads) -> Coefficients:
         """The plate without stretching."""
@@ -237,15 +257,19 @@ class Equilibrium:
         column = np.broadcast_to(self.space.dofs[:, None, :], element.shape)
         return coo_matrix((element.ravel(), (row.ravel(), column.ravel())), shape=(rows, columns)).tocsc()
 
-    def _step(self, now: Coefficients, loads: Loads) -> tuple[FloatArray, FloatArray, FloatArray, BorderedSolver]:
-        """Newton's step in v and in the extra coefficients, the actuators' forces after it, and what solved for it."""
-        solver = BorderedSolver(self.trial, *self.tangent(now), self.held, self.compliance)
+    def solver(self, now: Coefficients) -> BorderedSolver:
+        """What solves for small changes about a state."""
+        return BorderedSolver(self.trial, *self.tangent(now), self.held, self.compliance)
+
+    def _step(
+        self, solver: BorderedSolver, now: Coefficients, loads: Loads
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Newton's step in v and in the extra coefficients, and the actuators' forces after it."""
         given = np.where(self.held, 0.0, loads.strokes)
         of_v, of_extra = self.imbalance(now, given)
         missing = (loads.strokes - self.heights(now))[self.held]
-        dv, de, held_forces = solver.solve(of_v, of_extra, missing)
-        given[self.held] = held_forces
-        return dv, de, given, solver
+        dv, de, given[self.held] = solver.solve(of_v, of_extra, missing)
+        return dv, de, given
 
     def _change(self, now: Coefficients, dv: FloatArray, de: FloatArray) -> float:
         """The largest change of w over the largest w, at the mesh's points."""

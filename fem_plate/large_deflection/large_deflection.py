@@ -45,7 +45,7 @@ class LargeDeflection:
     ) -> None:
         self.plate, self.points, self.stiffness, self.movable = plate, points, stiffness, dict(movable)
         check_held("large_deflection", _motions(plate, points), stiffness > 0)
-        by_airy = _airy_applies(plate, movable)
+        by_airy = airy_applies(plate, movable)
         if membrane not in (None, AIRY, PLANE_STRESS) or (membrane == AIRY and not by_airy):
             raise ValueError(
                 f"Input membrane of large_deflection must be {PLANE_STRESS!r} or, on plates without holes whose rim is "
@@ -116,7 +116,7 @@ def _motions(plate: GivenPlate, points: FloatArray) -> FloatArray:
     return np.column_stack([np.ones(len(points)), points / plate.mesh.size]) @ rigid
 
 
-def _airy_applies(plate: GivenPlate, movable: Mapping[str, bool]) -> bool:
+def airy_applies(plate: GivenPlate, movable: Mapping[str, bool]) -> bool:
     """Whether there are no holes and the whole rim is held alike; also clamped, if it is movable.
 
     Where a rim both slopes and moves, the stress function's test functions do not vanish there as they should.

@@ -99,7 +99,9 @@ class PlaneStress:
 
 def curved(mesh: PlateMesh) -> MeshTri2:
     """The mesh for scikit-fem, lengths by the plate's size, with the middles of its rim's sides on the true rim."""
-    bent = MeshTri2.from_mesh(MeshTri1(mesh.points.T / mesh.size, np.sort(mesh.triangles, axis=1).T))
+    points, triangles = mesh.points.T / mesh.size, np.sort(mesh.triangles, axis=1).T
+    # Contiguous, or scikit-fem prints that it makes them so.
+    bent = MeshTri2.from_mesh(MeshTri1(np.ascontiguousarray(points), np.ascontiguousarray(triangles)))
     places = bent.doflocs.copy()
     for name, pairs in mesh.boundaries.items():
         middles = mesh.arcs(name, np.array([0.5]))[0][:, 0] / mesh.size

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from fem_plate.elements import Derivatives, PlateFunctions
 from fem_plate.large_deflection.reduction import Reduction
-from fem_plate.shapes import Shapes
+from fem_plate.moving_shapes import MovingShapes
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
-class StretchedShapes(Shapes):
+class StretchedShapes(MovingShapes):
     """The shapes of N actuators and n corrections, and M in-plane motions.
 
     reduction: of the plate.  points: (N, 2) m.  springs: (N,) N/m.
@@ -21,6 +19,8 @@ class StretchedShapes(Shapes):
     """
 
     truncation_error = 1e-6  # cells need not follow the shapes any closer: finite elements do not either
+
+    spare = 0.3  # of that: the degree of a cell's polynomials does not pay for a closer fit, as each step costs it
 
     def __init__(
         self,
@@ -31,32 +31,13 @@ class StretchedShapes(Shapes):
         in_plane_scales: FloatArray,
     ) -> None:
         discrete = reduction.discrete
-        self.points, self.springs = np.ascontiguousarray(points), springs
-        self.size, self.outline = discrete.size, discrete.mesh.outline
         units = np.where(springs > 0, 1.0, discrete.thickness / discrete.force_unit)
         linear = reduction.linear.weighted(np.diag(units))
         v = np.concatenate([linear.v, reduction.corrections.v], axis=1)
         extra = np.concatenate([linear.extra, reduction.corrections.extra], axis=1)
-        self.functions: PlateFunctions = discrete.trial.functions(v, extra)
-        self.strengths = self.functions.forces
-        self._reduction, self._scales, self._in_plane_scales = reduction, scales, in_plane_scales
-
-    def derivatives(self, x: FloatArray, weights: FloatArray | None) -> Derivatives:
-        return (self.functions if weights is None else self.functions.weighted(weights)).evaluate(x)
-
-    def values(self, xy: ArrayLike, weights: FloatArray | None = None) -> FloatArray:
-        functions = self.functions if weights is None else self.functions.weighted(weights)
-        return functions.values(np.asarray(xy, dtype=float) / self.size)
-
-    def nonzero_values(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
-        return np.arange(self.strengths.shape[1]), self.functions.values(xy / self.size)
-
-    def own_heights(self) -> FloatArray:
-        return self._scales
-
-    def laplacians(self, xy: ArrayLike, floor: float) -> FloatArray:
-        """The Laplacians (n, N + n) [1/m^2], as `InfluenceShapes.laplacians`."""
-        return self.functions.laplacians(np.asarray(xy, dtype=float) / self.size, floor / self.size) / self.size**2
+        functions = discrete.trial.functions(v, extra)
+        super().__init__(functions, points, springs, discrete.size, discrete.mesh.outline, scales)
+        self._reduction, self._in_plane_scales = reduction, in_plane_scales
 
     def in_plane_values(self, xy: FloatArray) -> FloatArray:
         """The in-plane motions (n, M, 2) at points (n, 2) [m]."""
@@ -72,10 +53,3 @@ class StretchedShapes(Shapes):
     def in_plane_heights(self) -> FloatArray:
         """What the errors of in-plane motions are relative to, (M,)."""
         return self._in_plane_scales
-
-    def _checked(self, weights: ArrayLike, caller: str) -> FloatArray:
-        array = np.asarray(weights, dtype=float)
-        count = self.strengths.shape[1]
-        if array.shape != (count,):
-            raise ValueError(f"Input weights of {caller} must be one a shape, {count}; got shape {array.shape}")
-        return array

@@ -73,3 +73,17 @@ def slopes(
         samples.gradient @ everything[space.dofs[samples.triangle]] + at @ extra
         for samples, at in zip(sets, known, strict=True)
     ]
+
+
+def stacked(parts: Sequence[FloatArray]) -> FloatArray:
+    """Stacked quantities (k, j n, c) of all sets of samples in one column each."""
+    return np.concatenate([part.reshape(-1, part.shape[-1]) for part in parts])
+
+
+def unstacked(samples: Sequence[Samples], columns: FloatArray) -> list[FloatArray]:
+    """Tensors (k, 3 n, c) at each set of samples."""
+    ends = np.cumsum([3 * s.weights.size for s in samples])
+    return [
+        part.reshape(len(s.weights), -1, columns.shape[1])
+        for s, part in zip(samples, np.split(columns, ends[:-1]), strict=True)
+    ]

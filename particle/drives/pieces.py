@@ -12,6 +12,8 @@ from particle.jit import jit_no_arrays
 
 FloatArray = NDArray[np.float64]
 
+NO_SEGMENT = -1  # of a drive that has not begun, or has ended
+
 
 @jit_no_arrays
 def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatArray) -> None:
@@ -19,16 +21,59 @@ def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatA
 
     At a breakpoint it is the piece that begins there.
     """
+    find_piece(table, i, time, unit, out)
+
+
+@jit_no_arrays
+def find_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatArray) -> tuple[float, int]:
+    """The same; also returns the passes that drive i has behind it, and its segment, NO_SEGMENT: it holds."""
     for k in range(ORDER):
         out[k] = 0.0
     if time < table.delay[i]:
         out[0] = table.coefficients[table.first[i], 0]
-        return
+        return 0.0, NO_SEGMENT
     if time >= _end(table, i):
         for k in range(ORDER):
             out[0] += table.coefficients[table.first[i + 1] - 1, k]
-        return
+        return 0.0, NO_SEGMENT
     passes, segment = _place(table, i, time)
+    expand_piece(table, i, passes, segment, time, unit, out)
+    return passes, segment
+
+
+@jit_no_arrays
+def find_alike(table: DriveTable, out: NDArray[np.bool_]) -> None:
+    """Whether all pieces of each drive begin and end when those of the drive before it do, into `out` (N,)."""
+    for i in range(len(out)):
+        out[i] = i > 0 and _is_alike(table, i, i - 1)
+
+
+@jit_no_arrays
+def _is_alike(table: DriveTable, i: int, other: int) -> bool:
+    first, first_other, count = table.first[i], table.first[other], table.first[i + 1] - table.first[i]
+    if (
+        table.first[other + 1] - first_other != count
+        or table.loop[i, 0] - first != table.loop[other, 0] - first_other
+        or table.loop[i, 1] - first != table.loop[other, 1] - first_other
+        or table.delay[i] != table.delay[other]
+        or table.span[i] != table.span[other]
+        or table.repeats[i] != table.repeats[other]
+        or table.stroke_time[i] != table.stroke_time[other]
+    ):
+        return False
+    for k in range(count):
+        if table.start[first + k] != table.start[first_other + k]:
+            return False
+        if table.scale[first + k] != table.scale[first_other + k]:
+            return False
+    return True
+
+
+@jit_no_arrays
+def expand_piece(
+    table: DriveTable, i: int, passes: float, segment: int, time: float, unit: float, out: FloatArray
+) -> None:
+    """The quintic of a segment of drive i, as `drive_piece` has it."""
     since = time
     if math.isfinite(table.span[i]):
         since = (time - _origin(table, i)) - table.span[i] * passes

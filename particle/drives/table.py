@@ -175,21 +175,44 @@ def _jumps(table: DriveTable) -> FloatArray:
     """
     if len(table.span) == 0:
         return np.zeros((0, ORDER - 1))
-    orders, first, last = np.arange(1, ORDER), table.first[:-1], table.first[1:] - 1
+    orders = np.arange(1, ORDER)
     per_order = table.scale[:, None] ** orders
     begins, ends = table.coefficients @ _AT_BEGIN / per_order, table.coefficients @ _AT_END / per_order
-    step = np.zeros_like(begins)
-    step[1:] = np.abs(begins[1:] - ends[:-1])
     # At rest before the start, and after the end if there is one; before that the end of a pass goes on into the next.
-    loop_first, loop_last = table.loop[:, 0], table.loop[:, 1] - 1
-    again = np.where((table.repeats > 1)[:, None], np.abs(ends[loop_last] - begins[loop_first]), 0.0)
-    end = np.where(np.isfinite(table.repeats)[:, None], np.abs(ends[last]), 0.0)
-    start = np.where((table.delay > 0)[:, None], np.abs(begins[first]), 0.0)
-    step[first] = np.maximum(np.maximum(start, end), again)
-    jump = np.maximum.reduceat(step, first)
-    most = np.maximum.reduceat(np.abs(table.coefficients).max(axis=1), first)
-    rounding = 100 * ROUNDING * most[:, None] / np.minimum.reduceat(table.scale, first)[:, None] ** orders
+    jump, most, shortest = _largest_jumps(table, begins, ends)
+    rounding = 100 * ROUNDING * most[:, None] / shortest[:, None] ** orders
     return np.where((jump > rounding) & np.isfinite(table.span)[:, None], jump, 0.0)
+
+
+@jit
+def _largest_jumps(
+    table: DriveTable, begins: FloatArray, ends: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The largest jump of each derivative (N, 5), coefficient (N,) and the least scale (N,) of each drive.
+
+    begins, ends: (S, 5) derivatives where its segments begin and end.
+    """
+    count = len(table.span)
+    jump, most, shortest = np.zeros((count, begins.shape[1])), np.zeros(count), np.full(count, math.inf)
+    for i in range(count):
+        first, last = table.first[i], table.first[i + 1] - 1
+        loop_first, loop_last = table.loop[i, 0], table.loop[i, 1] - 1
+        for k in range(first, last + 1):
+            shortest[i] = min(shortest[i], table.scale[k])
+            for j in range(table.coefficients.shape[1]):
+                most[i] = max(most[i], abs(table.coefficients[k, j]))
+        for j in range(begins.shape[1]):
+            largest = 0.0
+            if table.delay[i] > 0:
+                largest = max(largest, abs(begins[first, j]))
+            if math.isfinite(table.repeats[i]):
+                largest = max(largest, abs(ends[last, j]))
+            if table.repeats[i] > 1:
+                largest = max(largest, abs(ends[loop_last, j] - begins[loop_first, j]))
+            for k in range(first + 1, last + 1):
+                largest = max(largest, abs(begins[k, j] - ends[k - 1, j]))
+            jump[i, j] = largest
+    return jump, most, shortest
 
 
 @jit

@@ -30,6 +30,19 @@ def to_bernstein(c: FloatArray, out: FloatArray) -> None:
 
 
 @jit_no_arrays
+def quintic_to_bernstein(c: FloatArray, b: FloatArray) -> None:
+    """The same of a quintic (6,), without divisions."""
+    third, tenth = c[3] * 0.1, c[2] * 0.1
+    fifth, fourth = c[1] * 0.2, c[4] * 0.2
+    b[0] = c[0]
+    b[1] = c[0] + fifth
+    b[2] = c[0] + 2 * fifth + tenth
+    b[3] = c[0] + 3 * fifth + 3 * tenth + third
+    b[4] = c[0] + 4 * fifth + 6 * tenth + 4 * third + fourth
+    b[5] = c[0] + c[1] + c[2] + c[3] + c[4] + c[5]
+
+
+@jit_no_arrays
 def halve(right: FloatArray, left: FloatArray) -> None:
     """de Casteljau at 1/2: `right` holds the whole polynomial before and its right half after."""
     n = len(right) - 1

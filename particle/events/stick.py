@@ -23,8 +23,8 @@ from particle.events.equations import Part
 from particle.events.polynomials import dot, product, second_derivative, total
 from particle.events.stick_raised import DEGREE as RAISED_DEGREE
 from particle.events.stick_raised import X, Y, fill_raised, holds_raised, is_safe_raised
+from particle.events.stick_stretched import BOUND_DEGREE, NARROW, fill_stretched, is_safe_stretched, largest_force
 from particle.events.stick_stretched import DEGREE as STRETCHED_DEGREE
-from particle.events.stick_stretched import fill_stretched, safe_by_extremes_stretched
 from particle.friction import friction_limit
 from particle.jit import jit, jit_no_arrays
 from particle.surface import Frame, LocalSurface, motion_at, planar_motion_at
@@ -48,7 +48,10 @@ class Rest(NamedTuple):
     width: FloatArray  # (MAX_HALVINGS + 2,)
     motion: FloatArray  # (3, 6), w, w_x and w_y at the place as polynomials of the share of the time
     plane: FloatArray  # (6, 6), motion in the plane and its gradient there
+    part_motion: FloatArray  # (3, 6), the same over a part of the time
+    part_plane: FloatArray  # (6, 6)
     bounds: FloatArray  # (6,), one of these in Bernstein form
+    force: FloatArray  # (BOUND_DEGREE + 1,), of `stick_stretched`
 
 
 def new_rest() -> Rest:
@@ -60,7 +63,10 @@ def new_rest() -> Rest:
         np.zeros(MAX_HALVINGS + 2),
         np.zeros((3, ORDER)),
         np.zeros((6, ORDER)),
+        np.zeros((3, ORDER)),
+        np.zeros((6, ORDER)),
         np.zeros(ORDER),
+        np.zeros(BOUND_DEGREE + 1),
     )
 
 
@@ -75,44 +81,79 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
     for row in range(3):
         _move(rest.motion[row], low, width)
     frame: Frame = local.frame[0]
-    kind = STRETCHED if frame.in_plane > 0 else RAISED if part.centre > 0.0 else LEVEL
-    if kind == STRETCHED:
+    if frame.in_plane > 0:
         _plane(local, rest, x, y, low, width)
-        if safe_by_extremes_stretched(part, rest.motion, rest.plane, end - begin, rest.bounds):
-            return math.inf
-        polynomials = rest.stretched
-        fill_stretched(part, rest.motion, rest.plane, end - begin, polynomials[0])
-    else:
-        straight = frame.base_drives == 0 and part.tilt_x == 0.0 and part.tilt_y == 0.0
-        if straight and _safe_by_extremes(part, rest, end - begin):
-            return math.inf
-        polynomials = rest.raised if kind == RAISED else rest.polynomials
-        _polynomials(local, part, rest.motion, begin, end, polynomials[0])
+        return _leaves_stretched(part, rest, begin, end)
+    straight = frame.base_drives == 0 and part.tilt_x == 0.0 and part.tilt_y == 0.0
+    if straight and _safe_by_extremes(part, rest, end - begin):
+        return math.inf
+    kind = RAISED if part.centre > 0.0 else LEVEL
+    polynomials = rest.raised if kind == RAISED else rest.polynomials
+    _polynomials(local, part, rest.motion, begin, end, polynomials[0])
+    rest.low[0], rest.width[0] = 0.0, 1.0
     # What rounding leaves of the squared force where it is small: a part that is about to come off does not slip of it.
     largest = np.abs(polynomials[0, 1]).max()
-    if kind != LEVEL:
+    if kind == RAISED:
         z = part.centre
         largest += 2 * z * np.abs(polynomials[0, X]).max() + z * z * np.abs(polynomials[0, Y]).max()
-    slack = SLACK * largest
-    rest.low[0], rest.width[0] = 0.0, 1.0
+    share = _first_slip(part, rest, kind, polynomials, SLACK * largest, 0)
+    return float(begin + share * (end - begin)) if share < math.inf else math.inf
+
+
+@jit
+def _first_slip(part: Part, rest: Rest, kind: int, polynomials: FloatArray, slack: float, first: int) -> float:
+    """The share of the time at which the part leaves rest within the subinterval `first`; inf: it does not."""
     narrowest = 0.5**MAX_HALVINGS
-    top = 0
-    while top >= 0:
-        if _safe_by_bernstein(part, kind, polynomials[top], slack):
+    top = first
+    while top >= first:
+        if _safe_by_bernstein(part, kind, polynomials[top - first], slack):
             top -= 1
         elif rest.width[top] <= narrowest:
             # Neither provable nor divisible: a slip if the far end says so, else the limit was only touched.
-            if not _holds_at_end(part, kind, polynomials[top], slack):
-                return float(begin + (rest.low[top] + rest.width[top]) * (end - begin))
+            if not _holds_at_end(part, kind, polynomials[top - first], slack):
+                return float(rest.low[top] + rest.width[top])
             top -= 1
         else:
-            half = 0.5 * rest.width[top]
-            rest.low[top + 1] = rest.low[top]
-            rest.low[top] += half
-            rest.width[top] = rest.width[top + 1] = half
+            _divide(rest, top)
             for row in range(polynomials.shape[1]):
-                halve(polynomials[top, row], polynomials[top + 1, row])
+                halve(polynomials[top - first, row], polynomials[top - first + 1, row])
             top += 1
+    return math.inf
+
+
+@jit_no_arrays
+def _divide(rest: Rest, top: int) -> None:
+    """The subinterval on top in two, the earlier one on top of the other."""
+    half = 0.5 * rest.width[top]
+    rest.low[top + 1] = rest.low[top]
+    rest.low[top] += half
+    rest.width[top] = rest.width[top + 1] = half
+
+
+@jit
+def _leaves_stretched(part: Part, rest: Rest, begin: float, end: float) -> float:
+    """When [s] the part leaves rest where it moves in its plane, as rest.motion and rest.plane have it."""
+    slack = SLACK * largest_force(part, rest.motion, rest.plane, end - begin, rest.force) ** 2
+    rest.low[0], rest.width[0], top = 0.0, 1.0, 0
+    while top >= 0:
+        low, width = rest.low[top], rest.width[top]
+        lasting = width * (end - begin)
+        rest.part_motion[:], rest.part_plane[:] = rest.motion, rest.plane
+        for row in range(3):
+            _move(rest.part_motion[row], low, width)
+        for row in range(6):
+            _move(rest.part_plane[row], low, width)
+        if is_safe_stretched(part, rest.part_motion, rest.part_plane, lasting, rest.bounds, rest.force):
+            top -= 1
+        elif width > NARROW:
+            _divide(rest, top)
+            top += 1
+        else:
+            fill_stretched(part, rest.part_motion, rest.part_plane, lasting, rest.stretched[0])
+            share = _first_slip(part, rest, STRETCHED, rest.stretched, slack, top)
+            if share < math.inf:
+                return float(begin + share * (end - begin))
+            top -= 1
     return math.inf
 
 

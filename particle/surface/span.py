@@ -12,7 +12,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.drives import ORDER, breakpoint_slack, drive_breakpoint, drive_piece
+from particle.drives import (
+    NO_SEGMENT,
+    ORDER,
+    breakpoint_slack,
+    drive_breakpoint,
+    expand_piece,
+    find_piece,
+)
 from particle.jit import jit_no_arrays
 from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_bridged, shapes_in_cell
 from particle.surface.cells import UNBUILT
@@ -130,14 +137,25 @@ def _find_piece(surface: Surface, local: LocalSurface, i: int) -> None:
     """The quintic of the i-th drive, from frame.time to its next breakpoint."""
     frame: Frame = local.frame[0]
     time, unit, drive = frame.time, frame.unit, drive_of(surface, local, i)
-    clock, piece = local.clock[i], local.pieces[i]
-    until = drive_breakpoint(surface.drives, drive, time)
+    clock, piece, table = local.clock[i], local.pieces[i], surface.drives
+    if i > 0 and local.alike[drive] and drive_of(surface, local, i - 1) == drive - 1:
+        # Corrections of a plate that stretches have common breakpoints, which are searched once.
+        before = local.clock[i - 1]
+        if before.since == time and before.segment != NO_SEGMENT:
+            ahead, segment = 0.5 * min(before.until - time, unit), before.segment + table.first[drive]
+            segment -= table.first[drive - 1]
+            expand_piece(table, drive, before.passes, segment, time + ahead, unit, piece)
+            _shift_one(piece, -ahead / unit)
+            clock.since, clock.until, clock.slack = time, before.until, before.slack
+            clock.passes, clock.segment = before.passes, segment
+            return
+    until = drive_breakpoint(table, drive, time)
     # It is chosen in the middle of the span, where rounding at its ends cannot mistake it.
     ahead = 0.5 * min(until - time, unit)
-    drive_piece(surface.drives, drive, time + ahead, unit, piece)
+    clock.passes, clock.segment = find_piece(table, drive, time + ahead, unit, piece)
     _shift_one(piece, -ahead / unit)
     clock.since, clock.until = time, until
-    clock.slack = breakpoint_slack(surface.drives, drive, until) if math.isfinite(until) else 0.0
+    clock.slack = breakpoint_slack(table, drive, until) if math.isfinite(until) else 0.0
 
 
 @jit_no_arrays
@@ -172,11 +190,13 @@ def _add(surface: Surface, local: LocalSurface, i: int, sign: float) -> None:
 @jit_no_arrays
 def _add_row(out: FloatArray, rows: FloatArray, first: int, width: int, piece: FloatArray, sign: float) -> None:
     """Add a quintic times the shape that begins at `first`."""
+    row = rows[first : first + width]  # as slices, these loops fill the processor's vector units
     for k in range(ORDER):
         c = sign * piece[k]
         if c != 0.0:
-            for m in range(width):
-                out[k, m] += rows[first + m] * c
+            total = out[k, :width]
+            for m in range(len(row)):
+                total[m] += row[m] * c
 
 
 @jit_no_arrays

@@ -52,7 +52,7 @@ def test_the_summary_has_the_share_of_the_heights(runs):
     assert f"top face and centre of mass add {shares[1]:.3g} times the mid-plane's pull on the part" in texts
 
 
-def test_a_part_that_is_too_high_tips_over_unless_it_adheres():
+def test_a_part_that_is_too_high_tips_over():
     high = {"centre_height": 150e-6}
     tips = run_case(case(COULOMB, part=high)).summary
     assert tips.tipping > 1 and tips.tips
@@ -60,8 +60,20 @@ def test_a_part_that_is_too_high_tips_over_unless_it_adheres():
     contact = run_case(case(COULOMB, part=high)).trajectory.contact_at(np.linspace(0, 1e-3, 2001))
     shift = 150e-6 * np.linalg.norm(contact.friction, axis=1) / contact.normal_force
     assert tips.tipping == pytest.approx(shift.max() / 50e-6, rel=0.05)
-    held = run_case(case(CoulombCase(coefficient=0.4, adhesion=1e-7), part=high)).summary
-    assert not held.tips and not any("tips over" in text for text in report.warnings(held))
+    unknown = run_case(case(CONSTANT, part=high)).summary
+    assert unknown.tipping > 1 and not unknown.tips
+    assert not any("tips over" in text for text in report.warnings(unknown))
+    assert any(text.endswith("times half the part's size, if nothing adheres") for _, text in report.lines(unknown))
+
+
+def test_adhesion_keeps_a_part_from_tipping_over():
+    """Enough of it that the part sticks: the force on it is then the same, and the pressing force larger by it."""
+    high = {"centre_height": 150e-6, "size": 50e-6}
+    weak, strong = (run_case(case(CoulombCase(coefficient=2.0, adhesion=f), part=high)) for f in (5e-6, 2e-5))
+    assert all(run.trajectory.time_in(State.STICK) == run.trajectory.time[-1] == 1e-3 for run in (weak, strong))
+    assert weak.summary.tips and any("tips over" in text for text in report.warnings(weak.summary))
+    assert not strong.summary.tips and strong.summary.tipping < 0.25 * weak.summary.tipping
+    assert not any("tips over" in text for text in report.warnings(strong.summary))
 
 
 def test_forces_of_a_part_that_comes_off():

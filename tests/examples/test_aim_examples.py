@@ -15,26 +15,26 @@ AIMS = ROOT / "examples" / "aims"
 pytestmark = pytest.mark.compiled
 
 
-def test_the_aim_reaches_its_target():
-    found = aim(read_task(AIMS / "to_target.toml"))
-    assert found.reached and not found.scatter.lost and found.scatter.quantile(0.9) < 10e-6
+def test_an_aim_over_a_case_of_the_examples_reaches_its_target():
+    found = aim(read_task(AIMS.parent / "array_3x3.toml", target=(20e-6, -40e-6)))
+    assert found.reached and not found.scatter.lost
 
 
 @pytest.mark.slow
-def test_the_aim_on_a_thick_plate_stays_within_every_bound_of_the_model():
-    found = aim(read_task(AIMS / "glide.toml"))
+def test_the_aim_reaches_its_target_within_every_bound_of_the_model():
+    found = aim(read_task(AIMS / "to_target.toml"))
     assert found.reached and not found.scatter.lost and found.scatter.quantile(0.9) < 5e-6
     assert not warnings(run_case(found.case).summary)
 
 
 @pytest.mark.slow
-def test_the_plan_carries_the_part_over_five_actuators_round_a_corner():
+def test_the_plan_carries_the_part_round_a_corner_within_every_bound_of_the_model():
     file = AIMS / "around_the_corner.toml"
-    told = re.search(r"--through (.*)", file.read_text())[1]
-    assert f"--through {told}\n" in (ROOT / "docs" / "aim.md").read_text()
-    through = [read_place(text, "--through") for text in told.split()]
+    places = re.search(r"--through (.*)", file.read_text())[1]
+    assert f"--through {places}\n" in (ROOT / "docs" / "aim.md").read_text()
+    through = [read_place(text, "--through") for text in places.split()]
     found = plan(read_route(file, through))
     assert found.complete and max(found.distances) < 1e-6
-    actuators = np.array([actuator.position for actuator in found.case.actuators])
-    passed = np.linalg.norm(found.trajectory.position[:, None] - actuators, axis=-1).min(axis=0)
-    assert (passed < 2e-6).sum() >= 5
+    passed = np.linalg.norm(found.trajectory.position[:, None] - through, axis=-1).min(axis=0)
+    assert (passed < 1e-6).all()
+    assert not warnings(run_case(found.case).summary)

@@ -87,11 +87,12 @@ def test_plate_is_lifted_by_the_drives_at_every_step(result):
 
 
 def test_summary_warns_where_the_model_ends(result):
-    holds = result.case.name in ("array_10x10", "wave", "transport")
+    holds = not result.case.source.startswith("# Outside ")
     stretches = result.summary.theory == "von-karman"
     assert (result.summary.deflection_over_thickness < 0.2) == (holds and not stretches)
     assert any("times its thickness" in warning for warning in report.warnings(result.summary)) != holds
     assert (result.summary.largest_slope < 0.2) == holds
+    assert bool(report.warnings(result.summary)) != holds
 
 
 @pytest.mark.slow
@@ -100,7 +101,7 @@ def test_ten_thousand_actuators_run_and_their_files_stay_small(tmp_path):
     assert len(result.case.actuators) == 10_000
     summary = result.summary
     assert summary.plate_error < 1e-6 and summary.hold_residual < 1e-6
-    assert 0.18 <= summary.deflection_over_thickness < 0.2 and 0 < summary.part_sag < 1e-12
+    assert 0.006 <= summary.deflection_over_thickness < 0.007 and 0 < summary.part_sag < 1e-12
     assert 1e6 < summary.first_frequency < 1e8 and summary.drives_over_first == (summary.drive_over_first,) * 2
     assert sum(file.stat().st_size for file in result.files) < 50e6
     test_plate_is_lifted_by_the_drives_at_every_step(result)

@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from particle.events.bernstein import MAX_HALVINGS, first_negative, halve, to_bernstein
+from particle.events.bernstein import MAX_HALVINGS, first_negative, halve, quintic_to_bernstein, to_bernstein
 
 SIZES = st.integers(1, 17)
 NUMBERS = st.floats(-1, 1, allow_subnormal=False)
@@ -145,3 +145,10 @@ def test_a_root_that_only_touches_is_no_crossing(numerator):
 )
 def test_ends_and_degenerate_rows(b, place):
     assert first_negative(np.array(b)) == pytest.approx(place, abs=5e-5 if len(b) == 3 and b[1] < -1 else 1e-13)
+
+
+@given(st.lists(NUMBERS, min_size=6, max_size=6))
+def test_quintics_have_the_same_coefficients(numbers):
+    out = np.empty(6)
+    quintic_to_bernstein(np.array(numbers), out)
+    assert out == pytest.approx(bernstein(numbers), abs=ROUNDING)

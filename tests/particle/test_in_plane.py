@@ -23,7 +23,7 @@ from particle.drives import drive_table, monomial_table
 from particle.events.equations import Part, energy, length, pull, rising
 from particle.events.parallel import from_height, normal_bend, normal_bend_along, normal_rate, shape_operator, to_height
 from particle.events.stick import leaves_rest, new_rest
-from particle.events.stick_stretched import fill_stretched, safe_by_extremes_stretched
+from particle.events.stick_stretched import NARROW, fill_stretched, is_safe_stretched, largest_force
 from particle.surface.at_point import surface_at
 from particle.surface.local import new_local
 from particle.surface.simple_surfaces import _joined
@@ -161,7 +161,7 @@ LAWS = {
 
 def test_the_proof_that_a_part_stays_is_made_of_the_pull_on_it(steep):
     """Its polynomials are load and pull at any time, and so they are with a centre of mass on the mid-plane."""
-    local, begin, lasting = local_at(steep, time=0.1), 0.1, 0.5
+    local, begin, lasting = local_at(steep, time=0.1), 0.1, NARROW
     rest = new_rest()
     for heights in ((0.1, 0.25), (0.0, 0.0)):
         part = Part(2.0, G, 0.3, -0.2, 0.0, LAWS["constant"].law, *heights)
@@ -202,7 +202,7 @@ def test_a_part_at_rest_slips_when_its_pull_says_so(centre):
             limit = demands[0] + share * (demands.max() - demands[0])
             held = part._replace(law=ConstantFriction(limit).law)
             found = leaves_rest(local, held, rest, *PLACE, 0.0, 1.0)
-            safe = safe_by_extremes_stretched(held, rest.motion, rest.plane, 1.0, rest.bounds)
+            safe = is_safe_stretched(held, rest.motion, rest.plane, 1.0, rest.bounds, rest.force)
             over = np.flatnonzero(demands > limit)
             quick, proved = quick + safe, proved + math.isinf(found)
             if share > 1:
@@ -214,6 +214,29 @@ def test_a_part_at_rest_slips_when_its_pull_says_so(centre):
                 assert found == pytest.approx(first, abs=1e-9)
                 assert not safe
     assert proved >= 8 and quick > 0
+
+
+@pytest.mark.parametrize("strain", [0.0, 0.003, 0.03])
+def test_the_bound_of_a_part_at_rest_is_close(strain):
+    """No limit below the largest pull passes; one above it does once it is so by what strain and slope allow."""
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        c, u = 0.02 * rng.normal(size=(3, 3, 5)), strain * rng.normal(size=(2, 3, 3, 5))
+        local, rest = local_at(polynomial_surface(c, in_plane=u), time=0.0), new_rest()
+        part = Part(1.0, G, 0.1, -0.2, 0.0, ConstantFriction(1e3).law, 0.1, 0.2)
+        for lasting in (0.1, 1e-3):
+            leaves_rest(local, part, rest, *PLACE, 0.0, lasting)
+            demands = []
+            for time in np.linspace(0.0, lasting, 50):
+                f = surface_at(local, *PLACE, time)
+                p = pull(f, 0.0, 0.0, part)
+                demands.append(length(f, p.x, p.y))
+            force = largest_force(part, rest.motion, rest.plane, lasting, rest.force)
+            assert force == pytest.approx(max(demands), rel=0.02 + 3 * strain + lasting * 3)
+            for share, safe in ((1 - 1e-12, False), (1.02 + 20 * strain + lasting * 3, True)):
+                held = part._replace(law=ConstantFriction(share * max(demands)).law)
+                quick = is_safe_stretched(held, rest.motion, rest.plane, lasting, rest.bounds, rest.force)
+                assert quick == safe, (seed, lasting, share)
 
 
 @pytest.mark.compiled

@@ -1,10 +1,13 @@
 """Drives given by their quintics: many with common breakpoints, alone and beside others."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from particle import Drive
-from particle.drives import drive_table, next_breakpoint, quintic_drives
+from particle import Drive, polynomial_surface
+from particle.drives import drive_table, find_alike, next_breakpoint, quintic_drives
+from particle.surface import advance, enter, new_local, surface_at
 
 EDGES = np.array([0.0, 0.5, 0.75, 2.0])
 
@@ -73,3 +76,35 @@ def test_thousands_of_pieces_of_many_drives_share_their_times():
     drives = quintic_drives(edges, rows, None, 0.5, 1.0, np.zeros(40))
     assert all(drive.segments().start is drives[0].segments().start for drive in drives)
     assert drive_table(drives).coefficients.shape == (200_000, 6)
+
+
+def test_those_with_the_same_breakpoints_are_known():
+    rows = coefficients(3)
+    ours = quintic_drives(EDGES, rows, 1, 0.5, 1.0, np.zeros(3))
+    later = quintic_drives(np.array([0.0, 0.5, 0.7500001, 2.0]), rows[:1], 1, 0.5, 1.0, np.zeros(1))
+    once = quintic_drives(EDGES, rows[:1], None, 0.5, 1.0, np.zeros(1))
+    alike = np.zeros(6, dtype=bool)
+    find_alike(drive_table([Drive(1.0, 0.4), *ours, *later, *once]), alike)
+    assert alike.tolist() == [False, False, True, True, False, False]
+
+
+def test_a_surface_under_them_is_the_sum_of_its_shapes():
+    """Each shape is a constant, so w is the sum of all drives, span after span and within the lead and passes."""
+    rows = coefficients(4)
+    drives = [Drive(0.3, 0.4), *quintic_drives(EDGES, rows, 1, 0.5, 1.0, np.zeros(4)), Drive(0.2, 0.7, delay=0.1)]
+    surface = replace(polynomial_surface(np.ones((1, 1, len(drives)))), drives=drive_table(drives))
+    record = surface.record
+    local, time, spans = new_local(record), 0.0, 0
+    while time < 6.0:
+        if spans % 3:
+            advance(record, local, time, 7.0)
+        else:
+            enter(record, local, 0.0, 0.0, time, 7.0)
+        end = local.frame[0].end
+        for share in (0.0, 0.4, 0.99):
+            at = time + share * (end - time) + 1e-9
+            total = sum(np.array(drive.evaluate(at)) for drive in drives)
+            f = surface_at(local, 0.0, 0.0, at)
+            assert [f.w, f.w_t, f.w_tt] == pytest.approx(total, rel=1e-9, abs=1e-9)
+        time, spans = end, spans + 1
+    assert spans > 15

@@ -5,11 +5,12 @@ References: collocation in one dimension (axisymmetric_plates), Ritz's method wi
 """
 
 import axisymmetric_plates as radial
+import free_disc_backbone
 import numpy as np
 import pytest
 from stretching_square import pressed_square
 
-from fem_plate import Plate, PlateSection
+from fem_plate import Plate, PlateSection, backbone
 from fem_plate.large_deflection.cells import level_of
 from meshes import annulus, disc, ellipse, rectangle
 
@@ -183,3 +184,13 @@ def test_the_error_estimate_is_honest(layout):
     error = large.solved(np.array(heights, dtype=float), pressure, level, 2).difference(state)
     print(f"{layout}: estimate {estimate:.1e}, error {error:.1e}")
     assert error / 5 < estimate < 5 * error
+
+
+def test_backbone_of_the_free_disc():
+    """Against Bessel functions; the two modes before it have nodal diameters."""
+    squared, kappa = free_disc_backbone.backbone(0.3)
+    plate = Plate(disc(1.0, 0.25), UNIT, "free")
+    assert 2 * np.pi * plate.frequencies(3)[2] == pytest.approx(squared, rel=1e-6)
+    found = backbone(plate, 3)[2]
+    print(f"kappa {found:.6f}, {kappa:.6f}")
+    assert found == pytest.approx(kappa, rel=1e-4)

@@ -1,5 +1,7 @@
 """A plate that stretches under the drives of a run: its reduced model beside full solutions, and kept on disk."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -119,6 +121,56 @@ def test_a_broken_file_is_made_anew(model, large, tmp_path, monkeypatch):
     kept.write_bytes(kept.read_bytes()[:1000])
     model_of(large)
     assert len(made) == 2
+
+
+def test_a_file_of_something_else_is_made_anew(model, large, tmp_path, monkeypatch):
+    monkeypatch.setenv(FOLDER, str(tmp_path))
+    made = []
+    monkeypatch.setattr("coupling.stretch.making.reduce", lambda *_: made.append(1) or model.reduction)
+    model_of(large)
+    (kept,) = tmp_path.glob("*.npz")
+    np.savez(kept, stiffness=np.eye(2))
+    model_of(large)
+    kept.write_bytes(b"")
+    model_of(large)
+    assert len(made) == 3 and model_of(large).mesh_error == model.mesh_error and len(made) == 3
+
+
+def test_an_interrupted_or_killed_write_leaves_no_model(model, large, tmp_path, monkeypatch):
+    monkeypatch.setenv(FOLDER, str(tmp_path))
+    monkeypatch.setattr("coupling.stretch.making.reduce", lambda *_: model.reduction)
+
+    def interrupted(file, **arrays):
+        file.write(b"half")
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("coupling.stretch.store.np.savez", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            model_of(large)
+    assert not list(tmp_path.iterdir())
+    killed, writing = tmp_path / "a.1.partial.npz", tmp_path / "b.2.partial.npz"
+    for path in (killed, writing):
+        path.write_bytes(b"half")
+    os.utime(killed, (0, 0))
+    model_of(large)
+    assert not killed.exists() and writing.exists() and len(list(tmp_path.iterdir())) == 2
+
+
+def test_bars_read_what_is_being_done(model, large, tmp_path, monkeypatch):
+    def solved(discrete, strokes, tolerance, tell):
+        tell(7, 2e-4)
+        return model.reduction
+
+    monkeypatch.setenv(FOLDER, str(tmp_path))
+    monkeypatch.setattr("coupling.stretch.making.reduce", solved)
+    heard = []
+    monkeypatch.setattr("coupling.stretch.making.doing", lambda text, share: heard.append((text, share)))
+    model_of(large)
+    assert heard == [
+        ("stretching plate: choosing its cells", 0.0),
+        ("stretching plate: 7 full solutions, error 2e-4", 0.0),
+    ]
 
 
 def test_training_fills_the_box_of_few_drives():

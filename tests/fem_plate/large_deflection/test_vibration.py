@@ -31,7 +31,7 @@ def test_the_tangent_stiffness_is_the_slope_of_the_reactions():
     of_v, of_extra = np.zeros(equilibrium.space.unknowns), np.zeros(equilibrium.trial.count)
     step = 1e-4
     for direction in np.eye(2):
-        tangent = solution.solver.solve(of_v, of_extra, direction)[2]
+        tangent = equilibrium.solver(solution.state).solve(of_v, of_extra, direction)[2]
         ahead, behind = (large.solve(heights + sign * step * direction).reactions for sign in (1, -1))
         assert tangent == pytest.approx((ahead - behind) / (2 * step), rel=1e-5)
 

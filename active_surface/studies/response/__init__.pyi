@@ -1,0 +1,2 @@
+from .functions import frequency_response as frequency_response
+from .response import Response as Response, response as response

@@ -1,0 +1,60 @@
+"""Frequency response functions of a plate with mass: in the steady state under a sine of one actuator.
+
+Under h_i exp(i w t) each mode answers with eta_n = m_ni w^2 h_i / (omega_n^2 - w^2 + 2 i zeta_n omega_n w), so that
+
+    H_i(x, w) = phi_i(x) + sum_n psi_n(x) m_ni w^2 / (omega_n^2 - w^2 + 2 i zeta_n omega_n w).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from active_surface.arrays import FloatArray
+from fem_plate import Excitation, ExcitedModes, InfluenceShapes
+
+ComplexArray = NDArray[np.complex128]
+
+TOLERANCE = 1e-4  # of the largest response: what more modes may change
+MAX_MODES = 400
+
+
+def frequency_response(
+    shapes: InfluenceShapes,
+    excitation: Excitation,
+    damping: Callable[[FloatArray], FloatArray],
+    xy: FloatArray,
+    frequencies: FloatArray,
+) -> tuple[ComplexArray, ExcitedModes, float]:
+    """H (points, actuators, frequencies) [m/m, of forces m/N] at points (k, 2) [m] and frequencies (F,) [Hz].
+
+    Also the modes that it is made of, and what the last of them changed, over the largest response.
+    """
+    static = shapes.values(xy)
+    before, change = None, np.inf
+    while True:
+        modes = excitation.modes()
+        answers = _of_modes(static, modes.functions.values(xy / shapes.size), modes, damping, frequencies)
+        if before is not None:
+            change = float((np.abs(answers - before).max(axis=2) / np.abs(answers).max(axis=2)).max())
+        if change < TOLERANCE or excitation.exhausted or len(modes.omega) >= MAX_MODES:
+            return answers, modes, change
+        before = answers
+        excitation.grow()
+
+
+def _of_modes(
+    static: FloatArray,
+    values: FloatArray,
+    modes: ExcitedModes,
+    damping: Callable[[FloatArray], FloatArray],
+    frequencies: FloatArray,
+) -> ComplexArray:
+    w, omega = 2 * np.pi * frequencies, modes.omega[:, None]
+    ratio = damping(modes.frequencies)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):  # at a resonance without damping
+        answer = w**2 / (omega**2 - w**2 + 2j * ratio * omega * w)
+    moving = np.einsum("kn,ni,nf->kif", values, modes.participation, answer, optimize=True)
+    return np.asarray(static[:, :, None] + moving)

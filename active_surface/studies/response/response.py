@@ -1,0 +1,226 @@
+"""Response: how far points of the plate of a case follow its actuators, over frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+from threadpoolctl import threadpool_limits
+
+from active_surface.arrays import FloatArray
+from active_surface.studies.response.functions import ComplexArray, frequency_response
+from coupling import Progress, silent, whole_file
+from coupling.case import Case, PlateCase
+from coupling.scene import actuator_stiffness, build_plate, damping_of
+from fem_plate import Excitation, InfluenceShapes
+from meshes import Outline
+from particle import interruptible
+
+if TYPE_CHECKING:
+    import xarray
+
+
+COUNT: Final = 400  # frequencies, besides those around resonances
+SPAN: Final = 0.05, 5.0  # of the first resonance
+AROUND: Final = np.concatenate([-np.geomspace(20, 0.05, 24), [0.0], np.geomspace(0.05, 20, 24)])  # damping ratios
+NARROWEST: Final = 1e-4  # a damping ratio, for frequencies around a resonance
+MARKED: Final = 1e-3  # of the largest peak of a mode: lower ones are not marked
+MAX_MODES: Final = 400
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """How far k points of a plate follow N actuators, over F frequencies."""
+
+    case: Case
+    points: FloatArray  # (k, 2) m
+    frequencies: FloatArray  # (F,) Hz
+    values: ComplexArray  # (k, N, F) m/m, of actuators that push with a force m/N
+    resonances: FloatArray  # Hz, of the modes that answer, within the frequencies
+    dampings: FloatArray  # the ratio of each
+    error: float  # what the last modes changed, over the largest response
+    outline: Outline
+    actuators: FloatArray  # (N, 2) m
+
+    def dataset(self) -> xarray.Dataset:
+        """All of it with labels: complex `response`, its `amplitude` and its `phase` [deg], and `resonance` [Hz]."""
+        import xarray
+
+        dims = ("point", "actuator", "frequency")
+        pushed = [actuator.force is not None for actuator in self.case.actuators]
+        units = {"units": "m/N" if all(pushed) else "m/m, of forces m/N" if any(pushed) else "m/m"}
+        return xarray.Dataset(
+            {
+                "response": (dims, self.values, units),
+                "amplitude": (dims, np.abs(self.values), units),
+                "phase": (dims, np.degrees(np.angle(self.values)), {"units": "deg", "long_name": "ahead of the drive"}),
+                "damping": ("resonance", self.dampings, {"units": "1", "long_name": "damping ratio"}),
+            },
+            {
+                "frequency": ("frequency", self.frequencies, {"units": "Hz"}),
+                "resonance": ("resonance", self.resonances, {"units": "Hz"}),
+                "x": ("point", self.points[:, 0], {"units": "m"}),
+                "y": ("point", self.points[:, 1], {"units": "m"}),
+                "actuator_x": ("actuator", self.actuators[:, 0], {"units": "m"}),
+                "actuator_y": ("actuator", self.actuators[:, 1], {"units": "m"}),
+            },
+            {"case": self.case.source or "", "error": self.error},
+        )
+
+    def figures(self) -> dict[str, Any]:
+        """The figures by name, in SI units."""
+        amplitude = np.abs(self.values)
+        point, actuator, at = np.unravel_index(int(np.argmax(amplitude)), amplitude.shape)
+        return {
+            "points": self.points.tolist(),
+            "frequencies": self.frequencies[[0, -1]].tolist(),
+            "resonances": self.resonances.tolist(),
+            "dampings": self.dampings.tolist(),
+            "largest_amplitude": float(amplitude[point, actuator, at]),
+            "largest_at": {
+                "point": self.points[point].tolist(),
+                "actuator": int(actuator),
+                "frequency": float(self.frequencies[at]),
+            },
+            "error": self.error,
+        }
+
+    def lines(self) -> list[tuple[str, str]]:
+        """Rows (label, text) to print."""
+        figures = self.figures()
+        at = figures["largest_at"]
+        x, y = (1e6 * c for c in at["point"])
+        low, high = (f / 1e3 for f in figures["frequencies"])
+        rows = [
+            ("frequency", f"{low:.4g} to {high:.4g} kHz, {len(self.frequencies)} of them"),
+            (
+                "largest",
+                f"{figures['largest_amplitude']:.4g} at ({x:.4g}, {y:.4g}) um, from actuator {at['actuator']} at "
+                f"{at['frequency'] / 1e3:.4g} kHz",
+            ),
+            ("accuracy", f"more modes change it by {self.error:.1e} of the largest"),
+        ]
+        for frequency, ratio in zip(self.resonances, self.dampings, strict=True):
+            rows.append(("resonance", f"{frequency / 1e3:.6g} kHz, damping ratio {ratio:g}"))
+        return rows
+
+    def write(self, folder: Path) -> tuple[Path, ...]:
+        """Writes NAME.response.nc, without the complex values, and NAME.response.png into a folder; returns them."""
+        from active_surface.studies.response.picture import draw_response
+
+        folder.mkdir(parents=True, exist_ok=True)
+        data = folder / f"{self.case.name}.response.nc"
+        with whole_file(data) as partial:
+            self.dataset().drop_vars("response").to_netcdf(partial, engine="h5netcdf")
+        return data, draw_response(self, folder / f"{self.case.name}.response.png")
+
+
+def response(
+    case: Case,
+    points: ArrayLike | None = None,
+    frequencies: ArrayLike | Sequence[float] | None = None,
+    lowest: float | None = None,
+    highest: float | None = None,
+    progress: Progress = silent,
+) -> Response:
+    """The frequency responses of a case's plate, with its tension and damping, whatever its drives are.
+
+    Parameters
+    ----------
+    case : Case
+        A plate on actuators, with a density.
+    points : (k, 2) array_like, optional
+        Points of the plate [m]; by default where the part starts.
+    frequencies : (F,) array_like, optional
+        [Hz]; by default from lowest to highest, closer at resonances.
+    lowest, highest : float, optional
+        [Hz]; by default 1/20 and five times the first resonance.
+    progress : Progress, optional
+        Reports the progress of a stage.
+
+    Returns
+    -------
+    response : Response
+        Amplitudes and phases, with `dataset()` as an xarray.Dataset.
+
+    Raises
+    ------
+    ValueError
+        The case has a platform, a plate without density, or one that stretches; a point lies beyond the rim; or
+        frequencies make no sense.
+    """
+    plate_case = _checked(case)
+    given = None if frequencies is None else np.atleast_1d(np.asarray(frequencies, dtype=float))
+    if given is not None and (given.ndim != 1 or not len(given) or not (np.isfinite(given) & (given > 0)).all()):
+        raise ValueError(f"Input frequencies of response must be positive, in Hz; got {frequencies!r}")
+    if given is not None and not (lowest is None and highest is None):
+        raise ValueError("Input lowest and highest of response must not be given with frequencies")
+    xy = np.atleast_2d(np.asarray([case.part.position] if points is None else points, dtype=float))
+    if xy.ndim != 2 or xy.shape[1] != 2:
+        raise ValueError(f"Input points of response must have shape (k, 2); got {xy.shape}")
+    with threadpool_limits(limits=1, user_api="blas"):
+        return interruptible(_found, case, plate_case, xy, given, lowest, highest, progress)
+
+
+def _checked(case: Case) -> PlateCase:
+    if not isinstance(case.plate, PlateCase):
+        raise ValueError("Input case of response must have a plate on actuators; got a platform")
+    wrong = []
+    if case.plate.density is None:
+        wrong.append("plate.density of response must be given; got none")
+    if case.plate.theory != "linear":
+        wrong.append(f'plate.theory of response must be "linear"; got "{case.plate.theory}"')
+    if len(case.actuators) > MAX_MODES // 2:
+        wrong.append(f"actuators of response must be at most {MAX_MODES // 2}; got {len(case.actuators)}")
+    if wrong:
+        raise ValueError("; ".join(f"Input {text}" for text in wrong))
+    return case.plate
+
+
+def _found(
+    case: Case,
+    plate_case: PlateCase,
+    xy: FloatArray,
+    given: FloatArray | None,
+    lowest: float | None,
+    highest: float | None,
+    progress: Progress,
+) -> Response:
+    damping = damping_of(plate_case)
+    with progress("Solving the plate") as tell:
+        plate = build_plate(plate_case)
+        places = [actuator.position for actuator in case.actuators]
+        shapes = plate.influence(places, actuator_stiffness(case), tell=tell)
+        assert isinstance(shapes, InfluenceShapes)
+        shapes.evaluate(xy)  # refuses points beyond the rim
+    with progress("Finding the modes"):
+        section = plate.section
+        assert section.density is not None
+        excitation = Excitation(shapes, section.density * section.thickness, section.rigidity)
+        for _ in range(2):
+            excitation.grow()
+        first = float(excitation.modes().frequencies[0])
+        low, high = lowest or SPAN[0] * first, highest or SPAN[1] * first
+        if given is None and not 0 < low < high < np.inf:
+            raise ValueError(
+                f"Input lowest of response must be positive and below the highest; got {low:g} Hz and {high:g} Hz"
+            )
+        chosen = given if given is not None else np.geomspace(low, high, COUNT)
+        values, modes, error = frequency_response(shapes, excitation, damping, xy, chosen)
+        ratios = damping(modes.frequencies)
+        peaks = np.abs(modes.functions.values(xy / shapes.size)).max(axis=0) * np.abs(modes.participation).max(axis=1)
+        within = (modes.frequencies >= chosen.min()) & (modes.frequencies <= chosen.max())
+        marked = within & (peaks > MARKED * peaks.max())
+        found = Response(
+            case, xy, chosen, values, modes.frequencies[marked], ratios[marked], error, shapes.outline, shapes.points
+        )
+        if given is not None:
+            return found
+        near = found.resonances[:, None] * (1 + np.maximum(found.dampings, NARROWEST)[:, None] * AROUND)
+        finer = np.unique(np.concatenate([chosen, near[(near > low) & (near < high)]]))
+        values, _, error = frequency_response(shapes, excitation, damping, xy, finer)
+        return replace(found, frequencies=finer, values=values, error=max(error, found.error) if error < 1 else error)

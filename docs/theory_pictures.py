@@ -1,0 +1,97 @@
+"""Two cases in linear and in von Karman's theory, side by side; the figures of docs/large-deflection.md.
+
+.venv/bin/python docs/theory_pictures.py [CASE ...]
+
+Not part of `make docs`: the paper's own case takes minutes where the plate stretches.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from coupling import PlateSummary, Result, read_case, report, run_case
+from coupling.case import Case
+from coupling.display import display_surface
+from coupling.drives import frame_times
+from coupling.pictures import Portrait, draw_path, draw_plate, draw_window, is_visible, map_axes, path_window
+from coupling.pictures.portrait import deflected_most, portrait_of
+from meshes import unit_for
+
+DOCS = Path(__file__).parent
+CASES = ("transport", "two_actuators")
+THEORIES = {"linear": "Linear theory", "von-karman": "Von Karman's theory"}
+AFTER = {False: ", at rest since", True: " at"}
+MICRO, MILLI = 1e6, 1e3
+
+
+def in_theory(case: Case, theory: str) -> Case:
+    """The case with a plate that only bends, or also stretches."""
+    return case.model_copy(update={"plate": case.plate.model_copy(update={"theory": theory})})
+
+
+def portrait(result: Result) -> Portrait:
+    """What there is to draw of a run, with its plate when it is deflected most."""
+    scene, path = result.scene, result.trajectory
+    surface = display_surface(scene, path)
+    times = frame_times(result.case.run.frames, [*scene.lifts, *scene.base], float(path.time[-1]))
+    return portrait_of(result.case.name, scene, path, surface, deflected_most(scene, surface, times))
+
+
+def end(summary: PlateSummary) -> str:
+    """Where and when a run ended."""
+    x, y = (MICRO * c for c in summary.end_position)
+    since = summary.end_time if summary.at_rest_since is None else summary.at_rest_since
+    return f"end ({x:.2f}, {y:.2f}) µm: {summary.outcome}{AFTER[summary.at_rest_since is None]} {MILLI * since:.4g} ms"
+
+
+def draw(results: list[Result]) -> Figure:
+    """Both paths over their plates; short ones in windows of the same frame, beside the whole plate."""
+    portraits = [portrait(result) for result in results]
+    both = np.concatenate([one.samples.position for one in portraits])
+    relief = portraits[0].relief
+    assert relief is not None
+    window = path_window(both, relief.box, relief.actuators)
+    frame = relief.frame if window is None else window
+    figure = Figure(figsize=(12.0 if window is None else 17.0, 5.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = list(figure.subplots(1, 2 if window is None else 3, squeeze=False)[0])
+    keys = []
+    if window is not None:
+        whole, unit = panels.pop(0), unit_for(relief.frame, "m")
+        map_axes(whole, unit)
+        keys += draw_plate(figure, whole, relief, unit, relief.frame, "left")
+        draw_window(whole, unit, window)
+        whole.set_title(f"The plate at {portraits[0].when}\n{THEORIES['linear']}", fontsize=10)
+    unit = unit_for(frame, "m")
+    for axes, one, result in zip(panels, portraits, results, strict=True):
+        assert one.relief is not None and isinstance(result.summary, PlateSummary)
+        map_axes(axes, unit)
+        keys += draw_plate(figure, axes, one.relief, unit, frame)
+        line = one.samples.position
+        keys = draw_path(axes, one.rows, line, unit, is_visible(line, frame)) + keys
+        axes.set_title(
+            f"{THEORIES[result.summary.theory]}, the plate at {one.when}\n{end(result.summary)}", fontsize=10
+        )
+    labelled = {key.get_label(): key for key in keys}
+    figure.legend(handles=list(labelled.values()), loc="outside lower center", ncols=len(labelled), frameon=False)
+    return figure
+
+
+def main(names: list[str]) -> None:
+    for name in names:
+        case = read_case(DOCS.parent / f"examples/{name}.toml")
+        results = [run_case(in_theory(case, theory)) for theory in THEORIES]
+        for result in results:
+            assert isinstance(result.summary, PlateSummary)
+            print(name, result.summary.theory, end(result.summary), sep=": ")
+            for label, text in report.lines(result.summary):
+                print(f"{label:12}{text}")
+            print(*(f"warning     {text}" for text in report.warnings(result.summary)), sep="\n", flush=True)
+        draw(results).savefig(DOCS / f"{name}_theories.png", dpi=90)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:] or list(CASES))

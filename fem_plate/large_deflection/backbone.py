@@ -1,0 +1,72 @@
+"""The backbone curve of a plate's modes: how stretching raises their frequencies with the amplitude."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fem_plate.inputs import as_points, check_points
+from fem_plate.large_deflection.discrete import DiscretePlate
+from fem_plate.large_deflection.given_plate import GivenPlate
+from fem_plate.large_deflection.large_deflection import airy_applies
+from fem_plate.large_deflection.membrane import AIRY, PLANE_STRESS
+from fem_plate.large_deflection.supports import movable_by_boundary
+from fem_plate.vibration import HeldPlate, modes
+
+FloatArray = NDArray[np.float64]
+
+
+def backbone(
+    plate: GivenPlate,
+    count: int,
+    held: ArrayLike | None = None,
+    in_plane_supports: str | Mapping[str, str] = "immovable",
+) -> FloatArray:
+    """How the lowest natural frequencies rise with small amplitudes A, the largest deflection.
+
+    omega^2 = omega_n^2 (1 + kappa_n (A/t)^2): a mode of amplitude q has the energy K q^2 / 2 + S q^4, with S its
+    energy of stretching, and kappa = 3 S / K (t = 1).
+
+    Parameters
+    ----------
+    plate : Plate
+        The plate, without tension.
+    count : int
+        Number of modes; of repeated ones, kappa is that of either alone.
+    held : (N, 2) array_like, optional
+        Points that rigid actuators hold still [m].
+    in_plane_supports : str or mapping of str to str
+        As for `Plate.large_deflection`.
+
+    Returns
+    -------
+    (count,) array
+        kappa.
+
+    Raises
+    ------
+    ValueError
+        The plate has a tension, or a point is not inside the rim.
+    """
+    if plate.tension:
+        raise ValueError(f"Input tension of Plate must be 0 for a backbone; got {plate.tension!r} N/m")
+    points = as_points([] if held is None else held, "held of backbone")
+    if points.size:
+        check_points("backbone", points, plate.mesh.outline.gap(points), plate.mesh.size)
+    movable = movable_by_boundary(in_plane_supports, plate.supports)
+    membrane = AIRY if airy_applies(plate, movable) else PLANE_STRESS
+    discrete = DiscretePlate(plate, points, np.full(len(points), np.inf), movable, membrane, 0, 0)
+    found = modes(HeldPlate(discrete.model, points, np.zeros(len(points))), count, 1.0)
+    squares, trial = (2 * np.pi * found.frequencies) ** 2, discrete.trial
+    v = found.functions.unknowns - trial.extra.unknowns[:, : len(points)] @ found.functions.forces
+    space = discrete.model.space
+    xy, weights = space.quadrature
+    mass = weights @ found.functions.values(xy) ** 2
+    rest = np.zeros(trial.count - len(points))
+    stretching = [
+        discrete.equilibrium.at(v[:, n], np.concatenate([found.functions.forces[:, n], rest]), 0.0).stretching
+        for n in range(count)
+    ]
+    return np.asarray(3 * np.array(stretching) / (squares * mass))

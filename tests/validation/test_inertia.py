@@ -1,0 +1,207 @@
+"""Plates that vibrate, against exact radial series, which share nothing with the code but the drives.
+
+The series are those of `radial_vibration`; printed figures are of another implementation of the same.
+"""
+
+import numpy as np
+import pytest
+from radial_vibration import FORCE, HELD, Piece, RadialDisc, Wave, strokes
+
+from active_surface.studies.response import response
+from coupling import build_surface
+from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
+from coupling.run import build_scene
+from fem_plate import Excitation, Plate, PlateSection
+from meshes import disc
+
+pytestmark = pytest.mark.compiled
+
+E, NU, DENSITY, THICKNESS, RADIUS = 169e9, 0.3, 2330.0, 5e-6, 300e-6
+RIGIDITY = E * THICKNESS**3 / 12 / (1 - NU**2)
+UNIT = np.sqrt(RIGIDITY / (DENSITY * THICKNESS)) / RADIUS**2  # rad/s
+PLATE = {
+    "shape": "disc",
+    "radius": RADIUS,
+    "youngs_modulus": E,
+    "poisson_ratio": NU,
+    "thickness": THICKNESS,
+    "density": DENSITY,
+    "inertia": True,
+}
+R = np.array([0.3, 0.6])
+CENTRE = (0.0, 0.0)
+DISC = RadialDisc()
+FIRST = DISC.k[0] ** 2 * UNIT / (2 * np.pi)  # Hz
+UNIT_SECTION = PlateSection(12 * (1 - NU**2), NU, 1.0, 1.0)
+
+
+def case_of(actuators, duration, plate=(), **run):
+    return Case(
+        plate=PLATE | dict(plate),
+        actuators=actuators if isinstance(actuators, list) else [actuators],
+        part=PartCase(mass=2e-9, position=(90e-6, 0.0)),
+        friction=ConstantCase(limit=1e-8),
+        run=RunCase(duration=duration, **run),
+        name="ringing",
+    )
+
+
+def on_radii(radii=R):
+    """Points there, in different directions."""
+    angle = 0.7 * np.arange(len(radii))
+    return RADIUS * radii[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def off(surface, pieces, times, disc=DISC, ratio=0.02, radii=R):
+    """The largest errors of w and w_tt over the largest of these."""
+    found = [surface.evaluate(on_radii(radii), time) for time in times]
+    truth = np.array([disc.motion(pieces, radii, time, UNIT, ratio)[[0, 2]] for time in times])
+    values = np.array([[state.w, state.w_tt] for state in found])
+    return np.abs(values - truth).max(axis=(0, 2)) / np.abs(truth).max(axis=(0, 2))
+
+
+def up_down(frequency, stroke=1e-6, **further):
+    return ActuatorCase(position=CENTRE, stroke=stroke, frequency=frequency, **further)
+
+
+@pytest.fixture(scope="module")
+def surface():
+    return build_surface(case_of(up_down(20e3), 300e-6))
+
+
+@pytest.mark.parametrize(
+    "time, w, w_tt",
+    [
+        (65e-6, [0.4733790863e-6, 0.1859365804e-6], [-2915.6034, -960.2030]),
+        (257.5e-6, [0.1126787061e-6, 0.0440651898e-6], [5958.3828, 2497.8467]),
+    ],
+)
+def test_printed_figures(surface, time, w, w_tt):
+    state = surface.evaluate(on_radii(), time)
+    assert state.w == pytest.approx(w, rel=1e-6)
+    assert state.w_tt == pytest.approx(w_tt, rel=1e-4)
+    own = DISC.motion(strokes(1e-6, 20e3, 6), R, time, UNIT, 0.02)
+    assert own[0] == pytest.approx(w, rel=1e-9) and own[2] == pytest.approx(w_tt, rel=1e-7)
+
+
+@pytest.mark.parametrize("share, cycles", [pytest.param(0.2, 8, marks=pytest.mark.slow), (0.95, 20)])
+def test_strokes_near_the_first_frequency(share, cycles):
+    end = cycles / (share * FIRST)
+    surface = build_surface(case_of(up_down(share * FIRST), end))
+    times = np.random.default_rng(1).uniform(0, end, 25)
+    in_w, in_w_tt = off(surface, strokes(1e-6, share * FIRST, cycles + 1), times, radii=np.array([0.15, 0.3, 0.6, 0.8]))
+    assert in_w < 1e-5 and in_w_tt < 1e-3
+
+
+def test_frequencies_of_held_discs():
+    """Those of the centre to all printed digits, and of two actuators; also as the modes that actuators excite."""
+    plate = Plate(disc(1.0, 0.1), UNIT_SECTION)
+    shapes = plate.influence([CENTRE])
+    excitation = Excitation(shapes, 1.0, 1.0)
+    for _ in range(15):
+        excitation.grow()
+    assert DISC.k[:3] ** 2 == pytest.approx([22.736774494, 61.951920493, 121.177263857], rel=5e-11)
+    modes = excitation.modes()
+    radial = np.abs(modes.participation[:, 0]) > 1e-3
+    assert modes.omega[radial][:3] == pytest.approx(DISC.k[:3] ** 2, rel=1e-6)
+    psi = DISC.psi(np.array([0.37]))[0, :3] * DISC.participation[:3]
+    found = modes.functions.values(np.array([[0.37 * np.cos(1), 0.37 * np.sin(1)]]))[0] * modes.participation[:, 0]
+    assert found[radial][:3] == pytest.approx(psi, rel=1e-4)
+    two = [(0.3, 0.1), (-0.25, -0.35)]
+    assert 2 * np.pi * plate.frequencies(2, two) == pytest.approx([19.077528, 26.1383], rel=2e-6)
+    assert 2 * np.pi * plate.frequencies(1, two)[0] == pytest.approx(19.077528, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "stiffness", [HELD, *(pytest.param(stiffness, marks=pytest.mark.slow) for stiffness in (FORCE, 40.0, 4000.0))]
+)
+def test_responses_of_a_clamped_disc(stiffness):
+    """Held, on springs or under a force at its centre: resonances, amplitude and phase, on and beside resonances."""
+    exact = RadialDisc("clamped", NU, stiffness, 100)
+    actuator, scale = {"stroke": 1e-6, "frequency": 20e3}, 1.0
+    if stiffness == FORCE:
+        actuator, scale = {"force": 1e-3, "frequency": 20e3}, RADIUS**2 / RIGIDITY
+    elif stiffness != HELD:
+        actuator["stiffness"] = stiffness * RIGIDITY / RADIUS**2
+    resonances = exact.k[:3] ** 2 * UNIT / (2 * np.pi)
+    frequencies = np.sort([*(np.array([0.1, 0.5, 0.95, 2.0]) * resonances[0]), *resonances, *(1.01 * resonances)])
+    case = case_of(ActuatorCase(position=CENTRE, **actuator), 1e-3)
+    found = response(case, on_radii(), frequencies)
+    truth = scale * exact.transfer(R, 2 * np.pi * frequencies / UNIT, 0.02)
+    assert np.abs(found.values[:, 0] - truth).max(axis=1) == pytest.approx([0, 0], abs=1e-4 * np.abs(truth).max())
+    assert (np.abs(found.values[:, 0] - truth) < 3e-3 * np.abs(truth)).all()
+    default = response(case, on_radii())
+    assert default.resonances[:2] == pytest.approx(resonances[:2], rel=1e-6)
+    if stiffness == FORCE:  # no hold: J0 and I0 alone
+        assert exact.k[:1] == pytest.approx([3.196220617], rel=1e-9)  # J0 I1 + J1 I0 = 0
+
+
+@pytest.mark.slow
+def test_a_clamped_disc_under_a_force_moves_as_its_series():
+    exact = RadialDisc("clamped", NU, FORCE)
+    frequency = 0.3 * exact.k[0] ** 2 * UNIT / (2 * np.pi)
+    surface = build_surface(case_of(ActuatorCase(position=CENTRE, force=1e-3, frequency=frequency), 4 / frequency))
+    pieces = strokes(1e-3 * RADIUS**2 / RIGIDITY, frequency, 5)
+    times = np.random.default_rng(2).uniform(0, 4 / frequency, 20)
+    in_w, in_w_tt = off(surface, pieces, times, exact)
+    assert in_w < 1e-5 and in_w_tt < 1e-3
+
+
+@pytest.mark.slow
+def test_a_disc_on_a_spring_moves_as_its_series():
+    exact = RadialDisc("clamped", NU, 40.0)
+    frequency, stiffness = 0.3 * exact.k[0] ** 2 * UNIT / (2 * np.pi), 40.0 * RIGIDITY / RADIUS**2
+    surface = build_surface(case_of(up_down(frequency, stiffness=stiffness), 4 / frequency))
+    times = np.random.default_rng(2).uniform(0, 4 / frequency, 20)
+    in_w, in_w_tt = off(surface, strokes(1e-6, frequency, 5), times, exact)
+    assert in_w < 1e-5 and in_w_tt < 1e-3
+
+
+@pytest.mark.slow
+def test_without_haste_the_plate_is_quasi_static():
+    """Its modes' heights fall as f^2, down to rounding of a stroke, and then the surface is the one without inertia."""
+    heights, shares, times = [], np.array([1e-2, 1e-3, 1e-4, 1e-8]), np.linspace(0, 1, 101)
+    for share in shares:
+        scene = build_scene(case_of(up_down(share * FIRST), 1 / (share * FIRST), {"cell_size": 60e-6}))
+        drive = scene.vibration.modal_drives[0]
+        heights.append(np.abs(drive.evaluate(times / (share * FIRST))[0]).max() / 1e-6)
+    assert heights[:3] / shares[:3] ** 2 == pytest.approx([heights[2] / shares[2] ** 2] * 3, rel=0.05)
+    assert heights[3] < 1e-15
+    static = build_surface(case_of(up_down(share * FIRST), 1 / (share * FIRST), {"cell_size": 60e-6, "inertia": False}))
+    for time in times[1::17] / (share * FIRST):
+        moving, resting = scene.surface.evaluate(on_radii(), time), static.evaluate(on_radii(), time)
+        assert np.abs(moving.w - resting.w).max() < 1e-13 * 1e-6
+        assert moving.w_tt == pytest.approx(resting.w_tt, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_jump_of_velocity_sends_out_waves():
+    """A sine after a delay: w is continuous and its series converges; the summary says that w_tt's does not."""
+    frequency, delay = 0.3 * FIRST, 2e-6
+    end = delay + 1 / frequency
+    drive = up_down(frequency, cycle="sine", delay=delay)
+    scene = build_scene(case_of(drive, end, {"cell_size": 60e-6}))
+    surface = scene.surface
+    pieces = [Piece(0.0, delay, (0.0,)), Wave(delay, np.inf, 1e-6, 2 * np.pi * frequency)]
+    times = np.random.default_rng(3).uniform(delay, end, 20)
+    in_w, _ = off(surface, pieces, times, RadialDisc(count=400))
+    assert in_w < 1e-4
+    before, after = (surface.evaluate(on_radii(), delay + step).w for step in (-1e-13, 1e-13))
+    assert np.abs(after - before).max() < 1e-6 * 1e-6
+    assert scene.vibration.model.chosen.error > 0.1
+
+
+@pytest.mark.slow
+def test_a_jump_of_acceleration_rings():
+    """A cosine after a delay: its acceleration jumps, and that of the plate converges slowly, unlike its height."""
+    frequency, delay, half = 0.3 * FIRST, 1e-6, 0.5e-6
+    end = delay + 1 / frequency
+    drive = up_down(frequency, cycle="cosine", delay=delay)
+    scene = build_scene(case_of(drive, end, {"cell_size": 60e-6}))
+    pieces = [Piece(0.0, delay, (-half,)), Wave(delay, np.inf, half, 2 * np.pi * frequency, -np.pi / 2)]
+    times, exact = np.random.default_rng(4).uniform(delay, end, 20), RadialDisc(count=400)
+    found = np.array([scene.surface.evaluate(on_radii(), time).w for time in times])
+    truth = np.array([exact.motion(pieces, R, time, UNIT, 0.02)[0] for time in times])
+    truth += half * exact.phi(R)  # the constant part moves no mass
+    assert np.abs(found - truth).max() < 1e-5 * np.abs(truth).max()
+    assert scene.vibration.model.chosen.error > 1e-3
