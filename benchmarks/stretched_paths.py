@@ -45,7 +45,7 @@ STARTS, FARTHEST = 10, 0.6  # of the radius
 SURFACE, PATH = 1e-10, 1e-10  # tolerances
 EXACT = 1e-9  # of w: differences of less are left out
 SAMPLES, AWAY = 1500, 0.02  # of the radius, from actuators
-STEP, AGREEMENT = 1e-3, 1e-4  # of a stroke's time, of differences that the derivatives must agree with
+STEP, AGREEMENT = 2e-3, 1e-4  # of a stroke's time, of differences that the derivatives must agree with
 CELLS = 3e-3  # what cells may smooth of a gradient: it is as exact as that on the mesh at 30 t
 REPEATS = 20
 AT_REST = 1e-12  # of the thickness
@@ -196,12 +196,13 @@ class Nodes:
         k = len(self.edges) // 3
         middle, step = (self.edges[k] + self.edges[k + 1]) / 2, STEP * self.pace  # no breakpoint of a drive
         before, now, after = (self.node(time, self._near(time)) for time in (middle - step, middle, middle + step))
+        trial, xy = self.reduction.discrete.trial, samples(self.layout.points)
+        heights = [trial.functions(*node.w).values(xy / RADIUS) for node in (before, now, after)]
         for order in (1, 2):
-            change = (after.w.v - before.w.v)[:, order - 1] / (2 * STEP)
-            size, off = (np.linalg.norm(v) for v in (change, change - now.w.v[:, order]))
-            assert off < AGREEMENT * size, f"derivative {order} is off by {off / size:.1e}"
-        xy = samples(self.layout.points)
-        w, gradient, _ = self.reduction.discrete.trial.functions(*self.nodes[k].w).evaluate(xy / RADIUS)
+            change = (heights[2] - heights[0])[:, order - 1] / (2 * STEP)
+            off = np.abs(change - heights[1][:, order]).max() / np.abs(change).max()
+            assert off < AGREEMENT, f"derivative {order} is off by {off:.1e}"
+        w, gradient, _ = trial.functions(*self.nodes[k].w).evaluate(xy / RADIUS)
         state = surface.evaluate(xy, self.edges[k])
         for name, bound, one, other in (
             ("w", AGREEMENT, state.w, THICKNESS * w[:, 0]),
