@@ -27,6 +27,10 @@ from .run import (
     follow_part as follow_part,
     friction_law as friction_law,
 )
-from .shared_surface import shared_surface as shared_surface, answers_drives as answers_drives
+from .shared_surface import (
+    VibratingSurface as VibratingSurface,
+    answers_drives as answers_drives,
+    shared_surface as shared_surface,
+)
 from .suggestion import near as near
 from .summary import PlateSummary as PlateSummary, summary_of as summary_of

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -9,12 +11,14 @@ from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
 from fem_plate.estimated import Estimated
 from fem_plate.inputs import check_held
 from fem_plate.shapes import Shapes
+from fem_plate.vibration import HeldPlate
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 MAX_DENSE = 2000  # actuators whose compliance and stiffness are worth a dense matrix
 CHUNK = 4096  # unknowns combined at a time
+RANK = 1e-9  # of rigid motions: smaller deflections are none
 
 
 class InfluenceShapes(Shapes, Estimated):
@@ -23,16 +27,26 @@ class InfluenceShapes(Shapes, Estimated):
     A rigid actuator's shape is 1 there and 0 at the other rigid ones. An actuator of finite stiffness k yields: under
     its force P the plate stands at h - P/k. A floating one (k = 0) holds nothing: its shape is the deflection under a
     unit force there [m/N].
+
+    free_motions: whether the plate may be left rigid motions; then its shapes carry none of their momentum.
     """
 
-    def __init__(self, model: PlateModel, points: FloatArray, rigidity: float, actuator_stiffness: FloatArray) -> None:
+    def __init__(
+        self,
+        model: PlateModel,
+        points: FloatArray,
+        rigidity: float,
+        actuator_stiffness: FloatArray,
+        free_motions: bool = False,
+    ) -> None:
         self.model = model
         self.points = np.ascontiguousarray(points)  # kernels would be compiled anew for another layout
         self.size = model.mesh.size
         self.outline = model.mesh.outline
         self.springs = actuator_stiffness
         self._stiffness_unit = rigidity / self.size**2  # N/m
-        self.functions, self._green = held_shapes(model, points / self.size, actuator_stiffness, self._stiffness_unit)
+        solve = unheld_shapes if free_motions else held_shapes
+        self.functions, self._green = solve(model, points / self.size, actuator_stiffness, self._stiffness_unit)
         self.strengths = self.functions.forces
 
     @property
@@ -87,7 +101,12 @@ class InfluenceShapes(Shapes, Estimated):
 
 
 def held_shapes(
-    model: PlateModel, x: FloatArray, stiffness: FloatArray, stiffness_unit: float, chosen: IntArray | None = None
+    model: PlateModel,
+    x: FloatArray,
+    stiffness: FloatArray,
+    stiffness_unit: float,
+    chosen: IntArray | None = None,
+    may_move: bool = False,
 ) -> tuple[PlateFunctions, FloatArray]:
     """The shapes of actuators at x (N, 2), of all or of the chosen rows, and the plate's compliance G (N, N).
 
@@ -98,7 +117,8 @@ def held_shapes(
     where the force of a floating actuator is given: one newton.
 
     stiffness: (N,) N/m, of the actuators, inf rigid, 0 floating.  stiffness_unit: N/m, of dimensionless stiffness.
-    Raises ValueError when supports and actuators leave the plate a rigid motion.
+    may_move: whether supports and actuators may leave the plate rigid motions; the shapes then have any share of them.
+    Raises ValueError when they do and may not.
     """
     responses = model.under_forces(x)
     green = model.infinite.point_value(x, x) + np.asarray(model.space.point_values(x) @ responses)
@@ -106,13 +126,15 @@ def held_shapes(
     held = stiffness > 0
     motions = model.motions(x)
     r = motions.shape[1]
-    check_held("influence", motions, held)
+    if not may_move:
+        check_held("influence", motions, held)
     columns = np.arange(len(x)) if chosen is None else chosen
     drives = np.eye(len(x))[:, columns] * np.where(held[columns], 1.0, 1 / stiffness_unit)
     yielding = green[np.ix_(held, held)] + np.diag(stiffness_unit / stiffness[held])
     matrix = np.block([[yielding, motions[held]], [motions[held].T, np.zeros((r, r))]])
     strokes = drives[held] - green[np.ix_(held, ~held)] @ drives[~held]
-    solution = np.linalg.solve(matrix, np.concatenate([strokes, -motions[~held].T @ drives[~held]]))
+    given = np.concatenate([strokes, -motions[~held].T @ drives[~held]])
+    solution = np.linalg.lstsq(matrix, given)[0] if may_move else np.linalg.solve(matrix, given)
     forces = drives.copy()
     forces[held] = solution[: held.sum()]
     rigid = model.rigid @ solution[held.sum() :]
@@ -123,3 +145,28 @@ def held_shapes(
         responses = responses @ forces
     no_pressure = np.zeros(forces.shape[1])
     return PlateFunctions(model.space, responses, x, forces, rigid, no_pressure, model.infinite), green
+
+
+def unheld_shapes(
+    model: PlateModel, x: FloatArray, stiffness: FloatArray, stiffness_unit: float
+) -> tuple[PlateFunctions, FloatArray]:
+    """The same on a plate that supports and actuators may leave rigid motions u: shapes phi with (phi, u) = 0.
+
+    A plate with mass does not pick up what nothing pushes: where no force acts along u, (w, u)'' = 0. Modes have no
+    share of u either. So w = sum h_i phi_i + sum eta_n psi_n holds from rest, and in a steady state.
+    Raises ValueError when u are left and an actuator pushes with a force, which would accelerate the plate for ever.
+    """
+    held = stiffness > 0
+    motions = model.motions(x[held])
+    r = motions.shape[1]
+    if not r or np.linalg.matrix_rank(motions, tol=RANK) == r:
+        return held_shapes(model, x, stiffness, stiffness_unit)
+    if not held.all():
+        check_held("influence", model.motions(x), held)
+    functions, green = held_shapes(model, x, stiffness, stiffness_unit, may_move=True)
+    free = np.linalg.svd(motions)[2][np.linalg.matrix_rank(motions, tol=RANK) :].T  # (r, f), 0 at all actuators
+    plate = HeldPlate(model, x * model.mesh.size, stiffness_unit / stiffness)
+    rigid = model.rigid @ free
+    moved = model.space.linear() @ rigid
+    shares = np.linalg.solve(moved.T @ plate.with_mass(moved), moved.T @ plate.inertia_of(functions))
+    return replace(functions, rigid=functions.rigid - rigid @ shares), green

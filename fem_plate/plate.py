@@ -128,6 +128,7 @@ class Plate:
         stiffness: ArrayLike | None = None,
         truncation: float | None = None,
         tell: ProgressCallback = lambda done, of: None,
+        free_motions: bool = False,
     ) -> InfluenceShapes | PatchedShapes:
         """The influence shapes of actuators.
 
@@ -143,12 +144,15 @@ class Plate:
             More than 2 000 actuators are always computed so, with a truncation of 1e-6 by default.
         tell : callable, optional
             Called with the number of tiles of patches done, and their total.
+        free_motions : bool
+            Accept that supports and actuators, none of them floating, leave the plate rigid motions. Each shape is
+            then orthogonal to these over the plate, as a plate with mass moves. Not with a truncation.
 
         Raises
         ------
         ValueError
             Names every point that is not inside the rim or coincides with another; or a stiffness is negative, or
-            supports and actuators leave the plate a rigid motion.
+            supports and actuators leave the plate a rigid motion that they may not.
         """
         points = as_points(points, "points of influence")
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "influence", may_float=True)
@@ -157,7 +161,9 @@ class Plate:
             return self._patched(points, actuator_stiffness, TRUNCATION if truncation is None else truncation, tell)
         rigidity = self.section.rigidity
         return refined(
-            lambda halvings: InfluenceShapes(self.model(points, halvings), points, rigidity, actuator_stiffness),
+            lambda halvings: InfluenceShapes(
+                self.model(points, halvings), points, rigidity, actuator_stiffness, free_motions
+            ),
             self.tolerance,
             self.fineness.gain,
         )

@@ -112,12 +112,12 @@ def main() -> None:
     """Simulate microparts on active surfaces: thin plates pushed from below by point actuators."""
 
 
-def read(path: Path) -> Case:
-    """The case in a file."""
+def read(path: Path, may_move: bool = False) -> Case:
+    """The case in a file; may_move: as for `read_case`."""
     from coupling.case import read_case
 
     check_kind(path, "case")
-    return refusing(read_case, path)
+    return refusing(read_case, path, may_move)
 
 
 def check_kind(path: Path, expected: str) -> None:

@@ -42,7 +42,7 @@ def response(
     Writes amplitude and phase of each point for each actuator, with resonances marked, as NAME.response.nc and
     NAME.response.png.
     """
-    parsed = read(case)
+    parsed = read(case, True)
     from active_surface.studies.response import response as find
     from coupling import StageBar, silent
     from coupling.results import check_folder

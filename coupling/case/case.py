@@ -18,6 +18,7 @@ from pydantic import ValidationError, model_validator
 
 from coupling.case.check import Checked, check
 from coupling.case.friction import KogutEtsionCase, TableCase
+from coupling.case.parts import MAY_MOVE
 from coupling.case.tables import CaseTables
 from coupling.case.toml_file import parse
 from coupling.case.values import UNITS_REQUIRED
@@ -76,10 +77,14 @@ class Case(CaseTables):
         return notebook_html(self)
 
 
-def read_case(path: str | os.PathLike[str]) -> Case:
-    """Read the case file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read."""
+def read_case(path: str | os.PathLike[str], may_move: bool = False) -> Case:
+    """Read the case file at `path`; CaseError with every mistake in it, or with the reason why it cannot be read.
+
+    may_move: accept that supports and actuators leave the plate free to move as a whole. Such a case does not run, but
+    has frequency responses.
+    """
     file = parse(path)
-    checked = check(file.tables, UNITS_REQUIRED | {"folder": Path(path).absolute().parent})
+    checked = check(file.tables, UNITS_REQUIRED | {"folder": Path(path).absolute().parent, MAY_MOVE: may_move})
     if checked.errors:
         raise file.error(checked.errors, CaseTables)
     return Case.model_construct(**_built(checked), name=Path(path).stem, source=file.text)

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
+
+MAY_MOVE: Final = "may_move"
+"""The key of a context in which supports and actuators may leave a plate free to move as a whole."""
 
 
 class Parts(NamedTuple):

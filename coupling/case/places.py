@@ -10,7 +10,7 @@ from coupling.case.drive import ActuatorCase
 from coupling.case.lattice import LatticeCase
 from coupling.case.lattice_places import SAME_PLACE, Place, Stand, beyond, gaps, half_size, shared_places
 from coupling.case.messages import Location, Mistake, location_text
-from coupling.case.parts import Parts
+from coupling.case.parts import MAY_MOVE, Parts
 from coupling.case.plate import PlateCase
 from coupling.case.shapes import ShapeCase
 from coupling.case.table import right_value
@@ -76,7 +76,7 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
         yield from _free_tension(
             supported, mesh, right_value(PlateCase, "tension", plate, parts.context, 0.0), written_plate
         )
-        if held is not None:
+        if held is not None and not (parts.context or {}).get(MAY_MOVE):
             yield from _rigid_motion(supported, mesh, held)
 
 

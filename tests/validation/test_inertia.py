@@ -8,7 +8,7 @@ import pytest
 from radial_vibration import FORCE, HELD, Piece, RadialDisc, Wave, strokes
 
 from active_surface.studies.response import response
-from coupling import build_surface
+from coupling import build_surface, read_case
 from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
 from coupling.run import build_scene
 from fem_plate import Excitation, Plate, PlateSection
@@ -134,6 +134,64 @@ def test_responses_of_a_clamped_disc(stiffness):
     assert default.resonances[:2] == pytest.approx(resonances[:2], rel=1e-6)
     if stiffness == FORCE:  # no hold: J0 and I0 alone
         assert exact.k[:1] == pytest.approx([3.196220617], rel=1e-9)  # J0 I1 + J1 I0 = 0
+
+
+FREE = """\
+[plate]
+shape = "disc"
+radius = "300 um"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+density = "2330 kg/m^3"
+supports = "free"
+[[actuators]]
+position = ["0 um", "0 um"]
+stroke = "1 um"
+frequency = "20 kHz"
+[part]
+mass = "2e-9 kg"
+position = ["100 um", "0 um"]
+[friction]
+model = "constant"
+limit = "10 nN"
+[run]
+duration = "1 ms"
+"""
+
+
+def test_responses_of_a_free_disc_that_rides_on_its_actuator(tmp_path):
+    """Its two tilts are left; a run of it is refused, its response is not."""
+    (tmp_path / "free.toml").write_text(FREE)
+    with pytest.raises(ValueError, match=r"plate\.supports +leave the plate free to move as a whole"):
+        read_case(tmp_path / "free.toml")
+    case, exact, radii = (
+        read_case(tmp_path / "free.toml", may_move=True),
+        RadialDisc("free"),
+        np.array([0.3, 0.6, 0.95]),
+    )
+    assert exact.k[:3] ** 2 == pytest.approx([3.75196802, 20.90810067, 60.64453608], rel=1e-9)
+    own = exact.k[:3] ** 2
+    omega = np.sort([0.1, 1.0, 3.0, 4.2, 10.0, 15.0, 25.0, 40.0, *own])
+    found = response(case, on_radii(radii), omega * UNIT / (2 * np.pi))
+    off = np.abs(found.values[:, 0] - exact.transfer(radii, omega, 0.02)) / np.abs(found.values[:, 0])
+    assert (off[:, ~np.isin(omega, own)] < 1e-5).all() and (off < 1e-3).all()
+    assert found.resonances == pytest.approx(own[:3] * UNIT / (2 * np.pi), rel=1e-5)
+
+
+def test_shapes_of_a_free_plate_have_no_share_of_the_tilts_left():
+    """Under one actuator beside the middle of a disc: phi = 1 - c.(x - a), with c = -a / (a^2 + 1/4)."""
+    plate, at = Plate(disc(1.0, 0.2), UNIT_SECTION, "free"), np.array([0.3, 0.1])
+    with pytest.raises(ValueError, match="leave the plate a rigid motion"):
+        plate.influence([at])
+    with pytest.raises(ValueError, match="leave the plate a rigid motion"):
+        plate.influence([at, (0.0, 0.0)], [np.inf, 0.0], free_motions=True)
+    xy = np.random.default_rng(5).uniform(-0.7, 0.7, (20, 2))
+    c = -at / (at @ at + 0.25)
+    assert plate.influence([at], free_motions=True).values(xy)[:, 0] == pytest.approx(1 - (xy - at) @ c, abs=1e-9)
+    three = [(0.5, 0.0), (-0.2, 0.4), (-0.3, -0.5)]  # they leave nothing
+    held = [plate.influence(three, free_motions=free).values(xy) for free in (True, False)]
+    assert (held[0] == held[1]).all()
 
 
 @pytest.mark.slow

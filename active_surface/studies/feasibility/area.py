@@ -7,7 +7,8 @@ v = 0). Two areas follow from that, both over one window of time:
 - feasible: places where it slips at that moment, and where it would not have come off at any moment of the window;
 - slipping: places where it slips at that moment and is attached then, whatever happens there at other moments.
 
-Drives that run `factor` times as fast leave shapes and slopes as they are and multiply accelerations by its square.
+Drives that run `factor` times as fast leave shapes and slopes as they are and multiply accelerations by its square,
+unless the plate has mass (`faster`).
 """
 
 from __future__ import annotations
@@ -81,17 +82,33 @@ def find_feasible(
 ) -> Feasible:
     """The feasible areas of a part at rest on a surface within an outline, over a window [s] from the start.
 
-    factors: (F,) what the drives' frequencies are multiplied with, the base's drives among them.
+    factors: (F,) what the drives' frequencies are multiplied with, the base's drives among them. The surface follows
+        its drives at once; one with inertia does not.
     window: no more of it is looked at than MAX_STROKES of the shortest strokes of drives that move.
     gravity: as for `particle.simulate`.  across: places along the longer side.
     The part's place and velocity do not matter.
     """
-    factors = np.sort(np.asarray(factors, dtype=float))
-    every = np.append(factors, 1.0)
-    points, spacing = places(outline, across)
     stroke_time = float(surface.drives.stroke_time[moving(surface.drives)].min(initial=window))
     window = min(window, MAX_STROKES * stroke_time)
     count = max(int(np.ceil(PER_STROKE * window / stroke_time)), PER_STROKE)
+    factors = np.sort(np.asarray(factors, dtype=float))
+    return examine(surface, outline, part, friction, window, count, factors, gravity, across)
+
+
+def examine(
+    surface: SurfaceMotion,
+    outline: Outline,
+    part: Micropart,
+    friction: Contact,
+    window: float,
+    count: int,
+    factors: FloatArray,
+    gravity: float | Sequence[float],
+    across: int,
+) -> Feasible:
+    """The same at so many moments of the whole window [s], for ascending factors."""
+    every = np.append(factors, 1.0)
+    points, spacing = places(outline, across)
     moments = window * (np.arange(count) + 0.5) / count
     resting = part_record(surface, part, friction, gravity)
     lost = np.zeros((len(every), len(points)), dtype=np.bool_)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -10,11 +11,24 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import BoolArray, FloatArray
-from active_surface.studies.feasibility.area import ACROSS, Curves, Feasible, find_feasible, moving
-from coupling import Progress, build_drives, build_friction, build_part, build_scene, silent, whole_file
-from coupling.case import Case
+from active_surface.studies.feasibility.area import ACROSS, MAX_STROKES, Curves, Feasible, find_feasible, moving
+from active_surface.studies.feasibility.faster import faster, find_feasible_anew
+from coupling import (
+    Progress,
+    VibratingSurface,
+    build_drives,
+    build_friction,
+    build_part,
+    build_scene,
+    shared_surface,
+    silent,
+    whole_file,
+)
+from coupling.case import Case, PlateCase
+from coupling.vibration import always_running
+from fem_plate import Shapes
 from meshes import Outline
-from particle import AnyDrive, interruptible
+from particle import AnyDrive, SurfaceMotion, interruptible
 from particle.drives import drive_table
 from particle.events import horizon
 
@@ -24,6 +38,7 @@ if TYPE_CHECKING:
 
 SPAN: Final = 0.25, 8.0  # times the case's own frequency
 COUNT: Final = 31  # frequencies
+STAGE: Final = "Looking where the part slips"
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,8 +144,10 @@ def feasibility(
     eight times that; all times of all drives shrink likewise. Of segments the highest frequency counts, of a table
     that of strokes as short as its shortest, of a drive at rest none.  across: places along the plate's longer side.
     The window is what the drives do until they repeat themselves, at most the run's duration, and of that no more than
-    `active_surface.studies.feasibility.area` looks at.
-    Raises ValueError for a platform, drives of which none moves, and numbers that make no sense.
+    `active_surface.studies.feasibility.area` looks at. A plate with inertia answers each frequency anew, in the steady
+    state or from rest as `run.start` says; from rest the window is the run's beginning.
+    Raises ValueError for a platform, drives of which none moves, numbers that make no sense, and a mode without damping
+    that resonates in a steady state.
     """
     drives = _movers(case)
     wrong = []
@@ -148,18 +165,56 @@ def feasibility(
     if wrong:
         raise ValueError("; ".join(wrong))
     with threadpool_limits(limits=1, user_api="blas"):
-        scene = build_scene(case, progress)
-        assert scene.shapes
-        until = horizon(drive_table(drives), 0.0)
-        whole = case.run.duration if until is None else min(until, case.run.duration)
-        part = build_part(case)
         factors = np.geomspace(low, high, COUNT) / frequency
-        with progress("Looking where the part slips"):
-            areas = interruptible(
-                find_feasible, scene.surface, scene.shapes.outline, part, build_friction(case), whole, factors,
-                case.run.gravity, across,
-            )  # fmt: skip
-    return Feasibility(case, areas, frequency, whole, scene.shapes.outline, scene.shapes.points)
+        find = _vibrating if isinstance(case.plate, PlateCase) and case.plate.inertia else _following
+        areas, whole, shapes = find(case, drives, factors, across, progress)
+    return Feasibility(case, areas, frequency, whole, shapes.outline, shapes.points)
+
+
+def _following(
+    case: Case, movers: Sequence[AnyDrive], factors: FloatArray, across: int, progress: Progress
+) -> tuple[Feasible, float, Shapes]:
+    """The areas on a plate that follows its actuators at once, the whole window [s], and the plate's shapes."""
+    scene = build_scene(case, progress)
+    assert scene.shapes
+    whole, part = _window(case, movers), build_part(case)
+    with progress(STAGE):
+        areas = interruptible(
+            find_feasible, scene.surface, scene.shapes.outline, part, build_friction(case), whole, factors,
+            case.run.gravity, across,
+        )  # fmt: skip
+    return areas, whole, scene.shapes
+
+
+def _vibrating(
+    case: Case, movers: Sequence[AnyDrive], factors: FloatArray, across: int, progress: Progress
+) -> tuple[Feasible, float, Shapes]:
+    """The same on a plate with mass; its modes are chosen for all factors together."""
+    drives = build_drives(case)
+    if case.run.start == "steady":
+        movers = [always_running(drive) for drive in movers]
+    whole, stroke_time = _window(case, movers), min(drive.stroke_time for drive in movers)
+    window = min(whole, MAX_STROKES * stroke_time)
+    sets = [faster(drives, factor) for factor in [1.0, *factors.tolist()]]
+    surface = shared_surface(case, sets, window / min(1.0, float(factors.min())), progress)
+    assert isinstance(surface, VibratingSurface) and surface.model
+    model = surface.model
+
+    def driven(factor: float) -> SurfaceMotion:
+        return replace(surface, model=replace(model, end=window / factor)).driven_by(faster(drives, factor))
+
+    with progress(STAGE):
+        areas = interruptible(
+            find_feasible_anew, driven, model.chosen.modes.frequencies, stroke_time, model.shapes.outline,
+            build_part(case), build_friction(case), whole, factors, case.run.gravity, across,
+        )  # fmt: skip
+    return areas, whole, model.shapes
+
+
+def _window(case: Case, movers: Sequence[AnyDrive]) -> float:
+    """What the drives do until they repeat themselves, at most the run's duration [s]."""
+    until = horizon(drive_table(movers), 0.0)
+    return case.run.duration if until is None else min(until, case.run.duration)
 
 
 def _movers(case: Case) -> list[AnyDrive]:

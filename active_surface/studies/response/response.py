@@ -132,7 +132,7 @@ def response(
     Parameters
     ----------
     case : Case
-        A plate on actuators, with a density.
+        A plate on actuators, with a density. The plate may be free to move as a whole (`read_case` with `may_move`).
     points : (k, 2) array_like, optional
         Points of the plate [m]; by default where the part starts.
     frequencies : (F,) array_like, optional
@@ -150,8 +150,8 @@ def response(
     Raises
     ------
     ValueError
-        The case has a platform, more than 200 actuators, or a plate that has no density or stretches; a point lies
-        beyond the rim; or frequencies make no sense.
+        The case has a platform, more than 200 actuators, or a plate that has no density or stretches; a force pushes a
+        plate that is free to move as a whole; a point lies beyond the rim; or frequencies make no sense.
     """
     plate_case = _checked(case)
     given = None if frequencies is None else np.atleast_1d(np.asarray(frequencies, dtype=float))
@@ -201,7 +201,7 @@ def _found(
     with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
         places = [actuator.position for actuator in case.actuators]
-        shapes = plate.influence(places, actuator_stiffness(case), tell=tell)
+        shapes = plate.influence(places, actuator_stiffness(case), tell=tell, free_motions=True)
         assert isinstance(shapes, InfluenceShapes)
         _check_points(xy, shapes)
     with progress("Finding the modes"):

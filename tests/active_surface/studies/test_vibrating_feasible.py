@@ -1,0 +1,85 @@
+"""Feasible areas of a plate with mass: against exact frequency responses, and the quasi-static plate."""
+
+import numpy as np
+import pytest
+from radial_vibration import RadialDisc
+
+from active_surface.studies.feasibility import feasibility
+from active_surface.studies.feasibility.faster import faster
+from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
+from particle import Drive, Segment, SegmentDrive, TableDrive
+
+E, NU, DENSITY, THICKNESS, RADIUS, MASS, GRAVITY = 169e9, 0.3, 2330.0, 5e-6, 300e-6, 2e-9, 9.80665
+UNIT = np.sqrt(E * THICKNESS**2 / 12 / (1 - NU**2) / DENSITY) / RADIUS**2  # rad/s
+PLATE = {
+    "shape": "disc", "radius": RADIUS, "youngs_modulus": E, "poisson_ratio": NU, "thickness": THICKNESS,
+    "density": DENSITY, "cell_size": 60e-6,
+}  # fmt: skip
+DISC = RadialDisc()
+FIRST = DISC.k[0] ** 2 * UNIT / (2 * np.pi)  # Hz
+ADHESION = 2e-6  # N
+
+
+def vibrating(frequency, stroke, inertia=True, start="steady", friction=0.1, **drive):
+    run = {"start": start} if inertia else {}
+    return Case(
+        plate=PLATE | {"inertia": inertia},
+        actuators=[ActuatorCase(position=(0.0, 0.0), stroke=stroke, frequency=frequency, **drive)],
+        part=PartCase(mass=MASS, position=(90e-6, 0.0)),
+        friction=CoulombCase(coefficient=friction, adhesion=ADHESION),
+        run=RunCase(duration=1.0, **run),
+        name="disc",
+    )
+
+
+def lost_rings(frequencies, amplitude):
+    """The area (F,) where a sine's largest acceleration throws a part off: m (g - a) < -adhesion."""
+    r = (np.arange(2000) + 0.5) / 2000
+    omega = 2 * np.pi * frequencies
+    w_tt = amplitude * omega**2 * np.abs(DISC.transfer(r, omega / UNIT, 0.02))
+    return (MASS * (w_tt - GRAVITY) > ADHESION).T @ (2 * np.pi * r * RADIUS**2 / 2000)
+
+
+@pytest.mark.compiled
+def test_the_curve_of_losses_has_the_resonance():
+    """Of a steady sine, from half the first frequency to twice that; at FIRST it comes off nearly everywhere."""
+    amplitude = 0.3 * (ADHESION / MASS + GRAVITY) / (2 * np.pi * FIRST) ** 2
+    found = feasibility(vibrating(FIRST, 2 * amplitude, cycle="cosine"), 0.5 * FIRST, 2 * FIRST, 40).areas
+    truth = lost_rings(found.factors * FIRST, amplitude)
+    edge = 2 * np.sqrt(np.pi * np.maximum(truth, found.spacing**2))  # cuts squares
+    assert (np.abs(found.lost_area - truth) < 0.3 * edge * found.spacing).all()
+    middle = found.lost_area[15]
+    assert found.lost_area[0] == 0 and middle == found.lost_area.max() > 5 * found.lost_area[-1] > 0
+    assert middle == found.own.lost_area
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+@pytest.mark.parametrize("start", ["rest", "steady"])
+def test_without_haste_areas_are_those_of_the_quasi_static_plate(start):
+    frequency, stroke = 1e-3 * FIRST, 60e-6
+    slow, static = (
+        feasibility(vibrating(frequency, stroke, inertia, start), 0.5 * frequency, 4 * frequency, 40).areas
+        for inertia in (True, False)
+    )
+    assert (static.slipping.peak > 0).any() and (static.lost_area > 0).any()
+    for name in ("slipping", "feasible"):
+        mine, its = getattr(slow, name), getattr(static, name)
+        assert mine.integral == pytest.approx(its.integral, rel=0.02, abs=0.01 * its.integral.max())
+    assert slow.lost_area == pytest.approx(static.lost_area, rel=0.02, abs=12 * slow.spacing**2)
+
+
+DRIVES = [
+    Drive(1e-6, 300.0, delay=1e-3, dwell=1e-4),
+    TableDrive(np.array([0, 1 / 600, 1 / 400, 1 / 200]), [0.0, 1e-6, 5e-7, 0.0]),
+    SegmentDrive((Segment(1e-6, 200.0, dwell=1e-4), Segment(5e-7, 300.0)), delay=1e-3),
+]
+
+
+@pytest.mark.parametrize("drive", DRIVES, ids=["strokes", "table", "segments"])
+def test_a_faster_drive_does_the_same_in_less_time(drive):
+    (fast, again), times = faster([drive, drive], 2.5), np.linspace(0, 0.02, 400)
+    for order, (mine, its) in enumerate(zip(fast.evaluate(times / 2.5), drive.evaluate(times), strict=True)):
+        assert mine == pytest.approx(2.5**order * its, rel=1e-9, abs=1e-9 * 2.5**order * np.abs(its).max())
+    assert fast is again and fast.stroke_time == pytest.approx(drive.stroke_time / 2.5)
+    assert faster([drive], 1.0) == [drive]
