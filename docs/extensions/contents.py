@@ -19,7 +19,10 @@ PACKAGES = ["meshes", "fem_plate", "particle", "coupling", "studies", "views", "
 CONTENTS = {  # the pages below a page, by caption
     "index": {
         "First steps": ["quick-start", "gallery/index"],
-        "How to": ["howto/own-mesh", "howto/own-friction", "howto/waves", "howto/sweep", "howto/aim", "howto/paraview"],
+        "How to": [
+            *("howto/own-mesh", "howto/own-friction", "howto/waves", "howto/chladni"),
+            *("howto/sweep", "howto/aim", "howto/paraview"),
+        ],
         "The program": [
             *("commands", "case-file", "results", "animations", "page", "plot"),
             *("python", "messages", "sweeps", "aim", "feasibility"),

@@ -13,7 +13,7 @@ from active_surface.studies.pictures.basins import NEARNESS, Basins, is_over_sta
 from active_surface.studies.pictures.curve import draw_curve, draw_shares
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.pictures.heat import OUTCOME, draw_outcome, draw_value
-from active_surface.studies.pictures.scatter import draw_outcomes, draw_points
+from active_surface.studies.pictures.scatter import draw_ends, draw_outcomes, draw_points
 from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.pictures.threshold_curve import draw_threshold
 from active_surface.studies.study import Study
@@ -68,7 +68,10 @@ class Panel(NamedTuple):
 
 def panels(selection: Selection) -> list[Panel]:
     """What tells of a sweep: curves over one axis, maps over two, marks at points, basins over starts."""
-    if is_over_starts(selection) and not selection.findings.scattered:
+    if is_over_starts(selection) and selection.findings.scattered:
+        chosen = [Panel("ends", "where the part ends", lambda figure, axes: draw_ends(axes, selection))]
+        chosen += [value_panel(selection), outcome_panel(selection)]
+    elif is_over_starts(selection):
         basins = Basins(selection)
         chosen = [
             Panel("basins", "where the part is carried", lambda figure, axes: basins.draw_carried(axes)),

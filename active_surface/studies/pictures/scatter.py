@@ -13,6 +13,8 @@ from active_surface.arrays import FloatArray
 from active_surface.studies.pictures.heat import COLOURS, add_key, frame
 from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.record import OUTCOMES
+from fem_plate import mark_actuators
+from meshes import draw_rim
 
 LARGEST, SMALLEST = 40.0, 3.0  # square points, of a marker
 MAX_VECTORS = 2000  # markers that are not drawn as pixels in files of lines
@@ -35,6 +37,19 @@ def draw_outcomes(axes: Axes, selection: Selection) -> None:
     colours = ListedColormap(list(COLOURS))
     axes.scatter(selection.axes[0].drawn, heights, c=outcome, cmap=colours, norm=norm, **_look(len(heights)))
     add_key(axes, outcome, OUTCOMES, COLOURS)
+
+
+def draw_ends(axes: Axes, selection: Selection) -> None:
+    """Draw where parts ended over the start's x and y, for all repeats, and the plate's rim."""
+    across, up = selection.axes
+    order = [int(axis.axis.field.path[-1]) for axis in (across, up)]  # of x and y
+    scale = np.array([across.unit.per_si, up.unit.per_si])
+    ends = selection.end.reshape(-1, 2)[:, order] * scale
+    frame(axes, across, up)
+    draw_rim(axes, [curve[:, order] for curve in selection.findings.rim], scale)
+    mark_actuators(axes, selection.findings.actuators[:, order], per_metre=scale)
+    axes.scatter(ends[:, 0], ends[:, 1], c="black", **_look(len(ends)))
+    axes.set_aspect("equal")
 
 
 def _heights(axes: Axes, selection: Selection) -> FloatArray:

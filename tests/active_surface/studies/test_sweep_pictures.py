@@ -151,6 +151,18 @@ def test_starts_over_a_platform_are_a_map(tmp_path):
     assert figure.axes[0].get_title() == "distance from the start"
 
 
+@pytest.mark.parametrize("axes", [X + Y, Y + X])
+def test_parts_from_random_starts_are_drawn_where_they_end(tmp_path, axes):
+    study, dataset = made(tmp_path, 'sampling = "random"\npoints = 9\n' + axes)
+    dataset = dataset.load()
+    dataset["end_x"][:], dataset["end_y"][:] = np.arange(9) * 1e-5, np.arange(9) * -1e-6
+    panel = drawn(study, dataset).axes[0]
+    assert panel.get_title() == "where the part ends"
+    ends = [np.asarray(marks.get_offsets()) for marks in panel.collections if len(marks.get_offsets()) == 9]
+    expected = np.stack([np.arange(9) * 10.0, np.arange(9) * -1.0], axis=-1)
+    assert ends[-1] == pytest.approx(expected if axes == X + Y else expected[:, ::-1])
+
+
 @pytest.mark.parametrize("axes", [STROKE, STROKE + LIMIT])
 @pytest.mark.parametrize("sampling", ['sampling = "random"\npoints = 9\n', 'sampling = "list"\n'])
 def test_points_are_drawn_where_they_are(tmp_path, axes, sampling):
