@@ -14,7 +14,7 @@ from particle import SurfaceMotion
 from particle.drives import DriveTable
 from particle.surface import BuiltCells, Cells
 
-KIND, VERSION = "active-surface surface motion", 3
+KIND, VERSION = "active-surface surface motion", 4
 
 LENGTHS = ("size", "floor", "overhang", "half_thickness")
 

@@ -6,7 +6,6 @@ from particle.drives.pieces import (
     drive_breakpoint,
     drive_piece,
     expand_piece,
-    find_alike,
     find_piece,
     next_breakpoint,
 )

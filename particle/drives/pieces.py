@@ -42,10 +42,10 @@ def find_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatAr
 
 
 @jit_no_arrays
-def find_alike(table: DriveTable, out: NDArray[np.bool_]) -> None:
-    """Whether all pieces of each drive begin and end when those of the drive before it do, into `out` (N,)."""
-    for i in range(len(out)):
-        out[i] = i > 0 and _is_alike(table, i, i - 1)
+def find_alike(table: DriveTable) -> None:
+    """Fill `table.alike`."""
+    for i in range(len(table.alike)):
+        table.alike[i] = i > 0 and _is_alike(table, i, i - 1)
 
 
 @jit_no_arrays

@@ -33,3 +33,4 @@ class DriveTable(NamedTuple):
     stroke_time: FloatArray  # (N,) s, the shortest stroke of each; inf: it has none
     jump: FloatArray  # (N, 2) m/s, m/s^2, by how much its velocity and acceleration jump at breakpoints at most
     rough: FloatArray  # (N,) m/s^3, by how much its third derivative does, with the share of those above
+    alike: NDArray[np.bool_]  # (N,) whether all its pieces begin and end when those of the drive before it do

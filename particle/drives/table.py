@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.drives.pieces import drive_piece
+from particle.drives.pieces import drive_piece, find_alike
 from particle.drives.record import ORDER, ROUNDING, DriveTable
 from particle.jit import jit
 
@@ -142,7 +142,9 @@ def drive_table(drives: Sequence[AnyDrive]) -> DriveTable:
         stroke_time=np.array([drive.stroke_time for drive in drives], dtype=float),
         jump=none,
         rough=none[:, 0],
+        alike=np.zeros(len(drives), dtype=np.bool_),
     )
+    find_alike(table)
     jump = _jumps(table)
     longest = JUMP_OVER * np.where(np.isfinite(table.stroke_time), table.stroke_time, 0.0)
     rough = jump[:, 2] + FOURTH * longest * jump[:, 3] + FIFTH * longest**2 * jump[:, 4]
@@ -163,6 +165,7 @@ def monomial_table(count: int) -> DriveTable:
         stroke_time=np.full(count, math.inf),
         jump=np.zeros((count, 2)),
         rough=np.zeros(count),
+        alike=np.zeros(count, dtype=np.bool_),
     )
 
 

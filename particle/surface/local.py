@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.drives import ORDER, find_alike
+from particle.drives import ORDER
 from particle.jit import jit_no_arrays
 from particle.records import Record, new_records
 from particle.surface.cells import NOWHERE, WHOLE, Cells
@@ -77,7 +77,6 @@ class LocalSurface(NamedTuple):
     plane: FloatArray  # (6, 2 M) m, the cell's motion in its plane: polynomials along x, then along y
     plane_at: FloatArray  # (3, 2 M) m, as `at`
     ahead: FloatArray  # (6,) m, a drive's quintic at the end of the span
-    alike: NDArray[np.bool_]  # (all drives,), whether a drive's breakpoints are those of the drive before it
 
 
 def new_local(surface: Surface) -> LocalSurface:
@@ -96,9 +95,7 @@ def new_local(surface: Surface) -> LocalSurface:
         plane=np.zeros((ORDER, plane)),
         plane_at=np.zeros((3, plane)),
         ahead=np.zeros(ORDER),
-        alike=np.zeros(len(surface.drives.delay), dtype=np.bool_),
     )
-    find_alike(surface.drives, local.alike)
     prepare(surface, local)
     return local
 

@@ -138,7 +138,7 @@ def _find_piece(surface: Surface, local: LocalSurface, i: int) -> None:
     frame: Frame = local.frame[0]
     time, unit, drive = frame.time, frame.unit, drive_of(surface, local, i)
     clock, piece, table = local.clock[i], local.pieces[i], surface.drives
-    if i > 0 and local.alike[drive] and drive_of(surface, local, i - 1) == drive - 1:
+    if i > 0 and table.alike[drive] and drive_of(surface, local, i - 1) == drive - 1:
         # Corrections of a plate that stretches have common breakpoints, which are searched once.
         before = local.clock[i - 1]
         if before.since == time and before.segment != NO_SEGMENT:

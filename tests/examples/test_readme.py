@@ -33,8 +33,10 @@ def test_main_job_prints_the_lines_of_the_readme(tmp_path):
     assert len(shown) == 6
     assert [line for line in shown if FIGURE.sub("#", line) not in lines] == []
     assert "warning" not in printed  # the run is within all bounds of the model
-    # The path is good to 1e-4 um, so its figures are those of any processor.
-    assert set(shown[:4]) <= set(printed.splitlines())
+    # The model stretches to 1e-5 of the plate's height, which moves the path's end by less than 2e-3 um.
+    for line in shown[:4]:
+        (now,) = (other for other in printed.splitlines() if FIGURE.sub("#", other) == FIGURE.sub("#", line))
+        assert list(map(float, FIGURE.findall(now))) == pytest.approx(list(map(float, FIGURE.findall(line))), abs=2e-3)
 
 
 def test_readme_is_short_and_begins_with_what_to_do():

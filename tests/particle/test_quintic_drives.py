@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from particle import Drive, polynomial_surface
-from particle.drives import drive_table, find_alike, next_breakpoint, quintic_drives
+from particle.drives import drive_table, next_breakpoint, quintic_drives
 from particle.surface import advance, enter, new_local, surface_at
 
 EDGES = np.array([0.0, 0.5, 0.75, 2.0])
@@ -83,9 +83,8 @@ def test_those_with_the_same_breakpoints_are_known():
     ours = quintic_drives(EDGES, rows, 1, 0.5, 1.0, np.zeros(3))
     later = quintic_drives(np.array([0.0, 0.5, 0.7500001, 2.0]), rows[:1], 1, 0.5, 1.0, np.zeros(1))
     once = quintic_drives(EDGES, rows[:1], None, 0.5, 1.0, np.zeros(1))
-    alike = np.zeros(6, dtype=bool)
-    find_alike(drive_table([Drive(1.0, 0.4), *ours, *later, *once]), alike)
-    assert alike.tolist() == [False, False, True, True, False, False]
+    table = drive_table([Drive(1.0, 0.4), *ours, *later, *once])
+    assert table.alike.tolist() == [False, False, True, True, False, False]
 
 
 def test_a_surface_under_them_is_the_sum_of_its_shapes():
