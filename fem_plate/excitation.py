@@ -13,13 +13,13 @@ Dickens, 1982). The lowest modes converge first; those left at the end stand for
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from fem_plate.elements import PlateFunctions
-from fem_plate.influence import InfluenceShapes
+from fem_plate.elements import PlateFunctions, PlateModel
 from fem_plate.vibration import HeldPlate
 
 FloatArray = NDArray[np.float64]
@@ -27,6 +27,16 @@ FloatArray = NDArray[np.float64]
 ROUNDING = 1e-10  # of a response: less of it that is new counts as nothing
 ASYMMETRY = 1e-6  # of a stiffness: what rounding may leave
 DEPENDENT = 1e-13  # of the longest of a block, squared
+
+
+class WithModel(Protocol):
+    """The influence shapes of N actuators, and the plate's model on whose cells they are."""
+
+    model: PlateModel
+    functions: PlateFunctions
+    points: FloatArray  # (N, 2) m
+    springs: FloatArray  # (N,) N/m
+    size: float  # m
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +64,7 @@ class Excitation:
     shapes: of the actuators.  inertia: kg/m^2, mass per area.  rigidity: N m.
     """
 
-    def __init__(self, shapes: InfluenceShapes, inertia: float, rigidity: float) -> None:
+    def __init__(self, shapes: WithModel, inertia: float, rigidity: float) -> None:
         size, held = shapes.size, shapes.springs > 0
         self._unit = rigidity / (inertia * size**4)  # rad^2/s^2
         self._plate = HeldPlate(shapes.model, shapes.points[held], rigidity / size**2 / shapes.springs[held])

@@ -56,12 +56,15 @@ class StretchModel:
     @cached_property
     def shapes(self) -> StretchedShapes:
         """Shapes of actuators, corrections and in-plane motions, with scales for the cells of the moving surface."""
+        return self._shapes_of(self.reduction)
+
+    def _shapes_of(self, reduction: Reduction) -> StretchedShapes:
         (corrections, motions), springs = self.largest, self.large.stiffness
         strokes = np.abs(self.heights).max(axis=0)
         stroke = float(strokes[springs > 0].max(initial=0.0)) or self.reduction.discrete.thickness
         own = np.where(springs > 0, 1.0, stroke / np.where(strokes > 0, strokes, 1.0))
         scales = np.concatenate([own, CELLS * stroke / corrections])
-        return StretchedShapes(self.reduction, self.large.points, springs, scales, IN_PLANE * motions.max() / motions)
+        return StretchedShapes(reduction, self.large.points, springs, scales, IN_PLANE * motions.max() / motions)
 
     @cached_property
     def _weights(self) -> tuple[FloatArray, FloatArray]:

@@ -25,6 +25,7 @@ FloatArray = NDArray[np.float64]
 MAX_STEPS, CONVERGED = 60, 1e-10  # of Newton; a step over the largest correction
 SUFFICIENT, MIN_STEP = 1e-4, 1e-10  # the share of the slope by which the energy must fall; of a step
 ENERGY_ROUNDING = 1e-13  # of the energy's terms
+FOLLOWED, SLOW = 1e-9, 0.3  # with a kept factor: the last step; the most that a step may be of the one before
 FINE, NOT_CONVERGED, NOT_STABLE = 0, 1, 2  # what can come of it
 
 
@@ -108,6 +109,27 @@ def find_equilibrium(forms: Forms, moment: Moment, state: State, c: FloatArray, 
         if length <= CONVERGED * largest:
             return FINE if stable else NOT_STABLE
     return NOT_CONVERGED
+
+
+@kernel_no_arrays
+def follow_equilibrium(forms: Forms, moment: Moment, state: State, c: FloatArray) -> int:
+    """As `find_equilibrium`, near the last one that it found: the factor of that one's Hessian serves all steps."""
+    n, last = len(c), math.inf
+    while True:
+        _enter(forms, moment, state, c)
+        for i in range(n):
+            state.step[i] = -state.gradient[i]
+        _solve(state.factor, state.step)
+        length = largest = 0.0
+        for i in range(n):
+            length, largest = max(length, abs(state.step[i])), max(largest, abs(c[i]))
+        if not length <= SLOW * last:
+            return find_equilibrium(forms, moment, state, c, largest)
+        for i in range(n):
+            c[i] += state.step[i]
+        if length <= FOLLOWED * largest:
+            return FINE
+        last = length
 
 
 @kernel_no_arrays

@@ -220,7 +220,7 @@ def lay_pieces(
                     over = _measure(left, middle, stack[top], length, limits)
                 if over <= 1.0 or length * most <= 2.0:
                     _keep(left, middle, stack[top], length, half, walk)
-                    _lay(left, stack[top], length, walk.coefficients[laid])
+                    lay_piece(left, stack[top], length, walk.coefficients[laid])
                     walk.edges[laid] = edges[k] + (1.0 + at) * half
                     laid += 1
                     left[:], at = stack[top], places[top]
@@ -282,7 +282,7 @@ def _keep(left: FloatArray, middle: FloatArray, right: FloatArray, length: float
 
 
 @kernel_no_arrays
-def _lay(left: FloatArray, right: FloatArray, length: float, out: FloatArray) -> None:
+def lay_piece(left: FloatArray, right: FloatArray, length: float, out: FloatArray) -> None:
     """The quintics (n+M, 6) between two nodes."""
     for j in range(left.shape[1]):
         rise = right[0, j] - left[0, j]

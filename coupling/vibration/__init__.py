@@ -1,6 +1,6 @@
 """A plate that has mass: the modes that its actuators excite, and how they ring over time."""
 
-from coupling.vibration.choice import Damping
+from coupling.vibration.choice import ChosenModes, Damping, choose_modes, motion_of
 from coupling.vibration.motion import ModalMotion, modal_motion
 from coupling.vibration.oscillators import Oscillators
 from coupling.vibration.steady import always_running

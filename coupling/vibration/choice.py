@@ -12,6 +12,7 @@ from coupling.drives import stroke_heights
 from coupling.vibration.motion import ModalMotion, modal_motion
 from coupling.vibration.oscillators import Oscillators
 from fem_plate import Excitation, ExcitedModes, InfluenceShapes
+from fem_plate.large_deflection import HeldShapes
 from particle import AnyDrive
 
 FloatArray = NDArray[np.float64]
@@ -36,13 +37,13 @@ class ChosenModes:
 
 
 def choose_modes(
-    shapes: InfluenceShapes,
+    shapes: InfluenceShapes | HeldShapes,
     excitation: Excitation,
     damping: Damping,
     sets: Sequence[Sequence[AnyDrive]],
     end: float,
     steady: bool,
-    tell: Callable[[int, int], None],
+    tell: Callable[[int, int], None] = lambda done, of: None,
 ) -> ChosenModes:
     """The modes that the plate needs under several sets of drives, up to an end [s].
 

@@ -59,13 +59,13 @@ def follow(oscillators: Oscillators, table: DriveTable, course: Course, before: 
         half = 0.5 * (course.edges[k + 1] - course.edges[k])
         for i in range(count):
             drive_piece(table, i, course.edges[k] + half, half, pieces[i])
-            _jump(pieces[i], half, before[i], jumps[i])
+            enter_jump(pieces[i], half, before[i], jumps[i])
         for j in range(n):
             _follow_one(oscillators, j, pieces, jumps, half, course.forced[k, j], course.ringing[k, j], state[j])
 
 
 @kernel_no_arrays
-def _jump(piece: FloatArray, half: float, before: FloatArray, jump: FloatArray) -> None:
+def enter_jump(piece: FloatArray, half: float, before: FloatArray, jump: FloatArray) -> None:
     """By how much height and velocity jump where a piece begins; `before` becomes what they are at its end.
 
     Rounding is no jump: it would outweigh the acceleration of slow drives.

@@ -12,5 +12,6 @@ from .reduction import Reduction as Reduction, reduce as reduce
 from .shapes import StretchedShapes as StretchedShapes
 from .discrete import DiscretePlate as DiscretePlate
 from .snapshots import Columns as Columns
+from .with_inertia import HeldShapes as HeldShapes, mode_columns as mode_columns, with_modes as with_modes
 from .state import DeflectedPlate as DeflectedPlate
 from .supports import movable_by_boundary as movable_by_boundary

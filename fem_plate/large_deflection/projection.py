@@ -43,9 +43,9 @@ def project(known: FullSolutions, least: float) -> Projection:
     everything = Columns.joined(known.corrections)
     corrections = everything.weighted(_leading(bending_products(discrete, everything), least))
     forces = np.stack(known.forces, axis=1)
-    forces = forces @ _leading(_force_products(discrete, membrane, forces), least)
+    forces = forces @ _leading(force_products(discrete, membrane, forces), least)
     shapes = known.slopes(0, Columns.joined([known.linear, corrections]))
-    plate = ReducedPlate(bending_products(discrete, corrections), _forms(membrane.samples, forces, shapes))
+    plate = ReducedPlate(bending_products(discrete, corrections), forms_of(membrane.samples, forces, shapes))
     return Projection(plate, corrections)
 
 
@@ -57,7 +57,7 @@ def with_in_plane(known: FullSolutions, model: Projection, least: float) -> tupl
     forces = stacked([membrane.linear_force(samples, everything) for samples in membrane.samples])
     shapes = known.slopes(1, Columns.joined([known.linear, model.corrections]))
     stiffness, forms = model.plate.stiffness, model.plate.membrane
-    return ReducedPlate(stiffness, forms, in_plane=-_forms(membrane.samples, forces, shapes)), motions
+    return ReducedPlate(stiffness, forms, in_plane=-forms_of(membrane.samples, forces, shapes)), motions
 
 
 def _leading(products: FloatArray, least: float) -> FloatArray:
@@ -67,7 +67,7 @@ def _leading(products: FloatArray, least: float) -> FloatArray:
     return np.asarray((directions[:, kept] / np.sqrt(squares[kept]))[:, ::-1])
 
 
-def _force_products(discrete: DiscretePlate, membrane: Membrane, forces: FloatArray) -> FloatArray:
+def force_products(discrete: DiscretePlate, membrane: Membrane, forces: FloatArray) -> FloatArray:
     """The membrane energies, twice, of forces with each other (c, c)."""
     compliance = np.linalg.inv(discrete.plane_stress.law)
     total = np.zeros((forces.shape[1],) * 2)
@@ -79,7 +79,7 @@ def _force_products(discrete: DiscretePlate, membrane: Membrane, forces: FloatAr
     return (total + total.T) / 2
 
 
-def _forms(sets: Sequence[Samples], forces: FloatArray, shapes: Sequence[FloatArray]) -> FloatArray:
+def forms_of(sets: Sequence[Samples], forces: FloatArray, shapes: Sequence[FloatArray]) -> FloatArray:
     """int N_r : grad phi_i grad phi_j, (r, b, b)."""
     count = shapes[0].shape[2]
     rows, columns = np.triu_indices(count)

@@ -1,0 +1,4 @@
+"""A plate that stretches and has mass: its modes ring while the membrane couples them."""
+
+from coupling.ringing.making import make_ringing_model
+from coupling.ringing.model import RingingModel

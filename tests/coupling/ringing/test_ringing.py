@@ -1,0 +1,98 @@
+"""A plate that stretches and has mass: its energy, its frequency, its limits."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from coupling.ringing import make_ringing_model
+from coupling.ringing.motion import ringing_corrections
+from coupling.stretch import make_model
+from coupling.vibration import make_vibration_model
+from fem_plate import Plate, PlateSection, backbone
+from fem_plate.large_deflection import energy
+from meshes import disc
+from particle import Drive
+
+THICKNESS, RADIUS = 5e-6, 300e-6
+SECTION = PlateSection(169e9, 0.3, THICKNESS, 2330.0)
+PLATE = Plate(disc(RADIUS, 75e-6), SECTION, "clamped", tolerance=1e-4)
+CENTRE = np.zeros((1, 2))
+STILL = Drive(0.0, 1e3, "up")
+
+
+def damping(ratio):
+    return lambda frequencies: np.full(len(frequencies), ratio)
+
+
+@cache
+def model(stroke=2 * THICKNESS, ratio=0.0, frequency=20e3):
+    """A disc with one actuator at its centre, good for a stroke [m]."""
+    drives = [Drive(stroke, frequency)]
+    plain = make_model(PLATE.large_deflection(CENTRE), [drives], 1e-3, lambda done, of: None)
+    return make_ringing_model(plain, damping(ratio), [drives], 2 / frequency, False)
+
+
+def free(plate, amplitude, periods, allowed=1e-3):
+    """Free vibration from rest in the first mode at an amplitude [m]; allowed: of the acceleration, in pieces."""
+    omega = plate.chosen.modes.omega
+    q = np.zeros(plate.count)
+    q[0] = amplitude
+    limits = plate.limits(allowed * omega[0] ** 2 * amplitude)
+    return ringing_corrections(plate.ringing, [STILL], periods * 2 * np.pi / omega[0], (q, np.zeros_like(q)), limits)
+
+
+@pytest.mark.compiled
+def test_free_vibration_at_two_thicknesses_keeps_its_energy():
+    plate = model()
+    found = free(plate, 2 * THICKNESS, 20)
+    times = found.drives[0].segments().start[1:-1]
+    values = np.array([drive.evaluate(times) for drive in found.drives])  # (n, 3, k), exact where pieces meet
+    kinetic = 0.5 * np.einsum("a,ak->k", plate.ringing.mass, values[: plate.count, 1] ** 2)
+    total = kinetic + [energy(plate.plate, row, np.zeros(1)) for row in values[:, 0].T]
+    print(f"energy drifts by {np.ptp(total) / total[0]:.1e} over {len(times)} pieces")
+    assert np.ptp(total) < 1e-8 * total[0]
+    assert kinetic.max() > 0.5 * total[0]  # it swings
+
+
+@pytest.mark.compiled
+def test_frequency_rises_with_the_amplitude_along_the_backbone():
+    """omega^2 / omega_1^2 - 1 -> kappa (A/t)^2, with kappa from the mode's energy of stretching alone."""
+    plate = model()
+    omega, rise = plate.chosen.modes.omega[0], []
+    for amplitude in (0.1, 0.05):
+        found = free(plate, amplitude * THICKNESS, 3.3, 1e-6).drives[0]
+        quarters = [
+            brentq(lambda t: float(found.evaluate(t)[0]), *(np.array([k, k + 1]) * np.pi / omega), xtol=1e-18, rtol=1e-14)
+            for k in (0, 5)
+        ]
+        period = (quarters[1] - quarters[0]) / 2.5
+        rise.append(((2 * np.pi / period / omega) ** 2 - 1) / amplitude**2)
+    limit = rise[1] + (rise[1] - rise[0]) / 3
+    expected = backbone(PLATE, 3, CENTRE)[2]  # two lower ones leave the centre at rest by themselves
+    print(f"kappa {limit:.6f}, from the energy {expected:.6f}")
+    assert limit == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.compiled
+def test_small_strokes_are_those_of_a_plate_that_does_not_stretch():
+    stroke, frequency = 1e-4 * THICKNESS, 20e3
+    plate, drives = model(stroke, 0.02, frequency), [Drive(stroke, frequency)]
+    found = plate.corrections(drives, 2 / frequency)
+    linear = make_vibration_model(
+        PLATE.influence(CENTRE), SECTION, damping(0.02), [drives], 2 / frequency, False
+    )
+    times = np.linspace(0.1, 1.9, 200) / frequency
+    xy = RADIUS * np.array([[0.3, 0.1], [-0.2, 0.5], [0.05, -0.8]])
+    moving = [*drives, *found.drives]
+    accelerations = [
+        shapes.values(xy) @ np.array([drive.evaluate(times)[2] for drive in all_drives])
+        for shapes, all_drives in (
+            (plate.shapes, moving),
+            (linear.shapes, [*drives, *linear.modal_drives(drives)]),
+        )
+    ]
+    largest = np.abs(accelerations[1]).max()
+    print(f"accelerations differ by {np.abs(accelerations[0] - accelerations[1]).max() / largest:.1e}")
+    assert accelerations[0] == pytest.approx(accelerations[1], abs=2e-4 * largest)
