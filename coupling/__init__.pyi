@@ -28,6 +28,7 @@ from .run import (
     friction_law as friction_law,
 )
 from .shared_surface import (
+    StretchedSurface as StretchedSurface,
     VibratingSurface as VibratingSurface,
     answers_drives as answers_drives,
     shared_surface as shared_surface,

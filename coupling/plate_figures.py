@@ -12,11 +12,12 @@ from scipy.spatial import cKDTree
 
 from coupling.case import SAME_PLACE, Case
 from coupling.drives import moments, stroke_heights, travel
+from coupling.ringing import RingingModel
 from coupling.scene import PlateScene
 from coupling.steepest import around, circles, steepest
 from coupling.stretch import Stretch
 from coupling.tipping import states_adhesion, tipping_of
-from coupling.vibration import PIECES, Vibration
+from coupling.vibration import PIECES
 from fem_plate import InfluenceShapes, MovingShapes, PatchedShapes, Plate, PlateShapes, Shapes
 from meshes import Outline
 from particle import AnyDrive, ContactSamples, SurfaceMotion, Trajectory
@@ -46,6 +47,7 @@ class VibrationFigures:
     """The modes of a plate with inertia; errors are of the surface's acceleration, over its largest."""
 
     modes: int
+    coupled: int  # the lowest of them, which the membrane couples; 0 in linear theory
     highest: float  # Hz
     mode_error: float  # estimated, of having no more of them
     piece_error: float  # bounded, of their drives, piece by piece in time
@@ -99,7 +101,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     tipping = tipping_of(case, trajectory, friction, times)
     first = _first_frequency(plate, shapes)
     driven = [drive for drive in drives if travel(drive) > 0] or drives
-    rings = scene.vibration is None and bool((surface.drives.jump[: len(drives), :2] > 0).any())
+    rings = not scene.has_inertia and bool((surface.drives.jump[: len(drives), :2] > 0).any())
     strokes = None if first is None else _range([1 / drive.stroke_time / first for drive in driven])
     return PlateFigures(
         theory="linear" if stretch is None else "von-karman",
@@ -109,7 +111,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         surface_error=surface.error,
         stretch_error=None if stretch is None else _stretch_error(stretch),
         stretch_solutions=None if stretch is None else stretch.solutions,
-        vibration=None if scene.vibration is None else _vibration(scene.vibration),
+        vibration=_vibration(scene),
         deflection_over_thickness=over_thickness,
         linear_path_error=LINEAR_ERROR * over_thickness**2 if stretch is None else None,
         largest_slope=slope,
@@ -122,7 +124,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         drives_over_first=None if first is None else _range([drive.frequency / first for drive in driven]),
         strokes_over_first=strokes,
         plate_rings=rings,
-        quasi_static_error=None if scene.vibration or rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
+        quasi_static_error=None if scene.has_inertia or rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force)))),
     )
@@ -132,9 +134,16 @@ def _stretch_error(stretch: Stretch) -> StretchError:
     return StretchError(stretch.mesh_error, stretch.reduction_error, stretch.piece_error)
 
 
-def _vibration(vibration: Vibration) -> VibrationFigures:
-    frequencies = vibration.frequencies
-    return VibrationFigures(len(frequencies), float(frequencies.max()), vibration.model.chosen.error, PIECES)
+def _vibration(scene: PlateScene) -> VibrationFigures | None:
+    stretch = scene.stretch
+    if stretch is not None and isinstance(stretch.model, RingingModel):
+        chosen, coupled, pieces = stretch.model.chosen, stretch.model.count, stretch.piece_error
+    elif scene.vibration is not None:
+        chosen, coupled, pieces = scene.vibration.model.chosen, 0, PIECES
+    else:
+        return None
+    frequencies = chosen.modes.frequencies
+    return VibrationFigures(len(frequencies), coupled, float(frequencies.max()), chosen.error, pieces)
 
 
 def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:

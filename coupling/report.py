@@ -123,8 +123,9 @@ def _stretching(error: StretchError, solutions: int) -> str:
 
 def _vibrating(figures: VibrationFigures) -> str:
     """How exact a plate with inertia is."""
+    coupled = f", of which the membrane couples the lowest {figures.coupled}" if figures.coupled else ""
     return (
-        f"{_count(figures.modes, 'mode')} up to {figures.highest / 1e6:.4g} MHz; acceleration good to "
+        f"{_count(figures.modes, 'mode')} up to {figures.highest / 1e6:.4g} MHz{coupled}; acceleration good to "
         f"{figures.mode_error:.1e} (estimated), over time to {figures.piece_error:.1e}"
     )
 
@@ -195,7 +196,7 @@ def _of_model(s: PlateSummary) -> list[str]:
     if s.linear_path_error is not None and s.deflection_over_thickness > MAX_DEFLECTION:
         remedy = (
             f" {VON_KARMAN} in [plate] has the plate stretch, with up to {MAX_STRETCHING} actuators."
-            if s.linear_path_error > MAX_LINEAR_ERROR and not s.vibration
+            if s.linear_path_error > MAX_LINEAR_ERROR
             else ""
         )
         texts.append(
@@ -278,8 +279,7 @@ def _dynamics(s: PlateSummary) -> str:
     elif s.quasi_static_error is None:
         dynamics = "it rings where a drive jumps"
     else:
-        linear = s.theory == "linear"  # only such a plate can have inertia
-        remedy = f" ({INERTIA} has none)" if linear and s.quasi_static_error > MAX_QUASI_STATIC_SHARE else ""
+        remedy = f" ({INERTIA} has none)" if s.quasi_static_error > MAX_QUASI_STATIC_SHARE else ""
         dynamics = f"quasi-static error of the acceleration {_percent(s.quasi_static_error)}{remedy}"
     return f"first frequency, actuators held: {s.first_frequency / 1e3:.4g} kHz; {dynamics}"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from threading import Lock
 from typing import Any
 
@@ -48,6 +48,11 @@ class VibratingSurface(ActuatedSurface):
         surface = Vibration.under(model, drives).surface(tolerance, half_thickness)
         return VibratingSurface(**{one.name: getattr(surface, one.name) for one in fields(SurfaceMotion)}, model=model)
 
+    def until(self, end: float) -> VibratingSurface:
+        """The same surface, for drives up to another end [s]."""
+        assert self.model is not None
+        return replace(self, model=replace(self.model, end=end))
+
     def driven_by(self, drives: Sequence[AnyDrive], in_plane_drives: Sequence[AnyDrive] = ()) -> SurfaceMotion:
         """The same surface with other drives of its actuators, sharing its cells; raises as `SurfaceMotion` does.
 
@@ -78,6 +83,10 @@ class StretchedSurface(ActuatedSurface):
         own = {one.name: getattr(surface, one.name) for one in fields(SurfaceMotion)}
         return StretchedSurface(**own, model=model, end=end)
 
+    def until(self, end: float) -> StretchedSurface:
+        """The same surface, for drives up to another end [s]."""
+        return replace(self, end=end)
+
     def driven_by(self, drives: Sequence[AnyDrive], in_plane_drives: Sequence[AnyDrive] = ()) -> SurfaceMotion:
         """The same surface with other drives of its actuators, sharing its cells; raises as `SurfaceMotion` does.
 
@@ -86,8 +95,9 @@ class StretchedSurface(ActuatedSurface):
         assert self.model is not None
         if wrong := self.drive_faults({"drives": drives}) or self._strokes_beyond(drives):
             raise ValueError("; ".join(wrong))
-        corrections = self.model.corrections(drives, self.end, self._response)
-        return super().driven_by([*drives, *corrections.drives], corrections.in_plane)
+        lifts = [always_running(drive) for drive in drives] if self.model.steady else drives
+        corrections = self.model.corrections(lifts, self.end, self._response)
+        return super().driven_by([*lifts, *corrections.drives], corrections.in_plane)
 
     @property
     def _response(self) -> Response | None:
@@ -131,12 +141,18 @@ def shared_surface(
     longest = case.model_copy(update={"run": case.run.model_copy(update={"duration": duration})})
     top = plate.thickness / 2 if plate.top_face else 0.0
     options: dict[str, Any] = {"tolerance": case.run.surface_tolerance, "half_thickness": top}
-    if plate.inertia:
-        return _vibrating(longest, plate, sets, options, progress)
+    running = [_running(case, drives) for drives in sets]
+    if plate.theory == "linear":
+        return _vibrating(longest, plate, running, options, progress)
     with progress("Solving the stretching plate") as tell:
-        model = stretch_model(longest, plate, build_plate(plate), sets, tell)
+        model = stretch_model(longest, plate, build_plate(plate), running, tell)
     with progress("Fitting the surface"):
-        return StretchedSurface.under(model, sets[0], duration, **options)
+        return StretchedSurface.under(model, running[0], duration, **options)
+
+
+def _running(case: Case, drives: Sequence[AnyDrive]) -> list[AnyDrive]:
+    """Drives of a run; in a steady state they have always been running."""
+    return [always_running(drive) for drive in drives] if case.run.start == "steady" else list(drives)
 
 
 def _vibrating(
@@ -146,12 +162,10 @@ def _vibrating(
     options: Mapping[str, Any],
     progress: Progress,
 ) -> VibratingSurface:
-    steady = case.run.start == "steady"
-    running = [[always_running(drive) for drive in drives] if steady else list(drives) for drives in sets]
     with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
         shapes = plate.influence([one.position for one in case.actuators], actuator_stiffness(case), tell=tell)
     with progress("Finding the modes") as tell:
-        model = vibration_model(case, plate_case, plate, shapes, running, tell)
+        model = vibration_model(case, plate_case, plate, shapes, sets, tell)
     with progress("Fitting the surface"):
-        return VibratingSurface.under(model, running[0], **options)
+        return VibratingSurface.under(model, sets[0], **options)

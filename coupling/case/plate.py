@@ -84,8 +84,6 @@ class PlateCase(KeyedTable, ABC):
             yield "density", f'is missing; with {INERTIA} it must be a density such as "2330 kg/m^3"'
         if "damping" in given and inertia is False:
             yield "damping", f"must not be given without {INERTIA}; a plate without mass does not vibrate"
-        if inertia is True and given.get("theory", "linear") == "von-karman":
-            yield "inertia", f"must be false with {VON_KARMAN}; only a linear plate vibrates"
 
     @abstractmethod
     def build_mesh(self) -> PlateMesh:

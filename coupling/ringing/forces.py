@@ -137,7 +137,9 @@ def accelerate(
 
 
 @kernel_no_arrays
-def fill_node(ringing: Ringing, bench: Bench, q: FloatArray, q_t: FloatArray, q_tt: FloatArray, out: FloatArray) -> None:
+def fill_node(
+    ringing: Ringing, bench: Bench, q: FloatArray, q_t: FloatArray, q_tt: FloatArray, out: FloatArray
+) -> None:
     """All modes and in-plane motions with their derivatives in s, (3, a + n + M), where `accelerate` has just been."""
     forms, lifts, count, own = ringing.forms, bench.lifts, len(bench.pieces), len(q)
     for i in range(count):

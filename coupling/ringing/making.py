@@ -41,7 +41,10 @@ def make_ringing_model(
     times = np.linspace(0.0, end, MOMENTS)
     rung = [motion_of(chosen.modes, damping, drives, end, steady).evaluate(times) for drives in sets]
     count = min(
-        max(_ringing(shapes, chosen, stroke_heights(drives, times, 2), one[2]) for drives, one in zip(sets, rung, strict=True)),
+        max(
+            _ringing(shapes, chosen, stroke_heights(drives, times, 2), one[2])
+            for drives, one in zip(sets, rung, strict=True)
+        ),
         MAX_RINGING,
     )
     amplitudes = np.max([np.abs(one[0]).max(axis=0) for one in rung], axis=0)
@@ -52,9 +55,7 @@ def make_ringing_model(
     lowest = modes.weighted(np.eye(len(amplitudes))[:, :count])
     above = modes.weighted(np.eye(len(amplitudes))[:, count:])
     together = with_modes(reduction, lowest, (strokes, swings, corrections), LEAST)
-    return RingingModel(
-        large, together, above, model.heights, model.mesh_error, chosen, damping, steady, amplitudes
-    )
+    return RingingModel(large, together, above, model.heights, model.mesh_error, chosen, damping, steady, amplitudes)
 
 
 def _ringing(shapes: HeldShapes, chosen: ChosenModes, lifted: FloatArray, rung: FloatArray) -> int:

@@ -87,11 +87,11 @@ class RingingModel(StretchModel):
         at_rest = reduced_equilibrium(self.plate, np.array([float(drive.evaluate(0.0)[0]) for drive in drives]))
         start = at_rest.corrections[0][: self.count], np.zeros(self.count)
         found = ringing_corrections(self.ringing, drives, end, start, self.limits(allowed), self.steady)
-        drives = [*found.drives, *self._linear(linear).modal_drives(allowed)]
-        return replace(found, drives=drives, error=PIECES * found.error, acceleration_error=PIECES * found.error)
+        own = [*found.drives, *self._linear(linear).modal_drives(allowed)]
+        return replace(found, drives=own, error=PIECES * found.error, acceleration_error=PIECES * found.error)
 
     def limits(self, allowed: float) -> FloatArray:
-        """What accelerations of modes, corrections and in-plane motions (n + M,) may be off by, for one [m/s^2] of w."""
+        """What the accelerations of coordinates (n + M,) may be off by, where that of w may [m/s^2]."""
         heights, in_plane = self._weights
         return np.concatenate([allowed / heights[: len(self.plate.stiffness)], IN_PLANE * allowed / in_plane])
 

@@ -61,7 +61,7 @@ def ringing_corrections(
     motion does not come to repeat with the drives.
     """
     walker = _Walker(ringing, drives, limits)
-    state = _State(*(part.copy() for part in start), _heights_before(drives, steady))
+    state = _State(start[0].copy(), start[1].copy(), _heights_before(drives, steady))
     schedule = schedule_of(drives, math.inf if steady else end)
     walker.settle(schedule, end, state, steady, tell)
     return walker.corrections()
@@ -148,9 +148,7 @@ class _Walker:
         for _ in range(MAX_HALVINGS):
             nodes = np.zeros((steps + 1, 3, width))
             q, q_t = state.q.copy(), state.q_t.copy()
-            outcome, error = march(
-                self._ringing, self._bench, self._pair, self._table, begin, until, q, q_t, nodes
-            )
+            outcome, error = march(self._ringing, self._bench, self._pair, self._table, begin, until, q, q_t, nodes)
             if outcome == FINE and error <= STEP_ERROR * max(np.abs(nodes[:, 0]).max(), self._largest[0].max()):
                 lengths, rows = np.zeros(steps, dtype=np.int64), np.zeros((steps, width, ORDER))
                 h = (until - begin) / steps
@@ -159,9 +157,12 @@ class _Walker:
                     break
             steps *= 2
         else:
-            raise ValueError(f"The ringing of the stretching plate cannot be followed at {begin:g} s; reduce the strokes")
+            raise ValueError(
+                f"The ringing of the stretching plate cannot be followed at {begin:g} s; reduce the strokes"
+            )
         state.q, state.q_t = q, q_t
-        self._keep(begin + h * np.cumsum(lengths[:laid]), until, rows[:laid], nodes, over)
+        edges = np.asarray(begin + h * np.cumsum(lengths[:laid]), dtype=float)
+        self._keep(edges, until, rows[:laid], nodes, over)
 
     def _keep(self, edges: FloatArray, until: float, rows: FloatArray, nodes: FloatArray, over: float) -> None:
         edges[-1] = until

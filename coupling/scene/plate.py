@@ -12,6 +12,7 @@ from coupling.case import Case, PlateCase
 from coupling.drives import build_drives
 from coupling.measured import MotionFit
 from coupling.progress import Progress, ProgressCallback
+from coupling.ringing import RingingModel, make_ringing_model
 from coupling.stretch import Stretch, StretchModel, make_model
 from coupling.surface import surface_motion
 from coupling.vibration import Damping, Vibration, VibrationModel, always_running, make_vibration_model
@@ -47,6 +48,11 @@ class PlateScene:
     fits: tuple[MotionFit, ...] = field(default=(), init=False)
 
     @property
+    def has_inertia(self) -> bool:
+        """Whether the plate rings."""
+        return self.vibration is not None or (self.stretch is not None and isinstance(self.stretch.model, RingingModel))
+
+    @property
     def moving_shapes(self) -> Shapes:
         """The shapes of the moving surface."""
         motion = self.stretch or self.vibration
@@ -68,7 +74,7 @@ def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateS
         points = [actuator.position for actuator in case.actuators]
         truncation = TRUNCATION if len(points) > MAX_WHOLE else None
         shapes = plate.influence(points, actuator_stiffness(case), truncation, tell)
-    if plate_case.inertia:
+    if plate_case.inertia and plate_case.theory == "linear":
         with progress("Finding the modes") as tell:
             modes = vibration_model(case, plate_case, plate, shapes, [drives], tell)
             vibration = Vibration.under(modes, drives)
@@ -79,8 +85,9 @@ def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateS
             return PlateScene(plate, shapes, drives, surface_motion(shapes, drives, tolerance, top))
     with progress("Solving the stretching plate") as tell:
         model = stretch_model(case, plate_case, plate, [drives], tell)
+    with progress("Finding the plate's motion"):
+        stretch = interruptible(Stretch.under, model, drives, case.run.duration)
     with progress("Fitting the surface"):
-        stretch = Stretch.under(model, drives, case.run.duration)
         return PlateScene(plate, shapes, drives, stretch.surface(tolerance, top), stretch)
 
 
@@ -90,7 +97,11 @@ def stretch_model(
     """The model of a case's plate as it stretches, for several sets of drives."""
     points = [actuator.position for actuator in case.actuators]
     large = plate.large_deflection(points, plate_case.in_plane_supports, actuator_stiffness(case))
-    return interruptible(make_model, large, sets, case.run.duration, tell)
+    model = interruptible(make_model, large, sets, case.run.duration, tell)
+    if not plate_case.inertia:
+        return model
+    steady = case.run.start == "steady"
+    return interruptible(make_ringing_model, model, damping_of(plate_case), sets, case.run.duration, steady)
 
 
 def vibration_model(

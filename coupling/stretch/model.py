@@ -29,6 +29,8 @@ class StretchModel:
     heights: (S, N) m or N, that it is good for.  mesh_error: of a full solution, over its largest w.
     """
 
+    steady = False  # whether runs begin in the steady state of drives that have always been running
+
     def __init__(self, large: LargeDeflection, reduction: Reduction, heights: FloatArray, mesh_error: float) -> None:
         self.large, self.reduction, self.heights, self.mesh_error = large, reduction, heights, mesh_error
 

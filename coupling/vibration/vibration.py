@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,11 +73,6 @@ class Vibration:
     def surface(self, tolerance: float, half_thickness: float) -> SurfaceMotion:
         """The moving surface."""
         return surface_motion(self.shapes, self.moving_drives, tolerance, half_thickness)
-
-    @cached_property
-    def frequencies(self) -> FloatArray:
-        """Of the modes, Hz."""
-        return self.model.chosen.modes.frequencies
 
 
 def make_vibration_model(

@@ -134,9 +134,7 @@ def _answers(membrane: Membrane, at: list[FloatArray], i: IntArray, j: IntArray)
     return -membrane.sign * membrane.solve(np.ascontiguousarray(membrane.reduce(t)))
 
 
-def _forces(
-    membrane: Membrane, at: list[FloatArray], i: IntArray, j: IntArray, unknowns: FloatArray
-) -> FloatArray:
+def _forces(membrane: Membrane, at: list[FloatArray], i: IntArray, j: IntArray, unknowns: FloatArray) -> FloatArray:
     """The membrane forces (samples, c) that belong to them."""
     everything, parts = membrane.expand(unknowns), []
     for samples, p in zip(membrane.samples, at, strict=True):

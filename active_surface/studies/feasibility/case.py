@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,6 +15,7 @@ from active_surface.studies.feasibility.area import ACROSS, MAX_STROKES, Curves,
 from active_surface.studies.feasibility.faster import faster, find_feasible_anew
 from coupling import (
     Progress,
+    StretchedSurface,
     VibratingSurface,
     build_drives,
     build_friction,
@@ -25,7 +26,8 @@ from coupling import (
     whole_file,
 )
 from coupling.case import Case, PlateCase
-from coupling.vibration import always_running
+from coupling.ringing import RingingModel
+from coupling.vibration import VibrationModel, always_running
 from fem_plate import Shapes
 from meshes import Outline
 from particle import AnyDrive, SurfaceMotion, interruptible
@@ -197,11 +199,12 @@ def _vibrating(
     window = min(whole, MAX_STROKES * stroke_time)
     sets = [faster(drives, factor) for factor in [1.0, *factors.tolist()]]
     surface = shared_surface(case, sets, window / min(1.0, float(factors.min())), progress)
-    assert isinstance(surface, VibratingSurface) and surface.model
+    assert isinstance(surface, (VibratingSurface, StretchedSurface))
     model = surface.model
+    assert isinstance(model, (VibrationModel, RingingModel))
 
     def driven(factor: float) -> SurfaceMotion:
-        return replace(surface, model=replace(model, end=window / factor)).driven_by(faster(drives, factor))
+        return surface.until(window / factor).driven_by(faster(drives, factor))
 
     with progress(STAGE):
         areas = interruptible(

@@ -56,18 +56,19 @@ def test_free_vibration_at_two_thicknesses_keeps_its_energy():
     assert kinetic.max() > 0.5 * total[0]  # it swings
 
 
+def zero(drive, low, high):
+    return brentq(lambda t: float(drive.evaluate(t)[0]), low, high, xtol=1e-18, rtol=1e-14)
+
+
 @pytest.mark.compiled
 def test_frequency_rises_with_the_amplitude_along_the_backbone():
     """omega^2 / omega_1^2 - 1 -> kappa (A/t)^2, with kappa from the mode's energy of stretching alone."""
     plate = model()
     omega, rise = plate.chosen.modes.omega[0], []
     for amplitude in (0.1, 0.05):
-        found = free(plate, amplitude * THICKNESS, 3.3, 1e-6).drives[0]
-        quarters = [
-            brentq(lambda t: float(found.evaluate(t)[0]), *(np.array([k, k + 1]) * np.pi / omega), xtol=1e-18, rtol=1e-14)
-            for k in (0, 5)
-        ]
-        period = (quarters[1] - quarters[0]) / 2.5
+        first = free(plate, amplitude * THICKNESS, 3.3, 1e-6).drives[0]
+        zeros = [zero(first, *(np.array([k, k + 1]) * np.pi / omega)) for k in (0, 5)]
+        period = (zeros[1] - zeros[0]) / 2.5
         rise.append(((2 * np.pi / period / omega) ** 2 - 1) / amplitude**2)
     limit = rise[1] + (rise[1] - rise[0]) / 3
     expected = backbone(PLATE, 3, CENTRE)[2]  # two lower ones leave the centre at rest by themselves
@@ -80,9 +81,7 @@ def test_small_strokes_are_those_of_a_plate_that_does_not_stretch():
     stroke, frequency = 1e-4 * THICKNESS, 20e3
     plate, drives = model(stroke, 0.02, frequency), [Drive(stroke, frequency)]
     found = plate.corrections(drives, 2 / frequency)
-    linear = make_vibration_model(
-        PLATE.influence(CENTRE), SECTION, damping(0.02), [drives], 2 / frequency, False
-    )
+    linear = make_vibration_model(PLATE.influence(CENTRE), SECTION, damping(0.02), [drives], 2 / frequency, False)
     times = np.linspace(0.1, 1.9, 200) / frequency
     xy = RADIUS * np.array([[0.3, 0.1], [-0.2, 0.5], [0.05, -0.8]])
     moving = [*drives, *found.drives]
