@@ -112,7 +112,7 @@ def test_the_commands_refuse_with_exit_code_2(tmp_path):
         assert "plate.damping must be a ratio" in result.output and "actuators[1].cycles" in result.output
     file.write_text(changed())
     result = CliRunner().invoke(main, ["response", str(file)])
-    assert result.exit_code == 2 and "plate.density of response must be given; got none" in result.output
+    assert result.exit_code == 2 and "  plate.density must be given; got none" in result.output
 
 
 def test_a_table_of_damping_goes_on_beyond_its_ends():
