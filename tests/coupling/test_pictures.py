@@ -67,8 +67,8 @@ def test_markers_shrink_with_the_pitch_and_go_before_they_merge():
 @pytest.mark.parametrize(
     ("largest", "name", "number"),
     [
-        (0.0, "m", 0),
-        (1e-13, "m", 0),
+        (0.0, "µm", 0),
+        (1e-13, "µm", 1e-7),
         (8e-11, "pm", 80),
         (2.6e-6, "µm", 2.6),
         (1e-3, "mm", 1),
