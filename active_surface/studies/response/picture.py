@@ -17,13 +17,13 @@ from fem_plate import frame_around, mark_actuators
 from meshes import Drawing, draw_rim, rim_curves, unit_for
 
 if TYPE_CHECKING:
-    from active_surface.studies.response.response import Response
+    from active_surface.studies.response.response import FrequencyResponse
 
 MAX_CURVES: Final = 10
 MARK: Final[dict[str, Any]] = {"color": "#404040", "linewidth": 1.1, "linestyle": (0, (1, 1.5))}  # of a resonance
 
 
-def draw_response(response: Response, path: Path) -> Path:
+def draw_response(response: FrequencyResponse, path: Path) -> Path:
     """Draw a response into a PNG file; return its path. Of many curves it shows those with the largest amplitudes."""
     figure = Drawing(figsize=(12.0, 6.0))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
@@ -37,7 +37,7 @@ def draw_response(response: Response, path: Path) -> Path:
     return save_picture(figure, path)
 
 
-def _curves(response: Response) -> list[tuple[int, int]]:
+def _curves(response: FrequencyResponse) -> list[tuple[int, int]]:
     """Point and actuator of the curves that are drawn."""
     most = np.abs(response.values).max(axis=2)
     order = np.argsort(-most, axis=None)[:MAX_CURVES]
@@ -45,7 +45,7 @@ def _curves(response: Response) -> list[tuple[int, int]]:
     return [(int(point), int(actuator)) for point, actuator in pairs]
 
 
-def _draw_curves(amplitude: Axes, phase: Axes, response: Response, curves: list[tuple[int, int]]) -> None:
+def _draw_curves(amplitude: Axes, phase: Axes, response: FrequencyResponse, curves: list[tuple[int, int]]) -> None:
     unit = unit_for(response.frequencies, "Hz")
     across = response.frequencies * unit.per_si
     for point, actuator in curves:
@@ -80,13 +80,13 @@ def _wrapped(across: FloatArray, values: ComplexArray) -> tuple[FloatArray, Floa
     return np.insert(across, leaps, across[leaps]), np.insert(phase, leaps, np.nan)
 
 
-def _label(response: Response, point: int, actuator: int) -> str:
+def _label(response: FrequencyResponse, point: int, actuator: int) -> str:
     if len(response.points) == 1:
         return f"actuator {actuator}"
     return f"point {point}, actuator {actuator}" if len(response.actuators) > 1 else f"point {point}"
 
 
-def _draw_places(axes: Axes, response: Response) -> None:
+def _draw_places(axes: Axes, response: FrequencyResponse) -> None:
     box = response.outline.box
     unit = unit_for(box, "m")
     draw_rim(axes, rim_curves(response.outline), unit.per_si)

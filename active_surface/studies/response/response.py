@@ -1,4 +1,4 @@
-"""Response: how far points of the plate of a case follow its actuators, over frequency."""
+"""FrequencyResponse: how far points of the plate of a case follow its actuators, over frequency."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ MAX_ACTUATORS: Final = MAX_MODES // 2  # so that there are two blocks of respons
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class FrequencyResponse:
     """How far k points of a plate follow N actuators, over F frequencies."""
 
     case: Case
@@ -128,7 +128,7 @@ def response(
     lowest: float | None = None,
     highest: float | None = None,
     progress: Progress = silent,
-) -> Response:
+) -> FrequencyResponse:
     """The frequency responses of a case's plate, with its tension and damping, whatever its drives are.
 
     Parameters
@@ -146,7 +146,7 @@ def response(
 
     Returns
     -------
-    response : Response
+    response : FrequencyResponse
         Amplitudes and phases, with `dataset()` as an xarray.Dataset.
 
     Raises
@@ -198,7 +198,7 @@ def _found(
     lowest: float | None,
     highest: float | None,
     progress: Progress,
-) -> Response:
+) -> FrequencyResponse:
     damping = damping_of(plate_case)
     with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
@@ -223,7 +223,7 @@ def _found(
         peaks = np.abs(modes.functions.values(xy / shapes.size)).max(axis=0) * np.abs(modes.participation).max(axis=1)
         within = (modes.frequencies >= chosen.min()) & (modes.frequencies <= chosen.max())
         marked = within & (peaks > max(MARKED * peaks.max(), STILL * shapes.own_heights().max()))
-        found = Response(
+        found = FrequencyResponse(
             case, xy, chosen, values, modes.frequencies[marked], ratios[marked], error, shapes.outline, shapes.points
         )
         if given is not None:

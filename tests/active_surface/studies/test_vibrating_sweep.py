@@ -73,12 +73,12 @@ def test_plate_and_modes_are_found_once(found):
     assert counts == {"plate": 1, "modes": 1} and not records["mistakes"].any()
 
 
-def test_paths_are_those_of_single_runs(found):
+@pytest.mark.parametrize("k", [2, *(pytest.param(k, marks=pytest.mark.slow) for k in (0, 1, 3))])
+def test_paths_are_those_of_single_runs(found, k):
     """Which keep other modes each: to 1e-6 of the place at the end, and 1e-4 of the path."""
     engine, records, _ = found
-    for k in (0, 2):
-        path = run_case(engine.variants.at(engine.study.points.values(k, k + 1)[0])[0]).trajectory
-        end = np.array([records["end_x"][k], records["end_y"][k]])
-        assert path.path_length > 5e-8
-        assert end == pytest.approx(path.position[-1], rel=1e-6)
-        assert np.hypot(*(end - path.position[-1])) < 1e-4 * path.path_length
+    path = run_case(engine.variants.at(engine.study.points.values(k, k + 1)[0])[0]).trajectory
+    end = np.array([records["end_x"][k], records["end_y"][k]])
+    assert path.path_length > 5e-8
+    assert end == pytest.approx(path.position[-1], rel=1e-6)
+    assert np.hypot(*(end - path.position[-1])) < 1e-4 * path.path_length
