@@ -13,11 +13,11 @@ from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.frequency_range import range_fault
-from active_surface.studies.response.functions import MAX_MODES, STILL, ComplexArray, frequency_response
+from active_surface.studies.response.functions import STILL, ComplexArray, frequency_response
 from coupling import Progress, silent, whole_file
 from coupling.case import SAME_PLACE, Case, PlateCase
 from coupling.scene import actuator_stiffness, build_plate, damping_of
-from fem_plate import Excitation, InfluenceShapes
+from fem_plate import MAX_MODES, Excitation, InfluenceShapes
 from meshes import Outline, quantity_text, range_text
 from particle import interruptible
 
