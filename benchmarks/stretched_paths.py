@@ -21,19 +21,17 @@ from time import process_time
 
 import numpy as np
 import report
-from full_solutions import FullSolutions, Node
 from numpy.typing import NDArray
+from stretched_nodes import Nodes
 from threadpoolctl import threadpool_limits
 
 from coupling import surface_motion
-from coupling.stretch import Corrections, Stretch, StretchModel, make_model
+from coupling.stretch import Stretch, StretchModel, make_model
 from coupling.stretch.store import FOLDER
 from fem_plate import Plate, PlateSection, StretchedShapes
 from fem_plate.large_deflection import Columns
-from fem_plate.large_deflection.snapshots import bending_products
 from meshes import disc
 from particle import AnyDrive, CoulombAdhesion, Drive, Micropart, SurfaceMotion, Trajectory, simulate
-from particle.drives import QuinticDrive, quintic_drives
 
 FloatArray = NDArray[np.float64]
 
@@ -43,28 +41,9 @@ LATTICE = RADIUS * np.stack(np.meshgrid(*[np.linspace(-0.5, 0.5, 5)] * 2), axis=
 MASS, CENTRE_HEIGHT, COEFFICIENT = 2e-9, 45e-6, 0.05  # kg, m
 STARTS, FARTHEST = 10, 0.6  # of the radius
 SURFACE, PATH = 1e-10, 1e-10  # tolerances
-EXACT = 1e-9  # of w: differences of less are left out
 SAMPLES, AWAY = 1500, 0.02  # of the radius, from actuators
-STEP, AGREEMENT = 2e-3, 1e-4  # of a stroke's time, of differences that the derivatives must agree with
-CELLS = 3e-3  # what cells may smooth of a gradient: it is as exact as that on the mesh at 30 t
 REPEATS = 20
-AT_REST = 1e-12  # of the thickness
 MOVED = 1e-7  # m: paths shorter than this are not compared
-HEADS = (
-    " full solutions ",
-    " corrections ",
-    " $N_r$ ",
-    " $U_m$ ",
-    " error, held out ",
-    " nodes ",
-    " w at nodes ",
-    " gradient ",
-    " ends: largest, median ",
-    " the same, own cells ",
-    " offline ",
-    " online ",
-    " an equilibrium faster by ",
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,133 +78,6 @@ def layouts() -> list[Layout]:
         two(30, 3e-6),
         Layout("25 actuators, 1 t", LATTICE, wave, 4e-8),
     ]
-
-
-class Nodes:
-    """The full plate at the time nodes of a model's corrections, and what it differs from the model by."""
-
-    def __init__(self, layout: Layout, corrections: Corrections) -> None:
-        self.layout, self.reduction, self.corrections = layout, layout.model.reduction, corrections
-        self.full = FullSolutions(self.reduction.discrete)
-        pieces = corrections.drives[0].segments()
-        assert corrections.period is not None and pieces.tail == 0
-        self.edges = np.append(pieces.start, pieces.start[-1] + pieces.scale[-1]) - pieces.start[0]
-        self.pace, self.loop = corrections.drives[0].stroke_time, pieces.lead
-        nodes = [self.node(self.edges[k], self.modelled(k)[0]) for k in range(len(pieces.start))]
-        self.nodes = [*nodes, nodes[self.loop]]
-        self._solve_for_differences()
-
-    def strokes(self, time: float) -> FloatArray:
-        """The strokes (3, N) over the thickness, and their derivatives in times of the pace."""
-        rows = np.array([drive.evaluate(time) for drive in self.layout.drives])
-        return rows.T * self.pace ** np.arange(3)[:, None] / THICKNESS
-
-    def modelled(self, k: int) -> tuple[FloatArray, FloatArray]:
-        """The model's corrections (n, 3) and in-plane motions (M, 3) at a node, dimensionless likewise."""
-        k = k if k + 1 < len(self.edges) else self.loop
-        unit = self.pace / (self.edges[k + 1] - self.edges[k])
-        factors = np.array([1.0, unit, 2 * unit**2])
-        sets = self.corrections.drives, self.corrections.in_plane
-        c, g = (np.array([drive.segments().coefficients[k, :3] for drive in drives]) * factors for drives in sets)
-        return c / THICKNESS, g / self.reduction.discrete.motion_unit
-
-    def node(self, time: float, c: FloatArray) -> Node:
-        """The full plate at a time, from the model's corrections (n, 3)."""
-        strokes = self.strokes(time)
-        if np.abs(strokes[0]).max() < AT_REST:  # what Newton's method changes is relative to w
-            return self.full.node(strokes * [[0], [1], [1]], None)
-        near = self._model_columns(strokes, c)
-        start = self.full.equilibrium.at(near.v[:, 0], near.extra[:, 0], 0.0)
-        return self.full.node(strokes, start)
-
-    def _model_columns(self, strokes: FloatArray, c: FloatArray) -> Columns:
-        linear, own = self.reduction.linear.weighted(strokes.T), self.reduction.corrections.weighted(c)
-        return Columns(linear.v + own.v, linear.extra + own.extra)
-
-    def _solve_for_differences(self) -> None:
-        """Shapes of what the full plate and its model differ by, and their quintics."""
-        discrete, w, u = self.reduction.discrete, [], []
-        for k, node in enumerate(self.nodes):
-            c, g = self.modelled(k)
-            model = self._model_columns(self.strokes(self.edges[k]), c)
-            w.append(Columns(node.w.v - model.v, node.w.extra - model.extra))
-            u.append(node.u - self.reduction.motions @ g)
-        self.differences, motions = Columns.joined(w), np.concatenate(u, axis=1)
-        stiffness = discrete.plane_stress.membrane.stiffness
-        full = np.concatenate([node.u for node in self.nodes], axis=1)
-        everything = Columns.joined([node.w for node in self.nodes])
-        largest = np.sqrt(np.diag(bending_products(discrete, everything)).max())
-        weights, coefficients = _leading(bending_products(discrete, self.differences), EXACT * largest)
-        self.shapes = self.differences.weighted(weights)
-        self.coefficients = coefficients * THICKNESS
-        largest = np.sqrt(np.einsum("ij,ij->j", full, stiffness @ full).max())
-        weights, coefficients = _leading(motions.T @ (stiffness @ motions), EXACT * largest)
-        self.motions = motions @ weights
-        self.motion_coefficients = coefficients * discrete.motion_unit
-
-    def drives(self, coefficients: FloatArray) -> list[QuinticDrive]:
-        """Quintics (m) through coefficients (m, 3 nodes) with their derivatives."""
-        length = np.diff(self.edges)[None] / self.pace
-        x, x_t, x_tt = coefficients.reshape(len(coefficients), -1, 3).transpose(2, 0, 1)
-        rise, v = np.diff(x, axis=1), (x_t[:, :-1] * length, x_t[:, 1:] * length)
-        a = x_tt[:, :-1] * length**2, x_tt[:, 1:] * length**2
-        rows = [
-            x[:, :-1],
-            v[0],
-            a[0] / 2,
-            10 * rise - 6 * v[0] - 4 * v[1] - 1.5 * a[0] + 0.5 * a[1],
-            -15 * rise + 8 * v[0] + 7 * v[1] + 1.5 * a[0] - a[1],
-            6 * rise - 3 * v[0] - 3 * v[1] - 0.5 * a[0] + 0.5 * a[1],
-        ]
-        like = self.corrections.drives[0]
-        return quintic_drives(
-            self.edges, np.stack(rows, axis=2), self.loop, like.stroke_time, like.frequency, np.zeros(len(x))
-        )
-
-    def errors(self) -> FloatArray:
-        """The model's largest errors of w, of its gradient, of w_tt and of grad w_tt, each over the largest."""
-        trial, x = self.reduction.discrete.trial, samples(self.layout.points) / RADIUS
-        found = []
-        for columns in (self.differences, Columns.joined([node.w for node in self.nodes])):
-            w, gradient, _ = trial.functions(*columns).evaluate(x)
-            found.append([np.abs(rows[:, order::3]).max() for order in (0, 2) for rows in (w, gradient)])
-        return np.array(found[0]) / found[1]
-
-    def check(self, surface: SurfaceMotion) -> None:
-        """The derivatives are those of differences, and a surface is the full plate at a node."""
-        k = len(self.edges) // 3
-        middle, step = (self.edges[k] + self.edges[k + 1]) / 2, STEP * self.pace  # no breakpoint of a drive
-        before, now, after = (self.node(time, self._near(time)) for time in (middle - step, middle, middle + step))
-        trial, xy = self.reduction.discrete.trial, samples(self.layout.points)
-        heights = [trial.functions(*node.w).values(xy / RADIUS) for node in (before, now, after)]
-        for order in (1, 2):
-            change = (heights[2] - heights[0])[:, order - 1] / (2 * STEP)
-            off = np.abs(change - heights[1][:, order]).max() / np.abs(change).max()
-            assert off < AGREEMENT, f"derivative {order} is off by {off:.1e}"
-        w, gradient, _ = trial.functions(*self.nodes[k].w).evaluate(xy / RADIUS)
-        state = surface.evaluate(xy, self.edges[k])
-        for name, bound, one, other in (
-            ("w", AGREEMENT, state.w, THICKNESS * w[:, 0]),
-            ("the gradient", CELLS, state.gradient, THICKNESS / RADIUS * gradient[:, 0]),
-            ("w_tt", CELLS, state.w_tt, THICKNESS / self.pace**2 * w[:, 2]),
-        ):
-            off = float(np.abs(one - other).max() / np.abs(other).max())
-            print(f"{self.layout.name}: cells are off by {off:.1e} of {name}", flush=True)
-            assert off < bound, f"{name} of the full plate's surface is off by {off:.1e}"
-
-    def _near(self, time: float) -> FloatArray:
-        """The model's corrections (n, 3) at any time, but for derivatives."""
-        values = np.array([drive.evaluate(time)[0] for drive in self.corrections.drives]) / THICKNESS
-        return values[:, None] * np.eye(1, 3)
-
-
-def _leading(products: FloatArray, least: float) -> tuple[FloatArray, FloatArray]:
-    """What combines k functions into orthonormal leading ones (k, m), and these' coefficients (m, k) in them."""
-    squares, directions = np.linalg.eigh(products)
-    kept = squares > least**2
-    kept[-1] = True
-    weights = directions[:, kept] / np.sqrt(squares[kept])
-    return weights, weights.T @ products
 
 
 def samples(points: FloatArray) -> FloatArray:
@@ -282,14 +134,14 @@ def seconds(work: Callable[[], object], repeats: int = 1) -> float:
     return (process_time() - begin) / repeats
 
 
-def row(layout: Layout) -> str:
-    """One line of the table."""
+def row(layout: Layout) -> dict[str, str]:
+    """One line of the table, by its heads."""
     offline = seconds(lambda: layout.model)
     model, reduction = layout.model, layout.model.reduction
     corrections = model.corrections(layout.drives, END)
-    nodes = Nodes(layout, corrections)
+    nodes = Nodes(reduction, layout.drives, corrections, samples(layout.points))
     surfaces_of_both = surfaces(layout, nodes)
-    nodes.check(surfaces_of_both[1])
+    nodes.check(surfaces_of_both[1], layout.name)
     shipped = Stretch(model, layout.drives, corrections, END).surface(1e-8, THICKNESS / 2)
     linear = surface_motion(layout.plate.influence(layout.points), layout.drives, 1e-8, THICKNESS / 2)
     ends, lengths, losses = [], [], 0
@@ -313,34 +165,35 @@ def row(layout: Layout) -> str:
         f"{model.mesh_error:.1e}; full solution {full:.2f} s, linear path {1e3 * unit:.1f} ms",
         flush=True,
     )
-    cells = [
-        layout.name,
-        reduction.solutions,
-        len(reduction.plate.stiffness),
-        len(reduction.plate.membrane),
-        reduction.motions.shape[1],
-        f"{reduction.error:.1e}",
-        len(nodes.edges) - 1,
-        f"{errors[0]:.1e}",
-        f"{errors[1]:.1e}",
-        *(f"{gap.max():.1e}, {np.median(gap):.1e}" for gap in gaps),
-        f"{offline / full:.0f}",
-        f"{schedule / unit:.2f}",
-        f"{full / (schedule / corrections.equilibria):.0f}",
-    ]
-    return f"| {' | '.join(map(str, cells))} |"
+    return {
+        "": layout.name,
+        "full solutions": f"{reduction.solutions}",
+        "corrections": f"{len(reduction.plate.stiffness)}",
+        "$N_r$": f"{len(reduction.plate.membrane)}",
+        "$U_m$": f"{reduction.motions.shape[1]}",
+        "error, held out": f"{reduction.error:.1e}",
+        "nodes": f"{len(nodes.edges) - 1}",
+        "w at nodes": f"{errors[0]:.1e}",
+        "gradient": f"{errors[1]:.1e}",
+        "ends: largest, median": f"{gaps[0].max():.1e}, {np.median(gaps[0]):.1e}",
+        "the same, own cells": f"{gaps[1].max():.1e}, {np.median(gaps[1]):.1e}",
+        "offline": f"{offline / full:.0f}",
+        "online": f"{schedule / unit:.2f}",
+        "an equilibrium faster by": f"{full / (schedule / corrections.equilibria):.0f}",
+    }
 
 
 def main() -> None:
     os.environ[FOLDER] = ""  # the model is to be made here
     chosen = [layouts()[int(number)] for number in sys.argv[1:]] or layouts()
-    heads = "|".join(HEADS)
-    lines = [f"| |{heads}|", "|---" + "|---:" * len(HEADS) + "|"]
+    lines: list[str] = []
     with threadpool_limits(1, "blas"):
         for layout in chosen:
-            lines.append(row(layout))
+            cells = row(layout)
+            lines.append(f"| {' | '.join(cells.values())} |")
             print(lines[-1], flush=True)
     if not sys.argv[1:]:
+        lines = [f"|{' | '.join(cells)} |", "|---" + "|---:" * (len(cells) - 1) + "|", *lines]
         report.write("stretched paths", lines, report.DOCS / "large-deflection.md")
 
 

@@ -8,6 +8,7 @@ from coupling.case import INERTIA, MAX_STRETCHING, MAX_VIBRATING, VON_KARMAN
 from coupling.measured import MotionFit
 from coupling.plate_figures import StretchError, VibrationFigures
 from coupling.summary import PlateSummary, Summary
+from meshes import quantity_text
 
 MICRO, MILLI = 1e6, 1e3
 
@@ -125,7 +126,7 @@ def _vibrating(figures: VibrationFigures) -> str:
     """How exact a plate with inertia is."""
     coupled = f", of which the membrane couples the lowest {figures.coupled}" if figures.coupled else ""
     return (
-        f"{_count(figures.modes, 'mode')} up to {figures.highest / 1e6:.4g} MHz{coupled}; acceleration good to "
+        f"{_count(figures.modes, 'mode')} up to {quantity_text(figures.highest, 'Hz', 4)}{coupled}; acceleration good to "
         f"{figures.mode_error:.1e} (estimated), over time to {figures.piece_error:.1e}"
     )
 
@@ -281,7 +282,7 @@ def _dynamics(s: PlateSummary) -> str:
     else:
         remedy = f" ({INERTIA} has none)" if s.quasi_static_error > MAX_QUASI_STATIC_SHARE else ""
         dynamics = f"quasi-static error of the acceleration {_percent(s.quasi_static_error)}{remedy}"
-    return f"first frequency, actuators held: {s.first_frequency / 1e3:.4g} kHz; {dynamics}"
+    return f"first frequency, actuators held: {quantity_text(s.first_frequency, 'Hz', 4)}; {dynamics}"
 
 
 def _drives(s: PlateSummary) -> str:

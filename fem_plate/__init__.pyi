@@ -25,7 +25,7 @@ from .pictures import (
     marker_size as marker_size,
     pitch as pitch,
 )
-from .excitation import ExcitedModes as ExcitedModes, Excitation as Excitation
+from .excitation import MAX_MODES as MAX_MODES, ExcitedModes as ExcitedModes, Excitation as Excitation
 from .moving_shapes import MovingShapes as MovingShapes
 from .plate import TRUNCATION as TRUNCATION
 from . import verification as verification

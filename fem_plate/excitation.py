@@ -24,6 +24,7 @@ from fem_plate.vibration import HeldPlate
 
 FloatArray = NDArray[np.float64]
 
+MAX_MODES = 400  # so many responses are enough
 ROUNDING = 1e-10  # of a response: less of it that is new counts as nothing
 ASYMMETRY = 1e-6  # of a stiffness: what rounding may leave
 DEPENDENT = 1e-13  # of the longest of a block, squared
@@ -76,8 +77,8 @@ class Excitation:
 
     @property
     def exhausted(self) -> bool:
-        """Whether the last block brought nothing new."""
-        return len(self.blocks) > 1 and self.blocks[-1] == self.blocks[-2]
+        """Whether the last block brought nothing new, or there are as many responses as are ever taken."""
+        return self.blocks[-1] >= MAX_MODES or (len(self.blocks) > 1 and self.blocks[-1] == self.blocks[-2])
 
     def grow(self) -> None:
         """Add a block: the responses to the inertia of the last one."""

@@ -38,6 +38,10 @@ class Shapes(ABC):
         The length that makes everything dimensionless [m].
     outline : Outline
         The plate's rim.
+    truncation_error : float
+        The largest value left out of a shape, over its largest; a closer fit is not worth while.
+    spare : float
+        The share of the tolerance that polynomials fitted to the shapes must be good to, of the lowest degree that is.
     """
 
     points: FloatArray
@@ -45,6 +49,8 @@ class Shapes(ABC):
     strengths: FloatArray
     size: float
     outline: Outline
+    truncation_error: float = 0.0
+    spare: float = 0.01
 
     @abstractmethod
     def derivatives(self, x: FloatArray, weights: FloatArray | None) -> Derivatives:

@@ -19,5 +19,11 @@ from .drawing import (
 )
 from .fill import delaunay as delaunay
 from .outline import rim_curves as rim_curves
-from .prefixes import NOTHING as NOTHING, Unit as Unit, quantity_text as quantity_text, unit_for as unit_for
+from .prefixes import (
+    NOTHING as NOTHING,
+    Unit as Unit,
+    quantity_text as quantity_text,
+    range_text as range_text,
+    unit_for as unit_for,
+)
 from .triangles import areas as areas, cross as cross, edge_numbers as edge_numbers, sides as sides

@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
 NOTHING = 1e-12  # SI units: smaller numbers are rounding errors
 ROUNDING = 1e-9  # relative
+OF_ZEROS = {"m": ("µm", 1e6)}
+"""The units that zeros take, where it is not the SI unit: parts and plates are that large."""
 
 
 class Unit(NamedTuple):
@@ -20,10 +22,13 @@ class Unit(NamedTuple):
 
 
 def unit_for(values: ArrayLike, si: str) -> Unit:
-    """The largest unit of which the largest of some values [si] is at least one; `si` itself where all are 0."""
+    """The largest unit of which the largest of some values [si] is at least one.
+
+    Where all are 0, or one is not finite, it is the SI unit, but the micrometre of lengths.
+    """
     extent = float(np.abs(values).max())
-    if extent < NOTHING:
-        return Unit(si, 1.0)
+    if extent < NOTHING or not np.isfinite(extent):
+        return Unit(*OF_ZEROS.get(si, (si, 1.0)))
     size, prefix = next((pair for pair in PREFIXES if extent >= pair[0] * (1 - ROUNDING)), PREFIXES[-1])
     return Unit(prefix + si, 1 / size)
 
@@ -32,3 +37,10 @@ def quantity_text(value: float, si: str, digits: int = 3) -> str:
     """A value [si] with so many digits and its unit, such as "12.3 µm"."""
     unit = unit_for(value, si)
     return f"{float(f'{value * unit.per_si:.{digits}g}'):g} {unit.name}"  # `g` alone turns 250 into 2.5e+02
+
+
+def range_text(low: float, high: float, si: str, digits: int = 3, word: str = "to") -> str:
+    """Two values [si] and a word between them, such as "12.3 to 250 µm" or "900 Hz to 1.2 kHz"."""
+    texts = [quantity_text(value, si, digits) for value in (low, high)]
+    (number, its_unit), unit = texts[0].split(" "), texts[1].split(" ")[1]
+    return f"{number if its_unit == unit else texts[0]} {word} {texts[1]}"

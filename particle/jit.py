@@ -19,7 +19,11 @@ def jit(kernel: Kernel) -> Kernel:
 
 
 def jit_no_arrays(kernel: Kernel) -> Kernel:
-    """As `jit`, for kernels that make no arrays: without counting references to those that they get."""
+    """As `jit`, for kernels that make no arrays: without counting references to those that they get.
+
+    They call only each other and functions of numbers. Some of numpy's functions, such as an array's `min`, make arrays
+    inside; these compile here only if a kernel that makes arrays has been compiled before in the same process.
+    """
     return _compiled(kernel, _nrt=False)
 
 

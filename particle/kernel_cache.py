@@ -6,8 +6,10 @@ outside the package may call those of their room and of the package, and are kep
 
 from __future__ import annotations
 
+import glob
 import hashlib
 import os
+import pickle
 import shutil
 import sys
 import tempfile
@@ -16,10 +18,13 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
+from uuid import uuid4
 
+import numba
 from numba.core import config
 from numba.core.caching import Cache, CompileResultCacheImpl, _CacheLocator, _SourceFileBackedLocatorMixin
 from numba.core.runtime import rtsys
+from numba.core.serialize import dumps
 from numba.misc.appdirs import AppDirs
 
 PACKAGE = Path(__file__).parent
@@ -136,6 +141,46 @@ class _CacheImpl(CompileResultCacheImpl):  # type: ignore[misc]
         self._filename_base = self.get_filename_base(kernel.__qualname__, getattr(sys, "abiflags", ""))
 
 
+class _Forms:
+    """The compiled forms of one kernel, a file each.
+
+    numba keeps them in numbered files beside an index. A process that ends between writing the two leaves an index
+    that names the wrong file, so here a file's name follows from its key, which the file holds, too. A file is whole or
+    not there; one that cannot be read, as after a power cut, counts as not there.
+    """
+
+    def __init__(self, folder: str, base: str) -> None:
+        self._folder, self._base = Path(folder), base
+
+    def _path(self, key: Any) -> Path:
+        digest = hashlib.sha256(f"{numba.__version__} {key!r}".encode()).hexdigest()
+        return self._folder / f"{self._base}.{digest[:16]}.nbc"
+
+    def load(self, key: Any) -> Any:
+        """The form with a key; None where there is none."""
+        try:
+            its_key, form = pickle.loads(self._path(key).read_bytes())
+        except Exception:  # whatever unpickling half a file raises
+            return None
+        return form if its_key == key else None
+
+    def save(self, key: Any, form: Any) -> None:
+        """Keep a form."""
+        path = self._path(key)
+        partial = path.with_suffix(f".{uuid4().hex[:8]}.tmp")
+        try:
+            partial.write_bytes(dumps((key, form)))
+            os.replace(partial, path)
+        except BaseException:
+            partial.unlink(missing_ok=True)
+            raise
+
+    def flush(self) -> None:
+        """Remove all forms."""
+        for path in self._folder.glob(f"{glob.escape(self._base)}.*"):
+            path.unlink(missing_ok=True)
+
+
 class KernelCache(Cache):  # type: ignore[misc]
     """The cache of one kernel.
 
@@ -148,6 +193,7 @@ class KernelCache(Cache):  # type: ignore[misc]
 
     def __init__(self, dispatcher: Any) -> None:
         super().__init__(dispatcher.py_func)
+        self._cache_file = _Forms(self.cache_path, self._impl.filename_base)
         self._dispatcher = dispatcher
         self._place = place_of(dispatcher.py_func)
         self._lock: Any = None

@@ -139,4 +139,10 @@ def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:
         return work(*arguments)
     except (ValueError, OSError, RuntimeError) as error:
         context = click.get_current_context()
-        raise refusal_of(error, context.command_path, bool(context.params.get("as_json"))) from None
+        words = {param.name or "": _word(param) for param in context.command.params}
+        raise refusal_of(error, context.command_path, bool(context.params.get("as_json")), words) from None
+
+
+def _word(param: click.Parameter) -> str:
+    """What an argument or option is called where the command is typed."""
+    return param.opts[0] if isinstance(param, click.Option) else param.human_readable_name

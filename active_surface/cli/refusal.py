@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import IO, Any, NamedTuple
 
 import click
@@ -37,8 +37,11 @@ class Refusal(click.ClickException):
             click.echo(self.message, file, err=True)
 
 
-def refusal_of(error: Exception, command: str, as_json: bool) -> Refusal:
-    """What is wrong with the input where work for a command raised an error."""
+def refusal_of(error: Exception, command: str, as_json: bool, words: Mapping[str, str]) -> Refusal:
+    """What is wrong with the input where work for a command raised an error.
+
+    words: how the command calls its inputs, by their names.
+    """
     file = getattr(error, "file", None)
     if file is not None:  # of a CaseError, which knows its lines
         problems: Iterable[Any] = getattr(error, "problems", ())
@@ -49,7 +52,14 @@ def refusal_of(error: Exception, command: str, as_json: bool) -> Refusal:
         if isinstance(error, OSError) and error.strerror:
             said = ": ".join([*([str(error.filename)] if error.filename else []), error.strerror.lower()])
         return Refusal(f"{command}: {said}", [Mistake(None, None, "", said)], as_json)
-    return refusal(command, [("", said) for said in re.split(r"\n|; (?=Inputs? )", str(error))], as_json)
+    texts = re.split(r"\n|; (?=Inputs? )", str(error))
+    return refusal(command, [_in_words(text, command.split()[-1], words) for text in texts], as_json)
+
+
+def _in_words(text: str, caller: str, words: Mapping[str, str]) -> tuple[str, str]:
+    """The input of the command, and what is wrong with it, where a text names an input of its function."""
+    of_caller = re.fullmatch(rf"Input (\S+) of {re.escape(caller)} (.*)", text, re.DOTALL)
+    return (words.get(of_caller[1], of_caller[1]), of_caller[2]) if of_caller else ("", text)
 
 
 def refusal(command: str, mistakes: Iterable[tuple[str, str]], as_json: bool) -> Refusal:

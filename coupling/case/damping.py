@@ -12,7 +12,7 @@ from coupling.case.values import Frequency, quoted
 
 
 @dataclass(frozen=True)
-class _Damping:
+class _Ratios:
     """Marks a damping ratio, or pairs of a frequency and the ratio there."""
 
     expected = (
@@ -48,7 +48,7 @@ class _Damping:
 
 
 _FREQUENCY: TypeAdapter[float] = TypeAdapter(Frequency)
-Damping = Annotated[float | tuple[tuple[Frequency, float], ...], _Damping()]
+DampingRatios = Annotated[float | tuple[tuple[Frequency, float], ...], _Ratios()]
 
 
 def _is_ratio(value: object) -> bool:

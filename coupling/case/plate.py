@@ -16,7 +16,7 @@ from pydantic import (
     field_validator,
 )
 
-from coupling.case.damping import Damping
+from coupling.case.damping import DampingRatios
 from coupling.case.table import Contradictions, KeyedTable
 from coupling.case.values import Density, Length, Pressure, Tension
 
@@ -62,7 +62,7 @@ class PlateCase(KeyedTable, ABC):
     """With it drives are compared with the plate's first frequency; `inertia` needs it."""
     inertia: StrictBool = False
     """Whether the plate's mass counts, so that it rings and resonates."""
-    damping: Damping = 0.02
+    damping: DampingRatios = 0.02
     """The damping ratio of its modes, with `inertia`; or pairs of a frequency and the ratio there."""
     tension: Tension = Field(default=0.0, examples=["50 N/m"])
     """A residual force per length in its plane, the same in all directions: positive pulls, negative presses."""

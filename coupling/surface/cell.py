@@ -35,6 +35,14 @@ class Fitted(Protocol):
     def outline(self) -> Outline:
         """The rim."""
 
+    @property
+    def truncation_error(self) -> float:
+        """The largest value left out of a shape, over its largest."""
+
+    @property
+    def spare(self) -> float:
+        """The share of the tolerance that a fit must be good to, of the lowest degree that is."""
+
     def own_heights(self) -> FloatArray:
         """(K,) what the errors of each shape are relative to.
 

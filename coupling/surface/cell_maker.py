@@ -24,8 +24,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 DEGREES = range(2, 11)  # of the polynomials: the lowest that does, as it costs least
-SPARE = 0.01  # of the tolerance: how good it must then be, unless shapes have a `spare`
-PLANE_SPARE = 0.1  # the same of motions in the plane, whose second derivatives matter less
+PLANE_SPARE = 0.1  # the `spare` of motions in the plane, whose second derivatives matter less
 OVERHANG = 1.25  # cells are fitted over this many half widths, so that a step may end a little outside
 NODES = 12  # Chebyshev points a side that a cell inside the rim is fitted to
 CHECKS = 48  # points between those, at which its error is measured
@@ -45,7 +44,7 @@ MAX_VALUES = 4_000_000  # points times shapes that are evaluated at once
 class CellMaker:
     """Makes the cells of a plate's shapes.
 
-    tolerance: largest error of a unit shape's fit.  Shapes with a `truncation_error` are not worth a fit that is much
+    tolerance: largest error of a unit shape's fit.  Shapes that leave something out are not worth a fit that is much
     better than that.
     heights: (K,) each shape's height at its own actuator, what errors are relative to.  worth: the error that is good
     enough.  checks: (CHECKS, 2) where it is measured, in half widths.  tree: of the actuators.
@@ -56,10 +55,9 @@ class CellMaker:
         self.tree = cKDTree(shapes.points)
         self.few = len(shapes.points) <= FEW
         self._plane_heights = shapes.in_plane_heights() if isinstance(shapes, InPlane) else np.zeros(0)
-        truncation = float(getattr(shapes, "truncation_error", 0.0))
+        truncation = shapes.truncation_error
         self.worth = max(tolerance, truncation)
         self._aim, self._negligible = max(tolerance, 0.1 * truncation), self.worth / 4
-        self._spare = float(getattr(shapes, "spare", SPARE))
         self._reach = REACH * (REACHED / self._aim) ** (1 / REACH_ORDER)
         nodes = OVERHANG * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
         self._nodes = np.stack(np.meshgrid(nodes, nodes, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -166,8 +164,8 @@ class CellMaker:
                 fitted = np.asarray(np.linalg.lstsq(table[:samples], target[:samples], rcond=RCOND)[0])
             wrong = np.abs(table[samples:] @ fitted - target[samples:]) / self.heights[rows]
             error = float(wrong.max(initial=0.0))
-            fine = error <= self._spare * self._aim
-            if chosen and not fine and chosen[2] <= self._spare * self._aim:
+            fine = error <= self.shapes.spare * self._aim
+            if chosen and not fine and chosen[2] <= self.shapes.spare * self._aim:
                 break
             if chosen is None or fine or error < chosen[2]:
                 chosen = degree, fitted, error

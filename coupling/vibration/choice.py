@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from coupling.drives import stroke_heights
 from coupling.vibration.motion import ModalMotion, modal_motion
 from coupling.vibration.oscillators import Oscillators
-from fem_plate import Excitation, ExcitedModes, InfluenceShapes
+from fem_plate import MAX_MODES, Excitation, ExcitedModes, InfluenceShapes
 from fem_plate.large_deflection import HeldShapes
 from particle import AnyDrive
 
@@ -23,7 +23,6 @@ TOLERANCE = 5e-4  # of the largest acceleration: what half as many responses mor
 # Times that: what is still missing, where the error falls as one over the number of responses or faster.
 REMAINING = 2.0
 DROPPED = 3e-4  # of it: what the modes that are left out may add together
-MAX_MODES = 400
 SAMPLES, MAX_POINTS = 400, 400
 GOLDEN = (5**0.5 - 1) / 2
 
@@ -68,11 +67,11 @@ def choose_modes(
         if before is not None and largest > 0:
             change = max(float(np.abs(one - other).max()) for one, other in zip(after, before, strict=True)) / largest
             error = REMAINING * change
-        if largest == 0 or error < REMAINING * TOLERANCE or excitation.exhausted or len(modes.omega) >= MAX_MODES:
+        if largest == 0 or error < REMAINING * TOLERANCE or excitation.exhausted:
             break
         before = after
         for _ in range(max(len(excitation.blocks) // 2, 1)):
-            if not excitation.exhausted and excitation.blocks[-1] < MAX_MODES:
+            if not excitation.exhausted:
                 excitation.grow()
         tell(min(len(modes.omega), MAX_MODES - 1), MAX_MODES)
     kept, dropped = _few(rung, values, DROPPED * largest)

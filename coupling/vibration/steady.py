@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from coupling.stretch import schedule_of
 from coupling.vibration.oscillators import Course, Oscillators, follow
+from meshes import quantity_text
 from particle import AnyDrive
 from particle.drives import QuinticDrive, begun_at, drive_table
 
@@ -66,8 +67,8 @@ def _of_one(oscillators: Oscillators, drive: AnyDrive) -> tuple[FloatArray, Floa
     if (stuck := singular < RESONANT).any():
         frequency = oscillators.omega[np.argmax(stuck)] / (2 * math.pi)
         raise ValueError(
-            f'Input start must not be "steady" where a mode without damping resonates, as that of {frequency:.6g} Hz '
-            "does; give it damping"
+            f'Input start must not be "steady" where a mode without damping resonates, as that of '
+            f"{quantity_text(float(frequency), 'Hz', 6)} does; give it damping"
         )
     return np.asarray(np.linalg.solve(remaining, added[:, :, None])[:, :, 0]), before[0]
 

@@ -19,8 +19,7 @@ class StretchedShapes(MovingShapes):
     """
 
     truncation_error = 1e-6  # cells need not follow the shapes any closer: finite elements do not either
-
-    spare = 0.3  # of that: the degree of a cell's polynomials does not pay for a closer fit, as each step costs it
+    spare = 0.3  # the degree of a cell's polynomials does not pay for a closer fit, as each step costs it
 
     def __init__(
         self,

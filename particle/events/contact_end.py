@@ -39,9 +39,10 @@ def stays_in_contact(surface: Surface, request: Request, pair: Tableau, memory: 
         memory.motion[0] = step.end[0]
         now.time, now.h, now.verdict = now.time + h, h, end_reason(surface, request.part, step.loads[last], motion)
         return False
-    if step.margins[1 : last + 1].min() < 0.0:
-        now.h = 0.5 * h
-        return False
+    for k in range(1, last):
+        if step.margins[k] < 0.0:
+            now.h = 0.5 * h
+            return False
     share = first_excursion(request.part, pair, step)
     if share < 1.0 and h > MAX_TOUCH * request.stroke_time:
         now.h = h * share

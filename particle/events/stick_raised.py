@@ -95,7 +95,7 @@ def is_safe_raised(part: Part, rest: FloatArray, slack: float, least_square: flo
     return True
 
 
-@jit
+@jit_no_arrays
 def holds_raised(part: Part, rest: FloatArray, slack: float) -> bool:
     """Whether the part stays at the end of a subinterval."""
     last = rest.shape[1] - 1

@@ -19,7 +19,7 @@ from coupling.run import run_case
 from fem_plate import Plate, PlateSection
 from fem_plate import pictures as plate_pictures
 from fem_plate.pictures import FEW, marker_size
-from meshes import disc, quantity_text, unit_for
+from meshes import disc, quantity_text, range_text, unit_for
 
 BOX = np.array([[-50.0, -50.0], [50.0, 50.0]])
 DISC = {"shape": "disc", "radius": 3e-4, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 2e-5}
@@ -67,8 +67,8 @@ def test_markers_shrink_with_the_pitch_and_go_before_they_merge():
 @pytest.mark.parametrize(
     ("largest", "name", "number"),
     [
-        (0.0, "m", 0),
-        (1e-13, "m", 0),
+        (0.0, "µm", 0),
+        (1e-13, "µm", 1e-7),
         (8e-11, "pm", 80),
         (2.6e-6, "µm", 2.6),
         (1e-3, "mm", 1),
@@ -87,7 +87,9 @@ def test_numbers_have_a_prefix_of_their_size(largest, name, number):
 def test_a_quantity_is_written_with_its_unit():
     assert quantity_text(1.2345e-5, "m") == "12.3 µm"
     assert quantity_text(0.2512, "s", 2) == "250 ms"
-    assert quantity_text(0.0, "N") == "0 N"
+    assert quantity_text(0.0, "N") == "0 N" and quantity_text(0.0, "m") == "0 µm"
+    assert quantity_text(1704.0, "Hz", 4) == "1.704 kHz" and quantity_text(np.inf, "Hz") == "inf Hz"
+    assert range_text(69.9, 2500.0, "Hz") == "69.9 Hz to 2.5 kHz" and range_text(1, 2, "s", word="and") == "1 and 2 s"
 
 
 def test_limits_hold_zero_and_every_value_and_are_never_empty():

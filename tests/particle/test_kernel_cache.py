@@ -2,15 +2,17 @@
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 import pytest
+from numba import types
 
 from particle import kernel_cache
-from particle.kernel_cache import MAX_FOLDERS, PACKAGE, cache_folder, place_of, source_digest
+from particle.kernel_cache import MAX_FOLDERS, PACKAGE, _Forms, cache_folder, place_of, source_digest
 
 ROOMS = ("", "drives", "friction", "surface", "events", "fixed")
 USE = """
@@ -172,3 +174,77 @@ def test_a_kernel_of_another_room_is_compiled_anew_when_its_room_or_the_package_
     assert text.count("MERGED = 1e-12") == 1
     record.write_text(text.replace("MERGED = 1e-12", "MERGED = 1e-11"))
     assert result(start(package, cache, USE_ROOM)) == (3.0 + 1e-11, 1)
+
+
+KILLED = """
+import os, signal
+from particle import kernel_cache
+replace, left = os.replace, {left}
+def counted(one, other):
+    global left
+    left -= 1
+    if left == 0 and not {after}:
+        os.kill(os.getpid(), signal.SIGKILL)
+    replace(one, other)
+    if left == 0:
+        os.kill(os.getpid(), signal.SIGKILL)
+os.replace = counted
+"""
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="has no SIGKILL")
+@pytest.mark.parametrize("after", [False, True])
+def test_a_process_that_is_killed_as_it_keeps_a_kernel_leaves_nothing_wrong(package, tmp_path, after):
+    """However many it has kept by then; what it has is used."""
+    cache, killed = tmp_path / "own", 0
+    while True:
+        process = start(package, cache, KILLED.format(left=2, after=after) + USE)
+        text = process.communicate(timeout=600)[0]
+        if process.returncode == 0:
+            break
+        assert process.returncode == -signal.SIGKILL
+        killed += 1
+        assert killed < 40
+    assert float(text.split()[0]) == 12.0 and killed > 1
+    assert result(start(package, cache)) == (12.0, 0)
+
+
+def test_a_form_is_kept_whole_or_not_at_all(tmp_path, monkeypatch):
+    forms, others = _Forms(str(tmp_path), "kernel-1.py"), _Forms(str(tmp_path), "kernel-10.py")
+    keys = [(types.float64,), (types.float64, types.int64)]
+    for k, key in enumerate(keys):
+        assert forms.load(key) is None
+        forms.save(key, f"form {k}")
+    others.save(keys[0], "another kernel's")
+    assert [forms.load(key) for key in keys] == ["form 0", "form 1"]
+    one, other = (forms._path(key) for key in keys)
+    shutil.copy(other, one)
+    assert [forms.load(key) for key in keys] == [None, "form 1"]
+    for size in range(len(other.read_bytes())):
+        one.write_bytes(other.read_bytes()[:size])
+        assert forms.load(keys[0]) is None
+    monkeypatch.setattr(kernel_cache.os, "replace", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    with pytest.raises(KeyboardInterrupt):
+        forms.save(keys[1], "never")
+    assert forms.load(keys[1]) == "form 1" and len(list(tmp_path.iterdir())) == 3
+    forms.flush()
+    assert forms.load(keys[1]) is None and others.load(keys[0]) == "another kernel's"
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_half_files_and_those_of_other_forms_count_as_not_there(package, tmp_path):
+    cache = tmp_path / "own"
+    assert result(start(package, cache)) == (12.0, 1)
+    files = sorted(cache.rglob("*.nbc"))
+    assert len(files) > 2
+    for file in files:
+        file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    assert result(start(package, cache)) == (12.0, 1)
+    assert result(start(package, cache)) == (12.0, 0)
+    (largest,) = (file for file in files if file.name.startswith("load_and_demand"))
+    other = next(file for file in files if file != largest)
+    shutil.copy(other, largest)
+    assert result(start(package, cache)) == (12.0, 1)

@@ -1,13 +1,15 @@
 """A disc with an actuator at its centre that vibrates with radial symmetry, as exact series of Bessel functions.
 
-Lengths r are divided by the outer radius a, forces by D / a^2 and squared angular frequencies by D / (rho t a^4). With
-S = Y0 + 2/pi K0, which a force -8 k^2 at the centre bends, modes and static shapes are
+Lengths r are divided by the outer radius a, forces by D / a^2, as are forces per length times a, and squared angular
+frequencies by D / (rho t a^4). Under a tension T, lap lap psi - T lap psi = omega^2 psi. With b^2 = k^2 + T and
+S = Y0(k r) + 2/pi K0(b r), which a force -4 (k^2 + b^2) at the centre bends, modes and static shapes are
 
-    psi = A J0(k r) + B I0(k r) + C S(k r),  omega = k^2,     phi = p + q r^2 + P r^2 ln r / (8 pi).
+    psi = A J0(k r) + B I0(b r) + C S,  omega = k b,     phi = p + q r^2 + P r^2 ln r / (8 pi),
 
-Three conditions determine each: two at the rim, clamped (psi = psi' = 0) or free (no moment, no shear force), and one
-at the centre: psi(0) = 0 if it is held, C = 0 if nothing holds it, 8 k^2 C = stiffness psi(0) on a spring. Green's
-identity gives the shares of the modes in phi: k^4 int phi psi dA = 8 k^2 C, or psi(0) where a force pushes. Time
+and with tension, s^2 = T, phi = p + q I0(s r) - P (ln r + K0(s r)) / (2 pi T). Three conditions determine each: two at
+the rim, clamped (psi = psi' = 0) or, without tension, free (no moment, no shear force), and one at the centre:
+psi(0) = 0 if it is held, C = 0 if nothing holds it, 4 (k^2 + b^2) C = stiffness psi(0) on a spring. Green's identity
+gives the shares of the modes in phi: omega^2 int phi psi dA = 4 (k^2 + b^2) C, or psi(0) where a force pushes. Time
 responses are Duhamel's integrals, in closed form by parts, in complex numbers.
 """
 
@@ -24,20 +26,21 @@ from scipy.special import ive, jv, kve, yv
 HELD, FORCE = np.inf, 0.0
 
 
-def _bessel(k: float, r: np.ndarray, order: int) -> np.ndarray:
-    """J0, I0 exp(-k), S of k r, or their derivatives by r over k; (3, n)."""
-    x = k * np.asarray(r, dtype=float)
+def _bessel(k: float, b: float, r: np.ndarray, order: int) -> np.ndarray:
+    """J0(k r), I0(b r) exp(-b) and S, or their derivatives by r over k; (3, n)."""
+    r = np.asarray(r, dtype=float)
+    x, y = k * r, b * r
     with np.errstate(all="ignore"):
-        grown, fallen = np.exp(x - k), np.exp(-x)
+        grown, fallen = np.exp(y - b), np.exp(-y)
         if order == 0:
-            s = np.where(x > 0, yv(0, x) + 2 / np.pi * kve(0, x) * fallen, 0.0)
-            return np.stack([jv(0, x), ive(0, x) * grown, s])
-        s = np.where(x > 0, -yv(1, x) - 2 / np.pi * kve(1, x) * fallen, 0.0)
-        return np.stack([-jv(1, x), ive(1, x) * grown, s])
+            s = np.where(r > 0, yv(0, x) + 2 / np.pi * kve(0, y) * fallen, 2 / np.pi * np.log(k / b))
+            return np.stack([jv(0, x), ive(0, y) * grown, s])
+        s = np.where(r > 0, -yv(1, x) - 2 / np.pi * b / k * kve(1, y) * fallen, 0.0)
+        return np.stack([-jv(1, x), b / k * ive(1, y) * grown, s])
 
 
 def _laplacians(k: float, r: float, order: int) -> np.ndarray:
-    """Of the same three, over k^2, or their derivatives by r over k^3; (3,)."""
+    """Of the same three without tension, over k^2, or their derivatives by r over k^3; (3,)."""
     x, fallen = k * r, np.exp(-k * r)
     if order == 0:
         return np.array([-jv(0, x), ive(0, x), -yv(0, x) + 2 / np.pi * kve(0, x) * fallen])
@@ -48,32 +51,40 @@ def _laplacians(k: float, r: float, order: int) -> np.ndarray:
 class RadialDisc:
     """A disc, "clamped" or "free" at its rim, with an actuator at its centre.
 
-    stiffness: of the actuator over D / a^2; HELD: rigid, FORCE: none, it pushes with a force.
+    stiffness: of the actuator over D / a^2; HELD: rigid, FORCE: none, it pushes with a force.  tension: over D / a^2,
+        of a clamped disc.
     """
 
     rim: str = "clamped"
     nu: float = 0.3
     stiffness: float = HELD
     count: int = 120
+    tension: float = 0.0
+
+    def _rise(self, k: np.ndarray) -> np.ndarray:
+        """b, with which modes of wave numbers k grow and fall towards the rim."""
+        return np.sqrt(np.asarray(k) ** 2 + self.tension)
 
     def _conditions(self, k: float) -> np.ndarray:
-        """Rows of conditions on (A, B exp(k), C)."""
-        value, slope = _bessel(k, np.array([1.0]), 0)[:, 0], _bessel(k, np.array([1.0]), 1)[:, 0]
+        """Rows of conditions on (A, B exp(b), C)."""
+        b, rim_at = float(self._rise(k)), np.array([1.0])
+        value, slope = (_bessel(k, b, rim_at, order)[:, 0] for order in (0, 1))
         if self.rim == "clamped":
             rim = [value, slope]
         else:  # w'' + nu w'/r = laplacian - (1 - nu) w'/r
+            assert not self.tension
             rim = [_laplacians(k, 1.0, 0) - (1 - self.nu) * slope / k, _laplacians(k, 1.0, 1)]
-        at_0 = np.array([1.0, np.exp(-k), 0.0])
+        at_0 = _bessel(k, b, np.zeros(1), 0)[:, 0]
         if np.isinf(self.stiffness):
             centre = at_0
         else:
-            pushed = np.array([0.0, 0.0, 8 * k**2])  # the force up is -8 k^2 C, on an area element of the plane
-            centre = (self.stiffness * at_0 - pushed) / (self.stiffness + 8 * k**2)
+            force = 4 * (k**2 + b**2)  # the force up is minus that times C, on an area element of the plane
+            centre = (self.stiffness * at_0 - np.array([0.0, 0.0, force])) / (self.stiffness + force)
         return np.array([*rim, centre])
 
     @cached_property
     def k(self) -> np.ndarray:
-        """(count,) the wave numbers; lambda^2 = k^2."""
+        """(count,) the wave numbers; lambda^2 = k^2 without tension."""
         grid = np.arange(0.31, (self.count + 4) * np.pi, 0.05)
         sign = np.array([np.linalg.det(self._conditions(k)) for k in grid])
         roots = [
@@ -82,30 +93,41 @@ class RadialDisc:
         ]
         return np.array(roots[: self.count])
 
+    @property
+    def omega(self) -> np.ndarray:
+        """(count,) the angular frequencies."""
+        return self.k * self._rise(self.k)
+
     @cached_property
     def _coefficients(self) -> np.ndarray:
-        """(count, 3) A, B exp(k), C."""
+        """(count, 3) A, B exp(b), C."""
         return np.array([np.linalg.svd(self._conditions(k))[2][-1] for k in self.k])
 
     def psi(self, r: np.ndarray) -> np.ndarray:
         """(n, count) the modes at radii."""
-        return np.stack([c @ _bessel(k, r, 0) for k, c in zip(self.k, self._coefficients, strict=True)], axis=1)
+        every = zip(self.k, self._rise(self.k), self._coefficients, strict=True)
+        return np.stack([c @ _bessel(k, b, r, 0) for k, b, c in every], axis=1)
 
-    @cached_property
-    def _static(self) -> tuple[float, float, float]:
-        """p, q, P of phi."""
-        if self.rim == "free":
-            return 1.0, 0.0, 0.0  # it rides on the actuator
-        per_force = 1 / (16 * np.pi)  # the deflection at the centre: r^2 ln r / 8 pi + (1 - r^2) / 16 pi
-        force = 1.0 if self.stiffness == FORCE else 1 / (per_force + 1 / self.stiffness)  # 1 / inf = 0
-        return force / (16 * np.pi), -force / (16 * np.pi), force
+    def _per_force(self, r: np.ndarray) -> np.ndarray:
+        """(n,) the shape of a clamped disc under a unit force at its centre."""
+        with np.errstate(all="ignore"):
+            if not self.tension:
+                return (1 - r**2 + 2 * np.where(r > 0, r**2 * np.log(r), 0.0)) / (16 * np.pi)
+            s = np.sqrt(self.tension)
+            at_0 = -np.log(s / 2) - np.euler_gamma
+            logs = np.where(r > 0, np.log(r) + kve(0, s * r) * np.exp(-s * r), at_0)
+        q = (1 - s * kve(1, s) * np.exp(-s)) / (s * ive(1, s))  # times exp(s): no slope at the rim
+        grown = q * ive(0, s * r) * np.exp(s * (r - 1))
+        return (kve(0, s) * np.exp(-s) - logs + grown - q * ive(0, s)) / (2 * np.pi * self.tension)
 
     def phi(self, r: np.ndarray) -> np.ndarray:
         """(n,) the static shape."""
-        p, q, force = self._static
         r = np.asarray(r, dtype=float)
-        with np.errstate(all="ignore"):
-            return p + q * r**2 + force * np.where(r > 0, r**2 * np.log(r), 0.0) / (8 * np.pi)
+        if self.rim == "free":
+            return np.ones_like(r)  # it rides on the actuator
+        at_0 = float(self._per_force(np.zeros(1))[0])
+        force = 1.0 if self.stiffness == FORCE else 1 / (at_0 + 1 / self.stiffness)  # 1 / inf = 0
+        return force * self._per_force(r)
 
     @cached_property
     def norms(self) -> np.ndarray:
@@ -120,20 +142,27 @@ class RadialDisc:
     @cached_property
     def participation(self) -> np.ndarray:
         """(count,) (phi, psi) / (psi, psi)."""
-        work = self.psi(np.zeros(1))[0] if self.stiffness == FORCE else 8 * self.k**2 * self._coefficients[:, 2]
-        return work / self.k**4 / self.norms
+        force = 4 * (self.k**2 + self._rise(self.k) ** 2) * self._coefficients[:, 2]
+        work = self.psi(np.zeros(1))[0] if self.stiffness == FORCE else force
+        return work / self.omega**2 / self.norms
 
-    def transfer(self, r: np.ndarray, omega: np.ndarray, ratio: float) -> np.ndarray:
-        """(n, F) the response at radii to a unit sine of the actuator, by angular frequency over the unit."""
-        own = self.k[:, None] ** 2
+    def transfer(self, r: np.ndarray, omega: np.ndarray, ratio: float | np.ndarray) -> np.ndarray:
+        """(n, F) the response at radii to a unit sine of the actuator, by angular frequency over the unit.
+
+        ratio: of damping, of all modes or of each (count,).
+        """
+        own, ratio = self.omega[:, None], np.broadcast_to(ratio, len(self.k))[:, None]
         answer = omega**2 / (own**2 - omega**2 + 2j * ratio * own * omega)
         return self.phi(r)[:, None] + self.psi(r) @ (self.participation[:, None] * answer)
 
     def motion(
-        self, pieces: Sequence[Piece | Wave], r: np.ndarray, time: float, unit: float, ratio: float
+        self, pieces: Sequence[Piece | Wave], r: np.ndarray, time: float, unit: float, ratio: float | np.ndarray
     ) -> np.ndarray:
-        """(3, n) w, w_t and w_tt at a time [s], at rest at the height where the first piece begins; unit: rad/s."""
-        omega = self.k**2 * unit
+        """(3, n) w, w_t and w_tt at a time [s], at rest at the height where the first piece begins; unit: rad/s.
+
+        ratio: as for `transfer`.
+        """
+        omega = self.omega * unit
         turn = omega * np.sqrt(1 - ratio**2)
         p = -ratio * omega + 1j * turn
         z, height = np.zeros(len(p), complex), np.zeros(3)

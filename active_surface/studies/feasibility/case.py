@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 from active_surface.arrays import BoolArray, FloatArray
 from active_surface.studies.feasibility.area import ACROSS, MAX_STROKES, Curves, Feasible, find_feasible, moving
 from active_surface.studies.feasibility.faster import faster, find_feasible_anew
+from active_surface.studies.frequency_range import range_fault
 from coupling import (
     Progress,
     StretchedSurface,
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 
 
 SPAN: Final = 0.25, 8.0  # times the case's own frequency
+DEFAULTS: Final = "a quarter of the case's", "eight times the case's"
 COUNT: Final = 31  # frequencies
 STAGE: Final = "Looking where the part slips"
 
@@ -160,8 +162,8 @@ def feasibility(
         wrong.append("Input case of feasibility must have a drive that moves; got none")
     low = SPAN[0] * frequency if lowest is None else lowest
     high = SPAN[1] * frequency if highest is None else highest
-    if not wrong and not 0 < low < high:
-        wrong.append(_ends_fault(lowest, highest, low, high))
+    if not wrong and (fault := range_fault("feasibility", lowest, highest, low, high, DEFAULTS)):
+        wrong.append(fault)
     if not 10 <= across <= 1000:
         wrong.append(f"Input across of feasibility must be in [10, 1000]; got {across}")
     if wrong:
@@ -224,16 +226,3 @@ def _movers(case: Case) -> list[AnyDrive]:
     """The drives that move; the others have a frequency, too, which counts for nothing."""
     drives = build_drives(case)
     return [drive for drive, moves in zip(drives, moving(drive_table(drives)), strict=True) if moves]
-
-
-def _ends_fault(lowest: float | None, highest: float | None, low: float, high: float) -> str:
-    """What is wrong with the ends of the frequencies, in the words of those that were given."""
-    if lowest is None:
-        return (
-            f"Input highest of feasibility must be above the lowest, by default a quarter of the case's, {low:g} Hz; "
-            f"got {high:g} Hz"
-        )
-    limit = f"below the highest, {high:g} Hz" if highest is not None else (
-        f"below the highest, by default eight times the case's, {high:g} Hz"
-    )  # fmt: skip
-    return f"Input lowest of feasibility must be positive and {limit}; got {low:g} Hz"

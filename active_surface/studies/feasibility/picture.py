@@ -17,7 +17,7 @@ from active_surface.arrays import FloatArray
 from active_surface.studies.feasibility.area import Feasible
 from coupling.pictures import map_axes, save_picture
 from fem_plate import frame_around, mark_actuators
-from meshes import Drawing, draw_rim, rim_curves, unit_for
+from meshes import Drawing, draw_rim, quantity_text, rim_curves, unit_for
 
 if TYPE_CHECKING:
     from active_surface.studies.feasibility.case import Feasibility
@@ -34,7 +34,8 @@ def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
     _draw_map(figure, figure.add_subplot(grid[:, 0]), feasibility)
     _draw_curves(figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1]), feasibility)
     title = (
-        f"{feasibility.case.name}: fastest drive {feasibility.frequency:g} Hz, {1e3 * feasibility.areas.window:.4g} ms"
+        f"{feasibility.case.name}: fastest drive {quantity_text(feasibility.frequency, 'Hz', 4)}, "
+        f"{quantity_text(feasibility.areas.window, 's', 4)}"
     )
     figure.suptitle(title, parse_math=False)
     return save_picture(figure, path)

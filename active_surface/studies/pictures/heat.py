@@ -49,7 +49,8 @@ def draw_field(
     frame(axes, across, up)
     if np.isfinite(values).any():
         shades = np.ma.masked_invalid(values).T * unit.per_si
-        mesh = axes.pcolormesh(edges(across), edges(up), shades, cmap="viridis", rasterized=True)
+        zeros: dict[str, Any] = {} if shades.any() else {"vmin": 0.0, "vmax": 1.0}
+        mesh = axes.pcolormesh(edges(across), edges(up), shades, cmap="viridis", rasterized=True, **zeros)
         figure.colorbar(mesh, ax=axes).set_label(labelled(label, unit), parse_math=False)
 
 

@@ -1,2 +1,2 @@
 from .functions import frequency_response as frequency_response
-from .response import Response as Response, response as response
+from .response import FrequencyResponse as FrequencyResponse, response as response

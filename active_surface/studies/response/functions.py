@@ -19,7 +19,6 @@ ComplexArray = NDArray[np.complex128]
 
 STILL = 1e-6  # of a shape: points that move less stand still
 TOLERANCE = 1e-4  # of the largest of each curve: what more modes may change
-MAX_MODES = 400
 
 
 def frequency_response(
@@ -42,7 +41,7 @@ def frequency_response(
             known = np.isfinite(answers) & np.isfinite(before)  # not so at resonances without damping
             largest = max(float(np.abs(answers[known]).max()), STILL * float(shapes.own_heights().max()))
             change = float(np.abs(answers - before)[known].max()) / largest
-        if change < TOLERANCE or excitation.exhausted or len(modes.omega) >= MAX_MODES:
+        if change < TOLERANCE or excitation.exhausted:
             return answers, modes, change
         before = answers
         excitation.grow()

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator
 
 from active_surface.arrays import FloatArray
+from active_surface.studies.response.functions import ComplexArray
 from coupling.pictures import map_axes, save_picture
 from fem_plate import frame_around, mark_actuators
 from meshes import Drawing, draw_rim, rim_curves, unit_for
 
 if TYPE_CHECKING:
-    from active_surface.studies.response.response import Response
+    from active_surface.studies.response.response import FrequencyResponse
 
 MAX_CURVES: Final = 10
-MARK: Final = "#8a8a8a"
+MARK: Final[dict[str, Any]] = {"color": "#404040", "linewidth": 1.1, "linestyle": (0, (1, 1.5))}  # of a resonance
 
 
-def draw_response(response: Response, path: Path) -> Path:
+def draw_response(response: FrequencyResponse, path: Path) -> Path:
     """Draw a response into a PNG file; return its path. Of many curves it shows those with the largest amplitudes."""
     figure = Drawing(figsize=(12.0, 6.0))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
@@ -35,7 +37,7 @@ def draw_response(response: Response, path: Path) -> Path:
     return save_picture(figure, path)
 
 
-def _curves(response: Response) -> list[tuple[int, int]]:
+def _curves(response: FrequencyResponse) -> list[tuple[int, int]]:
     """Point and actuator of the curves that are drawn."""
     most = np.abs(response.values).max(axis=2)
     order = np.argsort(-most, axis=None)[:MAX_CURVES]
@@ -43,43 +45,48 @@ def _curves(response: Response) -> list[tuple[int, int]]:
     return [(int(point), int(actuator)) for point, actuator in pairs]
 
 
-def _draw_curves(amplitude: Axes, phase: Axes, response: Response, curves: list[tuple[int, int]]) -> None:
+def _draw_curves(amplitude: Axes, phase: Axes, response: FrequencyResponse, curves: list[tuple[int, int]]) -> None:
     unit = unit_for(response.frequencies, "Hz")
     across = response.frequencies * unit.per_si
     for point, actuator in curves:
         values = response.values[point, actuator]
         amplitude.plot(across, np.abs(values), linewidth=1.4, label=_label(response, point, actuator))
-        phase.plot(across, _lag(values), linewidth=1.4)
+        phase.plot(*_wrapped(across, values), linewidth=1.4)
     for axes in (amplitude, phase):
         for frequency in response.resonances:
-            axes.axvline(frequency * unit.per_si, color=MARK, linewidth=0.8, linestyle=":")
+            axes.axvline(frequency * unit.per_si, **MARK)
         axes.set_xscale("log")
         axes.set_xlim(across[0], across[-1])
         axes.grid(alpha=0.3, which="both")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_formatter("")
     amplitude.set_yscale("log")
     forces = [actuator.force is not None for actuator in response.case.actuators]
     amplitude.set_ylabel(f"amplitude of the plate over the drive's{' [m/N]' if all(forces) else ''}")
     phase.set_ylabel("phase [deg]")
+    phase.set_ylim(-190, 190)
+    phase.set_yticks((-180, -90, 0, 90, 180))
     phase.set_xlabel(f"frequency [{unit.name}]")
     handles, _ = amplitude.get_legend_handles_labels()
-    marked = [Line2D([], [], color=MARK, linewidth=0.8, linestyle=":", label="resonance")]
+    marked = [Line2D([], [], label="resonance", **MARK)]
     amplitude.legend(handles=[*handles, *(marked if len(response.resonances) else [])], frameon=False, fontsize=8)
 
 
-def _lag(values: FloatArray) -> FloatArray:
-    """The phase [deg] along a curve, without leaps of a whole turn, from -180 to 180 where it begins."""
-    return np.asarray(np.degrees(np.unwrap(np.angle(values))))
+def _wrapped(across: FloatArray, values: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """The phase [deg] along a curve, from -180 to 180; the line breaks where it leaps by a whole turn."""
+    phase = np.degrees(np.angle(values))
+    leaps = np.flatnonzero(np.abs(np.diff(phase)) > 180) + 1
+    return np.insert(across, leaps, across[leaps]), np.insert(phase, leaps, np.nan)
 
 
-def _label(response: Response, point: int, actuator: int) -> str:
+def _label(response: FrequencyResponse, point: int, actuator: int) -> str:
     if len(response.points) == 1:
         return f"actuator {actuator}"
     return f"point {point}, actuator {actuator}" if len(response.actuators) > 1 else f"point {point}"
 
 
-def _draw_places(axes: Axes, response: Response) -> None:
+def _draw_places(axes: Axes, response: FrequencyResponse) -> None:
     box = response.outline.box
     unit = unit_for(box, "m")
     draw_rim(axes, rim_curves(response.outline), unit.per_si)

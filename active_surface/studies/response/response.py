@@ -1,4 +1,4 @@
-"""Response: how far points of the plate of a case follow its actuators, over frequency."""
+"""FrequencyResponse: how far points of the plate of a case follow its actuators, over frequency."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.response.functions import MAX_MODES, STILL, ComplexArray, frequency_response
+from active_surface.studies.frequency_range import range_fault
+from active_surface.studies.response.functions import STILL, ComplexArray, frequency_response
 from coupling import Progress, silent, whole_file
 from coupling.case import SAME_PLACE, Case, PlateCase
 from coupling.scene import actuator_stiffness, build_plate, damping_of
-from fem_plate import Excitation, InfluenceShapes
-from meshes import Outline
+from fem_plate import MAX_MODES, Excitation, InfluenceShapes
+from meshes import Outline, quantity_text, range_text
 from particle import interruptible
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 COUNT: Final = 400  # frequencies, besides those around resonances
 SPAN: Final = 0.05, 5.0  # of the first resonance
+DEFAULTS: Final = "1/20 of the first resonance", "five times the first resonance"
 AROUND: Final = np.concatenate([-np.geomspace(20, 0.05, 24), [0.0], np.geomspace(0.05, 20, 24)])  # damping ratios
 NARROWEST: Final = 1e-4  # a damping ratio, for frequencies around a resonance
 MARKED: Final = 1e-3  # of the largest peak of a mode: lower ones are not marked
@@ -33,7 +35,7 @@ MAX_ACTUATORS: Final = MAX_MODES // 2  # so that there are two blocks of respons
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class FrequencyResponse:
     """How far k points of a plate follow N actuators, over F frequencies."""
 
     case: Case
@@ -94,18 +96,18 @@ class Response:
         figures = self.figures()
         at = figures["largest_at"]
         x, y = (1e6 * c for c in at["point"])
-        low, high = (f / 1e3 for f in figures["frequencies"])
+        low, high = figures["frequencies"]
         rows = [
-            ("frequency", f"{low:.4g} to {high:.4g} kHz, {len(self.frequencies)} of them"),
+            ("frequency", f"{range_text(low, high, 'Hz', 4)}, {len(self.frequencies)} of them"),
             (
                 "largest",
                 f"{figures['largest_amplitude']:.4g} at ({x:.4g}, {y:.4g}) um, from actuator {at['actuator']} at "
-                f"{at['frequency'] / 1e3:.4g} kHz",
+                f"{quantity_text(at['frequency'], 'Hz', 4)}",
             ),
             ("accuracy", f"more modes change it by {self.error:.1e} of the largest"),
         ]
         for frequency, ratio in zip(self.resonances, self.dampings, strict=True):
-            rows.append(("resonance", f"{frequency / 1e3:.6g} kHz, damping ratio {ratio:g}"))
+            rows.append(("resonance", f"{quantity_text(frequency, 'Hz', 6)}, damping ratio {ratio:g}"))
         return rows
 
     def write(self, folder: Path) -> tuple[Path, ...]:
@@ -126,7 +128,7 @@ def response(
     lowest: float | None = None,
     highest: float | None = None,
     progress: Progress = silent,
-) -> Response:
+) -> FrequencyResponse:
     """The frequency responses of a case's plate, with its tension and damping, whatever its drives are.
 
     Parameters
@@ -144,7 +146,7 @@ def response(
 
     Returns
     -------
-    response : Response
+    response : FrequencyResponse
         Amplitudes and phases, with `dataset()` as an xarray.Dataset.
 
     Raises
@@ -196,7 +198,7 @@ def _found(
     lowest: float | None,
     highest: float | None,
     progress: Progress,
-) -> Response:
+) -> FrequencyResponse:
     damping = damping_of(plate_case)
     with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
@@ -213,17 +215,15 @@ def _found(
         first = float(excitation.modes().frequencies[0])
         low = SPAN[0] * first if lowest is None else lowest
         high = SPAN[1] * first if highest is None else highest
-        if given is None and not 0 < low < high < np.inf:
-            raise ValueError(
-                f"Input lowest of response must be positive and below the highest; got {low:g} Hz and {high:g} Hz"
-            )
+        if given is None and (fault := range_fault("response", lowest, highest, low, high, DEFAULTS)):
+            raise ValueError(fault)
         chosen = given if given is not None else np.geomspace(low, high, COUNT)
         values, modes, error = frequency_response(shapes, excitation, damping, xy, chosen)
         ratios = damping(modes.frequencies)
         peaks = np.abs(modes.functions.values(xy / shapes.size)).max(axis=0) * np.abs(modes.participation).max(axis=1)
         within = (modes.frequencies >= chosen.min()) & (modes.frequencies <= chosen.max())
         marked = within & (peaks > max(MARKED * peaks.max(), STILL * shapes.own_heights().max()))
-        found = Response(
+        found = FrequencyResponse(
             case, xy, chosen, values, modes.frequencies[marked], ratios[marked], error, shapes.outline, shapes.points
         )
         if given is not None:

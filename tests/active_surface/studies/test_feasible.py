@@ -205,9 +205,15 @@ def test_command_writes_map_and_labelled_data(tmp_path):
     [
         (["--lowest", "5 um"], "--lowest must be a frequency"),
         (["--lowest", "5 kHz", "--highest", "1 kHz"], "below the highest"),
-        (["--highest", "10 Hz"], "Input highest of feasibility must be above the lowest, by default a quarter"),
-        (["--lowest", "90 kHz"], "below the highest, by default eight times the case's, 2400 Hz"),
-        (["--across", "3"], "across"),
+        (
+            ["--highest", "10 Hz"],
+            "  --highest must be above the lowest, by default a quarter of the case's, 75 Hz",
+        ),
+        (
+            ["--lowest", "90 kHz"],
+            "--lowest must be positive and below the highest, by default eight times the case's, 2.4 kHz",
+        ),
+        (["--across", "3"], "--across must be in [10, 1000]; got 3"),
     ],
 )
 def test_command_refuses_what_makes_no_sense(tmp_path, options, said):

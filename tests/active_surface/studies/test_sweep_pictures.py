@@ -102,6 +102,13 @@ def test_no_cell_of_a_map_is_a_sliver(tmp_path, values, scale, expected):
         assert places == pytest.approx(expected)
 
 
+def test_the_bar_of_parts_that_stand_still_begins_at_0_um(tmp_path):
+    study, dataset = made(tmp_path, STROKE + LIMIT)
+    figure = drawn(study, dataset.assign(distance=0.0 * dataset["distance"]))
+    (mesh,) = (one for one in figure.axes[0].collections if isinstance(one, QuadMesh))
+    assert mesh.colorbar.ax.get_ylabel() == "distance from the start [µm]" and mesh.get_clim() == (0.0, 1.0)
+
+
 def test_a_map_over_a_text_names_it(tmp_path):
     study, dataset = made(tmp_path, CYCLE + STROKE)
     assert dataset["cycle"].values.tolist() == ["up-down", "up"]

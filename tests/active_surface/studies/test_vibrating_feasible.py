@@ -1,9 +1,13 @@
 """Feasible areas of a plate with mass: against exact frequency responses, and the quasi-static plate."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from radial_vibration import RadialDisc
 
+from active_surface.cli.program import main
 from active_surface.studies.feasibility import feasibility
 from active_surface.studies.feasibility.faster import faster
 from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
@@ -83,3 +87,17 @@ def test_a_faster_drive_does_the_same_in_less_time(drive):
         assert mine == pytest.approx(2.5**order * its, rel=1e-9, abs=1e-9 * 2.5**order * np.abs(its).max())
     assert fast is again and fast.stroke_time == pytest.approx(drive.stroke_time / 2.5)
     assert faster([drive], 1.0) == [drive]
+
+
+@pytest.mark.parametrize("plate", ["", 'theory = "von-karman"\n'])
+def test_a_plate_without_inertia_has_no_steady_state(tmp_path, plate):
+    """It follows its drives at once, from the start of the run on, which their delays count from."""
+    text = Path("examples/one_actuator.toml").read_text()
+    text = text.replace("[plate]\n", f"[plate]\n{plate}").replace("[run]\n", '[run]\nstart = "steady"\n')
+    (tmp_path / "steady.toml").write_text(text)
+    done = CliRunner().invoke(main, ["feasibility", str(tmp_path / "steady.toml"), "-o", str(tmp_path / "out")])
+    assert done.exit_code == 2 and not (tmp_path / "out").exists()
+    assert "run.start must not be given without inertia = true in [plate]" in done.output
+    still = dict(vibrating(FIRST, 1e-6, inertia=False))
+    with pytest.raises(ValueError, match=r"run\.start.* must not be given without inertia = true"):
+        Case(**still | {"run": RunCase(duration=1.0, start="steady")})

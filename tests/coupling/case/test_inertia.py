@@ -59,19 +59,27 @@ def test_wrong_damping_is_named(tmp_path, written, message):
 @pytest.mark.parametrize(
     "plate, messages",
     [
-        ("inertia = true", ["plate.density is missing; with inertia = true it must be a density"]),
+        (
+            "inertia = true",
+            ['plate.density is missing; with inertia = true it must be a density such as "2330 kg/m^3"'],
+        ),
         (
             'density = "2330 kg/m^3"\ndamping = 0.1',
             ["plate.damping must not be given without inertia = true; a plate without mass does not vibrate"],
         ),
         ('inertia = "yes"', ['plate.inertia must be true or false; got "yes"']),
-        ("inertia = true\ndamping = 2", ["plate.density is missing", "plate.damping must be a ratio"]),
+        (
+            "inertia = true\ndamping = 2",
+            [
+                f"plate.damping must be {A_RATIO}; got 2",
+                'plate.density is missing; with inertia = true it must be a density such as "2330 kg/m^3"',
+            ],
+        ),
     ],
 )
 def test_what_inertia_takes(tmp_path, plate, messages):
     found = problems(tmp_path, changed((THICKNESS, f"{THICKNESS}\n{plate}")))
-    assert len(found) == len(messages)
-    assert all(message in " ".join(found) for message in messages)
+    assert sorted(re.sub(r"^line \d+ +", "", problem) for problem in found) == messages
 
 
 def test_a_plate_of_many_actuators_cannot_vibrate():
@@ -112,7 +120,7 @@ def test_the_commands_refuse_with_exit_code_2(tmp_path):
         assert "plate.damping must be a ratio" in result.output and "actuators[1].cycles" in result.output
     file.write_text(changed())
     result = CliRunner().invoke(main, ["response", str(file)])
-    assert result.exit_code == 2 and "plate.density of response must be given; got none" in result.output
+    assert result.exit_code == 2 and "  plate.density must be given; got none" in result.output
 
 
 def test_a_table_of_damping_goes_on_beyond_its_ends():

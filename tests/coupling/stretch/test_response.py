@@ -23,7 +23,7 @@ def test_one_drive_has_the_closed_form():
     found = find_response(one_plate(), box((-1.0, 1.2)), np.full(2, 1e-6))
     d = np.linspace(-1.0, 1.2, 301)
     truth = np.stack([one_correction(d), one_in_plane(d)], axis=1)
-    assert np.abs(evaluate_response(found, d[:, None]) - truth).max() < 2e-6
+    assert np.abs(evaluate_response(found, d[:, None]) - truth).max() < 1e-6
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
@@ -34,7 +34,7 @@ def test_heights_give_the_oracle_s_equilibria(count):
     heights = np.random.default_rng(1).uniform(*box(*ends), (40, count))
     for row, value in zip(heights, evaluate_response(found, heights), strict=True):
         truth = reduced_equilibrium(plate, row)
-        assert np.abs(value - np.concatenate([truth.corrections[0], truth.in_plane[0]])).max() < 2 * limit
+        assert np.abs(value - np.concatenate([truth.corrections[0], truth.in_plane[0]])).max() < 0.02 * limit
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
@@ -46,17 +46,18 @@ def test_drives_of_corrections_are_those_of_equilibria(count):
     response = find_response(plate, box(*ends), np.full(8, 1e-7))
     found = correction_drives(plate, drives, 10e-3, 1e-5, response=response)
     assert found.error <= 1e-5 and found.in_plane_error <= 1e-5
-    assert found.period == exact.period and abs(found.pieces - exact.pieces) <= 0.05 * exact.pieces
+    assert found.period == exact.period and found.pieces == exact.pieces
     times = np.random.default_rng(2).uniform(0, 10e-3, 200)
     for one, other in ((found.drives, exact.drives), (found.in_plane, exact.in_plane)):
         c, truth = values(one, times), values(other, times)
         off = np.abs(c - truth).max(axis=(1, 2)) / np.abs(truth).max(axis=(1, 2))
-        assert (off < [2e-5, 1e-3, 2e-2]).all()
+        assert (off < [2e-8, 4e-7, 2e-6]).all()
+    largest = np.abs(values(exact.drives, times)).max(axis=(1, 2))
     for time in times[:20]:  # rates, at the equilibria themselves
         rates = [np.array([drive.evaluate(time)[order] for drive in drives]) for order in range(3)]
         truth = reduced_equilibrium(plate, *rates).corrections
-        found_at = values(found.drives, np.array([time]))[:, :, 0]
-        assert np.abs(found_at[0] - truth[0]).max() < 3e-5 * np.abs(values(exact.drives, times)[0]).max()
+        off = np.abs(values(found.drives, np.array([time]))[:, :, 0] - truth).max(axis=1)
+        assert (off < [1e-5, 1e-3, 8e-3] * largest).all()
 
 
 def test_a_closer_limit_takes_more_points():

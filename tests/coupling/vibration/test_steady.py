@@ -62,7 +62,7 @@ def test_an_undamped_mode_that_resonates_is_refused():
     for frequency in OMEGA[1] / (2 * np.pi) / np.array([1, 2, 3]):
         drives = [always_running(Drive(1e-6, frequency)), always_running(Drive(0.0, F))]
         with pytest.raises(
-            ValueError, match=r'"steady" where a mode without damping resonates, as that of 1700 Hz does'
+            ValueError, match=r'"steady" where a mode without damping resonates, as that of 1.7 kHz does'
         ):
             modal_motion(free, drives, 1e-3, steady=True)
 
