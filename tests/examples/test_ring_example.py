@@ -48,6 +48,13 @@ def test_the_wave_carries_the_part_as_fast_as_scipy_says(alone, lift):
     assert 0 < one.speed(radius) < one.sliding
 
 
+def test_with_hardly_any_friction_it_is_as_fast_as_the_closed_form_says(pictures, alone):
+    slippery = alone.case.friction.model_copy(update={"coefficient": 0.005})
+    case = alone.case.model_copy(update={"friction": slippery})
+    one = pictures.Ring(case, alone.surface, alone.responses)
+    assert one.speed(one.field.crest) == pytest.approx(one.sliding, rel=0.02)
+
+
 def test_on_the_track_it_is_carried_as_fast_as_scipy_says(ring):
     radius = ring.case.part.position[0]
     speed = ring.speed(radius)
