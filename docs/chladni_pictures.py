@@ -1,26 +1,30 @@
-"""The tables and the picture of docs/howto/chladni.md: a Chladni figure, where parts lift off, how far to trust it.
+"""The tables and the picture of docs/howto/chladni.md: how parts gather, where they lift off, how far to trust it.
 
 .venv/bin/python docs/chladni_pictures.py
 """
 
 import math
+from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
+from contourpy import contour_generator
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from active_surface.studies import read_study, run_study
+from active_surface.studies import Study, read_study, run_study
 from active_surface.studies.response import response
 from coupling import Case, build_friction, build_part, build_surface, read_case
 from particle import CoulombAdhesion, SurfaceMotion, simulate
 
 DOCS = Path(__file__).parent
+PAGE = DOCS / "howto/chladni.md"
 CASE = DOCS.parent / "examples/chladni.toml"
 STUDY = DOCS.parent / "examples/studies/chladni.toml"
 PLACES = ((2e-3, 1e-3), (3e-3, 0.0), (4.5e-3, 4.5e-3))  # m, where the threshold is sought
 STARTS, SEED, HALF = 8, 1, 4.9e-3  # of the comparison of tolerances; m
+NEAR = (0.1e-3, 0.25e-3, 0.5e-3)  # m, from a nodal line
+MOMENTS = "start", "half way", "end"
 MILLI, MICRO = 1e3, 1e6
 
 
@@ -87,34 +91,86 @@ def convergence(case: Case) -> list[str]:
     return lines
 
 
-def draw(case: Case, starts: np.ndarray, ends: np.ndarray, path: Path) -> None:
-    side = np.linspace(-5e-3, 5e-3, 81) * (1 - 1e-9)
+def gathering(study: Study) -> tuple[np.ndarray, dict[str, int]]:
+    """Places (3, n, 2) [m] of the study's parts at the start, half way and at the end, and how many ended how."""
+    run = study.case.run
+    half = study.case.model_copy(update={"run": run.model_copy(update={"duration": run.duration / 2})})
+    whole, until_half = run_study(study), run_study(replace(study, case=half))
+    data = (whole.dataset, "start"), (until_half.dataset, "end"), (whole.dataset, "end")
+    return np.array([np.stack([d[f"{at}_x"], d[f"{at}_y"]], axis=-1) for d, at in data]), whole.outcomes
+
+
+def from_nodal_lines(case: Case, places: np.ndarray) -> np.ndarray:
+    """The distances (...) [m] of places (..., 2) from the nearest nodal line."""
+    side, height = on_grid(case)
+    lines = contour_generator(side, side, height).lines(0.0)
+    start, end = (np.concatenate([line[part] for line in lines]) for part in (np.s_[:-1], np.s_[1:]))
+    along, away = end - start, places[..., None, :] - start
+    share = np.clip((away * along).sum(-1) / (along**2).sum(-1), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(away - share[..., None] * along, axis=-1).min(axis=-1))
+
+
+def on_grid(case: Case) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates (k,) [m] along either side of the plate, and heights (k, k) [m] there in phase with the largest."""
+    side = np.linspace(-5e-3, 5e-3, 161) * (1 - 1e-9)
     grid = np.array([(x, y) for y in side for x in side])
-    height = in_phase(heights(case, grid)).reshape(len(side), len(side))
+    return side, in_phase(heights(case, grid)).reshape(len(side), len(side))
+
+
+def held_amplitude(case: Case) -> float:
+    """The amplitude [m] up to which a part stays on the plate."""
     rate = 2 * math.pi * (case.actuators[0].frequency or 0.0)
-    held = (9.80665 + (case.friction.adhesion or 0.0) / case.part.mass) / rate**2
-    figure = Figure(figsize=(12.0, 6.0), layout="constrained")
+    return (9.80665 + (case.friction.adhesion or 0.0) / case.part.mass) / rate**2
+
+
+def shares(case: Case, places: np.ndarray) -> list[str]:
+    """Of all parts, how many are where, at each moment."""
+    far, amplitude = from_nodal_lines(case, places), np.abs(heights(case, places.reshape(-1, 2))).reshape(3, -1)
+    rows = [(f"within {MILLI * near:g} mm of a nodal line", (far < near).mean(axis=1)) for near in NEAR]
+    rows.append(("where they cannot lift off", (amplitude < held_amplitude(case)).mean(axis=1)))
+    lines = [f"| parts | {' | '.join(MOMENTS)} |", "|---|---:|---:|---:|"]
+    lines += [f"| {name} | {' | '.join(f'{100 * share:.1f} %' for share in values)} |" for name, values in rows]
+    middle = " | ".join(f"{MILLI * value:.2f}" for value in np.median(far, axis=1))
+    below = " | ".join(f"{MICRO * value:.1f}" for value in np.median(amplitude, axis=1))
+    return [
+        *lines,
+        f"| median distance from a nodal line, mm | {middle} |",
+        f"| median amplitude under them, um | {below} |",
+    ]
+
+
+def draw(case: Case, places: np.ndarray, path: Path) -> None:
+    side, height = on_grid(case)
+    x = MILLI * side
+    figure = Figure(figsize=(15.0, 5.2), layout="constrained")
     FigureCanvasAgg(figure)
-    for axes, places, title in zip(figure.subplots(1, 2), (starts, ends), ("starts", "ends"), strict=True):
-        shades = axes.pcolormesh(MILLI * side, MILLI * side, MICRO * np.abs(height), cmap="YlOrBr", shading="gouraud")
-        axes.contour(MILLI * side, MILLI * side, height, [0.0], colors="#1b4f9c", linewidths=1.5)
-        axes.contour(
-            MILLI * side, MILLI * side, np.abs(height), [held], colors="#1b4f9c", linewidths=0.8, linestyles="--"
-        )
-        axes.scatter(*(MILLI * places.T), s=5, c="black", linewidths=0)
-        axes.set(title=title, xlabel="x [mm]", ylabel="y [mm]", aspect="equal")
+    for axes, parts, title in zip(figure.subplots(1, 3, sharey=True), places, MOMENTS, strict=True):
+        shades = axes.contourf(x, x, MICRO * np.abs(height), np.arange(0.0, 50.0, 5.0), cmap="YlOrBr")
+        axes.contour(x, x, height, [0.0], colors="#1b4f9c", linewidths=1.5)
+        held = held_amplitude(case)
+        axes.contour(x, x, np.abs(height), [held], colors="#1b4f9c", linewidths=0.8, linestyles="--")
+        axes.scatter(*(MILLI * parts.T), s=5, c="black", linewidths=0)
+        axes.set(title=title, xlabel="x [mm]", aspect="equal", xlim=(-5, 5), ylim=(-5, 5))
+    figure.axes[0].set_ylabel("y [mm]")
     figure.colorbar(shades, ax=figure.axes, label="amplitude [um]")
-    figure.savefig(path, dpi=100)
+    figure.savefig(path, dpi=90)
+
+
+def write(page: Path, name: str, lines: list[str]) -> None:
+    """Replaces what the page has between its marks of that name."""
+    begin, end = f"<!-- {name}: generated -->", f"<!-- {name}: end -->"
+    before, rest = page.read_text().split(begin)
+    page.write_text(f"{before}{begin}\n\n" + "\n".join(lines) + f"\n\n{end}{rest.split(end)[1]}")
 
 
 def main() -> None:
     case = read_case(CASE)
-    with TemporaryDirectory() as folder:
-        sweep = run_study(read_study(STUDY), folder)
-        data = sweep.dataset.load()
-        starts, ends = (np.stack([data[f"{at}_x"], data[f"{at}_y"]], axis=-1) for at in ("start", "end"))
-        draw(case, starts, ends, DOCS / "chladni.png")
-    print("\n".join([*thresholds(case), "", *convergence(case)]))
+    write(PAGE, "thresholds", thresholds(case))
+    write(PAGE, "convergence", convergence(case))
+    places, outcomes = gathering(read_study(STUDY))
+    print(outcomes)
+    write(PAGE, "gathering", shares(case, places))
+    draw(case, places, DOCS / "chladni.png")
 
 
 if __name__ == "__main__":

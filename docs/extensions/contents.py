@@ -20,8 +20,8 @@ CONTENTS = {  # the pages below a page, by caption
     "index": {
         "First steps": ["quick-start", "gallery/index"],
         "How to": [
-            *("howto/own-mesh", "howto/own-friction", "howto/waves", "howto/chladni"),
-            *("howto/sweep", "howto/aim", "howto/paraview"),
+            *("howto/own-mesh", "howto/own-friction", "howto/waves", "howto/ring"),
+            *("howto/chladni", "howto/sweep", "howto/aim", "howto/paraview"),
         ],
         "The program": [
             *("commands", "case-file", "results", "animations", "page", "plot"),
