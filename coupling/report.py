@@ -126,8 +126,8 @@ def _vibrating(figures: VibrationFigures) -> str:
     """How exact a plate with inertia is."""
     coupled = f", of which the membrane couples the lowest {figures.coupled}" if figures.coupled else ""
     return (
-        f"{_count(figures.modes, 'mode')} up to {quantity_text(figures.highest, 'Hz', 4)}{coupled}; acceleration good to "
-        f"{figures.mode_error:.1e} (estimated), over time to {figures.piece_error:.1e}"
+        f"{_count(figures.modes, 'mode')} up to {quantity_text(figures.highest, 'Hz', 4)}{coupled}; acceleration good "
+        f"to {figures.mode_error:.1e} (estimated), over time to {figures.piece_error:.1e}"
     )
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from coupling.drives import stroke_heights
 from coupling.progress import doing
 from coupling.ringing.model import RingingModel
-from coupling.stretch import StretchModel
+from coupling.stretch import StretchModel, keep_model, key_of, read_model
 from coupling.vibration import ChosenModes, Damping, choose_modes, motion_of
 from fem_plate import Excitation
 from fem_plate.large_deflection import HeldShapes, mode_columns, with_modes
@@ -40,13 +40,9 @@ def make_ringing_model(
     chosen = choose_modes(shapes, excitation, damping, sets, end, steady)
     times = np.linspace(0.0, end, MOMENTS)
     rung = [motion_of(chosen.modes, damping, drives, end, steady).evaluate(times) for drives in sets]
-    count = min(
-        max(
-            _ringing(shapes, chosen, stroke_heights(drives, times, 2), one[2])
-            for drives, one in zip(sets, rung, strict=True)
-        ),
-        MAX_RINGING,
-    )
+    lifted = [stroke_heights(drives, times, 2) for drives in sets]
+    needed = (_ringing(shapes, chosen, one, rings[2]) for one, rings in zip(lifted, rung, strict=True))
+    count = min(max(needed), MAX_RINGING)
     amplitudes = np.max([np.abs(one[0]).max(axis=0) for one in rung], axis=0)
     corrections = model.largest[0] / section.thickness
     swings = np.clip(amplitudes / section.thickness, LEAST_AMPLITUDE * corrections.max(), None)[:count]
@@ -54,7 +50,12 @@ def make_ringing_model(
     modes = mode_columns(reduction.discrete, shapes, chosen.modes)
     lowest = modes.weighted(np.eye(len(amplitudes))[:, :count])
     above = modes.weighted(np.eye(len(amplitudes))[:, count:])
-    together = with_modes(reduction, lowest, (strokes, swings, corrections), LEAST)
+    key = key_of(large, model.heights, LEAST, lowest.v, swings)
+    if (kept := read_model(key, large)) is not None:
+        together = kept[0]
+    else:
+        together = with_modes(reduction, lowest, (strokes, swings, corrections), LEAST)
+        keep_model(key, together, model.mesh_error)
     return RingingModel(large, together, above, model.heights, model.mesh_error, chosen, damping, steady, amplitudes)
 
 

@@ -29,7 +29,7 @@ LEAST_LOST = 1e-2  # of a mode's ringing, in a pass
 BLOCK = 512  # steps that are laid together
 MOST_STEPS = 4096  # whose nodes are held at a time, if they are not halved
 MAX_HALVINGS = 6  # of the steps
-MAX_PASSES = 1000  # to a steady state
+MAX_PASSES = 200  # to a steady state
 MAX_PIECES = 20_000_000  # of all shapes: about 2 GB
 
 
@@ -101,7 +101,10 @@ class _Walker:
         edges, loop = schedule.edges, schedule.loop
         if loop < 0:
             if steady:
-                raise ValueError('Input start must not be "steady" without a common period of all drives')
+                raise ValueError(
+                    'Input start must be "rest" for a stretching plate whose drives have no common period; give them '
+                    "frequencies in a ratio of small whole numbers"
+                )
             self._walk(np.append(edges, end) if edges[-1] < end else edges, state, end, tell)
             return
         self._walk(edges[: loop + 1], state, end, tell)

@@ -5,4 +5,5 @@ from coupling.stretch.making import make_model
 from coupling.stretch.model import StretchModel
 from coupling.stretch.response import Response, room_beyond
 from coupling.stretch.schedule import Schedule, schedule_of
+from coupling.stretch.store import keep_model, key_of, read_model
 from coupling.stretch.stretch import Stretch

@@ -32,8 +32,8 @@ BROKEN = (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile
 """What a file raises that is missing, cut off, or changed."""
 
 
-def key_of(large: LargeDeflection, heights: FloatArray, tolerance: float) -> str:
-    """A hash of plate, actuators, the heights that the model is for, and the sources that make it."""
+def key_of(large: LargeDeflection, heights: FloatArray, tolerance: float, *more: FloatArray) -> str:
+    """A hash of plate, actuators, the heights and what more the model is for, and the sources that make it."""
     plate, mesh = large.plate, large.plate.mesh
     digest = hashlib.sha256()
     for package in (fem_plate, meshes):
@@ -44,7 +44,15 @@ def key_of(large: LargeDeflection, heights: FloatArray, tolerance: float) -> str
         *(sorted((name, repr(curve)) for name, curve in mesh.curves.items()), list(mesh.boundaries)),
     )
     digest.update(repr(text).encode())
-    for array in (mesh.points, mesh.triangles, *mesh.boundaries.values(), large.points, large.stiffness, heights):
+    for array in (
+        mesh.points,
+        mesh.triangles,
+        *mesh.boundaries.values(),
+        large.points,
+        large.stiffness,
+        heights,
+        *more,
+    ):
         digest.update(repr(array.shape).encode() + np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()[:32]
 

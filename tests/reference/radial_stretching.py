@@ -51,17 +51,20 @@ class StretchingDisc:
         disc, unit = self.disc, self.unit
         omega, n = disc.k**2 * unit, len(disc.k)
 
-        def rates(time: float, state: np.ndarray) -> np.ndarray:
+        def accelerations(time: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
             h, _, h_tt = height(time)
-            q, q_t = state[:n], state[n:] * omega
             pull = self.pull(h * self.phi_slope + self.psi_slope @ q) * unit**2 / disc.norms
-            q_tt = -omega * (omega * q + 2 * self.ratio * q_t) - pull - disc.participation * h_tt
-            return np.concatenate([q_t, q_tt / omega])
+            return -omega * (omega * q + 2 * self.ratio * q_t) - pull - disc.participation * h_tt
+
+        def rates(time: float, state: np.ndarray) -> np.ndarray:
+            q, q_t = state[:n], state[n:] * omega
+            return np.concatenate([q_t, accelerations(time, q, q_t) / omega])
 
         found = solve_ivp(
             rates, (0.0, times[-1]), np.zeros(2 * n), "Radau", times, rtol=1e-8, atol=1e-10, max_step=times[-1] / 200
         )
+        q, q_t = found.y[:n].T, found.y[n:].T * omega
+        q_tt = np.array([accelerations(*one) for one in zip(times, q, q_t, strict=True)])
         heights = np.array([height(time) for time in times])
-        values = [found.y[:n].T, found.y[n:].T * omega, np.array([rates(t, y)[n:] * omega for t, y in zip(times, found.y.T)])]
         phi, psi = disc.phi(r), disc.psi(r)
-        return np.stack([heights[:, [k]] * phi + values[k] @ psi.T for k in range(3)])
+        return np.stack([heights[:, [k]] * phi + one @ psi.T for k, one in enumerate((q, q_t, q_tt))])
