@@ -40,8 +40,8 @@ def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
         if inertia and stretches and right_value(PlateCase, "damping", plate, parts.context, 0.0) == 0.0:
             yield (
                 ("plate", "damping"),
-                f"must be a positive ratio such as 0.02 with {VON_KARMAN} and {STEADY}, as the steady state is what is left "
-                "when all ringing has decayed",
+                f"must be a positive ratio such as 0.02 with {VON_KARMAN} and {STEADY}, as the steady state is what is "
+                "left when all ringing has decayed",
             )
 
 
