@@ -37,7 +37,7 @@ def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
             yield ("run", "start"), f"must not be given without {INERTIA} in [plate]; only then do vibrations build up"
         yield from _ending(parts)
         stretches = right_value(PlateCase, "theory", plate, parts.context) == "von-karman"
-        if inertia and stretches and right_value(PlateCase, "damping", plate, parts.context, 0.0) == 0.0:
+        if inertia and stretches and right_value(PlateCase, "damping", plate, parts.context) == 0.0:
             yield (
                 ("plate", "damping"),
                 f"must be a positive ratio such as 0.02 with {VON_KARMAN} and {STEADY}, as the steady state is what is "
