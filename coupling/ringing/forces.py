@@ -15,9 +15,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.stretch.interval import Moment, new_moment
-from coupling.stretch.newton import State, find_equilibrium, find_rates, follow_equilibrium, new_state
-from coupling.stretch.vectors import add_rows, clear, dot
+from coupling.stretch import (
+    Moment,
+    State,
+    add_rows,
+    clear,
+    dot,
+    find_equilibrium,
+    find_rates,
+    follow_equilibrium,
+    new_moment,
+    new_state,
+)
 from fem_plate.large_deflection import Forms
 from particle import kernel, kernel_no_arrays
 from particle.drives import ORDER, DriveTable, drive_piece

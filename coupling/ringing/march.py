@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.ringing.forces import Bench, Ringing, accelerate, enter_pieces, fill_node
-from coupling.stretch.newton import FINE
+from coupling.stretch import FINE
 from particle import kernel, kernel_no_arrays
 from particle.drives import DriveTable
-from particle.events.tableau import Tableau
+from particle.events import Tableau
 
 FloatArray = NDArray[np.float64]
 

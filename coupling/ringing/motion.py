@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from coupling.ringing.forces import Ringing, new_bench
 from coupling.ringing.march import march
 from coupling.ringing.pieces import lay_steps
-from coupling.stretch import Corrections, Schedule, schedule_of
-from coupling.stretch.newton import FINE
-from coupling.vibration.oscillators import enter_jump
+from coupling.stretch import FINE, Corrections, Schedule, schedule_of
+from coupling.vibration import enter_jump
 from particle import AnyDrive
 from particle.drives import ORDER, drive_piece, drive_table, quintic_drives
-from particle.events.tableau import tableau
+from particle.events import tableau
 
 FloatArray = NDArray[np.float64]
 

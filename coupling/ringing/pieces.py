@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.stretch.pieces import lay_piece
+from coupling.stretch import lay_piece
 from particle import kernel, kernel_no_arrays
 
 FloatArray = NDArray[np.float64]

@@ -14,4 +14,4 @@ from particle.events.request import Request
 from particle.events.slipping import count_slips, find_lost
 from particle.events.stay import horizon, stays
 from particle.events.stick import ROUNDING
-from particle.events.tableau import Pairs, pairs_for
+from particle.events.tableau import Pairs, Tableau, pairs_for, tableau
