@@ -1,5 +1,6 @@
 """Every study among the examples runs and shows what it is there for."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,10 @@ pytestmark = [pytest.mark.compiled, pytest.mark.slow]
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sweeps")
-    return {file.stem: run_study(read_study(file), folder) for file in FILES}
+    copied = shutil.copytree(STUDIES.parent, folder / "examples") / "studies"
+    chladni = copied / "chladni.toml"
+    chladni.write_text(chladni.read_text().replace("points = 1000", "points = 200"))  # all take ten minutes
+    return {file.stem: run_study(read_study(copied / file.name), folder) for file in FILES}
 
 
 def test_each_leaves_its_results_and_a_picture(found):
@@ -56,4 +60,4 @@ def test_parts_gather_where_the_plate_hardly_moves(found):
     """Beyond 3.4 mm along both axes the corners swing most: parts leave them for the nodal arcs."""
     data = found["chladni"].dataset
     start, end = (np.minimum(abs(data[f"{at}_x"].values), abs(data[f"{at}_y"].values)) for at in ("start", "end"))
-    assert (start > 3.4e-3).sum() > 50 and (end > 3.4e-3).sum() < 5
+    assert (start > 3.4e-3).sum() > 8 and (end > 3.4e-3).sum() < 3

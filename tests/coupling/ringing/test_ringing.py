@@ -28,11 +28,11 @@ def damping(ratio):
 
 
 @cache
-def model(stroke=2 * THICKNESS, ratio=0.0, frequency=20e3):
+def model(stroke=2 * THICKNESS, ratio=0.0, frequency=20e3, steady=False):
     """A disc with one actuator at its centre, good for a stroke [m]."""
     drives = [Drive(stroke, frequency)]
     plain = make_model(PLATE.large_deflection(CENTRE), [drives], 1e-3, lambda done, of: None)
-    return make_ringing_model(plain, damping(ratio), [drives], 2 / frequency, False)
+    return make_ringing_model(plain, damping(ratio), [drives], 2 / frequency, steady)
 
 
 def free(plate, amplitude, periods, allowed=1e-3):
@@ -99,7 +99,13 @@ def test_small_strokes_are_those_of_a_plate_that_does_not_stretch():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize(("frequency", "height", "allowed"), [(20e3, 1.0, (1e-5, 2e-3)), (259e3, 0.5, (1e-5, 3e-3))])
+@pytest.mark.parametrize(
+    ("frequency", "height", "allowed"),
+    [
+        (20e3, 1.0, (1e-5, 2e-3)),
+        pytest.param(259e3, 0.5, (1e-5, 3e-3), marks=pytest.mark.slow),
+    ],
+)
 def test_driven_motion_is_that_of_a_disc_by_bessel_functions(frequency, height, allowed):
     """At .04 and .5 of the first frequency. Without inertia w_tt is 8 % and 94 % off."""
     drive = Drive(height * THICKNESS, frequency)
@@ -116,3 +122,28 @@ def test_driven_motion_is_that_of_a_disc_by_bessel_functions(frequency, height, 
         largest = np.abs(exact[order]).max()
         print(f"order {order}: {np.abs(w.T - exact[order]).max() / largest:.1e}")
         np.testing.assert_allclose(w.T, exact[order], rtol=0, atol=limit * largest)
+
+
+@pytest.mark.compiled
+def test_a_steady_state_is_what_a_run_from_rest_comes_to():
+    drive = Drive(0.5 * THICKNESS, 100e3)
+    steady = model(drive.stroke, 0.1, drive.frequency, steady=True).corrections([drive], 2 / drive.frequency)
+    from_rest = model(drive.stroke, 0.1, drive.frequency).corrections([drive], 60 / drive.frequency)
+    assert steady.period == pytest.approx(1 / drive.frequency)
+    assert from_rest.period == pytest.approx(1 / drive.frequency)
+    assert from_rest.pieces > 2 * steady.pieces  # it rings before it repeats
+    times = np.linspace(0, 1.5, 40) / drive.frequency
+    for one, other in zip(steady.drives, from_rest.drives, strict=True):
+        later = other.evaluate(times + 50 / drive.frequency)
+        for now, then in zip(one.evaluate(times), later, strict=True):
+            np.testing.assert_allclose(now, then, rtol=0, atol=2e-4 * np.abs(then).max() + 1e-30)
+
+
+@pytest.mark.compiled
+def test_without_a_common_period_there_is_no_steady_state():
+    plate = model(0.5 * THICKNESS, 0.1, 100e3, steady=True)
+    once = Drive(0.5 * THICKNESS, 100e3, "up")
+    with pytest.raises(
+        ValueError, match=r'start must be "rest" for a stretching plate whose drives have no common period'
+    ):
+        plate.corrections([once], 1e-4)
