@@ -39,7 +39,7 @@ class StretchError:
 
     mesh: float  # estimated, of the full solutions
     reduction: float  # measured, of the few shapes that stand for these
-    pieces: float  # measured, of these shapes' drives, piece by piece in time
+    pieces: float | None  # measured, of these shapes' drives, piece by piece in time; None with inertia
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,7 @@ class VibrationFigures:
 
     modes: int
     coupled: int  # the lowest of them, which the membrane couples; 0 in linear theory
+    uncoupled: float  # the share of the acceleration that the others have where the plate stretches, by linear theory
     highest: float  # Hz
     mode_error: float  # estimated, of having no more of them
     piece_error: float  # bounded, of their drives, piece by piece in time
@@ -131,19 +132,21 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
 
 
 def _stretch_error(stretch: Stretch) -> StretchError:
-    return StretchError(stretch.mesh_error, stretch.reduction_error, stretch.piece_error)
+    ringing = isinstance(stretch.model, RingingModel)  # its pieces' error is one of the acceleration
+    return StretchError(stretch.mesh_error, stretch.reduction_error, None if ringing else stretch.piece_error)
 
 
 def _vibration(scene: PlateScene) -> VibrationFigures | None:
     stretch = scene.stretch
     if stretch is not None and isinstance(stretch.model, RingingModel):
-        chosen, coupled, pieces = stretch.model.chosen, stretch.model.count, stretch.piece_error
+        chosen, pieces = stretch.model.chosen, stretch.piece_error
+        coupled = stretch.model.count, stretch.model.uncoupled
     elif scene.vibration is not None:
-        chosen, coupled, pieces = scene.vibration.model.chosen, 0, PIECES
+        chosen, pieces, coupled = scene.vibration.model.chosen, PIECES, (0, 0.0)
     else:
         return None
     frequencies = chosen.modes.frequencies
-    return VibrationFigures(len(frequencies), coupled, float(frequencies.max()), chosen.error, pieces)
+    return VibrationFigures(len(frequencies), *coupled, float(frequencies.max()), chosen.error, pieces)
 
 
 def _first_frequency(plate: Plate, shapes: PlateShapes) -> float | None:

@@ -116,15 +116,20 @@ def _bending(s: PlateSummary) -> str:
 
 def _stretching(error: StretchError, solutions: int) -> str:
     """How exact a plate that stretches is."""
+    pieces = "" if error.pieces is None else f", its pieces in time {error.pieces:.1e}"
     return (
         f"stretching from {_count(solutions, 'full solution')}, good to {error.mesh:.1e} (estimated); the reduced "
-        f"model adds {error.reduction:.1e}, its pieces in time {error.pieces:.1e}"
+        f"model adds {error.reduction:.1e}{pieces}"
     )
 
 
 def _vibrating(figures: VibrationFigures) -> str:
     """How exact a plate with inertia is."""
-    coupled = f", of which the membrane couples the lowest {figures.coupled}" if figures.coupled else ""
+    coupled = (
+        f", the lowest {figures.coupled} coupled by the membrane (the others: {figures.uncoupled:.1e} of it)"
+        if figures.coupled
+        else ""
+    )
     return (
         f"{_count(figures.modes, 'mode')} up to {quantity_text(figures.highest, 'Hz', 4)}{coupled}; acceleration good "
         f"to {figures.mode_error:.1e} (estimated), over time to {figures.piece_error:.1e}"

@@ -36,8 +36,9 @@ def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
         if inertia is False:
             yield ("run", "start"), f"must not be given without {INERTIA} in [plate]; only then do vibrations build up"
         yield from _ending(parts)
-        stretches = right_value(PlateCase, "theory", plate, parts.context) == "von-karman"
-        if inertia and stretches and right_value(PlateCase, "damping", plate, parts.context) == 0.0:
+        damping = right_value(PlateCase, "damping", plate, parts.context)
+        undamped = min(ratio for _, ratio in damping) == 0 if isinstance(damping, tuple) else damping == 0
+        if inertia and undamped and right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
             yield (
                 ("plate", "damping"),
                 f"must be a positive ratio such as 0.02 with {VON_KARMAN} and {STEADY}, as the steady state is what is "

@@ -53,8 +53,8 @@ class Bench(NamedTuple):
     heights: FloatArray  # (3, N) m, the drives with two derivatives in s
     lifts: FloatArray  # (3, N + a), drives and modes with two derivatives
     row: FloatArray  # (N + a,)
-    pull: FloatArray  # (a,)
-    follow: FloatArray  # (n,), the corrections, as guessed or last found
+    membrane_force: FloatArray  # (a,), against each mode
+    corrections: FloatArray  # (n,), the corrections, as guessed or last found
 
 
 @kernel
@@ -116,11 +116,18 @@ def _enter_lifts(ringing: Ringing, bench: Bench, count: int, orders: int) -> Non
 
 @kernel_no_arrays
 def accelerate(
-    ringing: Ringing, bench: Bench, s: float, half: float, q: FloatArray, q_t: FloatArray, out: FloatArray, near: bool
+    ringing: Ringing,
+    bench: Bench,
+    s: float,
+    half: float,
+    q: FloatArray,
+    q_t: FloatArray,
+    out: FloatArray,
+    reuse_factor: bool,
 ) -> int:
     """The modes' accelerations (a,) at s of an interval of 2 half [s]; returns what came of the corrections.
 
-    near: whether corrections, guessed in the bench, are near the last ones found otherwise.
+    reuse_factor: keep the factor of the last Hessian for Newton's steps; the guess in the bench must be close.
     """
     forms, state, lifts, count = ringing.forms, bench.state, bench.lifts, len(bench.pieces)
     _enter_heights(bench, s, half)
@@ -129,19 +136,20 @@ def accelerate(
     for k in range(len(q)):
         lifts[0, count + k] = q[k]
     _enter_lifts(ringing, bench, forms.membranes, 1)
-    if near:
-        outcome = follow_equilibrium(forms, bench.moment, state, bench.follow)
+    if reuse_factor:
+        outcome = follow_equilibrium(forms, bench.moment, state, bench.corrections)
     else:
-        outcome = find_equilibrium(forms, bench.moment, state, bench.follow, 0.0)
-    clear(bench.pull)
+        outcome = find_equilibrium(forms, bench.moment, state, bench.corrections, 0.0)
+    clear(bench.membrane_force)
     for r in range(forms.membranes):
         force = state.values[r]
         for k in range(len(q)):
-            own = dot(forms.drives[r, count + k], lifts[0]) + dot(forms.mixed[r, count + k], bench.follow)
-            bench.pull[k] += force * own
+            own = dot(forms.drives[r, count + k], lifts[0]) + dot(forms.mixed[r, count + k], bench.corrections)
+            bench.membrane_force[k] += force * own
     for k in range(len(q)):
         inertia = dot(ringing.participation[k], bench.heights[2])
-        out[k] = -ringing.square[k] * q[k] - ringing.drag[k] * q_t[k] - bench.pull[k] / ringing.mass[k] - inertia
+        stretched = bench.membrane_force[k] / ringing.mass[k]
+        out[k] = -ringing.square[k] * q[k] - ringing.drag[k] * q_t[k] - stretched - inertia
     return outcome
 
 
@@ -158,6 +166,6 @@ def fill_node(
         out[0, k], out[1, k], out[2, k] = q[k], q_t[k], q_tt[k]
     _enter_lifts(ringing, bench, len(forms.constant), 3)
     followed = out[:, own:]
-    for j in range(len(bench.follow)):
-        followed[0, j] = bench.follow[j]
+    for j in range(len(bench.corrections)):
+        followed[0, j] = bench.corrections[j]
     find_rates(forms, bench.moment, bench.state, followed)

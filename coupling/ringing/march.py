@@ -55,9 +55,8 @@ def march(
                 at[k], speed[k] = q[k] + h * moved, q_t[k] + h * gained
             for k in range(own):
                 speeds[stage, k] = speed[k]
-            _guess(nodes[n, :, own:], pair.c[stage] * h, bench.follow)
-            near = stage < stages
-            outcome = max(outcome, accelerate(ringing, bench, s, half, at, speed, rates[stage], near))
+            _guess(nodes[n, :, own:], pair.c[stage] * h, bench.corrections)
+            outcome = max(outcome, accelerate(ringing, bench, s, half, at, speed, rates[stage], stage < stages))
         worst = max(worst, _error(pair, rates, speeds, h, fastest))
         q[:], q_t[:], rates[0, :] = at, speed, rates[stages]
         fill_node(ringing, bench, q, q_t, rates[0], nodes[n + 1])

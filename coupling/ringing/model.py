@@ -13,7 +13,7 @@ from coupling.drives import fastest_acceleration
 from coupling.ringing.forces import Ringing
 from coupling.ringing.motion import ringing_corrections
 from coupling.stretch import Corrections, Response, StretchModel
-from coupling.vibration import PIECES, ChosenModes, Damping, ModalMotion, motion_of
+from coupling.vibration import PIECES, ChosenModes, Damping, motion_of
 from fem_plate import LargeDeflection, StretchedShapes
 from fem_plate.large_deflection import Columns, ReducedPlate, Reduction, reduced_equilibrium
 from particle import AnyDrive
@@ -31,7 +31,8 @@ class RingingModel(StretchModel):
     reduction: the ringing modes are its first corrections.  above: the modes above these.
     heights: (S, N) m or N, that it is good for.  mesh_error: of a full solution, over its largest w.
     chosen: all modes.  damping: their ratios.  steady: whether runs begin in the steady state.
-    amplitudes: (n,) m, the largest of each mode as on a plate that does not stretch.
+    amplitudes: (n,) m, about the largest of each mode.
+    uncoupled: the share of the acceleration that modes have which the membrane does not couple.
     """
 
     def __init__(
@@ -45,9 +46,10 @@ class RingingModel(StretchModel):
         damping: Damping,
         steady: bool,
         amplitudes: FloatArray,
+        uncoupled: float,
     ) -> None:
         super().__init__(large, reduction, heights, mesh_error)
-        self.chosen, self.damping, self.steady = chosen, damping, steady
+        self.chosen, self.damping, self.steady, self.uncoupled = chosen, damping, steady, uncoupled
         self._above, self._amplitudes = above, amplitudes
         self.count = len(chosen.modes.omega) - above.v.shape[1]
 
@@ -69,9 +71,12 @@ class RingingModel(StretchModel):
     @cached_property
     def largest(self) -> tuple[FloatArray, FloatArray]:
         """The largest modes, corrections and modes above (n,), and in-plane motions (M,), about [m]."""
-        corrections, motions = StretchModel.largest.func(self)  # type: ignore[attr-defined]
+        corrections, motions = self._at_heights()
         ringing = np.maximum(corrections[: self.count], self._amplitudes[: self.count])
-        return np.concatenate([ringing, corrections[self.count :], self._amplitudes[self.count :]]), motions
+        together = np.concatenate([np.abs(self.heights).max(axis=0), ringing, corrections[self.count :]])
+        most = 0.5 * np.einsum("mij,i,j->m", np.abs(self.plate.in_plane), together, together)
+        above = self._amplitudes[self.count :]
+        return np.concatenate([ringing, corrections[self.count :], above]), np.maximum(motions, most)
 
     @cached_property
     def shapes(self) -> StretchedShapes:
@@ -82,24 +87,24 @@ class RingingModel(StretchModel):
     def corrections(self, drives: Sequence[AnyDrive], end: float, response: Response | None = None) -> Corrections:
         """How modes, corrections and in-plane motions go on under drives, from 0 to `end` [s]."""
         linear = motion_of(self.chosen.modes, self.damping, drives, end, self.steady)
-        lifted = [unit * fastest_acceleration(drive) for unit, drive in zip(self._lifts, drives, strict=True)]
-        allowed = PIECES * max(*lifted, linear.largest_acceleration())
+        lifted = max(unit * fastest_acceleration(drive) for unit, drive in zip(self._lifts, drives, strict=True))
+        # At resonance a plate that does not stretch swings far higher than one that does.
+        swings = float(self.chosen.modes.omega[0] ** 2 * self._amplitudes[0])
+        allowed = PIECES / 2 * max(lifted, min(linear.largest_acceleration(), swings))
         at_rest = reduced_equilibrium(self.plate, np.array([float(drive.evaluate(0.0)[0]) for drive in drives]))
         start = at_rest.corrections[0][: self.count], np.zeros(self.count)
-        found = ringing_corrections(self.ringing, drives, end, start, self.limits(allowed), self.steady)
-        own = [*found.drives, *self._linear(linear).modal_drives(allowed)]
-        return replace(found, drives=own, error=PIECES * found.error, acceleration_error=PIECES * found.error)
+        found, largest = ringing_corrections(self.ringing, drives, end, start, self.limits(allowed), self.steady)
+        above = linear.chosen(np.arange(len(self.chosen.modes.omega)) >= self.count)
+        own = [*found.drives, *(above.modal_drives(allowed) if len(above.oscillators.omega) else [])]
+        error = 2 * allowed / max(lifted, largest) if allowed > 0 else 0.0
+        return replace(found, drives=own, error=error, acceleration_error=error)
 
     def limits(self, allowed: float) -> FloatArray:
         """What the accelerations of coordinates (n + M,) may be off by, where that of w may [m/s^2]."""
         heights, in_plane = self._weights
         return np.concatenate([allowed / heights[: len(self.plate.stiffness)], IN_PLANE * allowed / in_plane])
 
-    def _linear(self, motion: ModalMotion) -> ModalMotion:
-        """That of the modes above."""
-        return motion.chosen(np.arange(len(self.chosen.modes.omega)) >= self.count)
-
-    @property
+    @cached_property
     def _lifts(self) -> FloatArray:
         """How high a unit of each drive lifts the plate at most, (N,)."""
         functions = self.shapes.functions

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coupling.progress import doing
 from coupling.ringing.forces import Ringing, new_bench
 from coupling.ringing.march import march
 from coupling.ringing.pieces import lay_steps
-from coupling.stretch import FINE, Corrections, Schedule, schedule_of
+from coupling.stretch import FINE, NOT_STABLE, Corrections, Schedule, schedule_of
 from coupling.vibration import enter_jump
 from particle import AnyDrive
 from particle.drives import ORDER, drive_piece, drive_table, quintic_drives
@@ -21,14 +22,17 @@ from particle.events import tableau
 
 FloatArray = NDArray[np.float64]
 
-RADIANS = 2.0  # of the fastest mode in a step, at first
-STEP_ERROR = 1e-9  # of the largest coordinate
+RADIANS = 1.0  # of the fastest mode in a step, at first
+STEP_ERROR = 1e-9  # of the largest mode
 SETTLED = 1e-6  # of the largest acceleration: what all later passes still change
 LEAST_LOST = 1e-2  # of a mode's ringing, in a pass
 BLOCK = 512  # steps that are laid together
-MOST_STEPS = 4096  # whose nodes are held at a time, if they are not halved
-MAX_HALVINGS = 6  # of the steps
-MAX_PASSES = 200  # to a steady state
+MAX_STEPS = 4096  # whose nodes are held at a time, if they are not halved
+MAX_HALVINGS = 10  # of the steps
+MAX_PASSES = 200  # to a steady state; more where damping is low
+DECAYED = 40.0  # zeta omega t after which nothing is left of the start
+MERGED = 1e-12  # of a period: a breakpoint that is its end
+SILENT = 1e-9  # of the largest acceleration: with all drives at rest, the plate rests, too
 MAX_PIECES = 20_000_000  # of all shapes: about 2 GB
 
 
@@ -48,37 +52,36 @@ def ringing_corrections(
     start: tuple[FloatArray, FloatArray],
     limits: FloatArray,
     steady: bool = False,
-    tell: Callable[[float], None] = lambda share: None,
-) -> Corrections:
-    """How modes and in-plane motions go on under drives, up to an end [s].
+) -> tuple[Corrections, float]:
+    """How modes, corrections and in-plane motions go on under drives, up to an end [s].
 
     start: q (a,) [m] and q' (a,) [m/s] of the modes that ring, before the first breakpoint.
-    limits: (a + n + M,) m/s^2, what accelerations may be off by.
-    steady: whether to begin with the pass that repeats.
-    tell: takes the share of the time that is done.
+    limits: (a + n + M,) m/s^2, of the errors of accelerations; the sum of errors over limits is at most 1.
+    steady: whether to begin with the period that repeats.
+    Returns the corrections, with that sum as their error, and the modes' largest acceleration [m/s^2].
     Raises ValueError where the plate finds no equilibrium, where it takes too many pieces, and with `steady` when the
     motion does not come to repeat with the drives.
     """
     walker = _Walker(ringing, drives, limits)
     state = _State(start[0].copy(), start[1].copy(), _heights_before(drives, steady))
-    schedule = schedule_of(drives, math.inf if steady else end)
-    walker.settle(schedule, end, state, steady, tell)
-    return walker.corrections()
+    walker.settle(schedule_of(drives, math.inf if steady else end), end, state, steady)
+    return walker.corrections(), walker.largest_acceleration
 
 
 def _heights_before(drives: Sequence[AnyDrive], steady: bool) -> FloatArray:
-    """(N, 2) m and m/s: at rest, or as they have been going."""
+    """(N, 2) heights and velocities: at rest, or as they have been going."""
     values = [drive.evaluate(0.0) for drive in drives]
     return np.array([[float(h), float(v) if steady else 0.0] for h, v, _ in values])
 
 
 @dataclass
 class _Mark:
-    """The modes at a breakpoint of the last pass, and how many rows of pieces came before."""
+    """The modes at a breakpoint of the last period, and how many rows of pieces and parts came before."""
 
     q: FloatArray
     q_t: FloatArray
     rows: int
+    parts: int
 
 
 class _Walker:
@@ -87,53 +90,72 @@ class _Walker:
     def __init__(self, ringing: Ringing, drives: Sequence[AnyDrive], limits: FloatArray) -> None:
         self._ringing, self._drives, self._limits = ringing, drives, limits
         self._bench, self._pair, self._table = new_bench(ringing), tableau(8), drive_table(drives)
-        self._edges: list[FloatArray] = [np.zeros(1)]
-        self._rows: list[FloatArray] = []
-        self._largest = np.zeros((2, len(limits)))  # of values and accelerations
-        self._over, self._loop, self._steps = 0.0, -1, 0
         self._fastest, self._marks = math.sqrt(float(ringing.square.max())), dict[int, _Mark]()
+        self._edges, self._rows, self._pieces = [np.zeros(1)], list[FloatArray](), 0
+        self._largest = 0.0  # m, of a mode
+        self._accelerations: list[float] = []  # m/s^2, the modes' largest in each part
+        self._over, self._loop, self._steps, self._finer = 0.0, -1, 0, 1
 
-    def settle(
-        self, schedule: Schedule, end: float, state: _State, steady: bool, tell: Callable[[float], None]
-    ) -> None:
+    @property
+    def largest_acceleration(self) -> float:
+        """Of a mode, m/s^2."""
+        return max(self._accelerations, default=0.0)
+
+    def settle(self, schedule: Schedule, end: float, state: _State, steady: bool) -> None:
         """Walk to the end, or until the motion repeats with the drives."""
         edges, loop = schedule.edges, schedule.loop
+        if steady and loop > 0:  # what has always been running repeats from 0 on
+            period = float(edges[-1] - edges[loop])
+            edges, loop = np.append(edges[edges < period * (1 - MERGED)], period), 0
         if loop < 0:
-            if steady:
+            if steady and self._bench_moves():
                 raise ValueError(
                     'Input start must be "rest" for a stretching plate whose drives have no common period; give them '
                     "frequencies in a ratio of small whole numbers"
                 )
-            self._walk(np.append(edges, end) if edges[-1] < end else edges, state, end, tell)
+            self._walk(np.append(edges, end) if edges[-1] < end else edges, 0.0, state, end)
             return
-        self._walk(edges[: loop + 1], state, end, tell)
+        self._walk(edges[: loop + 1], 0.0, state, end)
         cycle, places, passed = edges[loop:], len(edges) - 1 - loop, 0
         period = float(cycle[-1] - cycle[0])
         while steady or self._edges[-1][-1] < end:
             passes, place = divmod(passed, places)
-            now = _Mark(state.q.copy(), state.q_t.copy(), len(self._rows))
+            now = _Mark(state.q.copy(), state.q_t.copy(), len(self._rows), len(self._accelerations))
             if passes > 0 and (place == 0 or not steady) and self._is_settled(self._marks[place], now, period):
                 self._loop = self._marks[place].rows
                 break
             if steady and place == 0:
-                if passes == MAX_PASSES:
+                if passes >= self._most_passes(period):
                     raise ValueError(
-                        f'Input start must not be "steady" here: after {MAX_PASSES} common periods of the drives the '
-                        "plate still does something else in each; give it more damping"
+                        f"The plate does not come to repeat with its drives within {passes} of their common periods, "
+                        "so it has no steady state; raise plate.damping or reduce the strokes"
                     )
-                self._edges, self._rows, self._over = [cycle[:1] + passes * period], [], 0.0  # what led there
+                self._edges, self._rows, self._pieces, self._over = [cycle[:1] + passes * period], [], 0, 0.0
                 now.rows = 0
             self._marks[place] = now
-            self._walk(cycle[place : place + 2] + passes * period, state, end, tell)
+            self._walk(cycle[place : place + 2], passes * period, state, end)
             passed += 1
 
-    def _walk(self, edges: FloatArray, state: _State, end: float, tell: Callable[[float], None]) -> None:
-        for begin, until in zip(edges[:-1], edges[1:], strict=True):
+    def _bench_moves(self) -> bool:
+        """Whether any drive moves."""
+        return any(drive.segments().coefficients[:, 1:].any() for drive in self._drives)
+
+    def _most_passes(self, period: float) -> int:
+        """Periods [s] in which the start is forgotten, or so many that it never is."""
+        decay = 0.5 * float(self._ringing.drag.min()) * period
+        return max(MAX_PASSES, math.ceil(DECAYED / decay)) if decay > 0 else MAX_PASSES
+
+    def _walk(self, edges: FloatArray, shift: float, state: _State, end: float) -> None:
+        """Walk over breakpoints [s] of the drives; what is kept is later by a shift [s]."""
+        for begin, until in pairwise(edges.tolist()):
             self._jump(begin, until, state)
-            parts = math.ceil((until - begin) * self._fastest / RADIANS / MOST_STEPS)
+            parts = math.ceil((until - begin) * self._fastest / RADIANS / MAX_STEPS)
             for first, last in pairwise(np.linspace(begin, until, parts + 1).tolist()):
-                self._cross(first, last, state)
-                tell(min(last / end, 1.0))
+                self._cross(first, last, shift, state)
+                doing("stretching plate: following its ringing", min((last + shift) / end, 1.0))
+                at_rest = until == end and not self._bench.pieces[:, 1:].any()
+                if at_rest and self._accelerations[-1] <= SILENT * self.largest_acceleration:
+                    return
 
     def _jump(self, begin: float, until: float, state: _State) -> None:
         """What the heights' and velocities' jumps make of the modes: the plate's mass does not jump."""
@@ -144,39 +166,37 @@ class _Walker:
             state.q -= self._ringing.participation[:, i] * jump[0]
             state.q_t -= self._ringing.participation[:, i] * jump[1]
 
-    def _cross(self, begin: float, until: float, state: _State) -> None:
+    def _cross(self, begin: float, until: float, shift: float, state: _State) -> None:
         """Walk between two breakpoints [s], in steps fine enough for both motion and pieces."""
-        width, steps = len(self._limits), 2 * math.ceil((until - begin) * self._fastest / RADIANS / 2)
+        width, own, guess = len(self._limits), len(state.q), self._bench.corrections.copy()
+        steps = 2 * self._finer * math.ceil((until - begin) * self._fastest / RADIANS / 2)
         for _ in range(MAX_HALVINGS):
             nodes = np.zeros((steps + 1, 3, width))
             q, q_t = state.q.copy(), state.q_t.copy()
+            self._bench.corrections[:] = guess  # steps that are too long may have led astray
             outcome, error = march(self._ringing, self._bench, self._pair, self._table, begin, until, q, q_t, nodes)
-            if outcome == FINE and error <= STEP_ERROR * max(np.abs(nodes[:, 0]).max(), self._largest[0].max()):
+            largest = max(float(np.abs(nodes[:, 0, :own]).max()), self._largest)
+            if outcome == FINE and error <= STEP_ERROR * largest:
                 lengths, rows = np.zeros(steps, dtype=np.int64), np.zeros((steps, width, ORDER))
                 h = (until - begin) / steps
                 laid, over = lay_steps(nodes, h, self._limits, BLOCK, lengths, rows)
                 if over <= 1.0:
                     break
             steps *= 2
+            self._finer *= 2
         else:
-            raise ValueError(
-                f"The ringing of the stretching plate cannot be followed at {begin:g} s; reduce the strokes"
-            )
-        state.q, state.q_t = q, q_t
+            what = "is not stable" if outcome == NOT_STABLE else "rings in a way that cannot be followed"
+            raise ValueError(f"The stretching plate {what} at {begin + shift:g} s; reduce the strokes")
+        state.q, state.q_t, self._largest = q, q_t, largest
+        self._accelerations.append(float(np.abs(nodes[:, 2, :own]).max()))
+        self._over, self._steps, self._pieces = max(self._over, over), self._steps + steps, self._pieces + laid
         edges = np.asarray(begin + h * np.cumsum(lengths[:laid]), dtype=float)
-        self._keep(edges, until, rows[:laid], nodes, over)
-
-    def _keep(self, edges: FloatArray, until: float, rows: FloatArray, nodes: FloatArray, over: float) -> None:
         edges[-1] = until
-        self._edges.append(edges)
-        self._rows.append(rows)
-        for k, order in enumerate((0, 2)):
-            self._largest[k] = np.maximum(self._largest[k], np.abs(nodes[:, order]).max(axis=0))
-        self._over = max(self._over, over)
-        self._steps += len(nodes) - 1
-        if (pieces := sum(map(len, self._rows))) * len(self._limits) > MAX_PIECES:
+        self._edges.append(edges + shift)
+        self._rows.append(rows[:laid].copy())
+        if self._pieces * width > MAX_PIECES:
             raise ValueError(
-                f"The plate's ringing takes more than {pieces} pieces in time for each of {len(self._limits)} shapes, "
+                f"The plate's ringing takes {self._pieces} pieces in time so far for each of {width} shapes, more than "
                 f"{MAX_PIECES} in all; raise plate.damping, reduce run.duration, or give drives frequencies with a "
                 "common period"
             )
@@ -186,7 +206,7 @@ class _Walker:
         omega = np.sqrt(self._ringing.square)
         change = omega**2 * np.abs(now.q - begun.q) + omega * np.abs(now.q_t - begun.q_t)
         lost = np.maximum(-np.expm1(-0.5 * self._ringing.drag * period), LEAST_LOST)
-        return bool((change / lost).max() <= SETTLED * self._largest[1, : len(omega)].max())
+        return bool((change / lost).max() <= SETTLED * max(self._accelerations[begun.parts : now.parts]))
 
     def corrections(self) -> Corrections:
         """The pieces as drives."""
@@ -209,8 +229,8 @@ class _Walker:
             in_plane=found[modes:],
             error=self._over,
             acceleration_error=self._over,
-            in_plane_error=0.0,
+            in_plane_error=self._over,
             pieces=len(edges) - 1,
-            equilibria=13 * self._steps,
+            equilibria=12 * self._steps,
             period=None if loop is None else float(edges[-1] - edges[loop]),
         )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,9 +21,9 @@ def lay_steps(
 ) -> tuple[int, float]:
     """Lay pieces over all steps of h [s] between nodes (steps + 1, 3, w), which have derivatives in s.
 
-    limits: (w,) m/s^2, of the error of each acceleration.  most: steps of a piece at most, a power of 2.
-    Fills the pieces' lengths in steps and their rows (pieces, w, 6). Returns how many there are, and their largest
-    error over its limit; that of a single step is taken from the error over two.
+    limits: (w,) m/s^2, of the error of each acceleration; they share 1.  most: steps of a piece at most, a power of 2.
+    Fills the pieces' lengths (steps,) in steps and their rows (steps, w, 6). Returns how many pieces there are, and the
+    largest sum of errors over limits of one; that of a single step is taken from the error over two.
     """
     laid, k, worst, steps = 0, 0, 0.0, len(nodes) - 1
     length = most
@@ -49,9 +51,11 @@ def lay_steps(
 
 @kernel_no_arrays
 def _over(left: FloatArray, middle: FloatArray, right: FloatArray, length: float, limits: FloatArray) -> float:
-    """The largest error of a quintic's acceleration in its middle, where it is largest, over its limit."""
+    """The errors of quintics' accelerations in their middle, where they are largest, over their limits, in all."""
     over = 0.0
     for j in range(len(limits)):
         bend = 1.5 * (right[1, j] - left[1, j]) / length - 0.25 * (left[2, j] + right[2, j])
-        over = max(over, abs(middle[2, j] - bend) / limits[j])
+        error = abs(middle[2, j] - bend)
+        if error > 0.0:
+            over += error / limits[j] if limits[j] > 0.0 else math.inf
     return over

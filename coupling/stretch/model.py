@@ -49,6 +49,9 @@ class StretchModel:
     @cached_property
     def largest(self) -> tuple[FloatArray, FloatArray]:
         """The largest corrections (n,) and in-plane motions (M,) at the heights [m]."""
+        return self._at_heights()
+
+    def _at_heights(self) -> tuple[FloatArray, FloatArray]:
         states = [reduced_equilibrium(self.plate, row) for row in self.heights]
         return (
             np.max([np.abs(state.corrections[0]) for state in states], axis=0),

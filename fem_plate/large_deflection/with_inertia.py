@@ -28,7 +28,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 BATCH = 64  # pairs of shapes that are solved together
-NEGLIGIBLE = 0.1  # times `least`, of the largest product of two amplitudes: such pairs are left out
+NEGLIGIBLE = 0.1  # times `least`, of the largest product of two slopes: such pairs are left out
 IN_PLANE = 1000.0  # times `least`: in-plane motions, which carry a part less than slopes do
 DEPENDENT = 1e-10  # of the largest energy: corrections with less that is new are left out
 ROUNDING = 1e-15  # of the largest square
@@ -88,7 +88,8 @@ def _stretched(
     membrane, in_plane = discrete.membrane, discrete.plane_stress.membrane
     at = _slopes(discrete, membrane, shapes)
     forces = np.zeros((sum(3 * s.weights.size for s in membrane.samples), 0))
-    for i, j, weights in _pairs(amplitudes, least):
+    steep = amplitudes * np.max([np.abs(p).max(axis=(0, 1)) for p in at], axis=0)
+    for i, j, weights in _pairs(amplitudes, steep, least):
         unknowns = _answers(membrane, at, i, j)
         more = np.concatenate([forces, _forces(membrane, at, i, j, unknowns) * weights], axis=1)
         forces = more @ _strongest(force_products(discrete, membrane, more), least)
@@ -96,7 +97,7 @@ def _stretched(
     forms = forms_of(membrane.samples, forces, at)
     at = at if in_plane is membrane else _slopes(discrete, in_plane, shapes)
     motions = np.zeros((in_plane.stiffness.shape[0], 0))
-    for i, j, weights in _pairs(amplitudes, IN_PLANE * least):
+    for i, j, weights in _pairs(amplitudes, steep, IN_PLANE * least):
         more = np.concatenate([motions, _answers(in_plane, at, i, j) * weights], axis=1)
         motions = more @ _strongest(more.T @ (in_plane.stiffness @ more), IN_PLANE * least)
     motions = motions / np.sqrt(np.diag(motions.T @ (in_plane.stiffness @ motions)))
@@ -114,15 +115,15 @@ def _slopes(discrete: DiscretePlate, membrane: Membrane, columns: Columns) -> li
     return slopes(discrete, membrane.samples, known, columns)
 
 
-def _pairs(amplitudes: FloatArray, least: float) -> Iterator[tuple[IntArray, IntArray, FloatArray]]:
-    """Batches of two shapes each and the product of their amplitudes, the largest first."""
+def _pairs(amplitudes: FloatArray, steep: FloatArray, least: float) -> Iterator[tuple[IntArray, IntArray, FloatArray]]:
+    """Batches of two shapes each and the product of their amplitudes; steep: slopes (b,) that shapes reach."""
     i, j = np.triu_indices(len(amplitudes))
-    weights = amplitudes[i] * amplitudes[j]
-    order = np.argsort(-weights, kind="stable")
-    order = order[weights[order] > NEGLIGIBLE * least * weights.max()]
+    together = steep[i] * steep[j]
+    order = np.argsort(-together, kind="stable")
+    order = order[together[order] > NEGLIGIBLE * least * together.max()]
     for start in range(0, len(order), BATCH):
         batch = order[start : start + BATCH]
-        yield i[batch], j[batch], weights[batch]
+        yield i[batch], j[batch], amplitudes[i[batch]] * amplitudes[j[batch]]
 
 
 def _answers(membrane: Membrane, at: list[FloatArray], i: IntArray, j: IntArray) -> FloatArray:
@@ -155,6 +156,6 @@ def _products(p: FloatArray, q: FloatArray) -> FloatArray:
 
 
 def _strongest(products: FloatArray, least: float) -> FloatArray:
-    """What combines k functions into orthogonal ones (k, m) with their strengths, but for weak ones."""
+    """What combines k functions into orthogonal ones (k, m), without those that are short beside the longest."""
     squares, directions = np.linalg.eigh(products)
     return np.asarray(directions[:, squares > max(least**2, ROUNDING) * squares[-1]])

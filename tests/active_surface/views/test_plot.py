@@ -274,10 +274,10 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
         done = CliRunner().invoke(main, ["plot", str(path), "-o", str(tmp_path / "new")])
         wanted = "must be a file that `active-surface run` or `active-surface sweep` left"
         assert done.exit_code == 2
-        assert done.output.splitlines()[1:] == [f"  Input result of plot {wanted}; got {path}, {said}"]
+        assert done.output.splitlines()[1:] == [f"  RESULT|SWEEP {wanted}; got {path}, {said}"]
     others = [
         ([tmp_path / "text.part.vtkhdf"], "but there is no"),
-        ([folder / "case", "--value", "distance"], "value of plot must be given for a sweep only"),
+        ([folder / "case", "--value", "distance"], "--value must be given for a sweep only"),
         ([folder / "two.nc", "--x", "strok"], "must be one of frequency, stroke; got strok; did you mean stroke?"),
         ([folder / "two.nc", "--value", "distanc"], "did you mean distance?"),
         ([folder / "two.nc", "--x", "strok", "--value", "distanc"], "plot: 2 mistakes"),

@@ -144,4 +144,4 @@ def test_two_runs_do_not_write_the_same_file(written):
     with pytest.raises(BlockingIOError, match="another run is writing it") as error:
         run_case(CASE, written)
     assert error.value.filename == str(partial)
-    assert refusal_of(error.value, "run", False).message == f"run: {partial}: another run is writing it"
+    assert refusal_of(error.value, "run", False, {}).message == f"run: {partial}: another run is writing it"

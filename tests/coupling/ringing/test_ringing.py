@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from coupling.ringing import make_ringing_model
 from coupling.ringing.motion import ringing_corrections
 from coupling.stretch import make_model
-from coupling.vibration import make_vibration_model
+from coupling.vibration import always_running, make_vibration_model, motion_of
 from fem_plate import Plate, PlateSection, backbone
 from fem_plate.large_deflection import energy
 from meshes import disc
@@ -21,6 +21,7 @@ SECTION = PlateSection(169e9, 0.3, THICKNESS, 2330.0)
 PLATE = Plate(disc(RADIUS, 75e-6), SECTION, "clamped", tolerance=1e-4)
 CENTRE = np.zeros((1, 2))
 STILL = Drive(0.0, 1e3, "up")
+TIMES = np.linspace(0.0, 2e-5, 50)
 
 
 def damping(ratio):
@@ -41,7 +42,8 @@ def free(plate, amplitude, periods, allowed=1e-3):
     q = np.zeros(plate.count)
     q[0] = amplitude
     limits = plate.limits(allowed * omega[0] ** 2 * amplitude)
-    return ringing_corrections(plate.ringing, [STILL], periods * 2 * np.pi / omega[0], (q, np.zeros_like(q)), limits)
+    end = periods * 2 * np.pi / omega[0]
+    return ringing_corrections(plate.ringing, [STILL], end, (q, np.zeros_like(q)), limits)[0]
 
 
 @pytest.mark.compiled
@@ -147,3 +149,17 @@ def test_without_a_common_period_there_is_no_steady_state():
         ValueError, match=r'start must be "rest" for a stretching plate whose drives have no common period'
     ):
         plate.corrections([once], 1e-4)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("delay", [0.0, 3e-6])
+def test_a_small_steady_state_is_that_of_a_plate_that_does_not_stretch(delay):
+    """A delay is a shift within the period."""
+    drive = always_running(Drive(1e-4 * THICKNESS, 100e3, delay=delay))
+    plate = model(1e-4 * THICKNESS, 0.05, 100e3, steady=True)
+    expected = motion_of(plate.chosen.modes, plate.damping, [drive], 1e-4, True).evaluate(TIMES)
+    found = plate.corrections([drive], 1e-4).drives[: plate.count]
+    for order in range(3):
+        values = np.array([one.evaluate(TIMES)[order] for one in found]).T
+        largest = np.abs(expected[order]).max()
+        np.testing.assert_allclose(values, expected[order][:, : plate.count], rtol=0, atol=1e-4 * largest)
