@@ -41,6 +41,11 @@ class StretchError:
     reduction: float  # measured, of the few shapes that stand for these
     pieces: float | None  # measured, of these shapes' drives, piece by piece in time; None with inertia
 
+    @property
+    def largest(self) -> float:
+        """Of these errors."""
+        return max(self.mesh, self.reduction, self.pieces or 0.0)
+
 
 @dataclass(frozen=True)
 class VibrationFigures:

@@ -125,11 +125,8 @@ def _stretching(error: StretchError, solutions: int) -> str:
 
 def _vibrating(figures: VibrationFigures) -> str:
     """How exact a plate with inertia is."""
-    coupled = (
-        f", the lowest {figures.coupled} coupled by the membrane (the others: {figures.uncoupled:.1e} of it)"
-        if figures.coupled
-        else ""
-    )
+    share = f"{figures.uncoupled:.1e} of the acceleration"
+    coupled = f", the lowest {figures.coupled} coupled by the membrane, the others {share}" if figures.coupled else ""
     return (
         f"{_count(figures.modes, 'mode')} up to {quantity_text(figures.highest, 'Hz', 4)}{coupled}; acceleration good "
         f"to {figures.mode_error:.1e} (estimated), over time to {figures.piece_error:.1e}"
@@ -184,7 +181,7 @@ def _of_solver(s: PlateSummary) -> list[str]:
             f"The plate's acceleration is accurate to {s.vibration.mode_error:.1e} of its largest only, as a drive "
             "whose velocity or acceleration jumps excites modes without end; a ramp avoids that."
         )
-    if s.stretch_error and (worst := max(vars(s.stretch_error).values())) > MAX_STRETCH_ERROR:
+    if s.stretch_error and (worst := s.stretch_error.largest) > MAX_STRETCH_ERROR:
         texts.append(
             f"The plate that stretches is accurate to {worst:.1e} of its deflection only; reduce "
             + ("plate.cell_size." if worst == s.stretch_error.mesh else "the strokes.")

@@ -56,7 +56,7 @@ def model_warnings(study: Study) -> tuple[str, ...]:
     known = {name: [value for one in summaries if (value := getattr(one, name)) is not None] for name in FIGURES}
     worst: dict[str, Any] = {name: max(values, default=None) for name, values in known.items()}
     stretched = [one.stretch_error for one in summaries if one.stretch_error]
-    worst["stretch_error"] = max(stretched, key=lambda error: max(vars(error).values()), default=None)
+    worst["stretch_error"] = max(stretched, key=lambda error: error.largest, default=None)
     return tuple(report.warnings(replace(summaries[0], path_error=0.0, frames_per_cycle=None, **worst)))
 
 

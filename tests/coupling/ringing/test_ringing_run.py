@@ -53,6 +53,7 @@ def test_a_run_says_how_many_modes_the_membrane_couples(tmp_path):
     vibration = result.summary.vibration
     assert 1 <= vibration.coupled < vibration.modes
     assert result.summary.theory == "von-karman" and result.summary.quasi_static_error is None
+    assert not any("good to" in warning or "accurate to" in warning for warning in report.warnings(result.summary))
     text = "\n".join(line for _, line in report.lines(result.summary))
     assert f"the lowest {vibration.coupled} coupled by the membrane" in text
     assert result.summary.energy_balance < 1e-5
