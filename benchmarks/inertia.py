@@ -70,7 +70,7 @@ def row(count: int, ratio: float, first: float) -> str:
             times[repeat, k] = process_time() - begun
     cost = median(times[1:, 1] / times[1:, 0])
     more = paths[1].evaluations / paths[0].evaluations
-    pieces, modes = len(vibration.modal_drives[0].pieces.start), len(vibration.frequencies)
+    pieces, modes = len(vibration.modal_drives[0].pieces.start), len(vibration.modal_drives)
     error = vibration.model.chosen.error
     return f"| {count} | {ratio:g} | {modes} | {error:.1e} | {pieces} | {more:.2f} | {cost:.1f} |"
 
