@@ -89,7 +89,7 @@ paper: .venv/installed
 	@touch $@
 
 .venv/developer: .venv/python pyproject.toml constraints.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev,cluster]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev,cluster,parquet]"
 	@touch .venv/installed $@
 
 .venv/benchmarks: .venv/installed

@@ -12,6 +12,7 @@ from coupling import (
     read_run as read_run,
     read_surface as read_surface,
     run_case as run_case,
+    run_cases as run_cases,
     surface_motion as surface_motion,
     write_csv as write_csv,
     write_surface as write_surface,
@@ -19,8 +20,10 @@ from coupling import (
 from fem_plate import (
     DeflectedPlate as DeflectedPlate,
     Deflection as Deflection,
+    InfluenceFit as InfluenceFit,
     InfluenceShapes as InfluenceShapes,
     LargeDeflection as LargeDeflection,
+    MeasuredInfluence as MeasuredInfluence,
     Modes as Modes,
     PatchedShapes as PatchedShapes,
     Plate as Plate,
@@ -29,7 +32,9 @@ from fem_plate import (
     Shapes as Shapes,
     analytic as analytic,
     backbone as backbone,
+    fit_influence as fit_influence,
     neighbour_coupling as neighbour_coupling,
+    read_influence as read_influence,
     save_influence as save_influence,
 )
 from particle import (
@@ -61,14 +66,25 @@ from particle import (
     simulate_many as simulate_many,
 )
 
-from . import paper as paper, steering as steering, studies as studies, views as views
+from . import identification as identification, paper as paper, steering as steering, studies as studies, views as views
+from .identification import (
+    Estimate as Estimate,
+    Identified as Identified,
+    Track as Track,
+    identify as identify,
+    read_track as read_track,
+)
 from .steering import (
     Aimed as Aimed,
+    Followed as Followed,
+    Objective as Objective,
     Planned as Planned,
     Route as Route,
     Settings as Settings,
     Task as Task,
     aim as aim,
+    follow_plan as follow_plan,
+    objective as objective,
     plan as plan,
     read_route as read_route,
     read_task as read_task,

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_plate.large_deflection import Columns, DiscretePlate
-from fem_plate.large_deflection.equilibrium import Coefficients, Loads, Solution
-from fem_plate.large_deflection.samples import times
-from fem_plate.large_deflection.snapshots import slopes
+from fem_plate.large_deflection.membranes.samples import times
+from fem_plate.large_deflection.reduction.snapshots import slopes
+from fem_plate.large_deflection.solution.equilibrium import Coefficients, Loads, Solution
 
 FloatArray = NDArray[np.float64]
 Slopes = list[FloatArray]  # (k, 2 n) at each set of samples

@@ -11,7 +11,7 @@ from scipy.interpolate import BPoly, PPoly
 
 from coupling.stretch import Corrections
 from fem_plate.large_deflection import Columns, Reduction
-from fem_plate.large_deflection.snapshots import bending_products
+from fem_plate.large_deflection.reduction.snapshots import bending_products
 from particle import AnyDrive, SurfaceMotion
 from particle.drives import QuinticDrive, quintic_drives
 

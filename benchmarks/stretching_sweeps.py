@@ -70,8 +70,8 @@ def study_of(folder: Path, theory: Literal["linear", "von-karman"], points: int)
 
 def check(engine: Engine, exact: bool) -> float:
     """The largest distance of a few ends from those of single runs, over the path's length."""
-    records, off = engine.records(0, CHECKED), 0.0
-    for k, values in enumerate(engine.study.points.values(0, CHECKED)):
+    records, off = engine.records(range(CHECKED)), 0.0
+    for k, values in enumerate(engine.study.points.values(range(CHECKED))):
         path = run_case(engine.variants.at(values)[0]).trajectory
         end = np.array([records["end_x"][k], records["end_y"][k]])
         off = max(off, float(np.linalg.norm(end - path.position[-1]) / path.path_length))
@@ -116,7 +116,7 @@ def blocks(engines: list[Engine]) -> tuple[FloatArray, list[float]]:
     for block in range(count):
         for k, engine in enumerate(engines):
             begin = time.perf_counter()
-            records = engine.records(block * BLOCK, (block + 1) * BLOCK)
+            records = engine.records(range(block * BLOCK, (block + 1) * BLOCK))
             times[k, block] = time.perf_counter() - begin
             assert not records["mistakes"].any()
             lost[k] += int((records["end_time"] < DURATION * (1 - 1e-9)).sum())

@@ -19,6 +19,7 @@ __all__ = [  # public; the stub beside has also what other packages of the progr
     "read_run",
     "read_surface",
     "run_case",
+    "run_cases",
     "surface_motion",
     "write_csv",
     "write_surface",

@@ -1,6 +1,7 @@
 from .case import Case as Case, CaseError as CaseError, InputError as InputError, read_case as read_case
 from .results.csv_file import write_csv as write_csv
 from .results.saved import SavedRun as SavedRun, read_run as read_run
+from .batch import run_cases as run_cases
 from .run import Result as Result, build_surface as build_surface, run_case as run_case
 from .surface.file import read_surface as read_surface, write_surface as write_surface
 from .surface.motion import surface_motion as surface_motion
@@ -18,20 +19,17 @@ from .progress import (
     no_progress as no_progress,
 )
 from .repeat import Rerun as Rerun, rerun as rerun
+from .limits import limit_warnings as limit_warnings
 from . import report as report
 from .report import warnings as warnings
-from .run import (
-    build_friction as build_friction,
-    build_part as build_part,
-    build_scene as build_scene,
-    follow_part as follow_part,
-    friction_law as friction_law,
-)
+from .part import build_friction as build_friction, build_part as build_part, friction_law as friction_law
+from .run import build_scene as build_scene, follow_part as follow_part
 from .shared_surface import (
     StretchedSurface as StretchedSurface,
     VibratingSurface as VibratingSurface,
     answers_drives as answers_drives,
     shared_surface as shared_surface,
 )
-from .suggestion import near as near
-from .summary import PlateSummary as PlateSummary, summary_of as summary_of
+from .suggestion import near as near, same_values as same_values
+from .margins import Margin as Margin
+from .summary import PlateSummary as PlateSummary, Summary as Summary, summary_of as summary_of

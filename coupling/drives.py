@@ -112,10 +112,9 @@ def first_jump(drives: Sequence[AnyDrive], end: float) -> float | None:
     """The first time [s] between 0 and `end` at which a drive's velocity jumps; None: at none."""
     times = []
     for drive in drives:
-        near = 1e-6 * drive.stroke_time
-        for time in (drive.delay, drive.delay + drive.segments().duration):
-            if 0 < time < end:
-                before, after = drive.evaluate([time - near, time + near])[1]
-                if abs(after - before) > JUMP * travel(drive) / drive.stroke_time:
-                    times.append(time)
+        near, pieces = 1e-6 * drive.stroke_time, drive.segments()
+        edges = drive.delay + np.append(pieces.since, pieces.duration)
+        edges = edges[(edges > 0) & (edges < end)]
+        before, after = (drive.evaluate(edges + side)[1] for side in (-near, near))
+        times += edges[np.abs(after - before) > JUMP * travel(drive) / drive.stroke_time].tolist()
     return min(times, default=None)

@@ -14,7 +14,7 @@ from coupling.case import SAME_PLACE, Case
 from coupling.drives import moments, stroke_heights, travel
 from coupling.ringing import RingingModel
 from coupling.scene import PlateScene
-from coupling.steepest import around, circles, steepest
+from coupling.steepest import around, circles, sharp_points, steepest
 from coupling.stretch import Stretch
 from coupling.tipping import states_adhesion, tipping_of
 from coupling.vibration import PIECES
@@ -96,7 +96,8 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     stretch = scene.stretch
     if stretch is None:
         moving = scene.moving_shapes, scene.moving_drives
-        slope, deflection, curvature = _extremes(*moving, case.run.duration, plate.section.thickness / 2)
+        sharp = sharp_points(plate.singular, shapes.points)
+        slope, deflection, curvature = _extremes(*moving, case.run.duration, sharp, plate.section.thickness / 2)
         strain = None if curvature is None else plate.section.thickness / 2 * curvature
     else:
         deflection, slope, strain = stretch.extremes
@@ -132,7 +133,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         plate_rings=rings,
         quasi_static_error=None if scene.has_inertia or rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
-        part_sag=_part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force)))),
+        part_sag=part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force)))),
     )
 
 
@@ -181,23 +182,25 @@ def _hold_residual(shapes: PlateShapes) -> float:
     return float(np.abs(heights - np.eye(len(shapes.points))[held]).max())
 
 
-def _extremes(shapes: Shapes, drives: Sequence[AnyDrive], end: float, off: float) -> tuple[float, float, float | None]:
+def _extremes(
+    shapes: Shapes, drives: Sequence[AnyDrive], end: float, sharp: FloatArray, off: float
+) -> tuple[float, float, float | None]:
     """The largest slope, deflection [m] and curvature [1/m] over the time asked for, wherever the run ended.
 
     They are those at the mesh's points and on circles around the actuators, where the slope is largest. Curvatures are
-    principal ones, farther than `off` [m] from the actuators. Of very many actuators, slope and deflection over the
-    neighbourhood of those where they must be.
+    principal ones, `off` [m] or farther from the sharp points (k, 2) [m], where they are infinite. Of very many
+    actuators, slope and deflection over the neighbourhood of those where they must be.
     """
     heights = stroke_heights(drives, moments(drives, end))
     if isinstance(shapes, PatchedShapes):
         return *steepest(shapes, heights), None
     assert isinstance(shapes, InfluenceShapes | MovingShapes)
     steep = np.concatenate([shapes.functions.space.points * shapes.size, around(shapes)])
-    points = np.concatenate([steep, circles(shapes, off)])
+    points = np.concatenate([steep, circles(shapes, sharp, off)])
     value, gradient, hessian = shapes.evaluate(points)
     value, gradient = value[: len(steep)], gradient[: len(steep)]
     slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
-    far = cKDTree(shapes.points).query(points)[0] >= off * (1 - SAME_PLACE)
+    far = cKDTree(sharp).query(points)[0] >= off * (1 - SAME_PLACE)
     rows = np.stack([hessian[far, :, 0, 0], hessian[far, :, 0, 1], hessian[far, :, 1, 1]])
     curvature = max(float(_principal(*(rows @ h)).max()) for h in heights)
     return slope, float(np.abs(heights @ value.T).max()), curvature
@@ -228,11 +231,15 @@ def _top_face_share(contact: ContactSamples) -> float | None:
     return added / rest if rest > 0 else None
 
 
-def _part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: float) -> float:
+def part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: float) -> float:
     """How far [m] the plate, its actuators held, gives under the part's largest force [N] where it began."""
     start = trajectory.position[:1]
-    if np.hypot(*(shapes.points - start).T).min() < SAME_PLACE * shapes.size:
-        return 0.0  # the part stands on an actuator, which does not give
+    distance = np.hypot(*(shapes.points - start).T)
+    below = int(np.argmin(distance))
+    if distance[below] < SAME_PLACE * shapes.size:
+        # The part stands on an actuator. A force k there raises the plate like a unit stroke on the spring k.
+        spring = float(shapes.springs[below])
+        return 0.0 if np.isinf(spring) else float(shapes.own_heights()[below]) / (spring or 1.0) * force
     if isinstance(shapes, PatchedShapes):
         return shapes.compliance_at(start[0]) * force
     springs = np.append(shapes.springs, 0.0)

@@ -18,7 +18,7 @@ _open_bars: list[_Bar] = []
 
 PATIENCE = 2.0  # s of silence
 PARTS = 100  # of what is done before pieces are counted
-COMPILING = "Compiling the kernels (once, some minutes)"
+COMPILING = "Compiling what this case needs for the first time (once, up to some minutes)"
 
 
 def no_progress(done: int, of: int) -> None:

@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any
 from threadpoolctl import threadpool_limits
 
 import particle
-from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, PlatformCase, TableCase
+from coupling.advice import advised_case
+from coupling.case import Case, PlatformCase, RunCase
 from coupling.drives import build_drives as build_drives
+from coupling.part import build_friction, build_part
 from coupling.progress import Progress, silent
 from coupling.results import check_csv, record_of, write_results
 from coupling.scene import Scene, plate_scene, platform_scene
@@ -68,6 +70,13 @@ class Result:
         text = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."
         return f"Result of {self.case!r}. {text}"
 
+    @property
+    def advised(self) -> Case | None:
+        """The case of the trial run that the advice tells of; None: there is none, or the part is on a platform."""
+        advice = self.summary.advice
+        trial = None if advice is None or not advice.plate else advice.trial
+        return None if trial is None else advised_case(self.case, trial)
+
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the path over the surface as it is when it is deflected most, and the motion over time.
 
@@ -90,6 +99,7 @@ def run_case(
     csv: bool = False,
     save_surface: bool = False,
     forces: bool = False,
+    shapes: PlateShapes | None = None,
 ) -> Result:
     """Run a case.
 
@@ -107,6 +117,10 @@ def run_case(
         Also write the moving surface, with the cells that the part came to, to NAME.surface.h5 (`read_surface`).
     forces : bool
         Also write the parts of the contact's force to the part's file and the CSV file (`Trajectory.contact_at`).
+    shapes : InfluenceShapes or PatchedShapes, optional
+        Those of another result, `result.shapes`, with the same plate and places of actuators: the plate is not solved
+        again. Of a plate that stretches or vibrates only its influence shapes are taken; the equilibria or modes
+        beyond these, which depend on the drives, are found anew.
 
     Returns
     -------
@@ -116,7 +130,8 @@ def run_case(
     Raises
     ------
     ValueError
-        The case cannot be run or, before any work, NAME.csv or NAME.surface.h5 holds something else.
+        The case cannot be run, `shapes` are of another plate or other actuators or, before any work, NAME.csv or
+        NAME.surface.h5 holds something else.
     OSError
         A file that the case reads is gone.
     """
@@ -126,12 +141,21 @@ def run_case(
         check_surface(Path(output) / f"{case.name}.surface.h5")
     # Many small systems: BLAS threads would only wait for each other, and take two to four times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return _run(case, None if output is None else Path(output), progress, csv, save_surface, forces)
+        folder = None if output is None else Path(output)
+        return _run(case, folder, progress, csv, save_surface, forces, shapes)
 
 
-def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_surface: bool, forces: bool) -> Result:
+def _run(
+    case: Case,
+    output: Path | None,
+    progress: Progress,
+    csv: bool,
+    save_surface: bool,
+    forces: bool,
+    shapes: PlateShapes | None,
+) -> Result:
     record = None if output is None else record_of(case)  # its files may be others when the path is found
-    scene = build_scene(case, progress)
+    scene = build_scene(case, progress, shapes)
     with progress("Following the part"):
         friction = build_friction(case)
         trajectory = interruptible(follow_part, case, scene.surface, friction)
@@ -148,11 +172,16 @@ def _run(case: Case, output: Path | None, progress: Progress, csv: bool, save_su
     return Result(case, scene, trajectory, summary, files)
 
 
-def build_scene(case: Case, progress: Progress = silent) -> Scene:
-    """What the part moves over: a plate on actuators, or a platform."""
+def build_scene(case: Case, progress: Progress = silent, shapes: PlateShapes | None = None) -> Scene:
+    """What the part moves over: a plate on actuators, or a platform.
+
+    shapes: of the same plate and actuators, if they are known; raises ValueError for others.
+    """
     if isinstance(case.plate, PlatformCase):
+        if shapes is not None:
+            raise ValueError("Input shapes of run_case must not be given for a platform, which has none")
         return platform_scene(case.plate, progress)
-    return plate_scene(case, case.plate, progress)
+    return plate_scene(case, case.plate, progress, shapes)
 
 
 def build_surface(case: Case) -> SurfaceMotion:
@@ -160,32 +189,15 @@ def build_surface(case: Case) -> SurfaceMotion:
     return build_scene(case).surface
 
 
-def build_friction(case: Case) -> Contact:
-    """The friction law between part and surface."""
-    return friction_law(case.friction)
-
-
-def friction_law(law: FrictionCase) -> Contact:
-    """The friction law of a case's table."""
-    if isinstance(law, ConstantCase):
-        return particle.ConstantFriction(law.limit)
-    if isinstance(law, CoulombCase):
-        return particle.CoulombAdhesion(law.coefficient, law.adhesion, law.static_coefficient)
-    if isinstance(law, TableCase):
-        return particle.FrictionTable(law.loads or (), law.limits or (), law.static_ratio)
-    return particle.KogutEtsion(**law.model_dump(exclude={"model", "preset"}))
-
-
-def build_part(case: Case, position: tuple[float, float] | None = None) -> particle.Micropart:
-    """The part of a case, at its start or another place [m]."""
-    p = case.part
-    return particle.Micropart(p.mass, position or p.position, p.velocity, p.squeeze, p.centre_height)
+def tighter_tolerance(run: RunCase) -> float:
+    """The tolerance of the path that one is compared with."""
+    return max(run.tolerance / 100, 1e-13)
 
 
 def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tighter: bool = False) -> Trajectory:
     """The part's path over the surface; tighter: at a hundredth of the tolerance, or with half the time step."""
     part, run = build_part(case), case.run
-    tolerance = max(run.tolerance / 100, 1e-13) if tighter else run.tolerance
+    tolerance = tighter_tolerance(run) if tighter else run.tolerance
     steps: dict[str, Any] = {}
     if run.scheme != "events" and (run.time_step or tighter):
         time_step = run.time_step or default_step(surface, run.duration)

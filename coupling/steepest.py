@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 
 from fem_plate import Shapes
+from fem_plate.elements import SingularCorner
 
 FloatArray = NDArray[np.float64]
 
@@ -53,9 +54,14 @@ def around(shapes: Shapes) -> FloatArray:
     return _circles(shapes, np.arange(len(shapes.points)), np.minimum(others, shapes.outline.gap(shapes.points)))
 
 
-def circles(shapes: Shapes, radius: float) -> FloatArray:
-    """Points (n, 2) [m] of the plate on circles of a radius [m] around all actuators."""
-    return _stars(shapes, shapes.points, np.full(len(shapes.points), radius), (1.0,))
+def circles(shapes: Shapes, centres: FloatArray, radius: float) -> FloatArray:
+    """Points (n, 2) [m] of the plate on circles of a radius [m] around centres (k, 2) [m]."""
+    return _stars(shapes, centres, np.full(len(centres), radius), (1.0,))
+
+
+def sharp_points(singular: Sequence[SingularCorner], points: FloatArray) -> FloatArray:
+    """Where the bending moment is infinite: actuators' points (N, 2) [m] and, below these, corners of the plate."""
+    return np.concatenate([points, *(corner.point[None] for corner in singular if corner.exponent < 1)])
 
 
 def _circles(shapes: Shapes, centres: NDArray[np.int64], nearest: FloatArray) -> FloatArray:

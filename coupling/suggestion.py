@@ -3,11 +3,70 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from coupling.synonyms import choices, synonyms
 
 
 def near(word: str, known: Iterable[str]) -> str | None:
-    """The known word that is most like another, or the only one that begins with it; None: nothing is like it."""
-    choices, given = list(known), word.strip().lower()
-    begun = [choice for choice in choices if len(given) > 2 and choice.lower().startswith(given)]
-    return next(iter(difflib.get_close_matches(given, choices, 1)), begun[0] if len(begun) == 1 else None)
+    """The known word that another stands for, is most like, or is the only one to begin with; None: there is none."""
+    there, given = list(known), word.strip().lower()
+    meant = [synonym.keys[0] for synonym in synonyms(word, there)]
+    begun = [choice for choice in there if len(given) > 2 and choice.lower().startswith(given)]
+    alike = difflib.get_close_matches(given, there, 1)
+    return next(iter([*meant, *choices(word, there), *alike, *(begun if len(begun) == 1 else ())]), None)
+
+
+def same_values(word: str, known: Iterable[str]) -> bool:
+    """Whether the key that `near` finds for another has the same values, as a radius has not those of a diameter."""
+    return all(synonym.conversion in ("same", "name") for synonym in synonyms(word, [*known])[:1])
+
+
+def near_file(path: Path, ending: str = ".toml") -> Path | None:
+    """The file that is meant by a path at which there is none; None where no file is like it.
+
+    It lacks its ending, a part of it is misspelt, or its folder is left out, which is one or two below.
+    """
+    if path.suffix != ending and (whole := path.with_name(path.name + ending)).is_file():
+        return whole
+    try:
+        meant = _spelt(path, ending)
+        return meant or next(_below(path, ending), None)
+    except OSError:  # a folder that may not be read
+        return None
+
+
+def _spelt(path: Path, ending: str) -> Path | None:
+    """A path whose parts are the most like those of another, among the files and folders that there are."""
+    meant = Path(path.anchor)
+    *folders, name = path.parts[1 if path.anchor else 0 :]
+    for folder in folders:
+        names = (
+            [entry.name for entry in meant.iterdir() if entry.is_dir()] if not (meant / folder).is_dir() else [folder]
+        )
+        likely = difflib.get_close_matches(folder, names, 1)
+        if folder != ".." and not likely:
+            return None
+        meant = meant / (folder if folder == ".." else likely[0])
+    if (meant / name).is_file():
+        return meant / name
+    files = [entry.name for entry in meant.iterdir() if entry.is_file()]
+    if name + ending in files:
+        return meant / (name + ending)
+    known = [file for file in files if file.endswith(ending)]
+    likely = [like for one in (name, name + ending) for like in difflib.get_close_matches(one, known, 1, 0.75)]
+    return meant / likely[0] if likely else None
+
+
+def _below(path: Path, ending: str) -> Iterator[Path]:
+    """Yield the files of a name in folders below that of a path, hidden ones left out, the nearest first."""
+    for pattern in ("*/", "*/*/"):
+        for name in (path.name, path.name + ending):
+            found = path.parent.glob(f"{pattern}{name.translate({ord(c): '?' for c in '[]*'})}")
+            yield from (file for file in sorted(found) if file.is_file() and not _hidden(file))
+
+
+def _hidden(file: Path) -> bool:
+    return any(part.startswith(".") and part not in (os.curdir, os.pardir) for part in file.parts)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
+from coupling.advice import MAX_SLOPE, MAX_STRAIN, Advice, advice_from, advise
 from coupling.case import Case
 from coupling.drives import first_jump, frame_times
-from coupling.measured import MotionFit
+from coupling.margins import Margins, margins_from, margins_of
+from coupling.measured import MotionFit, fit_from
 from coupling.plate_figures import PlateFigures, StretchError, VibrationFigures, plate_figures
 from coupling.scene import PlateScene, Scene
 from particle import AnyDrive, EventKind, State, Trajectory
@@ -41,12 +44,17 @@ class Summary:
     gravity: float | tuple[float, float, float]  # m/s^2
     squeeze: float  # N
     motion_fits: tuple[MotionFit, ...]  # of a measured motion
+    noise_pull: float | None  # that its noise alone gives a part at rest, over what friction holds; None: not measured
+    load_unbounded: bool  # whether the friction law has no pull-off, whatever the load
     drive_error: float  # of the drives' pieces, relative to the stroke
     drive_jump: float | None  # s, the first jump of a drive's velocity on the way; None: there is none
     contact_error: float  # relative, of the tabulated friction limit, measured
     energy_balance: float  # the largest gap in the energy ledger over the largest of its entries
-    path_error: float | None  # m, end point against a run at a hundredth of the tolerance; None: other events
+    path_error: float  # m, end point against a run at a hundredth of the tolerance
+    same_events: bool  # whether that run has the same kinds of events in the same order
     path_resolution: float  # m, the tolerance of one step
+    margins: Margins
+    advice: Advice | None  # for a part that hardly moved or was lost; None also where no drive moves
     frames_per_cycle: (
         float | None
     )  # steps of the result files to a cycle of the fastest drive; None: measured, or nothing moves
@@ -71,7 +79,10 @@ def summary_of(figures: Mapping[str, Any]) -> Summary:
     plain: dict[str, Any] = {
         name: tuple(value) if isinstance(value, list) else value for name, value in figures.items()
     }
-    plain["motion_fits"] = tuple(MotionFit(**fit) for fit in plain["motion_fits"])
+    plain["motion_fits"] = tuple(fit_from(fit) for fit in plain["motion_fits"])
+    plain["margins"] = margins_from(plain["margins"])
+    if plain["advice"] is not None:
+        plain["advice"] = advice_from(plain["advice"])
     if plain["stretch_error"] is not None:
         plain["stretch_error"] = StretchError(**plain["stretch_error"])
     if plain["vibration"] is not None:
@@ -107,19 +118,44 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         gravity=case.run.gravity,
         squeeze=case.part.squeeze,
         motion_fits=scene.fits,
+        noise_pull=_noise_pull(case, scene, friction),
+        load_unbounded=math.isinf(friction.pull_off),
         drive_error=max((drive.error for drive in drives), default=0.0),
         drive_jump=first_jump(drives, float(trajectory.time[-1])),
         contact_error=friction.table_error,
         energy_balance=trajectory.energy.balance,
-        path_error=moved if same else None,
+        path_error=moved,
+        same_events=same,
         path_resolution=case.run.tolerance * scene.surface.size,
+        margins=margins_of(case, scene, trajectory, friction),
+        advice=None,
         frames_per_cycle=None if scene.fits else _frames_per_cycle(case, drives, float(trajectory.time[-1])),
     )
     if isinstance(scene, PlateScene):
-        return PlateSummary(**vars(summary), **vars(plate_figures(case, scene, trajectory, friction)))
-    return summary
+        figures = plate_figures(case, scene, trajectory, friction)
+        advice = advise(case, scene, trajectory, friction, _largest_stroke(figures))
+        return PlateSummary(**vars(summary) | {"advice": advice}, **vars(figures))
+    return replace(summary, advice=advise(case, scene, trajectory, friction))
+
+
+def _largest_stroke(figures: PlateFigures) -> float:
+    """The factor of strokes up to which slope and strain stay in bounds; 1 where the plate stretches."""
+    if figures.theory != "linear":
+        return 1.0
+    rooms = [(MAX_SLOPE, figures.largest_slope), (MAX_STRAIN, figures.largest_strain or 0.0)]
+    return min((bound / value for bound, value in rooms if value > 0), default=math.inf)
 
 
 def _frames_per_cycle(case: Case, drives: Sequence[AnyDrive], end: float) -> float | None:
     cycles = end * max(drive.frequency for drive in drives)
     return (len(frame_times(case.run.frames, drives, end)) - 1) / cycles if cycles > 0 else None
+
+
+def _noise_pull(case: Case, scene: Scene, friction: Contact) -> float | None:
+    """The root mean square of the noise's force along the platform over what friction holds under the weight."""
+    if not scene.fits:
+        return None
+    shaken = float(np.hypot.reduce([fit.noise_acceleration for fit in scene.fits if fit.axis != "z"] or [0.0]))
+    weight = case.part.mass * float(np.linalg.norm(case.run.gravity)) + case.part.squeeze
+    limit = friction.law.static_ratio * float(friction.friction_limit(min(weight, friction.largest_load)))
+    return case.part.mass * shaken / limit if limit > 0 else None

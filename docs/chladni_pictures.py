@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from contourpy import contour_generator
+from generated import write
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -152,15 +153,8 @@ def draw(case: Case, places: np.ndarray, path: Path) -> None:
         axes.scatter(*(MILLI * parts.T), s=5, c="black", linewidths=0)
         axes.set(title=title, xlabel="x [mm]", aspect="equal", xlim=(-5, 5), ylim=(-5, 5))
     figure.axes[0].set_ylabel("y [mm]")
-    figure.colorbar(shades, ax=figure.axes, label="amplitude [um]")
+    figure.colorbar(shades, ax=figure.axes[-1], label="amplitude [um]", fraction=0.047)
     figure.savefig(path, dpi=90)
-
-
-def write(page: Path, name: str, lines: list[str]) -> None:
-    """Replaces what the page has between its marks of that name."""
-    begin, end = f"<!-- {name}: generated -->", f"<!-- {name}: end -->"
-    before, rest = page.read_text().split(begin)
-    page.write_text(f"{before}{begin}\n\n" + "\n".join(lines) + f"\n\n{end}{rest.split(end)[1]}")
 
 
 def main() -> None:

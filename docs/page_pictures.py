@@ -10,7 +10,7 @@ from active_surface.views import write_run_page, write_study_page
 from coupling import read_case, read_run, run_case
 
 ROOT = Path(__file__).parent.parent
-SIZE = "1360,860"
+SIZE = "1360,1180"
 FLAGS = ("headless=new", "no-sandbox", "hide-scrollbars", "use-gl=angle", "use-angle=swiftshader")
 
 

@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+from generated import write
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -57,9 +58,7 @@ def main() -> None:
             flights = sum(event.kind.name == "LANDS" for event in closer.events)
             lines.append(f"| {velocity:.2f} | {strength:.2f} | {' | '.join(texts)} | {flights} |")
             print(lines[-1], flush=True)
-    begin, end = "<!-- speeds: generated -->", "<!-- speeds: end -->"
-    before, rest = PAGE.read_text().split(begin)
-    PAGE.write_text(f"{before}{begin}\n\n" + "\n".join(lines) + f"\n\n{end}{rest.split(end)[1]}")
+    write(PAGE, "speeds", lines)
     draw(speeds, {frequency: follow(frequency, 1, 1e-11) for frequency in DRAWN})
 
 

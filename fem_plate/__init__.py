@@ -7,8 +7,10 @@ __getattr__, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
 __all__ = [  # public; the stub beside has also what other packages of the program use
     "DeflectedPlate",
     "Deflection",
+    "InfluenceFit",
     "InfluenceShapes",
     "LargeDeflection",
+    "MeasuredInfluence",
     "Modes",
     "PatchedShapes",
     "Plate",
@@ -17,6 +19,8 @@ __all__ = [  # public; the stub beside has also what other packages of the progr
     "Shapes",
     "analytic",
     "backbone",
+    "fit_influence",
     "neighbour_coupling",
+    "read_influence",
     "save_influence",
 ]

@@ -9,6 +9,12 @@ from .large_deflection import (
     StretchedShapes as StretchedShapes,
 )
 from .influence import InfluenceShapes as InfluenceShapes
+from .optics import (
+    InfluenceFit as InfluenceFit,
+    MeasuredInfluence as MeasuredInfluence,
+    fit_influence as fit_influence,
+    read_influence as read_influence,
+)
 from .plate import Plate as Plate
 from .section import PlateSection as PlateSection
 from .shapes import Shapes as Shapes

@@ -19,6 +19,7 @@ class Estimated:
     functions: PlateFunctions
     size: float  # m, the length that makes the functions dimensionless
     refine: Callable[[], Self]  # solves again on cells of half the size
+    rounding: float = 0.0  # error of w that finer cells have as well, relative as the estimate
 
     @property
     def unknowns(self) -> int:
@@ -29,9 +30,9 @@ class Estimated:
     def error_estimate(self) -> float:
         """Estimated largest error of w, relative to each function's largest deflection.
 
-        It is the difference from the solution on cells of half the size, which is computed on first use.
+        It is the difference from the solution on cells of half the size, which is computed on first use, and rounding.
         """
-        return self.refine().difference(self)
+        return self.refine().difference(self) + self.rounding
 
     def difference(self, coarser: Estimated) -> float:
         """The largest difference from a solution on another mesh, at this mesh's points, relative as the estimate."""
@@ -51,18 +52,24 @@ def refined(solve: Callable[[int], Solution], tolerance: float | None, gain: flo
 
     solve: takes the number of halvings.  gain: what a halving divides the error of w by, at least.
     """
-    solution = solve(0)
-    solution.refine = lambda: solve(1)
+
+    def on_halved(times: int) -> Solution:
+        found = solve(times)
+        found.refine = lambda: on_halved(times + 1)
+        return found
+
+    solution = on_halved(0)
     if tolerance is None:
         return solution
     change, halvings = np.inf, 0
-    while 4 * solution.unknowns < MAX_UNKNOWNS and (not halvings or solution.error_estimate > tolerance):
+    least = tolerance + solution.rounding  # finer cells do not lessen rounding
+    while 4 * solution.unknowns < MAX_UNKNOWNS and (not halvings or solution.error_estimate > least):
         halvings += 1
-        coarse, solution = solution, solve(halvings)
+        coarse, solution = solution, on_halved(halvings)
         last_change, change = change, solution.difference(coarse)
-        solution.error_estimate = change * max(change / last_change, 1 / gain)
+        solution.error_estimate = change * max(change / last_change, 1 / gain) + solution.rounding
         if change > last_change / 2:
             # Halving gains no more: the rest is rounding, or the estimates were too optimistic.
-            coarse.error_estimate, solution.error_estimate = last_change, change
+            coarse.error_estimate, solution.error_estimate = (e + solution.rounding for e in (last_change, change))
             return coarse if last_change < change else solution
     return solution

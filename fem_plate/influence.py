@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import diags
 
-from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
+from fem_plate.elements import Derivatives, PlateFunctions, PlateModel, source_basis
 from fem_plate.estimated import Estimated
 from fem_plate.inputs import check_held
 from fem_plate.shapes import Shapes
@@ -48,6 +49,7 @@ class InfluenceShapes(Shapes, Estimated):
         solve = unheld_shapes if free_motions else held_shapes
         self.functions, self._green = solve(model, points / self.size, actuator_stiffness, self._stiffness_unit)
         self.strengths = self.functions.forces
+        self.rounding = source_basis(points / self.size, actuator_stiffness > 0).rounding
 
     @property
     def compliance(self) -> FloatArray:
@@ -120,31 +122,35 @@ def held_shapes(
     may_move: whether supports and actuators may leave the plate rigid motions; the shapes then have any share of them.
     Raises ValueError when they do and may not.
     """
-    responses = model.under_forces(x)
-    green = model.infinite.point_value(x, x) + np.asarray(model.space.point_values(x) @ responses)
-    green = (green + green.T) / 2
     held = stiffness > 0
-    motions = model.motions(x)
+    basis = source_basis(x, held)
+    to_forces, to_basis = basis.matrix, basis.matrix.T.tocsr()  # P from coefficients; and what they feel from heights
+    responses = model.under_forces(x, basis)
+    felt = basis.point_values(model.infinite) + np.asarray((to_basis @ model.space.point_values(x)) @ responses)
+    felt = (felt + felt.T) / 2
+    motions = np.asarray(to_basis @ model.motions(x))
     r = motions.shape[1]
     if not may_move:
-        check_held("influence", motions, held)
+        check_held("influence", model.motions(x), held)
     columns = np.arange(len(x)) if chosen is None else chosen
     drives = np.eye(len(x))[:, columns] * np.where(held[columns], 1.0, 1 / stiffness_unit)
-    yielding = green[np.ix_(held, held)] + np.diag(stiffness_unit / stiffness[held])
+    springs = (to_basis[:, held] @ diags(stiffness_unit / stiffness[held]) @ to_forces[held])[held][:, held]
+    yielding = felt[np.ix_(held, held)] + springs.toarray()
     matrix = np.block([[yielding, motions[held]], [motions[held].T, np.zeros((r, r))]])
-    strokes = drives[held] - green[np.ix_(held, ~held)] @ drives[~held]
+    strokes = (to_basis[:, held] @ drives[held])[held] - felt[np.ix_(held, ~held)] @ drives[~held]
     given = np.concatenate([strokes, -motions[~held].T @ drives[~held]])
     solution = np.linalg.lstsq(matrix, given)[0] if may_move else np.linalg.solve(matrix, given)
-    forces = drives.copy()
-    forces[held] = solution[: held.sum()]
+    coefficients = drives.copy()
+    coefficients[held] = solution[: held.sum()]
+    forces = np.asarray(to_forces @ coefficients)
     rigid = model.rigid @ solution[held.sum() :]
     if chosen is None:
         for start in range(0, len(responses), CHUNK):  # in place: there is not always room for two
-            responses[start : start + CHUNK] = responses[start : start + CHUNK] @ forces
+            responses[start : start + CHUNK] = responses[start : start + CHUNK] @ coefficients
     else:
-        responses = responses @ forces
+        responses = responses @ coefficients
     no_pressure = np.zeros(forces.shape[1])
-    return PlateFunctions(model.space, responses, x, forces, rigid, no_pressure, model.infinite), green
+    return PlateFunctions(model.space, responses, x, forces, rigid, no_pressure, model.infinite), basis.green(felt)
 
 
 def unheld_shapes(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from meshes import Outline
+from meshes import Outline, PlateMesh
 
 FloatArray = NDArray[np.float64]
 
@@ -55,6 +55,14 @@ def check_points(caller: str, points: FloatArray, gap: FloatArray, size: float) 
         mistakes.append(f"points {i} and {j} must differ; both are at {points[i].tolist()} m")
     if mistakes:
         raise ValueError(f"Input points of {caller}: " + "; ".join(mistakes))
+
+
+def places_on(mesh: PlateMesh, points: ArrayLike, caller: str) -> FloatArray:
+    """Points of `caller` as an array (N, 2) [m], of which there may be none; ValueError as of the checks above."""
+    places = as_points(points, f"points of {caller}")
+    if places.size:
+        check_points(caller, places, mesh.outline.gap(places), mesh.size)
+    return places
 
 
 def check_held(caller: str, motions: FloatArray, held: NDArray[np.bool_]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -9,13 +10,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fem_plate import vibration
-from fem_plate.arrays import CELL, FINER_CELL, ActuatorArray, Cutter, PatchedShapes, ProgressCallback, spacing
+from fem_plate.arrays import PatchedShapes, ProgressCallback, patched_shapes
 from fem_plate.buckling import buckling_compression, check_tension
 from fem_plate.deflection import Deflection
-from fem_plate.elements import Fineness, PlateModel, SingularCorner, by_boundary, corner_rows, graded, singular_corners
+from fem_plate.elements import (
+    Fineness,
+    PlateModel,
+    SingularCorner,
+    by_boundary,
+    corner_rows,
+    graded,
+    rounded_corners,
+    singular_corners,
+    wedges,
+)
 from fem_plate.estimated import refined
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
-from fem_plate.inputs import as_points, check_points, one_per_point, stiffness_per_point
+from fem_plate.inputs import as_points, check_points, one_per_point, places_on, stiffness_per_point
 from fem_plate.section import PlateSection
 from fem_plate.vibration import HeldPlate, Modes
 from meshes import PlateMesh
@@ -28,8 +39,6 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-PATCH_FINENESS = 0.16  # of the half width, eight cells: shapes at the rim are then good to 1e-6
-PATCH_RIM = 30.0  # pitches, about, that a patch extends along the rim
 TRUNCATION = 1e-6  # of unit shapes on patches, by default
 
 
@@ -47,7 +56,7 @@ class Plate:
     tolerance : float, optional
         Refine shapes and deflections until their error estimate, relative to the largest deflection, meets it, or until
         100 000 unknowns; `error_estimate` is what was reached. Shapes on patches get somewhat finer cells instead.
-        Modes ignore it.
+        Modes ignore it; their `error_estimate` says how good they are.
     tension : float
         Residual force per length N0 in the plate's plane, the same in all directions [N/m]: positive pulls, negative
         presses. It stays what it is while the plate bends. Every boundary must be held then.
@@ -57,6 +66,11 @@ class Plate:
     ValueError
         Names every unknown support and boundary; the tolerance is not positive; or there is a tension where a boundary
         is free, or a compression at which the plate buckles without actuators, whose buckling load is named.
+
+    Warns
+    -----
+    UserWarning
+        A simply supported rim of many straight sides looks like a round one's polygon, which is another plate.
     """
 
     def __init__(
@@ -77,29 +91,68 @@ class Plate:
         self.tension = float(tension)
         self.fineness = Fineness.of(mesh, self.relative_tension)
         self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
+        self.wedges = wedges(mesh, self.supports, self.tension)
+        if many := rounded_corners(mesh, self.supports):
+            nu = section.poisson_ratio
+            warnings.warn(
+                f"The simply supported rim of Plate has {many} corners of 15 degrees or less, as a round one's polygon."
+                f" With more of them its deflection under a pressure tends to {1 - 3 * (1 + nu) / (5 + nu):.0%} less "
+                "than the round plate's (Babuska's paradox). If the rim is round, give its true curve: meshes.disc, "
+                "meshes.ellipse, or a mesh file of second order",
+                stacklevel=2,
+            )
         self._last: tuple[bytes, PlateModel] | None = None
         if tension < 0 and -tension >= (load := self.buckling_load()):
             raise ValueError(
                 f"Input tension of Plate must exceed {-load:.6g} N/m, at which it buckles; got {self.tension!r}"
             )
 
+    def _warn_of_wedges(self, where: str) -> None:
+        """Warn of obtuse corners, whose functions the plate leaves out there."""
+        if self.wedges:
+            warnings.warn(
+                f"Plate has {len(self.wedges)} simply supported corners over 90 degrees. A plate {where} leaves out "
+                "what is singular there: its shapes are off by more than their error estimate says, the more the wider "
+                "the corners are",
+                stacklevel=3,
+            )
+
     def cells(
         self, points: FloatArray | None = None, halvings: int = 0, corners: Sequence[SingularCorner] = ()
     ) -> PlateMesh:
         """Halved cells, graded towards the plate's corners, further ones, and for actuators at points (N, 2) [m]."""
+        return self._graded([*self.corners, *corners], points, halvings)
+
+    def _graded(self, corners: list[SingularCorner], points: FloatArray | None, halvings: int) -> PlateMesh:
         mesh = self.mesh
         for _ in range(halvings):
             mesh = mesh.refined()
-        return graded(mesh, self.fineness.halved(halvings), [*self.corners, *corners], points)
+        return graded(mesh, self.fineness.halved(halvings), corners, points)
 
     def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
-        """The plate on such cells."""
-        mesh = self.cells(points, halvings)
+        """The plate on cells for actuators at points (N, 2) [m], with the corner functions of its wedges."""
+        mesh = self._graded([*self._other_corners, *(wedge.corner for wedge in self.wedges)], points, halvings)
         key = mesh.points.tobytes()
         if self._last is None or self._last[0] != key:
-            rows = corner_rows(mesh, self.corners)
-            self._last = key, PlateModel(mesh, self.supports, self.section.poisson_ratio, rows, self.relative_tension)
+            self._last = key, self._model_on(mesh, self.relative_tension)
         return self._last[1]
+
+    def _model_on(self, mesh: PlateMesh, tension: float) -> PlateModel:
+        rows = corner_rows(mesh, self._other_corners)
+        return PlateModel(mesh, self.supports, self.section.poisson_ratio, rows, tension, self.wedges)
+
+    @property
+    def singular(self) -> list[SingularCorner]:
+        """All corners where the deflection is not smooth, those of small turns too."""
+        known = {corner.point.tobytes() for corner in self.corners}
+        small = (SingularCorner(w.point, w.exponent) for w in self.wedges if w.point.tobytes() not in known)
+        return [*self.corners, *small]
+
+    @property
+    def _other_corners(self) -> list[SingularCorner]:
+        """The singular corners that are no wedges."""
+        known = {wedge.point.tobytes() for wedge in self.wedges}
+        return [corner for corner in self.corners if corner.point.tobytes() not in known]
 
     @property
     def relative_tension(self) -> float:
@@ -117,10 +170,9 @@ class Plate:
             A boundary is free.
         """
         check_tension(1.0, self.supports)
-        mesh = graded(self.mesh, Fineness.of(self.mesh), self.corners)
-        rows = corner_rows(mesh, self.corners)
-        model = PlateModel(mesh, self.supports, self.section.poisson_ratio, rows)
-        return buckling_compression(model) * self.section.rigidity
+        corners = [*self._other_corners, *(wedge.corner for wedge in self.wedges)]
+        mesh = graded(self.mesh, Fineness.of(self.mesh), corners)
+        return buckling_compression(self._model_on(mesh, 0.0)) * self.section.rigidity
 
     def influence(
         self,
@@ -157,16 +209,22 @@ class Plate:
         points = as_points(points, "points of influence")
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "influence", may_float=True)
         check_points("influence", points, self.mesh.outline.gap(points), self.mesh.size)
+        shapes: InfluenceShapes | PatchedShapes
         if truncation is not None or len(points) > MAX_DENSE:
-            return self._patched(points, actuator_stiffness, TRUNCATION if truncation is None else truncation, tell)
-        rigidity = self.section.rigidity
-        return refined(
-            lambda halvings: InfluenceShapes(
-                self.model(points, halvings), points, rigidity, actuator_stiffness, free_motions
-            ),
-            self.tolerance,
-            self.fineness.gain,
-        )
+            cut = TRUNCATION if truncation is None else truncation
+            self._warn_of_wedges("on patches")
+            shapes = patched_shapes(self, points, actuator_stiffness, cut, tell)
+        else:
+            rigidity = self.section.rigidity
+            shapes = refined(
+                lambda halvings: InfluenceShapes(
+                    self.model(points, halvings), points, rigidity, actuator_stiffness, free_motions
+                ),
+                self.tolerance,
+                self.fineness.gain,
+            )
+        shapes.plate = self
+        return shapes
 
     def large_deflection(
         self,
@@ -205,11 +263,10 @@ class Plate:
             raise ValueError(f"Input tension of Plate must be 0 for large_deflection; got {self.tension!r} N/m")
         from fem_plate.large_deflection import LargeDeflection, movable_by_boundary  # here: scikit-fem takes a while
 
-        points = as_points(points, "points of large_deflection")
+        points = places_on(self.mesh, points, "large_deflection")
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "large_deflection", may_float=True)
-        if points.size:
-            check_points("large_deflection", points, self.mesh.outline.gap(points), self.mesh.size)
         movable = movable_by_boundary(in_plane_supports, self.supports)
+        self._warn_of_wedges("that stretches")
         return LargeDeflection(self, points, actuator_stiffness, movable, membrane)
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
@@ -232,12 +289,10 @@ class Plate:
             As for `influence`; or there is not one force per point, a load is not finite, or the loads on a plate that
             can move rigidly are not in balance.
         """
-        points = as_points(points, "points of deflection")
+        points = places_on(self.mesh, points, "deflection")
         loads = one_per_point(forces, len(points), "forces of deflection")
         if not (np.isfinite(loads).all() and np.isfinite(pressure)):
             raise ValueError("Input forces and pressure of deflection must be finite; got some that are not")
-        if points.size:
-            check_points("deflection", points, self.mesh.outline.gap(points), self.mesh.size)
         rigidity = self.section.rigidity
         return refined(
             lambda halvings: Deflection(self.model(points, halvings), points, loads, float(pressure), rigidity),
@@ -299,7 +354,12 @@ class Plate:
         compliance = rigidity / self.mesh.size**2 / actuator_stiffness
         if deflected is not None:
             return deflected.modes(count, points, compliance, rigidity / inertia)
-        return vibration.modes(HeldPlate(model, points, compliance), count, rigidity / inertia)
+
+        def solve(halvings: int) -> Modes:
+            held_plate = HeldPlate(self.model(points, halvings), points, compliance)
+            return vibration.modes(held_plate, count, rigidity / inertia, lambda: solve(halvings + 1))
+
+        return solve(0)
 
     def __repr__(self) -> str:
         width, height = np.ptp(self.mesh.outline.box, axis=0)
@@ -318,17 +378,3 @@ class Plate:
         from meshes import notebook_html
 
         return notebook_html(self)
-
-    def _patched(
-        self, points: FloatArray, actuator_stiffness: FloatArray, truncation: float, tell: ProgressCallback
-    ) -> PatchedShapes:
-        cell = min(self.fineness.cell, PATCH_FINENESS * self.fineness.half_width)
-        pitch = spacing(points)
-        fineness = self.fineness.on_patches(cell, PATCH_RIM * min(float(pitch.max()), self.mesh.size))
-        pitches = CELL if self.tolerance is None else FINER_CELL
-        cutter = Cutter(self.mesh, self.supports, fineness, self.corners, points, pitch, pitches)
-        section = self.section
-        array = ActuatorArray(
-            cutter, points, actuator_stiffness, section.rigidity, section.poisson_ratio, self.relative_tension
-        )
-        return PatchedShapes(array, truncation, self.mesh.size, self.mesh.outline, tell)

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from fem_plate.plate import Plate
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
@@ -30,6 +32,8 @@ class Shapes(ABC):
     ----------
     points : (N, 2) array
         Places of the actuators [m].
+    plate : Plate
+        The plate that they are of.
     springs : (N,) array
         Stiffness of the actuators [N/m]; inf is rigid, 0 floating.
     strengths : (N, N) array
@@ -45,6 +49,7 @@ class Shapes(ABC):
     """
 
     points: FloatArray
+    plate: Plate
     springs: FloatArray
     strengths: FloatArray
     size: float

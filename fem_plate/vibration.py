@@ -10,7 +10,8 @@ held points: K with a correction of low rank, and so is its inverse.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,6 +40,19 @@ class Modes:
     frequencies: FloatArray
     model: PlateModel
     functions: PlateFunctions
+    refine: Callable[[], Modes] | None = field(default=None, repr=False)  # solves again on cells of half the size
+
+    @cached_property
+    def error_estimate(self) -> FloatArray:
+        """Estimated relative error of each frequency, (count,).
+
+        It is the difference from the frequencies on cells of half the size, which are computed on first use.
+        """
+        if self.refine is None:
+            raise ValueError(
+                "Input of error_estimate must be modes of Plate.modes; these were made without finer cells"
+            )
+        return np.asarray(np.abs(self.frequencies / self.refine().frequencies - 1))
 
     def evaluate(self, xy: ArrayLike) -> Derivatives:
         """The modes' shapes with first and second derivatives.
@@ -132,10 +146,10 @@ class HeldPlate:
         return whole.weighted(np.diag(1 / largest)), largest
 
 
-def modes(held_plate: HeldPlate, count: int, unit: float) -> Modes:
+def modes(held_plate: HeldPlate, count: int, unit: float, refine: Callable[[], Modes] | None = None) -> Modes:
     """The lowest modes of a plate held at points.
 
-    unit: 1/s^2, the squared angular frequency that makes eigenvalues dimensionless.
+    unit: 1/s^2, the squared angular frequency that makes eigenvalues dimensionless.  refine: solves on halved cells.
     """
     unknowns = held_plate.model.unknowns
     mass_operator = LinearOperator((unknowns, unknowns), matvec=held_plate.with_mass, dtype=float)
@@ -149,7 +163,7 @@ def modes(held_plate: HeldPlate, count: int, unit: float) -> Modes:
     )
     order = np.argsort(squares)
     functions, _ = held_plate.functions(vectors[:, order])
-    return Modes(np.sqrt(squares[order] * unit) / (2 * np.pi), held_plate.model, functions)
+    return Modes(np.sqrt(squares[order] * unit) / (2 * np.pi), held_plate.model, functions, refine)
 
 
 def singular_masses(model: PlateModel, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -15,6 +15,7 @@ __all__ = [  # public; the stub beside has also what other packages of the progr
     "disc",
     "ellipse",
     "polygon",
+    "from_skfem",
     "read",
     "rectangle",
     "regular_polygon",

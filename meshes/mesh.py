@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,11 @@ from meshes.curves import Circle, Curve, Ellipse, Parabolas
 from meshes.nearest import FloatArray, IntArray
 from meshes.outline import Outline, straight
 from meshes.refine import refine
+from meshes.scikit_fem import skfem_mesh
 from meshes.triangles import edge_numbers, sides
+
+if TYPE_CHECKING:
+    from skfem import MeshTri1, MeshTri2
 
 CORNER = np.deg2rad(15)  # a tangent that turns by more than this turns at a corner
 CUT = "cut"  # the boundary along which a part was cut out
@@ -31,11 +36,14 @@ class Corner:
         Between the true tangents, through the plate [rad].
     sides : tuple of str
         The boundaries before and after the corner, walking with the plate on the left.
+    direction : float
+        Of the rim after the corner, from the x axis, counter-clockwise [rad].
     """
 
     row: int
     angle: float
     sides: tuple[str, str]
+    direction: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +117,19 @@ class PlateMesh:
         along = np.repeat((end - start)[:, None], len(s), axis=1)
         return start[:, None] + np.asarray(s)[:, None] * along, along
 
+    @property
+    def middles(self) -> dict[str, FloatArray]:
+        """The middles of each boundary's edges on its true curve, (k, 2) [m]."""
+        return {name: self.arcs(name, np.array([0.5]))[0][:, 0] for name in self.boundaries}
+
+    def to_skfem(self) -> MeshTri1 | MeshTri2:
+        """The mesh for scikit-fem, with its named boundaries; a `MeshTri2` where a rim is curved [m].
+
+        The points keep their order. Cells of second order meet a curved rim at three points of each edge.
+        """
+        middles = self.middles if self.curves else None
+        return skfem_mesh(self.points, self.triangles, self.boundaries, middles)
+
     @cached_property
     def cell_sizes(self) -> FloatArray:
         """The longest edge of each triangle [m], (m,)."""
@@ -118,6 +139,10 @@ class PlateMesh:
     @cached_property
     def corners(self) -> tuple[Corner, ...]:
         """The points where the rim turns by more than 15 degrees or the boundary's name changes."""
+        return self.turns(CORNER)
+
+    def turns(self, least: float) -> tuple[Corner, ...]:
+        """The points where the rim turns by more than an angle [rad] or the boundary's name changes."""
         names = [name for name, pairs in self.boundaries.items() for _ in pairs]
         before, after = np.concatenate(list(self.boundaries.values())).T[::-1]  # points that edges run to and from
         tangents = np.concatenate([self.arcs(name, np.array([0.0, 1.0]))[1] for name in self.boundaries])
@@ -131,9 +156,23 @@ class PlateMesh:
             angles = (direction[arriving, 1] + np.pi - direction[leaving, 0]) % (2 * np.pi)
             k = int(np.argmin(angles))
             before_and_after = (names[arriving[k]], names[leaving])
-            if abs(angles[k] - np.pi) > CORNER or before_and_after[0] != before_and_after[1]:
-                corners.append(Corner(int(after[leaving]), float(angles[k]), before_and_after))
+            if abs(angles[k] - np.pi) > least or before_and_after[0] != before_and_after[1]:
+                corners.append(
+                    Corner(int(after[leaving]), float(angles[k]), before_and_after, float(direction[leaving, 0]))
+                )
         return tuple(corners)
+
+    def same_as(self, other: PlateMesh) -> bool:
+        """Whether another mesh has the same cells, boundaries and curves."""
+        names = self.boundaries.keys()
+        return (
+            np.array_equal(self.points, other.points)
+            and np.array_equal(self.triangles, other.triangles)
+            and names == other.boundaries.keys()
+            and all(np.array_equal(self.boundaries[name], other.boundaries[name]) for name in names)
+            and self.curves.keys() == other.curves.keys()
+            and all(_same(curve, other.curves[name]) for name, curve in self.curves.items())
+        )
 
     def part(self, keep: NDArray[np.bool_]) -> PlateMesh:
         """The mesh of the triangles to keep (m,); new boundary edges are straight and named "cut".
@@ -173,6 +212,12 @@ class PlateMesh:
         """
         points, triangles, boundaries = refine(self.points, self.triangles, self.boundaries, self.curves, marked)
         return PlateMesh(points, triangles, boundaries, self.curves, self.outline)
+
+
+def _same(curve: Curve, other: Curve) -> bool:
+    return type(curve) is type(other) and all(
+        np.array_equal(getattr(curve, one.name), getattr(other, one.name)) for one in fields(curve)
+    )
 
 
 def _turned(triangles: IntArray, boundaries: Mapping[str, IntArray], points: int) -> dict[str, IntArray]:

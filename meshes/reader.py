@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,10 +16,25 @@ from meshes.outline import BoolArray
 from meshes.shapes import check_lengths, refuse
 from meshes.triangles import areas, cross, edge_numbers, sides
 
+if TYPE_CHECKING:
+    from skfem import MeshTri1, MeshTri2
+
 PLANE = 1e-9  # of the box: how far points may lie off their plane
 MIN_AREA = 1e-12  # of the box
 STRAIGHT = 1e-9  # of the chord: edges whose middle is closer to it are straight
+RIM = "rim"  # the boundary of a mesh that names none
+WANTED = "a plane mesh of triangles with named boundaries"
 BENT = 1e-6  # of the chord: inner edges must not be bent more
+
+
+class Found(NamedTuple):
+    """What a file or another program's mesh holds."""
+
+    points: FloatArray  # (n, 2 or 3)
+    corners: IntArray  # (m, 3) rows of points
+    middles: IntArray  # (m, 3) of the edges 01, 12, 20; -1 in cells of first order
+    lines: IntArray  # (l, 2) rows of points
+    names: list[set[str]]  # of each line
 
 
 class RimEdges(NamedTuple):
@@ -58,15 +73,59 @@ def read(path: str | Path, unit: float = 1.0) -> PlateMesh:
     mesh = load(Path(path))
     mistakes: list[str] = []
     corners, middles = _cells(mesh, mistakes)
+    lines = [np.asarray(block.data, dtype=np.int64)[:, :2] for block in mesh.cells if block.type in ("line", "line3")]
+    pairs = np.concatenate([*lines, np.empty((0, 2), dtype=np.int64)])
+    found = Found(np.asarray(mesh.points, dtype=float), corners, middles, pairs, line_names(mesh))
+    return _plate_mesh(found, unit, mistakes, f"path of read must be {WANTED}; {path} has")
+
+
+def from_skfem(mesh: MeshTri1 | MeshTri2, unit: float = 1.0) -> PlateMesh:
+    """The plate's mesh of scikit-fem's triangles; curved rims of a `MeshTri2` are kept.
+
+    Parameters
+    ----------
+    mesh : skfem.MeshTri1 or skfem.MeshTri2
+        Its named boundaries cover the rim; without any, all of the rim is "rim".
+    unit : float
+        Metres per unit of the mesh's lengths.
+
+    Returns
+    -------
+    PlateMesh
+
+    Raises
+    ------
+    ValueError
+        Names everything that is not a plane conforming mesh of triangles with named boundaries.
+    """
+    refuse(check_lengths("from_skfem", unit=unit))
+    wrong = f"mesh of from_skfem must be {WANTED}; it has"
+    if type(mesh).__name__ not in ("MeshTri1", "MeshTri2"):
+        _refuse([f"the type {type(mesh).__name__}, not MeshTri1 or MeshTri2"], wrong)
+    corners, middles = mesh.t.T.astype(np.int64), np.full((mesh.t.shape[1], 3), -1)
+    if type(mesh).__name__ == "MeshTri2":
+        middles = mesh.dofs.element_dofs[3:].T.astype(np.int64)  # of edges 01, 12 and 02
+    clockwise = areas(mesh.doflocs.T, corners) < 0  # it sorts the corners
+    corners = np.where(clockwise[:, None], corners[:, [0, 2, 1]], corners)
+    middles = np.where(clockwise[:, None], middles[:, [2, 1, 0]], middles)
+    boundaries = mesh.boundaries or {RIM: mesh.boundary_facets()}
+    pairs = [mesh.facets[:, facets].T.astype(np.int64) for facets in boundaries.values()]
+    names = [{name} for name, facets in boundaries.items() for _ in facets]
+    found = Found(mesh.doflocs.T, corners, middles, np.concatenate(pairs), names)
+    return _plate_mesh(found, unit, [], wrong)
+
+
+def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> PlateMesh:
+    """The mesh of what was found; raises ValueError with all mistakes."""
+    points, corners, middles, pairs, line_sets = found
     if not len(corners):
         mistakes.append("no triangles")
-        _refuse(path, mistakes)
-    points = np.asarray(mesh.points, dtype=float)
+        _refuse(mistakes, wrong)
     used = np.unique(np.concatenate([corners.ravel(), middles[middles >= 0]]))
     lost = used[~np.isfinite(points[used]).all(axis=1)]
     if len(lost):
         _note(mistakes, len(lost), "points that are not finite", points[lost])
-        _refuse(path, mistakes)
+        _refuse(mistakes, wrong)
     box = np.ptp(points[used, :2], axis=0)
     if points.shape[1] == 3:
         off = used[np.abs(points[used, 2] - np.median(points[used, 2])) > PLANE * box.max()]
@@ -75,8 +134,8 @@ def read(path: str | Path, unit: float = 1.0) -> PlateMesh:
     corners, middles = _turned_over(points, corners, middles)
     _check_cells(points, corners, box.prod(), mistakes)
     rim = _edges(points, corners, middles, mistakes)
-    names = np.array(_names(mesh, points, rim.edges, mistakes))
-    _refuse(path, mistakes)
+    names = np.array(_names(pairs, line_sets, points, rim.edges, mistakes))
+    _refuse(mistakes, wrong)
     kept, rows = np.unique(corners, return_inverse=True)
     boundaries, curves = {}, {}
     for name in dict.fromkeys(names.tolist()):
@@ -146,12 +205,12 @@ def _walk(pieces: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
     return slope[:, None] + 2 * s[:, None] * bend[:, None], on_edges(pieces, np.tile(s, (len(pieces), 1)))
 
 
-def _names(mesh: Any, points: FloatArray, edges: IntArray, mistakes: list[str]) -> list[str]:
-    """The name of each rim edge (k, 2)."""
-    lines = [np.asarray(block.data, dtype=np.int64)[:, :2] for block in mesh.cells if block.type in ("line", "line3")]
-    numbers = edge_numbers(np.concatenate([*lines, np.empty((0, 2), dtype=np.int64)]), len(points)).tolist()
+def _names(
+    lines: IntArray, line_sets: Sequence[set[str]], points: FloatArray, edges: IntArray, mistakes: list[str]
+) -> list[str]:
+    """The name of each rim edge (k, 2), from lines (l, 2) and the names of each."""
     by_number: dict[int, set[str]] = {}
-    for number, of_line in zip(numbers, line_names(mesh), strict=True):
+    for number, of_line in zip(edge_numbers(lines, len(points)).tolist(), line_sets, strict=True):
         by_number.setdefault(number, set()).update(of_line)
     of_edges = [by_number.get(number, set()) for number in edge_numbers(edges, len(points)).tolist()]
     unnamed = np.array([not names for names in of_edges])
@@ -178,9 +237,6 @@ def _place(xy: Sequence[float]) -> str:
     return f"({', '.join(f'{x:.6g}' for x in xy)})"
 
 
-def _refuse(path: str | Path, mistakes: list[str]) -> None:
+def _refuse(mistakes: list[str], wrong: str) -> None:
     if mistakes:
-        lines = "".join(f"\n  {line}" for line in mistakes)
-        raise ValueError(
-            f"Input path of read must be a plane mesh of triangles with named boundaries; {path} has{lines}"
-        )
+        raise ValueError(f"Input {wrong}" + "".join(f"\n  {line}" for line in mistakes))

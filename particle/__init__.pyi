@@ -11,15 +11,10 @@ from .simulation import part_record as part_record, simulate as simulate
 from .modes import EventKind as EventKind
 from .surface.moving_surface import SurfaceMotion as SurfaceMotion, SurfaceState as SurfaceState
 from .surface.simple_surfaces import platform_surface as platform_surface, polynomial_surface as polynomial_surface
-from .trajectory import (
-    ContactSamples as ContactSamples,
-    Energy as Energy,
-    Event as Event,
-    Outcome as Outcome,
-    Samples as Samples,
-    State as State,
-    Trajectory as Trajectory,
-)
+from .energy import Energy as Energy
+from .outcome import Outcome as Outcome, State as State
+from .samples import ContactSamples as ContactSamples, Event as Event, Samples as Samples
+from .trajectory import Trajectory as Trajectory
 
 # Not public: for the packages that build on this one.
 from .compilation import compilation_heard as compilation_heard
@@ -37,7 +32,16 @@ from .interrupt import (
     wait as wait,
 )
 from .jit import kernel as kernel, kernel_no_arrays as kernel_no_arrays
+from .labelled import dataset_of as dataset_of, table_of as table_of
 from .kernel_cache import source_digest as source_digest
+from .rest import (
+    Extreme as Extreme,
+    PartAtRest as PartAtRest,
+    largest as largest,
+    part_at_rest as part_at_rest,
+    pull_ratios as pull_ratios,
+    sample_times as sample_times,
+)
 from .pictures import (
     HALO as HALO,
     PATH_COLOUR as PATH_COLOUR,

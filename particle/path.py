@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from particle.energy import energy_of
 from particle.events import (
     Memory,
     Pairs,
@@ -27,8 +28,10 @@ from particle.events import (
 )
 from particle.fixed import between, march_fixed, new_fixed_memory
 from particle.modes import EventKind, Verdict
+from particle.outcome import Outcome, State
+from particle.samples import Event, samples_of
 from particle.surface import Surface, SurfaceMotion, missing_place, new_local
-from particle.trajectory import Event, Outcome, State, Trajectory, energy_of, samples_of
+from particle.trajectory import Trajectory
 
 FloatArray = NDArray[np.float64]
 Rows = NDArray[Any]  # of `Row`

@@ -13,7 +13,8 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from meshes import SIZE, Drawing, label_axis, label_places
-from particle.trajectory import State, Trajectory
+from particle.outcome import State
+from particle.trajectory import Trajectory
 
 FloatArray = NDArray[np.float64]
 

@@ -145,7 +145,7 @@ def new_request(
         bends=bends,
         centre_height=float(part.centre_height),
         bridged=(0.0, 0.0)
-        if bends
+        if bends or jumps
         else (tolerance * surface.size / stroke_time, BRIDGED * tolerance * force / part.mass),
     )
 

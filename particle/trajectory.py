@@ -2,140 +2,30 @@
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.modes import EventKind, Mode
+from particle.energy import Energy
+from particle.labelled import dataset_of, table_of
+from particle.outcome import Outcome, State
+from particle.samples import ContactSamples, Event, RoughContact, Samples, contact_samples_of, samples_of
 
 if TYPE_CHECKING:
+    import pandas
+    import xarray
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 FloatArray = NDArray[np.float64]
 
-MIN_ENERGY = 1e-6
-
-
-class State(enum.IntEnum):
-    """How the part is in contact."""
-
-    STICK = 0  # at rest on the surface
-    SLIP = 1  # sliding
-    FLIGHT = 2  # off the surface
-
-
-class Outcome(enum.StrEnum):
-    """How a run ended; `sentence` says it in full."""
-
-    STUCK = "stuck"
-    MOVING = "moving"
-    DETACHED = "detached"
-    LEFT_PLATE = "left the plate"
-    OVERLOADED = "overloaded"
-    WORK_LIMIT = "work limit"
-
-    @property
-    def sentence(self) -> str:
-        """What happened, in one sentence."""
-        return _SENTENCES[self]
-
-
-_SENTENCES = {
-    Outcome.STUCK: "The part rests on the surface at the end of the run.",
-    Outcome.MOVING: "The part is still on the move at the end of the run.",
-    Outcome.DETACHED: "The surface pulled away faster than adhesion could follow: the part came off.",
-    Outcome.LEFT_PLATE: "The part went over the rim of the plate.",
-    Outcome.OVERLOADED: "The load on the part is more than the contact model covers.",
-    Outcome.WORK_LIMIT: "The integrator stopped at its limit of work before the end of the run.",
-}
-
-
 _FOR_GOOD = "The part is at rest, and the drives do not move it again."
 _IN_FLIGHT = "The part is in flight at the end of the run."
-_FOR_NOW = "The part is at rest at the end of the run; the drives move it again later."
-
-
-@dataclass(frozen=True)
-class Event:
-    """One moment of a trajectory."""
-
-    kind: EventKind
-    time: float  # s
-    position: tuple[float, float]  # m
-    speed: float  # m/s, in the plane; at a landing that after it
-    load: float  # N, net normal force
-
-
-class Samples(NamedTuple):
-    """The part at k moments."""
-
-    time: FloatArray  # (k,) s
-    position: FloatArray  # (k, 2) m
-    velocity: FloatArray  # (k, 2) m/s
-    vertical_velocity: FloatArray  # (k,) m/s
-    height: FloatArray  # (k,) m, that of the surface under it unless it flies
-    normal_force: FloatArray  # (k,) N, net, of the contact
-    friction_force: FloatArray  # (k,) N, its magnitude
-    state: NDArray[np.int64]  # (k,) State
-
-
-class RoughContact(Protocol):
-    """What `KogutEtsion` knows of the parts of its normal force."""
-
-    @property
-    def pull_off(self) -> float: ...
-
-    @property
-    def largest_load(self) -> float: ...
-
-    def separation(self, net_load: ArrayLike) -> FloatArray: ...
-
-    def forces(self, separation: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]: ...
-
-
-class ContactSamples(NamedTuple):
-    """Contact and centre of mass of a part in space at k moments, and the forces on it."""
-
-    time: FloatArray  # (k,) s
-    contact: FloatArray  # (k, 3) m, where it touches the surface; in flight the place that would touch
-    centre: FloatArray  # (k, 3) m, its centre of mass
-    normal: FloatArray  # (k, 3) the surface's normal, along which it stands: its attitude
-    normal_force: FloatArray  # (k,) N, net, along the normal
-    friction: FloatArray  # (k, 3) N, on the part
-    pull: FloatArray  # (k,) m/s^2, along the surface, without friction; 0 in flight
-    point_pull: FloatArray  # (k,) m/s^2, the same on a point of the mid-plane
-    added_pull: FloatArray  # (k,) m/s^2, the difference, which the heights of contact and centre of mass make
-    separation: FloatArray  # (k,) over the roughness, of a rough contact; nan in flight and without its law
-    contact_load: FloatArray  # (k,) N, pressing its asperities; nan likewise
-    adhesion: FloatArray  # (k,) N, holding against it; contact_load - adhesion is the normal force; nan likewise
-
-
-@dataclass(frozen=True, eq=False)
-class Energy:
-    """The energy ledger at the rows of a trajectory: kinetic + potential grow by work - dissipated."""
-
-    kinetic: FloatArray = field(repr=False)  # (n,) J, seen by one at rest
-    potential: FloatArray = field(repr=False)  # (n,) J, of gravity
-    work: FloatArray = field(
-        repr=False
-    )  # (n,) J, done on the part by the moving surface (and what squeezes) since the start
-    dissipated: FloatArray = field(repr=False)  # (n,) J, by friction and impacts since the start
-    scale: float  # J, that of a part thrown across the surface in a stroke; a millionth of it counts as nothing
-
-    @property
-    def balance(self) -> float:
-        """The largest gap in the ledger, relative to the largest of its entries: the path's own check."""
-        total = self.kinetic + self.potential
-        gap = total - total[0] - (self.work - self.dissipated)
-        entries = (self.kinetic, self.potential - self.potential[0], self.work, self.dissipated)
-        largest = max(float(np.abs(entry).max()) for entry in entries)
-        return float(np.abs(gap).max()) / max(largest, MIN_ENERGY * self.scale)
+_FOR_NOW = "The part rests between slips at the end of the run."
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -241,20 +131,54 @@ class Trajectory:
             A time is nan.
         """
         rows = self._rows_at(times, "contact_at")
-        states = self.contact(rows)
-        vectors = (
-            np.column_stack([states[head + axis] for axis in "xyz"]) for head in ("", "centre_", "normal_", "friction_")
-        )
-        place, centre, normal, force = vectors
-        load = rows["load"]
-        parts = np.full((3, len(load)), np.nan)
-        touching = rows["mode"] != Mode.FLYING
-        if friction is not None and touching.any():
-            # The end of contact is located just beyond it, where the law has no separation.
-            separation = friction.separation(np.clip(load[touching], -friction.pull_off, friction.largest_load))
-            parts[:, touching] = separation, *friction.forces(separation)[:2]
-        pulls = (states[name] for name in ("pull", "point_pull", "added_pull"))
-        return ContactSamples(rows["time"], place, centre, normal, load, force, *pulls, *parts)
+        return contact_samples_of(rows, self.contact(rows), friction)
+
+    def to_xarray(self, times: ArrayLike | None = None) -> xarray.Dataset:
+        """The path as labelled arrays.
+
+        Parameters
+        ----------
+        times : array (k,), optional
+            Times, s; by default those of all rows. Each comes once, at an event with the values from then on.
+
+        Returns
+        -------
+        dataset : xarray.Dataset
+            Over `time`: x, y, z, vx, vy, vz, normal_force, friction_force and state; over `event`: event_time,
+            event_kind, event_x, event_y, event_speed and event_load. All have their units as attributes.
+
+        Raises
+        ------
+        ValueError
+            A time is nan.
+        """
+        return dataset_of(self._samples(times), self.events, outcome=self.outcome.value, sentence=self.sentence)
+
+    def to_dataframe(self, times: ArrayLike | None = None) -> pandas.DataFrame:
+        """The path as a table with a row for each time, its index; units are in `attrs["units"]`.
+
+        Parameters
+        ----------
+        times : array (k,), optional
+            Times, s, as of `to_xarray`.
+
+        Returns
+        -------
+        table : pandas.DataFrame
+            x, y, z, vx, vy, vz, normal_force, friction_force, and state in words.
+
+        Raises
+        ------
+        ValueError
+            A time is nan.
+        """
+        return table_of(self._samples(times), outcome=self.outcome.value, sentence=self.sentence)
+
+    def _samples(self, times: ArrayLike | None) -> Samples:
+        """Samples at ascending times, by default all rows."""
+        if times is not None:
+            return self.at(np.sort(np.asarray(times, dtype=float).ravel()))
+        return Samples(*(getattr(self, name) for name in Samples._fields))
 
     def _rows_at(self, times: ArrayLike, caller: str) -> NDArray[Any]:
         """The rows (k,) at times (k,) [s] in any order."""
@@ -284,23 +208,3 @@ class Trajectory:
         from meshes import notebook_html
 
         return notebook_html(self)
-
-
-def samples_of(rows: NDArray[Any]) -> Samples:
-    """The rows (k,) of a record, for people."""
-    mode = rows["mode"]
-    return Samples(
-        time=rows["time"],
-        position=np.column_stack([rows["x"], rows["y"]]),
-        velocity=np.column_stack([rows["v_x"], rows["v_y"]]),
-        vertical_velocity=rows["v_z"],
-        height=rows["z"],
-        normal_force=rows["load"],
-        friction_force=rows["friction"],
-        state=np.where(mode == Mode.MANIFOLD, State.SLIP, mode),
-    )
-
-
-def energy_of(rows: NDArray[Any], scale: float) -> Energy:
-    """The energy ledger of a record's rows (n,); scale: J, as in `Energy`."""
-    return Energy(rows["kinetic"], rows["potential"], rows["work"], rows["dissipated"], scale)

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from active_surface.cli import options
-from active_surface.cli.group import main, read, refusing
+from active_surface.cli.group import kind_of, main, parse_file, read, refusing
 
 
 @main.command()
@@ -18,17 +18,18 @@ from active_surface.cli.group import main, read, refusing
 @options.as_json
 def check(file: Path, quiet: bool, as_json: bool) -> None:
     """Report every mistake in FILE: a case, a study or an aim."""
-    from coupling.case import has_known_law, parse
+    from coupling.case import has_known_law
 
-    tables = refusing(parse, file).tables
+    kind = kind_of(refusing(parse_file, file))
     figures: dict[str, Any]
-    if "study" in tables:
+    warnings: list[str] = []
+    if kind == "study":
         from active_surface.studies import read_study
 
         study = refusing(read_study, file)
         figures = {"paths": len(study.points)}
         summary = f"a study of {_counted(len(study.points), 'path')}"
-    elif "aim" in tables:
+    elif kind == "aim":
         from active_surface.steering import read_settings
 
         case, _, target = refusing(read_settings, file, True)
@@ -40,13 +41,18 @@ def check(file: Path, quiet: bool, as_json: bool) -> None:
             from coupling import build_friction  # takes a second to load
 
             refusing(lambda: build_friction(case).law)
+        if any(actuator.max_force is not None and actuator.force is None for actuator in case.actuators):
+            from coupling import limit_warnings  # which solves the plate
+
+            warnings = refusing(limit_warnings, case)
         count = len(case.actuators)
         figures = {"actuators": count, "duration": case.run.duration}
         summary = f"{_counted(count, 'actuator') if count else 'a platform'}, {case.run.duration * 1e3:g} ms"
     if as_json:
-        click.echo(json.dumps({"file": str(file), "mistakes": [], **figures}, indent=2))
+        click.echo(json.dumps({"file": str(file), "mistakes": [], "warnings": warnings, **figures}, indent=2))
     elif not quiet:
         click.echo(f"{file}: fine; {summary}")
+        options.warn(warnings)
 
 
 def _counted(count: int, what: str) -> str:

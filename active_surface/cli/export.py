@@ -18,15 +18,15 @@ OUTPUT = Path("export")
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["pvd", "xdmf", "vtkhdf"]),
+    type=click.Choice(["pvd", "xdmf", "vtkhdf", "csv"]),
     required=True,
-    help="pvd: with a VTU file a step; xdmf: with one HDF5 file; vtkhdf: anew, under their final names.",
+    help="pvd: with a VTU file a step; xdmf: with one HDF5 file; vtkhdf: anew, under their final names; csv: the path.",
 )
 @options.output_folder("export", "files", OUTPUT)
 @options.quiet
 @options.as_json
 def export(result: Path, form: str, output: Path, quiet: bool, as_json: bool) -> None:
-    """Write RESULT in another format, for older readers.
+    """Write RESULT in another format, for other programs.
 
     RESULT is either file of a run, or FOLDER/NAME.
     """

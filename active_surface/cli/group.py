@@ -7,7 +7,8 @@ import copy
 import gc
 import os
 import sys
-from collections.abc import Callable, Sequence
+import warnings
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
@@ -17,6 +18,7 @@ import click
 from active_surface.cli import ctrl_c
 from active_surface.cli.refusal import refusal, refusal_of
 from active_surface.cli.usage import mistakes_in, unknown
+from coupling import near
 
 if TYPE_CHECKING:
     from coupling.case import Case
@@ -67,6 +69,7 @@ class Group(Command, click.Group):
         if args is not None:  # of a program that goes on
             return super().main(args, *more, **extra)
         ctrl_c.ends_soon()
+        warnings.showwarning = _told
         gc.set_threshold(GARBAGE)
         try:
             return super().main(args, *more, **extra)
@@ -81,7 +84,7 @@ class Group(Command, click.Group):
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         if self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing:
-            mistake = unknown(args[0], self.list_commands(ctx), ctx.command_path)
+            mistake = _file_alone(args[0]) or unknown(args[0], self.list_commands(ctx), ctx.command_path)
             raise refusal(ctx.command_path, [mistake], JSON in args)
         return super().resolve_command(ctx, args)
 
@@ -91,6 +94,11 @@ class Group(Command, click.Group):
                 return super().invoke(ctx)
         except KeyboardInterrupt:
             ctrl_c.end()
+
+
+def _told(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Print a library's warning as the commands print theirs, without the line of code."""
+    click.echo(f"warning     {message}", err=True)
 
 
 def leave(end: SystemExit) -> NoReturn:
@@ -120,17 +128,53 @@ def read(path: Path, may_move: bool = False) -> Case:
     return refusing(read_case, path, may_move)
 
 
-def check_kind(path: Path, expected: str) -> None:
+def check_kind(path: Path, *expected: str) -> None:
     """Refuse a file of another of the KINDS, in which nearly all would be a mistake."""
+    kind = kind_of(refusing(parse_file, path))
+    if kind and kind not in expected:
+        text = f"must be {_a(expected[0])}; got {path}, {_a(kind)}; write active-surface {KINDS[kind][1]} {path}"
+        context = click.get_current_context()
+        raise refusal(context.command_path, [(_file_argument(context), text)], bool(context.params.get("as_json")))
+
+
+def parse_file(path: Path) -> dict[str, Any]:
+    """The tables of a file, as far as they can be read; raises CaseError where they cannot."""
     from coupling.case import parse
 
-    tables = refusing(parse, path).tables
-    kind = next((kind for kind, (table, _) in KINDS.items() if table in tables), expected)
-    if kind != expected:
-        table, command = KINDS[kind]
-        text = f"must be a {expected}; got {path}, whose table [{table}] is for `active-surface {command}`"
-        context = click.get_current_context()
-        raise refusal(context.command_path, [(expected.upper(), text)], bool(context.params.get("as_json")))
+    return parse(path, lenient=True).tables
+
+
+def kind_of(tables: Mapping[str, Any]) -> str | None:
+    """Which of the KINDS of files has these tables; None: it is not clear."""
+    of = {table: kind for kind, (table, _) in KINDS.items()} | {"axes": "study"}
+    exact = {of[key] for key in tables if key in of}
+    meant = {of[table] for key in tables if (table := near(key, of))}
+    return next((kind for kind in KINDS if kind in (exact or meant)), None)
+
+
+def _a(kind: str) -> str:
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+
+
+def _file_argument(context: click.Context) -> str:
+    """What a command calls its file."""
+    arguments = [param for param in context.command.params if isinstance(param, click.Argument)]
+    return arguments[0].human_readable_name if arguments else ""
+
+
+def _file_alone(name: str) -> tuple[str, str] | None:
+    """What is missing where a file stands in place of a command; None: it is no file."""
+    path = Path(name)
+    if not path.exists() and not path.suffix and path.name == name:
+        return None
+    try:
+        kind = kind_of(parse_file(path)) or "case"
+    except ValueError as error:  # of a CaseError, which has one reason or several
+        reasons = [str(problem.message) for problem in getattr(error, "problems", ())]
+        if len(reasons) == 1 and (path.exists() or "did you mean" in reasons[0]):
+            return name, f"is no command; it {reasons[0]}"
+        kind = "case"
+    return (name, f"is {_a(kind)}; write active-surface {KINDS[kind][1]} {name}") if path.exists() else None
 
 
 def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:

@@ -31,8 +31,8 @@ def sweep(
 ) -> None:
     """Find the paths at all points of STUDY and write them to one file.
 
-    A sweep that was interrupted goes on where it stopped when it is started again. Exits with 1 when every point was
-    refused.
+    A sweep that was interrupted goes on where it stopped when it is started again, and a study that has grown keeps the
+    paths that its results have. Exits with 1 when every point was refused.
     """
     if scheduler is not None and threads is not None:
         raise click.UsageError("--threads must not be given with --scheduler: each worker uses all of its own threads")

@@ -1,4 +1,6 @@
 from .aiming import aim as aim
+from .following import Followed as Followed, follow_plan as follow_plan
+from .objectives import Objective as Objective, objective as objective
 from .planning import plan as plan
 from .read import read_route as read_route, read_task as read_task
 from .result import Aimed as Aimed, Planned as Planned
@@ -7,6 +9,7 @@ from .tables import Settings as Settings
 from .task import Task as Task
 
 # Not public: for the packages that build on this one.
-from .read import read_place as read_place, read_settings as read_settings
+from .following import ATTEMPTS as ATTEMPTS, next_leg as next_leg, progress_of as progress_of
+from .read import read_measured as read_measured, read_place as read_place, read_settings as read_settings
 from . import report as report
 from .tables import AimTables as AimTables

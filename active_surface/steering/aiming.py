@@ -72,9 +72,9 @@ def aim_over(
     approach = Approach(surface, task, threads, tell)
 
     def close() -> Aimed:
-        case, path = approach.close()
-        case = case.model_copy(update={"name": f"{task.name}_aimed"})
-        return Aimed(task=task, case=case, trajectory=path, legs=approach.legs, paths=approach.paths)
+        way = approach.close()
+        case = way.case.model_copy(update={"name": f"{task.name}_aimed"})
+        return Aimed(task=task, case=case, trajectory=way.path, legs=way.legs, stops=way.stops, paths=approach.paths)
 
     result = searched(approach.run, close, file, _comment)
     return with_scatter(result, Paths(result.case, surface, threads), task.target, task.settings)

@@ -14,6 +14,8 @@ from coupling.case import ActuatorCase, Case
 
 SLOWEST, FASTEST = 0.2, 2.0  # of an actuator's own frequency
 LATEST = 2.0  # of its own delay
+FEW_CYCLES = 1, 3  # over more of them the end point is less smooth
+AT_BOUND = 1e-3  # of a knob's range: a value so near to its bound stands at it
 DIGITS = {"frequency": 6, "stroke": 12, "delay": 12}  # decimals in SI units, as many as a file shows
 
 
@@ -31,16 +33,34 @@ class Knob(NamedTuple):
         return self.key != "cycles"
 
 
-class Knobs:
-    """All knobs of the actuators that take part; those that do not are at rest."""
+class Stop(NamedTuple):
+    """A knob that stands at a bound."""
 
-    def __init__(self, case: Case, settings: Settings, movers: tuple[int, ...]) -> None:
-        self.still = tuple(actuator if k in movers else at_rest(actuator) for k, actuator in enumerate(case.actuators))
-        self.case, self._movers = case, movers
+    knob: Knob
+    highest: bool  # else at the lowest
+
+    @property
+    def bound(self) -> float:
+        """Its value in SI units."""
+        return self.knob.high if self.highest else self.knob.low
+
+
+class Knobs:
+    """All knobs of the actuators that take part.
+
+    The others are at rest; with `around` they keep the drives of the case, which must end.
+    """
+
+    def __init__(
+        self, case: Case, settings: Settings, movers: tuple[int, ...], around: bool = False, wide: bool = False
+    ) -> None:
+        """wide: without bounds of cycles in the settings, an actuator may have as many as in the case."""
+        self.still = tuple(one if around or k in movers else at_rest(one) for k, one in enumerate(case.actuators))
+        self.case, self.around = case, around
         self._fixed: dict[int, dict[str, float]] = {}
         self.knobs: list[Knob] = []
         for k in movers:
-            bounds = _bounds(case.actuators[k], settings, case.run.duration)
+            bounds = _bounds(case.actuators[k], settings, case.run.duration, wide or around)
             self._fixed[k] = {key: low for key, (low, high) in bounds.items() if low == high}
             self.knobs += [Knob(k, key, low, high) for key, (low, high) in bounds.items() if low < high]
 
@@ -54,6 +74,17 @@ class Knobs:
         """The indices of the smooth knobs."""
         return np.array([k for k, knob in enumerate(self.knobs) if knob.smooth], dtype=np.int64)
 
+    @property
+    def own(self) -> FloatArray | None:
+        """The values (n,) that the case has; None where one lies beyond its bounds."""
+        ended = own_drives(self.case)
+        for k, fixed in self._fixed.items():
+            if any(getattr(ended[k], key) != value for key, value in fixed.items()):
+                return None
+        values = [float(getattr(ended[knob.actuator], knob.key) or 0.0) for knob in self.knobs]
+        inside = all(knob.low <= value <= knob.high for knob, value in zip(self.knobs, values, strict=True))
+        return np.array(values) if inside else None
+
     def actuators(self, values: FloatArray) -> tuple[ActuatorCase, ...]:
         """All actuators with these values (n,) of the knobs; drives end within the case's duration where they can."""
         tables = {k: dict(fixed) for k, fixed in self._fixed.items()}
@@ -63,8 +94,7 @@ class Knobs:
             )
         actuators = list(self.still)
         for k, keys in tables.items():
-            period = 1 / keys["frequency"] + 2 * actuators[k].dwell
-            fit = math.floor((self.case.run.duration - keys["delay"]) / period * (1 + 1e-12))
+            fit = _fitting(keys["frequency"], actuators[k].dwell, self.case.run.duration - keys["delay"])
             keys["cycles"] = int(max(1, min(keys["cycles"], fit)))
             actuators[k] = actuators[k].model_copy(update=keys)
         return tuple(actuators)
@@ -72,6 +102,34 @@ class Knobs:
     def turned(self, values: FloatArray) -> Case:
         """The case with these values (n,) of the knobs."""
         return self.case.model_copy(update={"actuators": self.actuators(values), "source": None})
+
+    def stops(self, values: FloatArray) -> tuple[Stop, ...]:
+        """Which knobs stand at a bound with these values (n,) that keeps them from moving more or otherwise."""
+        ends = []
+        for knob, value in zip(self.knobs, values.tolist(), strict=True):
+            value, room = value if knob.smooth else math.floor(value), AT_BOUND * (knob.high - knob.low)
+            if value >= knob.high - room:
+                ends.append(Stop(knob, True))
+            elif value <= knob.low + room and (knob.key == "frequency" or (knob.key == "stroke" and knob.low < 0)):
+                ends.append(Stop(knob, False))
+        return tuple(ends)
+
+
+def own_drives(case: Case) -> tuple[ActuatorCase, ...]:
+    """The actuators of a case; endless strokes, up and down, get as many cycles as end within its duration."""
+    return tuple(_ended(actuator, case.run.duration) for actuator in case.actuators)
+
+
+def _ended(actuator: ActuatorCase, duration: float) -> ActuatorCase:
+    if actuator.stroke is None or actuator.cycle != "up-down" or actuator.cycles is not None or actuator.phase:
+        return actuator
+    cycles = _fitting(actuator.frequency or 0.0, actuator.dwell, duration - actuator.delay)
+    return actuator.model_copy(update={"cycles": cycles}) if cycles > 0 else actuator
+
+
+def _fitting(frequency: float, dwell: float, duration: float) -> int:
+    """How many whole cycles a duration [s] has room for."""
+    return math.floor(duration / (1 / frequency + 2 * dwell) * (1 + 1e-12))
 
 
 def shortest(case: Case, settings: Settings, movers: Iterable[int]) -> float:
@@ -84,12 +142,15 @@ def _shortest(actuator: ActuatorCase, settings: Settings, duration: float) -> fl
     return bounds["delay"][0] + 1 / bounds["frequency"][1] + 2 * actuator.dwell
 
 
-def _bounds(actuator: ActuatorCase, settings: Settings, duration: float) -> dict[str, tuple[float, float]]:
+def _bounds(
+    actuator: ActuatorCase, settings: Settings, duration: float, wide: bool = False
+) -> dict[str, tuple[float, float]]:
     own = actuator.frequency or 0.0
     frequency = settings.frequency or (SLOWEST * own, FASTEST * own)
     stroke = actuator.stroke or 0.0
     max_cycles = max(1, math.floor(frequency[1] * duration))
-    low, high = settings.cycles
+    largest = max(FEW_CYCLES[1], _ended(actuator, duration).cycles or 0) if wide else FEW_CYCLES[1]
+    low, high = settings.cycles or (FEW_CYCLES[0], largest)
     return {
         "frequency": frequency,
         "stroke": settings.stroke or (min(0.0, stroke), max(0.0, stroke)),

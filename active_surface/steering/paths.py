@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
-from active_surface.studies import start_faults
-from coupling import build_drives, build_friction, build_part
+from active_surface.steering.disturbances import Disturbance, disturbed
+from active_surface.studies import contact_of, start_faults
+from coupling import build_drives, build_part
 from coupling.case import ActuatorCase, Case
 from particle import Micropart, Outcome, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact, ScaledFriction
@@ -21,21 +21,12 @@ UNSETTLED = 0.1  # of the surface's size: smallest distance of a part that the d
 LOST = 3.0  # of the surface's size: extra distance of a lost part, beyond all others
 
 
-class Disturbance(NamedTuple):
-    """How a run differs from its case."""
-
-    friction: float = 1.0  # factor
-    strokes: tuple[float, ...] | None = None  # factor of each actuator; None: unchanged
-    shift: tuple[float, float] = (0.0, 0.0)  # m, of the start
-
-
 class Paths:
     """Computes the paths of a case's part."""
 
     def __init__(self, case: Case, surface: SurfaceMotion, threads: int | None = None) -> None:
         self.case, self.surface, self._threads = case, surface, threads
         self.count = 0
-        self._friction = build_friction(case)
 
     def of(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
         """The path of each run: its actuators, and how it is disturbed. The same bits as from the case itself."""
@@ -49,33 +40,35 @@ class Paths:
 
     def _chunk(self, runs: Sequence[tuple[tuple[ActuatorCase, ...], Disturbance]]) -> list[Trajectory]:
         run = self.case.run
-        drives = [build_drives(driven(self.case, actuators, way.strokes)) for actuators, way in runs]
+        cases = [disturbed(driven(self.case, actuators), way.changes) for actuators, way in runs]
         return simulate_many(
             self.surface,
-            self._parts(np.array([way.shift for _, way in runs])),
-            [self._contact(way.friction) for _, way in runs],
+            self._parts(cases, np.array([way.shift for _, way in runs])),
+            [self._contact(case, way.friction) for case, (_, way) in zip(cases, runs, strict=True)],
             run.duration,
             run.gravity,
             run.tolerance,
             run.after_detachment,
-            drives,
+            [build_drives(case) for case in cases],
             self._threads,
         )
 
-    def _contact(self, factor: float) -> Contact:
-        return self._friction if factor == 1.0 else ScaledFriction(self._friction, factor)
+    def _contact(self, case: Case, factor: float) -> Contact:
+        contact = contact_of(case.friction)
+        if isinstance(contact, str):
+            raise ValueError(contact)
+        return contact if factor == 1.0 else ScaledFriction(contact, factor)
 
-    def _parts(self, shifts: FloatArray) -> list[Micropart]:
+    def _parts(self, cases: Sequence[Case], shifts: FloatArray) -> list[Micropart]:
         """Parts with starts shifted by (n, 2) [m]; the other way if that is off the plate, not at all if both are."""
-        part = self.case.part
-        starts = np.repeat(np.array([part.position]), len(shifts), axis=0)
+        starts = np.repeat(np.array([self.case.part.position]), len(shifts), axis=0)
         left = shifts.any(axis=1)
         for way in (1.0, -1.0):
             moved = starts + way * shifts
             good = left & np.array([not faults for faults in start_faults(self.case, moved)])
             starts[good] = moved[good]
             left &= ~good
-        return [build_part(self.case, (x, y)) for x, y in starts.tolist()]
+        return [build_part(case, (x, y)) for case, (x, y) in zip(cases, starts.tolist(), strict=True)]
 
 
 def path_of(paths: Paths, case: Case) -> Trajectory:
@@ -88,23 +81,9 @@ def settled(trajectory: Trajectory) -> bool:
     return trajectory.outcome is Outcome.STUCK and bool(trajectory.stays)
 
 
-def driven(case: Case, actuators: tuple[ActuatorCase, ...], factors: Sequence[float] | None = None) -> Case:
-    """A case with other actuators, their strokes multiplied by factors."""
-    if factors is not None:
-        actuators = tuple(_raised(one, factor) for one, factor in zip(actuators, factors, strict=True))
+def driven(case: Case, actuators: tuple[ActuatorCase, ...]) -> Case:
+    """A case with other actuators."""
     return case.model_copy(update={"actuators": actuators, "source": None})
-
-
-def _raised(actuator: ActuatorCase, factor: float) -> ActuatorCase:
-    update: dict[str, object] = {}
-    if actuator.stroke is not None:
-        update["stroke"] = actuator.stroke * factor
-    if actuator.segments is not None:
-        update["segments"] = tuple(
-            segment if segment.stroke is None else segment.model_copy(update={"stroke": segment.stroke * factor})
-            for segment in actuator.segments
-        )
-    return actuator.model_copy(update=update)
 
 
 def cost(trajectory: Trajectory, target: tuple[float, float], duration: float, size: float, tolerance: float) -> float:

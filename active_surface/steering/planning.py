@@ -101,7 +101,7 @@ class _Work:
                 self._failure = f"leg {number}: {error}"
                 return
             tell = partial(_tell_leg, self._tell, number, len(route.through))
-            self._approach = Approach(self._surface, task, self._threads, tell)
+            self._approach = Approach(self._surface, task, self._threads, tell, joined=True)
             self._approach.run()
             path = self._end_leg()
             if self._failure:
@@ -138,9 +138,9 @@ class _Work:
         assert self._approach is not None
         approach, self._approach = self._approach, None
         self._paths += approach.paths
-        _, path = approach.close()
-        end = round(self._now + next_start(approach.legs, path), 9)
-        self._legs += tuple(leg._replace(start=leg.start + self._now) for leg in approach.legs)
+        way = approach.close()
+        end = round(self._now + next_start(way.legs, way.path), 9)
+        self._legs += tuple(leg._replace(start=leg.start + self._now) for leg in way.legs)
         case = scheduled(self._route.case, self._legs, end)
         case = case.model_copy(update={"name": f"{self._route.name}_planned"})
         path = path_of(Paths(case, self._surface, self._threads), case)

@@ -19,16 +19,24 @@ from coupling.case import (
     parse,
     quoted,
     read_case,
+    read_columns,
     right_value,
+    unreadable,
     validate,
 )
 
 Place = tuple[float, float]
 
 LENGTH = Quantity("m", "150 um")
+MEASURED_HEADER = "x [um], y [um]"
 
 
-def read_task(path: str | os.PathLike[str], target: Place | None = None, quantile: float | None = None) -> Task:
+def read_task(
+    path: str | os.PathLike[str],
+    target: Place | None = None,
+    quantile: float | None = None,
+    cvar: float | None = None,
+) -> Task:
     """Read an aim file or a case file as a task.
 
     Parameters
@@ -38,7 +46,9 @@ def read_task(path: str | os.PathLike[str], target: Place | None = None, quantil
     target : point, optional
         The target, m; replaces the file's.
     quantile : float, optional
-        Share of disturbed runs that must end near; replaces the file's.
+        Share of disturbed runs that must end near; replaces the file's quantile or CVaR.
+    cvar : float, optional
+        The quantile beyond which their mean distance is made small; likewise.
 
     Returns
     -------
@@ -56,8 +66,8 @@ def read_task(path: str | os.PathLike[str], target: Place | None = None, quantil
     goal = target or own_target
     if goal is None:
         raise ValueError("the target is missing; it must be two lengths, as --target 100,-50 or in the file's [aim]")
-    if quantile is not None:
-        settings = Settings(**(dict(settings) | {"quantile": quantile}))
+    if quantile is not None or cvar is not None:
+        settings = Settings(**(dict(settings) | {"quantile": quantile, "cvar": cvar}))
     return Task(case, goal, settings, Path(path).stem)
 
 
@@ -92,7 +102,7 @@ def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Setti
 
     aims: whether its target counts.
     """
-    file = parse(path)
+    file = parse(path, lenient=True).as_meant(AimTables)
     if "aim" not in file.tables:
         return read_case(path), Settings(), None
     tables, errors = validate(AimTables, file.tables, UNITS_REQUIRED)
@@ -107,7 +117,7 @@ def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Setti
         place = right_value(AimTable, "target", written, UNITS_REQUIRED) if aims else None
         wrong += [("target", message) for message in misplaced(case, place)] if place else []
     errors += errors_of((("aim", key), message) for key, message in wrong)
-    if errors:
+    if errors or file.misread:
         raise file.error(errors, AimTables)
     assert case and table
     own = {key: getattr(table, key) for key in Settings.model_fields}
@@ -145,6 +155,18 @@ def read_place(text: str, option: str) -> Place:
         except ValueError as error:
             raise ValueError(f"{message}, whose {part.strip() or 'empty part'} {error}") from None
     return lengths[0], lengths[1]
+
+
+def read_measured(path: str | os.PathLike[str]) -> list[Place]:
+    """The places [m] in a CSV file with columns x and y, one after each leg; ValueError with every mistake."""
+    file = Path(path)
+    try:
+        read = read_columns(file, {"x": LENGTH, "y": LENGTH}, [["x"], ["y"]], MEASURED_HEADER)
+    except (OSError, ValueError) as error:
+        raise ValueError(f"--measured {unreadable(str(file), error)}") from None
+    if read.mistakes:
+        raise ValueError("\n".join(f"{file.name} {mistake}" for mistake in read.mistakes))
+    return list(zip(read.columns.get("x", ()), read.columns.get("y", ()), strict=True))
 
 
 def _is_number(text: str) -> bool:

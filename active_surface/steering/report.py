@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
+from active_surface.steering.disturbances import DEFAULT_TEXT, disturbance_text
+from active_surface.steering.following import Progress
+from active_surface.steering.knobs import Stop
 from active_surface.steering.result import Aimed, Planned, SteeringResult
+from active_surface.steering.route import Route
 from active_surface.steering.scatter import Scatter
-from coupling.case import ActuatorCase
+from coupling.case import ActuatorCase, amplitude
+from coupling.report import joined
 
 MICRO, MILLI = 1e6, 1e3
+WIDER = 2.0  # times a bound: what a hint proposes
 KEYS = ("frequency", "stroke", "delay", "cycles")
 
 
@@ -23,6 +30,14 @@ def figures(result: Aimed) -> dict[str, Any]:
         "reached": result.reached,
         "interrupted": result.interrupted,
         "paths": result.paths,
+        "at_bounds": [
+            {
+                "actuator": stop.knob.actuator,
+                "key": stop.knob.key,
+                "bound": stop.bound,
+            }
+            for stop in result.stops
+        ],
         "legs": [
             {
                 "start": leg.start,
@@ -52,7 +67,55 @@ def lines(result: Aimed) -> list[tuple[str, str]]:
         if len(result.legs) > 1:
             rows.append((f"leg {number}", f"from {leg.start * MILLI:g} ms on"))
         rows += [(f"actuator {k}", _drive(leg.actuators[k])) for k in leg.movers]
+    others = [
+        k
+        for k, actuator in enumerate(result.legs[0].actuators if len(result.legs) == 1 else ())
+        if k not in result.legs[0].movers and amplitude(actuator)
+    ]
+    rows += [("others", "driven as in the case")] if others else []
+    rows += [] if result.reached else [("hint", text) for text in hints(result.stops)]
     return rows + _last_lines(result)
+
+
+def hints(stops: Sequence[Stop]) -> list[str]:
+    """What stood at a bound of the search, and the line of an aim file that widens it."""
+    groups: dict[tuple[str, bool], list[Stop]] = {}
+    for stop in stops:
+        groups.setdefault((stop.knob.key, stop.highest), []).append(stop)
+    texts = []
+    for (key, highest), group in groups.items():
+        numbers = sorted({stop.knob.actuator for stop in group})
+        low, high = min(stop.knob.low for stop in group), max(stop.knob.high for stop in group)
+        values = sorted({_value(key, stop.knob.high if highest else stop.knob.low) for stop in group})
+        own = "its" if len(numbers) == 1 else "their"
+        which = {"cycles": "largest number of cycles"}.get(key, f"{'largest' if highest else 'smallest'} {key}")
+        wider = [_value(key, low if highest else low * WIDER ** (-1 if low > 0 else 1)), _value(key, high * WIDER)]
+        wider[1] = wider[1] if highest else _value(key, high)
+        bounds = ", ".join(text if key == "cycles" else f'"{text}"' for text in wider)
+        who = f"actuator{'s' * (len(numbers) > 1)} {joined([str(k) for k in numbers])}"
+        texts.append(f"{who} stood at {own} {which}, {joined(values)}; {key} = [{bounds}] in [aim] widens it")
+    return texts
+
+
+def _value(key: str, value: float) -> str:
+    """A value of a knob in words."""
+    if key == "cycles":
+        return f"{value:.0f}"
+    factor, unit = {"stroke": (MICRO, "um"), "delay": (MILLI, "ms"), "frequency": (1.0, "Hz")}[key]
+    return f"{value * factor:g} {unit}"
+
+
+def ended(route: Route, progress: Progress) -> tuple[bool, dict[str, Any], list[tuple[str, str]]]:
+    """Whether a plan that was followed to its end met every way-point; its figures, and rows to print."""
+    tolerance = route.settings.tolerance
+    distances = [math.dist(end, target) for end, target in zip(progress.ends, route.through, strict=True)]
+    complete = all(distance <= tolerance for distance in distances)
+    rows = [
+        (f"way-point {k}", f"{point(target)}, but for {distance * MICRO:.4f} um, {_verdict(distance, tolerance)}")
+        for k, (target, distance) in enumerate(zip(route.through, distances, strict=True))
+    ]
+    rows.append(("plan", "at its end: no way-point is left"))
+    return complete, {"measured": progress.place, "distances": distances, "complete": complete}, rows
 
 
 def plan_figures(result: Planned) -> dict[str, Any]:
@@ -98,7 +161,12 @@ def _common(result: SteeringResult) -> dict[str, Any]:
 
 
 def _last_lines(result: SteeringResult) -> list[tuple[str, str]]:
-    scatter = "not looked for, after Ctrl-C" if result.scatter is None else scatter_line(result.scatter)
+    text = disturbance_text(result.settings.disturbances)
+    scatter = (
+        "not looked for, after Ctrl-C"
+        if result.scatter is None
+        else scatter_line(result.scatter, text, result.settings.cvar)
+    )
     warnings = [("warning", text) for text in result.warnings]
     return [("scatter", scatter), *(("wrote", str(file)) for file in result.files), *warnings]
 
@@ -112,15 +180,17 @@ def point(place: tuple[float, float]) -> str:
     return f"({place[0] * MICRO:g}, {place[1] * MICRO:g}) um"
 
 
-def scatter_line(scatter: Scatter) -> str:
-    """How far disturbed runs end from the target, in words: of shares without lost ones."""
+def scatter_line(scatter: Scatter, disturbances: str = DEFAULT_TEXT, cvar: float | None = None) -> str:
+    """How far runs with disturbances end from the target, in words: of shares without lost ones."""
     shares = {"half": 0.5, "90 %": 0.9, "all": 1.0}
     result = {name: scatter.quantile(share) * MICRO for name, share in shares.items()}
     within = ", ".join(f"{name} within {away:.3g} um" for name, away in result.items() if math.isfinite(away))
     parts = [f"{within} of the target"] if within else []
+    if cvar is not None and math.isfinite(tail := scatter.cvar(cvar)):
+        parts.append(f"the worst {100 * (1 - cvar):.3g} % {tail * MICRO:.3g} um off on average")
     parts += [f"{scatter.lost} lost"] if scatter.lost else []
     count = len(scatter.distance)
-    return f"{'; '.join(parts)} ({count} runs with friction and strokes up to 1 %, starts up to 1 um off)"
+    return f"{'; '.join(parts)} ({count} runs with {disturbances})"
 
 
 def _drive(actuator: ActuatorCase) -> str:

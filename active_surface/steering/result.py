@@ -8,10 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from active_surface.steering.knobs import Stop
 from active_surface.steering.paths import settled
 from active_surface.steering.route import Place, Route
 from active_surface.steering.scatter import Scatter
 from active_surface.steering.schedule import Leg
+from active_surface.steering.tables import Settings
 from active_surface.steering.task import Task
 from coupling.case import Case
 from particle import Trajectory
@@ -33,6 +35,11 @@ class SteeringResult:
     warnings: tuple[str, ...] = ()
     files: tuple[Path, ...] = ()
 
+    @property
+    def settings(self) -> Settings:
+        """Bounds and effort of the search."""
+        raise NotImplementedError
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Aimed(SteeringResult):
@@ -43,10 +50,18 @@ class Aimed(SteeringResult):
     legs : tuple
         The legs of the way, one after the other. The drives of a single leg are cycles, those of several are
         segments.
+    stops : tuple
+        The knobs that stand at a bound of the search.
     """
 
     task: Task
     legs: tuple[Leg, ...]
+    stops: tuple[Stop, ...] = ()
+
+    @property
+    def settings(self) -> Settings:
+        """Bounds and effort of the search."""
+        return self.task.settings
 
     @property
     def distance(self) -> float:
@@ -77,6 +92,11 @@ class Planned(SteeringResult):
     arrivals: tuple[float, ...]
     tried: int
     failure: str = ""
+
+    @property
+    def settings(self) -> Settings:
+        """Bounds and effort of the search."""
+        return self.route.settings
 
     @property
     def targets(self) -> tuple[Place, ...]:

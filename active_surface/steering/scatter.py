@@ -9,11 +9,6 @@ from typing import Any
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.steering.paths import Disturbance
-
-FRICTION, STROKES = 0.01, 0.01  # largest relative changes of a run
-START = 1e-6  # m, its largest displacement
-SEARCHED, REPORTED = 0, 1  # independent streams of random numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,25 +28,23 @@ class Scatter:
         # That of one of the parts: between two of them, or between one and inf, there is none.
         return float(np.quantile(self.distance, share, method="inverted_cdf"))
 
+    def cvar(self, share: float) -> float:
+        """The conditional value at risk: the mean distance [m] of parts beyond a quantile; inf where one is lost."""
+        return float(conditional_value_at_risk(self.distance, share)) if not self.lost else math.inf
+
     def as_dict(self) -> dict[str, Any]:
         """Its figures by name, in SI units; None where too many were lost."""
         shares = {"median": 0.5, "nine_in_ten": 0.9, "worst": 1.0}
         quantiles = {name: self.quantile(share) for name, share in shares.items()}
         within = {name: distance if math.isfinite(distance) else None for name, distance in quantiles.items()}
-        return {"count": len(self.distance), **within, "lost": self.lost}
+        cvar = self.cvar(0.9)
+        tail = {"cvar_nine_in_ten": cvar if math.isfinite(cvar) else None}
+        return {"count": len(self.distance), **within, **tail, "lost": self.lost}
 
 
-def disturbances(count: int, actuators: int, seed: int, stream: int) -> list[Disturbance]:
-    """Disturbances, each a function of seed, stream and its number alone.
-
-    Friction and the stroke of each actuator are independent and uniform within 1 % of their values, the start on a
-    disc of 1 um around its place.
-    """
-    drawn = []
-    for k in range(count):
-        draw = np.random.default_rng((seed, stream, k)).random(actuators + 3)
-        friction, radius, angle = 1 + FRICTION * (2 * draw[0] - 1), START * np.sqrt(draw[1]), 2 * np.pi * draw[2]
-        strokes = 1 + STROKES * (2 * draw[3:] - 1)
-        shift = float(radius * np.cos(angle)), float(radius * np.sin(angle))
-        drawn.append(Disturbance(float(friction), tuple(strokes.tolist()), shift))
-    return drawn
+def conditional_value_at_risk(distances: FloatArray, share: float) -> FloatArray:
+    """The mean of the largest 1 - share of distances (..., n), by Rockafellar and Uryasev's (2000) formula."""
+    # The one in which the share ends counts in part, so that it is continuous in the share.
+    quantile = np.quantile(distances, share, axis=-1, method="inverted_cdf", keepdims=True)
+    beyond = np.maximum(distances - quantile, 0).mean(axis=-1) / (1 - share)
+    return np.asarray(quantile[..., 0] + beyond)

@@ -23,7 +23,7 @@ class Leg(NamedTuple):
 
 def lasting(actuators: Sequence[ActuatorCase], movers: Sequence[int]) -> float:
     """The time [s] from the start of a leg to when the last of its drives has ended."""
-    return max(_end(actuators[k]) for k in movers)
+    return max((_end(actuators[k]) for k in movers), default=0.0)
 
 
 def scheduled(case: Case, legs: Sequence[Leg], duration: float) -> Case:

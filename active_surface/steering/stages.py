@@ -9,10 +9,11 @@ from typing import TypeVar
 
 import numpy as np
 
+from active_surface.steering.disturbances import REPORTED, deviations, draws
 from active_surface.steering.paths import Paths
 from active_surface.steering.result import SteeringResult
 from active_surface.steering.route import Place
-from active_surface.steering.scatter import REPORTED, Scatter, disturbances
+from active_surface.steering.scatter import Scatter
 from active_surface.steering.spread import spread_drives
 from active_surface.steering.tables import Settings
 from active_surface.steering.task import able
@@ -64,7 +65,7 @@ def with_scatter(result: Kind, paths: Paths, target: Place, settings: Settings) 
     if result.interrupted:
         return result
     try:
-        return replace(result, scatter=scattered(paths, result.case, target, settings.scatter, settings.seed))
+        return replace(result, scatter=scattered(paths, result.case, target, settings))
     except KeyboardInterrupt:
         return replace(result, interrupted=True)
 
@@ -99,9 +100,9 @@ def check_free(files: tuple[Path, ...], overwrite: bool) -> None:
         )
 
 
-def scattered(paths: Paths, case: Case, target: Place, count: int, seed: int) -> Scatter:
-    """The ends of `count` disturbed runs of a case, and their distances from a target [m]."""
-    ways = disturbances(count, len(case.actuators), seed, REPORTED)
+def scattered(paths: Paths, case: Case, target: Place, settings: Settings) -> Scatter:
+    """The ends of disturbed runs of a case, and their distances from a target [m]."""
+    ways = draws(settings.scatter, deviations(paths.case, settings.disturbances), settings.seed, REPORTED)
     trajectories = paths.of([(case.actuators, way) for way in ways])
     ends = np.array([path.position[-1] for path in trajectories])
     lost = np.array([path.time[-1] < case.run.duration for path in trajectories])

@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictFloat, StrictInt, StrictStr
 from pydantic_core import CoreSchema, core_schema
 
+from active_surface.steering.disturbances import flattened
 from coupling.case import Frequency, Length, Point, Table, Time, quoted
 
 
@@ -53,6 +54,19 @@ class _Numbers:
         return {"type": "array", "items": whole, "minItems": 1, "uniqueItems": True}
 
 
+@dataclass(frozen=True)
+class _Sizes:
+    """Marks a table of the largest deviations of fields by their paths; nested tables become one."""
+
+    def validate(self, value: object, handler: Any) -> object:
+        if isinstance(value, dict):
+            return dict(flattened(value))
+        return handler(value)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
+
+
 MAX_PATHS, MAX_PATHS_DISTURBED = 10_000, 40_000
 
 Positive = Annotated[Frequency, Field(gt=0)]
@@ -73,23 +87,34 @@ class Settings(Table):
     """Bounds; without them from 0 to its own."""
     delay: Annotated[tuple[Waiting, Waiting], _Bounds('["0 ms", "2 ms"]')] | None = None
     """Bounds; without them from 0 to twice its own, where it has one."""
-    cycles: Annotated[tuple[Count, Count], _Bounds("[1, 5]")] = (1, 3)
-    """Bounds of how many cycles each drive has."""
+    cycles: Annotated[tuple[Count, Count], _Bounds("[1, 5]")] | None = Field(default=None, examples=[[1, 5]])
+    """Bounds of how many cycles each drive has; without them from 1 to 3, at last to its own."""
     seed: StrictInt = Field(default=0, ge=0, lt=2**32)
     """From which random numbers follow."""
     paths: Count | None = Field(default=None, examples=[10000])
-    """How many are found at most; without it 10 000, with a quantile 40 000."""
+    """How many are followed at most; without it 10 000, with a quantile or CVaR 40 000."""
     tolerance: Length = Field(default=5e-7, gt=0)
     """The distance from the target at which a search ends."""
     quantile: StrictFloat | None = Field(default=None, gt=0, le=1, examples=[0.9])
     """This quantile of the distances of disturbed runs is made small in place of the distance."""
+    cvar: StrictFloat | None = Field(default=None, gt=0, lt=1, examples=[0.9])
+    """The mean distance of disturbed runs beyond this quantile is made small in place of the distance."""
+    disturbances: Annotated[dict[str, Any] | None, _Sizes()] = Field(
+        default=None, examples=[{"friction": "1 %", "part.position": "1 um", "actuators.*.stroke": "1 %"}]
+    )
+    """How far disturbed runs deviate at most, by field; without it friction and strokes by 1 %, the start by 1 um."""
     scatter: Count = 100
-    """How many disturbed runs tell how robust the found drives are."""
+    """How many disturbed runs measure how robust the drives are."""
 
     @property
-    def most(self) -> int:
-        """How many paths are found at most."""
-        return self.paths or (MAX_PATHS if self.quantile is None else MAX_PATHS_DISTURBED)
+    def is_robust(self) -> bool:
+        """Whether disturbed runs count in place of the undisturbed one."""
+        return self.quantile is not None or self.cvar is not None
+
+    @property
+    def max_paths(self) -> int:
+        """How many paths are followed at most."""
+        return self.paths or (MAX_PATHS_DISTURBED if self.is_robust else MAX_PATHS)
 
 
 class _FileName:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from active_surface.arrays import FloatArray
+from active_surface.steering.disturbances import deviations
 from active_surface.steering.knobs import shortest
 from active_surface.steering.reach import off_the_line
 from active_surface.steering.tables import Settings
@@ -89,6 +90,12 @@ def mistakes(case: Case, settings: Settings, target: tuple[float, float] | None)
         return
     if case.run.scheme != "events":
         yield "case", f'must have scheme = "events", by which drives are found; got "{case.run.scheme}"'
+    if settings.quantile is not None and settings.cvar is not None:
+        yield "cvar", "must not be given with quantile; a search makes one of them small"
+    try:
+        deviations(case, settings.disturbances)
+    except ValueError as error:
+        yield from (("disturbances", message) for message in str(error).split("\n"))
     unfit = list(_actuator_mistakes(case, settings))
     yield from unfit
     if target is None:
@@ -127,6 +134,11 @@ def _actuator_mistakes(case: Case, settings: Settings) -> Iterator[Mistake]:
             yield "actuators", f"must be driven by a stroke that goes up and down; that of actuator {k} {reason}"
     if settings.actuators is None and all(_unfit(actuator, settings) for actuator in case.actuators):
         yield "case", "must have an actuator whose stroke goes up and down, or whose bounds are given; it has none"
+
+
+def is_schedulable(actuator: ActuatorCase) -> bool:
+    """Whether segments can state its drive: a stroke that goes up and down, from the start of its cycle."""
+    return actuator.stroke is not None and actuator.cycle == "up-down" and not actuator.phase
 
 
 def _unfit(actuator: ActuatorCase, settings: Settings) -> str:

@@ -6,7 +6,7 @@ from .study import Study as Study
 from .dataset import key_of as key_of
 from .engine import AT_ONCE as AT_ONCE, Engine as Engine
 from .record import OUTCOMES as OUTCOMES, REFUSED as REFUSED, SENTENCES as SENTENCES
-from .refusal import start_faults as start_faults
+from .refusal import contact_of as contact_of, start_faults as start_faults
 from .report import figures as figures, lines as lines
 from .run import ENDING as ENDING
 from .saved import read_sweep as read_sweep

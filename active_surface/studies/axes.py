@@ -7,26 +7,38 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from active_surface.studies.axis import Axis, counted, spaced
-from active_surface.studies.field import Field, Value, find_field
-from active_surface.studies.variants import is_deep, lattice_of
-from coupling.case import WRONG, Case, Location, Mistake, quoted
+from active_surface.studies.points_file import PointsFile, tables_of
+from active_surface.studies.variants import is_deep
+from coupling import near
+from coupling.case import WRONG, Case, Field, Location, Mistake, Value, find_field, lattice_of, quoted
 
 
 class Axes:
     """The axes that tables are right about, and the mistakes in the others.
 
     tables: the values of each by key, WRONG for those that are not valid by themselves.
+    file: of points, which has the values.
     """
 
-    def __init__(self, case: Case | None, tables: Sequence[Mapping[str, Any]], sampling: Any) -> None:
+    def __init__(
+        self, case: Case | None, tables: Sequence[Mapping[str, Any]], sampling: Any, file: PointsFile | None = None
+    ) -> None:
         self.mistakes: list[Mistake] = []
-        self._sampling = sampling
+        self._sampling, self._file = sampling, file
+        self._wrong_cells: list[tuple[int, str]] = []
+        own = len(tables)
+        if file:
+            tables = tables_of(file, tables)
         self._lattice = lattice_of(case) if case else (None, 0)
         self._fields: list[tuple[int, str, Field]] = []
         per_table = [self._axis(case, k, table) for k, table in enumerate(tables)] if case else []
         self.whole = bool(per_table) and None not in per_table
         axes = [(k, axis) for k, axis in enumerate(per_table) if axis]
         self.mistakes += [*self._doubled(), *_unlike(axes, sampling)]
+        if file:
+            self.mistakes = [_of_column(mistake, own, tables, file) for mistake in self.mistakes]
+            wrong = [*file.mistakes, *file.by_line(self._wrong_cells)]
+            self.mistakes += [(("study", "points"), message) for message in wrong]
         # What the plate depends on varies slowest: points that follow each other share it.
         self.axes = tuple(sorted((axis for _, axis in axes), key=lambda axis: not (case and is_deep(case, axis))))
 
@@ -39,6 +51,8 @@ class Axes:
             self.mistakes.append((("axes", k, "field"), str(error)))
             return None
         self._fields.append((k, table["name"] if isinstance(table["name"], str) else field.path, field))
+        if self._file:
+            return self._from_file(self._file, k, field, table)
         key = "values" if table["values"] is not None else "range"
         if table[key] is None or table[key] is WRONG:
             return None
@@ -52,6 +66,16 @@ class Axes:
         else:
             return self._made(field, key, values, table)
         return None
+
+    def _from_file(self, file: PointsFile, k: int, field: Field, table: Mapping[str, Any]) -> Axis | None:
+        if table["values"] is None:
+            if file.columns:
+                names = ", ".join(column.name for column in file.columns)
+                self.mistakes.append((("axes", k, "field"), f"must be a column of {file.name}, which has {names}"))
+            return None
+        values, wrong = file.read(field, table["values"])
+        self._wrong_cells += wrong
+        return None if wrong or WRONG in table.values() else Axis(table["name"] or field.path, field, tuple(values))
 
     def _made(self, field: Field, key: str, values: list[Any], table: Mapping[str, Any]) -> Axis:
         name, logarithmic = table["name"] or field.path, table["spacing"] == "logarithmic"
@@ -99,6 +123,17 @@ class Axes:
                     yield ("axes", k, "field"), f"must be varied by one axis only; {same}"
                 elif name == other:
                     yield ("axes", k, "name"), f"must differ from that of another axis; got {quoted(name)} twice"
+
+
+def _of_column(mistake: Mistake, own: int, tables: Sequence[Mapping[str, Any]], file: PointsFile) -> Mistake:
+    """A mistake about an axis that only the file has, as one of the file."""
+    (_, k, *_), message = mistake
+    if not isinstance(k, int) or k < own:
+        return mistake
+    name = tables[k]["field"]
+    meant = near(name, [str(word) for table in tables[:own] for word in (table["name"], table["field"]) if word])
+    (told,) = file.told([f"column {quoted(name)} {f'is not known; did you mean {meant}?' if meant else message}"])
+    return ("study", "points"), told
 
 
 def _within(field: Field, other: Field) -> set[Location]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.field import Field
+from coupling.case import Field
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,10 @@ class Axis:
 
 
 def spaced(low: float, high: float, count: int, logarithmic: bool) -> tuple[float, ...]:
-    """So many values from one to another, both among them."""
-    space = np.geomspace if logarithmic else np.linspace
-    return tuple(space(low, high, count).tolist())
+    """So many values from one to another, both among them; equal fractions of a range are equal to the last bit."""
+    fractions = np.arange(1, count - 1) / (count - 1)
+    between = low * (high / low) ** fractions if logarithmic else low + (high - low) * fractions
+    return (low, *between.tolist(), high)
 
 
 def counted(number: str, unit: str) -> str:

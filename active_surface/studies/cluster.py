@@ -15,6 +15,7 @@ from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, Final
 
+from active_surface.arrays import IntArray
 from active_surface.studies.engine import Engine
 from active_surface.studies.record import Records
 from active_surface.studies.study import versions
@@ -30,7 +31,9 @@ AHEAD: Final = 2  # chunks handed out for each thread of the workers
 _ONE_AT_A_TIME = threading.Lock()
 
 
-def records_on(scheduler: str, engine: Engine, chunks: Iterable[int]) -> Generator[tuple[int, Records], None, None]:
+def records_on(
+    scheduler: str, engine: Engine, chunks: Iterable[IntArray]
+) -> Generator[tuple[IntArray, Records], None, None]:
     """Yield chunks of an engine's study and their records as they come in from the workers of a scheduler.
 
     scheduler: its address.
@@ -43,13 +46,13 @@ def records_on(scheduler: str, engine: Engine, chunks: Iterable[int]) -> Generat
 
         pickled, key, ours = pickle.dumps(engine.study), engine.study.key, versions()
         left = iter(chunks)
-        numbers: dict[Future, int] = {}
+        numbers: dict[Future, IntArray] = {}
         running = as_completed([], loop=client.loop)
 
         def hand_out() -> None:
             threads = sum(client.nthreads().values())
             for chunk in islice(left, max(AHEAD * max(threads, 1) - len(numbers), 0)):
-                future = client.submit(_records_on_worker, pickled, key, ours, *engine.span(chunk), pure=False)
+                future = client.submit(_records_on_worker, pickled, key, ours, chunk, pure=False)
                 numbers[future] = chunk
                 running.add(future)
 
@@ -111,8 +114,8 @@ async def _kind_of(address: str) -> str:
         return str((await asyncio.wait_for(there.identity(), PATIENCE))["type"])
 
 
-def _records_on_worker(pickled: bytes, key: str, ours: Mapping[str, str], start: int, stop: int) -> Records:
-    """The records of paths `start` to `stop` - 1, computed by the worker that runs this."""
+def _records_on_worker(pickled: bytes, key: str, ours: Mapping[str, str], numbers: IntArray) -> Records:
+    """The records of paths of these numbers, computed by the worker that runs this."""
     from distributed import get_worker
 
     worker, theirs = get_worker(), versions()
@@ -123,7 +126,7 @@ def _records_on_worker(pickled: bytes, key: str, ours: Mapping[str, str], start:
         engine = _engine(pickled, key, worker.state.nthreads)
         if engine is None:
             raise ValueError(f"{here} the same files as the command; those that the case names differ there")
-        return engine.records(start, stop)
+        return engine.records(numbers)
 
 
 @lru_cache(maxsize=1)

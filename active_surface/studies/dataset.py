@@ -7,14 +7,16 @@ import math
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import h5netcdf
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.axis import Axis
+from active_surface.studies.heights import heights_key
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.study import Study, versions
 from coupling import whole_file
@@ -57,10 +59,10 @@ def renew_labels(study: Study, path: Path) -> None:
         if all(file.attrs[name] == about[name] for name in described):
             return
         warnings = str(file.attrs["warnings"]).splitlines()
-    write_dataset(study, _stored_records(path), path, warnings)
+    write_dataset(study, stored_records(path), path, warnings)
 
 
-def _stored_records(path: Path) -> Iterator[tuple[int, Records]]:
+def stored_records(path: Path) -> Iterator[tuple[int, Records]]:
     """Yield the number of the first path of each lot of records in a file, and the records."""
     with h5netcdf.File(path, "r") as file:
         shape = file["outcome"].shape
@@ -105,7 +107,8 @@ def _check_room(study: Study, folder: Path) -> None:
     """Raise OSError unless a folder has room for the results: HDF5 does not survive a full disk."""
     count = len(study.points)
     coordinates = 0 if study.points.sampling == "grid" else 8 * len(study.points.axes) * count // study.points.repeats
-    needed, free = KIND.itemsize * count + coordinates + ROOM, shutil.disk_usage(folder).free
+    # Twice: while they are put in order they are on disk once more.
+    needed, free = 2 * KIND.itemsize * count + coordinates + ROOM, shutil.disk_usage(folder).free
     if free < needed:
         sizes = f"the results take {needed / 1e6:.1f} MB, and {free / 1e6:.1f} MB are free"
         raise OSError(f"{folder}: {sizes}; finished chunks are kept, and the same command goes on from them")
@@ -124,6 +127,8 @@ def _about(study: Study) -> dict[str, Any]:
         "case": study.case.source or study.case.model_dump_json(),
         "versions": json.dumps(versions()),
         "sampling": study.points.sampling,
+        "stream": json.dumps(study.points.stream),
+        "heights": heights_key(study),
         "axes": " ".join(axis.name for axis in study.points.axes),
         "actuators": np.array([c for actuator in study.case.actuators for c in actuator.position], dtype=float),
         "rim": _rim(study.case).ravel(),
@@ -150,7 +155,7 @@ def _write_axes(file: h5netcdf.File, study: Study) -> None:
     variables = [_axis(file, axis, "point") for axis in points.axes]
     for first in range(0, count, AT_ONCE):
         last = min(first + AT_ONCE, count)
-        for variable, values in zip(variables, points.columns(first, last), strict=True):
+        for variable, values in zip(variables, points.columns(range(first, last)), strict=True):
             variable[first:last] = values
 
 
@@ -181,6 +186,39 @@ def differences(study: Study, path: Path) -> list[str]:
     with h5netcdf.File(path, "r") as file:
         known = json.loads(file.attrs.get("traits", "{}"))
     return [name for name, trait in study.traits.items() if known.get(name) != trait]
+
+
+class Coordinates(NamedTuple):
+    """The points whose results a file holds, as it has them."""
+
+    axes: list[tuple[str, NDArray[Any]]]  # the field of each axis, and its values: of a grid each once
+    sampling: str
+    repeats: int
+    stream: tuple[float, int | None]  # as of `Points`
+    heights: str
+
+
+def stored_coordinates(path: Path) -> Coordinates | None:
+    """The points of the results in a file; None: it does not have all of them."""
+    with h5netcdf.File(path, "r") as file:
+        if not {"stream", "heights"} <= set(file.attrs):
+            return None
+        variables = [file[name] for name in str(file.attrs["axes"]).split()]
+        jitter, seed = json.loads(str(file.attrs["stream"]))
+        return Coordinates(
+            [(str(variable.attrs["field"]), _plain(variable[...])) for variable in variables],
+            str(file.attrs["sampling"]),
+            file.dimensions["repeat"].size if "repeat" in file.dimensions else 1,
+            (jitter, seed),
+            str(file.attrs["heights"]),
+        )
+
+
+def _plain(values: NDArray[Any]) -> NDArray[Any]:
+    """Values with texts as Python has them."""
+    if values.dtype != object:
+        return values
+    return np.array([text.decode() if isinstance(text, bytes) else text for text in values], object)
 
 
 def read_dataset(path: Path, axes: Sequence[str] | None = None) -> xarray.Dataset:

@@ -1,29 +1,28 @@
 """The engine: the records of a study's paths, in chunks of about a second of work.
 
-Chunks depend on the study alone, and their records on the study and the chunk's number alone: neither on threads nor
-on earlier chunks.
+A record depends on the study and the number of its path alone: neither on threads nor on other paths of its chunk.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from contextlib import suppress
 from typing import Final, NamedTuple
 
 import numpy as np
 from pydantic import ValidationError
 from threadpoolctl import threadpool_limits
 
-from active_surface.studies.points import Points
+from active_surface.arrays import IntArray
+from active_surface.studies.heights import drive_sets, largest
 from active_surface.studies.record import Records, new_records, put
 from active_surface.studies.refusal import contact_of, mistakes_of, start_faults
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Base, Variants
-from coupling import answers_drives, build_drives, build_part, shared_surface, silent
+from coupling import build_drives, build_part, shared_surface, silent
 from coupling.case import Case, PlatformCase, RunCase
 from coupling.scene import platform_scene
-from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, simulate_many
+from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact
 
 AT_ONCE: Final = 1.0  # s, about, of work in a chunk
@@ -31,7 +30,6 @@ A_PATH, A_CYCLE = 4e-4, 3e-4  # s, about: of work for a path, and for each cycle
 A_PLATE, A_PLATFORM = 0.5, 2e-3  # s, about: of work for one of these
 SURFACES: Final = 16  # kept at most: each takes some 5 MB
 HELD: Final = 256  # trajectories in memory at a time: each takes 0.13 MB, however short
-SPREAD: Final = 48  # points whose drives stand for those of all, where the plate stretches
 TOGETHER: Final = 64  # paths that `follow` computes side by side
 FAILURES: Final = (ValueError, ArithmeticError, RuntimeError)
 
@@ -57,19 +55,13 @@ class Engine:
         self.variants = Variants(study.case, study.points.axes)
         self._surfaces: dict[str, SurfaceMotion | str] = {}
         self._kept = min(self.variants.grounds(study.points), SURFACES)
-        self._duration = max(_largest(study.points, "run.duration"), default=study.case.run.duration)
+        self._duration = max(largest(study.points, "run.duration"), default=study.case.run.duration)
         self.paths = len(study.points)
         self.chunk_length = self._chunk_length()
 
-    @property
-    def chunks(self) -> int:
-        """How many chunks there are."""
-        return -(-self.paths // self.chunk_length)
-
-    def span(self, chunk: int) -> tuple[int, int]:
-        """The first path of a chunk, and the one after its last."""
-        start = chunk * self.chunk_length
-        return start, min(start + self.chunk_length, self.paths)
+    def chunks(self, numbers: IntArray) -> list[IntArray]:
+        """The ascending numbers of paths in chunks."""
+        return [numbers[first : first + self.chunk_length] for first in range(0, len(numbers), self.chunk_length)]
 
     def _chunk_length(self) -> int:
         case, points = self.study.case, self.study.points
@@ -78,58 +70,56 @@ class Engine:
             drives, base = [*scene.lifts, *scene.base], A_PLATFORM
         else:
             drives, base = build_drives(case), A_PLATE
-        fastest = max((*(drive.frequency for drive in drives), *_largest(points, "frequency")), default=0.0)
+        fastest = max((*(drive.frequency for drive in drives), *largest(points, "frequency")), default=0.0)
         each = A_PATH + A_CYCLE * self._duration * fastest + base / self.variants.paths_of_a_base(points)
         return max(int(AT_ONCE / each), 1)
 
-    def records_of(self, chunks: Iterable[int]) -> Generator[tuple[int, Records], None, None]:
+    def records_of(self, chunks: Iterable[IntArray]) -> Generator[tuple[IntArray, Records], None, None]:
         """Yield chunks and their records, one after the other."""
         for chunk in chunks:
-            yield chunk, self.records(*self.span(chunk))
+            yield chunk, self.records(chunk)
 
-    def records(self, start: int, stop: int) -> Records:
-        """The records of paths `start` to `stop` - 1."""
-        return self._computed(start, stop)[0]
+    def records(self, numbers: Sequence[int] | IntArray) -> Records:
+        """The records of paths of these numbers."""
+        return self._computed(numbers)[0]
 
     def faults(self, k: int) -> list[str]:
         """Why path k was refused, computed anew; empty: it was not."""
-        return self._computed(k, k + 1)[1].get(0, [])
+        return self._computed([k])[1].get(0, [])
 
     def follow(self, numbers: Iterable[int], visit: Visit) -> None:
         """Compute the paths of these ascending numbers again and visit each but the refused, with its number."""
-        together: list[int] = []
-        for k in numbers:
-            if together and (k != together[-1] + 1 or len(together) == TOGETHER):
-                self._visit(together, visit)
-                together = []
-            together.append(k)
-        if together:
-            self._visit(together, visit)
+        every = list(numbers)
+        for first in range(0, len(every), TOGETHER):
+            self._visit(every[first : first + TOGETHER], visit)
 
     def _visit(self, together: list[int], visit: Visit) -> None:
-        """The same for consecutive numbers."""
-        first = together[0]
-        self._computed(first, together[-1] + 1, lambda row, path: visit(first + row, path))
+        """The same for numbers of paths that are computed side by side."""
+        self._computed(together, lambda row, path: visit(together[row], path))
 
-    def _computed(self, start: int, stop: int, visit: Visit | None = None) -> tuple[Records, dict[int, list[str]]]:
+    def _computed(
+        self, numbers: Sequence[int] | IntArray, visit: Visit | None = None
+    ) -> tuple[Records, dict[int, list[str]]]:
         """The records, and by row what is wrong with the refused."""
-        records = new_records(stop - start)
+        records = new_records(len(numbers))
         wrong: dict[int, list[str]] = {}
         # Many small systems: BLAS threads would only wait for each other.
         with threadpool_limits(limits=1, user_api="blas"):
-            for paths, surface, run in self._groups(start, stop, records, wrong):
+            for paths, surface, run in self._groups(numbers, records, wrong):
                 for first in range(0, len(paths), HELD):
                     self._follow(records, wrong, paths[first : first + HELD], surface, run, visit)
         for row, messages in wrong.items():
             records["mistakes"][row] = len(messages)
         return records, wrong
 
-    def _groups(self, start: int, stop: int, records: Records, wrong: dict[int, list[str]]) -> Iterator[_Group]:
+    def _groups(
+        self, numbers: Sequence[int] | IntArray, records: Records, wrong: dict[int, list[str]]
+    ) -> Iterator[_Group]:
         """Yield paths that can be computed side by side; note in `wrong` what is wrong with the others."""
         points = self.study.points
-        displaced = points.displacements(start, stop)
+        displaced = points.displacements(numbers)
         grounds: dict[str, list[tuple[int, Case, Base]]] = defaultdict(list)
-        for row, values in enumerate(points.values(start, stop)):
+        for row, values in enumerate(points.values(numbers)):
             try:
                 case, base = self.variants.at(values)
             except ValidationError as error:
@@ -196,33 +186,9 @@ class Engine:
             if len(self._surfaces) == self._kept:
                 del self._surfaces[next(iter(self._surfaces))]
             try:
-                self._surfaces[base.ground] = shared_surface(base.case, self._sets(base), self._duration)
+                self._surfaces[base.ground] = shared_surface(
+                    base.case, drive_sets(self.study, self.variants, base), self._duration
+                )
             except FAILURES as error:
                 self._surfaces[base.ground] = f"what the part moves over cannot be made: {error}"
         return self._surfaces[base.ground]
-
-    def _sets(self, base: Base) -> list[list[AnyDrive]]:
-        """Drives that stand for those of all paths over a plate that stretches.
-
-        They depend on the study alone: those where all axes are lowest, where all are highest, and spread between.
-        """
-        if not answers_drives(base.case):
-            return []
-        own = build_drives(base.case)
-        if not self.variants.drives_vary:
-            return [own]
-        points, count = self.study.points, len(self.study.points)
-        rows = np.unique(np.linspace(0, count - 1, SPREAD).astype(np.int64)).tolist()
-        ends = [tuple(axis.end(which) for axis in points.axes) for which in (0, -1)]
-        sets = []
-        for values in [*ends, *(points.values(row, row + 1)[0] for row in rows)]:
-            with suppress(ValidationError, ArithmeticError):
-                case = self.variants.at(values)[0]
-                sets += [build_drives(case)] if len(case.actuators) == len(own) else []
-        return sets or [own]
-
-
-def _largest(points: Points, path: str) -> list[float]:
-    """The largest value of each axis over a field whose path ends with this one."""
-    axes = [axis for axis in points.axes if f".{axis.field.path}".endswith(f".{path}")]
-    return [max(axis.values or (axis.low, axis.high)) for axis in axes]

@@ -1,10 +1,18 @@
-"""Points: the values of the axes at every point of a study, each a pure function of its index."""
+"""Points: the values of the axes at every point of a study, each a pure function of its number.
+
+A point is known by its content, the values in which it differs from the base case. Displacements of starts follow from
+content and repeat, so that they stay when a study grows.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from functools import cached_property
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +23,7 @@ from active_surface.studies.axis import Axis
 
 Sampling = Literal["grid", "list", "random", "sobol"]
 SAMPLED, JITTERED = 0, 1  # independent streams of random numbers
+DRAWN: Final = ("random", "sobol")
 
 
 @dataclass(frozen=True)
@@ -37,7 +46,7 @@ class Points:
         if self.sampling == "grid":
             sizes = {axis.name: len(axis.values) for axis in self.axes}
         else:
-            sizes = {"point": self.count if self.sampling in ("random", "sobol") else len(self.axes[0].values)}
+            sizes = {"point": self.count if self.sampling in DRAWN else len(self.axes[0].values)}
         return sizes | ({"repeat": self.repeats} if self.repeats > 1 else {})
 
     @property
@@ -49,42 +58,108 @@ class Points:
         """How many paths there are."""
         return math.prod(self.dimensions.values())
 
-    def values(self, start: int, stop: int) -> list[tuple[Any, ...]]:
-        """The values of the axes, in SI units, for paths `start` to `stop` - 1."""
-        first, last = start // self.repeats, -(-stop // self.repeats)
-        columns = self.columns(first, last)
-        rows = list(zip(*(column.tolist() for column in columns), strict=True))
-        return [rows[k // self.repeats - first] for k in range(start, stop)]
+    @property
+    def stream(self) -> tuple[float, int | None]:
+        """The jitter [m], and the seed where something is drawn."""
+        return self.jitter, self.seed if self.sampling in DRAWN or self.jitter else None
 
-    def columns(self, first: int, last: int) -> list[NDArray[Any]]:
-        """The values of each axis (n,) at points `first` to `last` - 1."""
-        at = np.arange(first, last)
+    def values(self, numbers: Iterable[int]) -> list[tuple[Any, ...]]:
+        """The values of the axes, in SI units, for paths of these numbers."""
+        points, places = np.unique(_whole(numbers) // self.repeats, return_inverse=True)
+        rows = list(zip(*(column.tolist() for column in self.columns(points)), strict=True))
+        return [rows[place] for place in places.tolist()]
+
+    def columns(self, points: Iterable[int]) -> list[NDArray[Any]]:
+        """The values of each axis (n,) at points of these numbers (n,)."""
+        at = _whole(points)
         if self.sampling == "grid":
             indices = np.unravel_index(at, [len(axis.values) for axis in self.axes])
             return [np.array(axis.values, axis.kind)[k] for axis, k in zip(self.axes, indices, strict=True)]
         if self.sampling == "list":
             return [np.array(axis.values, axis.kind)[at] for axis in self.axes]
-        units = self._sobol(first, last) if self.sampling == "sobol" else self._random(at)
+        units = self._sobol(at) if self.sampling == "sobol" else self._random(at)
         return [axis.spread(units[:, k]) for k, axis in enumerate(self.axes)]
 
-    def displacements(self, start: int, stop: int) -> FloatArray:
-        """Displacements (n, 2) [m] of the starts of paths, uniform on a disc."""
+    def identities(self, points: Iterable[int]) -> list[bytes]:
+        """What tells each of these points from others (n,): its content.
+
+        With a jitter points of one content are told apart, those of a list by their order, drawn ones by their numbers.
+        """
+        at = _whole(points)
+        contents = contents_of(self.axes, self.columns(at))
+        if self.jitter == 0 or self.sampling == "grid":
+            return digests(contents)
+        return digests(contents, at.tolist() if self.sampling in DRAWN else [self._earlier[k] for k in at.tolist()])
+
+    def displacements(self, numbers: Iterable[int]) -> FloatArray:
+        """Displacements (n, 2) [m] of the starts of paths of these numbers (n,), uniform on a disc."""
+        every = _whole(numbers)
         if self.jitter == 0:
-            return np.zeros((stop - start, 2))
-        draws = np.array([np.random.default_rng((self.seed, JITTERED, k)).random(2) for k in range(start, stop)])
+            return np.zeros((len(every), 2))
+        points, places = np.unique(every // self.repeats, return_inverse=True)
+        streams = [(self.seed, JITTERED, int.from_bytes(identity)) for identity in self.identities(points)]
+        repeats = (every % self.repeats).tolist()
+        draws = np.array(
+            [
+                np.random.default_rng((*streams[place], repeat)).random(2)
+                for place, repeat in zip(places.tolist(), repeats, strict=True)
+            ]
+        ).reshape(-1, 2)
         radius, angle = self.jitter * np.sqrt(draws[:, 0]), 2 * math.pi * draws[:, 1]
         return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
+
+    @cached_property
+    def _earlier(self) -> list[int]:
+        return earlier(contents_of(self.axes, self.columns(range(len(self.axes[0].values)))))
 
     def _random(self, at: IntArray) -> FloatArray:
         rows = [np.random.default_rng((self.seed, SAMPLED, k)).random(len(self.axes)) for k in at.tolist()]
         return np.array(rows).reshape(len(at), len(self.axes))
 
-    def _sobol(self, first: int, last: int) -> FloatArray:
+    def _sobol(self, at: IntArray) -> FloatArray:
+        if len(at) == 0:
+            return np.empty((0, len(self.axes)))
+        first, last = int(at.min()), int(at.max()) + 1
         sequence = qmc.Sobol(len(self.axes), rng=self.seed)
         if first > 0:
-            return sequence.fast_forward(first).random(last - first)
+            return sequence.fast_forward(first).random(last - first)[at - first]
         # A first draw of other than a power of two points is warned about.
-        return np.concatenate([sequence.random(1), sequence.random(last - 1)])
+        return np.concatenate([sequence.random(1), sequence.random(last - 1)])[at]
+
+
+def contents_of(axes: Sequence[Axis], columns: Sequence[NDArray[Any]]) -> list[str]:
+    """The content of points (n,) from the values of each axis (n,): the fields in which they differ from the case.
+
+    Axes in any order, and one more along which a point has the value of the case, lead to the same.
+    """
+    ordered = sorted(zip(axes, columns, strict=True), key=lambda pair: pair[0].field.path)
+    parts = []
+    for axis, column in ordered:
+        base = repr(axis.field.base)
+        texts = (repr(value) for value in column.tolist())
+        parts.append(["" if text == base else f"{axis.field.path}={text}\n" for text in texts])
+    return ["".join(row) for row in zip(*parts, strict=True)]
+
+
+def earlier(contents: Sequence[str]) -> list[int]:
+    """For each content how many before it are the same."""
+    seen: Counter[str] = Counter()
+    numbers = []
+    for content in contents:
+        numbers.append(seen[content])
+        seen[content] += 1
+    return numbers
+
+
+def digests(contents: Sequence[str], marks: Sequence[int] | None = None) -> list[bytes]:
+    """A digest of 16 bytes for each content, and a number that marks it, other than 0."""
+    marks = marks or [0] * len(contents)
+    texts = (f"{content}{mark or ''}" for content, mark in zip(contents, marks, strict=True))
+    return [hashlib.sha256(text.encode()).digest()[:16] for text in texts]
+
+
+def _whole(numbers: Iterable[int]) -> IntArray:
+    return np.asarray(numbers if isinstance(numbers, (range, np.ndarray)) else list(numbers), dtype=np.int64)
 
 
 def longest(axes: tuple[Axis, ...]) -> tuple[Axis, ...]:

@@ -47,10 +47,10 @@ def all_refused(study: Study) -> str:
 
 def refusals(study: Study, variants: Variants, k: int) -> list[str]:
     """What is wrong with path k of a study; nothing: it can be run."""
-    (values,) = study.points.values(k, k + 1)
+    (values,) = study.points.values([k])
     try:
         case, base = variants.at(values)
-        start = study.points.displacements(k, k + 1)[0] + case.part.position
+        start = study.points.displacements([k])[0] + case.part.position
     except ValidationError as error:
         return mistakes_of(error)
     return [law] if isinstance(law := contact_of(case.friction), str) else start_faults(base.case, start[None])[0]

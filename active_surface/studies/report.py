@@ -15,6 +15,7 @@ def figures(sweep: Sweep) -> dict[str, Any]:
     """The figures of a sweep by name."""
     return {
         "paths": len(sweep.study.points),
+        "kept": sweep.kept,
         "dimensions": sweep.study.points.dimensions,
         "outcomes": sweep.outcomes,
         "first_refused": sweep.first_refused,
@@ -31,6 +32,7 @@ def lines(sweep: Sweep) -> list[tuple[str, str]]:
     shape = " x ".join(f"{count} {plural.get(name, name)}" for name, count in sizes.items())
     rows = [
         ("paths", f"{len(sweep.study.points)}: {shape}"),
+        *([("kept", _kept(sweep))] if sweep.kept else []),
         ("outcomes", ", ".join(f"{count} {name}" for name, count in sweep.outcomes.items())),
     ]
     if (largest := _largest(sweep)) is not None:
@@ -38,6 +40,12 @@ def lines(sweep: Sweep) -> list[tuple[str, str]]:
     if wrong := sweep.first_refused:
         rows.append(("refused", f"the first for {'; '.join(wrong)}"))
     return rows + [("wrote", str(file)) for file in sweep.files]
+
+
+def _kept(sweep: Sweep) -> str:
+    """How many paths an earlier sweep left, and how many are new."""
+    new = len(sweep.study.points) - sweep.kept
+    return f"{sweep.kept} of these paths from an earlier sweep; {new or 'none'} {'is' if new == 1 else 'are'} new"
 
 
 def _largest(sweep: Sweep) -> float | None:

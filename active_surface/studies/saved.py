@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,8 +35,8 @@ def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Da
         if others:
             raise ValueError(f"{EXPECTED} of {study.name}; got {path}, which is of other {' and '.join(others)}")
         return study, read_dataset(path, [axis.name for axis in study.points.axes])
-    with read_dataset(path) as dataset:
-        texts = {name: str(dataset.attrs[name]) for name in ("study", "case")}
+    with read_dataset(path) as opened:
+        texts = {name: str(opened.attrs[name]) for name in ("study", "case")}
     if not texts["study"]:
         raise ValueError(f"{EXPECTED}; got {path}, whose study was made without a file")
     with tempfile.TemporaryDirectory() as folder:
@@ -44,8 +45,21 @@ def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Da
             file.parent.mkdir()
             file.write_text(texts[name], encoding="utf-8")
         try:
-            return read_study(files["study"], read_case(files["case"])), read_dataset(path)
+            dataset = read_dataset(path)
+            points = _points_file(dataset, Path(folder, "points.csv"))
+            return read_study(files["study"], read_case(files["case"]), points), dataset
         except CaseError as error:
             raise ValueError(
                 f"{path}: the study in it cannot be read; give the study file in its place\n{error}"
             ) from error
+
+
+def _points_file(dataset: xarray.Dataset, path: Path) -> Path:
+    """Write the points of a sweep to a file, from which a study whose own file is elsewhere gets them."""
+    names = str(dataset.attrs["axes"]).split()
+    if dataset.attrs["sampling"] == "list":
+        with path.open("w", encoding="utf-8", newline="") as file:
+            rows = csv.writer(file)
+            rows.writerow(str(dataset[name].attrs["field"]) for name in names)
+            rows.writerows(zip(*(dataset[name].values.tolist() for name in names), strict=True))
+    return path

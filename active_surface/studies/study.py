@@ -9,10 +9,9 @@ from typing import Any
 
 from active_surface.studies.points import Points
 from active_surface.studies.threshold import Threshold
-from active_surface.studies.variants import lattice_of
 from coupling import PACKAGES as SHARED
 from coupling import versions as versions_of
-from coupling.case import Case
+from coupling.case import Case, lattice_of
 from coupling.results import files_of
 
 PACKAGES = (*SHARED, "active_surface/studies")
@@ -45,14 +44,13 @@ class Study:
         }
 
     def _case_numbers(self) -> list[Any]:
-        """The tables of the case without the names of its files, and the lattice if an axis varies it."""
+        """The tables of the case without the names of its files, and the lattice, which an axis may vary."""
         tables = self.case.model_dump(mode="json", exclude={"name", "source"})
         del tables["run"]["frames"]
         for key in FILE_NAMES & tables["plate"].keys():
             if isinstance(tables["plate"][key], str):
                 del tables["plate"][key]
-        varied = any(axis.field.locations[0][0] == "lattice" for axis in self.points.axes)
-        return [tables, lattice_of(self.case) if varied else None]
+        return [tables, lattice_of(self.case)]
 
     def _point_numbers(self) -> list[Any]:
         """What the points follow from; the seed counts only where something is drawn."""

@@ -6,9 +6,10 @@ import re
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, PlainValidator, StrictInt, StrictStr, WithJsonSchema
+from pydantic import BeforeValidator, ConfigDict, Field, PlainValidator, StrictInt, StrictStr, WithJsonSchema
 
 from active_surface.studies.points import Sampling
+from active_surface.studies.points_file import ENDINGS
 from active_surface.studies.record import COLUMNS
 from active_surface.studies.threshold import Threshold, read_threshold
 from coupling.case import WRONG, Contradictions, KeyedTable, Length, Table, quoted
@@ -36,6 +37,10 @@ class _FileName:
     expected = 'the name of a case file such as "two_actuators.toml"'
 
 
+class _HowMany:
+    expected = 'a whole number, or a file of points such as "points.csv"'
+
+
 class _FieldPath:
     expected = 'the path of a field such as "actuators.0.frequency"'
 
@@ -47,6 +52,18 @@ def _name(value: object) -> object:
     return value
 
 
+def _points(value: object) -> object:
+    if isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= MAX_PATHS:
+        return value
+    if isinstance(value, str) and value.lower().endswith(ENDINGS):
+        return value
+    numbers = f"a whole number from 1 to {MAX_PATHS}"
+    raise ValueError(f'must be {numbers}, or a file of points such as "points.csv"; got {quoted(value)}')
+
+
+_POINTS_SCHEMA = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_PATHS}, {"type": "string"}]}
+
+
 class StudyTable(KeyedTable):
     """What is swept, and how points are chosen; jitter in m."""
 
@@ -54,8 +71,10 @@ class StudyTable(KeyedTable):
     """The base case, a file beside the study's."""
     sampling: Sampling = "grid"
     """How points are chosen: all of a grid, one for each entry of lists, or drawn."""
-    points: StrictInt | None = Field(default=None, ge=1, le=MAX_PATHS, examples=[1000])
-    """How many, of random and Sobol ones."""
+    points: Annotated[int | str, PlainValidator(_points), _HowMany(), WithJsonSchema(_POINTS_SCHEMA)] | None = Field(
+        default=None, examples=[1000]
+    )
+    """How many, of random and Sobol ones; or the file that has them, beside the study's."""
     repeats: StrictInt = Field(default=1, ge=1, le=1_000_000, examples=[10])
     """How many paths there are of each point."""
     jitter: Length = Field(default=0.0, ge=0, examples=["1 um"])
@@ -66,10 +85,14 @@ class StudyTable(KeyedTable):
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         sampling = given.get("sampling", "grid")
+        if isinstance(given.get("points"), str):
+            if given.get("sampling", "list") not in ("list", WRONG):
+                yield "sampling", f'must be "list" or left out with a file of points; got "{sampling}"'
+            sampling = "list"
+        elif sampling in ("grid", "list") and "points" in given:
+            yield "points", f'must not be given with sampling = "{sampling}", whose axes tell the points'
         if sampling in ("random", "sobol") and "points" not in given:
             yield "points", f'is missing; with sampling = "{sampling}" it must be a whole number'
-        if sampling in ("grid", "list") and "points" in given:
-            yield "points", f'must not be given with sampling = "{sampling}", whose axes tell the points'
         if given.get("repeats", 1) not in (1, WRONG) and given.get("jitter", 0.0) == 0.0:
             yield "repeats", 'must not be given without a jitter such as "1 um": the paths would all be the same'
 
@@ -114,14 +137,23 @@ class MapTable(Table):
     """A condition; the picture shows where it begins to hold."""
 
 
+def _axes_or(schema: dict[str, Any]) -> None:
+    """Has a JSON schema ask for axes or for a file of points."""
+    schema["required"].remove("axes")
+    file = {"properties": {"points": {"type": "string"}}, "required": ["points"]}
+    schema["anyOf"] = [{"required": ["axes"]}, {"properties": {"study": file}}]
+
+
 class StudyTables(Table):
     """All that a study file holds."""
+
+    model_config = ConfigDict(json_schema_extra=_axes_or)
 
     whole_file: ClassVar[bool] = True
 
     study: StudyTable
     """What is swept, and how."""
     axes: tuple[AxisTable, ...]
-    """The axes, one table each."""
+    """The axes, one table each; none are needed beside a file of points."""
     map: MapTable = MapTable()
     """The picture."""

@@ -57,7 +57,9 @@ def model_warnings(study: Study) -> tuple[str, ...]:
     worst: dict[str, Any] = {name: max(values, default=None) for name, values in known.items()}
     stretched = [one.stretch_error for one in summaries if one.stretch_error]
     worst["stretch_error"] = max(stretched, key=lambda error: error.largest, default=None)
-    return tuple(report.warnings(replace(summaries[0], path_error=0.0, frames_per_cycle=None, **worst)))
+    return tuple(
+        report.warnings(replace(summaries[0], path_error=0.0, same_events=True, frames_per_cycle=None, **worst))
+    )
 
 
 def _cases(study: Study) -> Iterator[Case]:
@@ -66,7 +68,7 @@ def _cases(study: Study) -> Iterator[Case]:
     for point in corners(points):
         path = point * points.repeats
         try:
-            yield variants.at(points.values(path, path + 1)[0])[0]
+            yield variants.at(points.values([path])[0])[0]
         except FAILURES:
             continue
 
@@ -78,7 +80,7 @@ def corners(points: Points) -> list[int]:
         numbers = [int(np.ravel_multi_index(at, [len(axis.values) for axis in points.axes])) for at in product(*ends)]
     else:
         count = min(points.dimensions["point"], SEARCHED)
-        numbers = [end for column in points.columns(0, count) for end in _ends(column)]
+        numbers = [end for column in points.columns(range(count)) for end in _ends(column)]
     numbers = list(dict.fromkeys(numbers))
     return [numbers[k] for k in sorted({*np.linspace(0, len(numbers) - 1, CHECKED).astype(int).tolist()})]
 

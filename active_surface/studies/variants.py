@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
@@ -11,7 +10,6 @@ from typing import Any, Final, NamedTuple
 from pydantic import TypeAdapter, ValidationError
 
 from active_surface.studies.axis import Axis
-from active_surface.studies.field import LEFT_OUT
 from active_surface.studies.points import Points
 from coupling.case import (
     ActuatorCase,
@@ -22,7 +20,9 @@ from coupling.case import (
     PartCase,
     PlatformCase,
     RunCase,
-    Table,
+    lattice_of,
+    plain_case,
+    put_value,
 )
 from coupling.scene import actuator_stiffness
 
@@ -49,7 +49,7 @@ class Variants:
     def __init__(self, case: Case, axes: Sequence[Axis]) -> None:
         self._deep = [axis for axis in axes if is_deep(case, axis)]
         self._deep_places = [k for k, axis in enumerate(axes) if axis in self._deep]
-        self._plain = {key: table for key, table in _plain(case).items() if key not in LEFT_OUT}
+        self._plain = plain_case(case)
         if any(axis.field.locations[0][0] == "lattice" for axis in axes):
             lattice, alone = lattice_of(case)
             assert lattice is not None
@@ -112,21 +112,21 @@ class Variants:
         plain = self._plain
         for axis, value in zip(self._deep, deep, strict=True):
             for location in axis.field.locations:
-                plain = _put(plain, location, value)
+                plain = put_value(plain, location, value)
         case = Case.model_validate(plain)
         plate = case.plate.model_dump_json()
         held = [
             (actuator.position, spring)
             for actuator, spring in zip(case.actuators, actuator_stiffness(case), strict=True)
         ]
-        return Base(case, _plain(case), f"{plate} {held} {case.run.surface_tolerance!r} {case.run.start}")
+        return Base(case, plain_case(case), f"{plate} {held} {case.run.surface_tolerance!r} {case.run.start}")
 
     def _table(self, deep: Values, head: Location, values: Values) -> Any:
         plain: Any = self.base(deep).plain
         for key in head:
             plain = plain[key]
         for (_, location), value in zip(self._heads[head], values, strict=True):
-            plain = _put(plain, location, value)
+            plain = put_value(plain, location, value)
         # Actuators that differ in nothing but their places, which do not vary here, are checked once.
         own = {"position": plain["position"]} if head[0] == "actuators" else {}
         known = str(head[0]), repr({key: value for key, value in plain.items() if key not in own})
@@ -156,36 +156,3 @@ _READERS: Final[dict[str, TypeAdapter[Any]]] = {
     "friction": TypeAdapter(AnyFriction),
     "run": TypeAdapter(RunCase),
 }
-
-
-def lattice_of(case: Case) -> tuple[dict[str, Any] | None, int]:
-    """The [lattice] in the text of a case, and how many actuators are given beside it one by one."""
-    written = tomllib.loads(case.source) if case.source else {}
-    # Beside a lattice that is written none need be, and those of the case are the lattice's.
-    return written.get("lattice"), len(written.get("actuators", () if "lattice" in written else case.actuators))
-
-
-def _plain(value: Any) -> Any:
-    """Tables as dicts of what was given in them, and all else as it is."""
-    if isinstance(value, Table):
-        fields = type(value).model_fields
-        return {
-            key: _plain(item)
-            for key in fields
-            if (item := getattr(value, key)) is not None
-            and (key in value.model_fields_set or fields[key].default is None or isinstance(item, tuple))
-        }
-    if isinstance(value, tuple):
-        return tuple(_plain(item) for item in value)
-    return value
-
-
-def _put(value: Any, location: Location, new: Any) -> Any:
-    """The same tables with another value at a location."""
-    if not location:
-        return new
-    key, *rest = location
-    if isinstance(value, (tuple, list)):
-        index = int(key)
-        return (*value[:index], _put(value[index], tuple(rest), new), *value[index + 1 :])
-    return {**value, key: _put(value.get(key), tuple(rest), new)}

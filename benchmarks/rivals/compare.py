@@ -31,7 +31,7 @@ STEPS_AGREE = 1e-9  # of the path: the same fixed steps in numpy, numba, JAX and
 FEW, COARSE, FINE = 200, 20_000, 200_000  # steps: in which methods must agree, and from which the order is measured
 ORDER = (0.9, 1.1)
 MOST_TRIED, MORE = 2_000_000_000, 1.05  # steps times actuators, and the steps' growth where they do not do
-LEAST_TIME = 0.02  # s, of one measurement
+MIN_TIME = 0.02  # s, of one measurement
 
 OURS = "active-surface"
 LOOP, NUMPY_SCIPY, SCIPY = "Python loop", "scipy, numpy right side", "scipy, numba right side"
@@ -64,9 +64,9 @@ def processor_seconds(run: Callable[[], object]) -> float:
 
 
 def seconds(run: Callable[[], object]) -> float:
-    """The processor's, of one call, from as many as take LEAST_TIME."""
+    """The processor's, of one call, from as many as take MIN_TIME."""
     count, elapsed = 0, 0.0
-    while elapsed < LEAST_TIME:
+    while elapsed < MIN_TIME:
         elapsed += processor_seconds(run)
         count += 1
     return elapsed / count

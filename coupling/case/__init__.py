@@ -1,7 +1,20 @@
 """The case: what one run simulates, as a TOML file or in Python."""
 
+from coupling.case.actuators import (
+    ENDLESS,
+    SAME_PLACE,
+    ActuatorCase,
+    DriveCase,
+    LatticeCase,
+    SegmentCase,
+    amplitude,
+    beyond,
+    gaps,
+    half_size,
+)
 from coupling.case.case import Case, read_case
-from coupling.case.drive import ENDLESS, ActuatorCase, DriveCase, SegmentCase, amplitude
+from coupling.case.checks import MAX_STRETCHING, MAX_VIBRATING
+from coupling.case.field import Field, Value, find_field
 from coupling.case.friction import (
     AnyFriction,
     ConstantCase,
@@ -11,27 +24,33 @@ from coupling.case.friction import (
     TableCase,
     has_known_law,
 )
-from coupling.case.lattice import LatticeCase
-from coupling.case.lattice_places import SAME_PLACE, beyond, gaps, half_size
-from coupling.case.messages import InputError, Location, Mistake, in_file, location_text, message_of, mistakes_in
-from coupling.case.plate import INERTIA, VON_KARMAN, PlateCase
-from coupling.case.platform import MotionCase, PlatformCase
-from coupling.case.schema import json_schema
-from coupling.case.shapes import (
+from coupling.case.mistakes import InputError, Location, Mistake, in_file, location_text, message_of, mistakes_in
+from coupling.case.parsing import CaseError, Problem, parse
+from coupling.case.plates import (
+    INERTIA,
+    RATES,
+    VON_KARMAN,
     AnnulusCase,
     DiscCase,
     EllipseCase,
     MeshCase,
+    MotionCase,
+    PlateCase,
+    PlatformCase,
     PolygonCase,
     RectangleCase,
     RegularPolygonCase,
 )
-from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, adapter, errors_of, right_value, validate
+from coupling.case.scaled import (
+    friction_scales,
+    largest_stroke,
+    more_plastic,
+    scaled_case,
+    scaled_friction,
+    with_index,
+)
+from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, errors_of, right_value, validate
 from coupling.case.tables import CaseTables, PartCase, RunCase
-from coupling.case.templates import template
-from coupling.case.text import write_case
-from coupling.case.theories import MAX_STRETCHING, MAX_VIBRATING
-from coupling.case.toml_file import CaseError, Problem, parse
 from coupling.case.values import (
     AXES,
     UNITS_REQUIRED,
@@ -41,9 +60,14 @@ from coupling.case.values import (
     Point,
     Quantity,
     Time,
+    adapter,
     length_text,
     of_kind,
     parts_of,
     quantity_of,
     quoted,
+    read_columns,
+    unreadable,
 )
+from coupling.case.variation import lattice_of, plain_case, put_value
+from coupling.case.writing import json_schema, template, write_case

@@ -11,17 +11,20 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import ValidationError, model_validator
 
-from coupling.case.check import Checked, check
+from coupling.case.checks import MAY_MOVE, Checked, check
+from coupling.case.field import locations_of
 from coupling.case.friction import KogutEtsionCase, TableCase
-from coupling.case.parts import MAY_MOVE
+from coupling.case.mistakes import InputError
+from coupling.case.parsing import parse
 from coupling.case.tables import CaseTables
-from coupling.case.toml_file import parse
 from coupling.case.values import UNITS_REQUIRED
+from coupling.case.variation import lattice_of, plain_case, put_value
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,6 +51,53 @@ class Case(CaseTables):
         if checked.errors:
             raise ValidationError.from_exception_data(cls.__name__, checked.errors)
         return _built(checked) | own
+
+    def vary(self, changes: Mapping[str, Any], name: str | None = None) -> Self:
+        """The same case with other values in some fields.
+
+        Parameters
+        ----------
+        changes : mapping of str to value
+            The place of each field, as in studies: ``"actuators.0.frequency"``, ``"part.position.1"``,
+            ``"actuators.*.stroke"``. Indices count from 0, * stands for all. Its value is a text with a unit, or a
+            number in SI units; for a place that is a list or table, all of that. Later ones go over earlier ones.
+        name : str, optional
+            Of the new case, by default the old one.
+
+        Returns
+        -------
+        case : Case
+            The new case; it has no `source`.
+
+        Raises
+        ------
+        InputError
+            Names every place that is no field and every wrong value. After `lattice` is varied once its actuators are
+            those of the case, and there is no `lattice` any more.
+        """
+        lattice, alone = lattice_of(self)
+        tables = plain_case(self)
+        anew = any(path.split(".")[0] == "lattice" for path in changes) and lattice is not None
+        if anew:
+            tables |= {"lattice": lattice, "actuators": tables["actuators"][:alone]}
+        problems: list[tuple[str, str]] = []
+        for path, value in changes.items():
+            try:
+                locations = locations_of(self, lattice, path)
+                if anew and any(at[0] == "actuators" and int(at[1]) >= alone for at in locations if len(at) > 1):
+                    raise ValueError(f"must not vary actuators from {alone} on: a change of the lattice makes them")
+            except ValueError as error:
+                problems.append((path, str(error)))
+            else:
+                for location in locations:
+                    tables = put_value(tables, location, value)
+        try:
+            made = type(self)(**tables, name=self.name if name is None else name)
+        except InputError as error:
+            problems += error.problems
+        if problems:
+            raise InputError(type(self).__name__, problems)
+        return made
 
     @property
     def footprint(self) -> float | None:
@@ -83,9 +133,9 @@ def read_case(path: str | os.PathLike[str], may_move: bool = False) -> Case:
     may_move: accept that supports and actuators leave the plate free to move as a whole. Such a case does not run, but
     has frequency responses.
     """
-    file = parse(path)
+    file = parse(path, lenient=True).as_meant(CaseTables)
     checked = check(file.tables, UNITS_REQUIRED | {"folder": Path(path).absolute().parent, MAY_MOVE: may_move})
-    if checked.errors:
+    if checked.errors or file.misread:
         raise file.error(checked.errors, CaseTables)
     return Case.model_construct(**_built(checked), name=Path(path).stem, source=file.text)
 

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 from pydantic import (
     BaseModel,
     ConfigDict,
     ModelWrapValidatorHandler,
-    TypeAdapter,
     ValidationError,
     ValidationInfo,
     model_validator,
 )
 
-from coupling.case.messages import Location, Mistake, input_error
-from coupling.case.values import parts_of
-from coupling.suggestion import near
+from coupling.case.mistakes import Location, Mistake, input_error, meaning_of, why_wrong
+from coupling.case.values import adapter, parts_of
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -38,7 +35,7 @@ class _Refusing(ModelMetaclass):
         try:
             return super().__call__(*arguments, **values)
         except ValidationError as error:
-            raise input_error(cls, error) from None
+            raise input_error(cls, error, values) from None
 
 
 class Table(BaseModel, metaclass=_Refusing):
@@ -89,8 +86,8 @@ class KeyedTable(Table):
         for key, value in data.items():
             if key not in cls.model_fields:
                 # A misspelt key is a mistake already; the key that is meant is not missing as well.
-                meant = near(str(key), cls.model_fields)
-                given |= {meant: WRONG} if meant else {}
+                meant = meaning_of(str(key), data, cls.model_fields, why_wrong(cls, context))
+                given |= dict.fromkeys((name for name in meant.keys if name not in data), WRONG) if meant else {}
             elif value is not None:
                 try:
                     valid = adapter(cls, key).validate_python(value, context=context)
@@ -101,12 +98,6 @@ class KeyedTable(Table):
                 if context or valid != default:
                     given[key] = valid
         return given
-
-
-@cache
-def adapter(model: type[BaseModel], key: str) -> TypeAdapter[Any]:
-    """What validates one field of a table by itself."""
-    return TypeAdapter(model.model_fields[key].rebuild_annotation())
 
 
 def right_value(model: type[BaseModel], key: str, table: Any, context: Any, missing: Any = None) -> Any:

@@ -7,10 +7,9 @@ from typing import Any, ClassVar, Final, Literal
 
 from pydantic import ConfigDict, Field, StrictFloat, StrictInt
 
-from coupling.case.any_plate import AnyPlate
-from coupling.case.drive import ActuatorCase
+from coupling.case.actuators import ActuatorCase, LatticeCase
 from coupling.case.friction import AnyFriction
-from coupling.case.lattice import LatticeCase
+from coupling.case.plates import AnyPlate
 from coupling.case.table import WRONG, Contradictions, KeyedTable, Table
 from coupling.case.values import Force, Gravity, Length, Mass, Point, Time, Velocity
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coupling.case import Case
 from coupling.display import most_deflected, moving_heights
+from coupling.drives import travel
+from coupling.margins import MarginCurves, Margins
 from coupling.pictures.plate import Relief, relief_of
 from meshes import unit_for
-from particle import AnyDrive, Event, Rows, Samples, Trajectory
+from particle import AnyDrive, Event, EventKind, Rows, Samples, Trajectory
 
 if TYPE_CHECKING:
     from coupling.display import DisplaySurface
@@ -20,7 +23,10 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-SAMPLES = 4000
+SAMPLES, MAX_SAMPLES = 4000, 100_000
+PER_CYCLE = 24  # samples, of the fastest drive
+MAX_DRIVES = 3  # drawn; of more, those that the margins name, or the one nearest to the start
+LOSSES = (EventKind.DETACHES, EventKind.OVERLOADS, EventKind.LEAVES_PLATE)
 BATCH = 64  # times whose deflections are computed together
 
 
@@ -38,6 +44,10 @@ class Portrait:
     relief: Relief | None  # of the plate at the moment; None: there is a platform
     moment: float  # s
     base: Sequence[AnyDrive]  # of a platform, along x and y; none: the surface stays in its plane
+    drives: Mapping[str, AnyDrive]  # by name, whose heights are drawn
+    margins: MarginCurves
+    by_pull_off: bool  # whether the distance from coming off is over the pull-off force, not the weight
+    decisive: float  # s, when it was lost, first slipped or came nearest to slipping
     complete: bool = True  # whether the files hold the run to its end
 
     @property
@@ -45,6 +55,14 @@ class Portrait:
         """The moment, with its unit."""
         unit = unit_for(self.samples.time[-1], "s")
         return f"{self.moment * unit.per_si:.4g} {unit.name}"
+
+    @property
+    def why(self) -> str:
+        """What happens at the decisive moment."""
+        kinds = {event.kind for event in self.events}
+        if kinds.intersection(LOSSES):
+            return "when it is lost"
+        return "when it first slips" if EventKind.SLIPS in kinds else "when it is nearest to slipping"
 
     @property
     def where(self) -> str:
@@ -57,20 +75,55 @@ class Portrait:
         return "when it is deflected most" + ("" if self.complete else " of the steps that were written")
 
 
-def portrait_of(name: str, scene: Scene, trajectory: Trajectory, surface: DisplaySurface, moment: float) -> Portrait:
+def portrait_of(
+    case: Case,
+    scene: Scene,
+    trajectory: Trajectory,
+    surface: DisplaySurface,
+    moment: float,
+    margins: Margins,
+    curves: MarginCurves,
+) -> Portrait:
     """The portrait of a run, with its surface as it is at a moment [s]."""
+    end, drives = float(trajectory.time[-1]), [*scene.lifts, *scene.base]
+    cycles = end * max(drive.frequency for drive in drives if travel(drive) > 0 or drive is drives[0])
+    samples = int(np.clip(PER_CYCLE * cycles, SAMPLES, MAX_SAMPLES))
     return Portrait(
-        name,
+        case.name,
         trajectory.sentence,
         scene.origin,
         trajectory,
-        trajectory.at(np.linspace(0, trajectory.time[-1], SAMPLES)),
+        trajectory.at(np.linspace(0, end, samples)),
         trajectory.events,
         np.stack([surface.points.min(axis=0), surface.points.max(axis=0)]),
         _relief(scene, surface, moment),
         moment,
         scene.base,
+        chosen_drives(case, scene.lifts, margins),
+        curves,
+        margins.by_pull_off,
+        decisive_moment(trajectory.events, margins),
     )
+
+
+def chosen_drives(case: Case, lifts: Sequence[AnyDrive], margins: Margins) -> dict[str, AnyDrive]:
+    """The drives whose heights are drawn, by name: all of a few, of many those whose margins count."""
+    if not case.actuators:
+        return {"platform": lifts[0]}
+    moving = [k for k, drive in enumerate(lifts) if case.actuators[k].force is None and travel(drive) > 0]
+    if len(moving) > MAX_DRIVES:
+        named = {one.actuator for one in (margins.slip, margins.contact) if one is not None} & set(moving)
+        places = np.array([case.actuators[k].position for k in moving]) - case.part.position
+        moving = sorted(k for k in named if k is not None) or [moving[int(np.argmin(np.hypot(*places.T)))]]
+    return {f"actuator {k}": lifts[k] for k in moving}
+
+
+def decisive_moment(events: Sequence[Event], margins: Margins) -> float:
+    """When the part was lost; else when it first slipped; else when it came nearest to that [s]."""
+    lost = [event.time for event in events if event.kind in LOSSES]
+    slips = [event.time for event in events if event.kind is EventKind.SLIPS]
+    nearest = [one.time for one in (margins.slip, margins.contact) if one is not None]
+    return float((lost[-1:] or slips[:1] or nearest[:1] or [0.0])[0])
 
 
 def _relief(scene: Scene, surface: DisplaySurface, moment: float) -> Relief | None:

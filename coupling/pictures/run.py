@@ -6,37 +6,52 @@ The plate is drawn at one moment: the time step of the result files at which it 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
 
 from coupling.case import Case
 from coupling.display import DisplaySurface, display_surface
 from coupling.drives import frame_times
+from coupling.margins import MarginCurves, Margins, margin_curves, margins_of
+from coupling.part import build_friction
+from coupling.pictures.events import MARKS, draw_events
 from coupling.pictures.file import save_picture
+from coupling.pictures.keys import put_keys
 from coupling.pictures.path import draw_path
 from coupling.pictures.plate import AXES_WIDTH, draw_plate, draw_window, join
-from coupling.pictures.portrait import Portrait, deflected_most, portrait_of
+from coupling.pictures.portrait import LOSSES, Portrait, deflected_most, portrait_of
 from coupling.pictures.ticks import map_axes
-from coupling.pictures.time import curves_of, draw_over_time
+from coupling.pictures.time import Curves, Span, curves_of, draw_over_time
 from coupling.pictures.window import is_visible, path_window
 from coupling.scene import Scene
 from meshes import Drawing, Unit, label_places, unit_for
-from particle import Trajectory, shade_keys
+from particle import HALO, Trajectory, shade_keys
 
-PANEL = 5.5  # inches, about; a picture has two or three panels side by side
+PANEL = 5.0  # inches, about: the side of a map
+ROW, STRIP = 1.4, 0.16  # inches: the heights of a row over time, and of the strip of events
 MIN_WIDTH = 0.6  # of a panel: the width of a map
+NARROWEST = 7.6  # inches, of the picture
+MANY, SHOWN = 30.0, 6.0  # cycles: a longer run is drawn twice over time, whole and around the decisive moment
 
 
 def draw_run(
-    case: Case, scene: Scene, trajectory: Trajectory, surface: DisplaySurface, moment: float, path: Path
+    case: Case,
+    scene: Scene,
+    trajectory: Trajectory,
+    surface: DisplaySurface,
+    moment: float,
+    path: Path,
+    margins: Margins,
+    curves: MarginCurves,
 ) -> None:
     """Draw the run into a PNG file; moment: the time [s] at which the surface is drawn."""
     figure = Drawing()
-    compose(figure, portrait_of(case.name, scene, trajectory, surface, moment))
+    compose(figure, portrait_of(case, scene, trajectory, surface, moment, margins, curves))
     save_picture(figure, path)
 
 
@@ -45,7 +60,10 @@ def plot_run(case: Case, scene: Scene, trajectory: Trajectory, axes: Axes | None
     surface = display_surface(scene, trajectory)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
     moment = deflected_most(scene, surface, times)
-    portrait = portrait_of(case.name, scene, trajectory, surface, moment)
+    friction = build_friction(case)
+    margins = margins_of(case, scene, trajectory, friction)
+    curves = margin_curves(case, scene.surface, trajectory, friction)
+    portrait = portrait_of(case, scene, trajectory, surface, moment, margins, curves)
     if axes is None:
         drawing = Drawing()
         compose(drawing, portrait)
@@ -59,17 +77,18 @@ def plot_run(case: Case, scene: Scene, trajectory: Trajectory, axes: Axes | None
 
 
 def compose(figure: Figure, portrait: Portrait) -> None:
-    """Draw the run into an empty figure."""
-    box, rows, samples, relief = portrait.box, portrait.rows, portrait.samples, portrait.relief
-    line, times = samples.position, samples.time
+    """Draw the run into an empty figure: maps, and below them what happens over time."""
+    box, rows, line, relief = portrait.box, portrait.rows, portrait.samples.position, portrait.relief
     window = path_window(line, box, relief.actuators) if relief else None
     curves = curves_of(portrait)
     width, height = np.ptp(box, axis=0)
-    columns = [float(np.clip(width / height, MIN_WIDTH, 1.0)), *([] if window is None else [1.0]), 1.0]
-    figure.set_size_inches(PANEL * sum(columns) + 1.0, max(PANEL, 2.2 * len(curves)) + 0.6)
-    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.06)
-    grid = figure.add_gridspec(len(curves), len(columns), width_ratios=columns)
-    axes = [figure.add_subplot(grid[:, k]) for k in range(len(columns) - 1)]
+    columns = [float(np.clip(width / height, MIN_WIDTH, 1.0)), *([] if window is None else [1.0])]
+    below = STRIP + ROW * len(curves)
+    figure.set_size_inches(max(PANEL * sum(columns) + 1.6, NARROWEST), PANEL + below + 1.2)
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.05)
+    grid = figure.add_gridspec(2, 1, height_ratios=[PANEL, below])
+    maps = grid[0].subgridspec(1, len(columns), width_ratios=columns)
+    axes = [figure.add_subplot(maps[k]) for k in range(len(columns))]
     units = [unit_for(points, "m") for points in (box, window) if points is not None]
     for one, unit in zip(axes, units, strict=True):
         map_axes(one, unit, portrait.where)
@@ -82,16 +101,80 @@ def compose(figure: Figure, portrait: Portrait) -> None:
         join(figure, axes, units[0], window)
         keys += draw_plate(figure, axes[1], relief, units[1], window)
     keys = draw_path(axes[-1], rows, line, units[-1], is_visible(line, box)) + keys
-    time_unit = unit_for(times, "s")
-    for k, some in enumerate(curves):
-        panel = figure.add_subplot(grid[k, -1])
-        draw_over_time(panel, rows, times, some, time_unit)
-        panel.tick_params(labelbottom=k == len(curves) - 1)
-    panel.set_xlabel(f"time [{time_unit.name}]")
+    _draw_loss(axes[-1], portrait, units[-1])
+    spans = _spans(portrait)
+    rest = grid[1].subgridspec(len(curves) + 1, len(spans), height_ratios=[STRIP, *[ROW] * len(curves)])
+    for k, span in enumerate(spans):
+        keys += _draw_column(
+            figure, [rest[n, k] for n in range(len(curves) + 1)], portrait, curves, span, span == spans[-1]
+        )
     keys += shade_keys(rows)
     figure.suptitle(f"{portrait.name}: {portrait.sentence}", parse_math=False)
-    keys = list({key.get_label(): key for key in reversed(keys)}.values())[::-1]
-    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
+    put_keys(figure, keys)
+
+
+def _spans(portrait: Portrait) -> list[Span]:
+    """The spans of time that are drawn [s]: all, and of many cycles some around the decisive moment."""
+    times = portrait.samples.time
+    end, drives = float(times[-1]), (*portrait.drives.values(), *portrait.base)
+    moving = [velocity[velocity != 0] for velocity in (drive.evaluate(times)[1] for drive in drives)]
+    turns = [np.count_nonzero(np.diff(np.sign(velocity)) > 1) for velocity in moving]
+    if max(turns, default=0) <= MANY:
+        return [(0.0, end)]
+    length = SHOWN * end / max(turns)
+    begin = float(np.clip(portrait.decisive - length / 2, 0.0, end - length))
+    return [(0.0, end), (begin, begin + length)]
+
+
+def _draw_column(
+    figure: Figure, places: list[SubplotSpec], portrait: Portrait, curves: list[Curves], span: Span, last: bool
+) -> list[Artist]:
+    """Draw a strip of events and the curves below it over a span of time [s]; last: the one at the right."""
+    unit = unit_for(span[1], "s")
+    strip, first = figure.add_subplot(places[0]), span[0] == 0 and span[1] == portrait.samples.time[-1]
+    width = 72 * figure.get_figwidth() * places[0].get_position(figure).width
+    keys = draw_events(strip, portrait, unit.per_si, width, span)
+    strip.set_xlim(span[0] * unit.per_si, span[1] * unit.per_si)
+    if not first:
+        strip.set_title(f"Around {portrait.decisive * unit.per_si:.4g} {unit.name}, {portrait.why}", fontsize=10)
+    lost = [event.time for event in portrait.events if event.kind in LOSSES]
+    panels = [figure.add_subplot(place) for place in places[1:]]
+    for panel, some in zip(panels, curves, strict=True):
+        other = draw_over_time(panel, portrait.rows, some, unit, span)
+        for time in lost:
+            panel.axvline(time * unit.per_si, color="black", linewidth=1.0, linestyle="--")
+        panel.tick_params(labelbottom=panel is panels[-1])
+        if not first:
+            panel.set_ylabel("")
+        if other is not None and not last:
+            other.set_ylabel("")
+    figure.align_ylabels(panels)
+    panels[-1].set_xlabel(f"time [{unit.name}]")
+    return keys
+
+
+def _draw_loss(axes: Axes, portrait: Portrait, unit: Unit) -> None:
+    """Mark where and when the part was lost."""
+    for event in portrait.events:
+        if event.kind in LOSSES:
+            marker, colour, text, _ = MARKS[event.kind]
+            time = unit_for(portrait.samples.time[-1], "s")
+            look: dict[str, Any] = {
+                "marker": marker,
+                "color": colour,
+                "markeredgecolor": "black",
+                "markersize": 9,
+            }
+            place = event.position[0] * unit.per_si, event.position[1] * unit.per_si
+            axes.plot(*place, **look, linestyle="", zorder=6)
+            axes.annotate(
+                f"{text} at {event.time * time.per_si:.4g} {time.name}",
+                place,
+                xytext=(8, 8),
+                textcoords="offset points",
+                path_effects=HALO,
+                zorder=7,
+            )
 
 
 def draw_surface(

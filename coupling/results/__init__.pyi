@@ -2,4 +2,11 @@ from .case_record import files_of as files_of, record_of as record_of
 from .csv_file import check_csv as check_csv
 from .export import export_run as export_run
 from .results import check_folder as check_folder, write_results as write_results
-from .saved import ENDINGS as ENDINGS, SavedRun as SavedRun, is_run as is_run, name_of as name_of, read_run as read_run
+from .saved import (
+    ENDINGS as ENDINGS,
+    SavedRun as SavedRun,
+    instead as instead,
+    is_run as is_run,
+    name_of as name_of,
+    read_run as read_run,
+)

@@ -67,7 +67,7 @@ def write_csv(
         raise ValueError(f"Input times of write_csv must be finite times in s; got {at[~np.isfinite(at)][0]}")
     at = np.concatenate([at, [event.time for event in trajectory.events]])
     at = np.unique(np.clip(at, trajectory.time[0], trajectory.time[-1]))
-    header, rows = HEADER, _rows(trajectory.at(at))
+    header, rows = HEADER, csv_rows(trajectory.at(at))
     if forces:
         contact = trajectory.contact_at(at, friction)
         header = ",".join([HEADER, *CONTACT_COLUMNS, *(ROUGH_COLUMNS if friction else ())])
@@ -90,7 +90,8 @@ def is_trajectory(path: Path) -> bool:
     return header == HEADER or header.startswith(f"{HEADER},{CONTACT_COLUMNS[0]},")
 
 
-def _rows(samples: Samples) -> Iterator[str]:
+def csv_rows(samples: Samples) -> Iterator[str]:
+    """Yield the lines of a file for samples, without its header."""
     columns = (samples.time, *samples.position.T, samples.height, *samples.velocity.T)
     words = [State(state).name.lower() for state in samples.state.tolist()]
     forces = (samples.normal_force, samples.friction_force)

@@ -1,7 +1,8 @@
 """Export: a saved run in other formats, for programs that cannot read VTKHDF.
 
 Each of NAME.plate and NAME.part becomes NAME.plate.pvd with a folder NAME.plate of VTU files, or NAME.plate.xdmf with
-NAME.plate.h5, or a VTKHDF file anew, which closes what an interrupted run left. All have every step and field.
+NAME.plate.h5, or a VTKHDF file anew, which closes what an interrupted run left. All have every step and field. The
+part's path may also become NAME.csv.
 """
 
 from __future__ import annotations
@@ -18,10 +19,12 @@ from numpy.typing import NDArray
 
 from coupling.files import whole_file
 from coupling.progress import ProgressCallback, no_progress
+from coupling.results.csv_file import HEADER, check_csv, csv_rows
 from coupling.results.saved import OF_PART, SavedRun
 from coupling.results.vtkhdf import GZIP, part_file, plate_file
+from particle import Samples
 
-FORMATS = ("pvd", "xdmf", "vtkhdf")
+FORMATS = ("pvd", "xdmf", "vtkhdf", "csv")
 VERTEX = np.zeros((1, 1), np.int64)
 XDMF_TYPES = {"f": "Float", "i": "Int"}
 XDMF_CELLS = {
@@ -41,11 +44,11 @@ class Frame(NamedTuple):
 def export_run(
     saved: SavedRun, folder: str | Path, form: str, tell: ProgressCallback = no_progress
 ) -> tuple[Path, ...]:
-    """Write a saved run to a folder, made if need be, in one of FORMATS; returns the two files to open.
+    """Write a saved run to a folder, made if need be, in one of FORMATS; returns the files to open.
 
     tell: gets how many steps are written, and of how many.
-    Raises ValueError for another format, or when VTKHDF files would replace those of the run; OSError when a file
-    cannot be written.
+    Raises ValueError for another format, or when VTKHDF files would replace those of the run or NAME.csv something
+    that is no path; OSError when a file cannot be written.
     """
     folder = Path(folder)
     if form not in FORMATS:
@@ -56,11 +59,23 @@ def export_run(
     frames = _counted(_plate_frames(saved), tell, len(saved.time))
     if form == "vtkhdf":
         return _plate_anew(saved, folder, frames), _part_anew(saved, folder)
+    if form == "csv":
+        return (_csv(saved, folder / f"{saved.name}.csv"),)
     write = write_pvd if form == "pvd" else write_xdmf
     return (
         write(folder, f"{saved.name}.plate", "triangle", saved.triangles, frames),
         write(folder, f"{saved.name}.part", "vertex", VERTEX, _part_frames(saved)),
     )
+
+
+def _csv(saved: SavedRun, path: Path) -> Path:
+    """The part's path at all rows of the integrator, each time once, at an event with the values from then on."""
+    check_csv(path)
+    last = np.append(np.diff(saved.rows.time) > 0, True)
+    with whole_file(path) as partial:
+        rows = csv_rows(Samples(*(column[last] for column in saved.rows)))
+        partial.write_text("\n".join([HEADER, *rows, ""]), encoding="utf-8")
+    return path
 
 
 def _plate_frames(saved: SavedRun) -> Iterator[Frame]:

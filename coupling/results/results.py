@@ -15,6 +15,8 @@ from coupling.case import Case
 from coupling.display import DisplaySurface, display_surface, most_deflected, moving_heights, onto_surface
 from coupling.drives import frame_times
 from coupling.environment import versions
+from coupling.margins import MarginCurves, event_actuators, margin_curves
+from coupling.part import build_friction
 from coupling.progress import ProgressCallback, no_progress
 from coupling.results.case_record import CaseRecord
 from coupling.results.csv_file import is_trajectory, write_csv
@@ -87,12 +89,15 @@ def write_results(
     velocity = np.column_stack([samples.velocity, samples.vertical_velocity])
     rough = friction if isinstance(friction, KogutEtsion) else None
     forces = {} if friction is None else _contact_fields(trajectory, times, rough)
+    law = build_friction(case)
+    curves = margin_curves(case, scene.surface, trajectory, law)
+    by = event_actuators(case, scene, trajectory, law)
     spread: list[FloatArray] = []
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
         part_file(folder, case.name, metadata) as part,
     ):
-        for group, arrays in _arrays(record, trajectory).items():
+        for group, arrays in _arrays(record, trajectory, curves, by).items():
             part.add_arrays(group, arrays)
         for first in range(0, len(times), AT_ONCE):
             tell(first, len(times))
@@ -115,7 +120,8 @@ def write_results(
     try:
         from coupling.pictures import draw_run  # here, because it loads matplotlib
 
-        draw_run(case, scene, trajectory, ground, float(times[most_deflected(np.concatenate(spread))]), picture)
+        moment = float(times[most_deflected(np.concatenate(spread))])
+        draw_run(case, scene, trajectory, ground, moment, picture, summary.margins, curves)
         files.append(picture)
     except Exception as error:  # the run is finished, whatever becomes of its picture
         warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
@@ -150,10 +156,16 @@ def _fields(
     return fields
 
 
-def _arrays(record: CaseRecord, trajectory: Trajectory) -> dict[str, dict[str, NDArray]]:
-    """What the part's file holds beside its steps, by groups: the case and its files, all rows, all events."""
+def _arrays(
+    record: CaseRecord, trajectory: Trajectory, margins: MarginCurves, actuators: NDArray[np.int64]
+) -> dict[str, dict[str, NDArray]]:
+    """What the part's file holds beside its steps, by groups: the case and its files, rows, events, margins.
+
+    actuators: those that count most at each event.
+    """
     events = {
         "kind": np.array([event.kind for event in trajectory.events], np.int64),
+        "actuator": actuators,
         "position": np.array([event.position for event in trajectory.events], float).reshape(-1, 2),
     }
     for key in ("time", "speed", "load"):
@@ -163,6 +175,7 @@ def _arrays(record: CaseRecord, trajectory: Trajectory) -> dict[str, dict[str, N
         "files": {name: np.frombuffer(content, np.uint8) for name, content in record.files.items()},
         "rows": {key: getattr(trajectory, key) for key in Samples._fields},
         "events": events,
+        "margins": margins._asdict(),
     }
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
@@ -18,9 +19,16 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from coupling.case import Case
+from coupling.environment import versions
+from coupling.margins import MarginCurves
 from coupling.results.case_record import CaseRecord, case_of
+from coupling.results.other_file import described, meant
 from coupling.summary import summary_of
-from particle import Event, EventKind, Samples
+from particle import Event, EventKind, Outcome, Samples, dataset_of, table_of
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 FloatArray = NDArray[np.float64]
 
@@ -30,9 +38,15 @@ ENDINGS = tuple(f"{part}.{kind}{SUFFIX}" for part in ("", PARTIAL) for kind in K
 EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
 OF_PART = ("velocity", "state", "normal_force", "friction_force")
 OVER_TIME = ("time", "position", *OF_PART)
+LOSSES = (EventKind.DETACHES, EventKind.LEAVES_PLATE, EventKind.OVERLOADS)
+LOST = tuple(outcome.value for outcome in (Outcome.DETACHED, Outcome.LEFT_PLATE, Outcome.OVERLOADED))
 EXPECTED = "Input path must be a result of `active-surface run`"
 UNREADABLE = (AttributeError, IndexError, KeyError, OSError, RuntimeError, TypeError, ValueError)
 """What reading raises where something is not there, or not as a run writes it."""
+LACKS = re.compile(r"\bobject '([^']+)' doesn't exist|attribute: '([^']+)'")
+OF_HDF5 = re.compile(r"(?:Unable to|Can't) (?:synchronously )?[\w ]+ \((.*)\)")
+FIELDS = re.compile(r"(\w+)\.(?:__init__|__new__)\(\) missing [^:]+: (.+)")
+"""How h5py says that something is missing, and how it wraps what HDF5 says; how Python does of a record."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +69,8 @@ class SavedRun:
     friction_force: FloatArray = field(repr=False)  # (k,) N
     events: list[Event] = field(repr=False)
     rows: Samples = field(repr=False)  # all that the integrator found
+    margins: MarginCurves = field(repr=False)  # over time
+    event_actuators: NDArray[np.int64] = field(repr=False)  # (e,) that count most for slips and detachments; -1: none
     plate_fields: tuple[str, ...]
     plate_path: Path = field(repr=False)
     part_path: Path = field(repr=False)
@@ -65,11 +81,29 @@ class SavedRun:
 
         Raises ValueError when the file holds no valid case.
         """
-        with _opened(self.part_path) as file, _readable(self.part_path, "whose case is damaged"):
+        with _opened(self.part_path) as file, _readable(self.part_path, self.part_path, "whose case is damaged"):
             ours = file["active_surface"]
             files = {name: data[()].tobytes() for name, data in ours["files"].items()}
             text, source = ours["case"]["json"][()].tobytes().decode(), ours.attrs["case"]
             return case_of(CaseRecord(text, files), self.name, None if source == text else source)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """All rows and events of the run as labelled arrays with units, as `Trajectory.to_xarray` gives them."""
+        return dataset_of(self.rows, self.events, **self._ending)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """All rows of the run as a table, as `Trajectory.to_dataframe` gives them."""
+        return table_of(self.rows, **self._ending)
+
+    @property
+    def loss(self) -> Event | None:
+        """The event with which the part was lost at the end of the run; None: it was not."""
+        last = self.events[-1] if self.events else None
+        return last if last and last.kind in LOSSES and self.summary["outcome"] in LOST else None
+
+    @property
+    def _ending(self) -> dict[str, str]:
+        return {key: str(self.summary[key]) for key in ("outcome", "sentence")}
 
     def plate_field(self, name: str, steps: int | slice | Sequence[int] | NDArray[np.int64] = slice(None)) -> NDArray:
         """A field of the plate at stored steps.
@@ -98,7 +132,10 @@ class SavedRun:
             raise ValueError(f"Input name of plate_field must be one of {known}; got {name!r}")
         rows = np.arange(len(self.time))[steps]
         n = len(self.points)
-        with _opened(self.plate_path) as file, _readable(self.plate_path, f"whose field {name} is damaged"):
+        with (
+            _opened(self.plate_path) as file,
+            _readable(self.plate_path, self.part_path, f"whose field {name} is damaged"),
+        ):
             data = file[f"VTKHDF/PointData/{name}"]
             values = np.empty((rows.size, n, *data.shape[1:]), data.dtype)
             for row, step in zip(values, np.atleast_1d(rows).tolist(), strict=True):
@@ -127,11 +164,11 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
     """
     paths = _pair(Path(path))
     with _opened(paths["plate"]) as plate, _opened(paths["part"]) as part:
-        with _readable(path):
+        with _readable(path, paths["part"]):
             k = min(int(file["VTKHDF/Steps"].attrs["NSteps"]) for file in (plate, part))
         if k == 0:
             raise ValueError(f"{EXPECTED}; got {paths['part']}, to which no step was written")
-        with _readable(path):
+        with _readable(path, paths["part"]):
             run = _read(plate, part, paths, k)
             _check(run, k)
             return replace(run, complete=run.complete and bool(run.time[-1] >= run.summary["end_time"]))
@@ -159,6 +196,8 @@ def _read(plate: h5py.File, part: h5py.File, paths: dict[str, Path], k: int) -> 
             for kind, *numbers, place in events
         ],
         rows=rows,
+        event_actuators=ours["events"]["actuator"][()],
+        margins=MarginCurves(**{name: ours["margins"][name][()] for name in MarginCurves._fields}),
         plate_fields=tuple(plate["VTKHDF/PointData"]),
         plate_path=paths["plate"],
         part_path=paths["part"],
@@ -189,9 +228,12 @@ def _pair(path: Path) -> dict[str, Path]:
     for one in KINDS:
         both = [path] if one == kind else [path.with_name(f"{name}{part}.{one}{SUFFIX}") for part in ("", PARTIAL)]
         found[one] = [file for file in both if file.is_file()]
+        if not found[one] and kind is None and not any(found.values()) and (other := described(path, ENDINGS)):
+            raise ValueError(f"{EXPECTED}; got {path}, {other}")
         if not found[one] and (kind in (None, one) or path.is_file()):
             beside = "" if kind in (None, one) else ", the other file of this run"
-            raise ValueError(f"{EXPECTED}; got {path}, but there is no {both[0]}{beside}")
+            like = "" if beside else meant(path.with_name(name), ENDINGS)
+            raise ValueError(f"{EXPECTED}; got {path}, but there is no {both[0]}{beside}{like}")
     for plate, part in product(*found.values()):
         if _run(plate) == _run(part):
             return {"plate": plate, "part": part}
@@ -202,16 +244,36 @@ def _message(error: Exception) -> str:
     """What is wrong, on one line."""
     if isinstance(error, ValidationError):
         return ", ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
-    return str(error.args[0] if isinstance(error, KeyError) else error).replace("\n", " ")
+    text = str(error.args[0] if isinstance(error, KeyError) else error).replace("\n", " ")
+    if missing := LACKS.search(text):
+        return f"it has no {missing[1] or missing[2]}"
+    if lacking := FIELDS.search(text):
+        return f"its {lacking[1].lower()} lacks {lacking[2].replace(chr(39), '')}"
+    inner = OF_HDF5.fullmatch(text)
+    return inner[1] if inner else text
+
+
+def _written(path: Path) -> str:
+    """That another version of the program wrote a file, if so."""
+    try:
+        with h5py.File(path, "r") as file:
+            then = json.loads(file["active_surface"].attrs["versions"])["active-surface"]
+    except UNREADABLE:
+        return ""
+    now = versions()["active-surface"]
+    return "" if then == now else f"; version {then} wrote it, and this is {now}: run its case again"
 
 
 @contextmanager
-def _readable(path: str | os.PathLike[str], but: str = "which is damaged") -> Iterator[None]:
-    """Raises ValueError, with the file and what is wrong with it, where what is read from it is not as it must be."""
+def _readable(path: str | os.PathLike[str], part: Path, but: str = "which is damaged") -> Iterator[None]:
+    """Raises ValueError, with the file and what is wrong with it, where what is read from it is not as it must be.
+
+    part: the file of the run that names the version that wrote it.
+    """
     try:
         yield
     except UNREADABLE as error:
-        raise ValueError(f"{EXPECTED}; got {path}, {but}: {_message(error)}") from error
+        raise ValueError(f"{EXPECTED}; got {path}, {but}: {_message(error)}{_written(part)}") from error
 
 
 def name_of(path: Path) -> str:
@@ -224,6 +286,11 @@ def is_run(path: Path) -> bool:
     if _split(path)[1] is not None:
         return path.is_file()
     return any(path.with_name(path.name + ending).is_file() for ending in ENDINGS)
+
+
+def instead(path: Path) -> str:
+    """What a path that is no result leads to, and what may be meant."""
+    return described(path, ENDINGS) or f"which is no file{meant(path, ENDINGS)}"
 
 
 def _split(path: Path) -> tuple[str, str | None, bool]:
@@ -249,7 +316,7 @@ def _opened(path: Path) -> Iterator[h5py.File]:
     except BlockingIOError as error:  # its writer keeps others out
         raise ValueError(f"{EXPECTED}; got {path}, which is being written: its run has not ended") from error
     except OSError as error:
-        raise ValueError(f"{EXPECTED}; got {path}, which is damaged: {error}") from error
+        raise ValueError(f"{EXPECTED}; got {path}, which is damaged: {_message(error)}") from error
     with file:
         if "VTKHDF" not in file or "run" not in getattr(file.get("active_surface"), "attrs", ()):
             raise ValueError(f"{EXPECTED}; got {path}, which is HDF5 but holds something else")

@@ -29,13 +29,13 @@ from coupling.stretch import (
 )
 from fem_plate.large_deflection import Forms
 from particle import kernel, kernel_no_arrays
-from particle.drives import ORDER, DriveTable, drive_piece
+from particle.drives import ORDER, DriveTable, drive_piece, evaluate_piece
 
 FloatArray = NDArray[np.float64]
 
 
 class Ringing(NamedTuple):
-    """A stretching plate with a modes that ring and n that follow, under N drives."""
+    """A stretching plate with a modes that ring and n corrections that follow them, under N drives."""
 
     forms: Forms  # of N + a drives, the heights and the modes, and n corrections
     square: FloatArray  # (a,) 1/s^2, omega^2
@@ -50,7 +50,7 @@ class Bench(NamedTuple):
     moment: Moment
     state: State
     pieces: FloatArray  # (N, 6) m, of the drives, powers of the time from -1 to 1
-    heights: FloatArray  # (3, N) m, the drives with two derivatives in s
+    heights: FloatArray  # (3, N) m, or N of forces, the drives with two derivatives in time
     lifts: FloatArray  # (3, N + a), drives and modes with two derivatives
     row: FloatArray  # (N + a,)
     membrane_force: FloatArray  # (a,), against each mode
@@ -87,10 +87,7 @@ def _enter_heights(bench: Bench, s: float, half: float) -> None:
     """The drives with two derivatives in time [s]."""
     heights = bench.heights
     for i in range(len(bench.pieces)):
-        d = bench.pieces[i]
-        heights[0, i] = ((((d[5] * s + d[4]) * s + d[3]) * s + d[2]) * s + d[1]) * s + d[0]
-        heights[1, i] = ((((5 * d[5] * s + 4 * d[4]) * s + 3 * d[3]) * s + 2 * d[2]) * s + d[1]) / half
-        heights[2, i] = (((20 * d[5] * s + 12 * d[4]) * s + 6 * d[3]) * s + 2 * d[2]) / half**2
+        heights[0, i], heights[1, i], heights[2, i] = evaluate_piece(bench.pieces[i], s, half)
 
 
 @kernel_no_arrays
@@ -157,7 +154,7 @@ def accelerate(
 def fill_node(
     ringing: Ringing, bench: Bench, q: FloatArray, q_t: FloatArray, q_tt: FloatArray, out: FloatArray
 ) -> None:
-    """All modes and in-plane motions with their derivatives in s, (3, a + n + M), where `accelerate` has just been."""
+    """Modes, corrections and in-plane motions with two derivatives (3, a + n + M), where `accelerate` has just been."""
     forms, lifts, count, own = ringing.forms, bench.lifts, len(bench.pieces), len(q)
     for i in range(count):
         lifts[1, i], lifts[2, i] = bench.heights[1, i], bench.heights[2, i]

@@ -18,7 +18,7 @@ from particle import AnyDrive
 
 FloatArray = NDArray[np.float64]
 
-LEAST = 1e-6  # of the largest membrane force: what two shapes stretch less is left out
+MIN_COUPLING = 1e-6  # of the largest membrane force: what two shapes stretch less is left out
 MAX_UNCOUPLED = 0.01  # of the largest acceleration: what the modes that the membrane does not couple may add together
 MIN_RINGING, MAX_RINGING = 4, 8  # modes that it couples
 MIN_SWING, MAX_SWING = 0.01, 3.0  # of a mode, over the plate's largest deflection; or over its thickness
@@ -59,11 +59,11 @@ def make_ringing_model(
     modes = mode_columns(reduction.discrete, shapes, chosen.modes)
     lowest = modes.weighted(np.eye(len(shares) - 1)[:, :count])
     above = modes.weighted(np.eye(len(shares) - 1)[:, count:])
-    key = key_of(large, model.heights, LEAST, lowest.v, lowest.extra, swings)
+    key = key_of(large, model.heights, MIN_COUPLING, lowest.v, lowest.extra, swings)
     if (kept := read_model(key, large)) is not None:
         together = kept[0]
     else:
-        together = with_modes(reduction, lowest, (strokes, swings, corrections), LEAST)
+        together = with_modes(reduction, lowest, (strokes, swings, corrections), MIN_COUPLING)
         keep_model(key, together, model.mesh_error)
     figures = model.heights, model.mesh_error
     return RingingModel(large, together, above, *figures, chosen, damping, steady, amplitudes, float(shares[count]))

@@ -22,17 +22,17 @@ from particle.events import tableau
 
 FloatArray = NDArray[np.float64]
 
-RADIANS = 1.0  # of the fastest mode in a step, at first
-STEP_ERROR = 1e-9  # of the largest mode
-SETTLED = 1e-6  # of the largest acceleration: what all later passes still change
-LEAST_LOST = 1e-2  # of a mode's ringing, in a pass
-BLOCK = 512  # steps that are laid together
+MAX_RADIANS = 1.0  # of the fastest mode in a step, at first
+MAX_STEP_ERROR = 1e-9  # of the largest mode
+MAX_CHANGE = 1e-6  # of the largest acceleration: what all later passes still change
+MIN_LOSS = 1e-2  # of a mode's ringing, in a pass
+MAX_BLOCK = 512  # steps that are laid together
 MAX_STEPS = 4096  # whose nodes are held at a time, if they are not halved
 MAX_HALVINGS = 10  # of the steps
 MAX_PASSES = 200  # to a steady state; more where damping is low
-DECAYED = 40.0  # zeta omega t after which nothing is left of the start
+MIN_DECAY = 40.0  # zeta omega t after which nothing is left of the start
 MERGED = 1e-12  # of a period: a breakpoint that is its end
-SILENT = 1e-9  # of the largest acceleration: with all drives at rest, the plate rests, too
+MIN_ACCELERATION = 1e-9  # of the largest acceleration: with all drives at rest, the plate rests, too
 MAX_PIECES = 20_000_000  # of all shapes: about 2 GB
 
 
@@ -108,7 +108,7 @@ class _Walker:
             period = float(edges[-1] - edges[loop])
             edges, loop = np.append(edges[edges < period * (1 - MERGED)], period), 0
         if loop < 0:
-            if steady and self._bench_moves():
+            if steady and self._moves():
                 raise ValueError(
                     'Input start must be "rest" for a stretching plate whose drives have no common period; give them '
                     "frequencies in a ratio of small whole numbers"
@@ -136,25 +136,25 @@ class _Walker:
             self._walk(cycle[place : place + 2], passes * period, state, end)
             passed += 1
 
-    def _bench_moves(self) -> bool:
+    def _moves(self) -> bool:
         """Whether any drive moves."""
         return any(drive.segments().coefficients[:, 1:].any() for drive in self._drives)
 
     def _most_passes(self, period: float) -> int:
         """Periods [s] in which the start is forgotten, or so many that it never is."""
         decay = 0.5 * float(self._ringing.drag.min()) * period
-        return max(MAX_PASSES, math.ceil(DECAYED / decay)) if decay > 0 else MAX_PASSES
+        return max(MAX_PASSES, math.ceil(MIN_DECAY / decay)) if decay > 0 else MAX_PASSES
 
     def _walk(self, edges: FloatArray, shift: float, state: _State, end: float) -> None:
         """Walk over breakpoints [s] of the drives; what is kept is later by a shift [s]."""
         for begin, until in pairwise(edges.tolist()):
             self._jump(begin, until, state)
-            parts = math.ceil((until - begin) * self._fastest / RADIANS / MAX_STEPS)
+            parts = math.ceil((until - begin) * self._fastest / MAX_RADIANS / MAX_STEPS)
             for first, last in pairwise(np.linspace(begin, until, parts + 1).tolist()):
                 self._cross(first, last, shift, state)
                 doing("stretching plate: following its ringing", min((last + shift) / end, 1.0))
                 at_rest = until == end and not self._bench.pieces[:, 1:].any()
-                if at_rest and self._accelerations[-1] <= SILENT * self.largest_acceleration:
+                if at_rest and self._accelerations[-1] <= MIN_ACCELERATION * self.largest_acceleration:
                     return
 
     def _jump(self, begin: float, until: float, state: _State) -> None:
@@ -169,17 +169,17 @@ class _Walker:
     def _cross(self, begin: float, until: float, shift: float, state: _State) -> None:
         """Walk between two breakpoints [s], in steps fine enough for both motion and pieces."""
         width, own, guess = len(self._limits), len(state.q), self._bench.corrections.copy()
-        steps = 2 * self._finer * math.ceil((until - begin) * self._fastest / RADIANS / 2)
+        steps = 2 * self._finer * math.ceil((until - begin) * self._fastest / MAX_RADIANS / 2)
         for _ in range(MAX_HALVINGS):
             nodes = np.zeros((steps + 1, 3, width))
             q, q_t = state.q.copy(), state.q_t.copy()
             self._bench.corrections[:] = guess  # steps that are too long may have led astray
             outcome, error = march(self._ringing, self._bench, self._pair, self._table, begin, until, q, q_t, nodes)
             largest = max(float(np.abs(nodes[:, 0, :own]).max()), self._largest)
-            if outcome == FINE and error <= STEP_ERROR * largest:
+            if outcome == FINE and error <= MAX_STEP_ERROR * largest:
                 lengths, rows = np.zeros(steps, dtype=np.int64), np.zeros((steps, width, ORDER))
                 h = (until - begin) / steps
-                laid, over = lay_steps(nodes, h, self._limits, BLOCK, lengths, rows)
+                laid, over = lay_steps(nodes, h, self._limits, MAX_BLOCK, lengths, rows)
                 if over <= 1.0:
                     break
             steps *= 2
@@ -205,8 +205,8 @@ class _Walker:
         """Whether a period ended as it began, as will all later ones together."""
         omega = np.sqrt(self._ringing.square)
         change = omega**2 * np.abs(now.q - begun.q) + omega * np.abs(now.q_t - begun.q_t)
-        lost = np.maximum(-np.expm1(-0.5 * self._ringing.drag * period), LEAST_LOST)
-        return bool((change / lost).max() <= SETTLED * max(self._accelerations[begun.parts : now.parts]))
+        lost = np.maximum(-np.expm1(-0.5 * self._ringing.drag * period), MIN_LOSS)
+        return bool((change / lost).max() <= MAX_CHANGE * max(self._accelerations[begun.parts : now.parts]))
 
     def corrections(self) -> Corrections:
         """The pieces as drives."""

@@ -19,7 +19,7 @@ HALVED = 16.0  # a quintic's error of the acceleration over that of each half of
 def lay_steps(
     nodes: FloatArray, h: float, limits: FloatArray, most: int, lengths: NDArray[np.int64], rows: FloatArray
 ) -> tuple[int, float]:
-    """Lay pieces over all steps of h [s] between nodes (steps + 1, 3, w), which have derivatives in s.
+    """Lay pieces over all steps of h [s] between nodes (steps + 1, 3, w), with derivatives in time [s].
 
     limits: (w,) m/s^2, of the error of each acceleration; they share 1.  most: steps of a piece at most, a power of 2.
     Fills the pieces' lengths (steps,) in steps and their rows (steps, w, 6). Returns how many pieces there are, and the

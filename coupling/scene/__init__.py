@@ -5,6 +5,7 @@ from coupling.scene.plate import (
     actuator_stiffness,
     build_plate,
     damping_of,
+    lifts_of,
     plate_scene,
     stretch_model,
     vibration_model,

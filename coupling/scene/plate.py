@@ -20,6 +20,7 @@ from fem_plate import TRUNCATION, InfluenceShapes, Plate, PlateSection, PlateSha
 from particle import AnyDrive, SurfaceMotion, interruptible
 
 FloatArray = NDArray[np.float64]
+Place = tuple[float, float]
 
 # Without a cell size, refine the plate until the estimated error of the unit shapes is below this. It keeps the end
 # point of a typical path accurate to 1e-6 of the path.
@@ -65,15 +66,18 @@ class PlateScene:
         return self.lifts if motion is None else motion.moving_drives
 
 
-def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateScene:
-    """The scene of a case with a plate."""
+def plate_scene(case: Case, plate_case: PlateCase, progress: Progress, known: PlateShapes | None = None) -> PlateScene:
+    """The scene of a case with a plate; known: its shapes, if they are; ValueError for those of another."""
     tolerance, top = case.run.surface_tolerance, plate_case.thickness / 2 if plate_case.top_face else 0.0
     drives = lifts_of(case)
     with progress("Solving the plate") as tell:
         plate = build_plate(plate_case)
         points = [actuator.position for actuator in case.actuators]
         truncation = TRUNCATION if len(points) > MAX_WHOLE else None
-        shapes = plate.influence(points, actuator_stiffness(case), truncation, tell)
+        stiffness = actuator_stiffness(case)
+        if known is not None and (wrong := shapes_faults(known, plate, points, stiffness)):
+            raise ValueError(f"Input shapes of run_case must be of the case's plate; theirs has {' and '.join(wrong)}")
+        shapes = plate.influence(points, stiffness, truncation, tell) if known is None else known
     if plate_case.inertia and plate_case.theory == "linear":
         with progress("Finding the modes") as tell:
             modes = vibration_model(case, plate_case, plate, shapes, [drives], tell)
@@ -89,6 +93,24 @@ def plate_scene(case: Case, plate_case: PlateCase, progress: Progress) -> PlateS
         stretch = interruptible(Stretch.under, model, drives, case.run.duration)
     with progress("Fitting the surface"):
         return PlateScene(plate, shapes, drives, stretch.surface(tolerance, top), stretch)
+
+
+def shapes_faults(shapes: PlateShapes, plate: Plate, points: Sequence[Place], stiffness: FloatArray) -> list[str]:
+    """What shapes are of in place of a plate with actuators of a stiffness (N,) [N/m] at points; nothing: of that."""
+    other = shapes.plate
+    wrong = [] if np.array_equal(shapes.points, np.array(points)) else ["actuators at other places"]
+    if not wrong and not np.array_equal(shapes.springs, stiffness):
+        wrong.append("actuators of another stiffness")
+    if not other.mesh.same_as(plate.mesh):
+        wrong.append("another outline or other cells")
+    ours, theirs = (one.section for one in (plate, other))
+    for name in ("youngs_modulus", "poisson_ratio", "thickness"):
+        if getattr(ours, name) != getattr(theirs, name):
+            wrong.append(f"{name} {getattr(theirs, name):g}, not {getattr(ours, name):g}")
+    for name in ("supports", "tension", "tolerance"):
+        if getattr(plate, name) != getattr(other, name):
+            wrong.append(f"{name} {getattr(other, name)}, not {getattr(plate, name)}")
+    return wrong
 
 
 def stretch_model(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.case import AXES, MotionCase, PlatformCase
+from coupling.case import AXES, RATES, MotionCase, PlatformCase
 from coupling.drives import build_drive, travel
 from coupling.measured import MotionFit, fit_motion
 from coupling.progress import Progress
@@ -57,5 +57,11 @@ def _drives(platform: PlatformCase) -> tuple[dict[str, AnyDrive], tuple[MotionFi
         raise ValueError(f"{Path(str(platform.motion))}: " + "; ".join(mistakes))
     if measured is None:
         return {}, ()
-    fitted = [fit_motion(axis, measured.time, place, platform.smoothing) for axis, place in measured.axes.items()]
-    return {fit.axis: drive for drive, fit in fitted}, tuple(fit for _, fit in fitted)
+    columns = measured.columns
+    fitted = [
+        fit_motion(axis, measured.time, columns[axis], platform.smoothing, *(columns.get(name) for name in RATES[axis]))
+        for axis in AXES
+        if axis in columns
+    ]
+    fits = tuple(replace(fit, ignored=measured.ignored) for _, fit in fitted)
+    return {fit.axis: drive for drive, fit in fitted}, fits

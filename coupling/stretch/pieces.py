@@ -24,7 +24,7 @@ from coupling.stretch.newton import FINE, State, find_equilibrium, find_rates, n
 from coupling.stretch.response import Blend, Response, blend_node, enter_drive, new_blend
 from fem_plate.large_deflection import Forms
 from particle import kernel, kernel_no_arrays
-from particle.drives import ORDER, DriveTable
+from particle.drives import ORDER, DriveTable, evaluate_piece
 
 FloatArray = NDArray[np.float64]
 
@@ -78,10 +78,7 @@ def find_node(forms: Forms, tools: Tools, s: float, node: FloatArray, largest: f
     if len(tools.response.rows) > 0:
         height = tools.blend.height
         for i in range(len(tools.interval.drives)):
-            d = tools.interval.drives[i]
-            height[0] = ((((d[5] * s + d[4]) * s + d[3]) * s + d[2]) * s + d[1]) * s + d[0]
-            height[1] = (((5 * d[5] * s + 4 * d[4]) * s + 3 * d[3]) * s + 2 * d[2]) * s + d[1]
-            height[2] = ((20 * d[5] * s + 12 * d[4]) * s + 6 * d[3]) * s + 2 * d[2]
+            height[0], height[1], height[2] = evaluate_piece(tools.interval.drives[i], s, 1.0)
             enter_drive(tools.response, i, tools.blend)
         blend_node(tools.response, tools.blend, node)
         return FINE

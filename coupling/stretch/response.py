@@ -18,7 +18,7 @@ from coupling.stretch.newton import FINE, fill_motions, find_equilibrium, new_st
 from coupling.stretch.vectors import add_rows, clear
 from fem_plate.large_deflection import Forms, ReducedPlate
 from particle import kernel, kernel_no_arrays
-from particle.drives import ORDER
+from particle.drives import ORDER, evaluate_piece
 
 FloatArray = NDArray[np.float64]
 
@@ -165,10 +165,7 @@ def enter_drive(response: Response, i: int, blend: Blend) -> None:
     s = place - cell
     blend.first[i] = min(max(cell - 2, 0), cells + 1 - ORDER)
     for a in range(ORDER):
-        b = response.basis[cell, a]
-        value = ((((b[5] * s + b[4]) * s + b[3]) * s + b[2]) * s + b[1]) * s + b[0]
-        slope = (((5 * b[5] * s + 4 * b[4]) * s + 3 * b[3]) * s + 2 * b[2]) * s + b[1]
-        curvature = ((20 * b[5] * s + 12 * b[4]) * s + 6 * b[3]) * s + 2 * b[2]
+        value, slope, curvature = evaluate_piece(response.basis[cell, a], s, 1.0)
         blend.splines[i, 0, a] = value
         blend.splines[i, 1, a] = slope * rate
         blend.splines[i, 2, a] = curvature * rate * rate + slope * bend

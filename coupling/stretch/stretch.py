@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.drives import moments, stroke_heights
+from coupling.steepest import sharp_points
 from coupling.stretch.corrections import Corrections
 from coupling.stretch.model import StretchModel
 from coupling.surface import surface_motion
@@ -76,12 +77,13 @@ class Stretch:
 
     @cached_property
     def extremes(self) -> Extremes:
-        """The largest deflection, slope and strain, on halved cells and half a thickness from each actuator."""
-        mesh, thickness = self.model.reduction.discrete.mesh.refined(), self.model.large.plate.section.thickness
+        """The largest deflection, slope and strain, on halved cells, half a thickness off infinite moments."""
+        plate, mesh = self.model.large.plate, self.model.reduction.discrete.mesh.refined()
+        sharp, thickness = sharp_points(plate.corners, self.shapes.points), plate.section.thickness
         angle = 2 * np.pi * np.arange(AROUND) / AROUND
         circle = thickness / 2 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-        around = (self.shapes.points[:, None] + circle).reshape(-1, 2)
-        off = np.hypot(*(mesh.points[:, None] - self.shapes.points).transpose(2, 0, 1)).min(axis=1) > thickness / 2
+        around = (sharp[:, None] + circle).reshape(-1, 2)
+        off = np.hypot(*(mesh.points[:, None] - sharp).transpose(2, 0, 1)).min(axis=1) > thickness / 2
         field = StretchField(self, np.concatenate([mesh.points[off], around[self.shapes.outline.inside(around)]]))
         states = zip(*self.states(moments(self.drives, self.end)), strict=True)
         return Extremes(*np.max([field.extremes(b, g) for b, g in states], axis=0).tolist())

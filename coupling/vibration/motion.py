@@ -17,8 +17,8 @@ from particle.drives import QuinticDrive, drive_table, quintic_drives
 
 FloatArray = NDArray[np.float64]
 
-SETTLED = 1e-10  # of the largest acceleration: what all later passes still change
-LEAST_LOST = 1e-2  # of a mode's ringing, in a pass: without damping nothing more than rounding may change
+MAX_CHANGE = 1e-10  # of the largest acceleration: what all later passes still change
+MIN_LOSS = 1e-2  # of a mode's ringing, in a pass: without damping nothing more than rounding may change
 MAX_PIECES = 20_000_000  # of all modes: about 2 GB
 MAX_EDGES = 500  # of intervals in which the largest acceleration is sought
 
@@ -144,4 +144,4 @@ def _settled(oscillators: Oscillators, course: Course, begun: FloatArray, state:
     intervals = np.repeat(np.arange(len(length)), 4)
     times = course.edges[:-1, None] + length[:, None] * np.linspace(0.0, 1.0, 4, endpoint=False)
     acceleration = at_times(oscillators, course, intervals, times.ravel())[2]
-    return bool((change / np.maximum(lost, LEAST_LOST)).max() <= SETTLED * np.abs(acceleration).max())
+    return bool((change / np.maximum(lost, MIN_LOSS)).max() <= MAX_CHANGE * np.abs(acceleration).max())

@@ -15,19 +15,20 @@ if TYPE_CHECKING:
 DOCS = Path(__file__).parents[1]
 REFERENCE = Path(__file__).parent / "reference"  # a file of directives for each page of docs/api
 
-PACKAGES = ["meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "paper"]
+PACKAGES = ["meshes", "fem_plate", "particle", "coupling", "studies", "views", "steering", "identification", "paper"]
 CONTENTS = {  # the pages below a page, by caption
     "index": {
         "First steps": ["quick-start", "gallery/index"],
         "How to": [
-            *("howto/own-mesh", "howto/own-friction", "howto/waves", "howto/ring"),
-            *("howto/chladni", "howto/sweep", "howto/aim", "howto/paraview"),
+            *("howto/own-mesh", "howto/own-friction", "howto/measured-motion", "howto/waves", "howto/ring"),
+            *("howto/chladni", "howto/sweep", "howto/aim", "howto/identify", "howto/optimisers", "howto/paraview"),
+            "howto/optics",
         ],
         "The program": [
             *("commands", "case-file", "results", "animations", "page", "plot"),
             *("python", "messages", "sweeps", "aim", "feasibility"),
         ],
-        "Theory and trust": ["theory", "accuracy", "paper", "paper-open-points", "limits", "benchmarks"],
+        "Theory and trust": ["theory", "accuracy", "validation", "paper", "paper-open-points", "limits", "benchmarks"],
         "Reference": ["conventions", "api/index"],
         "Inside": ["architecture", "decisions/index", "contributing", "changes"],
     },

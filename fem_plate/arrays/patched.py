@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 
-from fem_plate.arrays.patches import ActuatorArray, Patch, ProgressCallback, Tile
-from fem_plate.elements import Derivatives, PlateFunctions
+from fem_plate.arrays.cutting import CELL, FINER_CELL, Cutter
+from fem_plate.arrays.patches import ActuatorArray, Patch, ProgressCallback, Tile, spacing
+from fem_plate.elements import Derivatives, PlateFunctions, source_basis
+from fem_plate.given_plate import GivenPlate
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.shapes import Shapes
 from fem_plate.vibration import HeldPlate, modes
@@ -25,6 +27,8 @@ PLACE_DIGITS = 9  # of a patch's size, to which points lie alike
 CHUNK = 4096  # points evaluated at a time
 SLACK = 1e-8  # of a patch's size: points on the rim may seem to lie beyond it
 MAX_VALUES = 20_000_000  # points times actuators for which all shapes are evaluated at once
+PATCH_FINENESS = 0.16  # of the half width, eight cells: shapes at the rim are then good to 1e-6
+PATCH_RIM = 30.0  # pitches, about, that a patch extends along the rim
 
 
 class PatchedShapes(Shapes):
@@ -71,7 +75,10 @@ class PatchedShapes(Shapes):
         """Largest error of w over a shape's largest deflection: what is left out, or what halving the cells changes."""
         inner = max(self.tiles, key=lambda tile: len(tile.rows))
         outer = max(self.tiles, key=lambda tile: tile.patch.functions.space.unknowns)
-        return max(self.truncation_error, self._array.difference(inner), self._array.difference(outer))
+        rounding = max(
+            source_basis(tile.patch.functions.sources, self.springs[tile.rows] > 0).rounding for tile in self.tiles
+        )
+        return max(self.truncation_error, self._array.difference(inner), self._array.difference(outer)) + rounding
 
     @property
     def stiffness(self) -> csr_matrix:
@@ -251,3 +258,19 @@ def _entries(
         entries.append((row + start, column, values[row, column]))
     row, column, value = (np.concatenate(parts) for parts in zip(*entries, strict=True))
     return row, column, value
+
+
+def patched_shapes(
+    plate: GivenPlate, points: FloatArray, actuator_stiffness: FloatArray, truncation: float, tell: ProgressCallback
+) -> PatchedShapes:
+    """The influence shapes of actuators at points (N, 2) [m], each cut off where it is below the truncation."""
+    mesh, section = plate.mesh, plate.section
+    cell = min(plate.fineness.cell, PATCH_FINENESS * plate.fineness.half_width)
+    pitch = spacing(points)
+    fineness = plate.fineness.on_patches(cell, PATCH_RIM * min(float(pitch.max()), mesh.size))
+    pitches = CELL if plate.tolerance is None else FINER_CELL
+    cutter = Cutter(mesh, plate.supports, fineness, plate.corners, points, pitch, pitches)
+    array = ActuatorArray(
+        cutter, points, actuator_stiffness, section.rigidity, section.poisson_ratio, plate.relative_tension
+    )
+    return PatchedShapes(array, truncation, mesh.size, mesh.outline, tell)

@@ -1,5 +1,6 @@
 """The discrete plate: the Argyris element, its matrices up to the true rim, corners, and responses in closed form."""
 
+from fem_plate.elements.close import SourceBasis, source_basis
 from fem_plate.elements.functions import Derivatives, PlateFunctions
 from fem_plate.elements.grading import GAIN, Fineness, SingularCorner, corner_rows, graded, singular_corners
 from fem_plate.elements.infinite import InfinitePlate, infinite_plate
@@ -8,3 +9,4 @@ from fem_plate.elements.rim import rigid_motions, rim_quadrature
 from fem_plate.elements.singular import UNIT_STRENGTH, point_load, point_value
 from fem_plate.elements.space import PlateSpace
 from fem_plate.elements.supports import CLAMPED, FREE, SIMPLY_SUPPORTED, by_boundary
+from fem_plate.elements.wedges import rounded_corners, wedges

@@ -32,6 +32,8 @@ class SingularCorner:
 
     point: FloatArray  # (2,) m
     exponent: float
+    error: float = CORNER_ERROR  # of the error of the plate's other cells, what cells there may add
+    largest: float = np.inf  # m, the largest cell there
 
 
 def singular_corners(mesh: PlateMesh, supports: Mapping[str, str], poisson_ratio: float) -> list[SingularCorner]:
@@ -113,8 +115,7 @@ def graded(
         # An image across a hole may lie on the plate's other rim. None is closer to the plate than its actuator.
         images, nearest = cKDTree(mesh.mirrored(points)), mesh.outline.gap(points).min()
     share = fine.cell / fine.size
-    error = CORNER_ERROR * share**6
-    smallest = [fine.size * max(error ** (1 / (2 * corner.exponent)), MIN_CELL) for corner in corners]
+    smallest = [_at_corner(corner, share, fine.size) for corner in corners]
     while True:
         centre = mesh.points[mesh.triangles].mean(axis=1)
         allowed = np.full(len(centre), np.inf)
@@ -132,6 +133,15 @@ def graded(
         if not large.any():
             return mesh
         mesh = mesh.refined(large)
+
+
+def _at_corner(corner: SingularCorner, share: float, size: float) -> float:
+    """The size [m] of the cells at a corner.
+
+    share: the plate's cells over its size [m].
+    """
+    smallest = (corner.error * share**6) ** (1 / (2 * corner.exponent))
+    return min(size * max(smallest, MIN_CELL), corner.largest)
 
 
 def corner_rows(mesh: PlateMesh, corners: list[SingularCorner]) -> list[int]:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix, diags
-from scipy.sparse.linalg import splu
+from scipy.sparse import csc_matrix
 
+from fem_plate.elements.close import SourceBasis
+from fem_plate.elements.enriched import EnrichedSpace
+from fem_plate.elements.factor import factorised
 from fem_plate.elements.forms import rim_traces
 from fem_plate.elements.infinite import infinite_plate
 from fem_plate.elements.rim import rigid_motions
 from fem_plate.elements.singular import potential
 from fem_plate.elements.space import PlateSpace
+from fem_plate.elements.wedges import Wedge, corner_functions
 from meshes import PlateMesh
 
 FloatArray = NDArray[np.float64]
@@ -26,7 +29,7 @@ class PlateModel:
     """A plate on one mesh.
 
     supports: of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
-    tension: 1/m^2, over the plate's rigidity; 0 where a boundary is free.
+    tension: 1/m^2, over the plate's rigidity; 0 where a boundary is free.  wedges: corners with functions of their own.
     """
 
     def __init__(
@@ -36,12 +39,17 @@ class PlateModel:
         poisson_ratio: float,
         free_corners: Iterable[int] = (),
         tension: float = 0.0,
+        wedges: Sequence[Wedge] = (),
     ) -> None:
         self.mesh = mesh
         self.poisson_ratio = poisson_ratio
         self.tension = tension * mesh.size**2  # dimensionless
         self.infinite = infinite_plate(self.tension)  # what is known of it in closed form
-        self.space = PlateSpace(mesh, supports, list(free_corners))
+        if wedges:
+            functions, rows = corner_functions(wedges, mesh.size), list(free_corners)
+            self.space: PlateSpace = EnrichedSpace(mesh, supports, rows, functions, poisson_ratio, self.tension)
+        else:
+            self.space = PlateSpace(mesh, supports, list(free_corners))
         self.rigid = self._orthonormal(rigid_motions(self.space.rim))  # (3, r), coefficients of 1, x, y
 
     @property
@@ -88,17 +96,9 @@ class PlateModel:
         A plate that can move rigidly rests on springs spread evenly under all of it, whose reactions are rigid motions
         too; balanced loads do not feel them.
         """
-        matrix = self.pinned_stiffness
-        # Scaled, because unknowns of small and large cells differ by many powers of ten. Symmetric ordering without
-        # pivoting: the matrix is positive definite, and rounding stays at 1e-11.
-        scale = 1 / np.sqrt(matrix.diagonal())
-        scaled = (diags(scale) @ matrix @ diags(scale)).tocsc()
-        factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-
-        def pinned(load: FloatArray) -> FloatArray:
-            scales = scale if load.ndim == 1 else scale[:, None]
-            return np.asarray(scales * factor.solve(scales * load))
-
+        if isinstance(self.space, EnrichedSpace):
+            return self.space.solve
+        pinned = factorised(self.pinned_stiffness)
         if not self.rigid.size:
             return pinned
         motions, mean = self.space.linear() @ self.rigid, self.mean
@@ -118,19 +118,26 @@ class PlateModel:
     def _smooth_parts(self, known: list[list[FloatArray]]) -> FloatArray:
         """The parts (unknowns, k) that make k known functions, by their derivatives at the rim, meet the supports."""
         traces = [rim_traces(derivatives, self.space.rim.normal, self.poisson_ratio).ravel() for derivatives in known]
+        if isinstance(self.space, EnrichedSpace):
+            return self.space.follow(-np.stack(traces, axis=1))
         return self.solve(-(self._load @ np.stack(traces, axis=1)))
 
-    def under_forces(self, sources: FloatArray) -> FloatArray:
-        """The smooth parts (unknowns, N) of the responses to unit forces at sources (N, 2)."""
+    def under_forces(self, sources: FloatArray, basis: SourceBasis | None = None) -> FloatArray:
+        """The smooth parts (unknowns, N) of the responses to unit forces at sources (N, 2), or to those of a basis."""
         responses = np.empty((self.unknowns, len(sources)), order="F")
+        rim = self.space.rim.points
         for start in range(0, len(sources), CHUNK):
-            part = slice(start, start + CHUNK)
-            known = [self.infinite.point_derivatives(self.space.rim.points, source) for source in sources[part]]
-            responses[:, part] = self._smooth_parts(known)
+            part = range(start, min(start + CHUNK, len(sources)))
+            known = [self.infinite.point_derivatives(rim, sources[k]) for k in part]
+            for k, parent, length in () if basis is None else basis.within(part):
+                rest = self.infinite.point_derivatives(rim, sources[parent])
+                known[k - start] = [(one - other) / length for one, other in zip(known[k - start], rest, strict=True)]
+            responses[:, part.start : part.stop] = self._smooth_parts(known)
         if not self.rigid.size:
             return responses
         # The springs respond to the known functions too, by a rigid motion.
-        return responses - self.space.linear() @ (self.rigid @ self._known_means(sources))
+        means = self._known_means(sources)
+        return responses - self.space.linear() @ (self.rigid @ (means if basis is None else means @ basis.matrix))
 
     def _known_means(self, sources: FloatArray) -> FloatArray:
         """The integrals of F around sources (N, 2) with the rigid motions, (r, N).

@@ -85,7 +85,7 @@ class PlateSpace:
         triangle, points, weights = self.slivers
         hessian = self.triangles.derivatives(points, triangle, 2)
         np.add.at(matrices, triangle, forms.bending_at(hessian, weights, poisson_ratio))
-        traces, (coupling, _) = self._traces(poisson_ratio), forms.rim_forms(self.rim)
+        traces, (coupling, _) = self.traces(poisson_ratio), forms.rim_forms(self.rim)
         at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)  # c: of q, d: of v
         if self._relative is None:
             np.add.at(matrices, self.rim.triangle, at_rim)
@@ -120,15 +120,14 @@ class PlateSpace:
         """The unknowns of every triangle's own points from the independent ones (unknowns, ...)."""
         return unknowns if self._relative is None else np.asarray(self._absolute @ unknowns)
 
-    def _traces(self, poisson_ratio: float) -> FloatArray:
+    def traces(self, poisson_ratio: float) -> FloatArray:
+        """The rim's channels of the triangles' functions, (6, k, n, 21)."""
         derivatives = [self.triangles.derivatives(self.rim.points, self.rim.triangle, k) for k in range(4)]
         return forms.rim_traces(derivatives, self.rim.normal, poisson_ratio)
 
     def load(self, poisson_ratio: float, tension: float = 0.0) -> csc_matrix:
         """The matrix (unknowns, 6 points) of the right side of `forms` for the traces (6, points) of g."""
-        traces, (_, coupling) = self._traces(poisson_ratio), forms.rim_forms(self.rim)
-        if tension:
-            coupling += tension * forms.rim_tension_forms(self.rim)[1]
+        traces, (_, coupling) = self.traces(poisson_ratio), self.couplings(tension)
         data = np.einsum("ckni,kncd->dkni", traces, coupling, optimize=True)  # (6, k, n, 21)
         columns = np.arange(data[..., 0].size).reshape(data.shape[:3])
         rows = np.broadcast_to(self.dofs[self.rim.triangle][:, None], data.shape)
@@ -137,6 +136,14 @@ class PlateSpace:
         matrix = coo_matrix((data.ravel(), (rows.ravel(), columns.ravel())), shape=shape).tocsc()
         matrix.eliminate_zeros()
         return self.to_independent(matrix)
+
+    def couplings(self, tension: float) -> tuple[FloatArray, FloatArray]:
+        """What couples the rim's channels on the left and on the right side of `forms`, (k, n, 6, 6) each."""
+        left, right = forms.rim_forms(self.rim)
+        if tension:
+            of_left, of_right = forms.rim_tension_forms(self.rim)
+            left, right = left + tension * of_left, right + tension * of_right
+        return left, right
 
     def point_values(self, xy: FloatArray, triangle: IntArray | None = None) -> csc_matrix:
         """The matrix (n, unknowns) whose product with a function's unknowns is its value at points (n, 2).
@@ -195,7 +202,7 @@ class PlateSpace:
             return functions
         # Independent are the unknowns of the mesh's points and edges, and the jumps, which vanish for these functions.
         points, edges = functions[: 6 * self._points], functions[-self._edges :]
-        jumps = np.zeros((self.unknowns - len(points) - len(edges), 3))
+        jumps = np.zeros((self._absolute.shape[1] - len(points) - len(edges), 3))
         independent = np.concatenate([points, edges, jumps])
         independent[self._relative.planes] = 0.0
         return independent

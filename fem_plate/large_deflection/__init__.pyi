@@ -1,17 +1,19 @@
-from .cells import level_of as level_of
 from .fine_enough import fine_enough as fine_enough
-from .equilibrium import NotConverged as NotConverged
 from .large_deflection import LargeDeflection as LargeDeflection
-from .reduced import Forms as Forms, ReducedPlate as ReducedPlate
-from .reduced_solver import (
+from .reduction import (
+    Columns as Columns,
+    Forms as Forms,
+    HeldShapes as HeldShapes,
     ReducedEquilibrium as ReducedEquilibrium,
+    ReducedPlate as ReducedPlate,
+    Reduction as Reduction,
+    StretchedShapes as StretchedShapes,
     energy as energy,
+    mode_columns as mode_columns,
+    reduce as reduce,
     reduced_equilibrium as reduced_equilibrium,
+    with_modes as with_modes,
 )
-from .reduction import Reduction as Reduction, reduce as reduce
-from .shapes import StretchedShapes as StretchedShapes
-from .discrete import DiscretePlate as DiscretePlate
-from .snapshots import Columns as Columns
-from .with_inertia import HeldShapes as HeldShapes, mode_columns as mode_columns, with_modes as with_modes
+from .solution import DiscretePlate as DiscretePlate, NotConverged as NotConverged, level_of as level_of
 from .state import DeflectedPlate as DeflectedPlate
 from .supports import movable_by_boundary as movable_by_boundary

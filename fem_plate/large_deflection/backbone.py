@@ -7,11 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fem_plate.given_plate import GivenPlate
 from fem_plate.inputs import as_points, check_points
-from fem_plate.large_deflection.discrete import DiscretePlate
-from fem_plate.large_deflection.given_plate import GivenPlate
 from fem_plate.large_deflection.large_deflection import airy_applies
-from fem_plate.large_deflection.membrane import AIRY, PLANE_STRESS
+from fem_plate.large_deflection.membranes import AIRY, PLANE_STRESS
+from fem_plate.large_deflection.solution import DiscretePlate
 from fem_plate.large_deflection.supports import movable_by_boundary
 from fem_plate.vibration import HeldPlate, modes
 

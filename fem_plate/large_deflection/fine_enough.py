@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_plate.estimated import MAX_UNKNOWNS
-from fem_plate.large_deflection.cells import level_of
-from fem_plate.large_deflection.discrete import DiscretePlate
 from fem_plate.large_deflection.large_deflection import LargeDeflection
+from fem_plate.large_deflection.solution import DiscretePlate, level_of
 from fem_plate.large_deflection.state import DeflectedPlate
 
 FloatArray = NDArray[np.float64]

@@ -9,11 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from fem_plate.elements import CLAMPED, rigid_motions, rim_quadrature
 from fem_plate.estimated import refined
+from fem_plate.given_plate import GivenPlate
 from fem_plate.inputs import check_held, one_per_point
-from fem_plate.large_deflection.cells import level_of
-from fem_plate.large_deflection.discrete import DiscretePlate
-from fem_plate.large_deflection.given_plate import GivenPlate
-from fem_plate.large_deflection.membrane import AIRY, PLANE_STRESS
+from fem_plate.large_deflection.membranes import AIRY, PLANE_STRESS
+from fem_plate.large_deflection.solution import DiscretePlate, level_of
 from fem_plate.large_deflection.state import DeflectedPlate
 from meshes import edge_numbers, sides
 

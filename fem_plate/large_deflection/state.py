@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,8 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from fem_plate.elements import Derivatives
 from fem_plate.estimated import Estimated
 from fem_plate.inputs import SAME_PLACE, check_on_plate
-from fem_plate.large_deflection.discrete import DiscretePlate
-from fem_plate.large_deflection.equilibrium import Coefficients
+from fem_plate.large_deflection.solution import Coefficients, DiscretePlate
 from fem_plate.large_deflection.vibration import modes_about
 from fem_plate.vibration import Modes
 
@@ -121,7 +122,8 @@ class DeflectedPlate(Estimated):
                 )
             holds[near] = c
         squares, functions = modes_about(discrete, self.coefficients, holds, count)
-        return Modes(np.sqrt(squares * unit) / (2 * np.pi), discrete.model, functions)
+        frequencies, finer = np.sqrt(squares * unit) / (2 * np.pi), cast(Callable[[], DeflectedPlate], self.refine)
+        return Modes(frequencies, discrete.model, functions, lambda: finer().modes(count, held, compliance, unit))
 
     def _dimensionless(self, xy: ArrayLike) -> FloatArray:
         xy = np.asarray(xy, dtype=float)

@@ -7,10 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fem_plate.elements import PlateFunctions
-from fem_plate.large_deflection.bordered import BorderedSolver
-from fem_plate.large_deflection.discrete import DiscretePlate
-from fem_plate.large_deflection.equilibrium import Coefficients
-from fem_plate.large_deflection.trial import Trial
+from fem_plate.large_deflection.solution import BorderedSolver, Coefficients, DiscretePlate, Trial
 
 FloatArray = NDArray[np.float64]
 

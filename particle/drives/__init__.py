@@ -5,6 +5,7 @@ from particle.drives.pieces import (
     breakpoint_slack,
     drive_breakpoint,
     drive_piece,
+    evaluate_piece,
     expand_piece,
     find_piece,
     next_breakpoint,
@@ -12,4 +13,4 @@ from particle.drives.pieces import (
 from particle.drives.quintics import QuinticDrive, quintic_drives
 from particle.drives.record import ORDER, DriveTable
 from particle.drives.strokes import begun_at
-from particle.drives.table import AnyDrive, Segments, accelerations, drive_table, monomial_table
+from particle.drives.table import AnyDrive, Segments, accelerations, drive_table, monomial_table, scaled_table

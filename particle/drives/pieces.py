@@ -16,6 +16,15 @@ NO_SEGMENT = -1  # of a drive that has not begun, or has ended
 
 
 @jit_no_arrays
+def evaluate_piece(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
+    """A quintic c (6,) in s = t / unit, with its first and second derivative in t."""
+    value = ((((c[5] * s + c[4]) * s + c[3]) * s + c[2]) * s + c[1]) * s + c[0]
+    first = (((5 * c[5] * s + 4 * c[4]) * s + 3 * c[3]) * s + 2 * c[2]) * s + c[1]
+    second = ((20 * c[5] * s + 12 * c[4]) * s + 6 * c[3]) * s + 2 * c[2]
+    return value, first / unit, second / (unit * unit)
+
+
+@jit_no_arrays
 def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatArray) -> None:
     """The quintic of drive i around `time` [s]: its coefficients (6,) [m] in (t - time) / unit, into `out`.
 

@@ -170,6 +170,15 @@ def monomial_table(count: int) -> DriveTable:
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # strokes too fast for numbers fail where they are used
+def scaled_table(table: DriveTable, factor: float, stroke: float) -> DriveTable:
+    """Drives that do the same `factor` times as fast, delays included, over `stroke` times their heights."""
+    times = {name: getattr(table, name) / factor for name in ("start", "scale", "delay", "span", "stroke_time")}
+    jump = table.jump * abs(stroke) * [factor, factor**2]
+    rough = table.rough * abs(stroke) * factor**3
+    return table._replace(coefficients=stroke * table.coefficients, jump=jump, rough=rough, **times)
+
+
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")  # strokes too fast for numbers fail where they are used
 def _jumps(table: DriveTable) -> FloatArray:
     """The largest jumps of the first five derivatives at breakpoints (N, 5) [m/s, m/s^2, ...]; 0: by rounding.
 

@@ -74,3 +74,26 @@ def first_negative(b: FloatArray) -> float:
             halve(pieces[top], pieces[top + 1])
             top += 1
     return math.inf
+
+
+@jit
+def quintic_value(b: FloatArray, s: float) -> float:
+    """A quintic of Bernstein coefficients b at s."""
+    r = 1.0 - s
+    outer = b[0] * r**5 + 5 * b[1] * r**4 * s + 5 * b[4] * r * s**4 + b[5] * s**5
+    return float(outer + 10 * r * r * s * s * (b[2] * r + b[3] * s))
+
+
+@jit
+def quintic_between(start: tuple[float, float, float], end: tuple[float, float, float], h: float) -> FloatArray:
+    """Bernstein coefficients (6,) of the quintic over h [s] with these values and derivatives at its ends."""
+    return np.array(
+        [
+            start[0],
+            start[0] + h * start[1] / 5,
+            start[0] + 2 * h * start[1] / 5 + h * h * start[2] / 20,
+            end[0] - 2 * h * end[1] / 5 + h * h * end[2] / 20,
+            end[0] - h * end[1] / 5,
+            end[0],
+        ]
+    )

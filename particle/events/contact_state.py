@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.equations import Part, length, pull, slip
+from particle.events.mechanics import Part, length, pull, slip
 from particle.events.record import Row
 from particle.jit import jit
 from particle.modes import Mode

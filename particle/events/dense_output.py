@@ -7,13 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.equations import Part, energy_at_rest, pull
 from particle.events.flight import fly
+from particle.events.mechanics import Motion, Now, Part, energy_at_rest, pull
 from particle.events.memory import Memory
-from particle.events.motion import Motion, Now
 from particle.events.record import ROW, Row, fill_row
 from particle.events.request import Request
-from particle.events.slide import bridge, slide
+from particle.events.sliding import bridge, slide
 from particle.events.tableau import Pairs
 from particle.jit import jit
 from particle.modes import Mode, Verdict

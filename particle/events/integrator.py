@@ -10,16 +10,13 @@ from __future__ import annotations
 
 import math
 
-from particle.events import flight
-from particle.events.breakaway import rest_pull
-from particle.events.equations import energy_at_rest, margin, pull
-from particle.events.manifold import first_mode
+from particle.events.flight import MIN_JUMP, cross_jump, fly, take_off, velocity_jump
+from particle.events.mechanics import Counts, Motion, Now, energy_at_rest, margin, pull, rest_pull
 from particle.events.memory import Memory
-from particle.events.motion import Counts, Motion, Now
 from particle.events.record import PathRecord, Row, fill_row, last_row, note, write
 from particle.events.request import Request
-from particle.events.slide import bridge, slide
-from particle.events.stick import leaves_rest
+from particle.events.rest import leaves_rest
+from particle.events.sliding import bridge, first_mode, slide
 from particle.events.tableau import Pairs
 from particle.jit import jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
@@ -115,12 +112,12 @@ def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record
     old = surface_at(local, motion.x, motion.y, now.time)
     advance(surface, local, now.time, request.duration)
     new = surface_at(local, motion.x, motion.y, now.time)
-    slack = flight.MIN_JUMP * surface.size / request.stroke_time
-    if flight.velocity_jump(old, new, request.part) <= slack:
+    slack = MIN_JUMP * surface.size / request.stroke_time
+    if velocity_jump(old, new, request.part) <= slack:
         return record
     if before == Mode.MANIFOLD:
         motion.v_x, motion.v_y = row.v_x, row.v_y
-    now.mode = flight.cross_jump(old, new, request.part, before, slack, motion)
+    now.mode = cross_jump(old, new, request.part, before, slack, motion)
     fill_row(local, request.part, now.mode, now.time, motion, row)
     if now.mode == Mode.FLYING and not request.flies:
         now.verdict = Verdict.DETACHED
@@ -165,7 +162,7 @@ def _fly(surface: Surface, request: Request, memory: Memory) -> None:
     now: Now = memory.now[0]
     motion: Motion = memory.motion[0]
     now.event = NO_EVENT
-    flight.fly(surface, request, memory)
+    fly(surface, request, memory)
     if now.mode != Mode.FLYING:
         f = surface_at(memory.local, motion.x, motion.y, now.time)
         # A surface that falls away as it is met is not held on to.
@@ -197,7 +194,7 @@ def _note(request: Request, memory: Memory, record: PathRecord, before: int) -> 
     if now.verdict == Verdict.DETACHED and request.flies:
         now.verdict, now.event = Verdict.GOES_ON, EventKind.DETACHES
         motion.v_x, motion.v_y = row.v_x, row.v_y
-        flight.take_off(memory.local, now.time, motion)
+        take_off(memory.local, now.time, motion)
         now.mode, now.h = Mode.FLYING, FIRST_STEP * request.stroke_time
     if now.event != NO_EVENT:
         record = note(record, now.event, row)

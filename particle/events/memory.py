@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.motion import Counts, Motion, Now, as_numbers
+from particle.events.mechanics import Counts, Motion, Now, as_numbers
 from particle.events.record import Row
+from particle.events.rest import Rest, new_rest
 from particle.events.step import Step, new_step
-from particle.events.stick import Rest, new_rest
 from particle.events.tableau import Pairs
 from particle.records import new_records
 from particle.surface import LocalSurface, Surface, new_local, prepare

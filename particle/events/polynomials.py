@@ -1,11 +1,11 @@
-"""Polynomials in powers of time: sums, products and derivatives."""
+"""Polynomials in powers of time: sums, products, derivatives, and parts of an interval."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.jit import jit
+from particle.jit import jit, jit_no_arrays
 
 FloatArray = NDArray[np.float64]
 
@@ -51,3 +51,16 @@ def total(a: FloatArray, b: FloatArray) -> FloatArray:
     out[: len(a)] += a
     out[: len(b)] += b
     return out
+
+
+@jit_no_arrays
+def narrow(c: FloatArray, low: float, width: float) -> None:
+    """A polynomial of s on [low, low + width] as one of r on [0, 1], in place."""
+    n = len(c) - 1
+    for k in range(n):
+        for j in range(n - 1, k - 1, -1):
+            c[j] += low * c[j + 1]
+    factor = 1.0
+    for k in range(n + 1):
+        c[k] *= factor
+        factor *= width

@@ -8,9 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.breakaway import heading, rest_pull, velocity
-from particle.events.equations import Part, energy, pull, rising
-from particle.events.motion import Motion
+from particle.events.mechanics import Motion, Part, energy, heading, pull, rest_pull, rising, velocity
 from particle.friction import friction_limit
 from particle.jit import jit
 from particle.modes import Mode

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.equations import Part
+from particle.events.mechanics import Part
 
 FloatArray = NDArray[np.float64]
 

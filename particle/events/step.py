@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.motion import Counts, Motion, as_numbers
+from particle.events.mechanics import Counts, Motion, as_numbers
 from particle.events.tableau import Pairs
 from particle.jit import jit_no_arrays
 from particle.records import Record, new_records

@@ -1,14 +1,14 @@
 """One step of Moreau's time stepping for a part with friction: the velocity, projected.
 
 With everything of the surface in the middle of the step, M = I + grad w grad w^T (the metric of lengths along the
-surface) and the pull p of `particle.events.equations`, the velocity at the end solves the inclusion
+surface) and the pull p of `particle.events.mechanics.equations`, the velocity at the end solves the inclusion
 
     v+ - v - h p  in  -(h Q(N)/m) d|v+|_M      so that      v+ = (1 - h Q / (m |v + h p|_M)) (v + h p)
 
 or 0 where that bracket is negative: friction's impulse brings v + h p to rest when it can. Its direction is that of the
 end, implicit, hence a part at rest has v = 0 to the bit and a sliding part stops without creeping. Off the mid-plane v
 is the velocity of the centre of mass along the surface, and the direction that of the contact, K v+ with K of
-`particle.events.breakaway`.
+`particle.events.mechanics.breakaway`.
 
 J.J. Moreau, Unilateral contact and dry friction in finite freedom dynamics, 1988.
 """

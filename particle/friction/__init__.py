@@ -1,4 +1,4 @@
 """Friction laws: the largest tangential force that a contact transmits under a net normal force."""
 
-from particle.friction.contact import Contact, FrictionLaw, friction_limit
+from particle.friction.contact import Contact, FrictionLaw, friction_limit, friction_limits
 from particle.friction.scaled import ScaledFriction

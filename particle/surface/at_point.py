@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.drives import ORDER
+from particle.drives import ORDER, evaluate_piece
 from particle.jit import jit, jit_no_arrays
 from particle.surface.cells import UNBUILT
 from particle.surface.local import Frame, LocalSurface
@@ -80,15 +80,6 @@ def at_time(local: LocalSurface, time: float) -> None:
         at[0, m] = ((((c[5, m] * s + c[4, m]) * s + c[3, m]) * s + c[2, m]) * s + c[1, m]) * s + c[0, m]
         at[1, m] = ((((5 * c[5, m] * s + 4 * c[4, m]) * s + 3 * c[3, m]) * s + 2 * c[2, m]) * s + c[1, m]) / unit
         at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
-
-
-@jit_no_arrays
-def quintic(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
-    """A quintic in s = t / unit, with its first and second derivative in t."""
-    value = ((((c[5] * s + c[4]) * s + c[3]) * s + c[2]) * s + c[1]) * s + c[0]
-    first = (((5 * c[5] * s + 4 * c[4]) * s + 3 * c[3]) * s + 2 * c[2]) * s + c[1]
-    second = ((20 * c[5] * s + 12 * c[4]) * s + 6 * c[3]) * s + 2 * c[2]
-    return value, first / unit, second / (unit * unit)
 
 
 @jit_no_arrays
@@ -177,8 +168,8 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
     base_px = base_py = base_vx = base_vy = base_ax = base_ay = 0.0
     if frame.base_drives > 0:
         s, unit = (time - frame.time) / frame.unit, frame.unit
-        base_px, base_vx, base_ax = quintic(local.base[:, 0], s, unit)
-        base_py, base_vy, base_ay = quintic(local.base[:, 1], s, unit)
+        base_px, base_vx, base_ax = evaluate_piece(local.base[:, 0], s, unit)
+        base_py, base_vy, base_ay = evaluate_piece(local.base[:, 1], s, unit)
     x_x, x_y, y_x, y_y = 1.0, 0.0, 0.0, 1.0
     x_xt = x_yt = y_xt = y_yt = x_xx = x_xy = x_yy = y_xx = y_xy = y_yy = 0.0
     if frame.in_plane > 0:

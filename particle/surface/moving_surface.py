@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.drives import AnyDrive, DriveTable, accelerations, drive_table
+from particle.drives import AnyDrive, DriveTable, accelerations, drive_table, scaled_table
 from particle.surface.at_point import evaluate_points
 from particle.surface.cells import NOWHERE, CellStore
 from particle.surface.local import new_local
@@ -131,6 +131,15 @@ class SurfaceMotion:
         if wrong:
             raise ValueError("; ".join(wrong))
         return replace(self, drives=drive_table([*drives, *in_plane_drives]))
+
+    def scaled(self, factor: float, stroke: float = 1.0) -> SurfaceMotion:
+        """The surface as it moves under drives `factor` times as fast over `stroke` times their heights.
+
+        All its drives run as many times as fast, those of its base too, delays included, as they do on a plate that
+        follows its actuators at once. With a plate that stretches the stroke must stay 1; one with inertia takes other
+        drives for its modes (`coupling.shared_surface`).
+        """
+        return replace(self, drives=scaled_table(self.drives, factor, stroke))
 
     def drive_faults(
         self, given: Mapping[str, Sequence[AnyDrive]], in_plane: Mapping[str, Sequence[AnyDrive]] | None = None

@@ -9,7 +9,7 @@ import pytest
 
 import active_surface
 
-ROOMS = ["studies", "steering", "views"]
+ROOMS = ["studies", "steering", "views", "identification"]
 PACKAGES = ["fem_plate", "particle", "coupling", *(f"active_surface.{room}" for room in ROOMS)]
 MODULES = {"meshes", "paper", *ROOMS}
 
@@ -28,8 +28,8 @@ def test_names_of_the_api_are_those_of_the_packages(package):
 
 
 def test_a_name_that_does_not_exist_is_refused_as_in_any_module():
-    with pytest.raises(AttributeError, match="^module 'active_surface' has no attribute 'run_cases'"):
-        _ = active_surface.run_cases
+    with pytest.raises(AttributeError, match="^module 'active_surface' has no attribute 'run_everything'"):
+        _ = active_surface.run_everything
 
 
 def test_the_api_starts_at_once():

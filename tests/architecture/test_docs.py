@@ -104,7 +104,7 @@ def fields(extension):
 
 
 PACKAGES = ["meshes", "fem_plate", "particle", "coupling"] + [
-    f"active_surface.{room}" for room in ("studies", "views", "steering", "paper")
+    f"active_surface.{room}" for room in ("studies", "views", "steering", "identification", "paper")
 ]
 
 

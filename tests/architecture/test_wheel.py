@@ -69,6 +69,17 @@ def test_data_files_are_in_the_wheel(installed):
         assert all((installed.packages / file).read_bytes() == (ROOT / file).read_bytes() for file in data)
 
 
+def test_examples_are_in_the_wheel_with_what_they_read(installed, elsewhere):
+    examples = {file.relative_to(ROOT / "examples") for file in (ROOT / "examples").rglob("*") if file.is_file()}
+    inside = installed.packages / "active_surface" / "examples"
+    assert examples == {file.relative_to(inside) for file in inside.rglob("*") if file.is_file()}
+    done = run(installed.command, "example", "l_with_hole", cwd=elsewhere)
+    assert (elsewhere / "meshes" / "l_with_hole.msh").exists() and "next        active-surface run" in done.stdout
+    assert run(installed.command, "check", "l_with_hole.toml", cwd=elsewhere).stdout.startswith(
+        "l_with_hole.toml: fine"
+    )
+
+
 def test_the_main_job_runs_from_another_folder(installed, elsewhere):
     done = run(installed.command, "run", "case.toml", cwd=elsewhere)
     assert "wrote" in done.stdout and (elsewhere / "results" / "case.png").stat().st_size > 0

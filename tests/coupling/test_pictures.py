@@ -6,20 +6,26 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from coupling.case import ActuatorCase, Case, ConstantCase, PartCase, RunCase
+from coupling.case import ActuatorCase, Case, ConstantCase, CoulombCase, PartCase, RunCase
 from coupling.display.mesh import display_mesh
 from coupling.display.surface import DisplaySurface, deflections, display_surface, most_deflected
+from coupling.drives import build_drives
+from coupling.margins import Margin, Margins, margin_curves
+from coupling.part import build_friction
+from coupling.pictures.keys import put_keys
 from coupling.pictures.plate import BOTH_WAYS, UPWARDS, Scale, draw_plate, fine_piece, relief_of
-from coupling.pictures.portrait import portrait_of
+from coupling.pictures.portrait import chosen_drives, decisive_moment, portrait_of
 from coupling.pictures.run import compose
-from coupling.pictures.time import limits
+from coupling.pictures.time import Curves, draw_over_time, limits, margins_over_time, strokes_of
 from coupling.pictures.window import MAX_LENGTHS, MIN_LENGTHS, path_window
 from coupling.run import run_case
 from fem_plate import Plate, PlateSection
 from fem_plate import pictures as plate_pictures
 from fem_plate.pictures import FEW, marker_size
-from meshes import disc, quantity_text, range_text, unit_for
+from meshes import Unit, disc, quantity_text, range_text, unit_for
+from particle import Samples
 
 BOX = np.array([[-50.0, -50.0], [50.0, 50.0]])
 DISC = {"shape": "disc", "radius": 3e-4, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 2e-5}
@@ -116,6 +122,13 @@ def test_the_moment_shown_is_the_first_of_the_most():
     assert most_deflected(np.zeros(5)) == 0
 
 
+def portrait(result, ground, moment):
+    """The portrait of a run."""
+    case, margins, friction = result.case, result.summary.margins, build_friction(result.case)
+    curves = margin_curves(case, result.surface, result.trajectory, friction)
+    return portrait_of(case, result.scene, result.trajectory, ground, moment, margins, curves)
+
+
 def drawn(case, tmp_path):
     """The figure of a run, drawn, with warnings as errors."""
     result = run_case(case, tmp_path)
@@ -124,10 +137,7 @@ def drawn(case, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         ground = display_surface(result.scene, result.trajectory)
-        compose(
-            figure,
-            portrait_of(case.name, result.scene, result.trajectory, ground, result.trajectory.time[-1] / 3),
-        )
+        compose(figure, portrait(result, ground, result.trajectory.time[-1] / 3))
         canvas.draw()
     return figure
 
@@ -175,6 +185,90 @@ def test_a_part_at_rest_is_a_point_on_the_map_with_axes_that_can_be_read(case, t
     assert panel.get_yticks().tolist() == [0] and panel.get_ylim()[0] > -0.1
     assert panel.get_xlabel() == ("time [µs]" if case.run.duration < 1e-5 else "time [ms]")
     assert not any(axis.get_offset_text().get_text() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis))
+
+
+@pytest.mark.compiled
+def test_a_run_that_slips_has_strokes_and_margins_over_time_and_a_line_where_it_was_lost(tmp_path):
+    case = plate_case(3e-3, 4e-9)
+    lost = case.vary({"friction": CoulombCase(coefficient=0.4, adhesion=1e-7)})
+    result = run_case(lost)
+    assert result.summary.outcome == "detached"
+    found = portrait(result, display_surface(result.scene, result.trajectory), 1e-4)
+    off = result.trajectory.events[-1]
+    assert found.decisive == off.time and found.why == "when it is lost"
+    assert list(found.drives) == ["actuator 0", "actuator 1"]
+    strokes = strokes_of(found)
+    assert strokes.values["actuator 1"] == pytest.approx(
+        result.scene.lifts[1].evaluate(found.samples.time)[0], rel=1e-9, abs=1e-15
+    )
+    margins = margins_over_time(found)
+    assert margins.marked == 1.0 and np.nanmin(margins.right.values["distance from coming off"]) < 0.05
+    figure = drawn(lost, tmp_path)
+    assert "comes off" in texts(figure)
+    notes = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert any(text.startswith("comes off at") for text in notes)
+    panels = [axes for axes in figure.axes if axes.get_ylabel().startswith(("height", "pull", "friction", "speed"))]
+    assert len(panels) == 4
+    per_second = off.time / panels[0].get_xlim()[1]
+    for axes in panels:
+        assert any(
+            line.get_xdata() == pytest.approx([off.time / per_second] * 2) and line.get_linestyle() == "--"
+            for line in axes.lines
+            if len(line.get_xdata()) == 2
+        )
+
+
+@pytest.mark.compiled
+def test_of_many_cycles_all_and_some_around_the_first_slip_are_drawn_and_curves_that_crowd_are_bands(tmp_path):
+    figure = drawn(plate_case(0.15), tmp_path)
+    title = next(axes.get_title() for axes in figure.axes if axes.get_title().startswith("Around 0"))
+    assert title.endswith("when it first slips")
+    heights = [axes for axes in figure.axes if axes.get_legend() and axes.get_subplotspec() is not None]
+    whole, part = heights[:1][0], heights[-1]
+    assert whole.get_xlim() == pytest.approx((0, 150)) and np.ptp(part.get_xlim()) == pytest.approx(6 / 0.7, rel=0.03)
+    assert len(whole.collections) > len(part.collections) - 1 and whole.collections[0].get_paths()
+    for band in whole.collections[:2]:
+        y = band.get_paths()[0].vertices[:, 1]
+        assert y.min() >= -1e-9 and y.max() <= 50 * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(("width", "lines"), [(7.6, 2), (3.3, 4), (14.0, 1)])
+def test_keys_fit_their_picture(width, lines):
+    names = ("path", "rests here", "start", "end", "actuator", "slips", "stops", "stuck", "path")
+    figure = Figure(figsize=(width, 4.0))
+    FigureCanvasAgg(figure)
+    put_keys(figure, [Line2D([], [], label=name) for name in names])
+    legend = figure.legends[0]
+    figure.draw_without_rendering()
+    box, texts = legend.get_window_extent(), legend.get_texts()
+    assert sorted(text.get_text() for text in texts) == sorted({*names}) and len(figure.legends) == 1
+    assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
+    assert len({round(text.get_window_extent().y0 / 5) for text in texts}) == lines
+
+
+def test_a_curve_is_followed_while_two_points_lie_between_its_turns():
+    axes = Figure(figsize=(10.0, 2.0)).add_axes((0.0, 0.0, 1.0, 1.0))  # 720 points
+    rows = Samples(*(np.zeros(2) for _ in Samples._fields))._replace(time=np.array([0.0, 1.0]))
+    times = np.linspace(0, 1, 40_001)
+    for cycles, bands in ((170, 0), (190, 1)):
+        axes.clear()
+        curves = Curves("speed", "m/s", {"": np.sin(2 * np.pi * cycles * times)}, times)
+        draw_over_time(axes, rows, curves, Unit("s", 1.0))
+        followed = [line for line in axes.get_lines() if len(line.get_xdata()) == len(times)]
+        edged = [one for one in axes.collections if any(len(path.vertices) > 1000 for path in one.get_paths())]
+        assert (len(followed), len(edged)) == (1 - bands, bands)
+
+
+def test_of_many_actuators_those_are_drawn_that_the_margins_name():
+    case = plate_case()
+    many = case.model_copy(update={"actuators": case.actuators * 4})
+    lifts = build_drives(many)
+    named = Margin(0.5, 1e-3, (0.0, 0.0), 5)
+    margins = Margins(named, None, None, 1.0, 0.0)
+    assert list(chosen_drives(many, lifts, margins)) == ["actuator 5"]
+    nameless = Margins(Margin(0.5, 1e-3, (0.0, 0.0), None), None, None, 1.0, 0.0)
+    assert list(chosen_drives(many, lifts, nameless)) == ["actuator 0"]  # the nearest to the start
+    assert decisive_moment([], margins) == 1e-3
 
 
 def small_plate():

@@ -9,8 +9,8 @@ import pytest
 from click.testing import CliRunner
 
 from active_surface.cli.program import main
-from coupling import report, run_case
-from coupling.case import Case, CoulombCase, PartCase, RunCase
+from coupling import report, run_case, summary_of
+from coupling.case import Case, ConstantCase, CoulombCase, PartCase, RunCase
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 X = {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}
@@ -28,7 +28,8 @@ def case(motion, run=None, **part):
 
 
 def said(result):
-    return "\n".join(text for _, text in report.lines(result.summary)) + "\n".join(report.warnings(result.summary))
+    rows = report.lines(result.summary, verbose=True)
+    return "\n".join([*(text for _, text in rows), *report.warnings(result.summary)])
 
 
 @pytest.mark.compiled
@@ -151,3 +152,66 @@ def test_check_of_a_platform():
     done = CliRunner().invoke(main, ["check", str(EXAMPLES / "shaker.toml")])
     assert done.exit_code == 0
     assert "fine; a platform, 4000 ms" in done.output
+
+
+def test_a_constant_limit_under_a_load_below_zero_is_warned_of():
+    platform = case({"z": {"stroke": "20 um", "frequency": "500 Hz"}}, {"duration": 4e-3})
+    held = platform.model_copy(update={"friction": ConstantCase(limit=1e-8)})
+    summary = run_case(held).summary
+    assert summary.margins.smallest_load < 0 and summary.margins.contact is None
+    assert any("A constant limit holds it" in warning for warning in report.warnings(summary))
+    rough = run_case(platform.model_copy(update={"friction": CoulombCase(coefficient=0.3, adhesion=1e-3)})).summary
+    assert rough.margins.smallest_load < 0 and not any("constant limit" in text for text in report.warnings(rough))
+
+
+def test_noise_that_pulls_harder_than_friction_holds_is_warned_of(tmp_path):
+    times = np.arange(0, 1, 1 / 960)
+    quiet = 1e-3 * np.sin(2 * np.pi * 3 * times)
+    noisy = quiet + np.random.default_rng(1).normal(0, 10e-6, len(times))
+    friction = CoulombCase(coefficient=0.3)
+    pulls = []
+    for name, x in (("quiet", quiet), ("noisy", noisy)):
+        file = tmp_path / f"{name}.csv"
+        rows = "\n".join(f"{t * 1e3:.17g}, {place * 1e6:.17g}" for t, place in zip(times, x, strict=True))
+        file.write_text(f"time [ms], x [um]\n{rows}\n")
+        measured = Case(
+            plate={"shape": "platform", "motion": str(file), "smoothing": 1e-7},
+            part=PartCase(mass=2e-9, position=(0.0, 0.0)),
+            friction=friction,
+            run=RunCase(duration=0.05),
+        )
+        summary = run_case(measured).summary
+        pulls.append(summary.noise_pull)
+        assert any("Noise of" in text for text in report.warnings(summary)) == (name == "noisy")
+    assert pulls[0] < 1e-3 and pulls[1] > 1
+
+
+def test_what_was_found_in_a_measured_motion_is_said(tmp_path):
+    """Impacts, a gap and a column of no use; the figures survive as JSON."""
+    times = np.delete(np.arange(240) / 960, slice(200, 208))
+    x = 1e-3 * np.sin(2 * np.pi * 30 * times) + 0.3 * np.maximum(0, times - 0.1003)
+    x += np.random.default_rng(1).normal(0, 5e-6, len(times))
+    rows = "\n".join(f"{t:.17g}, {place:.17g}, warm" for t, place in zip(times, x, strict=True))
+    (tmp_path / "x.csv").write_text(f"time [s], x [m], weather\n{rows}\n")
+    summary = run_case(
+        Case(
+            plate={"shape": "platform", "motion": str(tmp_path / "x.csv")},
+            part=PartCase(mass=2e-9, position=(0.0, 0.0), squeeze=1e-8),
+            friction=CoulombCase(coefficient=0.5),
+            run=RunCase(duration=0.15),
+        )
+    ).summary
+    text = " ".join(text for _, text in report.lines(summary, verbose=True))
+    assert "smoothed by cross-validation" in text and "velocity of x jumps" in text and "at 100." in text
+    warnings = report.warnings(summary)
+    assert any("1 gap, up to 9.3" in warning for warning in warnings)
+    assert any('column "weather"' in warning for warning in warnings)
+    assert summary.drive_jump == pytest.approx(0.1003, abs=3e-4)
+    assert summary_of(json.loads(json.dumps(summary.as_dict()))).motion_fits == summary.motion_fits
+
+
+def test_a_coarse_friction_table_is_warned_of():
+    summary = run_case(case({"x": X}, {"duration": 1e-4})).summary
+    assert not any("friction table" in text for text in report.warnings(summary))
+    coarse = type(summary)(**vars(summary) | {"contact_error": 0.4})
+    assert any("good to 40 % only" in text for text in report.warnings(coarse))

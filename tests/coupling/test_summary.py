@@ -3,6 +3,7 @@
 import json
 from contextlib import contextmanager
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,9 +11,11 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from coupling import report, run_case
 from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
-from coupling.plate_figures import StretchError
+from coupling.plate_figures import StretchError, part_sag
 from coupling.summary import summary_of
+from fem_plate import Plate, PlateSection
 from fem_plate.analytic import DiscShapes
+from meshes import disc
 
 PLATE = {
     "shape": "rectangle",
@@ -49,11 +52,13 @@ def test_the_slowest_and_fastest_drive_and_stroke_are_stated_over_the_first_freq
     assert s.drives_over_first == pytest.approx((200 / s.first_frequency, 400 / s.first_frequency))
     assert s.strokes_over_first == pytest.approx((300 / s.first_frequency, 800 / s.first_frequency))
     assert s.drive_over_first == max(s.drives_over_first)
-    (text,) = [text for _, text in report.lines(s) if "drive frequency" in text]
+    (text,) = [text for _, text in report.lines(s, verbose=True) if "drive frequency" in text]
     ranges = ["{:.2g}-{:.2g}".format(*ratios) for ratios in (s.drives_over_first, s.strokes_over_first)]
     assert text == "drive frequency / first frequency: {}; stroke rate / first frequency: {}".format(*ranges)
     alike = replace(s, drives_over_first=(0.25, 0.25))
-    assert any("drive frequency / first frequency: 0.25; stroke rate" in text for _, text in report.lines(alike))
+    assert any(
+        "drive frequency / first frequency: 0.25; stroke rate" in text for _, text in report.lines(alike, verbose=True)
+    )
 
 
 def test_springs_give_and_the_residual_says_how_well_the_rest_is_held(result):
@@ -193,7 +198,7 @@ def test_the_strain_of_bending_is_that_of_the_closed_form_half_a_thickness_from_
     assert s.largest_strain == pytest.approx(2.5e-6 * curvature, rel=1e-4)
     assert s.theory == "linear"
     assert s.stretch_error is None
-    assert ("", f"strain {100 * s.largest_strain:.2g} % by bending alone") in report.lines(s)
+    assert any(f"strain {100 * s.largest_strain:.2g} % by bending alone" in text for _, text in report.lines(s))
     assert not any("strained" in text for text in report.warnings(s))
     assert any(
         "strained by 0.51 % by bending alone" in text for text in report.warnings(replace(s, largest_strain=0.0051))
@@ -215,17 +220,62 @@ def test_of_a_plate_that_stretches_the_summary_has_errors_and_strain():
     error = StretchError(mesh=2e-4, reduction=3e-5, pieces=4e-6)
     new = {"theory": "von-karman", "linear_path_error": None, "stretch_error": error, "stretch_solutions": 7}
     s = replace(s, largest_strain=0.004, **new)
-    texts = [text for _, text in report.lines(s)]
+    texts = [text for _, text in report.lines(s, verbose=True)]
     assert (
         "stretching from 7 full solutions, good to 2.0e-04 (estimated); the reduced model adds 3.0e-05, its "
         "pieces in time 4.0e-06"
     ) in texts
     assert any(text.startswith("deflection 1 times the thickness (von Karman's theory), slope") for text in texts)
-    assert "strain 0.4 %" in texts
+    assert any(text.endswith("strain 0.4 %") for text in texts)
     assert not any("times its thickness" in text or "accurate to" in text for text in report.warnings(s))
     assert summary_of(json.loads(json.dumps(s.as_dict()))) == s
     coarse = replace(s, stretch_error=replace(error, mesh=2e-3), largest_strain=0.006, largest_slope=0.3)
     texts = report.warnings(coarse)
     assert "The plate that stretches is accurate to 2.0e-03 of its deflection only; reduce plate.cell_size." in texts
-    assert "The plate is strained by 0.6 %; silicon breaks near 1 %, and 0.5 % is prudent." in texts
+    assert any("strained by 0.6 %; silicon breaks near 1 %" in text for text in texts)
     assert any("as steep as 0.3" in text for text in texts)
+
+
+@pytest.mark.parametrize(
+    "outline",
+    [
+        {"sides": 6, "radius": 3e-4, "supports": "simply-supported"},
+        {"corners": [(0.0, 0.0), (6e-4, 0.0), (6e-4, 3e-4), (3e-4, 3e-4), (3e-4, 6e-4), (0.0, 6e-4)]},
+    ],
+    ids=["hexagon", "re-entrant"],
+)
+def test_strain_is_that_off_corners_where_moments_are_infinite(outline):
+    """At such a corner it would grow without end as cells shrink there."""
+    x, y = (0.0, 0.0) if "sides" in outline else (2e-4, 2e-4)
+    strains = [
+        run_case(
+            Case(
+                plate={key: PLATE[key] for key in ("youngs_modulus", "poisson_ratio", "thickness")}
+                | outline
+                | {"shape": "polygon", "cell_size": size},
+                actuators=[ActuatorCase(position=(x, y), stroke=5e-7, frequency=400)],
+                part=PartCase(mass=2e-9, position=(x - 5e-5, y)),
+                friction=CoulombCase(coefficient=0.3, adhesion=1e-6),
+                run=RunCase(duration=1e-3),
+            )
+        ).summary.largest_strain
+        for size in (8e-5, 4e-5)
+    ]
+    assert strains[0] == pytest.approx(strains[1], rel=0.03) and strains[1] < 0.003
+
+
+@pytest.mark.parametrize("truncation", [None, 1e-4])
+def test_a_part_on_an_actuator_sags_as_its_spring_yields(truncation):
+    """The clamped plate's own stiffness 16 pi D / a^2 and the spring's add up; a force that floats adds none."""
+    radius, weight = 300e-6, 2e-9 * 9.80665
+    section = PlateSection(169e9, 0.3, 5e-6)
+    plate = Plate(disc(radius, radius / 4), section)
+    of_plate = 16 * np.pi * section.rigidity / radius**2
+    on_actuator = SimpleNamespace(position=np.zeros((1, 2)))
+    for spring, expected in ((1.0, weight / (of_plate + 1)), (0.0, weight / of_plate), (np.inf, 0.0)):
+        shapes = plate.influence([[0.0, 0.0]], spring, truncation=truncation)
+        assert part_sag(plate, shapes, on_actuator, weight) == pytest.approx(expected, rel=1e-3)
+    beside = SimpleNamespace(position=np.array([[1e-9, 0.0]]))
+    spring = plate.influence([[0.0, 0.0]], 1.0)
+    assert part_sag(plate, spring, beside, weight) == pytest.approx(weight / (of_plate + 1), rel=1e-3)
+    assert weight / (of_plate + 1) == pytest.approx(1.818e-11, rel=1e-3)

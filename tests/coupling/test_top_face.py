@@ -48,7 +48,7 @@ def test_the_summary_has_the_share_of_the_heights(runs):
     shares = [runs[name].summary.top_face_share for name in ("mid-plane", "top", "high")]
     assert shares[0] == 0.0
     assert shares[2] / shares[1] == pytest.approx(90 / 50, rel=0.05)
-    texts = [text for _, text in report.lines(runs["top"].summary)]
+    texts = [text for _, text in report.lines(runs["top"].summary, verbose=True)]
     assert f"top face and centre of mass add {shares[1]:.3g} times the mid-plane's pull on the part" in texts
 
 
@@ -63,7 +63,10 @@ def test_a_part_that_is_too_high_tips_over():
     unknown = run_case(case(CONSTANT, part=high)).summary
     assert unknown.tipping > 1 and not unknown.tips
     assert not any("tips over" in text for text in report.warnings(unknown))
-    assert any(text.endswith("times half the part's size, if nothing adheres") for _, text in report.lines(unknown))
+    assert any(
+        text.endswith("times half the part's size, if nothing adheres")
+        for _, text in report.lines(unknown, verbose=True)
+    )
 
 
 def test_adhesion_keeps_a_part_from_tipping_over():

@@ -21,14 +21,14 @@ def test_an_aim_over_a_case_of_the_examples_reaches_its_target():
 
 
 @pytest.mark.slow
-def test_the_aim_reaches_its_target_within_every_bound_of_the_model():
+def test_the_aim_reaches_its_target_within_every_bound_of_the_plate():
     found = aim(read_task(AIMS / "to_target.toml"))
     assert found.reached and not found.scatter.lost and found.scatter.quantile(0.9) < 5e-6
     assert not warnings(run_case(found.case).summary)
 
 
 @pytest.mark.slow
-def test_the_plan_carries_the_part_round_a_corner_within_every_bound_of_the_model():
+def test_the_plan_carries_the_part_round_a_corner_within_every_bound_of_the_plate():
     file = AIMS / "around_the_corner.toml"
     places = re.search(r"--through (.*)", file.read_text())[1]
     assert f"--through {places}\n" in (ROOT / "docs" / "aim.md").read_text()

@@ -56,6 +56,6 @@ def test_the_part_stays_on_the_square_at_every_step(result):
 
 
 def test_the_summary_says_how_closely_the_measurement_is_followed_and_warns_of_nothing(result):
-    text = " ".join(text for _, text in report.lines(result.summary))
+    text = " ".join(text for _, text in report.lines(result.summary, verbose=True))
     assert "measured x followed to" in text and "counted from the platform" in text
     assert not report.warnings(result.summary)

@@ -19,7 +19,9 @@ def pictures():
     spec = importlib.util.spec_from_file_location(SCRIPT.stem, SCRIPT)
     module = importlib.util.module_from_spec(spec)
     sys.modules[SCRIPT.stem] = module  # where dataclasses look names up
+    sys.path.insert(0, str(SCRIPT.parent))  # as when it is run: what its pages share stands beside it
     spec.loader.exec_module(module)
+    sys.path.remove(str(SCRIPT.parent))
     yield module
     del sys.modules[SCRIPT.stem]
 

@@ -86,3 +86,15 @@ def test_floating_actuators_are_coupled_by_the_compliance(plate):
     shapes = plate.influence(FOUR, 0.0)
     c = shapes.compliance
     assert neighbour_coupling(shapes) == pytest.approx(c[NEAREST, range(4)] / np.diagonal(c), rel=1e-6)
+
+
+def test_neighbours_that_are_equally_near_count_alike(section):
+    """On a rectangle those beside and those above differ; rounding of the distances must not choose."""
+    plate = Plate(rectangle(600e-6, 300e-6, 100e-6), section)
+    points = 60e-6 * np.array([[0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]]) + [1e-7, 0.0]
+    shapes = plate.influence(points, 20.0)
+    heights = shapes.evaluate(points)[0]
+    heights /= np.diagonal(heights)
+    beside, above = heights[[1, 0, 3, 2], range(4)], heights[[3, 2, 1, 0], range(4)]
+    assert (np.abs(beside - above) > 1e-3).all()
+    assert neighbour_coupling(shapes) == pytest.approx((beside + above) / 2, rel=1e-9)

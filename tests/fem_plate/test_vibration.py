@@ -159,3 +159,11 @@ def test_a_spring_between_gives_a_frequency_between(plate):
 def test_a_hold_of_no_stiffness_is_refused(plate, wrong):
     with pytest.raises(ValueError, match="^Input stiffness of modes must be positive; got .* N/m for point [01]$"):
         plate.modes(1, HELD, wrong)
+
+
+def test_the_error_estimate_is_close_to_the_error():
+    modes = Plate(disc(1.0, 0.3), UNIT).modes(4)
+    error = np.abs(2 * np.pi * modes.frequencies / plate_modes.disc("clamped", 4) - 1)
+    assert error.max() < 1e-5
+    ratio = error / modes.error_estimate
+    assert (ratio > 0.2).all() and (ratio < 5).all()

@@ -20,7 +20,7 @@ from particle import (
     polynomial_surface,
     simulate,
 )
-from particle.events.equations import Part
+from particle.events.mechanics.equations import Part
 from particle.fixed.moreau import moreau_step
 from particle.fixed.steps import MAX_ROWS, MAX_STEPS, step_count
 from particle.modes import Mode

@@ -14,11 +14,12 @@ from numba import types
 from particle import kernel_cache
 from particle.kernel_cache import MAX_FOLDERS, PACKAGE, _Forms, cache_folder, place_of, source_digest
 
-ROOMS = ("", "drives", "friction", "surface", "events", "fixed")
+EVENTS = ("events", *(f"events/{room}" for room in ("mechanics", "rest", "sliding", "flight")))
+ROOMS = ("", "drives", "friction", "surface", *EVENTS, "fixed")
 USE = """
 import os
-from particle.events.equations import Part
-from particle.events.slipping import load_and_demand
+from particle.events.mechanics.equations import Part
+from particle.events.rest.slipping import load_and_demand
 from particle import ConstantFriction
 part, LEVEL = Part(1.0, 9.0, 0.0, 0.0, 2.0, ConstantFriction(1.0).law), (0.0, 0.0)
 import particle
@@ -147,7 +148,7 @@ def test_a_kernel_is_compiled_once_and_anew_when_one_that_it_calls_has_changed(p
     assert [load for load, _ in outputs] == [12.0, 12.0]
     assert sum(compiled for _, compiled in outputs) == 1
     assert result(start(package, cache)) == (12.0, 0)
-    source = package / "events" / "equations.py"
+    source = package / "events" / "mechanics" / "equations.py"
     text = source.read_text()
     assert text.count("+ part.squeeze") == 1
     time.sleep(1.1)  # Python itself looks at the second of an edit and at its size

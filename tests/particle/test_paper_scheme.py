@@ -7,7 +7,7 @@ import pytest
 from motions import motion
 
 from particle import ConstantFriction, CoulombAdhesion, EventKind, Micropart, Outcome, polynomial_surface, simulate
-from particle.events.equations import Part
+from particle.events.mechanics.equations import Part
 from particle.fixed.paper_scheme import across, paper_step, rotation
 from particle.modes import Mode
 from particle.surface.at_point import SurfacePoint

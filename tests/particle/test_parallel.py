@@ -21,9 +21,9 @@ from particle import (
     polynomial_surface,
     simulate,
 )
-from particle.events.breakaway import first_slip, mobility, moved
-from particle.events.equations import Part, energy, length, pull
-from particle.events.parallel import (
+from particle.events.mechanics.breakaway import first_slip, mobility, moved
+from particle.events.mechanics.equations import Part, energy, length, pull
+from particle.events.mechanics.parallel import (
     from_height,
     normal_bend,
     normal_bend_along,

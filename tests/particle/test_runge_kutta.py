@@ -7,10 +7,10 @@ import pytest
 from motions import motion
 
 from particle import ConstantFriction, polynomial_surface
-from particle.events.equations import Part
+from particle.events.mechanics.equations import Part
+from particle.events.mechanics.motion import as_numbers
 from particle.events.memory import new_memory
-from particle.events.motion import as_numbers
-from particle.events.runge_kutta import attempt, motion_rate, step_error
+from particle.events.sliding.runge_kutta import attempt, motion_rate, step_error
 from particle.events.step import surface_at_start
 from particle.events.tableau import Pairs, pairs_for, tableau
 from particle.modes import Mode

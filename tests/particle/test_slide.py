@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, polynomial_surface
-from particle.events import contact_end
-from particle.events.equations import Part
+from particle.events.mechanics.equations import Part
 from particle.events.memory import new_memory
 from particle.events.request import Request
-from particle.events.slide import slide
+from particle.events.sliding import contact_end
+from particle.events.sliding.slide import slide
 from particle.events.tableau import pairs_for
 from particle.modes import Mode, Verdict
 from particle.surface.span import enter

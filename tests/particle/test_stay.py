@@ -6,7 +6,7 @@ import pytest
 from coupling.surface.motion import surface_motion
 from particle import ConstantFriction, CoulombAdhesion, Drive, Micropart, Outcome, polynomial_surface, simulate
 from particle.drives import drive_table, monomial_table
-from particle.events.stay import horizon
+from particle.events.rest.stay import horizon
 
 MASS, START = 2e-9, (100e-6, -30e-6)
 
@@ -25,7 +25,7 @@ def test_a_stroke_that_comes_later_is_seen(exact):
     late = Drive(150e-6, 300, cycles=1, delay=5e-3)
     path = run(exact, [late, Drive(0.0, 300)], 1e-3)
     assert path.outcome is Outcome.STUCK and path.stays is False
-    assert path.sentence.endswith("the drives move it again later.")
+    assert path.sentence.endswith("rests between slips at the end of the run.")
     assert run(exact, [late, Drive(0.0, 300)], 6e-3).events
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from particle import ConstantFriction, CoulombAdhesion, Drive, KogutEtsion, polynomial_surface
-from particle.events.equations import Part, length, pull
-from particle.events.stick import leaves_rest, new_rest
+from particle.events.mechanics.equations import Part, length, pull
+from particle.events.rest.stick import leaves_rest, new_rest
 from particle.friction.contact import friction_limit
 from particle.surface.at_point import surface_at
 from particle.surface.local import new_local

@@ -8,7 +8,7 @@ import pytest
 from particle import Drive
 from particle.drives import drive_table, next_breakpoint
 from particle.drives.table import Segments
-from particle.events.stay import horizon
+from particle.events.rest.stay import horizon
 
 F, STROKE = 700.0, 2.0
 PHASES = [0.0, math.pi / 2, -2.5]

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from coupling.case import Case
+from coupling.margins import MarginCurves
 from coupling.results.saved import SavedRun
 from particle import Samples
 
@@ -85,6 +86,8 @@ def made_run(path, heights, time=None, state=1, above=0.0, holes=(), actuators=1
         friction_force=np.zeros(k),
         events=[],
         rows=rows,
+        margins=MarginCurves(time, *np.full((2, k), np.nan)),
+        event_actuators=np.empty(0, int),
         plate_fields=("deflection",),
         plate_path=Path("made.plate.vtkhdf"),
         part_path=Path("made.part.vtkhdf"),

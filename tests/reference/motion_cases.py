@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 
-from motion_oracle import Path
+from motion_problem import Path
 
 from particle import ConstantFriction, CoulombAdhesion
 from particle.friction import Contact

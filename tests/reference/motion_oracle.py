@@ -23,123 +23,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import NamedTuple, Protocol
 
 import numpy as np
-from scipy.integrate import DOP853, Radau, solve_ivp
+from located_steps import march
+from motion_problem import Path, Problem, force, size_of
+from scipy.integrate import DOP853, Radau
 from scipy.optimize import brentq
 
-RTOL, LENGTH_ERROR, SPEED_ERROR = 1e-13, 1e-18, 1e-16  # of one step; m, m/s (a plate is 1e-4 m wide)
+LENGTH_ERROR, SPEED_ERROR = 1e-18, 1e-16  # of one step; m, m/s (a plate is 1e-4 m wide)
 FIRST_SPEED, LAST_SPEED = 1e-13, 1e-14  # m/s
 HEAT_ERROR = 1e-18  # J/kg
 SCAN = 1000  # moments of a span at which a part at rest or in flight is looked at
-INSIDE = np.linspace(0, 1, 7)[1:]  # of a step: where its interpolant is searched for events
-
-
-class Frame(NamedTuple):
-    """What the surface does to a part at X with the velocity X'."""
-
-    place: np.ndarray  # (3,) r
-    velocity: np.ndarray  # (3,) r_t, that of the surface
-    carried: np.ndarray  # (3,) r'' where X'' = 0
-    normal: np.ndarray  # (3,)
-    centre: np.ndarray  # (3, 2) dr/dX
-    contact: np.ndarray  # (3, 2) J
-
-
-class At(Protocol):
-    """The surface at one place and time."""
-
-    def frame(self, v: np.ndarray) -> Frame: ...
-
-
-class Point(NamedTuple):
-    """A surface whose points move upwards, and a part that is one of them, at one place and time."""
-
-    w: float
-    w_t: float
-    w_tt: float
-    gradient: np.ndarray  # (2,)
-    gradient_t: np.ndarray
-    hessian: np.ndarray  # (2, 2)
-    base: np.ndarray = np.zeros(2)  # m/s^2, acceleration of the base
-
-    def frame(self, v: np.ndarray) -> Frame:
-        """Place and velocity in the plane are those relative to the base."""
-        rises = self.w_tt + 2 * v @ self.gradient_t + v @ self.hessian @ v
-        centre = np.vstack([np.eye(2), self.gradient])
-        normal = np.array([*-self.gradient, 1.0]) / math.sqrt(1 + self.gradient @ self.gradient)
-        place, velocity = np.array([0.0, 0.0, self.w]), np.array([0.0, 0.0, self.w_t])
-        return Frame(place, velocity, np.array([*self.base, rises]), normal, centre, centre)
-
-
-Surface = Callable[[float, float, float], At]  # x, y, t
-Height = Callable[[float], tuple[float, float, float]]  # t -> h, h', h''
-
-
-@dataclass
-class Problem:
-    """What moves on what. `limit`: Q(N) [N]; `breakpoints`: the times at which a derivative of the surface jumps."""
-
-    surface: Surface
-    mass: float
-    limit: Callable[[float], float]
-    breakpoints: Sequence[float] = ()
-    gravity: tuple[float, float, float] = (0.0, 0.0, -9.80665)
-    squeeze: float = 0.0
-    pull_off: float = math.inf
-    static_ratio: float = 1.0
-    gap: Callable[[float, float], float] = field(default=lambda x, y: 1.0)  # m from the rim
-    stroke_time: float = 1e-3  # s, only decides which of the formulations is used
-    flies: bool = False  # whether it is followed where it comes off
-    impact: float = 0.0  # tangential over normal impulse of a landing, at most
-
-
-@dataclass
-class Path:
-    """Where it ended, and the events on the way as (kind, time, x, y)."""
-
-    time: float
-    position: np.ndarray
-    velocity: np.ndarray
-    events: list[tuple[str, float, float, float]]
-    dissipated: float  # J, by friction and impacts
-    kinetic: float  # J
-
-
-class Force(NamedTuple):
-    frame: Frame
-    pull: np.ndarray  # (3,) m/s^2, along the surface
-    load: float  # N
-    limit: float  # Q/m
-
-    def accelerates(self, along: np.ndarray) -> np.ndarray:
-        """The X'' that accelerates the centre of mass by a vector along the surface."""
-        a = self.frame.centre
-        return np.linalg.solve(a.T @ a, a.T @ along)
-
-    def acceleration(self, v: np.ndarray) -> np.ndarray:
-        """X'' of a part that slides."""
-        slip = self.frame.contact @ v
-        return self.accelerates(self.pull - self.limit * slip / size_of(slip))
-
-    def heats(self, v: np.ndarray) -> float:
-        """W/kg"""
-        return self.limit * size_of(self.frame.contact @ v)
-
-
-def size_of(vector: np.ndarray) -> float:
-    return math.sqrt(vector @ vector)
-
-
-def force(problem: Problem, time: float, place: np.ndarray, v: np.ndarray) -> Force:
-    f = problem.surface(place[0], place[1], time).frame(v)
-    free = f.carried - np.array(problem.gravity)
-    across = f.normal @ free
-    load = problem.mass * across + problem.squeeze
-    limit = problem.limit(max(load, -problem.pull_off)) / problem.mass
-    return Force(f, across * f.normal - free, load, limit)
 
 
 def trace(problem: Problem, position: Sequence[float], velocity: Sequence[float], duration: float) -> Path:
@@ -349,49 +243,3 @@ def to_rest(problem: Problem, time: float, end: float, y: np.ndarray, ends: list
     atol = np.array([1e-18, LENGTH_ERROR, LENGTH_ERROR, 1e-13, 1e-13, 1e-13, HEAT_ERROR])
     _, z, found = march(DOP853, rate, 0.0, z, math.inf, atol, stops)
     return (end if found == "" else z[0]), plain(z), "" if found == "fast" else found
-
-
-def march(method, rate, start, y, end, atol, events, **options):
-    """One solver up to the end or the first of the events, (kind, function that falls through 0)."""
-    solver = method(rate, start, y, end, rtol=RTOL, atol=atol, **options)
-    values = [max(measure(start, y), 0.0) for _, measure in events]
-    while solver.status == "running":
-        before, y_before = solver.t, solver.y.copy()
-        message = solver.step()
-        if solver.status == "failed":
-            raise RuntimeError(message)
-        between = solver.dense_output()
-        hits = []
-        for (kind, measure), value in zip(events, values, strict=True):
-            for share in INSIDE:
-                at = before + share * (solver.t - before)
-                if value >= 0 > measure(at, solver.y if share == 1 else between(at)):
-                    hits.append((at, kind, measure))
-                    break
-        if hits:
-            found = []
-            for at, kind, measure in hits:
-                found.append((_locate(method, rate, before, y_before, at, atol, measure), kind))
-            (t, y), kind = min(found, key=lambda one: one[0][0])
-            return t, y, kind
-        values = [measure(solver.t, solver.y) for _, measure in events]
-    return solver.t, solver.y, ""
-
-
-def _locate(method, rate, before, y_before, at, atol, measure):
-    """The event's time and state, by repeating the step up to a time that is sought."""
-
-    def state(t):
-        if t <= before:
-            return y_before
-        return solve_ivp(rate, (before, t), y_before, method=method, rtol=RTOL, atol=atol).y[:, -1]
-
-    def value(t):
-        return measure(t, state(t))
-
-    last = value(at)
-    if value(before) <= 0 or last >= 0:  # on the edge already, or only the interpolant was beyond
-        t = before if last < 0 else at
-    else:
-        t = float(brentq(value, before, at, xtol=1e-18, rtol=1e-14))
-    return t, state(t)

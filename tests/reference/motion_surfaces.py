@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from motion_oracle import Height, Point, Surface
+from motion_problem import Height, Point, Surface
 
 
 def still(time: float) -> tuple[float, float, float]:

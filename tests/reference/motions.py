@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from particle.events.motion import Motion, as_numbers
+from particle.events.mechanics.motion import Motion, as_numbers
 from particle.records import new_records
 
 

@@ -6,6 +6,9 @@ from pathlib import Path
 
 from xarray import Dataset
 
+from coupling import read_case
+from coupling.case import Case
+
 PLATFORM = """\
 [plate]
 shape = "platform"
@@ -26,13 +29,19 @@ limit = "20 nN"
 duration = "2 ms"
 """
 
-PLATE = """\
+DISC_PLATE = """\
 [plate]
 shape = "disc"
 radius = "300 um"
 youngs_modulus = "169 GPa"
 poisson_ratio = 0.3
 thickness = "5 um"
+"""
+"""The plate of these cases, whose table may go on."""
+
+PLATE = (
+    DISC_PLATE
+    + """\
 cell_size = "80 um"
 
 [[actuators]]
@@ -56,6 +65,7 @@ limit = "40 nN"
 [run]
 duration = "5 ms"
 """
+)
 
 LATTICE = (
     PLATE[: PLATE.index("[[actuators]]")]
@@ -93,6 +103,13 @@ def altered(case: str, *changes: tuple[str, str]) -> str:
         assert old in case
         case = case.replace(old, new)
     return case
+
+
+def read_text(folder: Path, text: str) -> Case:
+    """The case of a text, written into a folder."""
+    file = folder / "base.toml"
+    file.write_text(text)
+    return read_case(file)
 
 
 def written(folder: Path, study: str, case: str = PLATE) -> Path:

@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from motion_oracle import Frame, Height, Surface
+from motion_problem import Frame, Height, Surface
 from motion_surfaces import still
 
 ORDER = 3

@@ -6,10 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import motion_oracle
 import numpy as np
 import top_face
 from motion_cases import Strokes, breakpoints, limit_of, ratio_of
+from motion_oracle import trace
+from motion_problem import Height, Path, Problem
 from motion_surfaces import still, up_down
 from numpy.polynomial.polynomial import polyval2d
 
@@ -53,13 +54,13 @@ class Case:
         """The same with other heights."""
         return replace(self, contact=contact, centre=centre)
 
-    def heights(self) -> list[motion_oracle.Height]:
+    def heights(self) -> list[Height]:
         return [up_down(*stroke) for stroke in self.strokes]
 
     def drives(self) -> list[Drive]:
         return [Drive(stroke, f, delay=delay) for stroke, f, delay in self.strokes]
 
-    def base(self) -> list[motion_oracle.Height]:
+    def base(self) -> list[Height]:
         return [still, still]
 
     def height(self) -> top_face.Jets:
@@ -75,9 +76,9 @@ class Case:
     def gap(self, x: float, y: float) -> float:
         return 1.0
 
-    def trace(self) -> motion_oracle.Path:
+    def trace(self) -> Path:
         """The oracle's path."""
-        problem = motion_oracle.Problem(
+        problem = Problem(
             top_face.top_face(self.height(), self.contact, self.centre, self.base(), self.in_plane()),
             self.mass,
             limit_of(self.law),
@@ -91,7 +92,7 @@ class Case:
             self.flies,
             self.law.coefficient if isinstance(self.law, CoulombAdhesion) else 0.0,
         )
-        return motion_oracle.trace(problem, self.start, self.velocity, self.duration)
+        return trace(problem, self.start, self.velocity, self.duration)
 
     def simulate(self, tolerance: float) -> Trajectory:
         """The package's path."""
@@ -128,7 +129,7 @@ class Disc(Case):
     strains: Strokes = ()  # of the drives of shapes in the plane, over the radius
     stretch: np.ndarray | None = None  # these shapes, polynomials (M, 2, I, J) in places over the radius
 
-    def in_plane_heights(self) -> list[motion_oracle.Height]:
+    def in_plane_heights(self) -> list[Height]:
         return [up_down(strain * self.radius, f, delay) for strain, f, delay in self.strains]
 
     def in_plane(self) -> list[top_face.Jets]:
@@ -161,7 +162,7 @@ class Polynomial(Case):
     def in_plane(self) -> list[top_face.Jets]:
         return [] if self.stretch is None else [top_face.polynomial(along) for along in self.stretch]
 
-    def base(self) -> list[motion_oracle.Height]:
+    def base(self) -> list[Height]:
         return self.heights()
 
     def height(self) -> top_face.Jets:

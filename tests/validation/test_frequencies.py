@@ -59,8 +59,8 @@ def test_first_frequencies_of_the_clamped_square():
 
 
 def test_first_frequencies_of_the_free_square():
-    found = omega(rectangle(1.0, 1.0, 0.1), F, 4)
-    assert found == pytest.approx(plate_modes.ritz_rectangle(1.0, 1.0, (F,) * 4, degree=24)[0][3:7], rel=1e-6)
+    found = omega(rectangle(1.0, 1.0, 0.1), F, 7)
+    assert found == pytest.approx(plate_modes.ritz_rectangle(1.0, 1.0, (F,) * 4, degree=24)[0][3:10], rel=1e-6)
 
 
 @pytest.mark.parametrize("supports", [(C, C), (C, S), (C, F), (S, F), (F, F)])

@@ -9,7 +9,8 @@ import math
 import numpy as np
 import pytest
 from motion_cases import NAMES, breakpoints, limit_of, path_length, ratio_of
-from motion_oracle import Problem, trace
+from motion_oracle import trace
+from motion_problem import Problem
 from motion_surfaces import boggio, polynomial, still, up, up_down
 
 from coupling.surface.motion import surface_motion

@@ -9,7 +9,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from motion_oracle import Problem, trace
+from motion_oracle import trace
+from motion_problem import Problem
 from motion_surfaces import boggio, up, up_down
 
 from coupling.surface.motion import surface_motion

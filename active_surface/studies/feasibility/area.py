@@ -1,7 +1,7 @@
 """Feasible: where on a surface slip starts while the part stays attached, and how that changes with frequency.
 
 A part at rest at a place slips there while the pull without friction exceeds what friction holds, and stays attached
-while its net load lies between minus pull-off and the end of the friction law (`particle.events.equations` with
+while its net load lies between minus pull-off and the end of the friction law (`particle.events.mechanics` with
 v = 0). Two areas follow from that, both over one window of time:
 
 - feasible: places where it slips at that moment, and where it would not have come off at any moment of the window;
@@ -21,16 +21,30 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from active_surface.arrays import BoolArray, FloatArray
+from active_surface.studies.feasibility.counting import (
+    SHARES,
+    SIDE,
+    Fields,
+    count_lost,
+    count_slips,
+    find_held,
+    find_responses,
+    find_states,
+)
+from active_surface.studies.feasibility.squares import Squares, squares_within
 from meshes import Outline
 from particle import Micropart, SurfaceMotion, part_record
 from particle.drives import DriveTable
-from particle.events import count_slips, find_lost
+from particle.events import Part
 from particle.friction import Contact
 
-ACROSS: Final = 120  # places along the longer side of the plate
-PER_STROKE: Final = 48  # moments in the shortest stroke
+ACROSS: Final = 100  # places along the longer side of the plate
+PER_STROKE: Final = 24  # moments in the shortest stroke, at first
+MAX_HALVINGS: Final = 3  # of the time between moments
+TOLERANCE: Final = 0.01  # of the areas: what half of that time may change
+FEW: Final = 24  # places along the longer side that tell how many moments are enough
 MAX_STROKES: Final = 85  # of the shortest, in a window
-MAX_KEPT: Final = 20_000_000  # numbers of the surface that are kept from the search for losses to that for slips
+MAX_KEPT: Final = 30_000_000  # numbers of the surface that are kept from the search for losses to that for slips
 
 
 class Curves(NamedTuple):
@@ -52,6 +66,13 @@ class Own:
     over_time: FloatArray = field(repr=False)  # (K,) m^2, the feasible area
 
 
+class Errors(NamedTuple):
+    """Of the areas at any factor, over their value there, or a twentieth of the curve's largest if that is more."""
+
+    moments: float  # what half of the time between moments changes, with fewer squares
+    squares: float  # half of the largest difference between the areas by two halves of the points in the squares
+
+
 @dataclass(frozen=True, eq=False)
 class Feasible:
     """Where a part slips without coming off, over factors (F,) of frequency, moments (K,) and places (n,)."""
@@ -65,9 +86,8 @@ class Feasible:
     slipping: Curves = field(repr=False)
     lost_area: FloatArray = field(repr=False)  # (F,) m^2, where it comes off at some moment
     own: Own
-
-
-State = tuple[FloatArray, tuple[FloatArray, FloatArray, FloatArray], FloatArray]
+    errors: Errors
+    count: int  # moments looked at in the window, between which the surface is taken as linear
 
 
 def find_feasible(
@@ -86,7 +106,8 @@ def find_feasible(
         its drives at once; one with inertia does not.
     window: no more of it is looked at than MAX_STROKES of the shortest strokes of drives that move.
     gravity: as for `particle.simulate`.  across: places along the longer side.
-    The part's place and velocity do not matter.
+    The part's place and velocity do not matter. Moments are halved until the areas hold to TOLERANCE, at most to
+    MAX_PER_STROKE in the shortest stroke.
     """
     stroke_time = float(surface.drives.stroke_time[moving(surface.drives)].min(initial=window))
     window = min(window, MAX_STROKES * stroke_time)
@@ -105,27 +126,80 @@ def examine(
     factors: FloatArray,
     gravity: float | Sequence[float],
     across: int,
+    most: int = MAX_HALVINGS,
 ) -> Feasible:
-    """The same at so many moments of the whole window [s], for ascending factors."""
+    """The same at so many moments of the whole window [s] or, up to `most` times, twice as many; ascending factors."""
     every = np.append(factors, 1.0)
-    points, spacing = places(outline, across)
-    moments = window * (np.arange(count) + 0.5) / count
     resting = part_record(surface, part, friction, gravity)
-    lost = np.zeros((len(every), len(points)), dtype=np.bool_)
-    states = _states(surface, points, moments)
-    for state in states():
-        find_lost(*state, resting, every, lost)
-    counts = np.zeros((2, len(every), count))
-    slips = np.zeros(len(points))
-    for k, state in enumerate(states()):
-        count_slips(*state, resting, every, lost, counts[:, :, k], slips)
-    areas = counts * spacing**2
-    step = window / count
-    peaks, integrals = areas.max(axis=2), areas.sum(axis=2) * step / every
+
+    def look(squares: Squares, moments: int) -> _Counts:
+        return _count(surface, squares, np.linspace(0.0, window, moments + 1), resting, every**2)
+
+    # Few squares tell how many moments are enough.
+    few = squares_within(outline, min(across, FEW))
+    coarse, error = look(few, count), np.inf
+    for _ in range(most):
+        fine = look(few, 2 * count)
+        error = _change(coarse.curves(), fine.curves(), 1.0)
+        if error <= TOLERANCE:
+            break
+        coarse, count = fine, 2 * count
+    squares = squares_within(outline, across)
+    found = look(squares, count)
+    areas = found.slips.mean(axis=0) * squares.side**2
+    moments = window * (np.arange(areas.shape[2]) + 0.5) / areas.shape[2]
+    peaks, integrals = areas.max(axis=2), areas.mean(axis=2) * window / every
     feasible, slipping = (Curves(peaks[k, :-1], integrals[k, :-1]) for k in (0, 1))
-    lost_area = lost.sum(axis=1) * spacing**2
-    own = Own(float(peaks[0, -1]), float(integrals[0, -1]), float(lost_area[-1]), slips / count, lost[-1], areas[0, -1])
-    return Feasible(factors, window, moments, points, spacing, feasible, slipping, lost_area[:-1], own)
+    lost_area = found.lost.sum(axis=0) * squares.side**2
+    lost = found.lost[:, -1] >= 0.5
+    own = Own(float(peaks[0, -1]), float(integrals[0, -1]), float(lost_area[-1]), found.shares, lost, areas[0, -1])
+    halves = [found.curves(found.slips[half]) for half in (0, 1)]
+    errors = Errors(float(error), _change(halves[0], halves[1], 0.0) / 2)
+    return Feasible(
+        factors, window, moments, squares.centres, squares.side, feasible, slipping, lost_area[:-1], own, errors, count
+    )
+
+
+class _Counts(NamedTuple):
+    """How many of n squares slip at shares of the time between moments, what is lost left out and all."""
+
+    slips: FloatArray  # (2, 2, F, k), by halves of the points in the squares, each for itself
+    lost: FloatArray  # (n, F) shares of the squares
+    shares: FloatArray  # (n,) of the window and the square in which the part slips at the last factor
+
+    def curves(self, slips: FloatArray | None = None) -> FloatArray:
+        """Largest and mean numbers of squares that slip (4, F), at all points or of one half of them (2, F, k)."""
+        counts = self.slips.mean(axis=0) if slips is None else slips
+        return np.concatenate([counts.max(axis=2), counts.mean(axis=2)])
+
+
+def _count(surface: SurfaceMotion, squares: Squares, moments: FloatArray, part: Part, scales: FloatArray) -> _Counts:
+    size, neighbours = (len(squares.centres), len(scales)), squares.neighbours
+    responses = _responses(surface, squares.centres, moments, part)
+    held = np.empty((size[0], SIDE, SIDE, 2))
+    held[:] = 0.0, np.inf
+    for one in responses():
+        find_held(one, neighbours, part, held)
+    lost, first, second = (np.zeros(size, dtype=np.int8) for _ in range(3))
+    count_lost(held, scales, lost)
+    slips, counts = np.zeros(size[0]), np.zeros((len(moments) - 1, 2, 2, size[1], SHARES))
+    before: FloatArray | None = None
+    for k, after in enumerate(responses()):
+        find_states(after, scales, part, second)
+        if before is not None:
+            count_slips(before, after, neighbours, scales, part, held, lost, first, second, counts[k - 1], slips)
+        before, first, second = after, second, first
+    ordered = np.moveaxis(counts, 0, 3).reshape(2, 2, size[1], -1)
+    return _Counts(ordered, lost / SIDE**2, slips / (len(moments) - 1))
+
+
+def _change(a: FloatArray, b: FloatArray, slack: float) -> float:
+    """The largest difference of curves (4, F) at any factor, as `Errors`; so many squares more in a peak are none."""
+    change = np.abs(a - b)
+    peaks = change[: len(a) // 2]
+    peaks[:] = np.maximum(peaks - slack, 0.0)
+    scale = np.maximum(np.maximum(a, b), 0.05 * np.maximum(a, b).max(axis=1, keepdims=True))
+    return float(np.divide(change, scale, out=np.zeros_like(a), where=scale > 0).max())
 
 
 def moving(drives: DriveTable) -> BoolArray:
@@ -134,33 +208,25 @@ def moving(drives: DriveTable) -> BoolArray:
     return np.array([pieces[first:last].any() for first, last in pairwise(drives.first)], dtype=np.bool_)
 
 
-def _states(surface: SurfaceMotion, points: FloatArray, moments: FloatArray) -> Callable[[], Iterable[State]]:
-    """w_tt (n,), slopes and their two rates (n, 2), and the acceleration in the plane (n, 2), moment by moment.
+def _responses(
+    surface: SurfaceMotion, points: FloatArray, moments: FloatArray, part: Part
+) -> Callable[[], Iterable[FloatArray]]:
+    """Of a part at rest at the places, moment by moment (n, 8), as of `find_responses`.
 
-    On a mid-plane that stretches these are the material's slopes, off by its strain.
-
-    They are kept where they take little memory, else found again.
+    On a mid-plane that stretches slopes are the material's, off by its strain. Responses are kept where they take
+    little memory, else found again.
     """
 
-    def find() -> Iterator[State]:
+    def find() -> Iterator[FloatArray]:
         for time in moments.tolist():
-            state = surface.evaluate(points, time)
-            slopes = state.gradient, state.gradient_t, state.gradient_tt
-            yield state.w_tt, slopes, state.u_tt + surface.base_acceleration(time)
+            s = surface.evaluate(points, time)
+            base = s.u_tt + surface.base_acceleration(time)
+            fields = Fields(*map(np.ascontiguousarray, (s.w_tt, s.gradient, s.gradient_t, s.gradient_tt, base)))
+            found = np.zeros((len(points), 8))
+            find_responses(fields, part, found)
+            yield found
 
-    if 9 * len(points) * len(moments) > MAX_KEPT:
+    if 8 * len(points) * len(moments) > MAX_KEPT:
         return find
     kept = list(find())
     return lambda: kept
-
-
-def places(outline: Outline, across: int) -> tuple[FloatArray, float]:
-    """The centres (n, 2) [m] of squares that cover what the outline encloses, and their side [m]."""
-    low, high = outline.box
-    spacing = float((high - low).max()) / across
-    counts = np.ceil((high - low) / spacing - 1e-9).astype(int)
-    sides = [
-        middle + spacing * (np.arange(n) - (n - 1) / 2) for middle, n in zip((low + high) / 2, counts, strict=True)
-    ]
-    grid = np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 2)
-    return grid[outline.gap(grid) > 0], spacing

@@ -1,138 +1,45 @@
-"""Feasibility: where, and at which frequencies, the array of a case moves its part without losing it."""
+"""Feasibility of a case: where, and at which frequencies and strokes, its array moves its part without losing it.
+
+case -> ground (plate, surface) -> chart of borders (slip, single runs) -> validity -> areas over the plate
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Final
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from active_surface.arrays import BoolArray, FloatArray
-from active_surface.studies.feasibility.area import ACROSS, MAX_STROKES, Curves, Feasible, find_feasible, moving
-from active_surface.studies.feasibility.faster import faster, find_feasible_anew
+from active_surface.arrays import FloatArray
+from active_surface.studies.feasibility.area import ACROSS, MAX_STROKES, Feasible, find_feasible, moving
+from active_surface.studies.feasibility.borders import Column, find_column, state_of
+from active_surface.studies.feasibility.chart import Chart, make_chart
+from active_surface.studies.feasibility.faster import find_feasible_anew
+from active_surface.studies.feasibility.ground import Ground, make_ground
+from active_surface.studies.feasibility.remedy import remedy_of
+from active_surface.studies.feasibility.result import Feasibility
+from active_surface.studies.feasibility.validity import valid_strokes
 from active_surface.studies.frequency_range import range_fault
-from coupling import (
-    Progress,
-    StretchedSurface,
-    VibratingSurface,
-    build_drives,
-    build_friction,
-    build_part,
-    build_scene,
-    shared_surface,
-    silent,
-    whole_file,
-)
-from coupling.case import Case, PlateCase
+from coupling import Progress, build_drives, build_part, silent
+from coupling.case import Case, PlateCase, largest_stroke
 from coupling.ringing import RingingModel
 from coupling.vibration import VibrationModel, always_running
-from fem_plate import Shapes
-from meshes import Outline
-from particle import AnyDrive, SurfaceMotion, interruptible
+from meshes import quantity_text
+from particle import AnyDrive, interruptible
 from particle.drives import drive_table
 from particle.events import horizon
 
-if TYPE_CHECKING:
-    import xarray
-
-
 SPAN: Final = 0.25, 8.0  # times the case's own frequency
+# Times its own strokes; a plate that stretches is solved up to the largest of them.
+STROKES, STRETCHED = (2.0**-10, 16.0), (2.0**-10, 2.0)
 DEFAULTS: Final = "a quarter of the case's", "eight times the case's"
-COUNT: Final = 31  # frequencies
-STAGE: Final = "Looking where the part slips"
-
-
-@dataclass(frozen=True, eq=False)
-class Feasibility:
-    """The feasible areas of a case, over frequencies (F,) [Hz] of its fastest drive.
-
-    All drives run as many times as fast, whatever they are: times of tables and segments shrink as cycles do.
-    """
-
-    case: Case
-    areas: Feasible
-    frequency: float  # Hz, of the fastest drive in the case
-    whole_window: float  # s, what the drives do until they repeat themselves, at most the run's duration
-    outline: Outline
-    actuators: FloatArray  # (N, 2) m
-
-    @property
-    def frequencies(self) -> FloatArray:
-        """Hz, of the fastest drive: (F,)."""
-        return self.areas.factors * self.frequency
-
-    def figures(self) -> dict[str, Any]:
-        """The figures by name, in SI units; None: there is no such frequency."""
-        areas = self.areas
-        return {
-            "frequency": self.frequency,
-            "frequencies": self.frequencies[[0, -1]].tolist(),
-            "window": areas.window,
-            "whole_window": self.whole_window,
-            "peak_area": areas.own.peak,
-            "time_integral": areas.own.integral,
-            "area_where_it_comes_off": areas.own.lost_area,
-            "frequency_of_largest_peak_area": _top(self.frequencies, areas.feasible.peak),
-            "largest_peak_area": float(areas.feasible.peak.max()),
-            "frequency_of_largest_time_integral": _top(self.frequencies, areas.feasible.integral),
-            "largest_time_integral": float(areas.feasible.integral.max()),
-            "moves_it_from_between": _begins(self.frequencies, areas.slipping.peak > 0),
-            "loses_it_from_between": _begins(self.frequencies, areas.lost_area > 0),
-        }
-
-    def dataset(self) -> xarray.Dataset:
-        """All of it with labels."""
-        import xarray
-
-        areas, own = self.areas, self.areas.own
-        slipping: Curves = areas.slipping
-        return xarray.Dataset(
-            {
-                "peak_area": ("frequency", areas.feasible.peak, {"units": "m^2"}),
-                "time_integral": ("frequency", areas.feasible.integral, {"units": "m^2 s"}),
-                "slipping_peak_area": ("frequency", slipping.peak, {"units": "m^2"}),
-                "slipping_time_integral": ("frequency", slipping.integral, {"units": "m^2 s"}),
-                "lost_area": ("frequency", areas.lost_area, {"units": "m^2"}),
-                "area": ("time", own.over_time, {"units": "m^2"}),
-                "share": ("place", own.shares, {"units": "1", "long_name": "share of the window in which it slips"}),
-                "lost": ("place", own.lost.astype(np.int8), {"long_name": "whether the part comes off at some time"}),
-                "x": ("place", areas.points[:, 0], {"units": "m"}),
-                "y": ("place", areas.points[:, 1], {"units": "m"}),
-            },
-            {
-                "frequency": ("frequency", self.frequencies, {"units": "Hz", "long_name": "of the fastest drive"}),
-                "time": ("time", areas.moments, {"units": "s"}),
-            },
-            {"case": self.case.source or "", "window": areas.window, "spacing": areas.spacing},
-        )
-
-    def write(self, folder: Path) -> tuple[Path, ...]:
-        """Writes NAME.feasibility.nc and NAME.feasibility.png into a folder; returns them."""
-        from active_surface.studies.feasibility.picture import draw_feasibility
-
-        folder.mkdir(parents=True, exist_ok=True)
-        data = folder / f"{self.case.name}.feasibility.nc"
-        with whole_file(data) as partial:
-            self.dataset().to_netcdf(partial, engine="h5netcdf")
-        return data, draw_feasibility(self, folder / f"{self.case.name}.feasibility.png")
-
-
-def _top(frequencies: FloatArray, values: FloatArray) -> float | None:
-    return float(frequencies[np.argmax(values)]) if values.max() > 0 else None
-
-
-def _begins(frequencies: FloatArray, holds: BoolArray) -> list[float | None] | None:
-    """The neighbouring frequencies [Hz] between which something begins; the first is None if it holds at the lowest.
-
-    None: it holds at none.
-    """
-    first = np.flatnonzero(holds)
-    if not len(first):
-        return None
-    return [float(frequencies[first[0] - 1]) if first[0] else None, float(frequencies[first[0]])]
+COUNT: Final = 31  # frequencies of the areas
+MAX_CYCLES: Final = 100  # of the case's fastest drive, over which the chart's runs last at most
+COLUMNS, MAX_COLUMNS = 11, 32  # of the chart, at first and at most
+FEW_COLUMNS, MAX_FEW = 6, 12  # where each path takes a motion of the plate
+BORDERS, STAGE = "Looking which strokes move the part", "Looking where the part slips"
 
 
 def feasibility(
@@ -141,79 +48,122 @@ def feasibility(
     highest: float | None = None,
     across: int = ACROSS,
     progress: Progress = silent,
+    smallest: float | None = None,
+    largest: float | None = None,
+    threads: int | None = None,
 ) -> Feasibility:
-    """The feasible areas of a case.
+    """Where the array of a case moves its part, over frequency and stroke, and over the plate.
 
-    lowest, highest: Hz, the frequencies of its fastest drive that are looked at, by default a quarter of its own and
-    eight times that; all times of all drives shrink likewise. Of segments the highest frequency counts, of a table
-    that of strokes as short as its shortest, of a drive at rest none.  across: places along the plate's longer side.
-    The window is what the drives do until they repeat themselves, at most the run's duration, and of that no more than
-    `active_surface.studies.feasibility.area` looks at. A plate with inertia answers each frequency anew, in the steady
-    state or from rest as `run.start` says; from rest the window is the run's beginning.
-    Raises ValueError for a platform, drives of which none moves, numbers that make no sense, and a mode without damping
-    that resonates in a steady state.
+    Parameters
+    ----------
+    case : Case
+        The case.
+    lowest, highest : float, optional
+        Frequencies of its fastest drive that are looked at, Hz, by default a quarter of its own and eight times that;
+        all times of all drives shrink likewise. Of segments the highest frequency counts, of a table that of strokes as
+        short as its shortest, of a drive at rest none.
+    across : int
+        Places along the plate's longer side.
+    progress : Progress, optional
+        Reports the progress of a stage.
+    smallest, largest : float, optional
+        Its largest stroke or height, m, or force where all actuators are forces, N: between which it is varied, by
+        default from 1/1024 to 16 times its own, on a plate that stretches to twice its own.
+    threads : int, optional
+        Number of paths at a time, by default one on each processor; the result is the same for any.
+
+    Returns
+    -------
+    feasibility : Feasibility
+        The chart of runs from the case's start, which last as long as the case's, at most MAX_CYCLES; and the areas.
+        Their window is what
+        the drives do until they repeat themselves, at most the run's duration, and of that no more than
+        `active_surface.studies.feasibility.area` looks at. A plate with inertia answers each frequency anew, in the
+        steady state or from rest as `run.start` says; from rest the window is the run's beginning.
+
+    Raises
+    ------
+    ValueError
+        A platform, drives of which none moves, numbers that make no sense, or a mode without damping that resonates in
+        a steady state.
     """
     drives = _movers(case)
+    frequency = max((drive.frequency for drive in drives), default=0.0)
+    stroke, unit = largest_stroke(case)
+    low = SPAN[0] * frequency if lowest is None else lowest
+    high = SPAN[1] * frequency if highest is None else highest
+    spans = STRETCHED if isinstance(case.plate, PlateCase) and case.plate.theory == "von-karman" else STROKES
+    least = spans[0] * stroke if smallest is None else smallest
+    most = spans[1] * stroke if largest is None else largest
     wrong = []
     if not case.actuators:
         wrong.append("Input case of feasibility must have a plate on actuators; got a platform")
-    frequency = max((drive.frequency for drive in drives), default=0.0)
     if case.actuators and not frequency:
         wrong.append("Input case of feasibility must have a drive that moves; got none")
-    low = SPAN[0] * frequency if lowest is None else lowest
-    high = SPAN[1] * frequency if highest is None else highest
     if not wrong and (fault := range_fault("feasibility", lowest, highest, low, high, DEFAULTS)):
         wrong.append(fault)
+    if case.actuators and frequency and not 0 < least < most < math.inf:
+        wrong.append(
+            f"Input {'largest' if smallest is None else 'smallest'} of feasibility must leave a range of strokes; got "
+            f"{quantity_text(least, unit)} to {quantity_text(most, unit)}"
+        )
     if not 10 <= across <= 1000:
         wrong.append(f"Input across of feasibility must be in [10, 1000]; got {across}")
     if wrong:
         raise ValueError("; ".join(wrong))
     with threadpool_limits(limits=1, user_api="blas"):
-        factors = np.geomspace(low, high, COUNT) / frequency
-        find = _vibrating if isinstance(case.plate, PlateCase) and case.plate.inertia else _following
-        areas, whole, shapes = find(case, drives, factors, across, progress)
-    return Feasibility(case, areas, frequency, whole, shapes.outline, shapes.points)
+        factors, strokes = np.geomspace(low, high, COUNT) / frequency, (least / stroke, most / stroke)
+        shortest = min(drive.stroke_time for drive in drives)
+        running = [always_running(drive) for drive in drives] if case.run.start == "steady" else drives
+        whole = _window(case, running)
+        duration = min(case.run.duration, max(drive.delay for drive in drives) + MAX_CYCLES / frequency)
+        end = max(duration, min(whole, MAX_STROKES * shortest) / min(1.0, float(factors[0])))
+        ground = make_ground(
+            case, (min(float(factors[0]), 1.0), max(float(factors[-1]), 1.0)), strokes, duration, end, progress
+        )
+        chart = _chart(ground, factors, strokes, progress, threads)
+        with progress(STAGE):
+            valid = valid_strokes(ground, np.array([one.frequency for one in chart.columns]), strokes, whole)
+            areas = interruptible(_areas, ground, whole, shortest, factors, across)
+        own = state_of(ground.paths([(1.0, 1.0)], threads)[0])
+        moves = any(one.lost > one.slips * 1.01 for one in chart.columns)
+        remedy = None if moves else remedy_of(ground, chart, areas, threads)
+    return Feasibility(case, own, chart, valid, remedy, areas, frequency, stroke, unit, whole, ground)
 
 
-def _following(
-    case: Case, movers: Sequence[AnyDrive], factors: FloatArray, across: int, progress: Progress
-) -> tuple[Feasible, float, Shapes]:
-    """The areas on a plate that follows its actuators at once, the whole window [s], and the plate's shapes."""
-    scene = build_scene(case, progress)
-    assert scene.shapes
-    whole, part = _window(case, movers), build_part(case)
-    with progress(STAGE):
-        areas = interruptible(
-            find_feasible, scene.surface, scene.shapes.outline, part, build_friction(case), whole, factors,
-            case.run.gravity, across,
-        )  # fmt: skip
-    return areas, whole, scene.shapes
+def _chart(
+    ground: Ground, factors: FloatArray, strokes: tuple[float, float], progress: Progress, threads: int | None
+) -> Chart:
+    """The chart; the case's own frequency is one of its columns, where it lies between the others."""
+    slow = not (ground.follows and ground.linear)
+    count, most = (FEW_COLUMNS, MAX_FEW) if slow else (COLUMNS, MAX_COLUMNS)
+    first, last = float(factors[0]), float(factors[-1])
+    if first < 1 < last:
+        below = max(round((count - 1) * math.log(1 / first) / math.log(last / first)), 1)
+        columns = [*np.geomspace(first, 1.0, below + 1).tolist(), *np.geomspace(1.0, last, max(count - below, 2))[1:]]
+    else:
+        columns = np.geomspace(first, last, count).tolist()
+
+    def find(frequency: float, guess: float) -> Column:
+        return find_column(ground, float(frequency), strokes, guess, threads)
+
+    with progress(BORDERS) as tell:
+        return make_chart(find, columns, strokes, most, tell)
 
 
-def _vibrating(
-    case: Case, movers: Sequence[AnyDrive], factors: FloatArray, across: int, progress: Progress
-) -> tuple[Feasible, float, Shapes]:
-    """The same on a plate with mass; its modes are chosen for all factors together."""
-    drives = build_drives(case)
-    if case.run.start == "steady":
-        movers = [always_running(drive) for drive in movers]
-    whole, stroke_time = _window(case, movers), min(drive.stroke_time for drive in movers)
-    window = min(whole, MAX_STROKES * stroke_time)
-    sets = [faster(drives, factor) for factor in [1.0, *factors.tolist()]]
-    surface = shared_surface(case, sets, window / min(1.0, float(factors.min())), progress)
-    assert isinstance(surface, (VibratingSurface, StretchedSurface))
-    model = surface.model
+def _areas(ground: Ground, whole: float, stroke_time: float, factors: FloatArray, across: int) -> Feasible:
+    """The areas over a window [s]; a plate with mass is driven anew at each factor."""
+    case, part = ground.case, build_part(ground.case)
+    if ground.follows:
+        surface = ground.driven(1.0, 1.0)
+        return find_feasible(surface, ground.outline, part, ground.friction, whole, factors, case.run.gravity, across)
+    model = getattr(ground.surface, "model", None)
     assert isinstance(model, (VibrationModel, RingingModel))
-
-    def driven(factor: float) -> SurfaceMotion:
-        return surface.until(window / factor).driven_by(faster(drives, factor))
-
-    with progress(STAGE):
-        areas = interruptible(
-            find_feasible_anew, driven, model.chosen.modes.frequencies, stroke_time, model.shapes.outline,
-            build_part(case), build_friction(case), whole, factors, case.run.gravity, across,
-        )  # fmt: skip
-    return areas, whole, model.shapes
+    window = min(whole, MAX_STROKES * stroke_time)
+    return find_feasible_anew(
+        lambda factor: ground.driven(factor, 1.0, window / factor), model.chosen.modes.frequencies, stroke_time,
+        ground.outline, part, ground.friction, whole, factors, case.run.gravity, across,
+    )  # fmt: skip
 
 
 def _window(case: Case, movers: Sequence[AnyDrive]) -> float:

@@ -7,12 +7,13 @@ in half the time. So each factor of frequency takes a surface of its own; these 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.feasibility.area import MAX_STROKES, PER_STROKE, Curves, Feasible, examine
+from active_surface.studies.feasibility.area import MAX_STROKES, PER_STROKE, Curves, Errors, Feasible, examine
 from meshes import Outline
 from particle import AnyDrive, Micropart, SurfaceMotion
 from particle.drives import QuinticDrive
@@ -20,7 +21,8 @@ from particle.friction import Contact
 
 PER_PERIOD: Final = 16  # moments in a period of the lowest modes
 LOWEST: Final = 3  # modes whose ringing is resolved
-MAX_FINER: Final = 4  # times as many moments as strokes take
+MAX_FINER: Final = 8  # times as many moments as strokes take
+HALVINGS: Final = 1  # of the time between moments
 
 
 def faster(drives: Sequence[AnyDrive], factor: float) -> list[AnyDrive]:
@@ -48,7 +50,7 @@ def find_feasible_anew(
     friction: Contact,
     window: float,
     factors: FloatArray,
-    gravity: float,
+    gravity: float | Sequence[float],
     across: int,
 ) -> Feasible:
     """The feasible areas of a plate with mass, which is driven anew at each factor.
@@ -64,7 +66,8 @@ def find_feasible_anew(
 
     def at(factor: float) -> Feasible:
         count = int(np.clip(np.ceil(ringing / factor), least, MAX_FINER * least))
-        return examine(driven(factor), outline, part, friction, window / factor, count, np.ones(1), gravity, across)
+        end = window / factor
+        return examine(driven(factor), outline, part, friction, end, count, np.ones(1), gravity, across, HALVINGS)
 
     own, found = at(1.0), [at(factor) for factor in factors.tolist()]
     feasible, slipping = (
@@ -72,4 +75,9 @@ def find_feasible_anew(
         for name in ("feasible", "slipping")
     )
     lost_area = np.array([one.lost_area[0] for one in found])
-    return Feasible(factors, window, own.moments, own.points, own.spacing, feasible, slipping, lost_area, own.own)
+    errors = Errors(*(max(getattr(one.errors, name) for one in [own, *found]) for name in Errors._fields))
+    count = max(one.count for one in [own, *found])
+    return replace(
+        own, factors=factors, window=window, feasible=feasible, slipping=slipping, lost_area=lost_area, errors=errors,
+        count=count,
+    )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The picture of a feasibility: a map of the plate at the case's own frequency, and areas over frequency."""
+"""The picture of a feasibility: a chart over frequency and stroke, a map of the plate, and areas over frequency."""
 
 from __future__ import annotations
 
@@ -15,29 +15,32 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.feasibility.area import Feasible
+from active_surface.studies.feasibility.chart_picture import draw_chart
 from coupling.pictures import map_axes, save_picture
 from fem_plate import frame_around, mark_actuators
 from meshes import Drawing, draw_rim, quantity_text, rim_curves, unit_for
 
 if TYPE_CHECKING:
-    from active_surface.studies.feasibility.case import Feasibility
+    from active_surface.studies.feasibility.result import Feasibility
 
 LOST, LINE, PALE = "#c8371b", "#40719c", "#8a8a8a"
+CURVES: Final = 2.0  # times the largest useful area: the end of the axis, at most
 SMALLEST: Final = 1e-6  # m: areas are in the square of this at least
 
 
-def draw_feasibility(feasibility: Feasibility, path: Path) -> Path:
-    """Draw a feasibility into a PNG file; return its path."""
-    figure = Drawing(figsize=(13.0, 5.6))
+def draw_feasibility(feasibility: Feasibility, path: Path, picked: tuple[float, float] | None = None) -> Path:
+    """Draw a feasibility into a PNG file, with a picked frequency [Hz] and stroke [m or N]; return its path."""
+    figure = Drawing(figsize=(13.0, 9.4))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
-    grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1))
-    _draw_map(figure, figure.add_subplot(grid[:, 0]), feasibility)
-    _draw_curves(figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1]), feasibility)
-    title = (
-        f"{feasibility.case.name}: fastest drive {quantity_text(feasibility.frequency, 'Hz', 4)}, "
-        f"{quantity_text(feasibility.areas.window, 's', 4)}"
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.9, 1), width_ratios=(1, 1))
+    draw_chart(figure.add_subplot(grid[0, 0]), feasibility, picked)
+    _draw_map(figure, figure.add_subplot(grid[0, 1]), feasibility)
+    _draw_curves(figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1]), feasibility)
+    figure.suptitle(
+        f"{feasibility.case.name}: fastest drive {quantity_text(feasibility.frequency, 'Hz', 4)}, largest stroke "
+        f"{quantity_text(feasibility.stroke, feasibility.stroke_unit, 4)}",
+        parse_math=False,
     )
-    figure.suptitle(title, parse_math=False)
     return save_picture(figure, path)
 
 
@@ -59,6 +62,7 @@ def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
         keys.append(Patch(facecolor=LOST, label="it comes off at some moment"))
     keys += mark_actuators(axes, feasibility.actuators, frame_around(box), unit.per_si)
     map_axes(axes, unit)
+    axes.set_title(f"any start, at the case's drives, {quantity_text(areas.window, 's', 4)}", fontsize=10)
     low, high = frame_around(box) * unit.per_si
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
@@ -87,15 +91,16 @@ def _draw_curves(peak: Axes, integral: Axes, feasibility: Feasibility) -> None:
     integral.plot(across, areas.feasible.integral * area * 1e3, color=LINE, linewidth=1.6)
     peak.set_ylabel(f"largest area [{square}]")
     integral.set_ylabel(f"time integral [{square} ms]")
-    integral.set_xlabel(f"frequency of the fastest drive [{unit.name}]")
-    for axes in (peak, integral):
+    for axes, useful in ((peak, areas.feasible.peak * area), (integral, areas.feasible.integral * area * 1e3)):
+        axes.set_xlabel(f"frequency of the fastest drive [{unit.name}]")
         axes.axvline(feasibility.frequency * per_si, color="black", linewidth=0.8, alpha=0.6)
         axes.set_xscale("log")
         axes.grid(alpha=0.3, which="both")
-        axes.set_ylim(bottom=0)
+        # The useful curve fills the picture, also where the others are far above it.
+        axes.set_ylim(0, min(axes.get_ylim()[1], CURVES * float(useful.max())) if useful.max() > 0 else None)
         axes.set_xlim(across[0], across[-1])
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_formatter(NullFormatter())
-    peak.set_ylim(top=1.25 * max(peak.get_ylim()[1], 1e-9))
-    peak.legend(frameon=False, fontsize=8, ncols=2)
+    peak.set_ylim(top=1.45 * max(peak.get_ylim()[1], 1e-9))
+    peak.legend(frameon=False, fontsize=8, loc="upper left")

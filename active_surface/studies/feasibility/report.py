@@ -2,13 +2,95 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+from active_surface.studies.feasibility.area import TOLERANCE
 from meshes import quantity_text, range_text
+
+STATES = {
+    "rest": "stays at rest",
+    "moves": "moves and is not lost",
+    "lost": "is lost",
+}
 
 
 def lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
     """Rows (label, text) to print, of `Feasibility.figures`."""
+    return [*_map_lines(figures), *_area_lines(figures)]
+
+
+def _map_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
+    unit, own, found = figures["stroke_unit"], figures["at_the_case"], figures["map"]
+    rows = []
+    at = f"{_hertz(figures['frequency'])} and {_stroke(figures['stroke'], unit)}"
+    rows.append(("case", f"at {at} the part {STATES[own['state']]}, in {1e3 * figures['duration']:g} ms"))
+    if "slips_from" in own:
+        rows.append(("", _borders(own, found, unit)))
+    room = [
+        (lost or found["strokes"][1]) / slips if slips else 0.0
+        for slips, lost in zip(found["slips_from"], found["lost_from"], strict=True)
+    ]
+    best = max(range(len(room)), key=room.__getitem__)
+    if figures["remedy"] is None:
+        low, high = found["slips_from"][best], found["lost_from"][best] or found["strokes"][1]
+        room_there = range_text(low, high, unit)
+        at = _hertz(found["frequencies"][best])
+        rows.append(("most room", f"at {at}, from {room_there}, a factor of {room[best]:.3g}"))
+    else:
+        rows += _remedy_lines(figures)
+    return rows
+
+
+def _borders(own: dict[str, Any], found: dict[str, Any], unit: str) -> str:
+    """At the case's own frequency: from which strokes on the part slips and is lost."""
+    if own["slips_from"] is None:
+        return f"at this frequency it stays at rest up to {_stroke(found['strokes'][1], unit)}, the largest looked at"
+    text = f"at this frequency it slips from {_stroke(own['slips_from'], unit)}"
+    if own["lost_from"] is None:
+        return f"{text}, and is not lost up to {_stroke(found['strokes'][1], unit)}, the largest looked at"
+    text += f" and is lost from {_stroke(own['lost_from'], unit)}"
+    if own["all_lost_from"] is None:
+        return f"{text}, but by some larger strokes not"
+    if own["all_lost_from"] > 1.011 * own["lost_from"]:
+        text += f"; up to {_stroke(own['all_lost_from'], unit)} some strokes keep it"
+    return text
+
+
+def _remedy_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
+    remedy, unit = figures["remedy"], figures["stroke_unit"]
+    frequency, stroke = remedy["frequency"] * figures["frequency"], remedy["stroke"] * figures["stroke"]
+    end = "where a larger one loses it" if remedy["comes_off"] else "the largest looked at"
+    rows = [
+        ("nowhere", "no frequency and stroke looked at moves the part without losing it"),
+        (
+            "nearest",
+            f"the pull is {remedy['share']:.3g} of what friction holds at {_hertz(frequency)} and "
+            f"{_stroke(stroke, unit)}, {end}",
+        ),
+    ]
+    if remedy["friction"] is not None:
+        stroke, moved = remedy["friction_stroke"] * figures["stroke"], quantity_text(remedy["moved"], "m", 4)
+        rows.append(
+            (
+                "would do",
+                f"friction {remedy['friction']:.3g} times as large: at that frequency and {_stroke(stroke, unit)} "
+                f"the part then ends {moved} from its start",
+            )
+        )
+    if remedy["place"] is not None:
+        x, y = (quantity_text(value, "m", 4) for value in remedy["place"])
+        rows.append(
+            (
+                "or",
+                f"a start at ({x}, {y}), where the case's own drives let it slip "
+                f"{100 * remedy['place_share']:.3g} % of the time and never come off",
+            )
+        )
+    return rows
+
+
+def _area_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
     rows = [
         (
             "area",
@@ -18,7 +100,7 @@ def lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
         ("comes off", f"on {_area(figures['area_where_it_comes_off'])} at some moment"),
     ]
     if figures["frequency_of_largest_peak_area"] is None:
-        return [*rows, ("frequency", "no frequency looked at moves the part without losing it")]
+        return [*rows, ("frequency", "no frequency looked at moves a part anywhere without losing it")]
     low, high = figures["frequencies"]
     looked_at = f"those looked at, {range_text(low, high, 'Hz', 4)}"
     rows += [
@@ -47,12 +129,51 @@ def _from(between: list[float | None] | None) -> str:
 def warnings(figures: dict[str, Any]) -> list[str]:
     """What the figures leave out, in sentences."""
     part, whole = figures["window"], figures["whole_window"]
-    if part >= whole:
-        return []
-    return [
-        f"Only the first {1e3 * part:.4g} ms were looked at, of {1e3 * whole:.4g} ms until the drives repeat "
-        "themselves or the run ends; shorten the run, or give the drives frequencies with a short common period."
+    texts = []
+    if figures["duration"] < figures["whole_duration"]:
+        texts.append(
+            f"The map is of runs of {1e3 * figures['duration']:.4g} ms, 100 cycles of the case's fastest drive, in "
+            f"place of the case's {1e3 * figures['whole_duration']:.4g} ms."
+        )
+    if part < whole:
+        texts.append(
+            f"Areas are those of the first {1e3 * part:.4g} ms, of {1e3 * whole:.4g} ms until the drives repeat "
+            "themselves or the run ends; the map is of runs. Shorten the run, or give the drives frequencies "
+            "with a short common period."
+        )
+    error = max(figures["areas_change_by"], figures["areas_differ_by_squares"])
+    if error > TOLERANCE:
+        texts.append(
+            f"Areas are good to {100 * error:.2g} %: more moments change them by "
+            f"{100 * figures['areas_change_by']:.2g} %, other squares by "
+            f"{100 * figures['areas_differ_by_squares']:.2g} %; --across takes more squares."
+        )
+    return texts + _ragged(figures)
+
+
+def _ragged(figures: dict[str, Any]) -> list[str]:
+    """Where strokes that lose the part and others lie side by side."""
+    found = figures["map"]
+    rows = [
+        (frequency, lost, all_lost)
+        for frequency, lost, all_lost in zip(
+            found["frequencies"], found["lost_from"], found["all_lost_from"], strict=True
+        )
+        if lost is not None and (all_lost or math.inf) > 1.011 * lost
     ]
+    if not rows:
+        return []
+    between = range_text(rows[0][0], rows[-1][0], "Hz", 3) if len(rows) > 1 else _hertz(rows[0][0])
+    widest = max((all_lost or found["strokes"][1]) / lost for _, lost, all_lost in rows)
+    return [
+        f"The border of losses is ragged at {len(rows)} of {len(found['frequencies'])} frequencies, {between}: strokes "
+        f"that lose the part and others lie side by side, up to a factor of {widest:.3g} apart. The hatched band of "
+        "the map is where both were met."
+    ]
+
+
+def _stroke(stroke: float, unit: str) -> str:
+    return quantity_text(stroke, unit, 4)
 
 
 def _hertz(frequency: float) -> str:
@@ -60,8 +181,8 @@ def _hertz(frequency: float) -> str:
 
 
 def _area(area: float) -> str:
-    return f"{1e12 * area:.4g} um^2"
+    return f"{1e12 * area:.4g} µm²"
 
 
 def _integral(integral: float) -> str:
-    return f"{1e15 * integral:.4g} um^2 ms"
+    return f"{1e15 * integral:.4g} µm² ms"

@@ -15,9 +15,9 @@ from pydantic import TypeAdapter
 from active_surface.arrays import FloatArray
 from active_surface.studies.axis import Axis
 from active_surface.studies.dataset import LOGARITHMIC, key_of, read_dataset
-from active_surface.studies.field import Field
 from active_surface.studies.points import longest
 from active_surface.studies.threshold import Threshold, read_threshold
+from coupling.case import Field
 
 if TYPE_CHECKING:
     import xarray

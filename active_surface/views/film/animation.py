@@ -24,19 +24,11 @@ from active_surface.views.film.pace import Pace, pace_of, warnings_of
 from active_surface.views.film.painter import chosen, painter
 from active_surface.views.film.stage import Stage, stage_of
 from coupling import ProgressCallback, build_drives, no_progress
-from coupling.case import Case, parse
+from coupling.case import Case
 from coupling.results import SavedRun, check_folder, read_run
 
 FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
 SIZE = {"mp4": (1280, 720), "gif": (800, 450), "png": (1280, 720)}
-
-SWEEP = "`active-surface view` and `active-surface plot` show it"
-OTHERS = {
-    ".toml": "a case file: name the result, such as results/{name} after `active-surface run`",
-    "study": "a study file: it is of a sweep, and " + SWEEP,
-    "aim": "an aim file: name the result of the case file that `active-surface aim` writes",
-    ".nc": "which is of a sweep: " + SWEEP,
-}
 HELP = "It needs OpenGL; Debian has it in libegl1 and libgl1-mesa-dri."
 
 
@@ -206,25 +198,7 @@ class _Tries:
 
 
 def _run_of(result: str | Path | SavedRun) -> SavedRun:
-    if isinstance(result, SavedRun):
-        return result
-    try:
-        return read_run(result)
-    except ValueError:
-        path = Path(result)
-        if path.suffix not in OTHERS:
-            raise
-        expected = f"Input RESULT must be that of a run: one of its files, or FOLDER/NAME; got {path}"
-        raise ValueError(f"{expected}, {OTHERS[_kind(path)].format(name=path.stem)}") from None
-
-
-def _kind(path: Path) -> str:
-    """Which of the OTHERS a file is."""
-    try:
-        tables = parse(path).tables if path.suffix == ".toml" else {}
-    except ValueError:  # no TOML
-        return path.suffix
-    return next((table for table in ("study", "aim") if table in tables), path.suffix)
+    return result if isinstance(result, SavedRun) else read_run(result)
 
 
 def _check_positive(name: str, value: float | None) -> None:

@@ -18,6 +18,11 @@ class Camera:
     elevation: float
 
     @property
+    def level(self) -> bool:
+        """Whether it looks along the plane, so that heights are upright."""
+        return self.elevation == 0
+
+    @property
     def right(self) -> FloatArray:
         """The unit vector (3,) that points right in the picture."""
         a = math.radians(self.azimuth)
@@ -42,8 +47,8 @@ class Camera:
 CAMERAS = {
     "iso": Camera(-60.0, 38.0),
     "top": Camera(-90.0, 90.0),
-    "front": Camera(-90.0, 10.0),
-    "side": Camera(0.0, 10.0),
+    "front": Camera(-90.0, 0.0),
+    "side": Camera(0.0, 0.0),
 }
 
 

@@ -22,13 +22,21 @@ from active_surface.views.film.pace import Pace
 from active_surface.views.film.stage import Stage
 from active_surface.views.rounding import round_below
 from coupling.case import PlatformCase
+from coupling.pictures import MARKS
 from meshes import STEPS, draw_rim, quantity_text, unit_for
 from particle import HALO, PATH_COLOUR, SHADES, STICK_COLOUR, State, stretches
 
 DPI = 100
 MIN_LETTER = 9.0  # pixels
 WORDS = {State.STICK: "part stuck", State.SLIP: "part slipping", State.FLIGHT: "part in flight"}
+LOST = "#7a4b94"
 COLOURS = {State.STICK: STICK_COLOUR, State.SLIP: PATH_COLOUR, State.FLIGHT: "#303030"}
+
+
+def colour_of(stage: Stage, frame: Frame) -> str:
+    """The colour of what the part does."""
+    loss = stage.run.loss
+    return LOST if loss is not None and frame.time >= loss.time else COLOURS[frame.state]
 
 
 class Captions:
@@ -42,6 +50,8 @@ class Captions:
         self._time_unit = unit_for(stage.run.time, "s")
         self._draw_bar()
         self._draw_lengths()
+        if layout.camera.level and not stage.flat:
+            self._draw_heights()
         self._draw_notes(pace)
         if stage.window:
             self._draw_map()
@@ -54,9 +64,8 @@ class Captions:
         """The picture (height, width, 3) with all captions of a frame."""
         now = frame.time * self._time_unit.per_si
         self._clock.set_text(f"{now:.{self._digits}f} {self._time_unit.name}")
-        above = f", {quantity_text(frame.flight, 'm')} above" if frame.flight > 0 else ""
-        self._state.set_text(f"{WORDS[frame.state]}{above}")
-        self._state.set_color(COLOURS[frame.state])
+        self._state.set_text(self._words(frame))
+        self._state.set_color(colour_of(self._stage, frame))
         self._hand.set_xdata([now])
         self._canvas.restore_region(self._still)
         for text in (self._clock, self._state):
@@ -69,6 +78,17 @@ class Captions:
         result = image.copy()
         result[rows] = ((image[rows] * (255 - alpha) + drawn[rows, :, :3] * alpha + 127) // 255).astype(np.uint8)
         return result
+
+    def _words(self, frame: Frame) -> str:
+        """What the part does, and while it is stuck how hard it is pulled."""
+        run = self._stage.run
+        if run.loss is not None and frame.time >= run.loss.time:
+            return f"part {MARKS[run.loss.kind].afterwards}"
+        if frame.state is State.FLIGHT:
+            return f"{WORDS[frame.state]}, {quantity_text(frame.flight, 'm')} above"
+        pull = float(np.interp(frame.time, run.margins.time, run.margins.slip))
+        holds = frame.state is State.STICK and np.isfinite(pull)
+        return f"{WORDS[frame.state]}, pull {pull:.2f} of what friction holds" if holds else WORDS[frame.state]
 
     def _draw_bar(self) -> None:
         """The scale of colours, no longer than the heights that there are."""
@@ -110,6 +130,22 @@ class Captions:
             else:
                 figure.text(place[0] + 0.006, place[1], text, fontsize=self._letter * 0.9, va="center")
 
+    def _draw_heights(self) -> None:
+        """An axis of heights at the left of a surface that is seen from the side."""
+        layout, figure = self._layout, self._figure
+        low, high = (float(part) for part in (self._stage.reach[0].min(), self._stage.reach[1].max()))
+        ends = layout.pixels(layout.scene(layout.middle[None].repeat(2, axis=0), np.array([low, high])))[:, 1]
+        bottom, top = ends / layout.height
+        axes = figure.add_axes((0.07, bottom, 1e-3, top - bottom), facecolor="none")
+        unit = self._stage.scale.unit
+        axes.set_ylim(low * unit.per_si, high * unit.per_si)
+        axes.set_xticks([])
+        for side in ("top", "right", "bottom"):
+            axes.spines[side].set_visible(False)
+        axes.yaxis.set_major_locator(MaxNLocator(5, steps=STEPS))
+        axes.tick_params(labelsize=0.9 * self._letter, length=4, pad=2)
+        axes.set_title(f"height [{unit.name}]{self._times}", fontsize=0.9 * self._letter, loc="left", pad=self._letter)
+
     @property
     def _times(self) -> str:
         times = self._layout.exaggeration
@@ -130,7 +166,7 @@ class Captions:
         if pace is not None and len(pace.times) > 1:
             notes.append(pace.words)
         if isinstance(stage.run.case.plate, PlatformCase):
-            notes.append("seen from the platform")
+            notes.append("the trail is that on the platform")
         grey: dict[str, Any] = {"fontsize": letter, "color": "#404040"}
         self._fit(self._figure.text(0.5, 0.012, "   ·   ".join(notes), ha="center", va="bottom", **grey), 0.97)
         self._fit(self._figure.text(0.975, 0.972, stage.run.name, ha="right", va="top", parse_math=False, **grey), 0.6)

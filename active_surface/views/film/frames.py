@@ -24,6 +24,7 @@ class Frame(NamedTuple):
     part: FloatArray  # (3,) m
     under: float  # m, the surface's height under the part
     state: State
+    shift: FloatArray  # (2,) m, how far a platform has come
 
     @property
     def flight(self) -> float:
@@ -61,4 +62,4 @@ def _frame(stage: Stage, time: float, step: int, known: FloatArray) -> Frame:
     passed = stage.trail_time <= time
     heights["trail"] = np.where(passed, heights["trail"], under)
     trail = np.where(passed[:, None], stage.trail, part[:2])
-    return Frame(time, heights, trail, part, under, state)
+    return Frame(time, heights, trail, part, under, state, stage.shifts(np.array([time]))[0])

@@ -13,6 +13,8 @@ from active_surface.views.film.stage import Stage
 
 MIN_SIZE, MAX_SIDE = (320, 240), 8192  # pixels: width and height, either
 LEFT, RIGHT, BOTTOM, TOP = 0.03, 0.86, 0.17, 0.88  # of the picture: the part of it that the surface fills
+MOMENTS = 1000  # at which the reach of a platform is sought
+BESIDE_AXIS = 0.09  # likewise at the left where there is an axis of heights
 HIGHEST = 0.5  # of the frame's longer side: a part that flies higher may leave the picture
 
 
@@ -30,9 +32,10 @@ class Layout:
     scale: float  # pixels of a length 1 of the scene
     depth: float = 0.0  # of the scene: so far before or behind its origin is what is seen
 
-    def scene(self, xy: FloatArray, z: FloatArray) -> FloatArray:
-        """Places (k, 3) in the scene of points (k, 2) [m] at heights (k,) [m]."""
-        return np.column_stack([(xy - self.middle) / self.size, np.asarray(z) * (self.exaggeration / self.size)])
+    def scene(self, xy: FloatArray, z: FloatArray, shift: FloatArray | float = 0.0) -> FloatArray:
+        """Places (k, 3) in the scene of points (k, 2) [m] at heights (k,) [m], on a platform that is shifted [m]."""
+        up = np.asarray(z) * (self.exaggeration / self.size)
+        return np.column_stack([(xy + shift - self.middle) / self.size, up])
 
     def pixels(self, scene: FloatArray) -> FloatArray:
         """Places (..., 3) of the scene as pixels (..., 2) from the lower left corner."""
@@ -45,13 +48,16 @@ def layout_of(stage: Stage, camera: Camera, size: tuple[int, int], exaggeration:
     unscaled = Layout(width, height, camera, exaggeration, stage.frame.mean(axis=0), stage.size, np.zeros(2), 1.0)
     part = stage.run.position
     top = max(float(stage.reach[1].max()), HIGHEST * stage.size / exaggeration)
-    places = [unscaled.scene(stage.surface, z) for z in stage.reach]
+    shifts = np.unique(stage.shifts(np.linspace(0.0, stage.run.time[-1], MOMENTS)), axis=0)
+    corners = np.stack([shifts.min(axis=0), shifts.max(axis=0)])
+    places = [unscaled.scene(stage.surface, z, shift) for z in stage.reach for shift in corners]
     places.append(unscaled.scene(part[:, :2], np.clip(part[:, 2], None, top)))
     flat = camera.flat(np.concatenate(places))
     low, high = flat.min(axis=0), flat.max(axis=0)
-    room = np.array([(RIGHT - LEFT) * width, (TOP - BOTTOM) * height])
+    left = BESIDE_AXIS if camera.level else LEFT
+    room = np.array([(RIGHT - left) * width, (TOP - BOTTOM) * height])
     scale = float((room / np.maximum(high - low, 1e-3)).min())
-    offset = np.array([(LEFT + RIGHT - 1) * width, (BOTTOM + TOP - 1) * height]) / 2
+    offset = np.array([(left + RIGHT - 1) * width, (BOTTOM + TOP - 1) * height]) / 2
     focus = (low + high) / 2 - offset / scale
     places.append(unscaled.scene(part[:, :2], part[:, 2]))
     depth = float(np.abs(np.concatenate(places) @ camera.towards).max())

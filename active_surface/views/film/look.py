@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from scipy.sparse import csr_matrix
 
 from active_surface.arrays import FloatArray, IntArray
-from active_surface.views.film.captions import COLOURS
+from active_surface.views.film.captions import colour_of
 from active_surface.views.film.frames import Frame
 from active_surface.views.film.layout import Layout
 from active_surface.views.film.stage import Stage
@@ -77,7 +77,7 @@ class Look:
 
     def surface(self, frame: Frame) -> FloatArray:
         """The surface's points (p, 3)."""
-        return self.layout.scene(self.stage.surface, frame.heights["surface"])
+        return self.layout.scene(self.stage.surface, frame.heights["surface"], frame.shift)
 
     def colours(self, frame: Frame) -> FloatArray:
         """The surface's colours (p, 3), without light."""
@@ -101,11 +101,16 @@ class Look:
         """
         stage, layout = self.stage, self.layout
         kept: dict[str, Lines] = {"net": stage.net, "cut": stage.cut, "rim": stage.rim}
-        lines = {name: (layout.scene(one.xy, frame.heights[name]), one.pieces) for name, one in kept.items()}
+        lines = {
+            name: (layout.scene(one.xy, frame.heights[name], frame.shift), one.pieces) for name, one in kept.items()
+        }
         along = np.arange(len(frame.trail) - 1)
-        lines["trail"] = (layout.scene(frame.trail, frame.heights["trail"]), np.stack([along, along + 1], axis=1))
+        lines["trail"] = (
+            layout.scene(frame.trail, frame.heights["trail"], frame.shift),
+            np.stack([along, along + 1], axis=1),
+        )
         ends = np.array([frame.under, frame.under + frame.flight])
-        lines["pole"] = (layout.scene(np.tile(frame.part[:2], (2, 1)), ends), np.array([[0, 1]]))
+        lines["pole"] = (layout.scene(np.tile(frame.part[:2], (2, 1)), ends, frame.shift), np.array([[0, 1]]))
         towards = LIFT * layout.camera.towards
         return {
             name: (points + self.strokes[name].lifts * towards, pieces)
@@ -115,7 +120,7 @@ class Look:
 
     def marks(self, frame: Frame) -> list[tuple[FloatArray, tuple[float, float, float]]]:
         """The triangles (k, 3, 3) of the actuators' marks with their colours: white discs on black ones."""
-        places = self.layout.scene(self.stage.actuators, frame.heights["actuators"])
+        places = self.layout.scene(self.stage.actuators, frame.heights["actuators"], frame.shift)
         if not len(places):
             return []
         towards, radius = LIFT * self.layout.camera.towards, self.dot_radius
@@ -135,6 +140,6 @@ class Look:
     def part(self, frame: Frame) -> tuple[FloatArray, tuple[float, float, float]]:
         """The middle (3,) of the ball that stands for the part, which lies on the surface or flies, and its colour."""
         height = max(float(frame.part[2]), frame.under)
-        middle = self.layout.scene(frame.part[None, :2], np.array([height]))[0]
+        middle = self.layout.scene(frame.part[None, :2], np.array([height]), frame.shift)[0]
         before = 5.4 * LIFT * self.layout.camera.towards
-        return middle + np.array([0.0, 0.0, self.part_radius]) + before, to_rgb(COLOURS[frame.state])
+        return middle + np.array([0.0, 0.0, self.part_radius]) + before, to_rgb(colour_of(self.stage, frame))

@@ -16,10 +16,13 @@ from active_surface.views.lines import Lines, clipped, divided, net, net_width, 
 from active_surface.views.rounding import exaggeration
 from active_surface.views.smooth import Smooth
 from active_surface.views.triangles import outer_edges
+from coupling import silent
+from coupling.case import PlatformCase
 from coupling.pictures import PITCHES, Scale, is_visible, path_window
 from coupling.results import SavedRun
+from coupling.scene import platform_scene
 from fem_plate import extent, pitch
-from particle import State
+from particle import AnyDrive, State
 
 MAX_TRIANGLES = 40_000  # of a mesh that is made finer to be drawn
 ACROSS = 120  # cells along a window
@@ -50,6 +53,18 @@ class Stage:
     actuators: FloatArray  # (N', 2), those that are marked
     trail: FloatArray  # (r, 2)
     trail_time: FloatArray  # (r,) s
+
+    @cached_property
+    def base(self) -> tuple[AnyDrive, ...]:
+        """What moves a platform along x and y; none: there is a plate."""
+        plate = self.run.case.plate
+        return tuple(platform_scene(plate, silent).base) if isinstance(plate, PlatformCase) else ()
+
+    def shifts(self, times: FloatArray) -> FloatArray:
+        """How far the platform has come (k, 2) [m] at times (k,) [s]."""
+        if not self.base:
+            return np.zeros((len(times), 2))
+        return np.stack([drive.evaluate(times)[0] for drive in self.base], axis=1)
 
     @property
     def size(self) -> float:

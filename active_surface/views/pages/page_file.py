@@ -10,6 +10,7 @@ from string import Template
 from typing import Any
 
 from coupling import whole_file
+from coupling.report import with_micro_signs
 
 PARTS = Path(__file__).parent / "page"
 
@@ -37,15 +38,28 @@ def write_page(path: Path, title: str, body: str, texts: Mapping[str, str], data
 
 def rows_of(rows: Sequence[tuple[str, str]]) -> str:
     """Labels and texts as the rows of a table; a label without text goes on with the one before."""
-    return "\n".join(f'<tr><th scope="row">{escape(label)}</th><td>{escape(text)}</td></tr>' for label, text in rows)
+    cells = [(escape(label), escape(with_micro_signs(text))) for label, text in rows]
+    return "\n".join(f'<tr><th scope="row">{label}</th><td>{text}</td></tr>' for label, text in cells)
+
+
+def trust_of(figures: str, warnings: Sequence[str]) -> str:
+    """How far to trust a run: a verdict with its figures, and the warnings."""
+    verdict = f"{len(warnings)} warning{'' if len(warnings) == 1 else 's'}" if warnings else "no warnings"
+    line = f"<p><strong>Trust: {verdict}.</strong> {escape(with_micro_signs(figures[:1].upper() + figures[1:]))}.</p>"
+    kind = "warnings" if warnings else "trusted"
+    return f'<section class="trust {kind}" aria-label="Trust">{line}{_items(warnings)}</section>'
 
 
 def notes_of(warnings: Sequence[str]) -> str:
     """Warnings as a list, or nothing."""
     if not warnings:
         return ""
-    items = "\n".join(f"<li>{escape(warning)}</li>" for warning in warnings)
-    return f'<section class="warnings" aria-label="Warnings"><h2>Warnings</h2><ul>\n{items}\n</ul></section>'
+    return f'<section class="warnings" aria-label="Warnings"><h2>Warnings</h2>{_items(warnings)}</section>'
+
+
+def _items(texts: Sequence[str]) -> str:
+    items = "\n".join(f"<li>{escape(with_micro_signs(text))}</li>" for text in texts)
+    return f"<ul>\n{items}\n</ul>" if texts else ""
 
 
 def _part(name: str) -> str:

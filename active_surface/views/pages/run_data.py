@@ -10,52 +10,54 @@ from matplotlib.colors import Normalize, to_hex
 from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.views.lines import cut_in
 from active_surface.views.pages.modes import modes_of
+from active_surface.views.pages.moments import MAX_EVENTS, heights_at, moments_of
 from active_surface.views.pages.packed import packed, packed_rows
+from active_surface.views.pages.run_curves import counted, curves_of
 from active_surface.views.rounding import exaggeration
 from active_surface.views.triangles import Spots, coarse, inside, outer_edges, spots_of
-from coupling.pictures import Scale, path_window
+from coupling import report
+from coupling.pictures import MARKS, Scale, path_window
 from coupling.results import SavedRun
 from fem_plate import extent
 from meshes import Unit, unit_for
-from particle import State, stretches
+from particle import EventKind, State, stretches
 
-MAX_STEPS: Final = 1000  # of a page; of more, as many evenly spread
 MAX_POINTS: Final = 6000  # of its surface; of more, those around the path, or fewer of these
 MAX_ACTUATORS: Final = 1000  # that are marked
+MAX_NUMBERED: Final = 30  # of them, with their numbers
 MARGIN: Final = 0.1  # of the path's extent, of thinned surfaces around it
-BATCH: Final = 64  # steps read together
+EVENT_DIGITS: Final = 6  # of the time of an event
 LINES, PER_LINE = 16, 64  # drawn on the surface along each side, and points on each
 STRETCHES: Final = {"stuck": State.STICK, "flying": State.FLIGHT}
-PLATE: Final = "the plate"
+COUNTS: Final = {EventKind.SLIPS: report.PULLS, EventKind.DETACHES: report.LIFTS}
 COLOURS: Final = 11  # stops of the colour scale
 
 
 def run_data(run: SavedRun) -> dict[str, Any]:
     """What the programs of the page read."""
-    steps = np.unique(np.linspace(0, len(run.time) - 1, min(len(run.time), MAX_STEPS)).astype(np.int64))
-    points, triangles = _around(run.points, run.triangles, run.position[:, :2])
-    heights = _heights(run, steps, points)
+    moments = moments_of(run)
+    points, triangles = _around(run.points, run.triangles, moments.position[:, :2])
+    heights = heights_at(run, moments, points)
     place = run.points[points]
     length = float(np.ptp(place, axis=0).max())
-    along = unit_for(place, "m")
-    position = run.position[steps]
+    along, clock = unit_for(place, "m"), unit_for(run.time, "s")
+    position = moments.position
     spots = spots_of(place, triangles, position[:, :2])
-    flying = run.state[steps] == State.FLIGHT
-    drawn = np.where(flying, position[:, 2], spots.heights(heights))
+    drawn = np.where(moments.state == State.FLIGHT, position[:, 2], spots.heights(heights))
     scale = Scale.of(np.array([heights.min(), heights.max()]))
     highest = max(float(drawn.max()), float(heights.max()))
     lowest = min(float(drawn.min()), float(heights.min()))
     box = np.stack([place.min(axis=0), place.max(axis=0)])
     window = path_window(run.rows.position, box, run.actuators)
     modes = modes_of(heights, None if window is None else _close(place, triangles, window))
-    clock = unit_for(run.time, "s")
     marked = np.flatnonzero(points < len(run.actuators))
     in_box = int(((run.actuators >= box[0]) & (run.actuators <= box[1])).all(axis=1).sum())
+    speed, events = unit_for(moments.velocity, "m/s"), int(moments.at_event.sum())
     return {
-        "time": packed(run.time[steps] * clock.per_si, "f4"),
-        "units": {"time": clock.name, "length": along.name, "height": scale.unit.name},
-        "steps": {"shown": len(steps), "stored": len(run.time)},
-        "counted": _counted(run),
+        "time": packed(moments.time * clock.per_si, "f8"),
+        "units": {"time": clock.name, "length": along.name, "height": scale.unit.name, "speed": speed.name},
+        "steps": {"shown": len(moments.time) - events, "stored": len(run.time), "events": events},
+        "counted": counted(run),
         "exaggeration": [exaggeration(highest - lowest, length), _closer(position[:, 2], window)],
         "window": None if window is None else (window * along.per_si).tolist(),
         "perLength": scale.unit.per_si / along.per_si,
@@ -72,6 +74,7 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "rim": packed(outer_edges(triangles), "u2"),
             "lines": [_lines(place, triangles, box) for box in ([box] if window is None else [box, window])],
             "actuators": packed(marked if in_box <= MAX_ACTUATORS else [], "u2"),
+            "numbers": points[marked].tolist() if in_box <= MAX_NUMBERED else [],
             "unmarked": in_box if in_box > MAX_ACTUATORS else 0,
             "whole": len(np.unique(run.triangles)) == len(points),
         },
@@ -80,12 +83,19 @@ def run_data(run: SavedRun) -> dict[str, Any]:
             "y": packed(position[:, 1] * along.per_si, "f4"),
             "z": packed(drawn * scale.unit.per_si, "f4"),
             "height": packed(position[:, 2] * scale.unit.per_si, "f4"),
-            "state": packed(run.state[steps], "u1"),
+            "speed": packed(np.hypot(*moments.velocity.T) * speed.per_si, "f4"),
+            "state": packed(moments.state, "u1"),
             "below": _spots(spots),
         },
         "trail": _trail(place, triangles, position[:, :2], length),
         "stretches": {name: packed(_stretches(run, state) * clock.per_si, "f4") for name, state in STRETCHES.items()},
-        "curves": _curves(run, steps, along),
+        "curves": curves_of(run, along),
+        "perSecond": clock.per_si,
+        "load": _force(moments.normal_force),
+        "friction": _force(moments.friction_force),
+        "events": _events(run, clock),
+        "moreEvents": max(len(run.events) - MAX_EVENTS, 0),
+        "lost": MARKS[run.loss.kind][3] if run.loss and run.complete else "",
     }
 
 
@@ -129,15 +139,6 @@ def _around(points: FloatArray, triangles: IntArray, path: FloatArray) -> tuple[
     return used, np.searchsorted(used, triangles)
 
 
-def _heights(run: SavedRun, steps: IntArray, points: IntArray) -> FloatArray:
-    """The deflections (k, n) [m] of points at steps."""
-    heights = np.empty((len(steps), len(points)))
-    for start in range(0, len(steps), BATCH):
-        some = slice(start, start + BATCH)
-        heights[some] = run.plate_field("deflection", steps[some])[:, points]
-    return heights
-
-
 def _lines(points: FloatArray, triangles: IntArray, box: FloatArray) -> dict[str, Any]:
     """Lines along x and y on the surface in a box (2, 2) [m], which show its form without colours."""
     low, high = box
@@ -177,23 +178,27 @@ def _stretches(run: SavedRun, state: State) -> FloatArray:
     return np.asarray(times[times[:, 0] < run.time[-1]].clip(max=run.time[-1]))
 
 
-def _counted(run: SavedRun) -> str:
-    """What positions are counted from, if it is not the plate."""
-    origin = run.summary.get("origin", PLATE)
-    return "" if origin == PLATE else f" on {origin}"
+def _force(values: FloatArray) -> dict[str, Any]:
+    """A force [N] at the steps."""
+    unit = unit_for(values, "N")
+    return {"unit": unit.name, "values": packed(values * unit.per_si, "f4")}
 
 
-def _curves(run: SavedRun, steps: IntArray, along: Unit) -> list[dict[str, Any]]:
-    """What is drawn over time, one pair of axes each."""
-    velocity = run.velocity[steps]
-    panels = [
-        ("Position", "m", {f"{axis}{_counted(run)}": run.position[steps, k] for k, axis in enumerate("xy")}),
-        ("Velocity", "m/s", {"along x": velocity[:, 0], "along y": velocity[:, 1]}),
-        ("Force", "N", {"normal load": run.normal_force[steps], "friction": run.friction_force[steps]}),
-    ]
+def _events(run: SavedRun, clock: Unit) -> list[dict[str, Any]]:
+    """The events, with what is said of each."""
+    along = unit_for(run.points, "m")
     result = []
-    for label, si, values in panels:
-        unit = along if si == "m" else unit_for(np.concatenate(list(values.values())), si)
-        lines = [{"name": name, "values": packed(v * unit.per_si, "f4")} for name, v in values.items()]
-        result.append({"label": label, "unit": unit.name, "lines": lines})
+    for event, actuator in zip(run.events[:MAX_EVENTS], run.event_actuators.tolist(), strict=False):
+        x, y = (c * along.per_si for c in event.position)
+        when = f"{event.time * clock.per_si:.{EVENT_DIGITS}g}"
+        by = "" if actuator < 0 else f"actuator {actuator} {COUNTS[event.kind]}"
+        result.append(
+            {
+                "time": event.time * clock.per_si,
+                "when": when,
+                "text": f"{MARKS[event.kind][2]} at {when} {clock.name}",
+                "place": f"({x:.4g}, {y:.4g}) {along.name}".replace("-", "\N{MINUS SIGN}"),
+                "by": by,
+            }
+        )
     return result

@@ -2,28 +2,59 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from html import escape
 from pathlib import Path
 
-from active_surface.views.pages.page_file import notes_of, rows_of, write_page
+from active_surface.views.pages.page_file import rows_of, trust_of, write_page
 from active_surface.views.pages.run_data import run_data
 from coupling import report, summary_of
 from coupling.results import SavedRun
+from meshes import unit_for
+from particle import EventKind
 
 PROGRAMS = "surface.js", "curves.js", "run.js"
+MAX_NAMED = 3  # actuators
 PARTIAL = "The results are partial, as they were not written to their end: this page shows the steps that were."
 
 
 def write_run_page(run: SavedRun, path: Path) -> Path:
     """Writes the page of a run to an HTML file, as a whole or not at all; returns its path."""
-    summary = summary_of(run.summary)
+    summary, device = summary_of(run.summary), report.device(run.case)
     warnings = [*([] if run.complete else [PARTIAL]), *report.warnings(summary)]
     versions = ", ".join(f"{name} {version}" for name, version in run.versions.items())
     texts = {
         "name": escape(run.name),
-        "sentence": escape(summary.sentence),
-        "warnings": notes_of(warnings),
-        "rows": rows_of([*report.lines(summary), ("versions", versions)]),
+        "device": escape(device),
+        "sentence": escape(report.with_micro_signs(" ".join([summary.sentence, *motion(run)]))),
+        "trust": trust_of(report.trust(summary), warnings),
+        "rows": rows_of([*report.lines(summary, verbose=True), ("versions", versions)]),
         "case": escape(run.case.source or run.case.model_dump_json(indent=2)),
     }
-    return write_page(path, run.name, "run.html", texts, run_data(run), PROGRAMS)
+    return write_page(path, f"{run.name}: {device}", "run.html", texts, run_data(run), PROGRAMS)
+
+
+def motion(run: SavedRun) -> list[str]:
+    """Sentences on when the part slipped, stopped and was lost, and which actuators did most where it began to slip."""
+    unit = unit_for(run.time, "s")
+    slips, stops = (
+        [k for k, event in enumerate(run.events) if event.kind is kind] for kind in (EventKind.SLIPS, EventKind.STOPS)
+    )
+    lost = f"is lost at {run.loss.time * unit.per_si:.4g} {unit.name}" if run.loss else ""
+    if not slips:
+        return [f"It {lost}."] if lost else []
+    first, last = (f"{run.events[k].time * unit.per_si:.4g} {unit.name}" for k in (slips[0], [*slips, *stops][-1]))
+    times = "once, at" if len(slips) == 1 else f"{len(slips)} times, first at"
+    stopped = f", and stops last at {last}" if stops and stops[-1] > slips[-1] else ""
+    stopped += f", and {lost}" if lost else ""
+    sentences = [f"It begins to slip {times} {first}{stopped}."]
+    counts = Counter(actuator for actuator in run.event_actuators[slips].tolist() if actuator >= 0).most_common()
+    if len(counts) == 1:
+        return [*sentences, f"Actuator {counts[0][0]} {report.PULLS} that makes it slip."]
+    if counts:
+        (leading, often), *rest = counts
+        some = [f"Actuator {leading} {report.PULLS} in {often} of these slips"]
+        some += [f"actuator {actuator} in {count}" for actuator, count in rest[: MAX_NAMED - 1]]
+        others = f", others in {sum(count for _, count in counts[MAX_NAMED:])}" * (len(counts) > MAX_NAMED)
+        sentences.append(f"{', '.join(some)}{others}.")
+    return sentences

@@ -14,6 +14,7 @@ from active_surface.studies.pictures import COLOURS, Scale, Selection, edges, ou
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.sweep_paths import Paths
 from coupling.case import Case, PlateCase
+from coupling.report import with_micro_signs
 from meshes import Unit, rim_curves, unit_for
 
 MAX_ENDS = 100_000  # of all starts; of more only the first of each point
@@ -52,7 +53,7 @@ def study_data(study: Study, selection: Selection, starts: FloatArray, paths: Pa
         "outline": outline(*selection.axes, selection.holds)
         if selection.holds is not None and len(selection.axes) == 2
         else [],
-        "threshold": study.threshold.text if study.threshold else "",
+        "threshold": with_micro_signs(study.threshold.text) if study.threshold else "",
         "units": {"length": along.name, "distance": unit.name},
         "distance": packed(lengths.ravel() * unit.per_si, "f4"),
         "outcome": packed(selection.usual_outcome.ravel(), "u1"),
@@ -77,7 +78,7 @@ def _others(study: Study, selection: Selection) -> list[Scale]:
     if not selection.findings.scattered:
         return []
     axes = study.points.axes
-    columns = study.points.columns(0, len(selection.distance))
+    columns = study.points.columns(range(len(selection.distance)))
     return [Scale.of(axis, column) for axis, column in list(zip(axes, columns, strict=True))[len(selection.axes) :]]
 
 
@@ -89,7 +90,7 @@ def _axis(scale: Scale, in_cells: bool) -> dict[str, Any]:
         "values": packed(scale.drawn, "f8" if in_cells else "f4"),  # of points there are many
         "edges": packed(edges(scale) if in_cells else [], "f8"),
         "logarithmic": scale.logarithmic,
-        "texts": list(scale.texts),
+        "texts": [with_micro_signs(text) for text in scale.texts],
     }
 
 

@@ -13,7 +13,7 @@ from active_surface.studies.pictures import Findings, Selection
 from active_surface.views.pages.page_file import notes_of, rows_of, write_page
 from active_surface.views.pages.study_data import study_data
 from active_surface.views.pages.sweep_paths import Paths, find_paths, spread, usual_count
-from coupling import ProgressCallback, no_progress
+from coupling import ProgressCallback, no_progress, report
 
 if TYPE_CHECKING:
     import xarray
@@ -37,15 +37,18 @@ def write_study_page(
     starts = np.stack([dataset[f"start_{c}"].values.ravel()[numbers] for c in "xy"], axis=-1)
     sweep = Sweep(study, dataset)
     fixed = ", ".join(f"{name} = {text}" for name, text in selection.fixed.items())
+    title = f"A sweep of {report.joined([axis.name for axis in study.points.axes])}"
     texts = {
         "name": escape(study.name),
-        "sentence": escape(_sentence(study, selection, followed)),
+        "title": escape(title),
+        "sentence": escape(f"Base case: {report.device(study.case)}. {_sentence(study, selection, followed)}"),
         "warnings": notes_of([*sweep.warnings, *_warnings(followed)]),
         "rows": rows_of([*lines(sweep), *([("shown at", fixed)] if fixed else [])]),
         "study": escape(study.source),
         "case": escape(study.case.source or study.case.model_dump_json(indent=2)),
     }
-    return write_page(path, study.name, "study.html", texts, study_data(study, selection, starts, followed), PROGRAMS)
+    data = study_data(study, selection, starts, followed)
+    return write_page(path, f"{study.name}: {title}", "study.html", texts, data, PROGRAMS)
 
 
 def _sentence(study: Study, selection: Selection, followed: Paths) -> str:

@@ -22,7 +22,7 @@ from active_surface.studies.pictures import (
 from active_surface.views.prints.run_pictures import run_pictures
 from active_surface.views.prints.saved_portrait import portrait_of_saved
 from active_surface.views.prints.sheet import FORMATS, WIDTH, Picture, drawn, save
-from coupling.results import is_run, read_run
+from coupling.results import instead, is_run, read_run
 
 OUTCOME = "outcome"
 HEIGHT = 0.85  # of the width, where a picture has no shape of its own
@@ -98,16 +98,10 @@ def _pictures(path: Path, x: str | None, y: str | None, value: str | None) -> tu
     file = path if path.is_file() else path.with_name(path.name + ENDING)
     if key_of(file) is None:
         required = "must be a file that `active-surface run` or `active-surface sweep` left"
-        raise ValueError(f"Input result of plot {required}; got {path}, {_instead(path)}")
+        other = "which is another file" if path.is_file() and path.suffix == ENDING else instead(path)
+        raise ValueError(f"Input result of plot {required}; got {path}, {other}")
     with read_findings(file) as findings:
         return findings.name, sweep_pictures(findings, x, y, value), True
-
-
-def _instead(path: Path) -> str:
-    """What there is in place of a result."""
-    if path.suffix == ".toml" and path.is_file():
-        return "which tells what to do; what one of these commands makes of it can be drawn"
-    return "which is something else" if path.exists() else "which is no file"
 
 
 def sweep_pictures(

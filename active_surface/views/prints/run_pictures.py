@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from active_surface.arrays import FloatArray
-from active_surface.views.prints.sheet import MM, Picture, put_keys
+from active_surface.views.prints.sheet import MM, Picture
 from coupling.pictures import (
     Curves,
     Portrait,
-    curves_of,
+    draw_events,
     draw_over_time,
     draw_path,
     draw_plate,
@@ -24,25 +19,18 @@ from coupling.pictures import (
     draw_window,
     is_visible,
     map_axes,
+    margins_over_time,
     path_window,
+    put_keys,
+    strokes_of,
+    velocities_of,
 )
 from meshes import NOTHING, unit_for
-from particle import EventKind, State, shade, shade_keys, stretches
+from particle import State, shade_keys, stretches
 
 SHARE = 0.75  # of the width is a map's, about
 PANEL, STRIP, REST = 27.0, 3.5, 16.0  # mm: the height of a panel, of the strip of events, of labels and keys
-APART = 3.5  # points: nearer to each other, marks of events merge
 FAR = 3.0  # times its extent a path is from the origin: then displacements are shown
-MARKS: dict[EventKind, tuple[str, str, str]] = {  # marker, its colour, what is said
-    EventKind.SLIPS: (">", "black", "slips"),
-    EventKind.STOPS: ("s", "black", "stops"),
-    EventKind.REVERSES: ("D", "white", "turns back"),
-    EventKind.DETACHES: ("^", "white", "comes off"),
-    EventKind.LANDS: ("v", "white", "lands"),
-    EventKind.LEAVES_PLATE: ("X", "white", "leaves the plate"),
-    EventKind.OVERLOADS: ("P", "white", "overload"),
-}
-OFTEN = (EventKind.SLIPS, EventKind.STOPS)  # where shades begin and end in any case
 
 
 def run_pictures(portrait: Portrait) -> list[Picture]:
@@ -89,15 +77,16 @@ def courses(portrait: Portrait) -> list[Curves]:
     way = samples.position - samples.position[0]
     moved = np.abs(samples.position).max() > FAR * max(float(np.ptp(samples.position, axis=0).max()), NOTHING)
     x, y = (way if moved else samples.position).T
-    relative = "relative " if portrait.base else ""
-    result = [Curves(relative + ("displacement" if moved else "position"), "m", {"along x": x, "along y": y})]
-    if samples.height.any():
-        result.append(Curves("height", "m", {"": samples.height}))
+    relative, times = "relative " if portrait.base else "", samples.time
+    label = relative + ("displacement" if moved else "position")
+    result = [Curves(label, "m", {"along x": x, "along y": y}, times), strokes_of(portrait)]
     v_x, v_y = samples.velocity.T
-    result.append(Curves(f"{relative}velocity", "m/s", {"along x": v_x, "along y": v_y}))
-    result += [curves for curves in curves_of(portrait) if "platform" in curves.values]
-    forces = {"normal load": samples.normal_force, "friction": samples.friction_force}
-    return [*result, Curves("contact force", "N", forces)]
+    result.append(Curves(f"{relative}velocity", "m/s", {"along x": v_x, "along y": v_y}, times))
+    result += velocities_of(portrait)
+    result.append(margins_over_time(portrait))
+    result.append(Curves("normal load", "N", {"": samples.normal_force}, times))
+    result.append(Curves("friction", "N", {"": samples.friction_force}, times))
+    return [one for one in result if one is not None]
 
 
 def _draw_course(figure: Figure, portrait: Portrait) -> None:
@@ -108,30 +97,11 @@ def _draw_course(figure: Figure, portrait: Portrait) -> None:
     strip = figure.add_subplot(grid[0])
     panels = [figure.add_subplot(grid[k + 1], sharex=strip) for k in range(len(all_curves))]
     for panel, curves in zip(panels, all_curves, strict=True):
-        draw_over_time(panel, rows, times, curves, unit)
+        draw_over_time(panel, rows, curves, unit)
         panel.tick_params(labelbottom=panel is panels[-1])
     panels[-1].set_xlabel(f"time [{unit.name}]")
     figure.align_ylabels(panels)
     keys = shade_keys(rows)
     if stretches(rows.state == State.SLIP):
         keys.append(Patch(facecolor="white", edgecolor="#808080", linewidth=0.5, label="slipping"))
-    put_keys(figure, keys + _draw_events(strip, portrait, unit.per_si))
-
-
-def _draw_events(axes: Axes, portrait: Portrait, per_second: float) -> list[Artist]:
-    """Draw a strip of states with a mark for each event, or for rare ones where all would merge; return keys."""
-    shade(axes, portrait.rows, per_second)
-    axes.set_yticks([])
-    axes.set_ylim(0, 1)
-    axes.tick_params(bottom=False, labelbottom=False)
-    room = 72 * SHARE * axes.figure.bbox.width / axes.figure.dpi / APART
-    keys: list[Artist] = []
-    for kind, (marker, colour, text) in MARKS.items():
-        times = [event.time for event in portrait.events if event.kind is kind]
-        if not times or (kind in OFTEN and len(portrait.events) > room):
-            continue
-        look: dict[str, Any] = {"marker": marker, "color": colour, "markeredgecolor": "black", "linestyle": ""}
-        look |= {"markersize": APART, "markeredgewidth": 0.6}
-        axes.plot(np.array(times) * per_second, np.full(len(times), 0.5), **look, clip_on=False)
-        keys.append(Line2D([], [], **look, label=text))
-    return keys
+    put_keys(figure, keys + draw_events(strip, portrait, unit.per_si, 72 * SHARE * figure.get_figwidth()))

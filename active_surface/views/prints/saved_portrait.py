@@ -7,12 +7,12 @@ from matplotlib.tri import CubicTriInterpolator, Triangulation
 from scipy.interpolate import CubicHermiteSpline
 
 from active_surface.arrays import FloatArray
-from coupling import silent
+from coupling import silent, summary_of
 from coupling.case import PlateCase
 from coupling.display import most_deflected
-from coupling.pictures import Piece, Portrait, Relief, cut_out, refined
+from coupling.pictures import Piece, Portrait, Relief, chosen_drives, cut_out, decisive_moment, refined
 from coupling.results import SavedRun
-from coupling.scene import platform_scene
+from coupling.scene import lifts_of, platform_scene
 from meshes import rim_curves
 from particle import Samples
 
@@ -25,6 +25,9 @@ def portrait_of_saved(run: SavedRun) -> Portrait:
     """The portrait of a saved run, with its plate as at the step at which it is deflected the most."""
     plate = run.case.plate
     step = most_deflected(_mean_squares(run))
+    platform = None if isinstance(plate, PlateCase) else platform_scene(plate, silent)
+    lifts, base = (lifts_of(run.case), ()) if platform is None else (platform.lifts, platform.base)
+    margins = summary_of(run.summary).margins
     return Portrait(
         run.name,
         run.summary["sentence"],
@@ -35,7 +38,11 @@ def portrait_of_saved(run: SavedRun) -> Portrait:
         np.stack([run.points.min(axis=0), run.points.max(axis=0)]),
         _relief(run, plate, step) if isinstance(plate, PlateCase) else None,
         float(run.time[step]),
-        () if isinstance(plate, PlateCase) else platform_scene(plate, silent).base,
+        base,
+        chosen_drives(run.case, lifts, margins),
+        run.margins,
+        margins.by_pull_off,
+        decisive_moment(run.events, margins),
         run.complete,
     )
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any, Final, NamedTuple
 
+import numpy as np
 from matplotlib import rc_context
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -24,6 +24,7 @@ MM = 1 / 25.4  # inches
 DOTS = 600  # an inch, of pixels in any format
 PAD = 1.0  # mm, around all
 SHORT = 8  # letters of a label that stay on one line
+PLACES = 6  # digits of the figure's height in inches, and of the places of axes over its size
 ROUNDS, CLOSE = 6, 0.2  # mm: how well the height is fitted
 TEXT = {"font.size": 8.0, "xtick.labelsize": 7.0, "ytick.labelsize": 7.0, "legend.fontsize": 7.0, "axes.titlesize": 8.0}
 LINES = {
@@ -51,7 +52,7 @@ def _styled() -> Iterator[None]:
 
 
 def drawn(picture: Picture, width: float = WIDTH) -> Figure:
-    """The figure of a picture, so wide [mm].
+    """The figure of a picture, so wide [mm], with its layout fixed: the same picture gives the same file.
 
     Raises ValueError for a width that no picture can have.
     """
@@ -69,8 +70,20 @@ def drawn(picture: Picture, width: float = WIDTH) -> Figure:
             left_over = _left_over(figure.axes[0]) * figure.get_figheight()
             if not any(wrapped) and abs(left_over) < CLOSE * MM:
                 break
-            figure.set_figheight(figure.get_figheight() - left_over)
+            figure.set_figheight(round(figure.get_figheight() - left_over, PLACES))
+        _fix_layout(figure)
         return figure
+
+
+def _fix_layout(figure: Figure) -> None:
+    """Round where axes are, and leave them there.
+
+    The solver of the layout orders its unknowns by their addresses in memory, so its last digits are not always
+    the same, and files would differ in these.
+    """
+    figure.set_layout_engine("none")
+    for axes in figure.axes:
+        axes.set_position(np.round(axes.get_position(original=True).bounds, PLACES).tolist())
 
 
 def _wrap(label: Text, axes: Axes) -> bool:
@@ -100,14 +113,3 @@ def save(figure: Figure, stem: Path, formats: Sequence[str] = FORMATS[:1]) -> li
             figure.savefig(partial, format=kind, dpi=DOTS, metadata=UNDATED[kind])
         files.append(path)
     return files
-
-
-def put_keys(figure: Figure, keys: Sequence[Artist]) -> None:
-    """Put keys below all, each name once, on as few lines as the width takes."""
-    chosen = list({key.get_label(): key for key in reversed(keys)}.values())[::-1]
-    for lines in range(1, len(chosen) + 1):
-        columns = -(-len(chosen) // lines)
-        legend = figure.legend(handles=chosen, loc="outside lower center", ncols=columns, frameon=False, borderpad=0.1)
-        if columns == 1 or legend.get_window_extent().width < figure.bbox.width - 2 * PAD * MM * figure.dpi:
-            return
-        legend.remove()

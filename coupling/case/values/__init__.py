@@ -1,6 +1,6 @@
 """What a field of a file may hold: quantities with units, formulas, and columns of numbers in CSV files."""
 
-from coupling.case.values.annotations import of_kind, parts_of, quantity_of
+from coupling.case.values.annotations import adapter, of_kind, parts_of, quantity_of
 from coupling.case.values.csv_columns import (
     Columns,
     MeasuredColumns,
@@ -11,6 +11,7 @@ from coupling.case.values.csv_columns import (
     read_rows,
     unreadable,
 )
+from coupling.case.values.dimensions import DIMENSIONS
 from coupling.case.values.formula import Amount, Choice, Condition, Formula
 from coupling.case.values.quantities import (
     AXES,
@@ -33,12 +34,12 @@ from coupling.case.values.quantities import (
     Velocity,
 )
 from coupling.case.values.units import (
-    DIMENSIONS,
     POSITIVE,
     UNITS_REQUIRED,
     WRITTEN,
     Quantity,
     length_text,
+    number_and_unit,
     quoted,
     written_unit,
 )

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import csv
 import math
+import os
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from coupling.case.values.units import DIMENSIONS, Quantity, quoted
-from coupling.suggestion import near
+from coupling.case.values.dimensions import DIMENSIONS
+from coupling.case.values.units import Quantity, quoted
+from coupling.suggestion import near, near_file
 
 MAX_MISTAKES = 10  # of a file that are listed one by one
 
@@ -31,6 +34,7 @@ class MeasuredColumns(NamedTuple):
     columns: Columns  # in SI units; incomplete where there are mistakes
     lines: tuple[int, ...]  # of its rows, from 1
     mistakes: list[str]
+    ignored: tuple[str, ...] = ()  # the cells of the header whose columns have another name than those known
 
 
 def read_rows(path: Path, example: str) -> Rows | str:
@@ -44,7 +48,7 @@ def read_rows(path: Path, example: str) -> Rows | str:
     except UnicodeDecodeError:
         return "is not UTF-8 text"
     rows = [
-        (number, [cell.strip() for cell in line.split(",")])
+        (number, [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))])
         for number, line in enumerate(text.splitlines(), 1)
         if line.strip() and not line.lstrip().startswith("#")
     ]
@@ -68,7 +72,7 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
 def read_columns(
     path: Path, known: Mapping[str, Quantity], needed: Sequence[Sequence[str]], example: str
 ) -> MeasuredColumns:
-    """The columns of a file, and what is wrong with it, by its lines.
+    """The columns of a file, and what is wrong with it, by its lines. Columns of other names are ignored.
 
     known: the quantity of each column that there may be.  needed: groups of names, one of each of which must be there.
     example: a header, for messages.  Raises as `read_rows`.
@@ -80,7 +84,7 @@ def read_columns(
     if any(_number(cell) is not None for cell in header):
         message = f'line {line} must be a header such as "{example}"; got {quoted(", ".join(header))}'
         return MeasuredColumns({}, (), [message])
-    columns, mistakes = _header(header, known)
+    columns, ignored, mistakes = _header(header, known)
     meant = {like for cell in header if (like := near(cell.partition("[")[0], known))}
     mistakes += [f'must have a column {_either(names)}, as in "{example}"' for names in needed if not meant & {*names}]
     if mistakes:
@@ -90,12 +94,14 @@ def read_columns(
     for number, cells in read.rows:
         for (name, factor), cell, column in zip(columns, cells, values, strict=True):
             value = _number(cell)
+            if name in ignored:
+                continue
             if value is None:
                 wrong.append((number, f"must have a finite number as {name}; got {quoted(cell)}"))
             else:
                 column.append(value * factor)
-    filled = {name: tuple(column) for (name, _), column in zip(columns, values, strict=True)}
-    return MeasuredColumns(filled, tuple(number for number, _ in read.rows), first_of(by_line(wrong)))
+    filled = {name: tuple(column) for (name, _), column in zip(columns, values, strict=True) if name not in ignored}
+    return MeasuredColumns(filled, tuple(number for number, _ in read.rows), first_of(by_line(wrong)), ignored)
 
 
 def by_line(wrong: Sequence[tuple[int, str]]) -> list[str]:
@@ -106,7 +112,10 @@ def by_line(wrong: Sequence[tuple[int, str]]) -> list[str]:
 def unreadable(file: str, error: OSError | ValueError) -> str:
     """That a file cannot be read, and why; ValueError where no file can have such a name."""
     reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-    return f"must be a file that can be read; got {quoted(file)}: {reason.lower()}"
+    path = Path(str(error.filename)) if isinstance(error, FileNotFoundError) else None
+    meant = near_file(path, path.suffix) if path else None
+    hint = f"; did you mean {quoted(os.path.relpath(meant, path.parent))}?" if path and meant else ""
+    return f"must be a file that can be read; got {quoted(file)}: {reason.lower()}{hint}"
 
 
 def first_of(mistakes: Sequence[str]) -> list[str]:
@@ -115,16 +124,23 @@ def first_of(mistakes: Sequence[str]) -> list[str]:
     return [*mistakes[:MAX_MISTAKES], *([f"has {more} more mistake{'s' * (more > 1)}"] if more > 0 else [])]
 
 
-def _header(header: Sequence[str], known: Mapping[str, Quantity]) -> tuple[list[tuple[str, float]], list[str]]:
-    """Each column's name and how much in SI units one of its unit is, and what is wrong with the header."""
+def _header(
+    header: Sequence[str], known: Mapping[str, Quantity]
+) -> tuple[list[tuple[str, float]], tuple[str, ...], list[str]]:
+    """Each column's name and how much in SI units one of its unit is, those ignored, and what is wrong with the header.
+
+    A name that looks like one that is known, and is missing, is a mistake.
+    """
     columns: list[tuple[str, float]] = []
-    mistakes = []
+    ignored, mistakes = [], []
+    there = {name_and_unit(cell)[0] for cell in header}
     for cell in header:
         name, unit = name_and_unit(cell)
         if name not in known:
-            like = near(name, known)
-            hint = f"did you mean {like}?" if like else f"there may be {', '.join(known)}"
-            mistakes.append(f"has a column {quoted(cell)} that is not known; {hint}")
+            if (like := near(name, known)) and like not in there:
+                mistakes.append(f"has a column {quoted(cell)} that is not known; did you mean {like}?")
+            columns.append((cell, math.nan))
+            ignored.append(cell)
             continue
         if any(name == other for other, _ in columns):
             mistakes.append(f"has two columns {name}")
@@ -138,7 +154,7 @@ def _header(header: Sequence[str], known: Mapping[str, Quantity]) -> tuple[list[
         except ValueError as error:
             reason = str(error).partition(f'got "1 {unit}"')[2].replace('"1 ', '"')
             mistakes.append(f"must give {name} in a unit of {DIMENSIONS[quantity.unit][2:]}; got [{unit}]{reason}")
-    return columns, mistakes
+    return columns, tuple(ignored), mistakes
 
 
 def _either(names: Sequence[str]) -> str:

@@ -7,6 +7,7 @@ validation context is `UNITS_REQUIRED`, as it is for files.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final
@@ -35,11 +36,23 @@ class Pair:
     def validate(self, value: object) -> object:
         """Return `value`; ValueError unless it is a list or tuple of two."""
         if not isinstance(value, (list, tuple)) or len(value) != 2:
-            raise ValueError(f"must be {self.expected}; got {quoted(value)}")
+            both = _both(value)
+            instead = f"; write {quoted(both)}" if both else ""
+            raise ValueError(f"must be {self.expected}; got {quoted(value)}{instead}")
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_before_validator_function(self.validate, handler(source))
+
+
+def _both(value: object) -> list[object] | None:
+    """The two that are meant by a table of x and y, or by one text; None: it is no such thing."""
+    if isinstance(value, dict) and {*value} == {"x", "y"}:
+        return [value["x"], value["y"]]
+    if isinstance(value, str) and re.fullmatch(r"[+-]?0+(\.0*)?\s*[^\W\d][^,;]*", value.strip()):
+        return [value, value]
+    parts = re.split(r"[,;]\s*", value.strip("()[] \t")) if isinstance(value, str) else []
+    return [*parts] if len(parts) == 2 and all(map(re.compile(r".*\d\s*[^\W\d].*").fullmatch, parts)) else None
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ reads them; all others are left to pint, which takes longer to load than a case 
 
 from __future__ import annotations
 
-import difflib
 import json
 import math
 import re
@@ -20,38 +19,14 @@ from typing import TYPE_CHECKING, Any, Final
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
+from coupling.case.values.dimensions import DIMENSIONS, dimension_of, is_unit, registry, root_of, si_of
+from coupling.case.values.spelling import MAX_MEANT, MISREAD, MULTIPLES, meant_number, meant_units
+
 if TYPE_CHECKING:
-    import pint
+    pass
 
 UNITS_REQUIRED: Final = {"units_required": True}
 """The validation context in which a bare number is not accepted as a quantity."""
-
-DIMENSIONS: Final = {
-    "m": "a length", "m^2": "an area", "m^3": "a volume", "rad": "an angle",
-    "s": "a time", "Hz": "a frequency", "rad/s": "an angular velocity", "m/s": "a velocity", "m/s^2": "an acceleration",
-    "kg": "a mass", "kg/m^3": "a density", "N": "a force", "Pa": "a pressure",
-    "J": "an energy", "J/m^2": "an energy per area", "N/m": "a stiffness",
-    "W": "a power", "K": "a temperature", "1": "a plain number",
-}  # fmt: skip
-"""SI units, and what a quantity in each is called in a message."""
-
-_USUAL_UNITS: Final = [
-    *("m", "cm", "mm", "um", "nm", "m^2", "mm^2", "um^2", "nm^2", "m^3", "meter", "micrometer", "nanometer", "micron"),
-    *("s", "ms", "us", "s^2", "second", "Hz", "kHz", "MHz", "hertz", "kg", "g", "mg", "ug", "ng", "gram"),
-    *(
-        "metre",
-        "micrometre",
-        "nanometre",
-        "millisecond",
-        "microsecond",
-        "kilohertz",
-        "milligram",
-        "microgram",
-        "nanogram",
-    ),
-    *("rad", "deg", "turn", "degree", "radian"),
-    *("N", "mN", "uN", "nN", "newton", "Pa", "kPa", "MPa", "GPa", "pascal", "J", "mJ", "uJ", "nJ", "joule"),
-]
 
 _PREFIXES: Final = {"": 0, "k": 3, "M": 6, "G": 9, "c": -2, "m": -3, "u": -6, "\u00b5": -6, "\u03bc": -6, "n": -9}
 _PREFIXED_BASES: Final = {
@@ -72,6 +47,9 @@ _NUMBER_AND_UNIT: Final = re.compile(
 WRITTEN: Final = r"^\s*[+-]?\.?[0-9][0-9_.]*([eE][+-]?[0-9]+)?\s*([^0-9_.,;\s]|[0-9]+/).*$"
 POSITIVE: Final = WRITTEN.replace("[+-]?", "[+]?", 1)
 
+_SMALL, _LARGE = 0.05, 1e6
+_SAME_ANYWAY: Final = ("Hz", "kg/m^3")  # units that people leave out because they are SI
+_MAY_BE_NONE: Final = ("m", "s", "rad", "m/s", "m/s^2", "N", "N/m")
 _NONSENSE: Final = ", which is not a number and a unit"
 _NO_UNIT: Final = ", which has no unit"
 _NOT_FINITE: Final = ", which is not finite"
@@ -97,7 +75,7 @@ class Quantity:
         """Return the quantity that `text` states, in `unit`; ValueError unless it is a finite one of this dimension."""
         match = _NUMBER_AND_UNIT.fullmatch(text.strip())
         if match is None:
-            raise self.refusal(text, "; write decimals with a point" if "," in text else _NONSENSE)
+            raise self.refusal(text, self._other_number(text))
         return self.convert(text, match["number"], match["unit"])
 
     def convert(self, text: str, number: str, unit: str) -> float:
@@ -110,7 +88,9 @@ class Quantity:
         elif unit in _ANGLES and self.unit == "rad":
             value = float(Decimal(number) * _ANGLES[unit])
         elif base in _PREFIXED_BASES.values():
-            raise self.refusal(text, f", {DIMENSIONS[base]}")
+            raise self.refusal(text, f", {DIMENSIONS[base]}{self._meant(text, unit)}")
+        elif unit in MISREAD:
+            raise self.refusal(text, f', but there is no unit "{unit}"{self._meant(text, unit)}')
         else:
             value = self._convert_by_pint(text, number, unit)
         if not math.isfinite(value):
@@ -122,13 +102,16 @@ class Quantity:
 
         try:
             fits = self._fits(unit)
-            value = float(_registry().Quantity(Decimal(number), unit).m_as(self.unit)) if fits else math.nan
+            value = float(registry().Quantity(Decimal(number), unit).m_as(self.unit)) if fits else math.nan
         except pint.UndefinedUnitError as error:
-            raise self.refusal(text, self._unknown_unit(number, unit, error)) from None
+            names = [error.unit_names] if isinstance(error.unit_names, str) else error.unit_names
+            unknown = f', but there is no unit "{next(iter(names))}"'
+            meant, other = self._meant(text, unit), self._other_number(text)
+            raise self.refusal(text, unknown + meant if meant or other == _NONSENSE else other) from None
         except Exception:  # On nonsense pint raises anything from AssertionError to TokenError.
-            raise self.refusal(text, _NONSENSE) from None
+            raise self.refusal(text, self._meant(text, unit) or self._other_number(text)) from None
         if not fits:
-            raise self.refusal(text, f", {_dimension(unit)}")
+            raise self.refusal(text, f", {dimension_of(unit)}{self._meant(text, unit)}")
         return value
 
     def validate(self, value: object, info: ValidationInfo) -> float:
@@ -136,25 +119,74 @@ class Quantity:
         if isinstance(value, str):
             return self.parse(value)
         if isinstance(value, bool) or not isinstance(value, Real):
-            raise self.refusal(value)
+            raise self.refusal(value, self._none if value is False else "")
         if info.context and info.context.get("units_required"):
-            raise self.refusal(value, _NO_UNIT)
+            raise self.refusal(value, _NO_UNIT + (self._none if value == 0 else self._in_si(float(value))))
         if not math.isfinite(value):
             raise self.refusal(value, _NOT_FINITE)
         return float(value)
 
     def _fits(self, unit: str) -> bool:
-        return _root(unit) == _root(self.unit)
+        """Whether a unit has this dimension; raises anything where there is no such unit."""
+        return root_of(unit) == root_of(self.unit)
 
-    def _unknown_unit(self, number: str, unit: str, error: pint.UndefinedUnitError) -> str:
-        name = error.unit_names if isinstance(error.unit_names, str) else next(iter(error.unit_names))
-        same = [usual for usual in _USUAL_UNITS if usual.lower() == name.lower()]
-        for usual in same + difflib.get_close_matches(name, _USUAL_UNITS):
-            near = unit.replace(name, usual)
-            with suppress(Exception):  # There may be a second unknown unit in it.
-                if self._fits(near):
-                    return f', but there is no unit "{name}"; did you mean "{number} {near}"?'
-        return f', but there is no unit "{name}"'
+    def _meant(self, text: str, unit: str) -> str:
+        """The question whether a unit that a text ends with, which is wrong, stands for another; "" for none."""
+        head = text.strip().removesuffix(unit).rstrip()
+        units = {Quantity(self.unit, "").parse(f"1 {meant}"): meant for meant in meant_units(unit, is_unit, self._fits)}
+        texts = [f"{head} {meant}" for meant in units.values()]
+        if not 1 <= len(texts) <= MAX_MEANT:
+            return self._converted(head, unit)
+        question = f"; did you mean {' or '.join(map(quoted, texts))}"
+        compound = len(texts) == 1 and re.search(r"[/^ ]", texts[0].removeprefix(f"{head} "))
+        if compound and _NUMBER_AND_UNIT.fullmatch(head) and float(head) != (value := self.parse(texts[0])):
+            question += f", which is {value:.6g} {self.unit}"
+        return question + "?"
+
+    def _converted(self, head: str, unit: str) -> str:
+        """What a number of a unit of another dimension is in this one, where that is beyond doubt."""
+        key = (self.unit, si_of(unit) if unit not in MULTIPLES.get(self.unit, {}) else unit)
+        match = _NUMBER_AND_UNIT.fullmatch(head)
+        if match is None or match["unit"]:
+            return ""
+        try:
+            number = float(match["number"])
+        except ValueError:  # as of "0_"
+            return ""
+        if key == ("Hz", "rad/s"):
+            turns = number * float(registry().Quantity(Decimal(1), unit).m_as("rad/s")) / (2 * math.pi)
+            return f'; in cycles that is "{turns:.10g} Hz"'
+        if key == ("Hz", "s") and number > 0:
+            return f'; the frequency of that period is "{1 / Quantity("s", "").parse(f"{head} {unit}"):.10g} Hz"'
+        if unit in MULTIPLES.get(self.unit, {}):
+            each, name = MULTIPLES[self.unit][unit]
+            return f'; did you mean "{number * each:.10g} {name}"?'
+        return ""
+
+    def _other_number(self, text: str) -> str:
+        """Why a text is no number and unit, and which one is meant."""
+        comma = re.search(r"\d,\d", text) is not None
+        meant = meant_number(text)
+        with suppress(ValueError):
+            if meant is not None and math.isfinite(self.parse(meant)):
+                return (
+                    f"; write decimals with a point: {quoted(meant)}" if comma else f"; did you mean {quoted(meant)}?"
+                )
+        return "; write decimals with a point and thousands without a comma" if comma else _NONSENSE
+
+    @property
+    def _none(self) -> str:
+        """How none of it is written, as it may be of what has a place, a way or a course."""
+        unit = self.example.split()[-1]
+        return f'; write "0 {unit}"' if self.unit in _MAY_BE_NONE else ""
+
+    def _in_si(self, value: float) -> str:
+        """How a number that seems to be in SI units is written: one that is very small or large."""
+        size = abs(value)
+        if self.unit == "rad" and 2 * math.pi < size < math.inf:
+            return f'; in degrees it is "{value:.10g} deg"'
+        seems = size >= 1 if self.unit in _SAME_ANYWAY else 0 < size <= _SMALL or size >= _LARGE
+        return f'; in SI units it is "{value:.10g} {self.unit}"' if seems and math.isfinite(value) else ""
 
     def refusal(self, value: object, reason: str = "") -> ValueError:
         """The error that says what a value must be, and that this one is not."""
@@ -182,6 +214,14 @@ def quoted(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+def number_and_unit(text: str) -> tuple[str, str]:
+    """The number and the unit of a quantity as text; raises ValueError where it is none."""
+    match = _NUMBER_AND_UNIT.fullmatch(text.strip())
+    if match is None:
+        raise ValueError(f"{quoted(text)} is not a number and a unit")
+    return match["number"], match["unit"].strip()
+
+
 def length_text(length: float, unit: str = "um") -> str:
     """Return a length in m as text in a unit of length."""
     return f"{length / Quantity('m', '150 um').convert('', '1', unit):g} {unit}"
@@ -206,22 +246,3 @@ def prefixed(unit: str) -> tuple[str, int]:
     prefix, name, power = match.groups() if match else ("", "", None)
     base = _PREFIXED_BASES.get(name + (f"^{power}" if power else ""), "")
     return base, _PREFIXES[prefix] * int(power or 1) - (3 if base == "kg" else 0)
-
-
-@cache
-def _registry() -> pint.UnitRegistry[Any]:
-    import pint
-
-    # Decimals, so that "100 um" gives the float 1e-4 itself and not a neighbour.
-    return pint.UnitRegistry(non_int_type=Decimal)
-
-
-def _root(unit: str) -> pint.Unit:
-    # Dimensions do not tell Hz from rad/s, and pint would turn 60 rpm into 6.28 Hz; root units differ.
-    return _registry().get_root_units(_registry().parse_units(unit))[1]
-
-
-def _dimension(unit: str) -> str:
-    """Return what a quantity in `unit` is called."""
-    root = _root(unit)
-    return next((name for si, name in DIMENSIONS.items() if _root(si) == root), f"a quantity in {root:~}")

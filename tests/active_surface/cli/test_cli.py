@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import reduce
 from pathlib import Path
 
 import pytest
@@ -72,7 +73,7 @@ def test_bad_case_exits_2_with_every_mistake_and_leaves_nothing(command, broken,
 
 @pytest.mark.parametrize("command", ["run", "check"])
 def test_an_interrupt_exits_130_with_one_line(command, tmp_path, monkeypatch):
-    def interrupted(path):
+    def interrupted(path, **_):
         raise KeyboardInterrupt
 
     monkeypatch.chdir(tmp_path)
@@ -122,7 +123,7 @@ def pressed(command, cache):
 def test_ctrl_c_ends_a_command_that_compiles(command, file, end, tmp_path):
     words = [command, EXAMPLES / file, "--output", tmp_path / "out"]
     line, code, output, errors, seconds = pressed(words, tmp_path / "cache")
-    assert line == "Compiling the kernels (once, some minutes)\n"
+    assert line == "Compiling what this case needs for the first time (once, up to some minutes)\n"
     assert (code, output, errors) == (130, "", end) and seconds < LATEST
     assert ctrl_c.PATIENCE + ctrl_c.EXIT < 3
     # No result; a sweep may have begun the folder from which it goes on.
@@ -195,6 +196,22 @@ def test_run_prints_the_summary_as_json(tmp_path):
     assert done.exit_code == 0
     assert json.loads(done.stdout)["outcome"] == "moving"
     assert len(list((tmp_path / "out").glob("*.vtkhdf"))) == 2
+
+
+@pytest.mark.compiled
+def test_run_writes_the_advised_case_which_moves(tmp_path):
+    file = tmp_path / "still.toml"
+    mends = {"0.6": "0.3", "thicknes ": "thickness ", "400 um": "0 um", "150": '"5 um"', "50 ms": "3 ms"}
+    text = reduce(lambda whole, pair: whole.replace(*pair), mends.items(), BROKEN)
+    file.write_text(f'{text}\n[friction]\nmodel = "coulomb"\ncoefficient = 0.2\nadhesion = "200 nN"\n')
+    new, arguments = tmp_path / "moving.toml", ["--output", str(tmp_path), "--json"]
+    done = CliRunner().invoke(main, ["run", str(file), "--advised", str(new), *arguments])
+    still = json.loads(done.stdout)
+    assert done.exit_code == 0 and still["distance"] == 0 and still["files"][-1] == str(new)
+    again = CliRunner().invoke(main, ["run", str(file), "--advised", str(new), *arguments])
+    assert again.exit_code == 2 and "must be a new file" in again.output
+    moved = json.loads(CliRunner().invoke(main, ["run", str(new), *arguments]).stdout)
+    assert moved["distance"] == pytest.approx(still["advice"]["trial"]["distance"], rel=1e-3)
 
 
 def test_help_loads_no_solver():

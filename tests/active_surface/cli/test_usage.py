@@ -32,7 +32,10 @@ MISUSES = [
     ),
     (["run", "x", "y"], "  y is one argument too many; the command is active-surface run [OPTIONS] CASE"),
     (["run", "x", "--ouput", "y"], "active-surface run: 1 mistake\n  --ouput is not known; did you mean --output?"),
-    (["run", "x", "--frob"], "  --frob is not known; active-surface run has --csv, --forces, --help, --json, --output"),
+    (
+        ["run", "x", "--frob"],
+        "  --frob is not known; active-surface run has --advised, --csv, --forces, --help, --json, --output",
+    ),
     (["run", "x", "-o"], "active-surface run: 1 mistake\n  -o must be followed by its value; got nothing"),
     (["sweep", "x", "-t", "0"], "  --threads must be a whole number of at least 1; got 0"),
     (["sweep", "x", "-t", "ab"], '  --threads must be a whole number of at least 1; got "ab"'),
@@ -144,7 +147,7 @@ def test_ctrl_c_that_python_drops_ends_a_command_all_the_same(after, monkeypatch
     assert threading.current_thread() is threading.main_thread()
     begun = time.monotonic()
 
-    def read(path):
+    def read(path, **_):
         victim = Pressed()
         del victim
         while time.monotonic() < begun + after:
@@ -173,7 +176,7 @@ def test_one_that_was_dropped_and_comes_again_where_nothing_must_be_broken_off_i
 
 @pytest.mark.parametrize(("cause", "ending"), [(KeyboardInterrupt(), 130), (OSError(), 1), (None, 1)])
 def test_ctrl_c_that_compiled_code_went_on_after_ends_a_command_as_any(cause, ending, monkeypatch):
-    def read(path):
+    def read(path, **_):
         raise SystemError("<built-in function> returned a result with an exception set") from cause
 
     monkeypatch.setattr("coupling.case.parse", read)
@@ -184,9 +187,13 @@ def test_ctrl_c_that_compiled_code_went_on_after_ends_a_command_as_any(cause, en
 @pytest.mark.parametrize(
     ("command", "file", "said"),
     [
-        ("run", "studies/frequency_stroke.toml", "CASE must be a case; got {}, whose table [study] is for"),
-        ("run", "aims/around_the_corner.toml", "CASE must be a case; got {}, whose table [aim] is for"),
-        ("sweep", "one_actuator.toml", "STUDY must be a study; got {}, whose table [plate] is for"),
+        (
+            "run",
+            "studies/frequency_stroke.toml",
+            "CASE must be a case; got {0}, a study; write active-surface sweep {0}",
+        ),
+        ("run", "aims/around_the_corner.toml", "CASE must be a case; got {0}, an aim; write active-surface aim {0}"),
+        ("sweep", "one_actuator.toml", "STUDY must be a study; got {0}, a case; write active-surface run {0}"),
     ],
 )
 def test_a_file_for_another_command_is_told_in_one_line(tmp_path, command, file, said):

@@ -12,10 +12,10 @@ from sweeps import PLATE
 from active_surface.cli.program import main
 from active_surface.steering import Settings, Task, aim
 from active_surface.steering.aiming import aim_over
+from active_surface.steering.disturbances import REPORTED, SEARCHED, Disturbance, deviations, draws
 from active_surface.steering.knobs import Knobs
-from active_surface.steering.objective import SAMPLES
-from active_surface.steering.paths import Disturbance, Paths, cost
-from active_surface.steering.scatter import REPORTED, SEARCHED, disturbances
+from active_surface.steering.objectives import SAMPLES
+from active_surface.steering.paths import Paths, cost
 from coupling import read_case
 from coupling.drives import build_drives
 from coupling.run import build_friction, build_surface, follow_part
@@ -96,7 +96,7 @@ def test_a_robust_aim_makes_the_quantile_small_that_is_asked_for(case, surface):
     surface = dataclasses.replace(surface, half_thickness=0.0)  # on the top face the plain aim happens to be as robust
     plain = aim_over(surface, Task(case, TARGET, Settings(tolerance=1e-6)))
     robust = aim_over(surface, Task(case, TARGET, Settings(tolerance=1e-6, quantile=0.9, paths=6000)))
-    ways = disturbances(SAMPLES, 2, 0, SEARCHED)
+    ways = draws(SAMPLES, deviations(case, None), 0, SEARCHED)
 
     def searched(found):
         paths = Paths(case, surface).of([(found.case.actuators, way) for way in ways])
@@ -109,10 +109,10 @@ def test_a_robust_aim_makes_the_quantile_small_that_is_asked_for(case, surface):
 @pytest.mark.compiled
 def test_the_scatter_is_of_disturbed_runs_of_the_found_case(case, surface):
     found = aim_over(surface, Task(case, TARGET, Settings(**QUICK)))
-    way = disturbances(7, 2, 0, REPORTED)[6]
+    way = draws(7, deviations(case, None), 0, REPORTED)[6]
     actuators = tuple(
         actuator.model_copy(update={"stroke": actuator.stroke * factor})
-        for actuator, factor in zip(found.case.actuators, way.strokes, strict=True)
+        for actuator, factor in zip(found.case.actuators, strokes_of(way), strict=True)
     )
     driven = surface.driven_by(build_drives(found.case.model_copy(update={"actuators": actuators})))
     x, y = case.part.position
@@ -122,11 +122,16 @@ def test_the_scatter_is_of_disturbed_runs_of_the_found_case(case, surface):
     assert found.scatter.distance[6] == np.hypot(*(end - TARGET))
 
 
-def test_disturbances_are_within_their_bounds_and_a_function_of_their_number():
-    many = disturbances(2000, 3, 5, REPORTED)
-    assert disturbances(10, 3, 5, REPORTED) == many[:10] != disturbances(10, 3, 5, SEARCHED)
+def strokes_of(way):
+    return [1 + change.amount for change in way.changes]
+
+
+def test_disturbances_are_within_their_bounds_and_a_function_of_their_number(case):
+    three = deviations(case.model_copy(update={"actuators": (case.actuators[0],) * 3}), None)
+    many = draws(2000, three, 5, REPORTED)
+    assert draws(10, three, 5, REPORTED) == many[:10] != draws(10, three, 5, SEARCHED)
     friction = np.array([way.friction for way in many])
-    strokes = np.array([way.strokes for way in many])
+    strokes = np.array([strokes_of(way) for way in many])
     shifts = np.hypot(*np.array([way.shift for way in many]).T)
     for factors in (friction, *strokes.T):
         assert 0.99 <= factors.min() < 0.9901 and 1.0099 < factors.max() <= 1.01

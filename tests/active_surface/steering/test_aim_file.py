@@ -36,9 +36,9 @@ def test_what_the_file_says_is_in_si_units(tmp_path):
     task = read_task(aim_file(tmp_path, lines))
     assert (task.target, task.movers, task.name, task.case.name) == ((1e-5, -2e-5), (1,), "aim", "base")
     assert (task.settings.frequency, task.settings.cycles, task.settings.seed) == ((100.0, 600.0), (2, 7), 3)
-    assert (task.settings.tolerance, task.settings.most) == (5e-7, 10_000)
+    assert (task.settings.tolerance, task.settings.max_paths) == (5e-7, 10_000)
     other = read_task(tmp_path / "aim.toml", (0.0, 5e-5), 0.9)
-    assert (other.target, other.settings.quantile, other.settings.most) == ((0.0, 5e-5), 0.9, 40_000)
+    assert (other.target, other.settings.quantile, other.settings.max_paths) == ((0.0, 5e-5), 0.9, 40_000)
 
 
 def test_a_case_file_is_aimed_as_it_is(tmp_path):

@@ -8,11 +8,15 @@ from click.testing import CliRunner
 from sweeps import PLATE
 
 from active_surface.cli.program import main
-from active_surface.studies.feasibility.area import find_feasible, places
+from active_surface.studies.feasibility import area
+from active_surface.studies.feasibility.area import Curves, find_feasible
 from active_surface.studies.feasibility.case import feasibility
-from active_surface.studies.feasibility.report import warnings
-from coupling import read_case, surface_motion
+from active_surface.studies.feasibility.pick import pick
+from active_surface.studies.feasibility.report import lines, warnings
+from active_surface.studies.feasibility.squares import squares_within
+from coupling import read_case, run_case, surface_motion
 from fem_plate.analytic import DiscShapes
+from meshes import quantity_text
 from particle import (
     ConstantFriction,
     CoulombAdhesion,
@@ -35,37 +39,72 @@ PART = Micropart(MASS, (0.0, 0.0))
 
 
 def radial(frequency, law):
-    """The feasible area of an up-down drive by rings: peak [m^2], integral [m^2 s] and the area that is lost."""
-    r = (np.arange(3000) + 0.5) / 3000
-    ring = 2 * np.pi * r * RADIUS**2 / 3000
+    """Areas of an up-down drive by rings: feasible, slipping and lost, at most [m^2] and over time [m^2 s]."""
+    r = (np.arange(800) + 0.5) / 800
+    ring = 2 * np.pi * r * RADIUS**2 / 800
     phi, slope = 1 - r**2 + 2 * r**2 * np.log(r), 4 * r * np.log(r) / RADIUS
     half = 0.5 / frequency
-    s = (np.arange(400) + 0.5) / 400
+    s = (np.arange(3000) + 0.5) / 3000
     rise, pull = 10 * s**3 - 15 * s**4 + 6 * s**5, 60 * s - 180 * s**2 + 120 * s**3
     h = STROKE * np.concatenate([rise, 1 - rise])[:, None]
     a = STROKE / half**2 * np.concatenate([pull, -pull])[:, None]
     b, g = GRAVITY + a * phi, h * slope
     load = MASS * b / np.sqrt(1 + g**2)
-    held = (load >= -law.pull_off) & (load <= law.largest_load)
-    limit = law.friction_limit(np.clip(load, -law.pull_off, law.largest_load))
+    held = (load >= -law.pull_off) & (load <= law.law.largest_load)
+    limit = law.law.static_ratio * law.friction_limit(np.clip(load, -law.pull_off, law.law.largest_load))
     slips = held & (MASS * np.abs(b * g) / np.sqrt(1 + g**2) > limit)
     lost = ~held.all(axis=0)
-    areas = (slips & ~lost) @ ring
-    return areas.max(), areas.mean() / frequency, lost @ ring
+    areas, every = (slips & ~lost) @ ring, slips @ ring
+    return areas.max(), areas.mean() / frequency, every.max(), every.mean() / frequency, lost @ ring
+
+
+LAWS = {
+    "kogut-etsion": KogutEtsion.paper(),
+    "coulomb": CoulombAdhesion(0.3, 5e-8, 0.36),
+    "constant": ConstantFriction(3e-8),
+}
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("frequency", [250.0, 1000.0])
-def test_areas_are_those_of_the_radial_integral(frequency):
-    law = KogutEtsion.paper()
+@pytest.mark.parametrize("name", LAWS)
+def test_areas_are_those_of_the_radial_integral(name):
+    """Also at eight times the frequency of moments that are chosen for it, where slips are much shorter."""
+    law, frequency, factors = LAWS[name], 250.0, np.array([1.0, 4.0, 8.0])
     surface = surface_motion(SHAPES, [Drive(STROKE, frequency)])
-    found = find_feasible(surface, SHAPES.outline, PART, law, 1 / frequency, np.ones(1), GRAVITY)
-    peak, integral, lost = radial(frequency, law)
-    assert found.feasible.peak[0] == pytest.approx(peak, rel=0.01)
-    assert found.feasible.integral[0] == pytest.approx(integral, rel=0.01)
-    assert found.lost_area[0] == pytest.approx(lost, rel=0.02, abs=1e-12)
-    assert (found.lost_area[0] > 0) == (frequency == 1000.0)
+    found = find_feasible(surface, SHAPES.outline, PART, law, 1 / frequency, factors, GRAVITY)
+    errors, most = found.errors, 2 * area.PER_STROKE * 2**area.MAX_HALVINGS
+    assert max(errors) <= 0.01 or (name == "coulomb" and found.count == most and max(errors) < 0.15)
+    truth = np.array([radial(factor * frequency, law) for factor in factors.tolist()]).T  # (5, F)
+    curves = np.array([*found.feasible, *found.slipping, found.lost_area])
+    # Of Coulomb's law a ring of 0.7 um stays at the rim at 2 kHz, which the errors state to a factor of two.
+    bound = np.maximum(0.01, [[2 * errors.squares]] * 2 + [[errors.moments], [0.01], [0.01]])
+    assert (np.abs(curves - truth) <= bound * np.maximum(truth, 0.05 * truth.max(axis=1, keepdims=True))).all()
+    assert (found.lost_area > 0).tolist() == [name == "coulomb", name != "constant", name != "constant"]
     assert [found.own.peak, found.own.integral] == [found.feasible.peak[0], found.feasible.integral[0]]
+
+
+@pytest.mark.compiled
+def test_areas_of_an_array_hold_against_twenty_times_the_moments(monkeypatch):
+    places = [(x, y) for x in (-1e-4, 1e-4) for y in (-8e-5, 8e-5)]
+    shapes = DiscShapes(places, RADIUS)
+    drives = [Drive(4e-5 - 5e-6 * k, 300.0 + 100.0 * (k % 2), delay=2e-4 * k) for k in range(4)]
+    surface = surface_motion(shapes, drives)
+
+    def find():
+        factors = np.array([1.0, 8.0])
+        return find_feasible(surface, shapes.outline, PART, LAWS["coulomb"], 6e-3, factors, GRAVITY, 24)
+
+    mine = find()
+    for name, value in (("PER_STROKE", 480), ("MAX_HALVINGS", 1), ("TOLERANCE", np.inf)):
+        monkeypatch.setattr(area, name, value)
+    fine = find()
+    assert fine.count == 480 * 6e-3 * 800 > 2 * mine.count
+    for curves in ("slipping", "feasible"):
+        for name in Curves._fields:
+            a, b = getattr(getattr(mine, curves), name), getattr(getattr(fine, curves), name)
+            place = mine.spacing**2 if name == "peak" else 0.0  # areas are whole squares
+            assert a == pytest.approx(b, rel=0.01, abs=0.005 * b.max() + place)
+    assert mine.lost_area == pytest.approx(fine.lost_area, rel=0.01)
 
 
 def drives_of(kind, speed):
@@ -88,7 +127,7 @@ def test_a_factor_is_a_drive_that_runs_so_much_faster(kind):
         found = find_feasible(surface, SHAPES.outline, PART, law, 1 / (200 * speed), np.array([factor]), GRAVITY, 40)
         assert found.factors.tolist() == [factor] and found.slipping.peak[0] > 0
         both.append([found.feasible.peak[0], found.feasible.integral[0], found.slipping.peak[0]])
-    assert both[0] == pytest.approx(both[1], rel=1e-9)
+    assert both[0] == pytest.approx(both[1], rel=0.01)  # moments are chosen for all factors together
 
 
 FIRST, SECOND = 'stroke = "60 um"\nfrequency = "400 Hz"\n', 'stroke = "60 um"\nfrequency = "300 Hz"\n'
@@ -112,7 +151,8 @@ def test_the_fastest_drive_is_one_that_moves_of_any_kind(tmp_path, drives, frequ
     found = feasibility(read_case(tmp_path / "base.toml"), across=10)
     assert found.frequency == pytest.approx(frequency) and found.areas.factors[0] == pytest.approx(0.25)
     assert found.whole_window == found.areas.window == pytest.approx(whole)
-    assert len(found.areas.moments) == pytest.approx(96 * frequency * whole, abs=1)
+    strokes = 2 * frequency * whole
+    assert found.areas.count / strokes == pytest.approx(24, rel=0.02) or found.areas.count / strokes > 47
 
 
 def test_drives_of_which_none_moves_are_refused(tmp_path):
@@ -170,28 +210,36 @@ def test_a_base_that_shakes_a_slope_lifts_the_part():
 def test_a_long_window_is_cut_and_the_rest_of_it_is_not_hidden():
     surface = surface_motion(SHAPES, [Drive(STROKE, 400.0)])
     found = find_feasible(surface, SHAPES.outline, PART, ConstantFriction(MASS), 1.0, np.ones(1), GRAVITY, 10)
-    assert found.window == pytest.approx(85 / 800) and len(found.moments) == 85 * 48
-    figures = {"window": found.window, "whole_window": 1.0}
+    assert found.window == pytest.approx(85 / 800) and found.count in [85 * 24 * 2**k for k in range(4)]
+    figures = {"window": found.window, "whole_window": 1.0, "areas_change_by": 0.0, "areas_differ_by_squares": 0.0}
+    figures |= {"duration": 1.0, "whole_duration": 1.0}
+    figures["map"] = {"frequencies": [], "lost_from": [], "all_lost_from": []}
     assert "first 106.2 ms" in warnings(figures)[0] and warnings(figures | {"whole_window": found.window}) == []
+    assert "Areas are good to 3 %" in warnings(figures | {"areas_differ_by_squares": 0.03})[1]
 
 
-def test_places_fill_the_plate():
-    points, side = places(SHAPES.outline, 100)
+def test_squares_fill_the_plate_and_know_their_neighbours():
+    points, side, neighbours = squares_within(SHAPES.outline, 100)
     assert len(points) * side**2 == pytest.approx(np.pi * RADIUS**2, rel=0.01)
     assert (np.hypot(*points.T) < RADIUS).all()
+    for k, step in enumerate(side * np.array([(-1, 0), (1, 0), (0, -1), (0, 1)])):
+        beside = np.hypot(*(points + step).T) < RADIUS
+        assert points[neighbours[beside, k]] == pytest.approx(points[beside] + step)
+        assert (neighbours[~beside, k] == np.flatnonzero(~beside)).all()
 
 
 @pytest.mark.compiled
 def test_command_writes_map_and_labelled_data(tmp_path):
     import xarray
 
-    options = ["--across", "24", "--lowest", "100 Hz", "--highest", "2 kHz", "--json", "--output", str(tmp_path)]
+    options = ["--lowest", "100 Hz", "--highest", "2 kHz", "--json", "--output", str(tmp_path)]
     done = CliRunner().invoke(main, ["feasibility", CASE, *options])
     assert done.exit_code == 0, done.output
     figures = json.loads(done.stdout)
     moves, loses = figures["moves_it_from_between"], figures["loses_it_from_between"]
     assert 100 < moves[0] < moves[1] < 300 < loses[0] < loses[1] < 2000
-    assert figures["frequencies"] == pytest.approx([100, 2000]) and figures["warnings"] == []
+    assert figures["frequencies"] == pytest.approx([100, 2000])
+    assert not any("Areas are good to" in warning for warning in figures["warnings"])
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "one_actuator.feasibility.nc", "one_actuator.feasibility.png",
     ]  # fmt: skip
@@ -214,6 +262,14 @@ def test_command_writes_map_and_labelled_data(tmp_path):
             "--lowest must be positive and below the highest, by default eight times the case's, 2.4 kHz",
         ),
         (["--across", "3"], "--across must be in [10, 1000]; got 3"),
+        (
+            ["--pick", "600Hz"],
+            '--pick must be "best", or a frequency and a stroke such as "2.4 kHz, 12 um"; got "600Hz"',
+        ),
+        (["--pick", "600um,80Hz"], '--pick must be a frequency such as "300 Hz"; got "600um", a length'),
+        (["--smallest", "5 Hz"], '--smallest must be a length such as "12 um"; got "5 Hz", a frequency'),
+        (["--smallest", "3 mm"], "--smallest must leave a range of strokes; got 3 mm to 2.4 mm"),
+        (["--largest", "1 nm"], "--largest must leave a range of strokes; got 146 nm to 1 nm"),
     ],
 )
 def test_command_refuses_what_makes_no_sense(tmp_path, options, said):
@@ -228,6 +284,33 @@ def test_only_the_frequencies_asked_for_are_in_the_curves():
     assert found.frequencies[[0, -1]] == pytest.approx([1000, 2000]) and len(found.frequencies) == 31
     assert found.figures()["moves_it_from_between"] == [None, pytest.approx(1000)]
     assert found.areas.own.integral > 0
+
+
+@pytest.mark.compiled
+def test_a_picked_case_moves_and_a_point_that_does_not_is_refused_with_its_borders(tmp_path):
+    found = feasibility(read_case(CASE), 600.0, 1200.0, 10, smallest=1e-6, largest=2e-3)
+    frequencies, slips, lost, _ = found.borders()
+    picked = pick(found, float(frequencies[0]), float(np.sqrt(slips[0] * lost[0])))
+    assert run_case(read_case(picked.write(tmp_path / "picked.toml"))).summary.path_length > 0
+    for stroke, what in ((0.9 * slips[0], "where it stays at rest"), (2e-3, "where it is lost after")):
+        with pytest.raises(ValueError, match=what) as refused:
+            pick(found, float(frequencies[0]), float(stroke))
+        assert f"it slips from {quantity_text(slips[0], 'm', 4)} and is lost from" in str(refused.value)
+
+
+@pytest.mark.compiled
+def test_where_nothing_moves_a_run_with_the_friction_stated_does():
+    """A law without pull-off that holds everything up to the largest stroke."""
+    case = read_case(CASE).vary({"friction": {"model": "constant", "limit": "2 uN"}})
+    found = feasibility(case, 200.0, 400.0, 10, smallest=1e-6, largest=1e-4)
+    remedy = found.remedy
+    assert found.own == "rest" and remedy is not None and remedy.share < 1
+    text = dict(lines(found.figures()))["would do"]
+    assert f"friction {remedy.friction:.3g} times as large" in text
+    weaker = found.at(remedy.frequency * found.frequency, remedy.friction_stroke * found.stroke)
+    limit = f"{2 * remedy.friction} uN"
+    summary = run_case(weaker.vary({"friction": {"model": "constant", "limit": limit}})).summary
+    assert summary.distance == pytest.approx(remedy.moved, rel=1e-6) and summary.distance > 0
 
 
 def test_a_platform_is_refused():

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray
 from click.testing import CliRunner
+from sweeps import DISC_PLATE
 
 from active_surface.cli.program import main
 from active_surface.cli.values import place_of
@@ -14,13 +15,9 @@ from active_surface.studies.response import response
 from active_surface.studies.response.picture import _wrapped
 from coupling import read_case
 
-CASE = """\
-[plate]
-shape = "disc"
-radius = "300 um"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
+CASE = (
+    DISC_PLATE
+    + """\
 density = "2330 kg/m^3"
 cell_size = "100 um"
 
@@ -44,6 +41,7 @@ limit = "10 nN"
 [run]
 duration = "0.1 ms"
 """
+)
 POINTS = ["200 um, 100 um", "-200um,100um"]
 TAB = {"blue": (31, 119, 180), "orange": (255, 127, 14), "green": (44, 160, 44), "red": (214, 39, 40)}
 

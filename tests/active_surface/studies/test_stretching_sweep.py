@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sweeps import written
+from sweeps import DISC_PLATE, written
 
 from active_surface.studies import read_study
 from active_surface.studies.engine import Engine
@@ -10,13 +10,9 @@ from coupling import build_drives, run_case, shared_surface
 
 pytestmark = pytest.mark.compiled
 
-CASE = """\
-[plate]
-shape = "disc"
-radius = "300 um"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
+CASE = (
+    DISC_PLATE
+    + """\
 cell_size = "75 um"
 theory = "von-karman"
 
@@ -36,6 +32,7 @@ limit = "2 nN"
 [run]
 duration = "2 ms"
 """
+)
 AXES = """\
 [[axes]]
 field = "actuators.0.stroke"
@@ -52,9 +49,9 @@ def engine(tmp_path_factory):
 
 
 def test_paths_are_those_of_single_runs(engine):
-    records = engine.records(0, 4)
+    records = engine.records(range(4))
     assert not records["mistakes"].any()
-    for k, values in enumerate(engine.study.points.values(0, 4)):
+    for k, values in enumerate(engine.study.points.values(range(4))):
         case = engine.variants.at(values)[0]
         path = run_case(case).trajectory
         assert path.path_length > 1e-7
@@ -63,9 +60,12 @@ def test_paths_are_those_of_single_runs(engine):
 
 
 def test_records_do_not_depend_on_the_chunk(engine):
-    together = engine.records(0, 4)
+    together = engine.records(range(4))
     other = Engine(engine.study, threads=1)
-    assert np.concatenate([other.records(2, 4), other.records(0, 2)])[[2, 3, 0, 1]].tobytes() == together.tobytes()
+    assert (
+        np.concatenate([other.records(range(2, 4)), other.records(range(2))])[[2, 3, 0, 1]].tobytes()
+        == together.tobytes()
+    )
 
 
 def test_the_plate_stretches(engine):
@@ -79,7 +79,7 @@ def test_the_plate_stretches(engine):
 def test_longer_runs_than_the_base_cases_are_followed(tmp_path):
     text = '[[axes]]\nfield = "run.duration"\nvalues = ["1 ms", "4 ms"]\n'
     engine = Engine(read_study(written(tmp_path, text, CASE.replace('"2000 Hz"', '"2000 Hz"\ncycles = 20'))))
-    records = engine.records(0, 2)
+    records = engine.records(range(2))
     longer = run_case(engine.variants.at((4e-3,))[0]).trajectory
     end = records["end_x"][1], records["end_y"][1]
     assert end == pytest.approx(longer.position[-1], abs=3e-4 * longer.path_length)

@@ -24,7 +24,7 @@ def test_axes_values_are_in_si_units(tmp_path):
     )
     assert study.points.dimensions == {"actuators.*.stroke": 2, "g": 3}
     assert [axis.values for axis in study.points.axes] == [(1e-5, 2e-5), (1.0, 5.0, 9.0)]
-    assert study.points.values(2, 4) == [(1e-5, 9.0), (2e-5, 1.0)]
+    assert study.points.values(range(2, 4)) == [(1e-5, 9.0), (2e-5, 1.0)]
     assert study.points.axes[0].field.locations == (("actuators", 0, "stroke"), ("actuators", 1, "stroke"))
     assert (study.name, study.case.name) == ("study", "base")
 

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from active_surface.studies import read_study
+from active_surface.studies.axis import spaced
 from active_surface.studies.dataset import slabs
 from active_surface.studies.variants import Variants
 from coupling import read_case
@@ -26,14 +27,14 @@ values = ["10 nN", "20 nN", "30 nN"]
 @pytest.mark.parametrize("sampling", ["random", "sobol"])
 def test_drawn_points_do_not_depend_on_how_many_are_asked_for(tmp_path, sampling):
     points = read_study(written(tmp_path, f'sampling = "{sampling}"\npoints = 77\nseed = 3\n{TWO}')).points
-    at_once = points.values(0, 77)
-    assert at_once == [points.values(k, k + 1)[0] for k in range(77)]
-    assert at_once == points.values(0, 5) + points.values(5, 40) + points.values(40, 77)
+    at_once = points.values(range(77))
+    assert at_once == [points.values([k])[0] for k in range(77)]
+    assert at_once == points.values(range(5)) + points.values(range(5, 40)) + points.values(range(40, 77))
     frequency, limit = np.array(at_once).T
     assert (frequency.min() >= 100) and (frequency.max() < 400) and abs(np.median(frequency) - 200) < 30
     assert sorted(set(limit)) == [1e-8, 2e-8, 3e-8]
     other = read_study(written(tmp_path, f'sampling = "{sampling}"\npoints = 77\nseed = 4\n{TWO}')).points
-    assert other.values(0, 77) != at_once
+    assert other.values(range(77)) != at_once
 
 
 def test_repeats_share_their_point_and_start_apart_within_the_jitter(tmp_path):
@@ -41,9 +42,9 @@ def test_repeats_share_their_point_and_start_apart_within_the_jitter(tmp_path):
         written(tmp_path, 'sampling = "random"\npoints = 40\nrepeats = 50\njitter = "2 um"\n' + TWO)
     ).points
     assert len(points) == 2000 and points.dimensions == {"point": 40, "repeat": 50}
-    assert points.values(49, 51) == [points.values(0, 1)[0], points.values(50, 51)[0]]
-    away = points.displacements(0, 2000)
-    assert np.array_equal(away[700:703], points.displacements(700, 703))
+    assert points.values(range(49, 51)) == [points.values(range(1))[0], points.values(range(50, 51))[0]]
+    away = points.displacements(range(2000))
+    assert np.array_equal(away[700:703], points.displacements(range(700, 703)))
     radii = np.hypot(*away.T)
     assert radii.max() < 2e-6 and abs((radii**2).mean() / 2e-12 - 1) < 0.1
     assert np.abs(away.mean(axis=0)).max() < 1e-7 and len(np.unique(away[:, 0])) == 2000
@@ -53,7 +54,15 @@ def test_a_list_goes_along_all_axes_at_once(tmp_path):
     listed = TWO.replace('"logarithmic"', '"logarithmic"\ncount = 3')
     points = read_study(written(tmp_path, f'sampling = "list"\n{listed}')).points
     assert points.dimensions == {"point": 3}
-    assert points.values(0, 3) == [(100.0, 1e-8), (pytest.approx(200.0), 2e-8), (400.0, 3e-8)]
+    assert points.values(range(3)) == [(100.0, 1e-8), (pytest.approx(200.0), 2e-8), (400.0, 3e-8)]
+
+
+@given(st.integers(2, 40), st.integers(2, 9), st.floats(1e-9, 1e9), st.floats(1e-9, 1e9), st.booleans())
+def test_equal_fractions_of_a_range_are_equal_to_the_last_bit(count, times, low, high, logarithmic):
+    few, many = (spaced(low, high, number, logarithmic) for number in (count, (count - 1) * times + 1))
+    assert many[::times] == few and (few[0], few[-1]) == (low, high)
+    space = np.geomspace if logarithmic else np.linspace
+    assert many == pytest.approx(space(low, high, len(many)).tolist(), rel=1e-12, abs=1e-12 * max(low, high))
 
 
 UNEVEN = LATTICE.replace('"100 um"', '["100 um", "9 um"]')
@@ -81,7 +90,7 @@ CHANGED = [
 @pytest.mark.parametrize(("text", "field", "value", "old", "new"), CHANGED, ids=lambda text: str(text)[:24])
 def test_the_case_at_a_point_is_that_of_a_file_with_its_values(tmp_path, text, field, value, old, new):
     study = read_study(written(tmp_path, f'[[axes]]\nfield = "{field}"\nvalues = [{value}]\n', text))
-    case, base = Variants(study.case, study.points.axes).at(study.points.values(0, 1)[0])
+    case, base = Variants(study.case, study.points.axes).at(study.points.values(range(1))[0])
     (tmp_path / "changed.toml").write_text(text.replace(old, new))
     expected = read_case(tmp_path / "changed.toml")
     assert case.model_dump(exclude={"name", "source"}) == expected.model_dump(exclude={"name", "source"})
@@ -100,7 +109,7 @@ def test_the_case_at_a_point_is_that_of_a_file_with_its_values(tmp_path, text, f
 def test_a_lattice_alone_is_made_anew_and_none_of_its_old_actuators_stay(tmp_path, field, value, old):
     alone = LATTICE[: LATTICE.index("[[actuators]]")] + LATTICE[LATTICE.index("[lattice]") :]
     study = read_study(written(tmp_path, f'[[axes]]\nfield = "lattice.{field}"\nvalues = [{value}]\n', alone))
-    (values,) = study.points.values(0, 1)
+    (values,) = study.points.values(range(1))
     (tmp_path / "same.toml").write_text(alone.replace(old, f"{field} = {value}"))
     assert (
         Variants(study.case, study.points.axes).at(values)[0].actuators == read_case(tmp_path / "same.toml").actuators
@@ -122,7 +131,7 @@ def test_points_with_the_same_plate_share_their_ground_and_others_do_not(tmp_pat
         )
     )
     variants = Variants(study.case, study.points.axes)
-    grounds = [variants.at(values)[1].ground for values in study.points.values(0, len(study.points))]
+    grounds = [variants.at(values)[1].ground for values in study.points.values(range(len(study.points)))]
     assert grounds == grounds[:1] * 6 + grounds[6:7] * 6 and len(set(grounds)) == 2
 
 
@@ -137,7 +146,7 @@ def test_a_contradiction_at_one_point_is_found_there(tmp_path):
         )
     )
     variants = Variants(study.case, study.points.axes)
-    for values in study.points.values(0, 4):
+    for values in study.points.values(range(4)):
         if values == (0.3, 0.2):
             with pytest.raises(ValidationError, match="must be at least coefficient"):
                 variants.at(values)

@@ -72,7 +72,7 @@ def test_a_platform_is_swept_in_memory_and_its_axes_are_labelled(tmp_path):
 def test_each_path_has_the_bits_of_a_run_of_a_file_with_its_values(tmp_path, text, axes, lines):
     study = read_study(written(tmp_path, axes, text))
     records = run_study(study).dataset
-    for k, values in enumerate(study.points.values(0, len(study.points))):
+    for k, values in enumerate(study.points.values(range(len(study.points)))):
         changed = text
         for value, (old, new) in zip(values, lines, strict=True):
             changed = changed.replace(old, new.format(value), 1)

@@ -47,18 +47,21 @@ def test_a_file_of_another_kind_is_not_replaced(tmp_path):
     assert (tmp_path / "study.nc").read_text() == "mine"
 
 
-def test_chunks_of_another_length_are_not_taken_for_others(tmp_path, monkeypatch):
-    """Nine paths in a chunk of six and one of three; after a stop in chunks of three."""
+def test_chunks_of_any_paths_are_used(tmp_path, monkeypatch):
     made = read_study(written(tmp_path, MASS, PLATFORM))
     expected = run_study(made).dataset["distance"].values
     assert len(set(expected)) == 9
-    whole = Engine(made).records(0, 9)
+    whole = Engine(made).records(range(9))
     store = ChunkStore(tmp_path / "out" / "study.sweep" / made.key[:16], made.key)
-    store.save(6, whole[6:])
-    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 3)
-    assert [store.load(*span) is not None for span in map(Engine(made).span, range(3))] == [False, False, True]
+    store.save(np.array([2, 6, 8]), whole[[2, 6, 8]])
+    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 4)
+    computed, records = [], Engine.records
+    monkeypatch.setattr(
+        Engine, "records", lambda self, numbers: computed.append(numbers.tolist()) or records(self, numbers)
+    )
     found = run_study(made, tmp_path / "out").dataset["distance"].values
     assert found.tobytes() == expected.tobytes()
+    assert computed == [[0, 1, 3, 4], [5, 7]]
 
 
 def test_results_of_other_sources_are_not_taken_for_those_of_these(tmp_path, monkeypatch):
@@ -82,9 +85,17 @@ def test_the_sources_are_hashed_with_their_places(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("text", "case", "said"),
     [
-        (MASS.replace("count = 9", "count = 8"), PLATFORM, "points"),
-        (MASS, PLATFORM.replace("20 nN", "30 nN"), "case"),
-        (MASS.replace("count = 9", "count = 8"), PLATFORM.replace("20 nN", "30 nN"), "case and points"),
+        (
+            MASS.replace("count = 9", "count = 8"),
+            PLATFORM,
+            "points, 7 of which are not in this study: --overwrite drops these and keeps the other 2 paths",
+        ),
+        (MASS, PLATFORM.replace("20 nN", "30 nN"), "case: --overwrite replaces it"),
+        (
+            MASS.replace("count = 9", "count = 8"),
+            PLATFORM.replace("20 nN", "30 nN"),
+            "case and points: --overwrite replaces it",
+        ),
     ],
 )
 def test_results_of_another_study_are_replaced_only_when_that_is_asked_for(tmp_path, text, case, said):
@@ -93,7 +104,7 @@ def test_results_of_another_study_are_replaced_only_when_that_is_asked_for(tmp_p
     path = written(tmp_path, text, case)
     command = ["sweep", str(path), "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(main, command)
-    assert done.exit_code == 2 and f"whose study.nc is of other {said}: --overwrite replaces it" in done.output
+    assert done.exit_code == 2 and f"whose study.nc is of other {said}" in done.output
     assert (tmp_path / "out" / "study.nc").read_bytes() == kept
     assert CliRunner().invoke(main, [*command, "--overwrite"]).exit_code == 0
     assert (tmp_path / "out" / "study.nc").read_bytes() != kept
@@ -184,7 +195,7 @@ def test_a_disk_that_is_full_while_chunks_are_kept_is_told(tmp_path, monkeypatch
     monkeypatch.setattr(Path, "write_bytes", full)
     store = ChunkStore(tmp_path / "chunks", "ab" * 32)
     with pytest.raises(OSError, match=f"^{tmp_path / 'chunks'}: No space left on device; finished chunks are kept"):
-        store.save(0, np.zeros(3))
+        store.save(np.arange(3), np.zeros(3))
     assert not list((tmp_path / "chunks").iterdir())
 
 

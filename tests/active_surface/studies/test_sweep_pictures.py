@@ -1,6 +1,7 @@
 """Pictures of sweeps: a map, a curve, points or basins, each with what it must show."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from active_surface.studies.dataset import read_dataset, write_dataset
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.pictures.heat import edges
 from active_surface.studies.pictures.map import compose, draw_sweep
+from active_surface.studies.pictures.scatter import CELLS, _draw_nearest
 from active_surface.studies.pictures.selection import Scale, Selection
 from active_surface.studies.record import OUTCOMES, new_records
 
@@ -219,3 +221,22 @@ def test_near_values_of_an_axis_are_told_apart(tmp_path):
     shown = Selection.of(Findings.of(study.name, dataset, study.threshold), "stroke", "limit")
     assert shown.fixed == {"frequency": "10.0005 kHz"}
     assert shown.axes[0].texts == ("20", "20.00001", "20.001", "30")
+
+
+def test_around_points_is_the_colour_of_the_nearest():
+    generator = np.random.default_rng(5)
+    places = np.stack([generator.uniform(1, 3, 60), np.exp(generator.uniform(0, 4, 60))], axis=1)
+    values = np.arange(60.0)
+    scales = [SimpleNamespace(logarithmic=False), SimpleNamespace(logarithmic=True)]
+    axes = Figure().subplots()
+    _draw_nearest(axes, scales, places, values, {})
+    mesh = axes.collections[0]
+    shown = np.asarray(mesh.get_array()).reshape(CELLS, CELLS)
+    corners = mesh.get_coordinates()
+    flat = np.stack([places[:, 0], np.log(places[:, 1])], axis=1)
+    sides = np.ptp(flat, axis=0)
+    for row, column in generator.integers(0, CELLS, (200, 2)):
+        x = corners[row, column : column + 2, 0].mean()
+        y = np.log(corners[row : row + 2, column, 1]).mean()
+        away = np.hypot(*((flat - [x, y]) / sides).T)
+        assert shown[row, column] == values[np.argmin(away)]

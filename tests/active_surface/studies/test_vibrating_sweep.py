@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sweeps import written
+from sweeps import DISC_PLATE, written
 
 from active_surface.studies import read_study
 from active_surface.studies.engine import Engine
@@ -12,13 +12,9 @@ from fem_plate import Plate
 
 pytestmark = pytest.mark.compiled
 
-CASE = """\
-[plate]
-shape = "disc"
-radius = "300 um"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
+CASE = (
+    DISC_PLATE
+    + """\
 density = "2330 kg/m^3"
 cell_size = "75 um"
 inertia = true
@@ -39,6 +35,7 @@ limit = "2 nN"
 [run]
 duration = "0.1 ms"
 """
+)
 AXES = """\
 [[axes]]
 field = "actuators.0.frequency"
@@ -64,7 +61,7 @@ def found(tmp_path_factory):
         patch.setattr(Plate, "influence", solved)
         patch.setattr(vibration, "Excitation", sought)
         engine = Engine(read_study(written(tmp_path_factory.mktemp("sweep"), AXES, CASE)))
-        records = np.concatenate([engine.records(0, 3), engine.records(3, 4)])
+        records = np.concatenate([engine.records(range(3)), engine.records(range(3, 4))])
     return engine, records, counts
 
 
@@ -77,7 +74,7 @@ def test_plate_and_modes_are_found_once(found):
 def test_paths_are_those_of_single_runs(found, k):
     """Which keep other modes each: to 1e-6 of the place at the end, and 1e-4 of the path."""
     engine, records, _ = found
-    path = run_case(engine.variants.at(engine.study.points.values(k, k + 1)[0])[0]).trajectory
+    path = run_case(engine.variants.at(engine.study.points.values([k])[0])[0]).trajectory
     end = np.array([records["end_x"][k], records["end_y"][k]])
     assert path.path_length > 5e-8
     assert end == pytest.approx(path.position[-1], rel=1e-6)

@@ -6,9 +6,9 @@ import pytest
 from sweeps import PLATE
 
 from active_surface.studies.axis import Axis
-from active_surface.studies.field import find_field
 from active_surface.studies.variants import Variants
 from coupling import read_case
+from coupling.case import find_field
 
 CASE = PLATE.replace('"400 Hz"', '"400 Hz"\ncycle = "sine"')
 CASE = CASE.replace('"300 Hz"', '"300 Hz"\ncycle = "cosine"\nphase = "20 deg"')

@@ -9,7 +9,7 @@ from made_runs import SIDE, grid, hill, made_run
 
 from active_surface.views.film.camera import CAMERAS, Camera, camera_of
 from active_surface.views.film.frames import frames_of
-from active_surface.views.film.layout import BOTTOM, LEFT, RIGHT, TOP, layout_of, size_of
+from active_surface.views.film.layout import BESIDE_AXIS, BOTTOM, LEFT, RIGHT, TOP, layout_of, size_of
 from active_surface.views.film.pace import MAX_FRAMES, MIN_FRAMES_PER_CYCLE, pace_of, warnings_of
 from active_surface.views.film.stage import stage_of
 from active_surface.views.lines import path_points
@@ -213,7 +213,8 @@ def test_the_surface_fills_its_part_of_the_picture_at_all_times(camera, size):
     seen = np.concatenate(
         [layout.pixels(layout.scene(stage.surface, f.heights["surface"])) for f in frames_of(stage, stage.run.time)]
     )
-    room = np.array([[LEFT, BOTTOM], [RIGHT, TOP]]) * size
+    left = BESIDE_AXIS if CAMERAS[camera].level else LEFT
+    room = np.array([[left, BOTTOM], [RIGHT, TOP]]) * size
     assert (seen >= room[0] - 0.5).all() and (seen <= room[1] + 0.5).all()
     assert (np.ptp(seen, axis=0) / np.ptp(room, axis=0)).max() > 0.9
 

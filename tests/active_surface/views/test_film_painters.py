@@ -18,7 +18,8 @@ from active_surface.views.film.offscreen import prepare
 from active_surface.views.film.pace import pace_of
 from active_surface.views.film.painter import chosen, painter
 from active_surface.views.film.stage import stage_of
-from particle import State
+from coupling.margins import MarginCurves
+from particle import Event, EventKind, State
 
 SIZE = (480, 270)
 PATH = np.stack([np.linspace(-3e-4, 3e-4, 5), np.zeros(5)], axis=1)
@@ -115,6 +116,22 @@ def test_the_words_of_a_film_are_there_and_follow_it(renderer):
     for one, other in zip(seen, seen[1:], strict=False):
         assert (one != other).any()
     assert (seen[0][SIZE[1] // 2, : SIZE[0] // 2] == 255).all()
+
+
+def test_a_lost_part_is_said_to_be_off_at_the_end_and_a_stuck_one_how_hard_it_is_pulled():
+    times = 1e-3 * np.arange(5)
+    lost = Event(EventKind.DETACHES, 4e-3, (0.0, 0.0), 0.0, 0.0)
+    curves = MarginCurves(times, np.array([0.2, 0.4, np.nan, np.nan, np.nan]), np.full(5, np.nan))
+    run = replace(hilly(state=[0, 0, 1, 1, 1]), events=[lost], summary={"outcome": "detached"}, margins=curves)
+    stage = stage_of(run)
+    words = Captions(stage, layout_of(stage, CAMERAS["side"], SIZE, 3.0), None)
+    blank, seen = np.full((SIZE[1], SIZE[0], 3), 255, np.uint8), []
+    for frame in frames_of(stage, np.array([0.5e-3, 3e-3, 4e-3])):
+        words.put_on(blank, frame)
+        seen.append(words._state.get_text())
+    assert seen == ["part stuck, pull 0.30 of what friction holds", "part slipping", "part came off"]
+    texts = [text.get_text() for text in words._figure.findobj(lambda artist: hasattr(artist, "get_text"))]
+    assert "height [µm] (×3)" in texts  # an axis, seen from the side
 
 
 def test_the_time_line_has_the_stretches_that_the_integrator_found():

@@ -10,12 +10,13 @@ from scipy.spatial import Delaunay
 from active_surface.cli.program import main
 from active_surface.views.pages.modes import SEEN, modes_of
 from active_surface.views.pages.packed import packed, packed_rows
-from active_surface.views.pages.page_file import notes_of, rows_of, write_page
+from active_surface.views.pages.page_file import notes_of, rows_of, trust_of, write_page
 from active_surface.views.pages.run_data import _around
 from active_surface.views.pages.sweep_paths import spread, thinned
 from active_surface.views.result_file import result_of
 from active_surface.views.rounding import exaggeration, round_above, round_below
 from active_surface.views.triangles import coarse, inside, outer_edges, spots_of
+from coupling.report import with_micro_signs
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 HALVES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -171,11 +172,31 @@ def test_texts_are_escaped():
     assert notes_of([]) == ""
 
 
+def test_trust_is_one_line_and_the_warnings():
+    assert "<strong>Trust: no warnings.</strong> It moves by 2 µm." in trust_of("it moves by 2 um", [])
+    warned = trust_of("it holds", ["<b> 3 uN", "more"])
+    assert "Trust: 2 warnings." in warned and "<li>&lt;b&gt; 3 µN</li>" in warned
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("(1, -2) um at 3 us", "(1, -2) µm at 3 µs"),
+        ("pull 1.5 uN of 2 ug", "pull 1.5 µN of 2 µg"),
+        ("30 um/s", "30 µm/s"),
+        ("8 unknowns, 3 units", "8 unknowns, 3 units"),
+        ("a minimum; the sum of 4", "a minimum; the sum of 4"),
+    ],
+)
+def test_pages_have_micro_signs(text, said):
+    assert with_micro_signs(text) == said
+
+
 def test_a_page_is_whole_or_not_there(tmp_path, monkeypatch):
     with pytest.raises(KeyError):  # a text is missing
         write_page(tmp_path / "page.html", "t", "run.html", {}, {}, ["run.js"])
     with pytest.raises(ValueError, match="JSON"):
-        texts = dict.fromkeys(("name", "sentence", "warnings", "rows", "case"), "")
+        texts = dict.fromkeys(("name", "device", "sentence", "trust", "rows", "case"), "")
         write_page(tmp_path / "page.html", "t", "run.html", texts, {"x": float("nan")}, ["run.js"])
     assert not list(tmp_path.iterdir())
 

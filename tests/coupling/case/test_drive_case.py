@@ -170,7 +170,7 @@ WRONG = [
         f"[actuators.segments]\n{CYCLE}[actuators.segments]\n{CYCLE}",
         "0 actuators.segments must be written [[actuators.segments]], in double brackets, once for each segment; got",
     ),
-    (SEGMENTS + "strok = 3", "19 segments[3].strok is not known; did you mean stroke?"),
+    (SEGMENTS + "strok = 3", "19 segments[3].strok is not known; stroke is given already; leave out one of the two"),
     (
         SEGMENTS + "colour = 3",
         "19 segments[3].colour is not known; [[actuators.segments]] has stroke, frequency, cycle,",

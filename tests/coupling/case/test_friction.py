@@ -8,7 +8,7 @@ from click.testing import CliRunner
 import particle
 from active_surface.cli.program import main
 from coupling.case import CaseError, KogutEtsionCase, TableCase, has_known_law, read_case
-from coupling.run import build_friction, friction_law
+from coupling.part import build_friction, friction_law
 
 EXAMPLE = (Path(__file__).parents[3] / "examples" / "one_actuator.toml").read_text()
 BEFORE, REST = EXAMPLE.split("[friction]")
@@ -111,7 +111,7 @@ MISSING = 'friction.loads is missing; it must be forces such as ["-1 uN", "0 N",
     "fields, says",
     [
         ("", [(0, MISSING)]),
-        ('load = ["-1 uN"]', [(2, "friction.load is not known; did you mean loads?")]),
+        ('load = ["-1 uN"]', [(2, 'friction.load is not known; write loads = ["-1 uN"]')]),
         (
             'limits = ["-1 uN", "0 N", "1 N"]',
             [(0, MISSING), (2, "friction.limits[0] must be 0 or positive; got -1e-06 N")],

@@ -47,7 +47,10 @@ def test_damping_is_a_ratio_or_pairs(tmp_path, written, damping):
         ('[["20 kHz"]]', f'must be {A_RATIO}; got [["20 kHz"]]'),
         ('[["80 kHz", 0.02], ["20 kHz", 0.01]]', 'must have increasing, positive frequencies; got "20 kHz"'),
         ('[["0 Hz", 0.02]]', 'must have increasing, positive frequencies; got "0 Hz"'),
-        ("[[20, 0.02]]", 'in each pair must be a frequency such as "300 Hz"; got 20, which has no unit'),
+        (
+            "[[20, 0.02]]",
+            'in each pair must be a frequency such as "300 Hz"; got 20, which has no unit; in SI units it is "20 Hz"',
+        ),
         ('[["20 kHz", 1.5]]', 'must have ratios from 0 to below 1; got 1.5 at "20 kHz"'),
     ],
 )
@@ -67,7 +70,7 @@ def test_wrong_damping_is_named(tmp_path, written, message):
             'density = "2330 kg/m^3"\ndamping = 0.1',
             ["plate.damping must not be given without inertia = true; a plate without mass does not vibrate"],
         ),
-        ('inertia = "yes"', ['plate.inertia must be true or false; got "yes"']),
+        ('inertia = "yes"', ['plate.inertia must be true or false; got "yes"; write true, without quotes']),
         (
             "inertia = true\ndamping = 2",
             [

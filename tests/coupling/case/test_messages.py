@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from active_surface.cli.program import main
 from coupling.case import CaseTables
-from coupling.case.schema import json_schema
+from coupling.case.writing.schema import json_schema
 
 ROOT = Path(__file__).parents[3]
 BROKEN = sorted((ROOT / "tests/broken").glob("*.toml"))

@@ -10,14 +10,17 @@ WRONG = [
     ),
     (
         {"shape": SHAPES["rectangle"] + '\nradius = "1 um"'},
-        'plate.radius is not known; [plate] with shape = "rectangle" has ',
+        'plate.radius is not known; it goes with shape = "disc" or shape = "polygon" and a radius',
     ),
     ({"shape": SHAPES["disc"].replace("radius", "raduis")}, "plate.raduis is not known; did you mean radius?"),
     (
         {"shape": SHAPES["annulus"].replace('"50 um"', '"200 um"')},
         "plate.outer_radius must exceed inner_radius, 200 um; got 200 um",
     ),
-    ({"shape": SHAPES["mesh"] + '\nradius = "1 um"'}, "plate.radius is not known; [plate] with a mesh has "),
+    (
+        {"shape": SHAPES["mesh"] + '\nradius = "1 um"'},
+        'plate.radius is not known; it goes with shape = "disc" or shape = "polygon" and a radius',
+    ),
     ({"shape": "mesh = 3"}, "plate.mesh must be text; got 3"),
     ({"shape": 'mesh = "nowhere.msh"'}, "plate.mesh "),
     ({"shape": 'shape = "polygon"\ncorners = 3'}, "plate.corners must be three points or more, such as "),
@@ -85,6 +88,10 @@ WRONG = [
     (
         {"shape": SHAPES["polygon"], "plate": 'theory = "linear"\nin_plane_supports = "immovable"'},
         'plate.in_plane_supports must not be given without theory = "von-karman"',
+    ),
+    (
+        {"shape": SHAPES["disc"], "plate": 'theory = "von-karman"\ntension = "400 N/m"'},
+        'plate.tension must be 0 with theory = "von-karman", whose mid-plane has no stress at rest; got 400 N/m',
     ),
     (
         {"shape": SHAPES["disc"], "plate": 'theory = "von-karman"\nin_plane_supports = "sliding"'},

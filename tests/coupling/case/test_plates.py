@@ -21,7 +21,7 @@ from coupling.case import (
     RectangleCase,
     RunCase,
 )
-from coupling.case.any_plate import PLATES
+from coupling.case.plates.any_plate import PLATES
 
 
 @pytest.mark.parametrize(

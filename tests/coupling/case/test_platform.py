@@ -96,7 +96,7 @@ def test_options_of_the_run(tmp_path):
 
 ONLY_X = "[plate.motion.x]\n"
 WRONG = [
-    ('radius = "3 um"', '3 plate.radius is not known; [plate] with shape = "platform" has shape, motion, smoothing'),
+    ('radius = "3 um"', '3 plate.radius is not known; it goes with shape = "disc" or shape = "polygon" and a radius'),
     ("motion = 3", "3 plate.motion must be a table, written [plate.motion]; got 3"),
     (
         'motion = "nowhere.csv"',
@@ -110,7 +110,7 @@ WRONG = [
         '3 plate.motion.x.stroke is missing; it must be a length such as "150 um", or have a',
     ),
     (ONLY_X + 'stroke = "1 um"', "3 plate.motion.x.frequency is missing"),
-    (ONLY_X + 'force = "1 N"', "4 plate.motion.x.force is not known; [plate.motion.x] has stroke, frequency, cycle"),
+    (ONLY_X + 'force = "1 N"', "4 plate.motion.x.force is not known; it belongs to [[actuators]]"),
     (ONLY_X + "colour = 3", "4 plate.motion.x.colour is not known; [plate.motion.x] has stroke"),
     (
         ONLY_X + 'stroke = "1 um"\ntable = [["0 s", "1 m"], ["1 s", "2 m"]]',
@@ -167,7 +167,6 @@ WRONG_FILES = [
         [
             "line 1 must give the unit of time, as in",
             'line 1 has a column "X [um]" that is not known; did you mean x?',
-            'line 1 has a column "q [um]" that is not known; there may be time, x, y, z',
             "line 1 must give z in a unit of length; got [s], a time",
         ],
     ),
@@ -175,9 +174,13 @@ WRONG_FILES = [
         "x [um], x [umm]\n",
         [
             "line 1 has two columns x",
-            'line 1 must give x in a unit of length; got [umm], but there is no unit "umm"; did you mean "um"?',
+            'line 1 must give x in a unit of length; got [umm], but there is no unit "umm"; did you mean "um" or "mm"?',
             "line 1 must have a column time, as in",
         ],
+    ),
+    (
+        HEADER.replace("z [mm]", "vy [m/s]") + ROWS,
+        ["must have a column y beside vy: positions say where the motion is"],
     ),
     ("time [ms]\n1\n", ["line 1 must have a column x, y or z, as in"]),
     (HEADER + "0, 0, 0\n1, 1, 1\n", ["must have at least 6 rows below its header; got 2"]),
@@ -219,6 +222,14 @@ def test_a_motion_must_last_as_long_as_the_run(tmp_path):
     assert problems(tmp_path, FILE) == [
         "11 run.duration must not exceed the measured motion's, 0.0035 s; got 0.004 s",
     ]
+
+
+def test_columns_of_other_names_are_ignored(tmp_path):
+    rows = "".join(f"{time}, -, {time**2}, {2 * time}, {2 * time}\n" for time in range(10))
+    (tmp_path / "shaker.csv").write_text("time [ms], note, x [um], vx [mm/s], temperature [K]\n" + rows)
+    motion, _ = read(tmp_path, FILE).plate.read_motion
+    assert motion.ignored == ("note", "temperature [K]") and set(motion.columns) == {"x", "vx"}
+    assert motion.columns["vx"][3] == pytest.approx(6e-3)
 
 
 def test_bytes_are_no_motion(tmp_path):

@@ -8,7 +8,7 @@ from sweeps import LATTICE, PLATE
 
 from coupling import read_case
 from coupling.case import Case
-from coupling.case.text import case_text, write_case
+from coupling.case.writing.text import case_text, write_case
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 FILES = [
@@ -21,6 +21,7 @@ model = "table"
 loads = ["-1 uN", "0 uN", "2.2 uN", "5 uN"]
 limits = ["4 nN", "18.7 nN", "35 nN", "52 nN"]
 """
+VIBRATES = 'density = "2330 kg/m^3"\ninertia = true\n'
 SEGMENTS = """\
 [[actuators]]
 position = ["0 um", "33.3 um"]
@@ -73,6 +74,10 @@ def test_every_example_comes_back(file, tmp_path):
         PLATE[: PLATE.index("[friction]")] + FRICTION + PLATE[PLATE.index("[run]") :],
         PLATE + 'gravity = ["0.1 m/s^2", "0 m/s^2", "-9.8 m/s^2"]\nafter_detachment = "fly"\ntolerance = 1e-7\n',
         PLATE.replace('radius = "300 um"', 'radius = "300 um"\nsupports = { rim = "simply-supported" }'),
+        PLATE.replace('radius = "300 um"', f'radius = "300 um"\n{VIBRATES}damping = 0.05'),
+        PLATE.replace(
+            'radius = "300 um"', f'radius = "300 um"\n{VIBRATES}damping = [["20 kHz", 0.02], ["80 kHz", 0.01]]'
+        ),
     ],
 )
 def test_every_kind_of_table_comes_back(text, tmp_path):

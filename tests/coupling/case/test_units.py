@@ -20,22 +20,22 @@ from coupling.case.values import units
         ('"20 degC"', ", a temperature"),
         ('"5 K*m"', ", a quantity in K * m"),
         ('"50 %"', ", a plain number"),
-        ('"150 umm"', ', but there is no unit "umm"; did you mean "150 um"?'),
+        ('"150 umm"', ', but there is no unit "umm"; did you mean "150 um" or "150 mm"?'),
         ('"150 UM"', ', but there is no unit "UM"; did you mean "150 um"?'),
         ('"5 frobs/umm"', ', but there is no unit "frobs"'),
         ('"150"', ", which has no unit"),
         ("150", ", which has no unit"),
-        ("0", ", which has no unit"),
+        ("0", ', which has no unit; write "0 um"'),
         ("nan", ", which has no unit"),
         ('"nan um"', ", which is not finite"),
         ('"-inf um"', ", which is not finite"),
         ('"1e999 um"', ", which is not finite"),
         ('"1e308 km"', ", which is not finite"),
-        ('"1,5 mm"', "; write decimals with a point"),
+        ('"1,5 mm"', '; write decimals with a point: "1.5 mm"'),
         ('""', ", which is not a number and a unit"),
         ('"um"', ", which is not a number and a unit"),
         ('"far away"', ", which is not a number and a unit"),
-        ('"\N{MINUS SIGN}5 um"', ", which is not a number and a unit"),
+        ('"\N{MINUS SIGN}5 um"', '; did you mean "-5 um"?'),
         ('"5 um; 3"', ", which is not a number and a unit"),
         ('"5 (um"', ", which is not a number and a unit"),
         ('"1/300 um"', ", which is not a number and a unit"),
@@ -51,7 +51,7 @@ def test_wrong_lengths(tmp_path: Path, value: str, reason: str) -> None:
 
 def test_an_angular_velocity_is_not_a_frequency(tmp_path: Path) -> None:
     (found,) = problems(tmp_path, changed(('"300 Hz"', '"60 rpm"')))
-    assert found.endswith('must be a frequency such as "300 Hz"; got "60 rpm", an angular velocity')
+    assert found.endswith('got "60 rpm", an angular velocity; in cycles that is "1 Hz"')
 
 
 @pytest.mark.parametrize(

@@ -212,7 +212,7 @@ def test_a_regular_polygon_is_a_plate(tmp_path, sides):
         ),
         (
             'sides = 6\nradius = "1 mm"\nwidth = "1 m"',
-            'plate.width is not known; [plate] with shape = "polygon" and a rad',
+            'plate.width is not known; it goes with shape = "rectangle"',
         ),
     ],
 )

@@ -14,6 +14,7 @@ from active_surface.cli.program import main
 from active_surface.cli.refusal import refusal_of
 from coupling import Case, read_run, run_case
 from coupling.case import CoulombCase, PartCase, RunCase
+from coupling.environment import versions
 
 CASE = Case(
     plate={"shape": "platform", "motion": {"x": {"stroke": 20e-6, "frequency": 400.0, "cycle": "sine"}}},
@@ -54,6 +55,13 @@ def summary_without(key):
     return change
 
 
+def advice_without_a_field(file):
+    attributes = file["active_surface"].attrs
+    summary = json.loads(attributes["summary"])
+    summary["advice"] = {"frequencies": [], "strokes": [], "trial": None}
+    attributes["summary"] = json.dumps(summary)
+
+
 def with_summary(text):
     return lambda file: file["active_surface"].attrs.modify("summary", text)
 
@@ -73,8 +81,11 @@ def chunk_that_cannot_be_read(file):
 DAMAGES = [
     ("part", summary_without("squeeze"), "which is damaged: the summary lacks squeeze, as that of another version may"),
     ("part", with_summary('{"some": 1}'), "which is damaged: the summary lacks "),
+    ("part", advice_without_a_field, "which is damaged: its advice lacks "),
     ("part", with_summary("text"), "which is damaged: Expecting value"),
-    ("part", lambda file: file.__delitem__("active_surface/events"), "which is damaged: "),
+    ("part", lambda file: file.__delitem__("active_surface/events"), "which is damaged: it has no events"),
+    ("part", lambda file: file.__delitem__("active_surface/margins"), "which is damaged: it has no margins"),
+    ("part", lambda file: file["active_surface"].attrs.__delitem__("units"), "which is damaged: it has no units"),
     ("part", lambda file: put(file, "active_surface/events/kind", [99]), "99 is not a valid EventKind"),
     ("part", lambda file: put(file, "VTKHDF/Points", np.zeros((3, 3))), "position has 3 of 11 steps"),
     ("part", lambda file: put(file, "VTKHDF/Points", np.full((11, 3), np.nan)), "position has a number that is not"),
@@ -110,6 +121,23 @@ def test_damage_is_told_before_anything_else(folder, kind, change, said):
         read_run(folder / "run")
     for command in READERS:
         assert said in refused(command, folder)
+
+
+def test_a_result_of_another_version_is_told_with_both(folder):
+    """In words of the program, not of HDF5; a result that this version can read is none of them."""
+
+    def older(file):
+        attributes = file["active_surface"].attrs
+        attributes["versions"] = json.dumps(json.loads(attributes["versions"]) | {"active-surface": "0.0.1+abc"})
+
+    damaged(folder, "part", older)
+    assert read_run(folder / "run").versions["active-surface"] == "0.0.1+abc"
+    damaged(folder, "part", lambda file: file.__delitem__("active_surface/margins"))
+    now = versions()["active-surface"]
+    wanted = f"which is damaged: it has no margins; version 0.0.1+abc wrote it, and this is {now}: run its case again"
+    for command in (*READERS, ["animate", "--format", "png"]):
+        told = refused(command, folder)
+        assert told.endswith(wanted) and "synchronously" not in told
 
 
 @pytest.mark.parametrize(

@@ -54,7 +54,7 @@ def test_a_run_says_how_many_modes_the_membrane_couples(tmp_path):
     assert 1 <= vibration.coupled < vibration.modes
     assert result.summary.theory == "von-karman" and result.summary.quasi_static_error is None
     assert not any("good to" in warning or "accurate to" in warning for warning in report.warnings(result.summary))
-    text = "\n".join(line for _, line in report.lines(result.summary))
+    text = "\n".join(line for _, line in report.lines(result.summary, verbose=True))
     assert f"the lowest {vibration.coupled} coupled by the membrane" in text
     assert result.summary.energy_balance < 1e-5
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from fem_plate import Plate, PlateSection
-from fem_plate.large_deflection import energy, reduce, reduced_equilibrium
-from fem_plate.large_deflection.equilibrium import Loads
-from fem_plate.large_deflection.full_solutions import FullSolutions
-from fem_plate.large_deflection.model_error import deflected, estimated_error, measured_error
-from fem_plate.large_deflection.projection import project
+from fem_plate import Excitation, Plate, PlateSection
+from fem_plate.large_deflection import HeldShapes, energy, mode_columns, reduce, reduced_equilibrium, with_modes
+from fem_plate.large_deflection.reduction.full_solutions import FullSolutions
+from fem_plate.large_deflection.reduction.model_error import deflected, estimated_error, measured_error
+from fem_plate.large_deflection.reduction.projection import project
+from fem_plate.large_deflection.solution.equilibrium import Loads
 from meshes import disc
 
 UNIT = PlateSection(youngs_modulus=12 * (1 - 0.3**2), poisson_ratio=0.3, thickness=1.0)
@@ -69,3 +69,26 @@ def test_a_start_does_not_change_a_solution(discrete):
     near = equilibrium.solve(Loads(STROKES[0], 0.0), equilibrium.solve(Loads(1.02 * STROKES[0], 0.0)).state)
     assert equilibrium.change(far.state.v - near.state.v, far.state.extra - near.state.extra) < 1e-8
     assert near.forces == pytest.approx(far.forces, rel=1e-8)
+
+
+def test_with_modes_the_plate_stretches_as_the_whole_plate_in_the_same_shape(discrete):
+    """Not only in equilibrium: for any strokes, swings of modes and corrections up to the amplitudes it is made for."""
+    reduction = reduce(discrete, STROKES, 1e-3)
+    shapes = HeldShapes(reduction, np.array(POINTS), np.full(len(POINTS), np.inf))
+    modes = mode_columns(discrete, shapes, Excitation(shapes, 1.0, UNIT.rigidity).modes())
+    modes = modes.weighted(np.eye(modes.v.shape[1])[:, :2])
+    amplitudes = STROKES.max(axis=0), np.array([0.5, 0.2]), np.full(reduction.corrections.v.shape[1], 0.05)
+    off = []
+    for least in (1e-4, 1e-6):
+        both = with_modes(reduction, modes, amplitudes, least)
+        largest = np.concatenate([amplitudes[1], np.full(both.corrections.v.shape[1] - 2, 0.02)])
+        generator, worst = np.random.default_rng(1), 0.0
+        for _ in range(8):
+            strokes, c = amplitudes[0] * generator.uniform(-1, 1, 2), largest * generator.uniform(-1, 1, len(largest))
+            linear, added = both.linear.weighted(strokes[:, None]), both.corrections.weighted(c[:, None])
+            whole = discrete.equilibrium.at((linear.v + added.v)[:, 0], (linear.extra + added.extra)[:, 0], 0.0)
+            stretching = energy(both.plate, c, strokes) - 0.5 * c @ both.plate.stiffness @ c
+            worst = max(worst, abs(stretching / whole.stretching - 1))
+        off.append(worst)
+    print("stretching energies differ by", " and ".join(f"{each:.1e}" for each in off))
+    assert off[0] < 1e-5 and off[1] < 1e-9

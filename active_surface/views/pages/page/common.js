@@ -39,15 +39,22 @@ function said(number, step = 0) {
   return number.toFixed(Math.min(15, Math.max(0, least, Math.min(4, 3 - order)))).replace("-", "−");
 }
 
-// A number for people, with as many decimals as others up to the largest have.
-function beside(number, largest) {
-  const decimals = largest > 0 ? Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(largest)))) : 0;
-  const text = number.toFixed(decimals);
-  return Number(text) === 0 ? (0).toFixed(decimals) : text.replace("-", "−");
+// As many decimals as the largest number of a kind needs for four digits.
+function decimalsOf(largest) {
+  return largest > 0 ? Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(largest)))) : 0;
 }
 
+// A number for people, with as many decimals as others up to the largest have.
+function beside(number, largest) {
+  const text = number.toFixed(decimalsOf(largest));
+  return Number(text) === 0 ? "0" : text.replace("-", "−");
+}
+
+// The same for Plotly, without zeros at the end: what is nothing beside the largest is 0.
+function besideFormat(largest) { return `.${decimalsOf(largest)}~f`; }
+
 function largest(...arrays) {
-  return Math.max(...arrays.map((array) => array.reduce((size, value) => Math.max(size, Math.abs(value)), 0)));
+  return Math.max(...arrays.map((array) => array.reduce((size, value) => Math.max(size, Math.abs(value) || 0), 0)));
 }
 
 // Plotly reads markup in labels; a text of the user's has none.

@@ -1,22 +1,25 @@
 // The page of a run: a slider over its steps, with the surface and the curves of surface.js and curves.js.
 
 const STATES = ["stuck", "slipping", "in flight"];
-const slider = element("step");
+const slider = element("step"), load = unpack(pageData.load.values), friction = unpack(pageData.friction.values);
 let playing = false, turn = 0, looking = false, drawing = null, wanted = null;
 
 function readOut(step) {
-  const clock = time[step].toFixed(decimals()), state = STATES[part.state[step]];
+  const here = pageData.events.find((event) => event.time === time[step]); // with its own digits
+  const clock = here ? here.when : time[step].toFixed(decimals());
+  const state = step === last && pageData.lost ? pageData.lost : STATES[part.state[step]];
   element("clock").textContent = `${clock} of ${said(time[last])} ${units.time}`;
   slider.setAttribute("aria-valuetext", `${clock} ${units.time}, ${state}`);
-  const [, [along, across], [load, friction]] = curves, [, velocity, force] = pageData.curves.map((panel) => panel.unit);
   const places = largest(part.x, part.y);
+  const latest = pageData.events.filter((event) => event.time <= time[step]).pop();
   describe(element("readout"), [
     ["state", state],
+    ...(pageData.events.length ? [["last event", latest ? [latest.text, latest.by].filter(Boolean).join("; ") : "none yet"]] : []),
     [`position x, y${pageData.counted}`, `${beside(part.x[step], places)}, ${beside(part.y[step], places)} ${units.length}`],
     ["height", `${beside(part.height[step], largest(part.height))} ${units.height}`],
-    ["speed", `${beside(Math.hypot(along[step], across[step]), largest(along, across))} ${velocity}`],
-    ["normal load", `${beside(load[step], largest(load, friction))} ${force}`],
-    ["friction", `${beside(friction[step], largest(load, friction))} ${force}`],
+    [pageData.counted ? "speed over the platform" : "speed in the plane", `${beside(part.speed[step], largest(part.speed))} ${units.speed}`],
+    ["normal load", `${beside(load[step], largest(load))} ${pageData.load.unit}`],
+    ["friction", `${beside(friction[step], largest(friction))} ${pageData.friction.unit}`],
   ]);
 }
 
@@ -51,7 +54,14 @@ async function draw() {
 // Plotly redraws with the camera of the layout, which it updates only when the mouse lets go.
 function keepCamera() {
   const plot = element("surface"), scene = plot._fullLayout?.scene, now = scene?._scene?.getCamera?.(); // none without WebGL
-  if (now && !looking) plot.layout.scene.camera = scene.camera = now;
+  if (!now || looking) return;
+  plot.layout.scene.camera = scene.camera = now;
+  const pressed = document.querySelector("[data-eye][aria-pressed=true]");
+  if (pressed && turned(now.eye, camera(pressed.dataset.eye).eye)) press(null); // its redrawing may hide that the mouse let go
+}
+
+function turned(eye, from) {
+  return Math.hypot(eye.x - from.x, eye.y - from.y, eye.z - from.z) > 0.01;
 }
 
 function play() {
@@ -59,15 +69,15 @@ function play() {
   element("play-sign").textContent = playing ? "❚❚" : "▶";
   element("play-word").textContent = playing ? "Pause" : "Play";
   if (!playing) return;
-  const from = shown < last ? shown : 0, mine = ++turn;
+  const from = time[shown < last ? shown : 0], mine = ++turn;
   let began = null; // by the clock of frames, which may lie before the click
   const next = async (now) => {
     if (!playing || mine !== turn) return; // paused, or played anew meanwhile
     began ??= now;
     const seconds = Number(element("pace").value);
-    const step = Math.min(last, from + Math.floor((now - began) / 1000 / seconds * last));
+    const step = stepBefore(from + (now - began) / 1000 / seconds * (time[last] - time[0]));
     try {
-      if (step !== shown || step === from) await show(step);
+      if (step !== shown || now === began) await show(step);
     } catch (error) {
       if (playing && mine === turn) play(); // the end of it
       throw error;
@@ -83,7 +93,8 @@ function caption() {
   const lines = [factor];
   if (!surface.whole && !closeBy) lines.push("Of the surface, only that around the path is shown, with fewer points where that is large.");
   if (surface.unmarked) lines.push(`${surface.unmarked} actuators, too many to be marked.`);
-  if (pageData.steps.shown < pageData.steps.stored) lines.push(`${pageData.steps.shown} of ${pageData.steps.stored} steps are shown.`);
+  const { shown: kept, stored, events } = pageData.steps;
+  if (kept < stored) lines.push(`The clock stops at ${kept} of the ${stored} moments that the run has stored, evenly spread${events ? ", and at the events" : ""}; the curves have all.`);
   element("surface-caption").textContent = lines.join(" ");
 }
 
@@ -94,7 +105,7 @@ function press(name) {
 async function look(name) {
   press(name);
   looking = true;
-  await Plotly.relayout("surface", { "scene.camera": camera(name) });
+  await Plotly.relayout("surface", { "scene.camera": camera(name), ...heightAxis(name === "side") });
   looking = false;
 }
 
@@ -129,7 +140,31 @@ function stepAt(moment) {
   return best;
 }
 
+// The last step up to a time.
+function stepBefore(moment) {
+  let step = 0;
+  while (step < last && time[step + 1] <= moment) step++;
+  return step;
+}
+
+// The events as rows; a click on one sets the clock.
+function listEvents() {
+  element("events-card").hidden = !pageData.events.length;
+  element("events").replaceChildren(...pageData.events.map((event) => {
+    const row = document.createElement("tr");
+    for (const text of [event.text, event.place, event.by]) {
+      const cell = document.createElement("td");
+      cell.textContent = text;
+      row.append(cell);
+    }
+    row.addEventListener("click", () => { if (playing) play(); show(stepAt(event.time)); });
+    return row;
+  }));
+  if (pageData.moreEvents) element("events-caption").textContent = `${pageData.moreEvents} later events are not listed.`;
+}
+
 slider.max = last;
+listEvents();
 element("exaggeration").value = exaggeration;
 element("play").disabled = last === 0;
 element("flights").hidden = !unpack(pageData.stretches.flying).length;
@@ -145,9 +180,9 @@ element("close-by").hidden = !pageData.window;
 element("close-by").addEventListener("click", () => come(!closeBy));
 element("exaggeration").addEventListener("change", exaggerate);
 for (const button of document.querySelectorAll("[data-eye]")) button.addEventListener("click", () => look(button.dataset.eye));
-Promise.all([drawSurface(), drawCurves()]).then(([scene, panels]) => {
+Promise.all([drawSurface(), drawCurves()]).then(([scene, charts]) => {
   scene.on("plotly_relayout", (change) => { if ("scene.camera" in change && !looking) press(null); });
-  panels.on("plotly_click", (event) => {
+  charts.on("plotly_click", (event) => {
     if (playing) play();
     show(stepAt(event.points[0].x));
   });

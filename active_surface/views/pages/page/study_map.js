@@ -71,7 +71,7 @@ function drawMap() {
   const upwards = isMap || (pageData.kind === "points" && axes.length > 1) ? axisLayout(axes[1])
     : { ...AXIS, title: { text: `distance from the start [${units.distance}]` }, rangemode: "tozero" };
   const layout = { font: FONT, margin: { l: 62, r: 10, t: 34, b: 48 }, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff", showlegend: false,
-    xaxis: axisLayout(axes[0]), yaxis: upwards, hovermode: "closest", dragmode: "zoom", uirevision: "kept" };
+    xaxis: axisLayout(axes[0]), yaxis: upwards, hovermode: "closest", hoverdistance: pageData.kind === "points" ? -1 : 20, dragmode: "zoom", uirevision: "kept" };
   return Plotly.react("map", [mainTrace(), mark, ...overMap()], layout, CONFIG);
 }
 
@@ -87,7 +87,8 @@ function overMap() {
   if (pageData.kind === "map" && paths.size < distance.filter(Number.isFinite).length) {
     const places = [...paths.keys()].map(placeOf), along = (n) => places.map((place) => axes[n].values[place[n]]);
     traces.push({ ...quiet, x: along(0), y: along(1), mode: "markers",
-      marker: { size: 5, color: "#ffffff", line: { color: "#000000", width: 1 } } });
+      marker: { size: Math.max(1.5, Math.min(5, 0.3 * 500 / Math.max(...axes.slice(0, 2).map((axis) => axis.values.length)))),
+        color: "#ffffff", line: { color: "#000000", width: 0.5 } } });
   }
   return traces;
 }

@@ -1,7 +1,7 @@
 // The surface of a run in three dimensions, with the part and its trail on it at the step that is shown.
 
 const surface = unpackSurface(pageData.surface);
-const part = Object.fromEntries(["x", "y", "z", "height", "state"].map((name) => [name, unpack(pageData.part[name])]));
+const part = Object.fromEntries(["x", "y", "z", "height", "speed", "state"].map((name) => [name, unpack(pageData.part[name])]));
 const trail = unpackSpots(pageData.trail);
 trail.step = unpack(pageData.trail.step);
 const below = unpackSpots(pageData.part.below); // the part, at every step
@@ -13,7 +13,7 @@ const SPACE = 1.55; // the longest diagonal that the cameras take in
 const EYES = {
   slanted: { eye: { x: 0.75, y: -1.15, z: 0.72 }, up: { x: 0, y: 0, z: 1 } },
   above: { eye: { x: 0, y: 0, z: 1.5 }, up: { x: 0, y: 1, z: 0 } },
-  side: { eye: { x: 0, y: -1.5, z: 0.1 }, up: { x: 0, y: 0, z: 1 } },
+  side: { eye: { x: 0, y: -1.5, z: 0 }, up: { x: 0, y: 0, z: 1 } },
 };
 const MESH = 0, LINES = 1, RIM = 2, ACTUATORS = 3, AHEAD = 4, TRAIL = 5, PART = 6;
 let closeBy = false, exaggeration = pageData.exaggeration[0], shown = 0;
@@ -26,7 +26,7 @@ function unpackSurface(packed) {
   const lines = packed.lines.map((some) => ({ ...unpackSpots(some), ends: unpack(some.ends) }));
   return {
     ...packed, lines, x: unpack(packed.x), y: unpack(packed.y), triangles: unpack(packed.triangles), rim: unpack(packed.rim),
-    actuators: unpack(packed.actuators), shapes: unpackRows(packed.shapes), amplitudes: unpack(packed.amplitudes),
+    actuators: unpack(packed.actuators), numbers: packed.numbers, shapes: unpackRows(packed.shapes), amplitudes: unpack(packed.amplitudes),
   };
 }
 
@@ -125,22 +125,23 @@ function changingAt(step) {
 function drawSurface() {
   const [low, high] = surface.range, now = changingAt(shown), thirds = [[], [], []];
   surface.triangles.forEach((corner, k) => thirds[k % 3].push(corner));
+  const flat = besideFormat(largest(surface.x, surface.y));
   const quiet = { type: "scatter3d", hoverinfo: "skip", showlegend: false };
   const traces = [
     {
       type: "mesh3d", x: now.x[MESH], y: now.y[MESH], z: now.z[MESH], i: thirds[0], j: thirds[1], k: thirds[2],
       intensity: now.z[MESH], cmin: low, cmax: high > low ? high : low + 1, colorscale: surface.colours, flatshading: false,
-      lighting: { ambient: 0.62, diffuse: 0.6, specular: 0.08, roughness: 0.9, fresnel: 0.05 },
+      lighting: { ambient: 0.88, diffuse: 0.2, specular: 0, roughness: 1, fresnel: 0 }, // little light, so that colours are those of the bar
       lightposition: { x: -2000, y: -4000, z: 6000 },
-      hovertemplate: `x %{x:.4g} ${units.length}<br>y %{y:.4g} ${units.length}<br>height %{z:.4g} ${units.height}<extra></extra>`,
+      hovertemplate: `x %{x:${flat}} ${units.length}<br>y %{y:${flat}} ${units.length}<br>height %{z:${besideFormat(largest(surface.extent))}} ${units.height}<extra></extra>`,
       showscale: high > low,
-      colorbar: { title: { text: `height [${units.height}]`, side: NARROW ? "top" : "right" }, outlinewidth: 0.5,
-        ...(NARROW ? { orientation: "h", thickness: 10, len: 0.8, y: -0.02 } : { thickness: 14, len: 0.7, x: 1.0 }) },
+      colorbar: { title: { text: `height [${units.height}]`, side: "top" }, outlinewidth: 0.5, orientation: "h", thickness: 10, len: 0.7, y: -0.02 },
     },
     { ...quiet, mode: "lines", x: now.x[LINES], y: now.y[LINES], z: now.z[LINES],
       line: { color: "rgba(29,39,51,0.28)", width: 1 } },
     { ...quiet, mode: "lines", x: now.x[RIM], y: now.y[RIM], z: now.z[RIM], line: { color: INK, width: 4 } },
-    { ...quiet, mode: "markers", x: now.x[ACTUATORS], y: now.y[ACTUATORS], z: now.z[ACTUATORS], name: "actuators",
+    { ...quiet, mode: surface.numbers.length ? "markers+text" : "markers", text: surface.numbers.map(String),
+      textposition: "top center", textfont: { size: 14, color: INK }, x: now.x[ACTUATORS], y: now.y[ACTUATORS], z: now.z[ACTUATORS], name: "actuators",
       showlegend: surface.actuators.length > 0,
       marker: { symbol: "diamond", size: surface.actuators.length > 100 ? 2.5 : surface.actuators.length > 30 ? 3.5 : 5, color: "#ffffff", line: { color: INK, width: 1.5 } } },
     { ...quiet, mode: "lines", x: now.x[AHEAD], y: now.y[AHEAD], z: now.z[AHEAD], name: "way ahead", showlegend: true,
@@ -151,13 +152,14 @@ function drawSurface() {
       marker: { size: 8, color: "#ffcc33", line: { color: "#000000", width: 2 } } },
   ];
   const axis = { showbackground: false, gridcolor: "#dfe5ea", zeroline: false, showspikes: false, nticks: 6, tickfont: { size: 11 } };
+  const title = (text) => ({ title: { text, font: { size: NARROW ? 11 : 13 } } });
   const layout = {
     font: FONT, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#f7f9fb", uirevision: "kept",
     legend: { orientation: "h", x: 0, y: 1, bgcolor: "rgba(0,0,0,0)", itemclick: false, itemdoubleclick: false },
     scene: {
-      xaxis: { ...axis, title: { text: `x [${units.length}]` } },
-      yaxis: { ...axis, title: { text: `y [${units.length}]` } },
-      zaxis: { ...axis, title: { text: "" }, showticklabels: false, nticks: 4, range: heightRange() }, // the bar tells heights
+      xaxis: { ...axis, ...title(`x [${units.length}]`) },
+      yaxis: { ...axis, ...title(`y [${units.length}]`) },
+      zaxis: { ...axis, ...title(""), showticklabels: false, nticks: 4, range: heightRange() }, // the bar tells heights
       bgcolor: "#f7f9fb", aspectmode: "manual", aspectratio: proportions(), camera: camera("slanted"), dragmode: "orbit",
     },
   };
@@ -165,8 +167,16 @@ function drawSurface() {
 }
 
 function camera(name) {
-  const { eye, up } = EYES[name], away = NARROW ? 1.3 : 1; // a narrow window sees less to its sides
-  return { eye: { x: away * eye.x, y: away * eye.y, z: away * eye.z }, up, center: { x: 0, y: 0, z: name === "slanted" ? -0.08 : 0 }, projection: { type: "perspective" } };
+  const { eye, up } = EYES[name], away = NARROW ? 1.75 : 1; // a narrow window sees less to its sides
+  return { eye: { x: away * eye.x, y: away * eye.y, z: away * eye.z }, up, center: { x: 0, y: 0, z: name === "slanted" ? -0.08 : 0 }, projection: { type: name === "slanted" ? "perspective" : "orthographic" } };
+}
+
+// Seen from the side, heights have an axis with numbers, and y, which is seen end on, has none; else the bar has these.
+function heightAxis(told) {
+  return {
+    "scene.zaxis.showticklabels": told, "scene.zaxis.title.text": told ? `height [${units.height}]` : "",
+    "scene.yaxis.showticklabels": !told, "scene.yaxis.title.text": told ? "" : `y [${units.length}]`,
+  };
 }
 
 // The heights that the axis shows: never nothing.

@@ -1,0 +1,118 @@
+"""The parameters of an identification: free fields of a case, with bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from active_surface.arrays import FloatArray
+from coupling.case import Case, Field, PartCase, find_field, plain_case, put_value, quoted
+
+FACTOR: Final = 10.0  # either way, of usual bounds
+FREE: Final = ("part", "friction")  # tables whose fields one moving surface serves
+PLACES: Final = ("part.position.", "part.velocity.")  # of which a factor says nothing
+
+Bounds = Mapping[str, Sequence[Any]]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A field between two bounds [SI]; its share of them is in logarithms where both are positive."""
+
+    field: Field
+    low: float
+    high: float
+
+    def value(self, share: float | FloatArray) -> Any:
+        """The value at a share of the bounds, from 0 to 1."""
+        if self.low > 0:
+            return self.low * (self.high / self.low) ** share
+        return self.low + (self.high - self.low) * share
+
+
+def free_parameters(case: Case, free: Sequence[str], bounds: Bounds) -> list[Parameter]:
+    """The parameters of a case; ValueError with every mistake in their paths and bounds."""
+    parameters: list[Parameter] = []
+    wrong = [("bounds", f"must be of free fields; got {path}") for path in bounds if path not in free]
+    wrong += [
+        ("free", f"must name each field once; got {path} twice") for path in sorted({*free}) if free.count(path) > 1
+    ]
+    if not free:
+        wrong.append(("free", "must name at least one field, such as friction.coefficient"))
+    for path in dict.fromkeys(free):
+        try:
+            field = _field(case, path)
+        except ValueError as error:
+            wrong.append(("free", str(error)))
+            continue
+        try:
+            parameters.append(_bounded(field, bounds.get(path)))
+        except ValueError as error:
+            wrong.append(("bounds", f"of {path} {error}"))
+    if wrong:
+        raise ValueError("\n".join(f"Input {name} of identify {mistake}" for name, mistake in wrong))
+    return parameters
+
+
+def _field(case: Case, path: str) -> Field:
+    field = find_field(case, None, path)
+    if field.locations[0][0] not in FREE:
+        raise ValueError(f"must be fields of [part] or [friction], which leave the surface as it is; got {path}")
+    if field.kind != "number":
+        raise ValueError(f"must be numbers; got {path}, a {field.kind}")
+    return field
+
+
+def _bounded(field: Field, given: Sequence[Any] | None) -> Parameter:
+    example = {"N": '"1 nN", "1 uN"', "m": '"0 um", "100 um"', "kg": '"1e-10 kg", "1e-8 kg"'}.get(
+        field.unit, "0.1, 0.9"
+    )
+    if given is None:
+        if field.path.startswith(PLACES) or not isinstance(field.base, (int, float)) or field.base <= 0:
+            has = "nothing" if field.base is None else f"{field.base:g}"
+            raise ValueError(f"must be given, such as {example}: no factor of what the case has, {has}, leads to any")
+        low, high = (_farthest(field, field.base, factor) for factor in (1 / FACTOR, FACTOR))
+    else:
+        if isinstance(given, str) or len(given) != 2:
+            raise ValueError(f"must be two values, such as {example}; got {quoted(given)}")
+        low, high = (_read(field, value) for value in given)
+    if not low < high:
+        raise ValueError(f"must increase; got {low:g} and {high:g} in SI units")
+    return Parameter(field, low, high)
+
+
+def _read(field: Field, value: Any) -> float:
+    if isinstance(value, str) and field.unit == "1":
+        try:
+            value = float(value)
+        except ValueError:
+            raise ValueError(f"must be two plain numbers; got {quoted(value)}") from None
+    read = field.read(value, in_si=not isinstance(value, str))
+    assert isinstance(read, (int, float))
+    return float(read)
+
+
+def _farthest(field: Field, base: float, factor: float) -> float:
+    """The value nearest to a factor times the base that the field may have."""
+    return next(value for share in np.linspace(1, 0, 21) if _allowed(field, value := float(base * factor**share)))
+
+
+def _allowed(field: Field, value: float) -> bool:
+    try:
+        field.read(value, in_si=True)
+    except ValueError:
+        return False
+    return True
+
+
+def case_with(case: Case, parameters: Sequence[Parameter], shares: FloatArray) -> Case:
+    """The case with parameters at shares (n,) of their bounds; ValueError where its tables contradict."""
+    tables: Any = {name: table for name, table in plain_case(case).items() if name in FREE}
+    for parameter, share in zip(parameters, shares, strict=True):
+        for location in parameter.field.locations:
+            tables = put_value(tables, location, float(parameter.value(share)))
+    part, friction = PartCase(**tables["part"]), type(case.friction)(**tables["friction"])
+    return case.model_copy(update={"part": part, "friction": friction, "source": None})

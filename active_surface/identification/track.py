@@ -1,0 +1,100 @@
+"""Track: measured positions of a part over time."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from active_surface.arrays import FloatArray
+from coupling.case import AXES, Quantity, read_columns, unreadable
+
+LENGTH: Final = Quantity("m", "150 um")
+QUANTITIES: Final = {"time": Quantity("s", "50 ms"), "x": LENGTH, "y": LENGTH}
+HEADER: Final = "time [ms], x [um], y [um]"
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Where a part was at k times, as its case counts places: on the plate, or from the platform.
+
+    Parameters
+    ----------
+    time : (k,) array
+        Times of the run, increasing, s.
+    position : (k, 2) array
+        Places, m; nan where x or y was not measured.
+
+    Raises
+    ------
+    ValueError
+        The arrays are no track; names each mistake.
+    """
+
+    time: FloatArray
+    position: FloatArray
+
+    def __post_init__(self) -> None:
+        time, position = np.asarray(self.time, dtype=float), np.asarray(self.position, dtype=float)
+        object.__setattr__(self, "time", time)
+        object.__setattr__(self, "position", position)
+        if wrong := list(_mistakes(time, position)):
+            raise ValueError("\n".join(f"Input {name} of Track {mistake}" for name, mistake in wrong))
+
+
+def _mistakes(time: FloatArray, position: FloatArray) -> Iterator[tuple[str, str]]:
+    """Yield which array is wrong, and why."""
+    if time.ndim != 1 or not len(time):
+        yield "time", f"must have shape (k,); got {time.shape}"
+        return
+    if not (np.isfinite(time).all() and time[0] >= 0 and (np.diff(time) > 0).all()):
+        yield "time", "must be finite, 0 or later, and increase"
+    if position.shape != (len(time), 2):
+        yield "position", f"must have shape ({len(time)}, 2); got {position.shape}"
+    elif np.isinf(position).any() or np.isnan(position).all():
+        yield "position", "must have finite numbers, nan where a place was not measured"
+
+
+def read_track(path: str | os.PathLike[str]) -> Track:
+    """The track in a CSV file whose header names time, x and y with their units; x or y may be left out.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Returns
+    -------
+    track : Track
+        Its rows, in SI units.
+
+    Raises
+    ------
+    ValueError
+        The file cannot be read; names every mistake with its line.
+    """
+    file = Path(path)
+    try:
+        read = read_columns(file, QUANTITIES, (["time"], AXES[:2]), HEADER)
+    except (OSError, ValueError) as error:
+        raise ValueError(f"Input track of identify {unreadable(str(file), error)}") from None
+    mistakes = read.mistakes
+    if not mistakes:
+        times = read.columns["time"]
+        mistakes = [
+            f"line {read.lines[k]} must have a later time than the row before; got {times[k]:g} s"
+            for k in range(1, len(times))
+            if times[k] <= times[k - 1]
+        ]
+        if not times:
+            mistakes = ["must have rows below its header; got none"]
+        elif times[0] < 0:
+            mistakes.append(f"line {read.lines[0]} must have a time of 0 or later; got {times[0]:g} s")
+    if mistakes:
+        raise ValueError("\n".join(f"Input track of identify in {file.name}: {mistake}" for mistake in mistakes[:10]))
+    missing = (np.nan,) * len(times)
+    return Track(np.array(times), np.array([read.columns.get(axis, missing) for axis in AXES[:2]]).T)

@@ -1,0 +1,240 @@
+"""Disturbances: how runs deviate from their case, field by field."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from coupling.case import ActuatorCase, Case, Location, Quantity, SegmentCase, Table, find_field, lattice_of, quoted
+
+FRICTION: Final = "friction"  # as a whole, which no field of a case is
+START: Final = "part.position"
+DEFAULTS: Final[Mapping[str, str]] = {FRICTION: "1 %", START: "1 um", "actuators.*.stroke": "1 %"}
+DEFAULT_TEXT: Final = "friction and strokes up to 1 %, starts up to 1 um off"
+OF_PLATE: Final = ("position", "stiffness")
+SEARCHED, REPORTED = 0, 1  # independent streams of random numbers
+
+
+class Deviation(NamedTuple):
+    """By how much a field deviates at most; each of its locations does so by itself."""
+
+    path: str
+    locations: tuple[Location, ...]
+    size: float  # in SI units, or a share of the value
+    is_relative: bool
+    reader: TypeAdapter[Any] | None = None
+
+
+class Change(NamedTuple):
+    """What becomes of the value at a location: the other way where it is not valid then."""
+
+    location: Location
+    amount: float
+    is_relative: bool
+    reader: TypeAdapter[Any] | None
+
+    def of(self, value: float) -> float:
+        """The changed value; one that the field cannot have is changed the other way, or not at all."""
+        for amount in (self.amount, -self.amount):
+            changed = value * (1 + amount) if self.is_relative else value + amount
+            if self.reader is None or _is_valid(self.reader, changed):
+                return changed
+        return value
+
+
+class Disturbance(NamedTuple):
+    """How a run differs from its case."""
+
+    friction: float = 1.0  # factor of the law as a whole
+    shift: tuple[float, float] = (0.0, 0.0)  # m, of the start
+    changes: tuple[Change, ...] = ()
+
+
+def deviations(case: Case, sizes: Mapping[str, object] | None) -> tuple[Deviation, ...]:
+    """The deviations of a case: of fields by their paths, `friction` and `part.position` among them.
+
+    sizes: texts such as "2 %" or "1 um"; None: those of DEFAULTS.
+
+    Raises ValueError with every wrong path and size.
+    """
+    found, wrong = [], []
+    for path, size in (DEFAULTS if sizes is None else sizes).items():
+        try:
+            found.append(_deviation(case, path, size))
+        except ValueError as error:
+            wrong.append(f"{path} {error}")
+    if wrong:
+        raise ValueError("\n".join(wrong))
+    first = (FRICTION, START)
+    return tuple(sorted(found, key=lambda one: first.index(one.path) if one.path in first else len(first)))
+
+
+def _deviation(case: Case, path: str, size: object) -> Deviation:
+    if path == FRICTION:
+        amount, is_relative = _size(size, "")
+        return Deviation(path, (), amount, is_relative)
+    if path == START:
+        amount, is_relative = _size(size, "m")
+        if is_relative:
+            raise ValueError(f'must be a length such as "1 um", of which nothing is a share; got {quoted(size)}')
+        return Deviation(path, (), amount, False)
+    field = find_field(case, lattice_of(case)[0], path)
+    head = field.locations[0]
+    if head[0] not in ("part", "friction", "actuators") or (head[0] == "actuators" and head[2] in OF_PLATE):
+        raise ValueError(
+            "must be a field of the part, the friction or what drives an actuator; "
+            f"got {path}, which a sweep can vary: it changes more than the path"
+        )
+    if field.kind != "number":
+        raise ValueError(f"must be a field that is a number; got {path}, which is a {_KINDS[field.kind]}")
+    if not any(_has_value(case, location) for location in field.locations):
+        raise ValueError(f"must be a field that the case has a value of; got {path}, which is not given")
+    amount, is_relative = _size(size, field.unit)
+    return Deviation(path, field.locations, amount, is_relative, field.reader)
+
+
+_KINDS: Final = {"whole": "whole number", "text": "text"}
+_PERCENT: Final = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*%\s*")
+_EXAMPLES: Final = {
+    "m": "1 um",
+    "s": "5 us",
+    "Hz": "2 Hz",
+    "kg": "1e-10 kg",
+    "N": "1 nN",
+    "rad": "1 deg",
+    "m/s": "1 mm/s",
+}
+
+
+def _size(size: object, unit: str) -> tuple[float, bool]:
+    """The largest deviation in a text, in SI units or as a share of the value; whether it is a share.
+
+    unit: of the field in SI; "": only a share will do, "1": a plain number.
+    """
+    expected = 'a share such as "2 %"'
+    if unit:
+        expected += f", or {_EXAMPLES[unit]!r} and the like".replace("'", '"') if unit in _EXAMPLES else ", or a number"
+    percent = _PERCENT.fullmatch(size) if isinstance(size, str) else None
+    try:
+        if percent:
+            amount = float(percent[1]) / 100
+        elif unit == "1" and isinstance(size, (int, float)) and not isinstance(size, bool):
+            amount = float(size)
+        elif unit not in ("", "1") and isinstance(size, str):
+            amount = Quantity(unit, _EXAMPLES.get(unit, f"1 {unit}")).parse(size)
+        else:
+            raise ValueError
+    except ValueError:
+        raise ValueError(f"must deviate by {expected}; got {quoted(size)}") from None
+    if not amount >= 0 or not math.isfinite(amount) or (percent and amount >= 1):
+        raise ValueError(
+            f"must deviate by 0 or more{', and by less than 100 %' if percent else ''}; got {quoted(size)}"
+        )
+    return amount, bool(percent)
+
+
+def draws(count: int, deviating: Sequence[Deviation], seed: int, stream: int) -> list[Disturbance]:
+    """Disturbances, each a function of seed, stream and its number alone.
+
+    All are independent and uniform: up to their sizes above and below the values, the start on a disc around its place.
+    """
+    numbers = sum(2 if one.path == START else max(1, len(one.locations)) for one in deviating)
+    return [_drawn(np.random.default_rng((seed, stream, k)).random(numbers).tolist(), deviating) for k in range(count)]
+
+
+def _drawn(uniform: Sequence[float], deviating: Sequence[Deviation]) -> Disturbance:
+    numbers = iter(uniform)
+    friction, shift = 1.0, (0.0, 0.0)
+    changes: list[Change] = []
+    for one in deviating:
+        if one.path == FRICTION:
+            friction = 1 + one.size * (2 * next(numbers) - 1)
+        elif one.path == START:
+            radius, angle = one.size * math.sqrt(next(numbers)), 2 * math.pi * next(numbers)
+            shift = radius * math.cos(angle), radius * math.sin(angle)
+        else:
+            changes += [
+                Change(location, one.size * (2 * next(numbers) - 1), one.is_relative, one.reader)
+                for location in one.locations
+            ]
+    return Disturbance(friction, shift, tuple(changes))
+
+
+def disturbed(case: Case, changes: Sequence[Change]) -> Case:
+    """A case with changed values in its part, its friction and its drives; those of segments with their actuator's."""
+    actuators, updates = list(case.actuators), dict[str, Any]()
+    for change in changes:
+        head, *keys = change.location
+        if head == "actuators":
+            actuators[int(keys[0])] = _driven(actuators[int(keys[0])], keys[1:], change)
+        else:
+            updates[str(head)] = _changed(updates.get(str(head), getattr(case, str(head))), keys, change)
+    return case.model_copy(update={**updates, "actuators": tuple(actuators), "source": None})
+
+
+def _driven(actuator: ActuatorCase, keys: Sequence[Any], change: Change) -> ActuatorCase:
+    if len(keys) == 1 and actuator.segments is not None and keys[0] in SegmentCase.model_fields:
+        return actuator.model_copy(
+            update={"segments": tuple(_changed(segment, keys, change) for segment in actuator.segments)}
+        )
+    changed: ActuatorCase = _changed(actuator, keys, change)
+    return changed
+
+
+def _changed(value: Any, keys: Sequence[Any], change: Change) -> Any:
+    """The same with the value at some keys changed; one that is absent, or a stroke of 0, which rests, stays."""
+    if not keys:
+        return value if value is None else change.of(value)
+    key, *rest = keys
+    if isinstance(value, Table):
+        if (key == "stroke" and not getattr(value, key)) or (key == "dwell" and getattr(value, "cycle", "") == "hold"):
+            return value
+        return value.model_copy(update={key: _changed(getattr(value, key), rest, change)})
+    return (*value[: int(key)], _changed(value[int(key)], rest, change), *value[int(key) + 1 :])
+
+
+def stroke_room(deviating: Sequence[Deviation], actuator: int, largest: float) -> float:
+    """The largest factor by which deviations make a stroke of up to `largest` [m] longer."""
+    factor = 1.0
+    for one in deviating:
+        if ("actuators", actuator, "stroke") in one.locations:
+            factor *= 1 + (one.size if one.is_relative else one.size / largest if largest else 0.0)
+    return factor
+
+
+def disturbance_text(sizes: Mapping[str, object] | None) -> str:
+    """The deviations in words."""
+    if sizes is None:
+        return DEFAULT_TEXT
+    return ", ".join(f"{path} up to {size}" for path, size in sizes.items()) or "no disturbances"
+
+
+def _has_value(case: Case, location: Location) -> bool:
+    """Whether a case has a value at a location, or its actuator has segments that have one."""
+    value: Any = case
+    for key in location:
+        owner, value = value, getattr(value, key) if isinstance(key, str) else value[key]
+    in_segments = isinstance(owner, ActuatorCase) and owner.segments is not None
+    return value is not None or (in_segments and location[-1] in SegmentCase.model_fields)
+
+
+def _is_valid(reader: TypeAdapter[Any], value: float) -> bool:
+    try:
+        reader.validate_python(value)
+    except ValidationError:
+        return False
+    return True
+
+
+def flattened(tables: Mapping[str, object], path: str = "") -> Iterator[tuple[str, object]]:
+    """Yield each path in nested tables with its value: part.mass and "part.mass" are the same."""
+    for key, value in tables.items():
+        if isinstance(value, Mapping):
+            yield from flattened(value, f"{path}{key}.")
+        else:
+            yield f"{path}{key}", value

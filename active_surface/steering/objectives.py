@@ -1,0 +1,169 @@
+"""Objective: how far from the target each of many settings of the knobs brings the part."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from active_surface.arrays import FloatArray
+from active_surface.steering.disturbances import SEARCHED, Disturbance, deviations, draws
+from active_surface.steering.knobs import Knobs
+from active_surface.steering.paths import Paths, cost
+from active_surface.steering.scatter import conditional_value_at_risk
+from active_surface.steering.stages import prepared
+from active_surface.steering.task import Task
+from coupling import ProgressCallback
+from coupling.case import Case
+
+SAMPLES = 16  # disturbed runs of each trial, if a quantile or CVaR is minimised
+
+
+def objective(task: Task, threads: int | None = None) -> Objective:
+    """The distance from a task's target as a function of its knobs, for optimisers of other libraries.
+
+    The plate is solved once, here; each call follows one path for each setting of the knobs, or 16 disturbed ones where
+    the settings have a quantile or CVaR.
+
+    Parameters
+    ----------
+    task : Task
+        The case, its target and what may be varied.
+    threads : int, optional
+        Number of paths at a time, by default one on each processor; the values are the same for any.
+
+    Returns
+    -------
+    objective : Objective
+        Callable with an array (n, knobs); returns the distances (n,), m.
+
+    Raises
+    ------
+    ValueError
+        The case cannot be run.
+    """
+    knobs = Knobs(task.case, task.settings, task.movers, wide=True)
+    paths = Paths(task.case, prepared(task.case, task.settings), threads)
+    return Objective(task, knobs, paths, task.settings.is_robust)
+
+
+class Objective:
+    """The distance from a task's target as a function of its knobs: what `aim` minimises.
+
+    Call it with settings (n, knobs) for distances (n,) in m. A part that has not come to rest for good counts as
+    farther off than it is, and one that is lost as farther than any other. Equal settings give equal distances.
+    """
+
+    def __init__(self, task: Task, knobs: Knobs, paths: Paths, is_robust: bool = False) -> None:
+        self._task, self._knobs, self._paths = task, knobs, paths
+        # The same for every trial, so that trials differ in nothing but their drives.
+        deviating = deviations(task.case, task.settings.disturbances) if is_robust else ()
+        self._ways = draws(SAMPLES, deviating, task.settings.seed, SEARCHED) if is_robust else [Disturbance()]
+        self._is_robust = is_robust
+
+    def __call__(self, values: FloatArray) -> FloatArray:
+        """The distances (n,) [m] for settings (n, knobs), or one for a single setting (knobs,)."""
+        low, high = self.bounds.T
+        trials = np.atleast_2d(np.asarray(values, dtype=float))
+        if trials.shape[1:] != low.shape or not np.isfinite(trials).all():
+            raise ValueError(
+                f"values must be finite, one for each of the {len(low)} knobs; got an array {trials.shape}"
+            )
+        distances = self.evaluate(np.clip(trials, low, high))[1]
+        return distances if np.ndim(values) > 1 else distances[0]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The knobs as paths of fields, such as actuators.0.stroke."""
+        return tuple(f"actuators.{knob.actuator}.{knob.key}" for knob in self._knobs.knobs)
+
+    @property
+    def bounds(self) -> FloatArray:
+        """The smallest and largest values (knobs, 2) in SI units; cycles are rounded down, so theirs end 1 above."""
+        return np.array(self._knobs.bounds, dtype=float).reshape(-1, 2)
+
+    @property
+    def paths(self) -> int:
+        """How many have been followed."""
+        return self._paths.count
+
+    @property
+    def runs(self) -> int:
+        """How many paths one setting takes."""
+        return len(self._ways)
+
+    def case(self, values: FloatArray) -> Case:
+        """The case with a setting (knobs,), as `run_case` and `write_case` take it."""
+        low, high = self.bounds.T
+        return self._knobs.turned(np.clip(np.asarray(values, dtype=float), low, high))
+
+    def evaluate(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """How far off the ends are (n, 2) [m], and the distances (n,) [m]; of disturbed runs the ends' mean counts."""
+        case, target, settings = self._task.case, self._task.target, self._task.settings
+        trials = [self._knobs.actuators(row) for row in values]
+        trajectories = self._paths.of([(actuators, way) for actuators in trials for way in self._ways])
+        size = self._paths.surface.size
+        ends = np.array([path.position[-1] for path in trajectories]).reshape(len(trials), len(self._ways), 2)
+        costs = [cost(path, target, case.run.duration, size, settings.tolerance) for path in trajectories]
+        return ends.mean(axis=1) - target, self._measure(np.array(costs).reshape(ends.shape[:2]))
+
+    def _measure(self, costs: FloatArray) -> FloatArray:
+        """What counts of the costs (n, runs) [m] of disturbed runs."""
+        settings = self._task.settings
+        if not self._is_robust:
+            return costs[:, 0]
+        if settings.cvar is not None:
+            return conditional_value_at_risk(costs, settings.cvar)
+        return np.asarray(np.quantile(costs, settings.quantile or 0.0, axis=1))
+
+
+class Best(NamedTuple):
+    """The best of several settings of the knobs."""
+
+    cost: float = np.inf  # m
+    values: FloatArray = np.zeros(0)  # of the knobs
+    offset: FloatArray = np.zeros(2)  # (2,) m, from the target to the end
+
+
+class Trials:
+    """The trials of a search: their number is limited, and the best are kept.
+
+    `best` is the best setting of the knobs so far, `recent` the best since `forget` was called.
+    """
+
+    def __init__(self, task: Task, goal: Objective, tell: ProgressCallback, max_paths: int) -> None:
+        """max_paths: number of paths after which the search ends."""
+        self._goal, self._tell, self._max_paths, self._tolerance = goal, tell, max_paths, task.settings.tolerance
+        self.best = self.recent = Best()
+
+    def forget(self) -> None:
+        """Start `recent` anew."""
+        self.recent = Best()
+
+    @property
+    def reached(self) -> bool:
+        """Whether the most recent best is within the tolerance."""
+        return self.recent.cost <= self._tolerance
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether fewer paths are left than one trial takes."""
+        return self._goal.paths + self._goal.runs > self._max_paths
+
+    def of(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """How far off the ends are (m, 2) [m], and the costs (m,) [m], of trials (m, n).
+
+        Trials beyond the paths that are left cost more than any other.
+        """
+        left = (self._max_paths - self._goal.paths) // self._goal.runs
+        room = min(max(left, 0 if np.isfinite(self.best.cost) else 1), len(values))
+        if not room:
+            return np.zeros((len(values), 2)), np.full(len(values), np.inf)
+        offsets, costs = self._goal.evaluate(values[:room])
+        nearest = int(np.argmin(costs))
+        if costs[nearest] < self.recent.cost:
+            self.recent = Best(float(costs[nearest]), values[nearest].copy(), offsets[nearest])
+            self.best = min(self.best, self.recent, key=lambda one: one.cost)
+        self._tell(min(self._goal.paths, self._max_paths), self._max_paths)
+        beyond = len(values) - room
+        return np.pad(offsets, ((0, beyond), (0, 0))), np.pad(costs, (0, beyond), constant_values=np.inf)

@@ -1,0 +1,171 @@
+"""Pick: a case at a point of the chart, which its own run proves to move the part."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from active_surface.arrays import FloatArray
+from active_surface.studies.feasibility.borders import LOST
+from active_surface.studies.feasibility.chart import Chart
+from active_surface.studies.feasibility.ground import Ground
+from active_surface.studies.feasibility.result import Feasibility
+from coupling import Progress, Result, run_case, silent
+from coupling.case import Case, write_case
+from meshes import quantity_text
+
+ROWS: Final = 7  # strokes tried in a column
+PARTS: Final = 16  # of the way from one column to the next, for distances from borders
+CLEAR: Final = 0.5  # of the largest distance from the borders that any point has: enough
+MAX_TRIED: Final = 40  # runs
+MIN_ROOM: Final = 1.02  # ratio of the two borders of a column in which points are looked for
+
+
+@dataclass(frozen=True, eq=False)
+class Picked:
+    """A case at a point of the chart, and its run."""
+
+    case: Case
+    frequency: float  # Hz, of its fastest drive
+    stroke: float  # m or N, the largest
+    unit: str  # of the stroke
+    result: Result
+
+    @property
+    def text(self) -> str:
+        """What its drives do, in a sentence."""
+        summary = self.result.summary
+        where = f"{quantity_text(self.frequency, 'Hz', 5)} and {quantity_text(self.stroke, self.unit, 5)}"
+        far, along = quantity_text(summary.distance, "m", 4), quantity_text(summary.path_length, "m", 4)
+        lasting = quantity_text(summary.duration, "s", 4)
+        return (
+            f"At {where} the part ends {far} from its start after {lasting}, on a path of {along}. {summary.sentence}"
+        )
+
+    def figures(self) -> dict[str, Any]:
+        """The figures by name, in SI units."""
+        summary = self.result.summary
+        return {
+            "frequency": self.frequency,
+            "stroke": self.stroke,
+            "outcome": summary.outcome,
+            "distance": summary.distance,
+            "path_length": summary.path_length,
+            "end_position": list(summary.end_position),
+        }
+
+    def write(self, file: Path) -> Path:
+        """Writes the case to a file, with what its drives do as a comment; returns its path."""
+        return write_case(self.case, file, self.text)
+
+
+def pick(
+    found: Feasibility,
+    frequency: float | None = None,
+    stroke: float | None = None,
+    threads: int | None = None,
+    progress: Progress = silent,
+) -> Picked:
+    """A case that moves: at a frequency [Hz] and a largest stroke [m or N], or at the best point of the chart.
+
+    The best point moves the part farthest, from start to end, of those at least half as far from all borders as any is,
+    in the logarithms of frequency and stroke. It is within the model's bounds where points there move the part, and
+    rounded to three digits.
+    Raises ValueError where the case's run leaves the part at rest or loses it, or no point of the chart moves it.
+    """
+    if frequency is None or stroke is None:
+        with progress("Trying points of the map"):
+            best = best_point(found.ground, found.chart, found.valid, threads)
+        if best is None:
+            raise ValueError(
+                "Input pick of feasibility must be on a map where the part moves; none of its frequencies and strokes "
+                "moves the part without losing it"
+            )
+        frequency, stroke = _rounded(best[0] * found.frequency), _rounded(best[1] * found.stroke)
+    case = found.at(frequency, stroke)
+    result = run_case(case, progress=progress)
+    picked = Picked(case, frequency, stroke, found.stroke_unit, result)
+    lost = result.trajectory.outcome in LOST
+    if lost or not result.summary.path_length > 0:
+        where = f"{quantity_text(frequency, 'Hz', 5)} and {quantity_text(stroke, found.stroke_unit, 5)}"
+        what = f"is lost after {quantity_text(result.summary.end_time, 's', 3)}" if lost else "stays at rest"
+        raise ValueError(
+            f"Input pick of feasibility must move the part without losing it; got {where}, where it {what}"
+            + _beside(found, frequency)
+        )
+    return picked
+
+
+def _beside(found: Feasibility, frequency: float) -> str:
+    """The borders at a frequency [Hz], as the end of a sentence."""
+    columns = found.chart.columns
+    factor = frequency / found.frequency
+    if not columns[0].frequency <= factor <= columns[-1].frequency:
+        return ""
+    limits = found.chart.limits(factor)
+    texts = [
+        f"{what} from {quantity_text(border * found.stroke, found.stroke_unit, 4)}"
+        for what, border in (("slips", limits.slips[0]), ("is lost", limits.lost[0]))
+        if math.isfinite(border)
+    ]
+    return f": at that frequency it {' and '.join(texts)}" if texts else ""
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.3g}")
+
+
+def best_point(
+    ground: Ground, chart: Chart, largest: FloatArray, threads: int | None = None
+) -> tuple[float, float] | None:
+    """The factors of frequency and stroke of the best point; None: no point moves the part.
+
+    largest: strokes (columns,) up to which the model is valid.
+    """
+    points, rooms = _candidates(chart, largest)
+    if not len(points):
+        points, rooms = _candidates(chart, np.full(len(chart.columns), np.inf))
+    if not len(points):
+        return None
+    clear = np.flatnonzero(rooms >= CLEAR * rooms.max())
+    tried = clear[np.argsort(-rooms[clear], kind="stable")[:MAX_TRIED]]
+    paths = ground.paths([(float(k), float(s)) for k, s in points[tried]], threads)
+    far = [
+        -1.0
+        if path.outcome in LOST or path.path_length == 0
+        else float(np.hypot(*(path.position[-1] - path.position[0])))
+        for path in paths
+    ]
+    best = int(np.argmax(far))
+    if far[best] < 0:
+        return None
+    return float(points[tried[best], 0]), float(points[tried[best], 1])
+
+
+def _candidates(chart: Chart, largest: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Points (n, 2) within the borders and below the strokes `largest`, and how far (n,) from the borders they are."""
+    points = []
+    for column, most in zip(chart.columns, largest, strict=True):
+        low, high = column.slips, min(column.lost, chart.strokes[1], float(most))
+        if math.isfinite(low) and high > MIN_ROOM * low:
+            points += [(column.frequency, s) for s in np.geomspace(low, high, ROWS + 2)[1:-1].tolist()]
+    if not points:
+        return np.zeros((0, 2)), np.zeros(0)
+    found = np.array(points)
+    return found, clearances(chart, found)
+
+
+def clearances(chart: Chart, points: FloatArray) -> FloatArray:
+    """How far (n,) points (n, 2) are from the borders, in the logarithm."""
+    frequencies = [one.frequency for one in chart.columns]
+    between = [np.geomspace(a, b, PARTS, endpoint=False) for a, b in zip(frequencies, frequencies[1:], strict=False)]
+    border = []
+    for k in [*np.concatenate(between).tolist(), frequencies[-1]]:
+        limits = chart.limits(k)
+        border += [(k, s) for s in (limits.slips[1], limits.lost[0], chart.strokes[1]) if math.isfinite(s)]
+    return np.asarray(cKDTree(np.log(border)).query(np.log(points))[0])

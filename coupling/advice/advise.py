@@ -1,0 +1,98 @@
+"""What would have a part move and stay on, and the case that does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from coupling.advice.trials import FAR, Trial, Trials
+from coupling.case import Case, PlatformCase, friction_scales, scaled_case, scaled_friction, with_index
+from coupling.drives import travel
+from coupling.scene import PlateScene, Scene
+from particle import Drive, Outcome, Trajectory
+from particle.friction import Contact
+
+ADVISED: Final = "_advised"  # the end of the name of such a case
+ENDS: Final = Outcome.STUCK, Outcome.MOVING, Outcome.DETACHED, Outcome.OVERLOADED
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What thresholds and trial runs show."""
+
+    knob: str  # "frequency" or "stroke": what the thresholds are of
+    slips_from: float | None  # times the case's own: a part at rest slips at its start; None: at none up to 64
+    comes_off_from: float | None  # likewise from where it comes off, or is overloaded
+    holds: float | None  # the pull over what friction holds just before it comes off, where it does not slip before
+    trial: Trial | None  # None: none moved the part and kept it
+    friction: dict[str, float]  # keys of the case's law in proportion to which friction is; none: its list of limits
+    frequencies: tuple[float, ...]  # Hz, the case's own, of the drives that move
+    strokes: tuple[float, ...]  # m, or N of actuators that are forces
+    unit: str | None  # of these; None: of either kind
+    plate: bool  # whether the drives are those of a plate
+    delayed: bool  # whether drives have times besides their frequency
+
+
+def advise(
+    case: Case, scene: Scene, trajectory: Trajectory, friction: Contact, largest_stroke: float = math.inf
+) -> Advice | None:
+    """What would have the part move and stay on.
+
+    largest_stroke: factor of the strokes up to which the model holds.
+    None where it moved far and stayed on, where no drive moves, and with inertia in large deflection: no factor scales
+    that.
+    """
+    kept = trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
+    moved = kept and trajectory.distance > FAR * scene.surface.size
+    moving = [drive for drive in (*scene.lifts, *scene.base) if travel(drive) > 0]
+    if moved or trajectory.outcome not in ENDS or any(case.part.velocity) or not moving:
+        return None
+    stretches = isinstance(scene, PlateScene) and scene.stretch is not None
+    rings = bool(scene.fits) or (isinstance(scene, PlateScene) and scene.has_inertia)
+    if stretches and rings:
+        return None
+    trials = Trials(case, scene, friction, rings, stretches, largest_stroke, trajectory.distance if kept else 0.0)
+    own = trials.thresholds(trials.part)
+    actuators = [one for one, lift in zip(case.actuators, scene.lifts, strict=False) if travel(lift) > 0]
+    units = {"m" if one.force is None else "N" for one in actuators} or {"m"}
+    return Advice(
+        knob="stroke" if rings else "frequency",
+        slips_from=None if math.isinf(own.slips) else own.slips,
+        comes_off_from=None if math.isinf(own.comes_off) else own.comes_off,
+        holds=trials.holds(own),
+        trial=trials.best(),
+        friction=friction_scales(case.friction) or {},
+        frequencies=tuple(dict.fromkeys(drive.frequency for drive in moving)),
+        strokes=tuple(dict.fromkeys(abs(one.stroke or one.force or 0.0) for one in actuators)),
+        unit=units.pop() if len(units) == 1 else None,
+        plate=isinstance(scene, PlateScene),
+        delayed=any(drive.delay > 0 or not isinstance(drive, Drive) for drive in moving),
+    )
+
+
+def advised_case(case: Case, trial: Trial) -> Case:
+    """The case of a trial run, named NAME_advised; it lasts as long as the case.
+
+    Raises ValueError for a platform, whose drives are a measured motion.
+    """
+    if isinstance(case.plate, PlatformCase):
+        raise ValueError("Input case of advised_case must be of a plate; a platform's motion is measured")
+    update: dict[str, Any] = {"name": f"{case.name.removesuffix(ADVISED)}{ADVISED}", "source": None}
+    if trial.friction != 1:
+        update["friction"] = scaled_friction(case.friction, trial.friction)
+    if trial.plasticity_index is not None:
+        update["friction"] = with_index(case.friction, trial.plasticity_index)
+    if trial.place is not None:
+        update["part"] = case.part.model_copy(update={"position": trial.place})
+    return scaled_case(case, trial.frequency, trial.stroke).model_copy(update=update)
+
+
+def advice_from(figures: Mapping[str, Any]) -> Advice:
+    """The advice that was written as JSON."""
+    trial = figures["trial"]
+    if trial is not None:
+        trial = Trial(**trial | {"place": trial["place"] and tuple(trial["place"])})
+    lists = {name: tuple(figures[name]) for name in ("frequencies", "strokes")}
+    return Advice(**{**figures, **lists, "trial": trial})

@@ -1,0 +1,86 @@
+"""Checking: whether a plate's theory goes with the actuators and the run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from coupling.case.actuators import ENDLESS, ActuatorCase, LatticeCase
+from coupling.case.checks.parts import Parts
+from coupling.case.mistakes import Location, Mistake
+from coupling.case.plates import INERTIA, VON_KARMAN, PlateCase
+from coupling.case.table import right_value
+from coupling.case.tables import RunCase
+
+MAX_STRETCHING: Final = 200
+"""Actuators of a plate that stretches."""
+MAX_VIBRATING: Final = 250
+"""Actuators of a plate with inertia."""
+STEADY: Final = 'start = "steady"'
+
+
+def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
+    """Yield what a plate with so many actuators does not go with."""
+    plate, run = parts.tables["plate"], parts.tables.get("run")
+    if right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
+        yield from _stretching(right_value(RunCase, "scheme", run, parts.context), count)
+        if tension := right_value(PlateCase, "tension", plate, parts.context):
+            yield (
+                ("plate", "tension"),
+                f"must be 0 with {VON_KARMAN}, whose mid-plane has no stress at rest; got {tension:g} N/m",
+            )
+    inertia = right_value(PlateCase, "inertia", plate, parts.context, False)
+    if inertia and count > MAX_VIBRATING:
+        yield (
+            ("plate", "inertia"),
+            f"must be false with more than {MAX_VIBRATING} actuators, as their modes are those of one whole plate; got "
+            f"{count}; a piece of the array with {MAX_VIBRATING} can vibrate",
+        )
+    if right_value(RunCase, "start", run, parts.context) == "steady":
+        if inertia is False:
+            yield ("run", "start"), f"must not be given without {INERTIA} in [plate]; only then do vibrations build up"
+        yield from _ending(parts)
+        damping = right_value(PlateCase, "damping", plate, parts.context)
+        undamped = min(ratio for _, ratio in damping) == 0 if isinstance(damping, tuple) else damping == 0
+        if inertia and undamped and right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
+            yield (
+                ("plate", "damping"),
+                f"must be a positive ratio such as 0.02 with {VON_KARMAN} and {STEADY}, as the steady state is what is "
+                "left when all ringing has decayed",
+            )
+
+
+def _stretching(scheme: str | None, count: int) -> Iterator[Mistake]:
+    if count > MAX_STRETCHING:
+        yield (
+            ("plate", "theory"),
+            f'must be "linear" with more than {MAX_STRETCHING} actuators, as a plate that stretches is solved in one '
+            f"dense model of all of them; got {count}; a piece of the array with {MAX_STRETCHING} can stretch",
+        )
+    if scheme == "paper":
+        yield (
+            ("run", "scheme"),
+            f'must be "events" or "fixed" with {VON_KARMAN}, whose mid-plane also moves in its plane; got "paper"',
+        )
+
+
+def _ending(parts: Parts) -> Iterator[Mistake]:
+    """Yield the drives that end, or grow, and so have no steady state."""
+    driven: list[tuple[Location, Mapping[str, Any]]] = [
+        (("actuators", index), ActuatorCase.values_of(value, parts.context))
+        for index, (value, _) in enumerate(parts.items("actuators"))
+        if isinstance(value, (dict, ActuatorCase))
+    ]
+    lattice = parts.tables.get("lattice")
+    if isinstance(lattice, (dict, LatticeCase)):
+        driven.append((("lattice",), LatticeCase.values_of(lattice, parts.context)))
+    for location, values in driven:
+        if values["cycle"] == "up":
+            yield (*location, "cycle"), f'must not be "up" with {STEADY} in [run], which takes a drive without end'
+        if isinstance(values["cycles"], int):
+            yield (*location, "cycles"), f"must not be given with {STEADY} in [run], which takes a drive without end"
+        if any(isinstance(values[key], tuple) for key in ("table", "segments")) and isinstance(values["repeats"], int):
+            message = f'must be "{ENDLESS}" with {STEADY} in [run], which takes a drive without end'
+            yield (*location, "repeats"), message
+        if isinstance(values["ramp"], float) and values["ramp"] > 0:
+            yield (*location, "ramp"), f"must not be given with {STEADY} in [run], in which no drive begins"

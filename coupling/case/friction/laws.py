@@ -1,0 +1,137 @@
+"""The `[friction]` table of a case file: which law, and its parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import (
+    Field,
+    ModelWrapValidatorHandler,
+    StrictFloat,
+    ValidationInfo,
+    model_validator,
+)
+
+from coupling.case.friction import points
+from coupling.case.mistakes import Location, Mistake
+from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, validate_with
+from coupling.case.values import Area, FileBeside, Force, Length, Pressure, SurfaceEnergy
+from particle import PAPER_PLASTICITY_INDEX
+from particle import KogutEtsionInput as Default
+
+
+def _plasticity_index(data: dict[str, Any]) -> float:
+    return PAPER_PLASTICITY_INDEX if data.get("preset") == "paper" else Default.plasticity_index
+
+
+class KogutEtsionCase(KeyedTable):
+    """Friction of rough surfaces with adhesion, after Kogut and Etsion, in m, m^2, Pa and J/m^2."""
+
+    model: Literal["kogut-etsion"] = "kogut-etsion"
+    """The law: rough surfaces with adhesion, after Kogut and Etsion."""
+    preset: Literal["paper"] | None = None
+    """All parameters as the paper has them, the plasticity index 4.9128 among them."""
+    roughness: Length = Field(default=Default.roughness, gt=0)
+    """The standard deviation of the heights of asperities."""
+    contact_area: Area = Field(default=Default.contact_area, gt=0)
+    """The nominal area of contact, the footprint of the part."""
+    hardness: Pressure = Field(default=Default.hardness, gt=0)
+    """The hardness of the softer material."""
+    poisson_ratio: StrictFloat = Field(default=Default.poisson_ratio, ge=0, lt=0.5)
+    """That of the softer material."""
+    adhesion_energy: SurfaceEnergy = Field(default=Default.adhesion_energy, gt=0)
+    """The work of adhesion of the two surfaces."""
+    plasticity_index: StrictFloat = Field(default_factory=_plasticity_index, gt=0, examples=[2.5])
+    """How far asperities yield: well below 1 they are elastic, well above plastic. Without it 2.5."""
+    # The model takes the root of 1 - 3.717e-4 / asperity_beta^2.
+    asperity_beta: StrictFloat = Field(default=Default.asperity_beta, gt=math.sqrt(3.717e-4))
+    """Density of asperities times their radius times the roughness."""
+    intermolecular_distance: Length = Field(default=Default.intermolecular_distance, gt=0)
+    """The distance of atoms in equilibrium."""
+    coefficients: Literal["printed", "unrounded"] = "printed"
+    """Numbers of the model as its authors printed them, or without their rounding."""
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        if given.get("preset") != "paper":
+            return
+        if "plasticity_index" in given:
+            yield (
+                "plasticity_index",
+                f'must not be given with preset = "paper", which sets it to {PAPER_PLASTICITY_INDEX}',
+            )
+        if given.get("coefficients", "printed") not in ("printed", WRONG):
+            only = f'which is for those coefficients only; got "{given["coefficients"]}"'
+            yield "coefficients", f'must be "printed" with preset = "paper", {only}'
+
+
+class ConstantCase(Table):
+    """A friction force of at most `limit`, in N, whatever the normal force."""
+
+    model: Literal["constant"] = "constant"
+    """The law: a limit that does not depend on the load."""
+    limit: Force = Field(ge=0, examples=["40 nN"])
+    """The largest friction force."""
+
+
+class CoulombCase(KeyedTable):
+    """Friction in proportion to the normal force and `adhesion`, in N; `static_coefficient` is for a part at rest."""
+
+    model: Literal["coulomb"] = "coulomb"
+    """The law: in proportion to the load, with adhesion added to it."""
+    coefficient: StrictFloat = Field(ge=0, examples=[0.3])
+    """Friction force over load while the part slides."""
+    adhesion: Force = Field(default=0.0, ge=0)
+    """A force added to the load; the part comes off where it is pulled harder."""
+    static_coefficient: StrictFloat | None = Field(default=None, ge=0, examples=[0.4])
+    """The same while the part rests; without it as while it slides."""
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        sliding, static = given.get("coefficient"), given.get("static_coefficient")
+        if not isinstance(sliding, float) or not isinstance(static, float):
+            return
+        if static < sliding:
+            yield "static_coefficient", f"must be at least coefficient, {sliding:g}; got {static:g}"
+        elif sliding == 0:
+            yield "static_coefficient", f"must not be given with coefficient = 0; got {static:g}"
+
+
+class TableCase(Table):
+    """Friction measured at points: `limits` over the net `loads`, in N; `file` holds both in place of the two.
+
+    The file is read when a case is made, which then has its points and no `file`.
+    """
+
+    model: Literal["table"] = "table"
+    """The law: as measured at points."""
+    loads: points.Forces | None = Field(default=None, examples=[["-1 uN", "0 uN", "2 uN", "5 uN"]])
+    """Net loads, increasing; the first is minus the pull-off force."""
+    limits: points.Forces | None = Field(default=None, examples=[["4 nN", "18 nN", "35 nN", "52 nN"]])
+    """The largest friction force at each load; it does not fall."""
+    static_ratio: StrictFloat = Field(default=1.0, ge=1)
+    """The limit at rest over that of sliding."""
+    file: FileBeside | None = Field(default=None, examples=["friction.csv"])
+    """A CSV file with a column of each, in place of the two lists, beside the case file."""
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _check_points(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+        def mistakes(reported: set[Location]) -> Iterator[Mistake]:
+            return points.mistakes(data, info.context)
+
+        return validate_with(cls, handler, data, mistakes)
+
+
+def has_known_law(friction: FrictionCase) -> bool:
+    """Whether a valid table certainly has a friction law; of Kogut and Etsion's only those with default numbers."""
+    if not isinstance(friction, KogutEtsionCase):
+        return True
+    index = _plasticity_index({"preset": friction.preset})
+    return friction == KogutEtsionCase(preset=friction.preset).model_copy(update={"plasticity_index": index})
+
+
+FrictionCase = KogutEtsionCase | ConstantCase | CoulombCase | TableCase
+AnyFriction = Annotated[FrictionCase, Field(discriminator="model")]

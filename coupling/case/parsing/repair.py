@@ -1,0 +1,149 @@
+"""Repair: what is wrong with a text that is not quite TOML, line by line, and the text that is meant."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable
+from typing import Final, NamedTuple
+
+from coupling.case.mistakes import in_double_brackets
+
+MAX_LINES: Final = 200  # that are repaired one by one
+
+_CURLY: Final = str.maketrans("“”„‟″‘’‚′", '"""""\'\'\'\'')
+_BLANK: Final = str.maketrans("\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{ZERO WIDTH NO-BREAK SPACE}", "   ")
+_SYNTAX: Final = {
+    "Cannot overwrite a value": "this is given twice",
+    r"Illegal character '\n'": "a text lacks its closing quote",
+}
+_NUMBER: Final = r"[+-]?(?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_QUANTITY: Final = rf"{_NUMBER}\s*(?:[^\W\d]|[°%])[^,\[\]#\"'=]*?"
+_TRUTHS: Final = {"yes": "true", "on": "true", "no": "false", "off": "false", "none": "false"}
+
+
+class Wrong(NamedTuple):
+    """What is wrong with a line."""
+
+    line: int
+    field: str  # "" where it is the text itself
+    message: str
+
+
+class _Rule(NamedTuple):
+    """How a mistake in a line looks, what to write in place of it, and what to say about that."""
+
+    pattern: re.Pattern[str]
+    right: str | Callable[[re.Match[str]], str]
+    message: str
+
+
+def _truth(match: re.Match[str]) -> str:
+    word = match[2].lower()
+    return match[1] + _TRUTHS.get(word, word)
+
+
+def _decimal(match: re.Match[str]) -> str:
+    return match[1] + match[2] + (f"0{match[3]}" if match[3][0] == "." else f"{match[3]}0")
+
+
+def _in_quotes(match: re.Match[str]) -> str:
+    return f'{match[1]}"{match[2].strip()}"'
+
+
+_RULES: Final = tuple(
+    _Rule(re.compile(pattern), right, message)
+    for pattern, right, message in (
+        (
+            r"(=\s*|[\[,]\s*)(True|TRUE|False|FALSE|[Yy]es|[Nn]o|[Oo]n|[Oo]ff|None)\b(?=\s*(?:[,\]#]|$))",
+            _truth,
+            "truth values are true and false, in small letters",
+        ),
+        (rf"(=\s*)({_QUANTITY})(?=\s*(?:#|;|$))", _in_quotes, "a value with a unit needs quotes"),
+        (rf"([\[,]\s*)({_QUANTITY})(?=\s*[,\]])", _in_quotes, "a value with a unit needs quotes"),
+        (r"(=\s*)([+-]?\d+),(\d+)(?=\s*(?:#|$))", r"\1\2.\3", "decimals are written with a point"),
+        (r"([=\[,]\s*)([+-]?)(\.\d+|\d+\.(?=\D|$))", _decimal, "a decimal point needs digits on both sides"),
+        (r"^(\s*[A-Za-z_][\w.-]*)\s*(?::=?)(?=\s)(?!\s*=)", r"\1 =", "a key and its value are joined by ="),
+        (r"(=\s*)([A-Za-z][\w-]*(?:\.[A-Za-z]\w*)?)(?=\s*(?:#|;|$))", r'\1"\2"', "a text needs quotes"),
+        (r"(=\s*)(?:\"([^\"'#]*?)|'([^\"'#]*?))\s*$", r'\1"\2\3"', "a text lacks its closing quote"),
+        (r"(\[[^\]#]*\")\s+(?=\"[^\]#]*\])", r"\1, ", "items of a list have commas between them"),
+        (r"(\S.*?)\s*;\s*(?=#|$)", r"\1", "a line needs nothing at its end"),
+        (r"(\S.*?)\s*(//.*)$", r"\1", "a comment begins with #"),
+        (r"(=\s*)\(([^()#]*)\)", r"\1[\2]", "lists are written in square brackets"),
+    )
+)
+
+
+_UNLIKE: Final = re.compile(r"""(=\s*)(?:'([^'"#]*)"|"([^'"#]*)')(?=\s*(?:#|$))""")
+_QUOTES: Final = _Rule(_UNLIKE, r'\1"\2\3"', "a text ends with the quote that it begins with")
+
+
+def repaired(text: str) -> tuple[str, list[Wrong]]:
+    """The text of valid TOML that is meant by one, and what was wrong with it; or the text as far as it could be read.
+
+    The text is valid where `tomllib` reads it, which is for the caller to see.
+    """
+    text, wrong = _typographic(text)
+    for _ in range(MAX_LINES):
+        try:
+            tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            reason, number = _place(str(error), text)
+            lines = text.split("\n")
+            single = _single_brackets(reason, lines[number - 1], text)
+            if single:
+                wrong.append(single[1])
+                text = single[0]
+                continue
+            number = next((n for n, one in enumerate(lines, 1) if _UNLIKE.search(one)), number)
+            rule = next((rule for rule in (_QUOTES, *_RULES) if rule.pattern.search(lines[number - 1])), None)
+            line = rule.pattern.sub(rule.right, lines[number - 1]) if rule else lines[number - 1]
+            if rule is None or line == lines[number - 1]:
+                wrong.append(Wrong(number, "", f"is not valid TOML: {_readable(reason)}"))
+                break
+            wrong.append(Wrong(number, "", f"is not valid TOML: {rule.message}; write {line.strip()}"))
+            lines[number - 1] = line
+            text = "\n".join(lines)
+        else:
+            break
+    return text, wrong
+
+
+def _typographic(text: str) -> tuple[str, list[Wrong]]:
+    """A text with the quotes and blanks of programs, in place of those of word processors."""
+    try:
+        tomllib.loads(text)
+        return text, []  # where they stand in texts and comments
+    except tomllib.TOMLDecodeError:
+        plain = text.translate(_CURLY).translate(_BLANK)
+    code = [line.partition("#")[0] for line in text.split("\n")]
+    lines = [n for n, line in enumerate(code, 1) if line.translate(_CURLY) != line]
+    if not lines:
+        return plain, []
+    more = f", here and in {len(lines) - 1} more line{'s' * (len(lines) > 2)}" if len(lines) > 1 else ""
+    character = next(c for c in code[lines[0] - 1] if c.translate(_CURLY) != c)
+    straight = character.translate(_CURLY)
+    return plain, [Wrong(lines[0], "", f"has the curly quote {character}; write the straight one, {straight}{more}")]
+
+
+def _place(error: str, text: str) -> tuple[str, int]:
+    """The reason and the line of an error of tomllib, which ends with its place."""
+    reason, _, place = error.rpartition(" (at ")
+    match = re.match(r"line (\d+)", place)
+    return reason, int(match[1]) if match else text.rstrip().count("\n") + 1
+
+
+def _single_brackets(reason: str, line: str, text: str) -> tuple[str, Wrong] | None:
+    """The text with double brackets where a table comes again that needs them."""
+    for name in ("actuators", "actuators.segments", "lattice.segments", "axes"):
+        single = rf"^[ \t]*\[[ \t]*{re.escape(name)}[ \t]*\]"
+        first = re.search(single, text, re.MULTILINE)
+        if first and re.match(rf"\s*\[\[?\s*{re.escape(name)}\s*\]", line):
+            number = text.count("\n", 0, first.start()) + 1
+            right = re.sub(single, f"[[{name}]]", text, flags=re.MULTILINE)
+            return right, Wrong(number, name, f"{in_double_brackets(f'[[{name}]]')}; got [{name}]")
+    return None
+
+
+def _readable(reason: str) -> str:
+    return re.sub(r"\('([^']*)',\)", r"[\1]", _SYNTAX.get(reason, reason[:1].lower() + reason[1:]))

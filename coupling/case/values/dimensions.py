@@ -1,0 +1,55 @@
+"""Dimensions: what quantities are called, and units as pint knows them, which takes long to load."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from decimal import Decimal
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    import pint
+
+DIMENSIONS: Final = {
+    "m": "a length", "m^2": "an area", "m^3": "a volume", "rad": "an angle",
+    "s": "a time", "Hz": "a frequency", "rad/s": "an angular velocity", "m/s": "a velocity", "m/s^2": "an acceleration",
+    "kg": "a mass", "kg/m^3": "a density", "N": "a force", "Pa": "a pressure",
+    "J": "an energy", "J/m^2": "an energy per area", "N/m": "a stiffness",
+    "W": "a power", "K": "a temperature", "1": "a plain number",
+}  # fmt: skip
+"""SI units, and what a quantity in each is called in a message."""
+
+
+@cache
+def registry() -> pint.UnitRegistry[Any]:
+    import pint
+
+    # Decimals, so that "100 um" gives the float 1e-4 itself and not a neighbour.
+    return pint.UnitRegistry(non_int_type=Decimal)
+
+
+def is_unit(name: str) -> bool:
+    try:
+        registry().parse_units(name)
+    except Exception:
+        return False
+    return True
+
+
+def root_of(unit: str) -> pint.Unit:
+    # Dimensions do not tell Hz from rad/s, and pint would turn 60 rpm into 6.28 Hz; root units differ.
+    return registry().get_root_units(registry().parse_units(unit))[1]
+
+
+def si_of(unit: str) -> str:
+    """The key of `DIMENSIONS` with the dimension of a unit; "" where there is none, or no such unit."""
+    with suppress(Exception):
+        root = root_of(unit)
+        return next((si for si in DIMENSIONS if root_of(si) == root), "")
+    return ""
+
+
+def dimension_of(unit: str) -> str:
+    """Return what a quantity in `unit` is called."""
+    si = si_of(unit)
+    return DIMENSIONS[si] if si else f"a quantity in {root_of(unit):~}"

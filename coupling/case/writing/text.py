@@ -1,0 +1,113 @@
+"""A case as the text of a case file, which has every quantity to the last bit."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from decimal import Decimal
+from pathlib import Path
+from typing import Any, Final, Literal, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+
+from coupling.case.case import Case
+from coupling.case.table import Table
+from coupling.case.values import of_kind, quantity_of
+from coupling.files import whole_file
+
+PREFIXED: Final = {"m": ("um", 6), "s": ("ms", 3), "N": ("uN", 6), "Pa": ("GPa", -9)}
+"""What is written in place of an SI unit, and how many powers of ten smaller it is."""
+SMALLEST, LARGEST = Decimal("1e-4"), Decimal("1e6")  # numbers that are written without a power of ten
+FILES: Final = (("plate", "mesh"), ("plate", "motion"))
+"""Fields that may name a file, which is counted from the case file's folder."""
+
+
+def write_case(case: Case, path: Path, said: str = "") -> Path:
+    """Writes a case to a file, made as a whole or not at all; returns its path.
+
+    said: a comment to begin with.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    comment = "".join(f"# {line}\n" for line in said.splitlines())
+    with whole_file(path) as partial:
+        partial.write_text(comment + ("\n" if said else "") + case_text(case, path.parent), encoding="utf-8")
+    return path
+
+
+def case_text(case: Case, folder: Path) -> str:
+    """The text of a file in a folder from which `read_case` gets the same case."""
+    blocks: list[str] = []
+    for key in Case.model_fields:
+        value = getattr(case, key)
+        if isinstance(value, Table):
+            blocks.append("\n".join([f"[{key}]", *_lines(value, key, folder)]))
+        elif isinstance(value, tuple):
+            blocks += [_block(key, item, folder) for item in value]
+    return "\n\n".join(blocks) + "\n"
+
+
+def _block(key: str, table: Table, folder: Path) -> str:
+    """A table in double brackets, with its segments below it."""
+    lines = [f"[[{key}]]", *_lines(table, key, folder, without="segments")]
+    for segment in getattr(table, "segments", None) or ():
+        lines += ["", f"[[{key}.segments]]", *_lines(segment, "segments", folder)]
+    return "\n".join(lines)
+
+
+def _lines(table: Table, name: str, folder: Path, without: str = "") -> Iterator[str]:
+    """Yield a line for each key of a table that is not what it would be anyway."""
+    for key, field in type(table).model_fields.items():
+        value = getattr(table, key)
+        if key == without or not _needed(table, key, field, value):
+            continue
+        if (name, key) in FILES and isinstance(value, str):
+            value = os.path.relpath(value, folder)
+        yield f"{key} = {written(value, field.rebuild_annotation())}"
+
+
+def _needed(table: Table, key: str, field: FieldInfo, value: Any) -> bool:
+    if value is None:
+        return False
+    if field.default_factory is not None:
+        return key in table.model_fields_set
+    names_its_table = get_origin(field.annotation) is Literal and len(get_args(field.annotation)) == 1
+    return names_its_table or field.is_required() or value != field.default
+
+
+def written(value: Any, annotation: Any) -> str:
+    """A value as TOML; annotation: of the field that has it."""
+    if isinstance(value, Table):
+        keys = type(value).model_fields.items()
+        found = [(key, field, getattr(value, key)) for key, field in keys]
+        kept = [(key, field, item) for key, field, item in found if _needed(value, key, field, item)]
+        return (
+            "{ " + ", ".join(f"{key} = {written(item, field.rebuild_annotation())}" for key, field, item in kept) + " }"
+        )
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{json.dumps(key)} = {written(item, str)}" for key, item in value.items()) + " }"
+    if isinstance(value, tuple):
+        types = get_args(of_kind(annotation, tuple))
+        kinds = [types[0]] * len(value) if types[-1] is Ellipsis else types
+        marks = [mark for mark in [quantity_of(annotation, [], alone=True)] if mark]
+        return "[" + ", ".join(_item(item, kind, marks) for item, kind in zip(value, kinds, strict=True)) + "]"
+    return _item(value, annotation, [])
+
+
+def _item(value: Any, annotation: Any, marks: list[Any]) -> str:
+    """An item of a list, or a single value; marks: of all items, for those that have none of their own."""
+    if isinstance(value, (tuple, Table)):
+        return written(value, annotation)
+    quantity = quantity_of(annotation, [], alone=True) or quantity_of(None, marks)
+    if quantity is None or not isinstance(value, float):
+        return json.dumps(value, ensure_ascii=False)
+    number, (unit, power) = Decimal(repr(float(value))), PREFIXED.get(quantity.unit, (quantity.unit, 0))
+    if abs(number.scaleb(power)) >= LARGEST:
+        unit, power = quantity.unit, 0
+    return f'"{_plain(number.scaleb(power))} {unit}"'
+
+
+def _plain(number: Decimal) -> str:
+    """A number, without a power of ten where that is readable."""
+    readable = number == 0 or SMALLEST <= abs(number) < LARGEST
+    return f"{number.normalize():{'f' if readable else 'e'}}"

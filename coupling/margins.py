@@ -1,0 +1,218 @@
+"""Margins: how near a part came to slipping while it was stuck, and to coming off while it was in contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupling.case import Case
+from coupling.part import build_part
+from coupling.scene import PlateScene, Scene
+from particle import (
+    EventKind,
+    Extreme,
+    State,
+    SurfaceMotion,
+    Trajectory,
+    largest,
+    part_record,
+    pull_ratios,
+    sample_times,
+)
+from particle.events import Part
+from particle.friction import Contact
+
+FloatArray = NDArray[np.float64]
+
+PER_STROKE: Final = 24  # moments in the shortest stroke
+MAX_NAMED: Final = 1000  # events whose actuators are sought
+
+
+@dataclass(frozen=True)
+class Margin:
+    """A margin at the moment at which it is smallest."""
+
+    value: float
+    time: float  # s
+    position: tuple[float, float]  # m
+    actuator: int | None  # whose stroke counts most for it, by number; None: a platform, or none counts
+
+
+@dataclass(frozen=True)
+class Margins:
+    """How near a part came to slipping and to coming off."""
+
+    slip: Margin | None  # largest pull on it over what friction holds while it was stuck; None: it never was
+    contact: Margin | None  # smallest (N + pull-off force) / scale while it touched; None: the law has no pull-off
+    pull_off: float | None  # N; None: the law has none
+    scale: float  # N, the pull-off force or, where that is 0, the part's weight and squeeze
+    smallest_load: float  # N, while it touched
+
+    @property
+    def by_pull_off(self) -> bool:
+        """Whether the scale is the pull-off force."""
+        return bool(self.pull_off)
+
+
+class MarginCurves(NamedTuple):
+    """The margins over time; nan where the part is not stuck, or does not touch."""
+
+    time: FloatArray  # (k,) s
+    slip: FloatArray  # (k,) pull on the part over what friction holds
+    contact: FloatArray  # (k,) (N + pull-off force) / scale; nan also where the law has no pull-off
+
+
+def margins_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Contact) -> Margins:
+    """The margins of a run."""
+    path = _Path(case, scene.surface, trajectory, friction)
+    ratios, loads = path.sampled(path.times)
+    slip = largest(lambda times: _or_least(path.sampled(times)[0]), path.times, _or_least(ratios))
+    load = largest(lambda times: _or_least(-path.sampled(times)[1]), path.times, _or_least(-loads))
+    if len(path.slips):
+        slip = Extreme(1.0, float(path.slips[0]))  # also where a blow makes it slip
+    distance = Extreme((path.part.law.pull_off - load.value) / path.scale, load.time)
+    if off := [event.time for event in trajectory.events if event.kind is EventKind.DETACHES]:
+        distance = Extreme(0.0, off[0])  # also where a blow throws it off
+    return Margins(
+        slip=None if slip.value == -np.inf else _margin(scene, path, slip, _holding),
+        contact=None if distance.value == np.inf else _margin(scene, path, distance, _falling),
+        pull_off=None if distance.value == np.inf else path.part.law.pull_off,
+        scale=path.scale,
+        smallest_load=-load.value,
+    )
+
+
+def margins_from(figures: Mapping[str, Any]) -> Margins:
+    """The margins that were written as JSON."""
+    worst = {
+        name: None if one is None else Margin(**one | {"position": tuple(one["position"])})
+        for name, one in figures.items()
+        if name in ("slip", "contact")
+    }
+    return Margins(**{**figures, **worst})
+
+
+def _or_least(values: FloatArray) -> FloatArray:
+    """A signal (k,), -inf where it is nan."""
+    return np.where(np.isnan(values), -np.inf, values)
+
+
+def margin_curves(case: Case, surface: SurfaceMotion, trajectory: Trajectory, friction: Contact) -> MarginCurves:
+    """The margins of a run over time."""
+    path = _Path(case, surface, trajectory, friction)
+    slip, load = path.sampled(path.times)
+    pull_off = path.part.law.pull_off
+    contact = (load + pull_off) / path.scale if np.isfinite(pull_off) else np.full(len(load), np.nan)
+    return MarginCurves(path.times, slip, contact)
+
+
+def event_actuators(case: Case, scene: Scene, trajectory: Trajectory, friction: Contact) -> NDArray[np.int64]:
+    """The actuator (e,) whose stroke counts most when the part slips or comes off; -1: none, or another event."""
+    path, numbers = _Path(case, scene.surface, trajectory, friction), np.full(len(trajectory.events), -1)
+    if not isinstance(scene, PlateScene):
+        return numbers
+    for k, event in enumerate(trajectory.events[:MAX_NAMED]):
+        if counts := COUNTS.get(event.kind):
+            actuator = _actuator(scene, path, np.array(event.position), event.time, counts)
+            numbers[k] = -1 if actuator is None else actuator
+    return numbers
+
+
+class _Path:
+    """The loads on the part along its path."""
+
+    def __init__(self, case: Case, surface: SurfaceMotion, trajectory: Trajectory, friction: Contact) -> None:
+        self.part: Part = part_record(surface, build_part(case), friction, case.run.gravity)
+        self.trajectory = trajectory
+        self.times = np.union1d(sample_times(surface, 0.0, float(trajectory.time[-1]), PER_STROKE), trajectory.time)
+        self.slips = np.array([event.time for event in trajectory.events if event.kind is EventKind.SLIPS])
+
+    @property
+    def scale(self) -> float:
+        """What distances from pull-off are over [N]."""
+        part, pull_off = self.part, self.part.law.pull_off
+        weight = part.mass * abs(part.gravity) + part.squeeze
+        return pull_off if 0 < pull_off < np.inf else weight or part.mass
+
+    def sampled(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Pull over what friction holds, nan unless stuck, and the load [N], nan in flight; at times (k,) [s].
+
+        A part that begins to slip counts as stuck at that moment.
+        """
+        samples = self.trajectory.contact_at(times)
+        begins = (samples.state == State.SLIP) & np.isin(times, self.slips)
+        stuck = (samples.state == State.STICK) | begins
+        loads = np.where(samples.state == State.FLIGHT, np.nan, samples.normal_force)
+        ratios = np.full(len(times), np.nan)
+        ratios[stuck] = pull_ratios(self.part, loads[stuck], self.part.mass * samples.pull[stuck])
+        return ratios, loads
+
+
+Counts = Callable[[_Path, "_Pushes"], FloatArray]
+
+
+class _Pushes(NamedTuple):
+    """How the surface and each actuator alone move a place at one moment, by linear theory."""
+
+    w_tt: float  # m/s^2, of the surface
+    slope: FloatArray  # (2,)
+    slope_tt: FloatArray  # (2,) 1/s^2
+    each_w_tt: FloatArray  # (N,) of each actuator
+    each_slope: FloatArray  # (N, 2)
+    each_slope_tt: FloatArray  # (N, 2)
+
+
+def _margin(scene: Scene, path: _Path, extreme: Extreme, counts: Counts) -> Margin:
+    place = path.trajectory.at([extreme.time]).position[0]
+    return Margin(
+        extreme.value,
+        extreme.time,
+        (float(place[0]), float(place[1])),
+        _actuator(scene, path, place, extreme.time, counts) if isinstance(scene, PlateScene) else None,
+    )
+
+
+def _actuator(scene: PlateScene, path: _Path, place: FloatArray, time: float, counts: Counts) -> int | None:
+    """The actuator whose stroke counts most for a margin at a place [m] and time [s]; None: none does.
+
+    What an actuator does is taken from its influence shape, without the plate's inertia and stretching.
+    """
+    if scene.shapes.outline.gap(place[None])[0] < 0:
+        return None
+    height, _, acceleration = (
+        np.array(rows) for rows in zip(*(lift.evaluate(time) for lift in scene.lifts), strict=True)
+    )
+    value, gradient, _ = scene.shapes.evaluate(place[None])
+    state = scene.surface.evaluate(place[None], time)
+    shares = counts(
+        path,
+        _Pushes(
+            float(state.w_tt[0]),
+            state.gradient[0],
+            state.gradient_tt[0],
+            value[0] * acceleration,
+            gradient[0] * height[:, None],
+            gradient[0] * acceleration[:, None],
+        ),
+    )
+    return int(np.argmax(shares)) if shares.max() > 0 else None
+
+
+def _falling(path: _Path, pushes: _Pushes) -> FloatArray:
+    """How much each actuator lessens the load, over the mass (N,) [m/s^2]."""
+    return -pushes.each_w_tt
+
+
+def _holding(path: _Path, pushes: _Pushes) -> FloatArray:
+    """By how much the pull grows with each stroke, for small slopes (N,) [m/s^2]: (3.4) in docs/motion.md."""
+    b = path.part.gravity + pushes.w_tt
+    pull = -b * pushes.slope + path.part.centre * pushes.slope_tt
+    each = -b * pushes.each_slope - np.outer(pushes.each_w_tt, pushes.slope) + path.part.centre * pushes.each_slope_tt
+    return np.asarray(each @ pull / (np.hypot(*pull) or 1.0))
+
+
+COUNTS: Final = {EventKind.SLIPS: _holding, EventKind.DETACHES: _falling}

@@ -1,0 +1,137 @@
+"""Remainders: what elements leave of corner functions, integrated as such.
+
+A corner function s less the elements' share X of it is small but at its corner. The energy of s - X as a difference of
+those of s and X would be one of large numbers, the penalties where other sides hold s; rounding would be all of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_plate.elements import forms
+from fem_plate.elements.corner_functions import CornerFunctions, singular_weights
+from fem_plate.elements.rim import RIM_POINTS, unit_gauss
+from fem_plate.elements.space import CHUNK, QUADRATURE, PlateSpace
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+ACROSS = 16  # quadrature points of a triangle at a corner, across the rays from there
+SAME = 1e-9  # of the plate's size: points closer than this coincide
+
+
+class Remainders:
+    """The functions s - X (E,) on a space.
+
+    lifts: (m, 21, E), the unknowns of X by triangles.  to_integrate: derivatives of s at the rim, as of `at_rim`.
+    """
+
+    def __init__(
+        self,
+        space: PlateSpace,
+        functions: CornerFunctions,
+        lifts: FloatArray,
+        to_integrate: list[FloatArray],
+        poisson_ratio: float,
+    ) -> None:
+        self.space, self.functions, self.lifts, self.law = space, functions, lifts, forms.bending_law(poisson_ratio)
+        of_elements = space.traces(poisson_ratio)
+        self.traces = forms.rim_traces(to_integrate, space.rim.normal, poisson_ratio)  # (6, k, n, E)
+        self.traces -= of_elements @ lifts[space.rim.triangle]
+
+    def bending(self) -> tuple[FloatArray, FloatArray]:
+        """int M(v):H(s - X) of the triangles' functions v, (all unknowns, E), and of s - X itself, (E, E)."""
+        triangles, count = self.space.triangles, len(self.functions)
+        with_elements, own = np.zeros((self.space.all_count, count)), np.zeros((count, count))
+        touching = np.zeros(len(triangles.points), dtype=bool)
+        for place in dict.fromkeys(function.place for function in self.functions.functions):
+            corner = np.abs(triangles.points @ [1, 1j] - place) < SAME
+            touching |= corner.any(axis=1)
+            for row, first in np.argwhere(corner).tolist():
+                of_triangle, energy = self._at_corner(place, row, first)
+                with_elements[self.space.dofs[row]] += of_triangle
+                own += energy
+        for triangle, points, weights in self._cells(np.flatnonzero(~touching)):
+            rest, table = self._derivatives(points, triangle, 2), triangles.derivatives(points, triangle, 2)
+            moments = np.tensordot(self.law, rest * weights[..., None], axes=1)
+            np.add.at(with_elements, self.space.dofs[triangle], _products(table, moments))
+            own += np.tensordot(rest, moments, axes=([0, 1, 2], [0, 1, 2]))
+        return with_elements, own
+
+    def _at_corner(self, place: complex, triangle: int, first: int) -> tuple[FloatArray, FloatArray]:
+        """The same of the triangle whose point `first` is the corner, (21, E) and (E, E), on rays from there."""
+        functions, triangles = self.functions.functions, self.space.triangles
+        corner, one, other = np.roll(triangles.points[triangle], -first, axis=0)
+        (s, along), (t, across) = unit_gauss(RIM_POINTS), unit_gauss(ACROSS)
+        points = corner + s[:, None, None] * (one - corner + t[:, None] * (other - one))  # (s, t, 2)
+        weights = triangles.determinant[triangle] * np.outer(along * s, across)
+        table = triangles.derivatives(points.reshape(1, -1, 2), np.array([triangle]), 2)[:, 0]
+        table = table.reshape(3, *weights.shape, -1)
+        known = self.functions.derivatives(points, 3)[2]  # (3, s, t, E)
+        here = np.flatnonzero([function.place == place for function in functions])
+        singular = known[..., here]
+        exponents = np.array([functions[e].exponent for e in here.tolist()])
+        known[..., here] = 0.0
+        smooth = known - table @ self.lifts[triangle]
+        moments = np.einsum("ab,bste,st->aste", self.law, smooth, weights)
+        with_elements = np.einsum("astj,aste->je", table, moments)
+        own = np.einsum("aste,astf->ef", smooth, moments)
+        # Second derivatives of s grow as r^(p - 2), and the area has another r.
+        exact = np.stack([singular_weights(p - 1) for p in exponents.tolist()], axis=1)
+        moments = np.einsum("ab,bste,st,se->aste", self.law, singular, weights, exact)
+        with_elements[:, here] += np.einsum("astj,aste->je", table, moments)
+        mixed = np.einsum("aste,astf->ef", moments, smooth)
+        own[here] += mixed
+        own[:, here] += mixed.T
+        at_end = singular[:, 0] / s[0] ** (exponents - 2)  # (3, t, e), at s = 1
+        both = np.einsum("ate,ab,btf,t->ef", at_end, self.law, at_end, across)
+        powers = exponents + exponents[:, None] - 2
+        own[np.ix_(here, here)] += triangles.determinant[triangle] / powers * both
+        return with_elements, own
+
+    def stretching(self) -> tuple[FloatArray, FloatArray]:
+        """int grad v.grad(s - X) of the triangles' functions v, (all unknowns, E), and of s - X itself, (E, E)."""
+        triangles, count = self.space.triangles, len(self.functions)
+        with_elements, own = np.zeros((self.space.all_count, count)), np.zeros((count, count))
+        for triangle, points, weights in self._cells(np.arange(len(triangles.points))):
+            rest, table = self._derivatives(points, triangle, 1), triangles.derivatives(points, triangle, 1)
+            weighted = weights[..., None] * rest
+            np.add.at(with_elements, self.space.dofs[triangle], _products(table, weighted))
+            own += np.tensordot(rest, weighted, axes=([0, 1, 2], [0, 1, 2]))
+        return with_elements, own
+
+    def at_rim(self, coupling: FloatArray, of_elements: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """A coupling (k, n, 6, 6) at the rim of the triangles' functions, (all unknowns, E), and of s - X, (E, E).
+
+        of_elements: (6, k, n, 21), the traces of the triangles' functions.
+        """
+        with_elements = np.zeros((self.space.all_count, len(self.functions)))
+        coupled = np.einsum("kncd,dkne->ckne", coupling, self.traces)
+        local = np.einsum("cknj,ckne->kje", of_elements, coupled, optimize=True)
+        np.add.at(with_elements, self.space.dofs[self.space.rim.triangle], local)
+        return with_elements, np.einsum("ckne,cknf->ef", self.traces, coupled, optimize=True)
+
+    def _cells(self, chosen: IntArray) -> Iterator[tuple[IntArray, FloatArray, FloatArray]]:
+        """Triangles (t,), quadrature points (t, n, 2) and weights (t, n), some at a time, and then the slivers."""
+        triangles = self.space.triangles
+        xy, weights = forms.triangle_quadrature(QUADRATURE)
+        step = max(1, CHUNK // (len(weights) * len(self.functions)))
+        for start in range(0, len(chosen), step):
+            triangle = chosen[start : start + step]
+            points = np.einsum("mij,nj->mni", triangles.jacobian[triangle], xy) + triangles.centre[triangle, None]
+            yield triangle, points, triangles.determinant[triangle, None] * weights
+        if len(self.space.slivers.triangle):
+            yield self.space.slivers
+
+    def _derivatives(self, points: FloatArray, triangle: IntArray, order: int) -> FloatArray:
+        """Derivatives (d, t, n, E) of one order of s - X at points (t, n, 2) of triangles (t,)."""
+        table = self.space.triangles.derivatives(points, triangle, order)
+        return np.asarray(self.functions.derivatives(points, order + 1)[order] - table @ self.lifts[triangle])
+
+
+def _products(table: FloatArray, moments: FloatArray) -> FloatArray:
+    """The sums (t, j, e) of products of (d, t, n, j) with (d, t, n, e) over d and n."""
+    return np.asarray(sum(one.transpose(0, 2, 1) @ other for one, other in zip(table, moments, strict=True)))

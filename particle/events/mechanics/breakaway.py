@@ -1,0 +1,256 @@
+"""The first moments of sliding, on the slow manifold.
+
+At a small sliding speed u friction turns the contact's velocity at the rate Q/u, so that explicit steps from rest fall
+to first order. The slow solution is known. With K = (I - z_k S)(I - z_c S)^-1, F for I where the mid-plane stretches,
+which takes a force per kg to the contact's acceleration, the contact begins to slide along e, where
+
+    K (A d - Q e) = r e,     |e| = 1,     r = u' at first,
+
+d is the direction of the pull and A its size; where the contact is as high as the centre of mass, K = I, e = d and
+r = A - Q. From there the velocity lags by the angle kappa u,
+
+    k = u (sqrt(1 - kappa^2 u^2) e - kappa u n),     kappa = (turning rate of e) / (2 r + Q n.K n),
+
+with n at right angles to e (all of unit length along the surface). It is regular at u = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from particle.events.mechanics.equations import Part, Pull, drag, length, over_plane, pull, push, turning
+from particle.events.mechanics.motion import Motion
+from particle.events.mechanics.parallel import (
+    from_height,
+    inner,
+    normal_bend_along,
+    shape_operator,
+    stretch_rate,
+    to_height,
+)
+from particle.friction import friction_limit
+from particle.jit import jit_no_arrays
+from particle.surface import LocalSurface, SurfacePoint, surface_at
+
+TURNS, SETTLED = 50, 1e-15
+
+
+class RestPull(NamedTuple):
+    """The pull on a part at rest: its size A and Q/m [m/s^2], unit vectors along and across it, the load."""
+
+    demand: float
+    limit: float
+    d_x: float
+    d_y: float
+    n_x: float
+    n_y: float
+    load: float  # N
+
+
+class Heading(NamedTuple):
+    """Where a part on the slow manifold slides: the directions e and n of its contact, and the lag."""
+
+    e_x: float
+    e_y: float
+    n_x: float
+    n_y: float
+    kappa: float  # s/m
+
+
+class Mobility(NamedTuple):
+    """The matrix K, by rows: the contact's acceleration along the surface for a force per kg on the centre of mass."""
+
+    xx: float
+    xy: float
+    yx: float
+    yy: float
+
+
+@jit_no_arrays
+def rest_pull(f: SurfacePoint, part: Part) -> RestPull:
+    """The pull at rest in the frame that it and the surface define."""
+    p = pull(f, 0.0, 0.0, part)
+    demand = length(f, p.x, p.y)
+    d_x, d_y = (p.x / demand, p.y / demand) if demand > 0.0 else (1.0 / length(f, 1.0, 0.0), 0.0)
+    n_x, n_y = _turned_left(f, d_x, d_y)
+    limit = friction_limit(part.law, p.normal) / part.mass
+    return RestPull(demand, limit, d_x, d_y, n_x, n_y, p.normal)
+
+
+@jit_no_arrays
+def _turned_left(f: SurfacePoint, d_x: float, d_y: float) -> tuple[float, float]:
+    """n at right angles to d along the surface: M n is d turned left, M = I + grad w grad w^T, det M = s^2."""
+    s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
+    m_x, m_y = d_x + f.w_x * (f.w_x * d_x + f.w_y * d_y), d_y + f.w_y * (f.w_x * d_x + f.w_y * d_y)
+    return -m_y / s, m_x / s
+
+
+@jit_no_arrays
+def mobility(f: SurfacePoint, part: Part) -> Mobility:
+    """K."""
+    shape = shape_operator(f)
+    xx, yx = to_height(shape, part.contact, *from_height(shape, part.centre, 1.0, 0.0))
+    xy, yy = to_height(shape, part.contact, *from_height(shape, part.centre, 0.0, 1.0))
+    return Mobility(xx, xy, yx, yy)
+
+
+@jit_no_arrays
+def moved(k: Mobility, x: float, y: float) -> tuple[float, float]:
+    """K times a vector."""
+    return k.xx * x + k.xy * y, k.yx * x + k.yy * y
+
+
+@jit_no_arrays
+def first_slip(f: SurfacePoint, k: Mobility, p_x: float, p_y: float, limit: float) -> tuple[float, float, float]:
+    """r, e_x and e_y with K (p - limit e) = r e, for a pull p [m/s^2] along the surface; exact where K = I."""
+    size = length(f, p_x, p_y)
+    e_x, e_y = p_x / size, p_y / size
+    rate = size - limit
+    for _ in range(TURNS):
+        # (r K^-1 + limit) e = p with r from the e before, then as long as 1: K is nearly I, so ten turns settle it.
+        a_x, a_y = moved(k, p_x - limit * e_x, p_y - limit * e_y)
+        rate = inner(f, e_x, e_y, a_x, a_y)
+        q_x, q_y = moved(k, p_x, p_y)
+        xx, xy, yx, yy = rate + limit * k.xx, limit * k.xy, limit * k.yx, rate + limit * k.yy
+        det = xx * yy - xy * yx
+        t_x, t_y = (yy * q_x - xy * q_y) / det, (xx * q_y - yx * q_x) / det
+        size = length(f, t_x, t_y)
+        t_x, t_y = t_x / size, t_y / size
+        off = abs(t_x - e_x) + abs(t_y - e_y)
+        e_x, e_y = t_x, t_y
+        if off < SETTLED:
+            break
+    return rate, e_x, e_y
+
+
+@jit_no_arrays
+def heading(
+    local: LocalSurface, part: Part, time: float, x: float, y: float, u: float, f: SurfacePoint, a: RestPull
+) -> Heading:
+    """Where a part slides at the speed u [m/s] of its contact."""
+    if part.centre > 0.0 or local.frame[0].in_plane > 0:
+        return _raised_heading(local, part, time, x, y, u, f, a)
+    return Heading(a.d_x, a.d_y, a.n_x, a.n_y, _lag(local, part, time, x, y, u, f, a))
+
+
+@jit_no_arrays
+def _lag(
+    local: LocalSurface, part: Part, time: float, x: float, y: float, u: float, f: SurfacePoint, a: RestPull
+) -> float:
+    """kappa [s/m] of a point part."""
+    if a.demand == 0.0 or 2 * a.demand <= a.limit:
+        return 0.0
+    if local.frame[0].base_drives > 0 or part.tilt_x != 0.0 or part.tilt_y != 0.0:
+        # The pull is not along grad w, and there is no closed form without the base's jerk: its turning is taken from
+        # a small step along the path.
+        step = 1e-6 * local.frame[0].unit
+        g = surface_at(local, x + step * u * a.d_x, y + step * u * a.d_y, time + step)
+        ahead, here = pull(g, 0.0, 0.0, part), pull(f, 0.0, 0.0, part)
+        turn_x, turn_y = (ahead.x - here.x) / step, (ahead.y - here.y) / step
+        if u > 0.0:
+            # The pull on a moving part is not along that on one at rest: what that adds grows with u as the lag does.
+            fast = pull(f, u * a.d_x, u * a.d_y, part)
+            turn_x -= a.demand * (fast.x - here.x) / u
+            turn_y -= a.demand * (fast.y - here.y) / u
+    else:
+        # The pull is along grad w, which turns by grad w_t + H v; what changes its size has no part in it.
+        factor = -part.gravity - f.w_tt
+        square = 1 + f.w_x * f.w_x + f.w_y * f.w_y
+        turn_x = factor / square * (f.w_xt + u * (f.w_xx * a.d_x + f.w_xy * a.d_y))
+        turn_y = factor / square * (f.w_yt + u * (f.w_xy * a.d_x + f.w_yy * a.d_y))
+    climb_n = a.n_x * f.w_x + a.n_y * f.w_y
+    across = turn_x * a.n_x + turn_y * a.n_y + (turn_x * f.w_x + turn_y * f.w_y) * climb_n
+    return across / a.demand / (2 * a.demand - a.limit)
+
+
+@jit_no_arrays
+def _raised_heading(
+    local: LocalSurface, part: Part, time: float, x: float, y: float, u: float, f: SurfacePoint, a: RestPull
+) -> Heading:
+    """Where a part slides whose contact or centre of mass is off the mid-plane, or on a mid-plane that stretches.
+
+    How e turns, and how the pull on a moving part differs from that on one at rest, are taken from small steps.
+    """
+    if a.demand == 0.0 or 2 * a.demand <= a.limit:
+        return Heading(a.d_x, a.d_y, a.n_x, a.n_y, 0.0)
+    k = mobility(f, part)
+    rate, e_x, e_y = first_slip(f, k, a.demand * a.d_x, a.demand * a.d_y, a.limit)
+    n_x, n_y = _turned_left(f, e_x, e_y)
+    v_x, v_y = over_plane(f, part, u * e_x, u * e_y)
+    step = 1e-6 * local.frame[0].unit
+    g = surface_at(local, x + step * v_x, y + step * v_y, time + step)
+    ahead = pull(g, 0.0, 0.0, part)
+    limit = friction_limit(part.law, ahead.normal) / part.mass
+    _, g_x, g_y = first_slip(g, mobility(g, part), ahead.x, ahead.y, limit)
+    turning_rate = inner(f, n_x, n_y, (g_x - e_x) / step, (g_y - e_y) / step)
+    if u > 0.0:
+        fast = pull(f, v_x, v_y, part)
+        limit = friction_limit(part.law, fast.normal) / part.mass
+        a_x, a_y = _contact_acceleration(f, part, k, fast, v_x, v_y, limit * e_x, limit * e_y)
+        turning_rate -= inner(f, n_x, n_y, a_x, a_y) / u
+    across_x, across_y = moved(k, n_x, n_y)
+    damping = 2 * rate + a.limit * inner(f, n_x, n_y, across_x, across_y)
+    return Heading(e_x, e_y, n_x, n_y, turning_rate / damping if damping > 0.0 else 0.0)
+
+
+@jit_no_arrays
+def _contact_acceleration(
+    f: SurfacePoint, part: Part, k: Mobility, p: Pull, v_x: float, v_y: float, q_x: float, q_y: float
+) -> tuple[float, float]:
+    """The rate [m/s^2], in x and y, of the contact's velocity over the surface under a pull p and friction q per kg."""
+    a_x, a_y = moved(k, p.x - q_x, p.y - q_y)
+    n, s = normal_bend_along(f, v_x, v_y), math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
+    z = part.contact
+    c_x, c_y = stretch_rate(f, v_x, v_y, v_x, v_y)
+    return a_x + z * (n.x + n.down * f.w_x / s) + c_x, a_y + z * (n.y + n.down * f.w_y / s) + c_y
+
+
+@jit_no_arrays
+def velocity(f: SurfacePoint, part: Part, u: float, h: Heading) -> tuple[float, float]:
+    """The velocity (x', y') [m/s] on the manifold at the contact's speed u [m/s]."""
+    k_x, k_y = _direction(u, h)
+    return over_plane(f, part, u * k_x, u * k_y)
+
+
+@jit_no_arrays
+def _direction(u: float, h: Heading) -> tuple[float, float]:
+    """The direction of the contact's velocity."""
+    back = min(max(h.kappa * u, -1.0), 1.0)
+    along = math.sqrt(max(0.0, 1 - back * back))
+    return along * h.e_x - back * h.n_x, along * h.e_y - back * h.n_y
+
+
+@jit_no_arrays
+def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float, motion: Motion, rate: Motion) -> float:
+    """The rate of a motion on the manifold, v_x of which is u, into `rate`; returns the normal force [N].
+
+    f: the surface at `motion` and `time`.
+    """
+    x, y, u = motion.x, motion.y, motion.v_x
+    h = heading(local, part, time, x, y, u, f, rest_pull(f, part))
+    d_x, d_y = _direction(u, h)
+    v_x, v_y = over_plane(f, part, u * d_x, u * d_y)
+    p = pull(f, v_x, v_y, part)
+    limit = friction_limit(part.law, p.normal)
+    climb = d_x * f.w_x + d_y * f.w_y
+    rate.x, rate.y = v_x, v_y
+    if part.centre > 0.0 or local.frame[0].in_plane > 0:
+        q = limit / part.mass
+        a_x, a_y = moved(mobility(f, part), p.x - q * d_x, p.y - q * d_y)
+        n = normal_bend_along(f, v_x, v_y)
+        # With what the surface adds by its own height, w_pq along the motion.
+        lift = v_x * f.w_xt + v_y * f.w_yt + v_x * (f.w_xx * v_x + 2 * f.w_xy * v_y) + v_y * f.w_yy * v_y
+        c_x, c_y = stretch_rate(f, v_x, v_y, v_x, v_y)
+        a_x, a_y = a_x + part.contact * n.x + c_x, a_y + part.contact * n.y + c_y
+        rate.v_x = inner(f, d_x, d_y, a_x, a_y) + climb * lift
+    else:
+        upright = part.gravity + f.w_tt + v_x * f.w_xt + v_y * f.w_yt
+        along = d_x * (f.base_ax - part.tilt_x) + d_y * (f.base_ay - part.tilt_y)
+        rate.v_x = -along - climb * upright - limit / part.mass
+    rate.v_y = 0.0
+    rate.work = push(f, part, p.normal) - limit * drag(f, part, d_x, d_y)
+    if u > 0.0:
+        rate.work += limit / u * turning(f, part, v_x, v_y)
+    rate.dissipated = limit * u
+    return p.normal

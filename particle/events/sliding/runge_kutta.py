@@ -1,0 +1,106 @@
+"""One step of an embedded Runge-Kutta pair, for sliding and for the slow manifold after break-away."""
+
+from __future__ import annotations
+
+import math
+
+from particle.events.mechanics import INTEGRATED, Motion, Part, manifold_rate, margin, slide_rate
+from particle.events.memory import Memory
+from particle.events.step import Step, keep_surface
+from particle.events.tableau import Tableau
+from particle.friction import friction_limit
+from particle.jit import jit_no_arrays
+from particle.modes import Mode
+from particle.surface import LocalSurface, Surface, SurfacePoint, gap_at, surface_at, within_cell
+
+
+@jit_no_arrays
+def motion_rate(
+    f: SurfacePoint, mode: int, local: LocalSurface, part: Part, time: float, motion: Motion, rate: Motion
+) -> float:
+    """The right side, while sliding or on the slow manifold, into `rate`; returns the load [N].
+
+    f: the surface at `motion` and `time`.
+    """
+    if mode == Mode.SLIDING:
+        return slide_rate(f, part, motion, rate)
+    return manifold_rate(f, local, part, time, motion, rate)
+
+
+@jit_no_arrays
+def attempt(surface: Surface, part: Part, pair: Tableau, memory: Memory, h: float) -> bool:
+    """Tries a step of h [s] from the part's motion, whose rate is step.rates[0]; its end goes to step.end.
+
+    False when a stage leaves the cell's polynomials, or turns the velocity back under friction, which would then point
+    the wrong way.
+    """
+    mode, time, motion, step, local = (
+        memory.now[0].mode,
+        memory.now[0].time,
+        memory.motion[0],
+        memory.step,
+        memory.local,
+    )
+    # A part that starts from rest where friction vanishes has no direction to keep.
+    dry = mode == Mode.SLIDING and friction_limit(part.law, step.loads[0]) > 0.0
+    dry = dry and math.hypot(motion.v_x, motion.v_y) > 0.0
+    stages = len(pair.c)
+    stage: Motion = step.stage[0]
+    for k in range(1, stages):
+        for i in range(INTEGRATED):
+            total = 0.0
+            for j in range(k):
+                total += pair.a[k, j] * step.rate_numbers[j, i]
+            step.stage_numbers[0, i] = memory.motion_numbers[0, i] + h * total
+        if not within_cell(local, stage.x, stage.y):
+            return False
+        if dry and stage.v_x * motion.v_x + stage.v_y * motion.v_y <= 0.0:
+            return False
+        moment = time + pair.c[k] * h
+        f = surface_at(local, stage.x, stage.y, moment)
+        if k == stages - 1:
+            keep_surface(local, step, moment, f)
+        load = motion_rate(f, mode, local, part, moment, stage, step.rates[k])
+        # As far from the rim as the start is, less the way from there: where that does not settle it, look.
+        gap = step.seen[0].gap - math.hypot(stage.x - motion.x, stage.y - motion.y)
+        gap = gap if gap > 0.0 else gap_at(surface, local, stage.x, stage.y)
+        step.loads[k], step.margins[k] = load, margin(local, part, load, gap)
+    step.end[0] = stage
+    return True
+
+
+@jit_no_arrays
+def step_error(pair: Tableau, step: Step, h: float, lasting: float, force: float) -> float:
+    """The step's error as a distance [m].
+
+    An error of velocity counts as what it moves the part by in `lasting` [s], one of the ledger as the way on which
+    `force` [N] does that work.
+    """
+    fifth = third = 0.0
+    for i in range(INTEGRATED):
+        e = d = 0.0
+        for k in range(len(pair.c)):
+            e += pair.error[0, k] * step.rate_numbers[k, i]
+            d += pair.error[1, k] * step.rate_numbers[k, i]
+        weight = h / force if i >= 4 else (h * lasting if i >= 2 else h)
+        fifth += (weight * e) ** 2
+        third += (weight * d) ** 2
+    if fifth == 0.0:
+        return 0.0
+    # Hairer's combination: the fifth-order estimate, damped by the third-order one.
+    return fifth / math.sqrt(fifth + 0.01 * third)
+
+
+@jit_no_arrays
+def first_excursion(part: Part, pair: Tableau, step: Step) -> float:
+    """The share of a step at which the load leaves the contact's range between two stages; 1: nowhere.
+
+    The loads between them are those of a polynomial fitted to the stages'.
+    """
+    for k in range(len(pair.between)):
+        load = 0.0
+        for j in range(len(pair.c)):
+            load += pair.blend[k, j] * step.loads[j]
+        if not -part.law.pull_off <= load <= part.law.largest_load:
+            return float(pair.between[k])
+    return 1.0

@@ -1,0 +1,135 @@
+"""A part that stays at one place: how near it is to slipping and to coming off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.drives import next_breakpoint
+from particle.events import Part, rest_over_time
+from particle.friction import Contact, friction_limits
+from particle.micropart import Micropart
+from particle.simulation import part_record
+from particle.surface import SurfaceMotion, missing_place, new_local
+
+FloatArray = NDArray[np.float64]
+
+PER_STROKE: Final = 48  # moments in the shortest stroke
+MAX_BREAKPOINTS, MAX_MOMENTS = 20_000, 400_000
+CANDIDATES, POINTS, ROUNDS = 8, 17, 7  # a bracket shrinks by 8 in a round
+ROUNDING: Final = 1e-9  # of the largest value: as large, but for rounding
+
+
+class Extreme(NamedTuple):
+    """The largest or the smallest value of a signal."""
+
+    value: float
+    time: float  # s
+
+
+@dataclass(frozen=True, eq=False)
+class PartAtRest:
+    """A part that stays at one place of a moving surface for a while; made by `part_at_rest`."""
+
+    surface: SurfaceMotion
+    place: tuple[float, float]  # m
+    part: Part = field(repr=False)
+    times: FloatArray = field(repr=False)  # (n,) s, where to look for extremes first
+
+    def scaled(self, factor: float, stroke: float = 1.0) -> PartAtRest:
+        """The same under drives `factor` times as fast over `stroke` times their heights (`SurfaceMotion.scaled`)."""
+        return replace(self, surface=self.surface.scaled(factor, stroke), times=self.times / factor)
+
+    def loads_and_demands(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The net load (n,) on the part and the force (n,) that would hold it, N, at ascending times (n,) [s]."""
+        while True:
+            surface = self.surface.record
+            local = new_local(surface)
+            loads, pulls = rest_over_time(surface, local, self.part, *self.place, times)
+            if not np.isnan(loads).any():
+                return loads, self.part.mass * pulls
+            self.surface.store.build(missing_place(local))
+
+    def slip(self) -> Extreme:
+        """The largest force that holds the part over the largest that friction gives: from 1 on it slips."""
+        return largest(lambda times: pull_ratios(self.part, *self.loads_and_demands(times)), self.times)
+
+    def smallest_load(self) -> Extreme:
+        """The smallest net load [N]: below minus the pull-off force the part comes off."""
+        value, time = largest(lambda times: -self.loads_and_demands(times)[0], self.times)
+        return Extreme(-value, time)
+
+    def largest_load(self) -> Extreme:
+        """The largest net load [N]."""
+        return largest(lambda times: self.loads_and_demands(times)[0], self.times)
+
+
+def part_at_rest(
+    surface: SurfaceMotion,
+    part: Micropart,
+    friction: Contact,
+    window: float,
+    gravity: float | Sequence[float] = 9.80665,
+    place: tuple[float, float] | None = None,
+) -> PartAtRest:
+    """A part that stays at its start or another place [m] for a window [s] from the drives' start."""
+    moments = sample_times(surface, 0.0, window)
+    return PartAtRest(surface, place or part.position, part_record(surface, part, friction, gravity), moments)
+
+
+def pull_ratios(part: Part, loads: FloatArray, demands: FloatArray) -> FloatArray:
+    """The forces (n,) [N] that hold a part at rest over the largest that friction gives under loads (n,) [N].
+
+    Where the contact has ended friction gives nothing; no demand then counts as 0.
+    """
+    law = part.law
+    held = (loads >= -law.pull_off) & (loads <= law.largest_load)
+    limits = law.static_ratio * friction_limits(law, np.where(held, loads, 0.0)) * held
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(demands > 0, demands / limits, 0.0)
+
+
+def sample_times(surface: SurfaceMotion, begin: float, end: float, per_stroke: int = PER_STROKE) -> FloatArray:
+    """Times (n,) from `begin` to `end` [s], so many in its shortest stroke, the drives' breakpoints among them."""
+    stroke_time = float(surface.stroke_times.min(initial=end - begin)) or 1.0
+    count = int(np.clip(math.ceil(per_stroke * (end - begin) / stroke_time), per_stroke, MAX_MOMENTS))
+    breakpoints = [begin]
+    while len(breakpoints) < MAX_BREAKPOINTS and breakpoints[-1] < end:
+        breakpoints.append(min(next_breakpoint(surface.drives, breakpoints[-1]), end))
+    return np.union1d(np.linspace(begin, end, count + 1), breakpoints)
+
+
+def largest(signal: Callable[[FloatArray], FloatArray], times: FloatArray, values: FloatArray | None = None) -> Extreme:
+    """The largest value of a signal, smooth but for breakpoints, and when first; times (n,) [s] bracket its maxima.
+
+    values: (n,) of the signal at these, where they are known.
+    """
+    values = signal(times) if values is None else values
+    before, after = np.append(-np.inf, values[:-1]), np.append(values[1:], -np.inf)
+    peaks = np.flatnonzero((values >= before) & (values >= after))
+    top = values[peaks].max()
+    if not math.isfinite(top):
+        return Extreme(float(top), float(times[peaks[values[peaks] == top][0]]))
+    nearly = np.minimum(values[peaks], top - ROUNDING * abs(top))  # of equal ones the first
+    peaks = peaks[np.argsort(-nearly, kind="stable")[:CANDIDATES]]
+    best, at = values[peaks], times[peaks]
+    low, high = times[np.maximum(peaks - 1, 0)], times[np.minimum(peaks + 1, len(times) - 1)]
+    rows = np.arange(len(peaks))
+    for _ in range(ROUNDS):
+        grid = np.linspace(low, high, POINTS, axis=1)  # (candidates, POINTS)
+        order = np.argsort(grid, axis=None, kind="stable")
+        found = np.empty(grid.shape)
+        found.flat[order] = signal(grid.ravel()[order])
+        place = found.argmax(axis=1)
+        more = found[rows, place] > best
+        best, at = np.where(more, found[rows, place], best), np.where(more, grid[rows, place], at)
+        low, high = grid[rows, np.maximum(place - 1, 0)], grid[rows, np.minimum(place + 1, POINTS - 1)]
+    top = best.max()
+    equal = np.flatnonzero(best >= (top - ROUNDING * abs(top) if math.isfinite(top) else top))
+    first = equal[np.argmin(at[equal])]
+    return Extreme(float(best[first]), float(at[first]))

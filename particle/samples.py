@@ -1,0 +1,109 @@
+"""Samples: a part at moments of its path, for people."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from particle.modes import EventKind, Mode
+from particle.outcome import State
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Event:
+    """One moment of a trajectory."""
+
+    kind: EventKind
+    time: float  # s
+    position: tuple[float, float]  # m
+    speed: float  # m/s, in the plane; at a landing that after it
+    load: float  # N, net normal force
+
+
+class Samples(NamedTuple):
+    """The part at k moments."""
+
+    time: FloatArray  # (k,) s
+    position: FloatArray  # (k, 2) m
+    velocity: FloatArray  # (k, 2) m/s
+    vertical_velocity: FloatArray  # (k,) m/s
+    height: FloatArray  # (k,) m, that of the surface under it unless it flies
+    normal_force: FloatArray  # (k,) N, net, of the contact
+    friction_force: FloatArray  # (k,) N, its magnitude
+    state: NDArray[np.int64]  # (k,) State
+
+
+class RoughContact(Protocol):
+    """What `KogutEtsion` knows of the parts of its normal force."""
+
+    @property
+    def pull_off(self) -> float: ...
+
+    @property
+    def largest_load(self) -> float: ...
+
+    def separation(self, net_load: ArrayLike) -> FloatArray: ...
+
+    def forces(self, separation: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]: ...
+
+
+class ContactSamples(NamedTuple):
+    """Contact and centre of mass of a part in space at k moments, and the forces on it."""
+
+    time: FloatArray  # (k,) s
+    contact: FloatArray  # (k, 3) m, where it touches the surface; in flight the place that would touch
+    centre: FloatArray  # (k, 3) m, its centre of mass
+    normal: FloatArray  # (k, 3) the surface's normal, along which it stands: its attitude
+    normal_force: FloatArray  # (k,) N, net, along the normal
+    friction: FloatArray  # (k, 3) N, on the part
+    pull: FloatArray  # (k,) m/s^2, along the surface, without friction; 0 in flight
+    point_pull: FloatArray  # (k,) m/s^2, the same on a point of the mid-plane
+    added_pull: FloatArray  # (k,) m/s^2, the difference, which the heights of contact and centre of mass make
+    separation: FloatArray  # (k,) over the roughness, of a rough contact; nan in flight and without its law
+    contact_load: FloatArray  # (k,) N, pressing its asperities; nan likewise
+    adhesion: FloatArray  # (k,) N, holding against it; contact_load - adhesion is the normal force; nan likewise
+    state: NDArray[np.int64]  # (k,) State
+
+
+def samples_of(rows: NDArray[Any]) -> Samples:
+    """The rows (k,) of a record, for people."""
+    return Samples(
+        time=rows["time"],
+        position=np.column_stack([rows["x"], rows["y"]]),
+        velocity=np.column_stack([rows["v_x"], rows["v_y"]]),
+        vertical_velocity=rows["v_z"],
+        height=rows["z"],
+        normal_force=rows["load"],
+        friction_force=rows["friction"],
+        state=_states(rows),
+    )
+
+
+def _states(rows: NDArray[Any]) -> NDArray[np.int64]:
+    return np.where(rows["mode"] == Mode.MANIFOLD, State.SLIP, rows["mode"])
+
+
+def contact_samples_of(rows: NDArray[Any], states: NDArray[Any], friction: RoughContact | None) -> ContactSamples:
+    """Rows (k,) of a record with those of `ContactState` at them, for people."""
+    vectors = (
+        np.column_stack([states[head + axis] for axis in "xyz"]) for head in ("", "centre_", "normal_", "friction_")
+    )
+    place, centre, normal, force = vectors
+    load = rows["load"]
+    parts = np.full((3, len(load)), np.nan)
+    touching = rows["mode"] != Mode.FLYING
+    if friction is not None and touching.any():
+        # The end of contact is located just beyond it, where the law has no separation.
+        separation = friction.separation(np.clip(load[touching], -friction.pull_off, friction.largest_load))
+        parts[:, touching] = separation, *friction.forces(separation)[:2]
+    pull, of_point, added = (states[name] for name in ("pull", "point_pull", "added_pull"))
+    separations, contact_loads, adhesions = parts
+    return ContactSamples(
+        *(rows["time"], place, centre, normal, load, force, pull, of_point, added),
+        *(separations, contact_loads, adhesions, _states(rows)),
+    )

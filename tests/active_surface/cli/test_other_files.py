@@ -1,0 +1,122 @@
+"""Files that are no case, and names that are no files: each is named as what it is, with what to do."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from active_surface.cli.program import main
+from coupling.suggestion import near_file
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+GOOD = (EXAMPLES / "one_actuator.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    for name in ("one_actuator.toml", "two_actuators.toml", "transport.toml"):
+        (tmp_path / "examples").mkdir(exist_ok=True)
+        shutil.copy(EXAMPLES / name, tmp_path / "examples" / name)
+    shutil.copytree(EXAMPLES / "studies", tmp_path / "examples/studies")
+    shutil.copytree(EXAMPLES / "aims", tmp_path / "examples/aims")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def refused(*words: str) -> str:
+    done = CliRunner().invoke(main, words, prog_name="active-surface")
+    assert (done.exit_code, done.stdout) == (2, ""), done.output
+    assert "Traceback" not in done.stderr
+    return done.stderr
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("exampels/transport.toml", "examples/transport.toml"),
+        ("exmaples/transprot.toml", "examples/transport.toml"),
+        ("examples/transport", "examples/transport.toml"),
+        ("examples/transport.tmol", "examples/transport.toml"),
+        ("transport.toml", "examples/transport.toml"),
+        ("transport", "examples/transport.toml"),
+        ("moderate.toml", "examples/studies/moderate.toml"),
+        ("examples/two_actuator.toml", "examples/two_actuators.toml"),
+        ("examples/moderate.toml", "examples/studies/moderate.toml"),
+        ("examples/studies/moderat", "examples/studies/moderate.toml"),
+        ("elsewhere/nothing.toml", None),
+        ("zebra.toml", None),
+    ],
+)
+def test_a_file_that_is_not_there_leads_to_the_one_that_is_meant(folder: Path, written: str, meant: str | None) -> None:
+    assert near_file(Path(written)) == (Path(meant) if meant else None)
+    hint = f"; did you mean {meant}?" if meant else ""
+    assert refused("check", written) == (
+        f"{written}: 1 mistake\n  the file  cannot be read: no such file or directory{hint}\n"
+    )
+
+
+@pytest.mark.parametrize("command", ["check", "run", "feasibility", "response"])
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("first.plate.vtkhdf", b"\x89HDF\r\n\x1a\n", "`active-surface view first.plate.vtkhdf` shows it"),
+        ("first.surface.h5", b"\x89HDF\r\n\x1a\n", "is the moving surface of a run"),
+        ("first.h5", b"\x89HDF\r\n\x1a\n", "is an HDF5 file"),
+        ("first.toml", b"\x89HDF\r\n\x1a\n", "is an HDF5 file"),
+        ("sweep.nc", b"\x89HDF\r\n\x1a\n", "`active-surface view sweep.nc` shows a sweep"),
+        ("points.csv", b"load [uN], limit [nN]\n", 'a case names it, file = "points.csv" in [friction]'),
+        ("plate.msh", b"$MeshFormat\n", 'is a mesh; a case names it, mesh = "plate.msh" in [plate]'),
+        ("plate.geo", b"Point(1) = {0, 0};\n", "`gmsh -2 plate.geo` makes the mesh"),
+        ("first.png", b"\x89PNG", "is a picture"),
+        ("case.yaml", b"plate: disc\n", "is no TOML"),
+        ("empty.toml", b" \n\n", "is empty; `active-surface schema --template > empty.toml` writes a case"),
+        ("wide.toml", GOOD.encode("utf-16"), "is UTF-16 text; save it as UTF-8"),
+        ("latin.toml", "# 5 µm\n".encode("latin-1"), "is not UTF-8 text; got the byte 0xb5; save it as UTF-8"),
+        ("zipped.toml", b"PK\x03\x04\0\0", "is no text"),
+    ],
+)
+def test_another_file_is_named_as_what_it_is(folder: Path, command: str, name: str, content: bytes, said: str) -> None:
+    (folder / name).write_bytes(content)
+    message = refused(command, name)
+    assert message.startswith(f"{name}: 1 mistake\n") and said in message and len(message.splitlines()) == 2
+
+
+def test_a_folder_names_a_file_in_it(folder: Path) -> None:
+    (folder / "none").mkdir()
+    assert refused("run", "examples").endswith("is a folder; name a file in it, such as examples/one_actuator.toml\n")
+    assert refused("run", "none").endswith("is a folder\n")
+
+
+def test_a_byte_order_mark_and_tabs_are_no_mistake(folder: Path) -> None:
+    (folder / "mark.toml").write_bytes(b"\xef\xbb\xbf" + GOOD.replace(" = ", "\t=\t").encode())
+    assert CliRunner().invoke(main, ["check", "mark.toml"]).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["examples/transport.toml"], "is a case; write active-surface run examples/transport.toml"),
+        (["examples/studies/starts.toml"], "is a study; write active-surface sweep examples/studies/starts.toml"),
+        (["examples/aims/to_target.toml"], "is an aim; write active-surface aim examples/aims/to_target.toml"),
+        (["examples"], "is no command; it is a folder; name a file in it, such as examples/one_actuator.toml"),
+        (["transport.toml"], "is no command; it cannot be read: no such file or directory; did you mean examples/tr"),
+        (["zebra.toml"], "zebra.toml is not known; active-surface has aim, animate"),
+        (["simulate", "x"], "simulate is not known; did you mean run?"),
+        (["run", "examples/studies/starts.toml"], "a study; write active-surface sweep examples/studies/starts.toml"),
+        (["run", "examples/aims/to_target.toml"], "an aim; write active-surface aim examples/aims/to_target.toml"),
+        (["sweep", "examples/transport.toml"], "a case; write active-surface run examples/transport.toml"),
+        (["sweep", "examples/aims/to_target.toml"], "an aim; write active-surface aim examples/aims/to_target.toml"),
+        (["aim", "examples/studies/starts.toml"], "a study; write active-surface sweep examples/studies/starts.toml"),
+        (
+            ["plan", "examples/studies/starts.toml", "--through", "0,0"],
+            "a study; write active-surface sweep examples/studies/starts.toml",
+        ),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_a_file_without_its_command_or_with_another_is_told_which(folder: Path, words: list[str], said: str) -> None:
+    message = refused(*words)
+    assert said in message and len(message.splitlines()) == 2

@@ -1,0 +1,67 @@
+"""Charts over frequency and stroke: made of borders that are known, read between their columns, and picked from."""
+
+import math
+
+import numpy as np
+import pytest
+
+from active_surface.studies.feasibility.borders import Column
+from active_surface.studies.feasibility.chart import TOLERANCE, make_chart
+from active_surface.studies.feasibility.pick import _candidates, clearances
+
+STROKES = (1e-3, 16.0)
+
+
+def charted(slips, lost, all_lost=None, first=0.25, last=8.0, count=11, most=40):
+    """The chart of borders that are functions of the factor of frequency."""
+
+    def find(k, guess):
+        upper = lost(k) if all_lost is None else all_lost(k)
+        return Column(k, slips(k), lost(k), upper)
+
+    return make_chart(find, np.geomspace(first, last, count).tolist(), STROKES, most)
+
+
+def bent(k):
+    """A border that is no power of the frequency."""
+    return 0.3 / k + 0.1 / k**2
+
+
+def test_smooth_borders_hold_to_the_tolerance_between_columns():
+    chart = charted(bent, lambda k: 1 / k + 0.2 / k**2 + 0.1 * math.sin(k))
+    assert all(one.slips and one.losses for one in chart.smooth)
+    for k in np.random.default_rng(1).uniform(0.25, 8.0, 200).tolist():
+        limits = chart.limits(k)
+        assert limits.slips[0] == limits.slips[1] == pytest.approx(bent(k), rel=TOLERANCE)
+        assert limits.lost[0] == pytest.approx(1 / k + 0.2 / k**2 + 0.1 * math.sin(k), rel=TOLERANCE)
+
+
+def test_a_jump_is_narrowed_and_what_lies_across_it_may_go_either_way():
+    chart = charted(bent, lambda k: 2.0 if k < 1.7 else 4.0)
+    around = [k for k in np.geomspace(0.25, 8.0, 4000).tolist() if chart.state(k, 3.0) == "either"]
+    assert max(around) / min(around) < 1.02 and min(around) < 1.7 < 1.002 * max(around)
+    assert (chart.state(1.0, 3.0), chart.state(3.0, 3.0)) == ("lost", "moves")
+
+
+def test_ragged_borders_claim_nothing_between_them_and_take_no_columns():
+    chart = charted(bent, lambda k: 1.0 + 0.3 * math.sin(40 * k), lambda k: 2.0 + 0.3 * math.sin(50 * k))
+    ratios = [b.frequency / a.frequency for a, b in zip(chart.columns, chart.columns[1:], strict=False)]
+    assert min(ratios) > 1.06 and chart.state(1.0, 1.5) == "either"
+    assert chart.state(1.1, 2.6) == "lost" and chart.state(1.1, bent(1.1) * 0.99) == "rest"
+
+
+def test_a_border_beyond_the_largest_stroke_has_no_points():
+    chart = charted(lambda k: math.inf if k < 1 else 1.0, lambda k: math.inf)
+    assert chart.state(0.3, 10.0) == "rest" and chart.state(7.0, 10.0) == "moves"
+    with pytest.raises(ValueError, match="must be from 0.25 to 8 times the case's; got 9"):
+        chart.limits(9.0)
+
+
+def test_points_are_as_far_from_borders_as_geometry_says():
+    """Between horizontal borders a factor of four apart the middle is a factor of two from both."""
+    chart = charted(lambda k: 1.0, lambda k: 4.0)
+    points, rooms = _candidates(chart, np.full(len(chart.columns), np.inf))
+    assert rooms.max() == pytest.approx(math.log(2), rel=1e-3)
+    assert clearances(chart, np.array([[1.0, 3.0]]))[0] == pytest.approx(math.log(4 / 3), rel=1e-3)
+    assert points[:, 1].min() > 1 and points[:, 1].max() < 4
+    assert len(_candidates(chart, np.full(len(chart.columns), 0.9))[0]) == 0

@@ -1,0 +1,106 @@
+"""What actuators can do: strokes and forces beyond it are mistakes, and reactions beyond it are warned of."""
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from active_surface.cli.program import main
+from coupling.case import CaseError, InputError, read_case
+from coupling.limits import largest_forces, limit_warnings
+
+CASE = """
+[plate]
+shape = "disc"
+radius = "300 um"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+cell_size = "75 um"
+
+{actuators}
+
+[part]
+mass = "2e-9 kg"
+position = ["10 um", "0 um"]
+
+[friction]
+model = "constant"
+limit = "1 uN"
+
+[run]
+duration = "4 ms"
+"""
+ONE = '[[actuators]]\nposition = ["0 um", "0 um"]\n'
+STROKE = 'stroke = "-2 um"\nfrequency = "300 Hz"\n'
+LATTICE = '[lattice]\nrows = 1\ncolumns = 3\npitch = "100 um"\nfrequency = "300 Hz"\n'
+RIGIDITY = 169e9 * 5e-6**3 / 12 / (1 - 0.3**2)
+TAKEN = 16 * np.pi * RIGIDITY / 300e-6**2 * 2e-6  # N, of a central stroke of 2 um
+
+
+def file_with(folder, actuators):
+    path = folder / "case.toml"
+    path.write_text(CASE.format(actuators=actuators))
+    return path
+
+
+BEYOND = [
+    (
+        ONE + STROKE + 'max_stroke = "1.5 um"',
+        "[0].stroke must be at most max_stroke, 1.5 um, up or down; got -2 um",
+    ),
+    (
+        ONE + 'table = [["0 ms", "0 um"], ["1 ms", "4 um"]]\nmax_stroke = "3 um"',
+        "actuators[0].table must have heights of at most max_stroke, 3 um, up or down; got 4 um",
+    ),
+    (
+        ONE
+        + 'max_stroke = "3 um"\n[[actuators.segments]]\nstroke = "2 um"\nfrequency = "9 Hz"\ncycle = "up"\ncycles = 2',
+        "must have heights of at most max_stroke, 3 um, up or down; got 4 um",
+    ),
+    (
+        ONE + 'force = "2 uN"\nfrequency = "300 Hz"\nmax_force = "1 uN"',
+        "actuators[0].force must be at most max_force, 1e-06 N, up or down; got 2e-06 N",
+    ),
+    (ONE + 'force = "2 uN"\nfrequency = "300 Hz"\nmax_stroke = "1 um"', "max_stroke must not be given with a force"),
+    (
+        LATTICE + 'stroke = "2 * column um"\nmax_stroke = "3 um"',
+        "lattice.stroke must be at most max_stroke, 3 um, up or down; got 4 um at row 0, column 2",
+    ),
+    (LATTICE + 'stroke = "1 um"\nmax_stroke = "0 um"', "lattice.max_stroke must be greater than 0"),
+]
+
+
+@pytest.mark.parametrize(("actuators", "said"), BEYOND, ids=range(len(BEYOND)))
+def test_a_drive_beyond_what_its_actuator_can_do_is_a_mistake(tmp_path, actuators, said):
+    with pytest.raises(CaseError) as error:
+        read_case(file_with(tmp_path, actuators))
+    assert said in str(error.value) and "1 mistake" in str(error.value)
+
+
+def test_limits_that_are_just_met_are_fine_and_hold_for_changes(tmp_path):
+    case = read_case(file_with(tmp_path, ONE + STROKE + 'max_stroke = "2 um"'))
+    with pytest.raises(InputError, match="must be at most max_stroke, 2 um, up or down; got 3 um"):
+        case.vary({"actuators.0.stroke": "3 um"})
+    assert case.vary({"actuators.0.stroke": "1 um"}).actuators[0].max_stroke == pytest.approx(2e-6)
+    lattice = read_case(file_with(tmp_path, LATTICE + 'stroke = "2 * column um"\nmax_stroke = "4 um"'))
+    assert [actuator.max_stroke for actuator in lattice.actuators] == pytest.approx([4e-6] * 3)
+
+
+def test_the_force_of_a_central_stroke_is_that_of_the_closed_form(tmp_path):
+    for spring, expected in (("", TAKEN), ('stiffness = "500 N/m"', TAKEN / (1 + TAKEN / 2e-6 / 500))):
+        case = read_case(file_with(tmp_path, ONE + STROKE + spring))
+        assert largest_forces(case) == pytest.approx([expected], rel=1e-4) and limit_warnings(case) == []
+
+
+@pytest.mark.parametrize(("share", "warned"), [(0.99, True), (1.01, False)])
+def test_check_warns_of_strokes_that_take_too_much_force(tmp_path, share, warned):
+    path = file_with(tmp_path, ONE + STROKE + f'max_force = "{share * TAKEN:.9e} N"')
+    done = CliRunner().invoke(main, ["check", str(path)])
+    assert done.exit_code == 0 and "fine; 1 actuator" in done.output
+    assert ("Actuator 0 takes more than max_force: 2.16 mN of 2.14 mN, by linear theory" in done.output) == warned
+
+
+def test_of_several_the_worst_is_named(tmp_path):
+    case = read_case(file_with(tmp_path, LATTICE + 'stroke = "2 if column == 1 else 1 um"\nmax_force = "1 uN"'))
+    (text,) = limit_warnings(case)
+    assert text.startswith("3 actuators take more than max_force, actuator 1 most: ") and "of 1 µN" in text

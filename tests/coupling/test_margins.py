@@ -1,0 +1,262 @@
+"""Margins of runs beside brute force, and advice: what it states is what runs with its factors do."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coupling import report, run_case
+from coupling.advice import Setting, Trials, advise, advised_case
+from coupling.case import (
+    ActuatorCase,
+    Case,
+    ConstantCase,
+    CoulombCase,
+    KogutEtsionCase,
+    PartCase,
+    RunCase,
+    TableCase,
+    friction_scales,
+    more_plastic,
+    scaled_case,
+    scaled_friction,
+    with_index,
+)
+from coupling.margins import event_actuators, margin_curves, margins_of
+from coupling.report.wording import quantity
+from coupling.run import build_friction, follow_part
+from coupling.summary import summary_of
+from particle import Drive, EventKind, Outcome, State
+
+pytestmark = pytest.mark.compiled
+
+PLATE = {
+    "shape": "disc",
+    "radius": 3e-4,
+    "youngs_modulus": 169e9,
+    "poisson_ratio": 0.3,
+    "thickness": 5e-6,
+    "density": 2330,
+    "cell_size": 8e-5,
+}
+
+
+def case_of(stroke=1e-6, frequency=3000, place=(1e-4, 5e-5), **update):
+    fields = {
+        "plate": PLATE,
+        "actuators": [
+            ActuatorCase(position=(0.0, 0.0), stroke=stroke, frequency=frequency),
+            ActuatorCase(position=(-1.2e-4, 3e-5), stroke=stroke / 2, frequency=frequency),
+        ],
+        "part": PartCase(mass=2e-9, position=place),
+        "friction": CoulombCase(coefficient=0.2, adhesion=2e-7),
+        "run": RunCase(duration=3e-3),
+    }
+    return Case(**fields | update)
+
+
+@pytest.fixture(scope="module")
+def base():
+    return run_case(case_of())
+
+
+def driven(base, drives, friction, place):
+    """A case of the same plate under other drives: case, scene and path."""
+    case = base.case.model_copy(
+        update={"friction": friction, "part": PartCase(mass=2e-9, position=place), "run": RunCase(duration=2e-3)}
+    )
+    scene = replace(base.scene, lifts=drives, surface=base.scene.surface.driven_by(drives))
+    return case, scene, follow_part(case, scene.surface, build_friction(case))
+
+
+def by_brute_force(case, scene, trajectory):
+    """The two margins, each from 10 000 samples and from 10 000 more around the best of these."""
+    friction = build_friction(case)
+    law = friction.law
+    mass = case.part.mass
+    slips = [event.time for event in trajectory.events if event.kind is EventKind.SLIPS]
+
+    def signals(times):
+        at = trajectory.contact_at(times)
+        held = law.static_ratio * friction.friction_limit(np.clip(at.normal_force, -law.pull_off, law.largest_load))
+        stuck = (at.state == State.STICK) | np.isin(times, slips)
+        ratio = np.where(stuck, mass * at.pull / np.maximum(held, 1e-300), -np.inf)
+        touches = at.state != State.FLIGHT
+        return ratio, np.where(touches, -(at.normal_force + law.pull_off) / law.pull_off, -np.inf)
+
+    end, found = trajectory.time[-1], []
+    coarse = np.union1d(np.linspace(0, end, 10_000), slips)
+    for k in (0, 1):
+        values = signals(coarse)[k]
+        best = int(values.argmax())
+        fine = np.linspace(coarse[max(best - 1, 0)], coarse[min(best + 1, len(coarse) - 1)], 10_000)
+        found.append(max(values.max(), signals(fine)[k].max()))
+    return found[0], -found[1]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_margins_are_those_of_brute_force(base, seed):
+    rng = np.random.default_rng(seed)
+    cycles = rng.choice(["up-down", "sine", "up"], 2)
+    drives = [
+        Drive(rng.uniform(0.3e-6, 6e-6), rng.uniform(1000, 6000), str(cycle), delay=rng.uniform(0, 3e-4))
+        for cycle in cycles
+    ]
+    friction = CoulombCase(coefficient=rng.uniform(0.05, 0.3), adhesion=10 ** rng.uniform(-7.5, -6))
+    place = tuple(rng.uniform(-1.5e-4, 1.5e-4, 2))
+    case, scene, trajectory = driven(base, drives, friction, place)
+    margins = margins_of(case, scene, trajectory, build_friction(case))
+    slip, contact = by_brute_force(case, scene, trajectory)
+    slips = [event for event in trajectory.events if event.kind is EventKind.SLIPS]
+    if slips:
+        assert margins.slip.value == 1 and margins.slip.time == slips[0].time
+        assert slip <= 1 + 1e-6
+    else:
+        assert margins.slip.value == pytest.approx(slip, rel=1e-6)
+    if trajectory.outcome is Outcome.DETACHED:
+        assert margins.contact.value == 0 and margins.contact.time == trajectory.events[-1].time
+    else:
+        assert margins.contact.value == pytest.approx(contact, rel=1e-6, abs=1e-6)
+
+
+def test_the_actuator_that_counts_is_the_one_that_moves_the_place_alone(base):
+    for n in (0, 1):
+        drives = [Drive(2e-6 if k == n else 1e-9, 3000) for k in (0, 1)]
+        place = (-5e-5, 2e-5)
+        case, scene, trajectory = driven(base, drives, CoulombCase(coefficient=0.3, adhesion=1e-6), place)
+        margins = margins_of(case, scene, trajectory, build_friction(case))
+        assert margins.slip.actuator == margins.contact.actuator == n
+
+
+def test_curves_hold_the_margins(base):
+    case, friction = base.case, build_friction(base.case)
+    curves = margin_curves(case, base.surface, base.trajectory, friction)
+    margins = base.summary.margins
+    assert np.nanmax(curves.slip) == pytest.approx(margins.slip.value, rel=1e-3)
+    assert np.nanmin(curves.contact) == pytest.approx(margins.contact.value, rel=1e-3)
+
+
+def test_a_summary_keeps_margins_and_advice(base):
+    figures = json.loads(json.dumps(base.summary.as_dict()))
+    assert summary_of(figures) == base.summary
+
+
+@pytest.fixture(scope="module")
+def stuck():
+    return run_case(case_of(stroke=5e-6, frequency=300))
+
+
+def test_advice_on_a_part_that_stays_is_what_runs_do(stuck):
+    assert stuck.trajectory.outcome is Outcome.STUCK and not stuck.trajectory.events
+    advice = stuck.summary.advice
+    assert 1 < advice.slips_from < advice.comes_off_from
+    surface, case = stuck.surface, stuck.case
+    for factor, slips in ((advice.slips_from * 0.9999, False), (advice.slips_from * 1.0001, True)):
+        path = follow_part(case, surface.scaled(factor), build_friction(case))
+        assert (EventKind.SLIPS in [event.kind for event in path.events]) == slips
+    trial = advice.trial
+    moved = run_case(stuck.advised)
+    assert moved.trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
+    assert moved.summary.distance == pytest.approx(trial.distance, rel=1e-3)
+    text = dict(report.lines(stuck.summary))["advice"]
+    assert f"{advice.comes_off_from:.4g} times" in text and f"moves it by {quantity(trial.distance, 'm')} in" in text
+
+
+def test_advice_states_the_pull_just_before_a_part_comes_off_unslipped():
+    sticky = run_case(case_of(stroke=2e-6, frequency=300, friction=KogutEtsionCase()))
+    advice = sticky.summary.advice
+    assert advice.comes_off_from > 1
+    near = run_case(scaled_case(sticky.case, 0.98 * advice.comes_off_from, 1.0)).summary
+    assert near.margins.slip.value == pytest.approx(advice.holds, rel=1e-4) and 0 < advice.holds < 1
+    assert f"the pull is {advice.holds:.2g} of what" in dict(report.lines(sticky.summary))["advice"]
+
+
+def test_advice_on_a_part_that_is_lost_keeps_it():
+    lost = run_case(case_of(stroke=4e-6, frequency=20_000))
+    assert lost.trajectory.outcome is Outcome.DETACHED
+    advice = lost.summary.advice
+    assert advice.comes_off_from < 1 and advice.trial.frequency < 1 and advice.trial.distance > 0
+
+
+def test_trials_beyond_the_bounds_of_the_model_come_last_and_say_so(base):
+    case, friction = base.case, build_friction(base.case)
+    free = advise(case, base.scene, base.trajectory, friction)
+    bounded = advise(case, base.scene, base.trajectory, friction, largest_stroke=1.0)
+    assert bounded.trial.stroke == 1 or bounded.trial.friction == 1
+    assert bounded.slips_from == free.slips_from and bounded.comes_off_from == free.comes_off_from
+    steep = replace(base.summary, advice=replace(free, trial=replace(free.trial, stroke=30.0)))
+    assert "linear theory at 6 times the thickness" in dict(report.lines(steep))["advice"]
+
+
+def test_less_friction_is_a_trial_with_scaled_limits(stuck):
+    case = stuck.case
+    trials = Trials(case, stuck.scene, build_friction(case), rings=False, stretches=False, largest_stroke=1.0)
+    setting = Setting(0.5, 0.8)
+    trial = trials.trial(trials.part, math.sqrt(math.prod(trials.thresholds(trials.part, setting))), setting)
+    assert trial.distance > 0
+    advised = advised_case(case, trial)
+    assert advised.friction.coefficient == pytest.approx(0.8 * case.friction.coefficient)
+    assert run_case(advised).summary.distance == pytest.approx(trial.distance, rel=1e-3)
+    told = replace(stuck.summary, advice=replace(stuck.summary.advice, trial=trial))
+    assert (
+        f"0.8 times the friction (coefficient = {advised.friction.coefficient:.3g})"
+        in dict(report.lines(told))["advice"]
+    )
+
+
+def test_friction_is_scaled_where_a_key_holds_it():
+    static = CoulombCase(coefficient=0.3, static_coefficient=0.4, adhesion=1e-8)
+    assert scaled_friction(static, 0.5) == CoulombCase(coefficient=0.15, static_coefficient=0.2, adhesion=1e-8)
+    table = TableCase(loads=(-1e-8, 0.0, 1e-7), limits=(0.0, 1e-9, 3e-9))
+    half = scaled_friction(table, 0.5)
+    assert half.loads == table.loads and half.limits == pytest.approx((0.0, 5e-10, 1.5e-9))
+    assert friction_scales(KogutEtsionCase(preset="paper")) is None
+    with pytest.raises(ValueError, match="no key scales"):
+        scaled_friction(KogutEtsionCase(preset="paper"), 0.5)
+
+
+def test_kogut_and_etsion_is_led_to_surfaces_that_hold_less():
+    sticky = run_case(case_of(stroke=2e-6, frequency=300, friction=KogutEtsionCase()))
+    trial = sticky.summary.advice.trial
+    assert trial.plasticity_index > sticky.case.friction.plasticity_index
+    assert f"friction.plasticity_index = {trial.plasticity_index:g}" in dict(report.lines(sticky.summary))["advice"]
+    assert run_case(sticky.advised).summary.distance == pytest.approx(trial.distance, rel=1e-3)
+    assert summary_of(json.loads(json.dumps(sticky.summary.as_dict()))) == sticky.summary
+    assert more_plastic(KogutEtsionCase(preset="paper")) == () == more_plastic(CoulombCase(coefficient=0.2))
+    with pytest.raises(ValueError, match="got coulomb"):
+        with_index(CoulombCase(coefficient=0.2), 3.0)
+
+
+def test_advice_on_a_constant_friction_says_where_the_plate_would_pull():
+    light, strong = (
+        run_case(case_of(stroke=5e-6, frequency=300, friction=ConstantCase(limit=limit))).summary
+        for limit in (2e-9, 4e-8)
+    )
+    assert light.advice.trial.smallest_load >= 0 > strong.advice.trial.smallest_load
+    assert "would have to pull" not in dict(report.lines(light))["advice"]
+    assert f"a load of {quantity(strong.advice.trial.smallest_load, 'N')}" in dict(report.lines(strong))["advice"]
+
+
+def test_a_part_on_level_ground_is_sent_elsewhere():
+    middle = run_case(
+        case_of(place=(0.0, 0.0), actuators=[ActuatorCase(position=(0.0, 0.0), stroke=5e-6, frequency=300)])
+    )
+    trial = middle.summary.advice.trial
+    assert math.hypot(*trial.place) > 1e-5
+    assert "nothing pulls the part aside" in dict(report.lines(middle.summary))["margins"]
+
+
+def test_the_actuator_of_an_event_is_that_of_the_margin_at_its_time():
+    result = run_case(case_of(stroke=4e-6, frequency=4000))
+    events, margins = result.trajectory.events, result.summary.margins
+    found = event_actuators(result.case, result.scene, result.trajectory, build_friction(result.case))
+    assert len(found) == len(events)
+    slips = [k for k, event in enumerate(events) if event.kind is EventKind.SLIPS]
+    assert slips and events[slips[0]].time == margins.slip.time and found[slips[0]] == margins.slip.actuator
+    for k, event in enumerate(events):
+        if event.kind is EventKind.DETACHES:
+            assert found[k] == margins.contact.actuator
+        elif event.kind is not EventKind.SLIPS:
+            assert found[k] == -1

@@ -1,0 +1,77 @@
+"""A part that stays: its largest pull and smallest load beside closed forms and brute force, and faster drives."""
+
+import math
+
+import numpy as np
+import pytest
+
+from particle import ConstantFriction, CoulombAdhesion, Drive, Micropart, part_at_rest, platform_surface
+from particle import polynomial_surface as polynomial
+from particle.rest import largest
+
+G, MASS = 9.80665, 2e-9
+PART = Micropart(MASS, (0.12, 0.05))
+
+
+def amplitude(drive):
+    """Of the acceleration [m/s^2], by brute force."""
+    times = np.linspace(0, 1 / drive.frequency, 20_001)
+    return np.abs(drive.evaluate(times)[2]).max()
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.0, 3.0])
+@pytest.mark.parametrize("stroke", [1.0, 0.4])
+def test_a_platform_pulls_by_mass_times_acceleration(factor, stroke):
+    drive = Drive(1e-6, 500, "sine")
+    rest = part_at_rest(platform_surface(x=drive), PART, ConstantFriction(1e-8), 20e-3)
+    expected = MASS * amplitude(drive) * factor**2 * stroke / 1e-8
+    assert rest.scaled(factor, stroke).slip().value == pytest.approx(expected, rel=1e-8)
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0])
+def test_a_platform_that_rises_and_falls_loads_by_its_acceleration(factor):
+    drive = Drive(2e-6, 300, "cosine")
+    rest = part_at_rest(platform_surface(z=drive), PART, CoulombAdhesion(0.3, 2e-7), 20e-3)
+    swing = MASS * amplitude(drive) * factor**2
+    assert rest.scaled(factor).smallest_load().value == pytest.approx(MASS * G - swing, rel=1e-8)
+    assert rest.scaled(factor).largest_load().value == pytest.approx(MASS * G + swing, rel=1e-8)
+    assert rest.scaled(factor).slip().value == 0
+
+
+def test_a_tilting_plane_beside_brute_force():
+    rest = part_at_rest(
+        polynomial([[[0.0] * 5], [[0.0, 0.5, -0.9, 0.2, 0.1]]]), PART, CoulombAdhesion(0.4, 1e-8, 0.6), 1.0
+    )  # w = x (0.5 t - 0.9 t^2 + 0.2 t^3 + 0.1 t^4)
+    t, x = np.linspace(0, 1, 2_000_001), PART.position[0]
+    slope = 0.5 * t - 0.9 * t**2 + 0.2 * t**3 + 0.1 * t**4
+    b, s = G + x * (-1.8 + 1.2 * t + 1.2 * t**2), np.sqrt(1 + slope**2)
+    ratio = MASS * b * np.abs(slope) / s / (0.6 * (MASS * b / s + 1e-8))
+    slip = rest.slip()
+    assert slip.value == pytest.approx(ratio.max(), rel=1e-11)
+    assert slip.time == pytest.approx(t[ratio.argmax()], abs=1e-5)
+    load = rest.smallest_load()
+    assert load.value == pytest.approx((MASS * b / s).min(), rel=1e-11)
+
+
+def test_a_part_that_has_come_off_is_held_by_nothing():
+    drive = Drive(5e-6, 1000)
+    rest = part_at_rest(platform_surface(x=drive, z=drive), PART, CoulombAdhesion(0.3, 1e-9), 2e-3)
+    assert rest.smallest_load().value < -1e-9
+    assert rest.slip().value == math.inf
+
+
+def test_peaks_between_the_given_times_are_found():
+    peak = largest(lambda t: 1 - (t - 0.337) ** 2, np.linspace(0, 1, 8))
+    assert peak.value == pytest.approx(1, abs=1e-12) and peak.time == pytest.approx(0.337, abs=1e-6)
+    twin = largest(lambda t: np.cos(6 * math.pi * t) + 1e-3 * t, np.linspace(0, 1, 20))
+    assert twin.value == pytest.approx(1.001, abs=1e-6)
+
+
+def test_scaled_drives_are_those_of_another_frequency_and_stroke():
+    drive, other = Drive(2e-6, 300, delay=1e-3, cycles=3), Drive(1.5e-6, 600, delay=0.5e-3, cycles=3)
+    one, two = platform_surface(x=drive).scaled(2, 0.75), platform_surface(x=other)
+    for time in np.linspace(0, 7e-3, 50):
+        np.testing.assert_allclose(one.base_acceleration(time), two.base_acceleration(time), rtol=1e-12)
+    np.testing.assert_allclose(one.drives.jump, two.drives.jump, rtol=1e-12)
+    np.testing.assert_allclose(one.drives.rough, two.drives.rough, rtol=1e-12)
+    assert one.stroke_times.min() == pytest.approx(two.stroke_times.min(), rel=1e-14)
