@@ -18,6 +18,7 @@ from coupling import (
     write_surface as write_surface,
 )
 from fem_plate import (
+    AnisotropicSection as AnisotropicSection,
     DeflectedPlate as DeflectedPlate,
     Deflection as Deflection,
     InfluenceFit as InfluenceFit,

@@ -1,4 +1,5 @@
 from . import analytic as analytic
+from .anisotropic import AnisotropicSection as AnisotropicSection
 from .arrays.patched import PatchedShapes as PatchedShapes, PlateShapes as PlateShapes
 from .deflection import Deflection as Deflection
 from .export import neighbour_coupling as neighbour_coupling, save_influence as save_influence

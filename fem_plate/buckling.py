@@ -31,7 +31,7 @@ def buckling_compression(model: PlateModel) -> float:
 
     model: of the plate without a tension, which its supports hold.
     """
-    bending, stretching = model.space.stiffness(model.poisson_ratio), model.space.stretching()
+    bending, stretching = model.space.stiffness(model.law), model.space.stretching()
     # The largest 1/mu: Lanczos finds that first, and the stretching may be far from singular or not.
     (largest,) = eigsh(
         stretching,

@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_plate.anisotropic import AnisotropicSection
 from fem_plate.elements import Fineness, SingularCorner
 from fem_plate.section import PlateSection
 from meshes import PlateMesh
@@ -19,7 +20,7 @@ class GivenPlate(Protocol):
     """A mesh, a section and supports, as of `fem_plate.Plate`."""
 
     mesh: PlateMesh
-    section: PlateSection
+    section: PlateSection | AnisotropicSection
     supports: dict[str, str]
     tolerance: float | None
     tension: float  # N/m

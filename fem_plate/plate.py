@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fem_plate import vibration
+from fem_plate.anisotropic import AnisotropicSection
 from fem_plate.arrays import PatchedShapes, ProgressCallback, patched_shapes
 from fem_plate.buckling import buckling_compression, check_tension
 from fem_plate.deflection import Deflection
@@ -49,7 +50,7 @@ class Plate:
     ----------
     mesh : PlateMesh
         The outline and its cells.
-    section : PlateSection
+    section : PlateSection or AnisotropicSection
         Material and thickness.
     supports : str or mapping of str to str
         "clamped", "simply-supported" or "free", of the whole rim or by boundary; boundaries left out are free.
@@ -59,13 +60,14 @@ class Plate:
         Modes ignore it; their `error_estimate` says how good they are.
     tension : float
         Residual force per length N0 in the plate's plane, the same in all directions [N/m]: positive pulls, negative
-        presses. It stays what it is while the plate bends. Every boundary must be held then.
+        presses. It stays what it is while the plate bends. Every boundary must be held then, and the section isotropic.
 
     Raises
     ------
     ValueError
         Names every unknown support and boundary; the tolerance is not positive; or there is a tension where a boundary
-        is free, or a compression at which the plate buckles without actuators, whose buckling load is named.
+        is free or the section anisotropic, or a compression at which the plate buckles without actuators, whose
+        buckling load is named.
 
     Warns
     -----
@@ -76,7 +78,7 @@ class Plate:
     def __init__(
         self,
         mesh: PlateMesh,
-        section: PlateSection,
+        section: PlateSection | AnisotropicSection,
         supports: str | Mapping[str, str] = "clamped",
         tolerance: float | None = None,
         tension: float = 0.0,
@@ -91,7 +93,12 @@ class Plate:
         self.tension = float(tension)
         self.fineness = Fineness.of(mesh, self.relative_tension)
         self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
-        self.wedges = wedges(mesh, self.supports, self.tension)
+        self._isotropic = isinstance(section, PlateSection)
+        if self.tension and not self._isotropic:
+            raise ValueError(f"Input tension of Plate must be 0 for an AnisotropicSection; got {tension!r} N/m")
+        obtuse = wedges(mesh, self.supports, self.tension)
+        # Corner functions are those of isotropic plates.
+        self.wedges, self._left_out = (obtuse, 0) if self._isotropic else ([], len(obtuse))
         if many := rounded_corners(mesh, self.supports):
             nu = section.poisson_ratio
             warnings.warn(
@@ -102,16 +109,17 @@ class Plate:
                 stacklevel=2,
             )
         self._last: tuple[bytes, PlateModel] | None = None
+        self._warn_of_wedges("with an AnisotropicSection", self._left_out)
         if tension < 0 and -tension >= (load := self.buckling_load()):
             raise ValueError(
                 f"Input tension of Plate must exceed {-load:.6g} N/m, at which it buckles; got {self.tension!r}"
             )
 
-    def _warn_of_wedges(self, where: str) -> None:
+    def _warn_of_wedges(self, where: str, count: int) -> None:
         """Warn of obtuse corners, whose functions the plate leaves out there."""
-        if self.wedges:
+        if count:
             warnings.warn(
-                f"Plate has {len(self.wedges)} simply supported corners over 90 degrees. A plate {where} leaves out "
+                f"Plate has {count} simply supported corners over 90 degrees. A plate {where} leaves out "
                 "what is singular there: its shapes are off by more than their error estimate says, the more the wider "
                 "the corners are",
                 stacklevel=3,
@@ -139,7 +147,7 @@ class Plate:
 
     def _model_on(self, mesh: PlateMesh, tension: float) -> PlateModel:
         rows = corner_rows(mesh, self._other_corners)
-        return PlateModel(mesh, self.supports, self.section.poisson_ratio, rows, tension, self.wedges)
+        return PlateModel(mesh, self.supports, self.section.law, rows, tension, self.wedges)
 
     @property
     def singular(self) -> list[SingularCorner]:
@@ -212,7 +220,7 @@ class Plate:
         shapes: InfluenceShapes | PatchedShapes
         if truncation is not None or len(points) > MAX_DENSE:
             cut = TRUNCATION if truncation is None else truncation
-            self._warn_of_wedges("on patches")
+            self._warn_of_wedges("on patches", len(self.wedges))
             shapes = patched_shapes(self, points, actuator_stiffness, cut, tell)
         else:
             rigidity = self.section.rigidity
@@ -261,12 +269,16 @@ class Plate:
         """
         if self.tension:
             raise ValueError(f"Input tension of Plate must be 0 for large_deflection; got {self.tension!r} N/m")
+        if not self._isotropic:
+            raise ValueError(
+                "Input section of Plate must be a PlateSection for large_deflection; got an anisotropic one"
+            )
         from fem_plate.large_deflection import LargeDeflection, movable_by_boundary  # here: scikit-fem takes a while
 
         points = places_on(self.mesh, points, "large_deflection")
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "large_deflection", may_float=True)
         movable = movable_by_boundary(in_plane_supports, self.supports)
-        self._warn_of_wedges("that stretches")
+        self._warn_of_wedges("that stretches", len(self.wedges))
         return LargeDeflection(self, points, actuator_stiffness, movable, membrane)
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:

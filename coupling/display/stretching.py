@@ -51,11 +51,10 @@ class Stretching:
         quadratic = x * x, x * y, y * y
         middle = [motions @ e.T + q / 2 for e, q in zip(self._in_plane, quadratic, strict=True)]
         section, tension = self._plate.section, self._plate.tension
-        nu, half = section.poisson_ratio, section.thickness / 2
-        stiffness = section.youngs_modulus * section.thickness / (1 - nu**2)
         xx, xy, yy = middle
-        force = stiffness * (xx + nu * yy) + tension, stiffness * (1 - nu) * xy, stiffness * (yy + nu * xx) + tension
-        strain = [e - half * (heights @ h.T) for e, h in zip(middle, self._hessian, strict=True)]
+        of_x, of_y, of_xy = np.tensordot(section.membrane_stiffness, np.stack([xx, yy, 2 * xy]), axes=1)
+        force = of_x + tension, of_xy, of_y + tension
+        strain = [e - section.thickness / 2 * (heights @ h.T) for e, h in zip(middle, self._hessian, strict=True)]
         return {"membrane_force": self._at_points(force), "strain": self._at_points(strain)}
 
     def _at_points(self, parts: Sequence[FloatArray]) -> FloatArray:

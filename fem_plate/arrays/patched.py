@@ -270,7 +270,5 @@ def patched_shapes(
     fineness = plate.fineness.on_patches(cell, PATCH_RIM * min(float(pitch.max()), mesh.size))
     pitches = CELL if plate.tolerance is None else FINER_CELL
     cutter = Cutter(mesh, plate.supports, fineness, plate.corners, points, pitch, pitches)
-    array = ActuatorArray(
-        cutter, points, actuator_stiffness, section.rigidity, section.poisson_ratio, plate.relative_tension
-    )
+    array = ActuatorArray(cutter, points, actuator_stiffness, section.rigidity, section.law, plate.relative_tension)
     return PatchedShapes(array, truncation, mesh.size, mesh.outline, tell)

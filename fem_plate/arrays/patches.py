@@ -63,7 +63,7 @@ class Tile:
 class ActuatorArray:
     """The actuators of a plate, to be solved tile by tile.
 
-    points: (N, 2) m.  actuator_stiffness: (N,) N/m.  tension: 1/m^2, over the rigidity.
+    points: (N, 2) m.  actuator_stiffness: (N,) N/m.  rigidity: N m.  law: (3, 3), over it.  tension: 1/m^2, over it.
     """
 
     def __init__(
@@ -72,11 +72,11 @@ class ActuatorArray:
         points: FloatArray,
         actuator_stiffness: FloatArray,
         rigidity: float,
-        nu: float,
+        law: FloatArray,
         tension: float = 0.0,
     ) -> None:
         self.cutter, self.points, self.actuator_stiffness = cutter, points, actuator_stiffness
-        self.rigidity, self.poisson_ratio, self.tension = rigidity, nu, tension
+        self.rigidity, self.law, self.tension = rigidity, law, tension
         self._tree = cKDTree(points)
         self._solved: dict[bytes, Patch] = {}
 
@@ -162,7 +162,7 @@ class ActuatorArray:
     def compliance_at(self, place: FloatArray) -> float:
         """The deflection [m/N] under a unit force at a place (2,) [m] clear of actuators, to three digits."""
         points, stiffness = np.concatenate([self.points, place[None]]), np.append(self.actuator_stiffness, 0.0)
-        loaded = ActuatorArray(self.cutter, points, stiffness, self.rigidity, self.poisson_ratio, self.tension)
+        loaded = ActuatorArray(self.cutter, points, stiffness, self.rigidity, self.law, self.tension)
         tile = loaded._wide_tile(place, np.array([len(self.points)]), 0.0, COMPLIANCE_TRUNCATION)
         return float(tile.patch.functions.values((place - tile.cut.origin)[None] / tile.patch.size)[0, 0])
 
@@ -190,7 +190,7 @@ class ActuatorArray:
     def model(self, cutter: Cutter, cut: Cut, actuators: FloatArray) -> PlateModel:
         """The plate on a patch, for actuators at points (n, 2) [m] from its origin."""
         mesh, supports, corners = cutter.mesh(cut, actuators)
-        return PlateModel(mesh, supports, self.poisson_ratio, corners, self.tension)
+        return PlateModel(mesh, supports, self.law, corners, self.tension)
 
     def _solve(self, cutter: Cutter, cut: Cut, rows: IntArray, core: IntArray) -> Patch:
         actuators, stiffness = self.points[rows] - cut.origin, self.actuator_stiffness[rows]

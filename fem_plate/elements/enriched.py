@@ -29,8 +29,8 @@ class EnrichedSpace(PlateSpace):
 
     With X the elements' answer to s, a(s - X, q) = 0 for all q of the elements: the stiffness has two blocks, and
     elements and shares are solved for apart. s carries no load. So a(s, q) is an integral over the rim, that of the
-    right side of `forms` for what is known in closed form, and exact. Corner functions stand for one Poisson's ratio
-    and one tension, under which they must be harmonic.
+    right side of `forms` for what is known in closed form, and exact. Corner functions stand for one isotropic
+    law and one tension, under which they must be harmonic.
     """
 
     def __init__(
@@ -39,17 +39,17 @@ class EnrichedSpace(PlateSpace):
         supports: Mapping[str, str],
         free_corners: Sequence[int],
         functions: CornerFunctions,
-        poisson_ratio: float,
+        law: FloatArray,
         tension: float,
     ) -> None:
         super().__init__(mesh, supports, free_corners)
-        self.functions, self._poisson_ratio, self._tension = functions, poisson_ratio, tension
+        self.functions, self._law, self._tension = functions, law, tension
         self.plain = self.unknowns
         self.unknowns += len(functions)
 
     @cached_property
     def _of_elements(self) -> csc_matrix:
-        bending = super().stiffness(self._poisson_ratio)
+        bending = super().stiffness(self._law)
         return bending + self._tension * super().stretching() if self._tension else bending
 
     @cached_property
@@ -60,8 +60,8 @@ class EnrichedSpace(PlateSpace):
     def _lifts(self) -> FloatArray:
         """X, (plain, E)."""
         known, _ = self._at_rim
-        traces = forms.rim_traces(known, self.rim.normal, self._poisson_ratio).reshape(-1, len(self.functions))
-        load = self.load(self._poisson_ratio, self._tension) @ traces
+        traces = forms.rim_traces(known, self.rim.normal, self._law).reshape(-1, len(self.functions))
+        load = self.load(self._law, self._tension) @ traces
         lifts = self._solve_elements(load)
         return np.asarray(lifts + self._solve_elements(load - self._of_elements @ lifts))
 
@@ -72,7 +72,7 @@ class EnrichedSpace(PlateSpace):
     @cached_property
     def _remainders(self) -> Remainders:
         lifts = super().all_unknowns(self._lifts)[self.dofs]
-        return Remainders(self, self.functions, lifts, self._at_rim[1], self._poisson_ratio)
+        return Remainders(self, self.functions, lifts, self._at_rim[1], self._law)
 
     @cached_property
     def _energies(self) -> tuple[FloatArray, FloatArray]:
@@ -87,11 +87,11 @@ class EnrichedSpace(PlateSpace):
     def _own_stiffness(self) -> FloatArray:
         """The energies of s - X, (E, E)."""
         left, _ = self.couplings(self._tension)
-        energy = self._energies[1] + self._remainders.at_rim(left, self.traces(self._poisson_ratio))[1]
+        energy = self._energies[1] + self._remainders.at_rim(left, self.traces(self._law))[1]
         return np.asarray((energy + energy.T) / 2)
 
-    def stiffness(self, poisson_ratio: float, tension: float = 0.0) -> csc_matrix:
-        """As of any space; for the Poisson's ratio and tension that it was made for."""
+    def stiffness(self, law: FloatArray, tension: float = 0.0) -> csc_matrix:
+        """As of any space; for the law and tension that it was made for."""
         return block_diag([self._of_elements, self._own_stiffness], format="csc")
 
     def solve(self, load: FloatArray) -> FloatArray:
@@ -111,9 +111,9 @@ class EnrichedSpace(PlateSpace):
         What the shares are loaded with is taken from the misfit g - v that elements leave, not from g: rounding of the
         large penalties would hide it.
         """
-        elements = self._solve_elements(self.load(self._poisson_ratio, self._tension) @ traces)
+        elements = self._solve_elements(self.load(self._law, self._tension) @ traces)
         left, right = self.couplings(self._tension)
-        tables = self.traces(self._poisson_ratio)
+        tables = self.traces(self._law)
         local = super().all_unknowns(elements)[self.dofs][self.rim.triangle]  # (k, 21, functions)
         given = traces.reshape(*tables.shape[:3], -1)
         loads = np.einsum("kncd,dknf->cknf", left, given - tables @ local)
@@ -123,7 +123,7 @@ class EnrichedSpace(PlateSpace):
         return np.concatenate([elements, self._shares(load)])
 
     def stretching(self) -> csc_matrix:
-        coupling, of_elements = forms.rim_tension_forms(self.rim)[0], self.traces(self._poisson_ratio)
+        coupling, of_elements = forms.rim_tension_forms(self.rim)[0], self.traces(self._law)
         inside, at_rim = self._remainders.stretching(), self._remainders.at_rim(coupling, of_elements)
         border = [self.to_independent(inside[0] + at_rim[0]), inside[1] + at_rim[1]]
         return self._bordered(super().stretching(), np.concatenate(border))

@@ -1,8 +1,9 @@
 """Element matrices of a Kirchhoff-Love plate, in dimensionless variables (lengths by the plate's size, rigidity 1).
 
-The bending moments are M(v) = (1 - nu) H(v) + nu tr H(v) I. For a biharmonic v, integration by parts gives
+The bending moments M(v) are linear in the second derivatives H(v) by the section's law; of an isotropic plate they
+are (1 - nu) H(v) + nu tr H(v) I. For a v that needs no load, div div M(v) = 0, integration by parts gives
 
-    int M(v):H(q) = rim[ (M(v) n).grad q - (div M(v).n) q ]        for every q,    div M(v) = grad(laplace v).
+    int M(v):H(q) = rim[ (M(v) n).grad q - (div M(v).n) q ]        for every q.
 
 A support prescribes T grad v and c v on the rim: clamped T = I, c = 1; simply supported T = t t^T (t along the rim),
 c = 1; free T = 0, c = 0. Nitsche's method (Nitsche, 1971) seeks the v that equals g where the support prescribes it,
@@ -47,12 +48,6 @@ CHANNELS = 6
 PAIRS = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]  # of the second derivatives xx, xy, yy
 
 
-def bending_law(poisson_ratio: float) -> FloatArray:
-    """The matrix (3, 3) of M(v):H(q) as a bilinear form of the second derivatives (xx, xy, yy) of v and q."""
-    nu = poisson_ratio
-    return np.array([[1.0, 0.0, nu], [0.0, 2 * (1 - nu), 0.0], [nu, 0.0, 1.0]])
-
-
 def triangle_quadrature(count: int) -> tuple[FloatArray, FloatArray]:
     """Quadrature of the reference triangle, exact to degree 2 count - 2: points (count^2, 2) and weights (count^2,)."""
     x, w = unit_gauss(count)
@@ -81,10 +76,10 @@ def _reference_matrices() -> tuple[FloatArray, FloatArray, FloatArray]:
 REFERENCE_BENDING, REFERENCE_STRETCHING, REFERENCE_MASS = _reference_matrices()
 
 
-def bending(triangles: Triangles, poisson_ratio: float) -> FloatArray:
+def bending(triangles: Triangles, law: FloatArray) -> FloatArray:
     """int M(v):H(q) on straight-sided triangles, (m, 21, 21)."""
     chain = chain_rule(triangles.inverse, 2)
-    law = chain.transpose(0, 2, 1) @ bending_law(poisson_ratio) @ chain * triangles.determinant[:, None, None]
+    law = chain.transpose(0, 2, 1) @ law @ chain * triangles.determinant[:, None, None]
     pairs = np.stack([law[:, a, b] for a, b in PAIRS], axis=1)
     return _to_unknowns(triangles, (pairs @ REFERENCE_BENDING.reshape(6, -1)).reshape(-1, FUNCTIONS, FUNCTIONS))
 
@@ -107,9 +102,9 @@ def _to_unknowns(triangles: Triangles, matrices: FloatArray) -> FloatArray:
     return np.asarray(triangles.transform.transpose(0, 2, 1) @ (matrices @ triangles.transform))
 
 
-def bending_at(hessian: FloatArray, weights: FloatArray, poisson_ratio: float) -> FloatArray:
+def bending_at(hessian: FloatArray, weights: FloatArray, law: FloatArray) -> FloatArray:
     """int M(v):H(q) by quadrature: second derivatives (3, k, n, 21) and weights (k, n) give (k, 21, 21)."""
-    moments = np.einsum("ab,bknj->aknj", bending_law(poisson_ratio), hessian)  # M(v)
+    moments = np.einsum("ab,bknj->aknj", law, hessian)  # M(v)
     return np.einsum("kn,aknj,aknl->kjl", weights, moments, hessian, optimize=True)
 
 
@@ -123,16 +118,19 @@ def mass_at(value: FloatArray, weights: FloatArray) -> FloatArray:
     return np.einsum("kn,knj,knl->kjl", weights, value, value, optimize=True)
 
 
-def rim_traces(derivatives: list[FloatArray], normal: FloatArray, poisson_ratio: float) -> FloatArray:
+def rim_traces(derivatives: list[FloatArray], normal: FloatArray, law: FloatArray) -> FloatArray:
     """The six channels of functions on the rim: value, gradient, M n, div M.n; (6, k, n, ...).
 
     derivatives: of orders 0 to 3 in the sequence of DERIVATIVES, each (d, k, n, ...).  normal: (k, n, 2).
+    law: (3, 3), of M(v):H(q) in the second derivatives xx, xy, yy.
     """
-    nu = poisson_ratio
-    (value,), (x, y), (xx, xy, yy), (xxx, xxy, xyy, yyy) = derivatives
+    (value,), slopes, second, third = derivatives
     nx, ny = (normal[..., i].reshape(normal.shape[:2] + (1,) * (value.ndim - 2)) for i in range(2))
-    moments = (xx + nu * yy) * nx + (1 - nu) * xy * ny, (1 - nu) * xy * nx + (yy + nu * xx) * ny
-    return np.stack([value, x, y, *moments, (xxx + xyy) * nx + (xxy + yyy) * ny])
+    of_moments = law * np.array([1.0, 0.5, 1.0])[:, None]  # M_xx, M_xy, M_yy
+    xx, xy, yy = np.tensordot(of_moments, second, axes=1)
+    along_x, along_y = (np.tensordot(of_moments, third[k : k + 3], axes=1) for k in range(2))  # their derivatives
+    shear = (along_x[0] + along_y[1]) * nx + (along_x[1] + along_y[2]) * ny
+    return np.stack([value, *slopes, xx * nx + xy * ny, xy * nx + yy * ny, shear])
 
 
 def rim_forms(rim: RimQuadrature) -> tuple[FloatArray, FloatArray]:

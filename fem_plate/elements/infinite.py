@@ -15,6 +15,7 @@ The series serves small z, where these cancel. Close to the force F is r^2 ln r 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -35,6 +36,17 @@ OF_LOGARITHM = np.stack([TERMS**0, TERMS, TERMS * (TERMS - 1), TERMS * (TERMS - 
 OF_ONE = np.stack([0 * TERMS, 0 * TERMS + 0.5, TERMS - 0.5, 1.5 * TERMS**2 - 3 * TERMS + 1])
 
 
+class Radial(NamedTuple):
+    """F = r^2 (A + B ln r) at points (...), with A and B of the direction alone."""
+
+    value: FloatArray  # F
+    square: FloatArray  # r^2 B
+
+    def mean(self, power: int) -> FloatArray:
+        """int F(s) (s/r)^power s ds / r^2 along the ray from the force to each point."""
+        return self.value / (power + 4) - self.square / (power + 4) ** 2
+
+
 @dataclass(frozen=True)
 class InfinitePlate:
     """The infinite plate without a tension; `singular` says what its functions take and return."""
@@ -50,6 +62,11 @@ class InfinitePlate:
 
     def point_derivatives(self, xy: FloatArray, source: FloatArray) -> list[FloatArray]:
         return singular.point_derivatives(xy, source)
+
+    def radial(self, xy: FloatArray, source: FloatArray) -> Radial:
+        """F around one source (2,) at points (..., 2)."""
+        square = ((xy - source) ** 2).sum(axis=-1)
+        return Radial(singular.UNIT_STRENGTH * 0.5 * square * np.log(square), singular.UNIT_STRENGTH * square)
 
     def pressure_derivatives(self, xy: FloatArray) -> list[FloatArray]:
         return singular.pressure_derivatives(xy)

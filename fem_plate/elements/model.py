@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
+from fem_plate.elements.anisotropic import AnisotropicPlate, is_isotropic
 from fem_plate.elements.close import SourceBasis
 from fem_plate.elements.enriched import EnrichedSpace
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.forms import rim_traces
 from fem_plate.elements.infinite import infinite_plate
 from fem_plate.elements.rim import rigid_motions
-from fem_plate.elements.singular import potential
 from fem_plate.elements.space import PlateSpace
 from fem_plate.elements.wedges import Wedge, corner_functions
 from meshes import PlateMesh
@@ -29,25 +29,27 @@ class PlateModel:
     """A plate on one mesh.
 
     supports: of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
-    tension: 1/m^2, over the plate's rigidity; 0 where a boundary is free.  wedges: corners with functions of their own.
+    law: (3, 3), of M(v):H(q) over the plate's rigidity.  tension: 1/m^2, over it too; 0 where a boundary is free.
+    wedges: corners with functions of their own, of an isotropic plate.
     """
 
     def __init__(
         self,
         mesh: PlateMesh,
         supports: Mapping[str, str],
-        poisson_ratio: float,
+        law: FloatArray,
         free_corners: Iterable[int] = (),
         tension: float = 0.0,
         wedges: Sequence[Wedge] = (),
     ) -> None:
         self.mesh = mesh
-        self.poisson_ratio = poisson_ratio
+        self.law = law
         self.tension = tension * mesh.size**2  # dimensionless
-        self.infinite = infinite_plate(self.tension)  # what is known of it in closed form
+        # What is known of it in closed form.
+        self.infinite = infinite_plate(self.tension) if is_isotropic(law) else AnisotropicPlate(law)
         if wedges:
             functions, rows = corner_functions(wedges, mesh.size), list(free_corners)
-            self.space: PlateSpace = EnrichedSpace(mesh, supports, rows, functions, poisson_ratio, self.tension)
+            self.space: PlateSpace = EnrichedSpace(mesh, supports, rows, functions, law, self.tension)
         else:
             self.space = PlateSpace(mesh, supports, list(free_corners))
         self.rigid = self._orthonormal(rigid_motions(self.space.rim))  # (3, r), coefficients of 1, x, y
@@ -87,7 +89,7 @@ class PlateModel:
     @cached_property
     def pinned_stiffness(self) -> csc_matrix:
         """The stiffness, with the rigid motions held by springs at a few points."""
-        return (self.space.stiffness(self.poisson_ratio, self.tension) + self.pins.T @ self.pins).tocsc()
+        return (self.space.stiffness(self.law, self.tension) + self.pins.T @ self.pins).tocsc()
 
     @cached_property
     def solve(self) -> Callable[[FloatArray], FloatArray]:
@@ -113,11 +115,11 @@ class PlateModel:
 
     @cached_property
     def _load(self) -> csc_matrix:
-        return self.space.load(self.poisson_ratio, self.tension)
+        return self.space.load(self.law, self.tension)
 
     def _smooth_parts(self, known: list[list[FloatArray]]) -> FloatArray:
         """The parts (unknowns, k) that make k known functions, by their derivatives at the rim, meet the supports."""
-        traces = [rim_traces(derivatives, self.space.rim.normal, self.poisson_ratio).ravel() for derivatives in known]
+        traces = [rim_traces(derivatives, self.space.rim.normal, self.law).ravel() for derivatives in known]
         if isinstance(self.space, EnrichedSpace):
             return self.space.follow(-np.stack(traces, axis=1))
         return self.solve(-(self._load @ np.stack(traces, axis=1)))
@@ -142,18 +144,18 @@ class PlateModel:
     def _known_means(self, sources: FloatArray) -> FloatArray:
         """The integrals of F around sources (N, 2) with the rigid motions, (r, N).
 
-        F = laplace P and rigid motions R are harmonic: int F R = rim[R dP/dn - P dR/dn].
-        A plate under tension has no rigid motions.
+        A motion R(x) is R(source) and a part that grows in proportion to the distance. Integrated along rays from the
+        source, F times either gives m(x), and the divergence of (x - source) m(x) is what it was: the integrals over
+        the plate are those of ((x - source).n) m over the rim. A plate under tension has no rigid motions.
         """
         rim = self.space.rim
         motions = self.motions(rim.points.reshape(-1, 2)).reshape(*rim.weights.shape, -1)
-        slopes = rim.normal @ self.rigid[1:]
         integrals = []
-        for source in sources:
-            value, gradient = potential(rim.points, source)
-            flux = (gradient * rim.normal).sum(axis=-1)
-            parts = motions * flux[..., None] - slopes * value[..., None]
-            integrals.append(np.einsum("kn,knr->r", rim.weights, parts))
+        for source, at_source in zip(sources, self.motions(sources), strict=True):
+            rays = self.infinite.radial(rim.points, source)
+            flux = ((rim.points - source) * rim.normal).sum(axis=-1) * rim.weights
+            parts = rays.mean(0)[..., None] * at_source + rays.mean(1)[..., None] * (motions - at_source)
+            integrals.append(np.einsum("kn,knr->r", flux, parts))
         return np.stack(integrals, axis=1)
 
     def under_pressure(self) -> FloatArray:

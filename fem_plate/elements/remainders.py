@@ -35,11 +35,11 @@ class Remainders:
         functions: CornerFunctions,
         lifts: FloatArray,
         to_integrate: list[FloatArray],
-        poisson_ratio: float,
+        law: FloatArray,
     ) -> None:
-        self.space, self.functions, self.lifts, self.law = space, functions, lifts, forms.bending_law(poisson_ratio)
-        of_elements = space.traces(poisson_ratio)
-        self.traces = forms.rim_traces(to_integrate, space.rim.normal, poisson_ratio)  # (6, k, n, E)
+        self.space, self.functions, self.lifts, self.law = space, functions, lifts, law
+        of_elements = space.traces(law)
+        self.traces = forms.rim_traces(to_integrate, space.rim.normal, law)  # (6, k, n, E)
         self.traces -= of_elements @ lifts[space.rim.triangle]
 
     def bending(self) -> tuple[FloatArray, FloatArray]:

@@ -67,16 +67,6 @@ def point_derivatives(xy: FloatArray, source: FloatArray) -> list[FloatArray]:
     return [UNIT_STRENGTH * np.stack(order) for order in orders]
 
 
-def potential(xy: FloatArray, source: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """P = (2 r^4 ln r - r^4) / (256 pi), with laplace P = F, and its gradient at points (..., 2) off the source."""
-    offset = xy - source
-    square = (offset**2).sum(axis=-1)
-    logarithm = np.log(square)  # 2 ln r
-    value = square**2 * (logarithm - 1)
-    gradient = (2 * square * (2 * logarithm - 1))[..., None] * offset
-    return UNIT_STRENGTH / 32 * value, UNIT_STRENGTH / 32 * gradient
-
-
 def pressure_derivatives(xy: FloatArray) -> list[FloatArray]:
     """The derivatives of orders 0 to 3, each (d, ...), of r^4 / 64 at points (..., 2)."""
     x, y = np.moveaxis(xy, -1, 0)

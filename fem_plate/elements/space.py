@@ -59,12 +59,12 @@ class PlateSpace:
         self._relative = relative(self.triangles, triangles, edges, corners, self.unknowns)
         self._absolute, self._bent = joined @ self._relative.absolute, joined @ self._relative.bent
 
-    def stiffness(self, poisson_ratio: float, tension: float = 0.0) -> csc_matrix:
+    def stiffness(self, law: FloatArray, tension: float = 0.0) -> csc_matrix:
         """The symmetric matrix of a plate under a dimensionless tension, see `forms`.
 
         The rigid motions that the supports allow have no energy where there is no tension.
         """
-        bending = self._bending(poisson_ratio)
+        bending = self._bending(law)
         return bending + tension * self.stretching() if tension else bending
 
     def stretching(self) -> csc_matrix:
@@ -79,13 +79,13 @@ class PlateSpace:
         np.add.at(matrices, self.rim.triangle, at_rim)
         return self.assembled(matrices)
 
-    def _bending(self, poisson_ratio: float) -> csc_matrix:
+    def _bending(self, law: FloatArray) -> csc_matrix:
         """The matrix of int M(v):H(q) - R(v; q) - R(q; v) + S(v; q)."""
-        matrices = forms.bending(self.triangles, poisson_ratio)
+        matrices = forms.bending(self.triangles, law)
         triangle, points, weights = self.slivers
         hessian = self.triangles.derivatives(points, triangle, 2)
-        np.add.at(matrices, triangle, forms.bending_at(hessian, weights, poisson_ratio))
-        traces, (coupling, _) = self.traces(poisson_ratio), forms.rim_forms(self.rim)
+        np.add.at(matrices, triangle, forms.bending_at(hessian, weights, law))
+        traces, (coupling, _) = self.traces(law), forms.rim_forms(self.rim)
         at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)  # c: of q, d: of v
         if self._relative is None:
             np.add.at(matrices, self.rim.triangle, at_rim)
@@ -120,14 +120,14 @@ class PlateSpace:
         """The unknowns of every triangle's own points from the independent ones (unknowns, ...)."""
         return unknowns if self._relative is None else np.asarray(self._absolute @ unknowns)
 
-    def traces(self, poisson_ratio: float) -> FloatArray:
+    def traces(self, law: FloatArray) -> FloatArray:
         """The rim's channels of the triangles' functions, (6, k, n, 21)."""
         derivatives = [self.triangles.derivatives(self.rim.points, self.rim.triangle, k) for k in range(4)]
-        return forms.rim_traces(derivatives, self.rim.normal, poisson_ratio)
+        return forms.rim_traces(derivatives, self.rim.normal, law)
 
-    def load(self, poisson_ratio: float, tension: float = 0.0) -> csc_matrix:
+    def load(self, law: FloatArray, tension: float = 0.0) -> csc_matrix:
         """The matrix (unknowns, 6 points) of the right side of `forms` for the traces (6, points) of g."""
-        traces, (_, coupling) = self.traces(poisson_ratio), self.couplings(tension)
+        traces, (_, coupling) = self.traces(law), self.couplings(tension)
         data = np.einsum("ckni,kncd->dkni", traces, coupling, optimize=True)  # (6, k, n, 21)
         columns = np.arange(data[..., 0].size).reshape(data.shape[:3])
         rows = np.broadcast_to(self.dofs[self.rim.triangle][:, None], data.shape)

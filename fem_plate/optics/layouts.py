@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 from fem_plate.arrays import PatchedShapes
 from fem_plate.influence import InfluenceShapes
 from fem_plate.optics.package import fits_package
+from fem_plate.section import PlateSection
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -101,8 +102,10 @@ def _header(shapes: PlateShapes, layout: str) -> Any:
     header["BUNIT"] = ("m/m" if held.all() else "m/N" if not held.any() else "m/m, m/N", "surface; m/N: floating")
     section = shapes.plate.section
     header["TENSION"] = (shapes.plate.tension, "[N/m] residual, in the plate's plane")
-    header["YOUNGS"] = (section.youngs_modulus, "[Pa] Young's modulus")
-    header["POISSON"] = (section.poisson_ratio, "Poisson's ratio")
+    if isinstance(section, PlateSection):
+        header["YOUNGS"] = (section.youngs_modulus, "[Pa] Young's modulus")
+        header["POISSON"] = (section.poisson_ratio, "Poisson's ratio")
+    header["RIGIDITY"] = (section.rigidity, "[N m] flexural, the mean over directions")
     header["THICKNES"] = (section.thickness, "[m] of the plate")
     return header
 

@@ -97,14 +97,14 @@ def test_the_energy_of_what_elements_leave_is_the_difference_of_energies(octagon
     space = octagon.space
     assert isinstance(space, EnrichedSpace)
     known, to_integrate = space.functions.at_rim(space.rim)
-    of_known, of_tests = (forms.rim_traces(one, space.rim.normal, 0.3) for one in (known, to_integrate))
+    of_known, of_tests = (forms.rim_traces(one, space.rim.normal, UNIT.law) for one in (known, to_integrate))
     _, coupling = forms.rim_forms(space.rim)
     flat = of_known.reshape(-1, len(space.functions))
     whole = np.einsum("ckne,kncd->edkn", of_tests, coupling).reshape(len(space.functions), -1) @ flat
     assert np.abs(whole - whole.T).max() < 1e-12 * np.abs(whole).max()
-    load = space.load(0.3) @ flat
+    load = space.load(UNIT.law) @ flat
     expected = whole - load.T @ space.solve(np.vstack([load, np.zeros_like(whole)]))[: space.plain]
-    energies = space.stiffness(0.3)[space.plain :, space.plain :].toarray()
+    energies = space.stiffness(UNIT.law)[space.plain :, space.plain :].toarray()
     leading = [e for e, function in enumerate(space.functions.functions) if function.exponent < 2]
     pairs = np.ix_(leading, leading)
     assert len(leading) == 8

@@ -18,6 +18,7 @@ from fem_plate.elements import CLAMPED, FREE, PlateModel, PlateSpace, SingularCo
 from fem_plate.large_deflection.membranes.factor import factorised
 from fem_plate.large_deflection.membranes.membrane import AIRY, Membrane
 from fem_plate.large_deflection.membranes.samples import Samples
+from fem_plate.section import bending_law
 from meshes import PlateMesh
 
 FloatArray = NDArray[np.float64]
@@ -36,7 +37,7 @@ def airy(mesh: PlateMesh, movable: bool, poisson_ratio: float, corners: Sequence
 
     corners: rows of mesh points where second derivatives may jump.
     """
-    model = PlateModel(mesh, _supports(mesh, movable), -poisson_ratio, corners)
+    model = PlateModel(mesh, _supports(mesh, movable), bending_law(-poisson_ratio), corners)
     space = model.space
     stiffness = (model.pinned_stiffness / (12 * (1 - poisson_ratio**2))).tocsc()
     xy, weights = get_quadrature(RefTri, DEGREE)

@@ -45,7 +45,7 @@ class DiscretePlate:
         self.mesh = refined_for(mesh, points, plate.fineness.half_width, level)
         rows = corner_rows(self.mesh, [*plate.corners, *corners])
         self.size, self.thickness, self.rigidity = self.mesh.size, section.thickness, section.rigidity
-        self.model = PlateModel(self.mesh, plate.supports, section.poisson_ratio, rows, plate.relative_tension)
+        self.model = PlateModel(self.mesh, plate.supports, section.law, rows, plate.relative_tension)
         hold_firmly(self.model)
         self.in_plane_supports, self.poisson_ratio = dict(movable), section.poisson_ratio
         self._by_airy, self._corner_rows, self.x = by_airy, rows, points / self.size

@@ -75,7 +75,7 @@ class Equilibrium:
         self.trial, self.membrane, self.compliance = trial, membrane, compliance
         self.held = np.isfinite(compliance)
         self.space = trial.model.space
-        self.bending = self.space.stiffness(trial.model.poisson_ratio, trial.model.tension)
+        self.bending = self.space.stiffness(trial.model.law, trial.model.tension)
         self._pins = trial.model.pins
         self.known = [trial.slopes(samples) for samples in membrane.samples]
         points = self.space.points
