@@ -11,12 +11,20 @@ import numpy as np
 from numpy.polynomial import legendre
 
 
-def pressed_square(pressure: float, clamped: bool, nu: float = 0.3, count: int = 9) -> tuple[float, float, float]:
-    """The deflection of the middle and the energies of bending and stretching."""
+def pressed_square(
+    pressure: float, clamped: bool, nu: float = 0.3, count: int = 9, sliding: bool = False
+) -> tuple[float, float, float]:
+    """The deflection of the middle and the energies of bending and stretching.
+
+    Where sides are sliding they may move along themselves, though not across.
+    """
     x, weight = legendre.leggauss(6 * count)
     rim = (1 - x**2) ** (2 if clamped else 1)
     even = _with_rim(np.arange(0, 2 * count, 2), 2 if clamped else 1)
-    held_even, held_odd = _with_rim(np.arange(0, 3 * count, 2), 1), _with_rim(np.arange(1, 3 * count, 2), 1)
+    along, held_odd = (
+        _with_rim(np.arange(0, 3 * count, 2), 0 if sliding else 1),
+        _with_rim(np.arange(1, 3 * count, 2), 1),
+    )
     assert np.allclose(even(x, 0)[:, 0], rim)
     W = np.outer(weight, weight)
 
@@ -24,7 +32,7 @@ def pressed_square(pressure: float, clamped: bool, nu: float = 0.3, count: int =
         return np.einsum("xi,yj->ijxy", left(x, orders[0]), right(x, orders[1])).reshape(-1, len(x), len(x))
 
     w = {orders: products(even, even, orders) for orders in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))}
-    u_x, u_y = products(held_odd, held_even, (1, 0)), products(held_odd, held_even, (0, 1))
+    u_x, u_y = products(held_odd, along, (1, 0)), products(held_odd, along, (0, 1))
     # v(x, y) = u(y, x): its derivatives are those of u, transposed.
     v_x, v_y = u_y.transpose(0, 2, 1), u_x.transpose(0, 2, 1)
     strains = np.stack([u_x, u_y + v_x, v_y])
@@ -72,7 +80,7 @@ def pressed_square(pressure: float, clamped: bool, nu: float = 0.3, count: int =
 
 def _with_rim(degrees: np.ndarray, power: int):  # type: ignore[no-untyped-def]
     """(1 - x^2)^power times Legendre polynomials, as a function of points and the order of a derivative."""
-    rim = legendre.poly2leg([1, 0, -1]) if power == 1 else legendre.poly2leg([1, 0, -2, 0, 1])
+    rim = legendre.poly2leg(([1.0], [1, 0, -1], [1, 0, -2, 0, 1])[power])
     functions = [legendre.legmul(rim, np.eye(degree + 1)[degree]) for degree in degrees]
 
     def at(x: np.ndarray, order: int) -> np.ndarray:
