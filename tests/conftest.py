@@ -9,6 +9,7 @@ import numba
 import numpy as np
 import pytest
 import slowest
+from hypothesis import settings
 
 from fem_plate import PlateSection
 from fem_plate.analytic import DiscShapes
@@ -20,6 +21,10 @@ TABLE = Path(__file__).parent / "slowest.md"
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
+
+# The same examples in every run: what fails, fails again.
+settings.register_profile("same examples", derandomize=True, deadline=None)
+settings.load_profile("same examples")
 
 pytest_addoption = slowest.pytest_addoption
 

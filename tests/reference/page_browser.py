@@ -17,7 +17,7 @@ from sweeps import PLATE, altered  # noqa: E402
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 DRIVER = shutil.which("chromedriver")
-PATIENCE = 120.0  # s: WebGL by software is slow on a busy machine
+PATIENCE = 600.0  # s: WebGL by software is slow on a busy machine
 OFFLINE = {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0}
 CASE = altered(
     PLATE,

@@ -187,7 +187,7 @@ def stopped_after(chunks, path, folder, number):
             assert process.poll() is None
             time.sleep(0.002)
         process.send_signal(number)
-        _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=600)
     return process.returncode, errors
 
 
