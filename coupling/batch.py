@@ -118,7 +118,7 @@ def _groups(jobs: Sequence[_Job]) -> Iterator[list[_Job]]:
     groups: dict[tuple[int, RunCase], list[_Job]] = defaultdict(list)
     for job in jobs:
         alone = job.case.run.scheme != "events" or not isinstance(job.scene, PlateScene) or answers_drives(job.case)
-        groups[-1 - job.number if alone else id(job.scene.shapes), job.case.run].append(job)
+        groups[-1 - job.number if alone else id(job.scene.surface.store), job.case.run].append(job)
     yield from groups.values()
 
 
