@@ -47,7 +47,9 @@ class _Plates:
         if ground in self._scenes:
             shared = self._scenes[ground]
             drives = lifts_of(case)
-            return PlateScene(shared.plate, shared.shapes, drives, shared.surface.driven_by(drives))
+            pressed = shared.pressed and shared.pressed.driven_by(drives)
+            surface = shared.surface.driven_by(drives)
+            return PlateScene(shared.plate, shared.shapes, drives, surface, pressed=pressed)
         scene = build_scene(case, self.progress, self._shapes.get(plate))
         if isinstance(scene, PlateScene):
             self._shapes[plate] = scene.shapes
@@ -118,7 +120,7 @@ def _groups(jobs: Sequence[_Job]) -> Iterator[list[_Job]]:
     groups: dict[tuple[int, RunCase], list[_Job]] = defaultdict(list)
     for job in jobs:
         alone = job.case.run.scheme != "events" or not isinstance(job.scene, PlateScene) or answers_drives(job.case)
-        groups[-1 - job.number if alone else id(job.scene.shapes), job.case.run].append(job)
+        groups[-1 - job.number if alone else id(job.scene.surface.store), job.case.run].append(job)
     yield from groups.values()
 
 
@@ -145,5 +147,5 @@ def _follow(group: Sequence[_Job], threads: int | None, tighter: bool) -> list[T
 def _plate_key(case: Case) -> str:
     """What shapes follow from, beyond the plate's own table."""
     held = [(one.position, spring) for one, spring in zip(case.actuators, actuator_stiffness(case), strict=True)]
-    unheard = {"top_face", "density", "inertia", "damping"}
+    unheard = {"top_face", "density", "inertia", "damping", "pressure"}
     return f"{case.plate.model_dump_json(exclude=unheard)} {held}"

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from coupling.case import Case, PlateCase
 from coupling.drives import build_drives, moments, stroke_heights
 from coupling.scene import actuator_stiffness, build_plate
-from fem_plate import PlateShapes
+from fem_plate import InfluenceShapes, PlateShapes
 from meshes import quantity_text
 
 FloatArray = NDArray[np.float64]
@@ -18,7 +18,8 @@ SLACK = 1 + 1e-6  # of a limit that is met exactly
 def largest_forces(case: Case, shapes: PlateShapes | None = None) -> FloatArray:
     """The largest forces (N,) [N], up or down, that actuators take to follow their drives.
 
-    By linear theory, P(t) = K h(t), without inertia and without the part. shapes: those of the case, if known.
+    By linear theory, P(t) = K h(t), and with a pressure what holds the plate against that, without inertia and without
+    the part. shapes: those of the case, if known.
     """
     assert isinstance(case.plate, PlateCase)
     if shapes is None:
@@ -26,7 +27,11 @@ def largest_forces(case: Case, shapes: PlateShapes | None = None) -> FloatArray:
         shapes = build_plate(case.plate).influence(points, actuator_stiffness(case))
     drives = build_drives(case)
     heights = stroke_heights(drives, moments(drives, case.run.duration))
-    return np.asarray(np.abs(shapes.stiffness @ heights.T).max(axis=1))
+    forces = shapes.stiffness @ heights.T
+    if case.plate.pressure:
+        assert isinstance(shapes, InfluenceShapes)
+        forces = forces + shapes.pressure_forces(case.plate.pressure)[:, None]
+    return np.asarray(np.abs(forces).max(axis=1))
 
 
 def limit_warnings(case: Case, shapes: PlateShapes | None = None) -> list[str]:

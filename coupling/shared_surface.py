@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from threading import Lock
 from typing import Any
 
@@ -13,25 +13,9 @@ from coupling.progress import Progress, silent
 from coupling.run import build_scene
 from coupling.scene import actuator_stiffness, build_plate, stretch_model, vibration_model
 from coupling.stretch import Response, Stretch, StretchModel, room_beyond
+from coupling.surface import ActuatedSurface
 from coupling.vibration import Vibration, VibrationModel, always_running
 from particle import AnyDrive, SurfaceMotion
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class ActuatedSurface(SurfaceMotion):
-    """A moving surface with more drives than actuators, whose drives determine all others."""
-
-    def drive_faults(
-        self, given: Mapping[str, Sequence[AnyDrive]], in_plane: Mapping[str, Sequence[AnyDrive]] | None = None
-    ) -> list[str]:
-        if in_plane is not None:
-            return super().drive_faults(given, in_plane)
-        count = len(self.sources)
-        return [
-            f"Input {name} must be one an actuator, {count}; got {len(row)}"
-            for name, row in given.items()
-            if len(row) != count
-        ]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -46,7 +30,7 @@ class VibratingSurface(ActuatedSurface):
     ) -> VibratingSurface:
         """The surface of a model under drives, one an actuator."""
         surface = Vibration.under(model, drives).surface(tolerance, half_thickness)
-        return VibratingSurface(**{one.name: getattr(surface, one.name) for one in fields(SurfaceMotion)}, model=model)
+        return VibratingSurface.of(surface, model=model)
 
     def until(self, end: float) -> VibratingSurface:
         """The same surface, for drives up to another end [s]."""
@@ -62,7 +46,7 @@ class VibratingSurface(ActuatedSurface):
         if wrong := self.drive_faults({"drives": drives}):
             raise ValueError("; ".join(wrong))
         lifts = [always_running(drive) for drive in drives] if self.model.steady else drives
-        return super().driven_by([*lifts, *self.model.modal_drives(lifts)])
+        return self.moved_by([*lifts, *self.model.modal_drives(lifts)])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -80,8 +64,7 @@ class StretchedSurface(ActuatedSurface):
     ) -> StretchedSurface:
         """The surface of a model under drives, one an actuator."""
         surface = Stretch.under(model, drives, end).surface(tolerance, half_thickness)
-        own = {one.name: getattr(surface, one.name) for one in fields(SurfaceMotion)}
-        return StretchedSurface(**own, model=model, end=end)
+        return StretchedSurface.of(surface, model=model, end=end)
 
     def until(self, end: float) -> StretchedSurface:
         """The same surface, for drives up to another end [s]."""
@@ -97,7 +80,7 @@ class StretchedSurface(ActuatedSurface):
             raise ValueError("; ".join(wrong))
         lifts = [always_running(drive) for drive in drives] if self.model.steady else drives
         corrections = self.model.corrections(lifts, self.end, self._response)
-        return super().driven_by([*lifts, *corrections.drives], corrections.in_plane)
+        return self.moved_by([*lifts, *corrections.drives], corrections.in_plane)
 
     @property
     def _response(self) -> Response | None:

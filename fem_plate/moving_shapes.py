@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fem_plate.elements import Derivatives, PlateFunctions
+from fem_plate.influence import InfluenceShapes
 from fem_plate.shapes import Shapes
 from meshes import Outline
 
@@ -33,6 +34,12 @@ class MovingShapes(Shapes):
         self.points, self.springs = np.ascontiguousarray(points), springs
         self.size, self.outline = size, outline
         self._scales = scales
+
+    @classmethod
+    def beside(cls, shapes: InfluenceShapes, further: PlateFunctions, scales: FloatArray) -> MovingShapes:
+        """Influence shapes, then further ones on their cells; scales: (N + n,)."""
+        functions = shapes.functions.beside(further)
+        return cls(functions, shapes.points, shapes.springs, shapes.size, shapes.outline, scales)
 
     def derivatives(self, x: FloatArray, weights: FloatArray | None) -> Derivatives:
         return (self.functions if weights is None else self.functions.weighted(weights)).evaluate(x)

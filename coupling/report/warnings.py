@@ -125,8 +125,9 @@ def _of_solver(s: PlateSummary) -> Iterator[str]:
 
 def _of_model(s: PlateSummary) -> Iterator[str]:
     if s.linear_path_error is not None and s.deflection_over_thickness > MAX_DEFLECTION:
+        bounds = f"with up to {MAX_STRETCHING} actuators and no pressure"
         remedy = (
-            f" {VON_KARMAN} in [plate] has the plate stretch, with up to {MAX_STRETCHING} actuators."
+            f" {VON_KARMAN} in [plate] has the plate stretch, {bounds}."
             if s.linear_path_error > MAX_LINEAR_ERROR
             else ""
         )

@@ -14,7 +14,7 @@ from coupling.measured import MotionFit
 from coupling.progress import Progress, ProgressCallback
 from coupling.ringing import RingingModel, make_ringing_model
 from coupling.stretch import Stretch, StretchModel, make_model
-from coupling.surface import surface_motion
+from coupling.surface import Pressed, surface_motion
 from coupling.vibration import Damping, Vibration, VibrationModel, always_running, make_vibration_model
 from fem_plate import TRUNCATION, InfluenceShapes, Plate, PlateSection, PlateShapes, Shapes
 from particle import AnyDrive, SurfaceMotion, interruptible
@@ -36,6 +36,7 @@ class PlateScene:
     """A plate on actuators.
 
     stretch: what bends and stretches it, None in linear theory.  vibration: None without inertia.
+    pressed: None with any of these, or without a pressure.
     """
 
     plate: Plate
@@ -44,6 +45,7 @@ class PlateScene:
     surface: SurfaceMotion
     stretch: Stretch | None = None
     vibration: Vibration | None = None
+    pressed: Pressed | None = None
     base: Sequence[AnyDrive] = field(default=(), init=False)  # it stays in its plane
     origin: str = field(default="the plate", init=False)  # what positions are counted from
     fits: tuple[MotionFit, ...] = field(default=(), init=False)
@@ -56,13 +58,13 @@ class PlateScene:
     @property
     def moving_shapes(self) -> Shapes:
         """The shapes of the moving surface."""
-        motion = self.stretch or self.vibration
+        motion = self.stretch or self.vibration or self.pressed
         return self.shapes if motion is None else motion.shapes
 
     @property
     def moving_drives(self) -> Sequence[AnyDrive]:
         """The drive of each of them."""
-        motion = self.stretch or self.vibration
+        motion = self.stretch or self.vibration or self.pressed
         return self.lifts if motion is None else motion.moving_drives
 
 
@@ -84,6 +86,11 @@ def plate_scene(case: Case, plate_case: PlateCase, progress: Progress, known: Pl
             vibration = Vibration.under(modes, drives)
         with progress("Fitting the surface"):
             return PlateScene(plate, shapes, drives, vibration.surface(tolerance, top), vibration=vibration)
+    if plate_case.theory == "linear" and plate_case.pressure:
+        with progress("Fitting the surface"):
+            assert isinstance(shapes, InfluenceShapes)
+            pressed = Pressed.under(shapes, drives, plate_case.pressure)
+            return PlateScene(plate, shapes, drives, pressed.surface(tolerance, top), pressed=pressed)
     if plate_case.theory == "linear":
         with progress("Fitting the surface"):
             return PlateScene(plate, shapes, drives, surface_motion(shapes, drives, tolerance, top))
@@ -136,8 +143,10 @@ def vibration_model(
 ) -> VibrationModel:
     """The modes of a case's plate, for several sets of drives."""
     assert isinstance(shapes, InfluenceShapes)
-    steady, damping = case.run.start == "steady", damping_of(plate_case)
-    return interruptible(make_vibration_model, shapes, plate.section, damping, sets, case.run.duration, steady, tell)
+    steady, damping, pressure = case.run.start == "steady", damping_of(plate_case), plate_case.pressure
+    return interruptible(
+        make_vibration_model, shapes, plate.section, damping, sets, case.run.duration, steady, tell, pressure
+    )
 
 
 def damping_of(plate: PlateCase) -> Damping:

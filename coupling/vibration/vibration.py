@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coupling.drives import fastest_acceleration, stroke_heights
-from coupling.surface import surface_motion
+from coupling.surface import ActuatedSurface, PressureShape, surface_motion
 from coupling.vibration.choice import ChosenModes, Damping, choose_modes, motion_of
 from coupling.vibration.motion import ModalMotion
 from fem_plate import Excitation, InfluenceShapes, MovingShapes, PlateSection
-from particle import AnyDrive, SurfaceMotion
+from particle import AnyDrive
 from particle.drives import QuinticDrive
 
 FloatArray = NDArray[np.float64]
@@ -27,7 +27,7 @@ class VibrationModel:
     """The modes that a plate's actuators excite; good for drives like those that it was made for.
 
     damping: the ratios (n,) of natural frequencies (n,) [Hz].  steady: whether runs begin in the steady state.
-    end: s, of the longest run.
+    end: s, of the longest run.  pressed: the shape of a constant pressure, which excites no mode; None: there is none.
     """
 
     shapes: MovingShapes
@@ -35,6 +35,12 @@ class VibrationModel:
     damping: Damping
     steady: bool
     end: float
+    pressed: PressureShape | None = None
+
+    @property
+    def kept(self) -> tuple[QuinticDrive, ...]:
+        """The drives of shapes that stay what they are."""
+        return () if self.pressed is None else (self.pressed.drive,)
 
     def motion(self, drives: Sequence[AnyDrive]) -> ModalMotion:
         """How the modes move; raises ValueError when one without damping resonates."""
@@ -62,17 +68,18 @@ class Vibration:
 
     @property
     def shapes(self) -> MovingShapes:
-        """Shapes of the actuators, then modes."""
+        """Shapes of the actuators, then modes, then that of a pressure."""
         return self.model.shapes
 
     @property
     def moving_drives(self) -> list[AnyDrive]:
         """The drive of each of these."""
-        return [*self.drives, *self.modal_drives]
+        return [*self.drives, *self.modal_drives, *self.model.kept]
 
-    def surface(self, tolerance: float, half_thickness: float) -> SurfaceMotion:
+    def surface(self, tolerance: float, half_thickness: float) -> ActuatedSurface:
         """The moving surface."""
-        return surface_motion(self.shapes, self.moving_drives, tolerance, half_thickness)
+        surface = surface_motion(self.shapes, self.moving_drives, tolerance, half_thickness)
+        return ActuatedSurface.of(surface, kept=self.model.kept)
 
 
 def make_vibration_model(
@@ -83,15 +90,18 @@ def make_vibration_model(
     end: float,
     steady: bool,
     tell: Callable[[int, int], None] = lambda done, of: None,
+    pressure: float = 0.0,
 ) -> VibrationModel:
-    """The model of a plate with mass for several sets of drives, up to an end [s].
+    """The model of a plate with mass for several sets of drives and a constant pressure [Pa], up to an end [s].
 
     Raises ValueError when a mode without damping resonates.
     """
     assert section.density is not None
     excitation = Excitation(shapes, section.density * section.thickness, section.rigidity)
     chosen = choose_modes(shapes, excitation, damping, sets, end, steady, tell)
-    return VibrationModel(_moving_shapes(shapes, chosen, damping, sets, end, steady), chosen, damping, steady, end)
+    pressed = PressureShape.of(shapes, pressure) if pressure else None
+    moving = _moving_shapes(shapes, chosen, damping, sets, end, steady, pressed)
+    return VibrationModel(moving, chosen, damping, steady, end, pressed)
 
 
 def _moving_shapes(
@@ -101,6 +111,7 @@ def _moving_shapes(
     sets: Sequence[Sequence[AnyDrive]],
     end: float,
     steady: bool,
+    pressed: PressureShape | None,
 ) -> MovingShapes:
     """The shapes of actuators and modes; those of modes that move less are fitted less closely."""
     times = np.linspace(0.0, end, 1001)
@@ -113,17 +124,11 @@ def _moving_shapes(
             if carried > 0:
                 most = np.maximum(most, np.abs(rung[order]).max(axis=0) / carried)
     scales = np.concatenate([own, 1 / np.clip(most, 1 / TALLEST, None)])
-    static, modes = shapes.functions, chosen.modes.functions
+    modes = chosen.modes.functions
     held = np.flatnonzero(shapes.springs > 0)
     forces = np.zeros((len(shapes.points), len(most)))
     forces[held] = modes.forces
-    functions = type(static)(
-        static.space,
-        np.concatenate([static.unknowns, modes.unknowns], axis=1),
-        static.sources,
-        np.concatenate([static.forces, forces], axis=1),
-        np.concatenate([static.rigid, modes.rigid], axis=1),
-        np.concatenate([static.pressure, modes.pressure]),
-        static.infinite,
-    )
-    return MovingShapes(functions, shapes.points, shapes.springs, shapes.size, shapes.outline, scales)
+    further = replace(modes, sources=shapes.functions.sources, forces=forces)
+    if pressed is not None:
+        further, scales = further.beside(pressed.functions), np.append(scales, 1.0)
+    return MovingShapes.beside(shapes, further, scales)

@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 
 from fem_plate.arrays.cutting import Cut, Cutter
 from fem_plate.elements import PlateFunctions, PlateModel
-from fem_plate.influence import held_shapes
+from fem_plate.held import held_shapes
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

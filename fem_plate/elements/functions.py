@@ -40,6 +40,16 @@ class PlateFunctions:
             pressure=self.pressure @ weights,
         )
 
+    def beside(self, others: PlateFunctions) -> PlateFunctions:
+        """The functions, then others of the same sources on the same cells."""
+        return replace(
+            self,
+            unknowns=np.concatenate([self.unknowns, others.unknowns], axis=1),
+            forces=np.concatenate([self.forces, others.forces], axis=1),
+            rigid=np.concatenate([self.rigid, others.rigid], axis=1),
+            pressure=np.concatenate([self.pressure, others.pressure]),
+        )
+
     def raised(self, unknowns: FloatArray) -> PlateFunctions:
         """The functions with more of finite elements, (unknowns, k)."""
         return replace(self, unknowns=self.unknowns + unknowns)

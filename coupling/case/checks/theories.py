@@ -16,6 +16,8 @@ MAX_STRETCHING: Final = 200
 """Actuators of a plate that stretches."""
 MAX_VIBRATING: Final = 250
 """Actuators of a plate with inertia."""
+MAX_PRESSED: Final = 250
+"""Actuators of a plate under pressure."""
 STEADY: Final = 'start = "steady"'
 
 
@@ -29,6 +31,7 @@ def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
                 ("plate", "tension"),
                 f"must be 0 with {VON_KARMAN}, whose mid-plane has no stress at rest; got {tension:g} N/m",
             )
+    yield from _pressure(plate, parts.context, count)
     inertia = right_value(PlateCase, "inertia", plate, parts.context, False)
     if inertia and count > MAX_VIBRATING:
         yield (
@@ -48,6 +51,26 @@ def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
                 f"must be a positive ratio such as 0.02 with {VON_KARMAN} and {STEADY}, as the steady state is what is "
                 "left when all ringing has decayed",
             )
+
+
+def _pressure(plate: Any, context: Any, count: int) -> Iterator[Mistake]:
+    """Yield that a plate's theory, or so many actuators, leave no room for its pressure."""
+    pressure = right_value(PlateCase, "pressure", plate, context, 0.0)
+    if not pressure:
+        return
+    if right_value(PlateCase, "theory", plate, context) == "von-karman":
+        yield (
+            ("plate", "pressure"),
+            f"must be 0 with {VON_KARMAN}, whose reduced model knows strokes and forces of actuators only; got "
+            f"{pressure:g} Pa; leave out pressure or theory",
+        )
+    if count > MAX_PRESSED:
+        yield (
+            ("plate", "pressure"),
+            f"must be 0 with more than {MAX_PRESSED} actuators, as their shapes are found on patches and a pressure "
+            f"bends the whole plate; got {pressure:g} Pa and {count}; a piece of the array with {MAX_PRESSED} can bear "
+            "one",
+        )
 
 
 def _stretching(scheme: str | None, count: int) -> Iterator[Mistake]:

@@ -102,7 +102,7 @@ def _item(value: Any, annotation: Any, marks: list[Any]) -> str:
     if quantity is None or not isinstance(value, float):
         return json.dumps(value, ensure_ascii=False)
     number, (unit, power) = Decimal(repr(float(value))), PREFIXED.get(quantity.unit, (quantity.unit, 0))
-    if abs(number.scaleb(power)) >= LARGEST:
+    if abs(number.scaleb(power)) >= LARGEST or (power < 0 and abs(number.scaleb(power)) < SMALLEST):
         unit, power = quantity.unit, 0
     return f'"{_plain(number.scaleb(power))} {unit}"'
 

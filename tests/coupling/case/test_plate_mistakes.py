@@ -110,6 +110,15 @@ WRONG = [
         {"shape": SHAPES["disc"], "plate": 'tension = "5 MPa"'},
         'plate.tension must be a force per length such as "50 N/m"; got "5 MPa", a pressure',
     ),
+    # Pressure
+    (
+        {"shape": SHAPES["disc"], "plate": 'theory = "von-karman"\npressure = "100 Pa"'},
+        'plate.pressure must be 0 with theory = "von-karman", whose reduced model knows strokes and forces',
+    ),
+    (
+        {"shape": SHAPES["disc"], "plate": 'pressure = "100 N"'},
+        'plate.pressure must be a pressure such as "169 GPa"; got "100 N"',
+    ),
     # Places
     (
         {"shape": SHAPES["annulus"], "places": ["0 um, 40 um"]},
