@@ -1,6 +1,6 @@
 """Advice: what would make a part move that stayed where it was, or keep one that was lost."""
 
-from coupling.advice.advise import Advice, advice_from, advise, advised_case
+from coupling.advice.advise import Advice, advice_from, advise, advised_case, moves
 from coupling.advice.thresholds import BEFORE, LEAST, RANGE, Thresholds
 from coupling.advice.trials import MAX_SLOPE, MAX_STRAIN, Setting, Trial, Trials
 
@@ -18,4 +18,5 @@ __all__ = [
     "advice_from",
     "advise",
     "advised_case",
+    "moves",
 ]

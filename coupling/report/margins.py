@@ -61,7 +61,7 @@ def _force(force: float) -> str:
 
 def advice_text(s: Summary, a: Advice) -> str:
     """What thresholds and trial runs show, in sentences."""
-    writes = a.plate and a.trial is not None
+    writes = not a.measured and a.trial is not None
     command = ["Add --advised FILE to the command to write that case."] if writes else []
     return " ".join(["At rest, with this friction, it " + _thresholds(a), trial_text(s), *command])
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coupling import report, run_case
-from coupling.advice import Setting, Trials, advise, advised_case
+from coupling.advice import Setting, Trial, Trials, advise, advised_case
 from coupling.case import (
     ActuatorCase,
     Case,
@@ -16,6 +16,7 @@ from coupling.case import (
     CoulombCase,
     KogutEtsionCase,
     PartCase,
+    PlatformCase,
     RunCase,
     TableCase,
     friction_scales,
@@ -162,6 +163,59 @@ def test_advice_on_a_part_that_stays_is_what_runs_do(stuck):
     assert moved.summary.distance == pytest.approx(trial.distance, rel=1e-3)
     text = dict(report.lines(stuck.summary))["advice"]
     assert f"{advice.comes_off_from:.4g} times" in text and f"moves it by {quantity(trial.distance, 'm')} in" in text
+
+
+def test_advice_on_a_platform_becomes_a_case():
+    motion = {
+        "x": {"stroke": "0.3 um", "frequency": "100 Hz", "delay": "0.1 ms"},
+        "z": {"stroke": 0.0, "frequency": 90},
+    }
+    still = run_case(
+        Case(
+            plate={"shape": "platform", "motion": motion},
+            part=PartCase(mass=2e-9, position=(0.0, 0.0)),
+            friction=CoulombCase(coefficient=0.3),
+            run=RunCase(duration=0.05),
+        )
+    )
+    trial = still.summary.advice.trial
+    assert still.trajectory.distance == 0 and not still.moves and still.summary.advice.strokes == (3e-7,)
+    axis = still.advised.plate.motion.x
+    assert axis.frequency == pytest.approx(100 * trial.frequency) and axis.stroke == pytest.approx(3e-7 * trial.stroke)
+    assert axis.delay == pytest.approx(1e-4 / trial.frequency)
+    assert "--advised FILE" in dict(report.lines(still.summary))["advice"]
+    moved = run_case(still.advised)
+    assert moved.summary.distance == pytest.approx(trial.distance, rel=1e-3)
+
+
+def test_a_part_that_went_somewhere_is_not_called_stuck():
+    still = run_case(case_of(stroke=5e-6, frequency=300)).summary
+    assert dict(report.lines(still))["outcome"].startswith("stuck. ")
+    went = replace(still, path_length=12.3e-6, slips=3, path_error=1e-9)
+    assert dict(report.lines(went))["outcome"].startswith("travelled 12.3 um in 3 slips, at rest at the end. The part ")
+    thrown = replace(went, slips=0)  # it slid from the start on
+    assert dict(report.lines(thrown))["outcome"].startswith("travelled 12.3 um, at rest at the end. ")
+    unsure = replace(went, path_error=2e-5)
+    assert dict(report.lines(unsure))["outcome"].startswith("stuck. ")
+
+
+def test_a_measured_motion_is_not_scaled():
+    measured = Case.model_construct(plate=PlatformCase.model_construct(motion="shaker.csv"), name="shaken")
+    with pytest.raises(ValueError, match=r"the motion of its platform is measured, shaker.csv"):
+        advised_case(measured, Trial(2.0, 1.0, 1.0, None, 1e-6, 1e-3, 0.0))
+    assert scaled_case(measured, 2.0, 3.0) is measured
+
+
+def test_scaled_numbers_are_short():
+    case = case_of(stroke=1e-9, frequency=0.7e3)
+    assert scaled_case(case, 3.0, 3.0).actuators[0].stroke == 3.0000000000000004e-09
+    short = scaled_case(case, 3.0, 3.0, shortly=True).actuators[0]
+    assert (short.stroke, short.frequency) == (3e-9, 2100.0)
+    assert scaled_friction(TableCase(loads=(0.0, 1e-7, 2e-7), limits=(0.0, 1e-9, 2e-9)), 3.0).limits == (
+        0.0,
+        3e-9,
+        6e-9,
+    )
 
 
 def test_advice_states_the_pull_just_before_a_part_comes_off_unslipped():
