@@ -70,4 +70,4 @@ from coupling.case.values import (
     unreadable,
 )
 from coupling.case.variation import lattice_of, plain_case, put_value
-from coupling.case.writing import json_schema, template, write_case
+from coupling.case.writing import json_schema, template, write_case, write_edited

@@ -230,6 +230,8 @@ def test_run_writes_the_advised_case_which_moves(tmp_path):
     done = CliRunner().invoke(main, ["run", str(file), "--advised", str(new), *arguments])
     still = json.loads(done.stdout)
     assert done.exit_code == 0 and still["distance"] == 0 and still["files"][-1] == str(new)
+    kept, written = file.read_text().splitlines(), new.read_text().splitlines()
+    assert len([line for line in written[2:] if line in kept]) > len(kept) / 2
     again = CliRunner().invoke(main, ["run", str(file), "--advised", str(new), *arguments])
     assert again.exit_code == 2 and "must be a new file" in again.output
     moved = json.loads(CliRunner().invoke(main, ["run", str(new), *arguments]).stdout)
