@@ -7,13 +7,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from coupling.advice.trials import FAR, Trial, Trials
+from coupling.advice.setting import Trial
+from coupling.advice.trials import FAR, Trials
 from coupling.case import (
     Case,
     DriveCase,
     PlatformCase,
     amplitude,
     friction_scales,
+    ramped_case,
     scaled_case,
     scaled_friction,
     with_index,
@@ -105,6 +107,8 @@ def advised_case(case: Case, trial: Trial) -> Case:
             f"Input case of advised_case must have drives; the motion of its platform is measured, {case.plate.motion}"
         )
     update: dict[str, Any] = {"name": f"{case.name.removesuffix(ADVISED)}{ADVISED}", "source": None}
+    if trial.ramp is not None:
+        case = ramped_case(case, trial.ramp) or case
     if trial.friction != 1:
         update["friction"] = scaled_friction(case.friction, trial.friction)
     if trial.plasticity_index is not None:

@@ -45,6 +45,7 @@ from coupling.case.scaled import (
     friction_scales,
     largest_stroke,
     more_plastic,
+    ramped_case,
     scaled_case,
     scaled_friction,
     with_index,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final, NamedTuple, TypeVar
 
-from coupling.case.actuators import DriveCase, amplitude
+from coupling.case.actuators import ActuatorCase, DriveCase, amplitude
 from coupling.case.case import Case
 from coupling.case.friction import ConstantCase, CoulombCase, FrictionCase, KogutEtsionCase, TableCase
 from coupling.case.plates import MotionCase, PlatformCase
@@ -30,6 +30,25 @@ def scaled_case(case: Case, frequency: float, stroke: float, shortly: bool = Fal
         motion = case.plate.motion.model_copy(update={axis: scale.of(drive) for axis, drive in axes.items()})
         return case.model_copy(update={"plate": case.plate.model_copy(update={"motion": motion})})
     return case.model_copy(update={"actuators": tuple(scale.of(actuator) for actuator in case.actuators)})
+
+
+def ramped_case(case: Case, ramp: float) -> Case | None:
+    """The case with forces that grow over so many cycles where they begin at once; None: there is none that may.
+
+    A force that has been running all the time begins at once only where the plate has mass and was at rest.
+    """
+    assert not isinstance(case.plate, PlatformCase)
+    wakes = case.plate.inertia and case.run.start == "rest"
+    actuators = tuple(
+        one.model_copy(update={"ramp": ramp}) if (wakes or one.delay > 0) and _may_grow(one, ramp) else one
+        for one in case.actuators
+    )
+    return None if actuators == case.actuators else case.model_copy(update={"actuators": actuators})
+
+
+def _may_grow(actuator: ActuatorCase, ramp: float) -> bool:
+    room = actuator.cycles is None or 2 * ramp <= actuator.cycles
+    return actuator.force is not None and actuator.cycle in ("sine", "cosine") and actuator.ramp == 0 and room
 
 
 class _Scale(NamedTuple):

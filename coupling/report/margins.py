@@ -96,6 +96,8 @@ def trial_text(s: Summary) -> str:
         place = f" from ({x:g}, {y:g}) um"
     if trial.stroke != 1:
         changes.append(f"{trial.stroke:g} times the stroke{_values(a.strokes, trial.stroke, a.unit)}")
+    if trial.ramp is not None:
+        changes.append(f"forces that grow over {trial.ramp:g} cycles (ramp = {trial.ramp:g})")
     if trial.friction != 1:
         changes.append(f"{trial.friction:g} times the friction{_friction(a, trial)}")
     if trial.plasticity_index is not None:

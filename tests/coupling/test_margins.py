@@ -21,6 +21,7 @@ from coupling.case import (
     TableCase,
     friction_scales,
     more_plastic,
+    ramped_case,
     scaled_case,
     scaled_friction,
     with_index,
@@ -197,6 +198,45 @@ def test_a_part_that_went_somewhere_is_not_called_stuck():
     assert dict(report.lines(thrown))["outcome"].startswith("travelled 12.3 um, at rest at the end. ")
     unsure = replace(went, path_error=2e-5)
     assert dict(report.lines(unsure))["outcome"].startswith("stuck. ")
+
+
+def test_forces_that_begin_at_once_are_advised_to_grow():
+    force = ActuatorCase(position=(0.0, 0.0), force=2e-4, frequency=5e3, cycle="sine")
+    shaken = run_case(
+        case_of(
+            plate=PLATE | {"inertia": True, "damping": 0.2},
+            place=(1.5e-4, 0.0),
+            actuators=[force],
+            friction=CoulombCase(coefficient=0.02, adhesion=2e-7),
+        )
+    )
+    assert shaken.trajectory.outcome is Outcome.DETACHED
+    trial = shaken.summary.advice.trial
+    assert trial.ramp == 3 and 0 < shaken.summary.advice.comes_off_from < trial.stroke
+    assert "forces that grow over 3 cycles (ramp = 3)" in dict(report.lines(shaken.summary))["advice"]
+    assert shaken.advised.actuators[0].ramp == 3
+    moved = run_case(shaken.advised)
+    assert moved.trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
+    assert moved.summary.distance == pytest.approx(trial.distance, rel=1e-3)
+    assert summary_of(json.loads(json.dumps(shaken.summary.as_dict()))) == shaken.summary
+
+
+def test_only_forces_that_begin_at_once_grow():
+    sine = {"position": (0.0, 0.0), "force": 1e-4, "frequency": 5e3, "cycle": "sine"}
+    late, short = sine | {"position": (5e-5, 0.0), "delay": 1e-3}, sine | {"position": (-5e-5, 0.0), "cycles": 5}
+    others = [
+        {"position": (0.0, 8e-5), "stroke": 1e-6, "frequency": 5e3, "cycle": "sine"},
+        {"position": (0.0, -8e-5), "force": 1e-4, "frequency": 5e3},
+    ]
+    waves = [ActuatorCase(**fields) for fields in [sine, late, short, *others]]
+
+    def ramps(**plate):
+        case = ramped_case(case_of(plate=PLATE | plate, actuators=waves), 3.0)
+        return [actuator.ramp for actuator in case.actuators]
+
+    assert ramps() == [0, 3, 0, 0, 0]
+    assert ramps(inertia=True) == [3, 3, 0, 0, 0]
+    assert ramped_case(case_of(), 3.0) is None
 
 
 def test_a_measured_motion_is_not_scaled():
