@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from threadpoolctl import threadpool_limits
 
 import particle
-from coupling.advice import advised_case
+from coupling.advice import advised_case, moves
 from coupling.case import Case, PlatformCase, RunCase
 from coupling.drives import build_drives as build_drives
 from coupling.part import build_friction, build_part
@@ -72,10 +72,15 @@ class Result:
 
     @property
     def advised(self) -> Case | None:
-        """The case of the trial run that the advice tells of; None: there is none, or the part is on a platform."""
+        """The case of the trial run that the advice tells of; None: there is none, or the motion is measured."""
         advice = self.summary.advice
-        trial = None if advice is None or not advice.plate else advice.trial
+        trial = None if advice is None or advice.measured else advice.trial
         return None if trial is None else advised_case(self.case, trial)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the drives carried the part far and kept it, so that there is nothing to advise."""
+        return moves(self.scene, self.trajectory)
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the path over the surface as it is when it is deflected most, and the motion over time.

@@ -37,7 +37,7 @@ def run(
     """Run CASE and write its results."""
     parsed = read(case)
     from coupling import StageBar, answers_drives, limit_warnings, report, run_case, silent
-    from coupling.case import write_case
+    from coupling.case import write_edited
     from coupling.results import check_folder
 
     folder = output or DEFAULT_OUTPUT
@@ -47,13 +47,16 @@ def run(
     with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(parsed)) as bar:
         result = refusing(run_case, parsed, folder, bar, csv, save_surface, forces)
     files, warnings = result.files, report.warnings(result.summary) + limit_warnings(parsed, result.shapes)
-    if advised is not None and result.advised is None:
+    lines = report.lines(result.summary, verbose)
+    if advised is not None and result.moves:
+        lines.append(("advised", f"The part of this case moves already; nothing was written to {advised}."))
+    elif advised is not None and (moving := result.advised) is None:
         warnings.append(f"The run advises no case, so there is none to write to {advised}.")
     elif advised is not None:
         said = f"The advice on {case.name}: {report.trial_text(result.summary)}"
-        files += (refusing(write_case, result.advised, advised, said),)
+        files += (refusing(write_edited, moving, parsed, case.absolute().parent, advised, said),)
     figures = result.summary.as_dict() | {"warnings": warnings, "files": [str(file) for file in files]}
-    options.tell(figures, report.lines(result.summary, verbose), quiet, as_json, warnings, files)
+    options.tell(figures, lines, quiet, as_json, warnings, files)
 
 
 def _check_free(file: Path) -> None:

@@ -1,8 +1,9 @@
 """Advice: what would make a part move that stayed where it was, or keep one that was lost."""
 
-from coupling.advice.advise import Advice, advice_from, advise, advised_case
+from coupling.advice.advise import Advice, advice_from, advise, advised_case, moves
+from coupling.advice.setting import Setting, Trial
 from coupling.advice.thresholds import BEFORE, LEAST, RANGE, Thresholds
-from coupling.advice.trials import MAX_SLOPE, MAX_STRAIN, Setting, Trial, Trials
+from coupling.advice.trials import MAX_SLOPE, MAX_STRAIN, Trials
 
 __all__ = [
     "BEFORE",
@@ -18,4 +19,5 @@ __all__ = [
     "advice_from",
     "advise",
     "advised_case",
+    "moves",
 ]

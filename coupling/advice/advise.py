@@ -7,8 +7,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from coupling.advice.trials import FAR, Trial, Trials
-from coupling.case import Case, PlatformCase, friction_scales, scaled_case, scaled_friction, with_index
+from coupling.advice.setting import Trial
+from coupling.advice.trials import FAR, Trials
+from coupling.case import (
+    Case,
+    DriveCase,
+    PlatformCase,
+    amplitude,
+    friction_scales,
+    ramped_case,
+    scaled_case,
+    scaled_friction,
+    with_index,
+)
 from coupling.drives import travel
 from coupling.scene import PlateScene, Scene
 from particle import Drive, Outcome, Trajectory
@@ -33,6 +44,7 @@ class Advice:
     unit: str | None  # of these; None: of either kind
     plate: bool  # whether the drives are those of a plate
     delayed: bool  # whether drives have times besides their frequency
+    measured: bool = False  # whether the motion is a measured one, which no case scales
 
 
 def advise(
@@ -45,9 +57,8 @@ def advise(
     that.
     """
     kept = trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
-    moved = kept and trajectory.distance > FAR * scene.surface.size
     moving = [drive for drive in (*scene.lifts, *scene.base) if travel(drive) > 0]
-    if moved or trajectory.outcome not in ENDS or any(case.part.velocity) or not moving:
+    if moves(scene, trajectory) or trajectory.outcome not in ENDS or any(case.part.velocity) or not moving:
         return None
     stretches = isinstance(scene, PlateScene) and scene.stretch is not None
     rings = bool(scene.fits) or (isinstance(scene, PlateScene) and scene.has_inertia)
@@ -55,8 +66,8 @@ def advise(
         return None
     trials = Trials(case, scene, friction, rings, stretches, largest_stroke, trajectory.distance if kept else 0.0)
     own = trials.thresholds(trials.part)
-    actuators = [one for one, lift in zip(case.actuators, scene.lifts, strict=False) if travel(lift) > 0]
-    units = {"m" if one.force is None else "N" for one in actuators} or {"m"}
+    driven = [(one, abs(amplitude(one))) for one in _drives(case)]
+    units = {"N" if getattr(one, "force", None) is not None else "m" for one, most in driven if most > 0} or {"m"}
     return Advice(
         knob="stroke" if rings else "frequency",
         slips_from=None if math.isinf(own.slips) else own.slips,
@@ -65,28 +76,46 @@ def advise(
         trial=trials.best(),
         friction=friction_scales(case.friction) or {},
         frequencies=tuple(dict.fromkeys(drive.frequency for drive in moving)),
-        strokes=tuple(dict.fromkeys(abs(one.stroke or one.force or 0.0) for one in actuators)),
+        strokes=tuple(dict.fromkeys(most for _, most in driven if most > 0)),
         unit=units.pop() if len(units) == 1 else None,
         plate=isinstance(scene, PlateScene),
         delayed=any(drive.delay > 0 or not isinstance(drive, Drive) for drive in moving),
+        measured=bool(scene.fits),
     )
+
+
+def moves(scene: Scene, trajectory: Trajectory) -> bool:
+    """Whether a part was carried far and stayed on, so that there is nothing to advise."""
+    kept = trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
+    return kept and trajectory.distance > FAR * scene.surface.size
+
+
+def _drives(case: Case) -> list[DriveCase]:
+    """What moves a plate, or a platform that no measured motion moves."""
+    if not isinstance(case.plate, PlatformCase):
+        return list(case.actuators)
+    return [drive for _, drive in case.plate.motion or () if drive] if not isinstance(case.plate.motion, str) else []
 
 
 def advised_case(case: Case, trial: Trial) -> Case:
     """The case of a trial run, named NAME_advised; it lasts as long as the case.
 
-    Raises ValueError for a platform, whose drives are a measured motion.
+    Raises ValueError for a platform whose motion is measured.
     """
-    if isinstance(case.plate, PlatformCase):
-        raise ValueError("Input case of advised_case must be of a plate; a platform's motion is measured")
+    if isinstance(case.plate, PlatformCase) and isinstance(case.plate.motion, str):
+        raise ValueError(
+            f"Input case of advised_case must have drives; the motion of its platform is measured, {case.plate.motion}"
+        )
     update: dict[str, Any] = {"name": f"{case.name.removesuffix(ADVISED)}{ADVISED}", "source": None}
+    if trial.ramp is not None:
+        case = ramped_case(case, trial.ramp) or case
     if trial.friction != 1:
         update["friction"] = scaled_friction(case.friction, trial.friction)
     if trial.plasticity_index is not None:
         update["friction"] = with_index(case.friction, trial.plasticity_index)
     if trial.place is not None:
         update["part"] = case.part.model_copy(update={"position": trial.place})
-    return scaled_case(case, trial.frequency, trial.stroke).model_copy(update=update)
+    return scaled_case(case, trial.frequency, trial.stroke, shortly=True).model_copy(update=update)
 
 
 def advice_from(figures: Mapping[str, Any]) -> Advice:

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Final, NamedTuple
+from dataclasses import replace
+from functools import cached_property
+from typing import Final
 
 import numpy as np
 
+from coupling.advice.setting import OWN, Setting, Trial
 from coupling.advice.thresholds import BEFORE, LEAST, Thresholds, thresholds_of
-from coupling.case import Case, friction_scales, more_plastic, with_index
+from coupling.case import Case, PlateCase, friction_scales, more_plastic, ramped_case, with_index
 from coupling.part import build_part, friction_law
-from coupling.scene import PlateScene, Scene
-from particle import Micropart, Outcome, PartAtRest, State, part_at_rest, simulate
+from coupling.progress import silent
+from coupling.scene import PlateScene, Scene, lifts_of, plate_scene
+from particle import Micropart, Outcome, PartAtRest, State, SurfaceMotion, part_at_rest, simulate
 from particle.events import horizon
 from particle.friction import Contact, ScaledFriction
 
@@ -31,33 +34,8 @@ MAX_SLOPE, MAX_STRAIN = 0.2, 0.005  # of the plate, to which the model holds; si
 MAX_STROKES: Final = 85  # of the shortest, in which thresholds are looked for
 TURNS: Final = 2  # of the fastest drive, that a trial run has at least
 TRIED: Final = 300  # of the shortest, that a trial run lasts at most
+RAMP: Final = 3.0  # cycles over which forces grow
 RADII, ANGLES = (0.25, 0.5), (0.3, 1.9, 3.4, 5.0)  # of other places around the nearest actuator: of its gap, rad
-
-
-@dataclass(frozen=True)
-class Trial:
-    """A run with other drives, or from another place, that moved the part and kept it."""
-
-    frequency: float  # over the case's own
-    stroke: float
-    friction: float  # of what friction holds
-    place: tuple[float, float] | None  # m, where it began; None: at the case's start
-    distance: float  # m
-    duration: float  # s, at most that of the case
-    smallest_load: float  # N
-    plasticity_index: float | None = None  # of Kogut and Etsion's law; None: the case's own
-
-
-class Setting(NamedTuple):
-    """What a trial changes besides what its thresholds are of."""
-
-    stroke: float = 1.0  # over the case's own
-    friction: float = 1.0  # of what friction holds
-    plasticity: float | None = None  # its index; None: the case's own
-    pulled: bool = True  # whether the plate may pull at the part where the law bears any load
-
-
-OWN: Final = Setting()
 
 
 class Trials:
@@ -80,13 +58,10 @@ class Trials:
         self.case, self.scene, self.friction = case, scene, friction
         self.least = max(NEAR * scene.surface.size, FARTHER * moved)  # m, by which a trial must move the part
         self.rings, self.stretches, self.largest_stroke, self.part = rings, stretches, largest_stroke, build_part(case)
-        surface, duration = scene.surface, case.run.duration
         self._laws: dict[float, Contact] = {}
-        repeated = horizon(surface.drives, 0.0)
-        shortest = float(surface.stroke_times.min(initial=duration))
+        shortest = float(scene.surface.stroke_times.min(initial=case.run.duration))
         # A drive that does not even repeat itself once carries nothing along.
-        self.least_factor = LEAST if rings else min(1.0, TURNS * 2 * shortest / duration)
-        self.window = min(duration, MAX_STROKES * shortest, math.inf if repeated is None else repeated)
+        self.least_factor = LEAST if rings else min(1.0, TURNS * 2 * shortest / case.run.duration)
 
     @property
     def level(self) -> bool:
@@ -101,7 +76,28 @@ class Trials:
         return self._laws[setting.plasticity]
 
     def _rest(self, part: Micropart, setting: Setting = OWN) -> PartAtRest:
-        return part_at_rest(self.scene.surface, part, self._law(setting), self.window, self.case.run.gravity)
+        surface = self._surface(setting)
+        return part_at_rest(surface, part, self._law(setting), self._window(surface), self.case.run.gravity)
+
+    def _window(self, surface: SurfaceMotion) -> float:
+        """How long [s] a part at rest is looked at."""
+        duration, repeated = self.case.run.duration, horizon(surface.drives, 0.0)
+        shortest = float(surface.stroke_times.min(initial=duration))
+        return min(duration, MAX_STROKES * shortest, math.inf if repeated is None else repeated)
+
+    def _surface(self, setting: Setting) -> SurfaceMotion:
+        return self.scene.surface if setting.ramp is None else self._ramped or self.scene.surface
+
+    @cached_property
+    def _ramped(self) -> SurfaceMotion | None:
+        """The surface under forces that grow; None where none begins at once, and where the plate stretches."""
+        scene, case = self.scene, self.case
+        if self.stretches or not isinstance(scene, PlateScene) or (ramped := ramped_case(case, RAMP)) is None:
+            return None
+        if not scene.has_inertia:
+            return scene.surface.driven_by(lifts_of(ramped))
+        assert isinstance(case.plate, PlateCase)
+        return plate_scene(ramped, case.plate, silent, scene.shapes).surface
 
     def thresholds(self, part: Micropart, setting: Setting = OWN) -> Thresholds:
         """The thresholds of a part that stays at its start."""
@@ -165,6 +161,8 @@ class Trials:
         """What to try within the model's bounds."""
         within = self._strokes(0.0, self.largest_stroke)
         yield from [Setting(stroke) for stroke in (1.0, *within)]
+        if self._ramped is not None:
+            yield from [Setting(stroke, ramp=RAMP) for stroke in (1.0, *within)]
         scales = FRICTION if friction_scales(self.case.friction) is not None else ()
         for stroke in dict.fromkeys([1.0, max(within, default=1.0)]):
             yield from [Setting(stroke, friction) for friction in scales]
@@ -178,14 +176,16 @@ class Trials:
     def trial(self, part: Micropart, factor: float, setting: Setting) -> Trial:
         """A run; its distance is negative where the part is lost."""
         frequency, stroke = (1.0, factor) if self.rings else (factor, setting.stroke)
-        surface, run = self.scene.surface.scaled(frequency, stroke), self.case.run
+        surface, run = self._surface(setting).scaled(frequency, stroke), self.case.run
         duration = min(run.duration, TRIED * float(surface.stroke_times.min(initial=run.duration)))
         path = simulate(surface, part, self._law(setting), duration, run.gravity, run.tolerance)
         loads = path.normal_force[path.state != State.FLIGHT]
         least = float(loads.min()) if len(loads) else 0.0
         kept = path.outcome in (Outcome.STUCK, Outcome.MOVING) and (setting.pulled or least >= 0)
         distance = path.distance if kept else -1.0
-        return Trial(frequency, stroke, setting.friction, None, distance, duration, least, setting.plasticity)
+        return Trial(
+            frequency, stroke, setting.friction, None, distance, duration, least, setting.plasticity, setting.ramp
+        )
 
     def _elsewhere(self, scene: PlateScene, settings: Sequence[Setting]) -> Trial | None:
         """A trial from another place, around the actuator nearest to the start."""

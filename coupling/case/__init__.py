@@ -45,6 +45,7 @@ from coupling.case.scaled import (
     friction_scales,
     largest_stroke,
     more_plastic,
+    ramped_case,
     scaled_case,
     scaled_friction,
     with_index,
@@ -70,4 +71,4 @@ from coupling.case.values import (
     unreadable,
 )
 from coupling.case.variation import lattice_of, plain_case, put_value
-from coupling.case.writing import json_schema, template, write_case
+from coupling.case.writing import json_schema, template, write_case, write_edited

@@ -2,47 +2,98 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any, Final, NamedTuple, TypeVar
 
-from coupling.case.actuators import ActuatorCase, amplitude
+from coupling.case.actuators import ActuatorCase, DriveCase, amplitude
 from coupling.case.case import Case
 from coupling.case.friction import ConstantCase, CoulombCase, FrictionCase, KogutEtsionCase, TableCase
+from coupling.case.plates import MotionCase, PlatformCase
 
+Drives = TypeVar("Drives", bound=DriveCase)
 INDICES: Final = 3.0, 3.5, 4.0, 4.5, 4.9128  # of plasticity: the last is that of the paper's surfaces
 
 
-def scaled_case(case: Case, frequency: float, stroke: float) -> Case:
+def scaled_case(case: Case, frequency: float, stroke: float, shortly: bool = False) -> Case:
     """The case with all frequencies times one factor and all strokes, heights and forces times another.
 
-    Delays, dwells and the times of tables and segments shrink as cycles do. Duration and all else stay.
+    Delays, dwells and the times of tables and segments shrink as cycles do. Duration and all else stay, and so does a
+    platform whose motion is measured.
+    shortly: round what changes to 12 digits, so that a file has 0.009 uN and not 0.009000000000000001 uN.
     """
     if frequency == 1 and stroke == 1:
         return case
-    actuators = tuple(_scaled(actuator, frequency, stroke) for actuator in case.actuators)
-    return case.model_copy(update={"actuators": actuators})
+    scale = _Scale(frequency, stroke, shortly)
+    if isinstance(case.plate, PlatformCase):
+        if not isinstance(case.plate.motion, MotionCase):
+            return case
+        axes = {axis: drive for axis, drive in case.plate.motion if drive is not None}
+        motion = case.plate.motion.model_copy(update={axis: scale.of(drive) for axis, drive in axes.items()})
+        return case.model_copy(update={"plate": case.plate.model_copy(update={"motion": motion})})
+    return case.model_copy(update={"actuators": tuple(scale.of(actuator) for actuator in case.actuators)})
 
 
-def _scaled(actuator: ActuatorCase, frequency: float, stroke: float) -> ActuatorCase:
-    update: dict[str, Any] = {"delay": actuator.delay / frequency, "dwell": actuator.dwell / frequency}
-    if actuator.frequency is not None:
-        update["frequency"] = actuator.frequency * frequency
-    for key in ("stroke", "force"):
-        if (value := getattr(actuator, key)) is not None:
-            update[key] = value * stroke
-    if actuator.table is not None:
-        update["table"] = tuple((time / frequency, height * stroke) for time, height in actuator.table)
-    if actuator.segments is not None:
-        update["segments"] = tuple(
-            one.model_copy(
-                update={
-                    "stroke": None if one.stroke is None else one.stroke * stroke,
-                    "frequency": None if one.frequency is None else one.frequency * frequency,
-                    "dwell": one.dwell / frequency,
-                }
+def ramped_case(case: Case, ramp: float) -> Case | None:
+    """The case with forces that grow over so many cycles where they begin at once; None: there is none that may.
+
+    A force that has been running all the time begins at once only where the plate has mass and was at rest.
+    """
+    assert not isinstance(case.plate, PlatformCase)
+    wakes = case.plate.inertia and case.run.start == "rest"
+    actuators = tuple(
+        one.model_copy(update={"ramp": ramp}) if (wakes or one.delay > 0) and _may_grow(one, ramp) else one
+        for one in case.actuators
+    )
+    return None if actuators == case.actuators else case.model_copy(update={"actuators": actuators})
+
+
+def _may_grow(actuator: ActuatorCase, ramp: float) -> bool:
+    room = actuator.cycles is None or 2 * ramp <= actuator.cycles
+    return actuator.force is not None and actuator.cycle in ("sine", "cosine") and actuator.ramp == 0 and room
+
+
+class _Scale(NamedTuple):
+    """What drives are scaled by; shortly: to 12 digits."""
+
+    frequency: float
+    stroke: float
+    shortly: bool
+
+    def of(self, drive: Drives) -> Drives:
+        """A drive, scaled."""
+        update: dict[str, Any] = {"delay": self._time(drive.delay), "dwell": self._time(drive.dwell)}
+        if drive.frequency is not None:
+            update["frequency"] = self._round(drive.frequency * self.frequency)
+        for key in ("stroke", "force"):
+            if (value := getattr(drive, key, None)) is not None:
+                update[key] = self._height(value)
+        if drive.table is not None:
+            update["table"] = tuple((self._time(time), self._height(height)) for time, height in drive.table)
+        if drive.segments is not None:
+            update["segments"] = tuple(
+                one.model_copy(
+                    update={
+                        "stroke": None if one.stroke is None else self._height(one.stroke),
+                        "frequency": None if one.frequency is None else self._round(one.frequency * self.frequency),
+                        "dwell": self._time(one.dwell),
+                    }
+                )
+                for one in drive.segments
             )
-            for one in actuator.segments
-        )
-    return actuator.model_copy(update=update)
+        return drive.model_copy(update=update)
+
+    def _time(self, time: float) -> float:
+        return self._round(time / self.frequency)
+
+    def _height(self, height: float) -> float:
+        return self._round(height * self.stroke)
+
+    def _round(self, value: float) -> float:
+        return rounded(value) if self.shortly else value
+
+
+def rounded(value: float) -> float:
+    """A value to 12 digits."""
+    return float(f"{value:.12g}")
 
 
 def largest_stroke(case: Case) -> tuple[float, str]:
@@ -85,7 +136,7 @@ def scaled_friction(friction: FrictionCase, factor: float) -> FrictionCase:
         raise ValueError(
             "Input friction of scaled_friction must not be of Kogut and Etsion, whose limits no key scales"
         )
-    update: dict[str, Any] = {key: float(f"{factor * value:.12g}") for key, value in scales.items()}
+    update: dict[str, Any] = {key: rounded(factor * value) for key, value in scales.items()}
     if isinstance(friction, TableCase):
-        update["limits"] = tuple(factor * limit for limit in friction.limits or ())
+        update["limits"] = tuple(rounded(factor * limit) for limit in friction.limits or ())
     return friction.model_copy(update=update)

@@ -6,9 +6,10 @@ from coupling.case import INERTIA
 from coupling.report.details import details
 from coupling.report.margins import margin_lines
 from coupling.report.warnings import MAX_QUASI_STATIC_SHARE
-from coupling.report.wording import MICRO, MILLI, bending, count, in_percent, percent, unit_of
+from coupling.report.wording import MICRO, MILLI, bending, count, in_percent, percent, quantity, unit_of
 from coupling.summary import PlateSummary, Summary
 from meshes import quantity_text
+from particle import Outcome
 
 
 def lines(summary: Summary, verbose: bool = False) -> list[tuple[str, str]]:
@@ -29,7 +30,7 @@ def _outcome(s: Summary) -> list[tuple[str, str]]:
     cut = "" if s.end_time >= s.duration else f", of {s.duration * MILLI:g} ms"
     where = "" if s.origin == "the plate" else f", counted from {s.origin}"
     rows = [
-        ("outcome", f"{s.outcome}. {s.sentence}{rest}"),
+        ("outcome", f"{_ended(s)}. {s.sentence}{rest}"),
         ("end", f"({x:.4f}, {y:.4f}) {unit} at {s.end_time * MILLI:.4f} ms{cut}{where}"),
         (
             "distance",
@@ -45,6 +46,14 @@ def _outcome(s: Summary) -> list[tuple[str, str]]:
         hops = f"{count(s.flights, 'flight')}, {count(s.landings, 'landing')}"
         rows.append(("", f"in flight {s.time_flying * MILLI:.3f} ms: {hops}"))
     return rows + ([("loads", ", ".join(loads))] if (loads := _loads(s)) else [])
+
+
+def _ended(s: Summary) -> str:
+    """The outcome; of a part that came to rest after it had gone somewhere, how far."""
+    if s.outcome != Outcome.STUCK or s.path_length <= max(s.path_error, s.path_resolution):
+        return s.outcome
+    slips = f" in {count(s.slips, 'slip')}" if s.slips else ""
+    return f"travelled {quantity(s.path_length, 'm', 4)}{slips}, at rest at the end"
 
 
 def _trust(s: Summary) -> list[tuple[str, str]]:

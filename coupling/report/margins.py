@@ -61,7 +61,7 @@ def _force(force: float) -> str:
 
 def advice_text(s: Summary, a: Advice) -> str:
     """What thresholds and trial runs show, in sentences."""
-    writes = a.plate and a.trial is not None
+    writes = not a.measured and a.trial is not None
     command = ["Add --advised FILE to the command to write that case."] if writes else []
     return " ".join(["At rest, with this friction, it " + _thresholds(a), trial_text(s), *command])
 
@@ -96,6 +96,8 @@ def trial_text(s: Summary) -> str:
         place = f" from ({x:g}, {y:g}) um"
     if trial.stroke != 1:
         changes.append(f"{trial.stroke:g} times the stroke{_values(a.strokes, trial.stroke, a.unit)}")
+    if trial.ramp is not None:
+        changes.append(f"forces that grow over {trial.ramp:g} cycles (ramp = {trial.ramp:g})")
     if trial.friction != 1:
         changes.append(f"{trial.friction:g} times the friction{_friction(a, trial)}")
     if trial.plasticity_index is not None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coupling import report, run_case
-from coupling.advice import Setting, Trials, advise, advised_case
+from coupling.advice import Setting, Trial, Trials, advise, advised_case
 from coupling.case import (
     ActuatorCase,
     Case,
@@ -16,10 +16,12 @@ from coupling.case import (
     CoulombCase,
     KogutEtsionCase,
     PartCase,
+    PlatformCase,
     RunCase,
     TableCase,
     friction_scales,
     more_plastic,
+    ramped_case,
     scaled_case,
     scaled_friction,
     with_index,
@@ -162,6 +164,98 @@ def test_advice_on_a_part_that_stays_is_what_runs_do(stuck):
     assert moved.summary.distance == pytest.approx(trial.distance, rel=1e-3)
     text = dict(report.lines(stuck.summary))["advice"]
     assert f"{advice.comes_off_from:.4g} times" in text and f"moves it by {quantity(trial.distance, 'm')} in" in text
+
+
+def test_advice_on_a_platform_becomes_a_case():
+    motion = {
+        "x": {"stroke": "0.3 um", "frequency": "100 Hz", "delay": "0.1 ms"},
+        "z": {"stroke": 0.0, "frequency": 90},
+    }
+    still = run_case(
+        Case(
+            plate={"shape": "platform", "motion": motion},
+            part=PartCase(mass=2e-9, position=(0.0, 0.0)),
+            friction=CoulombCase(coefficient=0.3),
+            run=RunCase(duration=0.05),
+        )
+    )
+    trial = still.summary.advice.trial
+    assert still.trajectory.distance == 0 and not still.moves and still.summary.advice.strokes == (3e-7,)
+    axis = still.advised.plate.motion.x
+    assert axis.frequency == pytest.approx(100 * trial.frequency) and axis.stroke == pytest.approx(3e-7 * trial.stroke)
+    assert axis.delay == pytest.approx(1e-4 / trial.frequency)
+    assert "--advised FILE" in dict(report.lines(still.summary))["advice"]
+    moved = run_case(still.advised)
+    assert moved.summary.distance == pytest.approx(trial.distance, rel=1e-3)
+
+
+def test_a_part_that_went_somewhere_is_not_called_stuck():
+    still = run_case(case_of(stroke=5e-6, frequency=300)).summary
+    assert dict(report.lines(still))["outcome"].startswith("stuck. ")
+    went = replace(still, path_length=12.3e-6, slips=3, path_error=1e-9)
+    assert dict(report.lines(went))["outcome"].startswith("travelled 12.3 um in 3 slips, at rest at the end. The part ")
+    thrown = replace(went, slips=0)  # it slid from the start on
+    assert dict(report.lines(thrown))["outcome"].startswith("travelled 12.3 um, at rest at the end. ")
+    unsure = replace(went, path_error=2e-5)
+    assert dict(report.lines(unsure))["outcome"].startswith("stuck. ")
+
+
+def test_forces_that_begin_at_once_are_advised_to_grow():
+    force = ActuatorCase(position=(0.0, 0.0), force=2e-4, frequency=5e3, cycle="sine")
+    shaken = run_case(
+        case_of(
+            plate=PLATE | {"inertia": True, "damping": 0.2},
+            place=(1.5e-4, 0.0),
+            actuators=[force],
+            friction=CoulombCase(coefficient=0.02, adhesion=2e-7),
+        )
+    )
+    assert shaken.trajectory.outcome is Outcome.DETACHED
+    trial = shaken.summary.advice.trial
+    assert trial.ramp == 3 and 0 < shaken.summary.advice.comes_off_from < trial.stroke
+    assert "forces that grow over 3 cycles (ramp = 3)" in dict(report.lines(shaken.summary))["advice"]
+    assert shaken.advised.actuators[0].ramp == 3
+    moved = run_case(shaken.advised)
+    assert moved.trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
+    assert moved.summary.distance == pytest.approx(trial.distance, rel=1e-3)
+    assert summary_of(json.loads(json.dumps(shaken.summary.as_dict()))) == shaken.summary
+
+
+def test_only_forces_that_begin_at_once_grow():
+    sine = {"position": (0.0, 0.0), "force": 1e-4, "frequency": 5e3, "cycle": "sine"}
+    late, short = sine | {"position": (5e-5, 0.0), "delay": 1e-3}, sine | {"position": (-5e-5, 0.0), "cycles": 5}
+    others = [
+        {"position": (0.0, 8e-5), "stroke": 1e-6, "frequency": 5e3, "cycle": "sine"},
+        {"position": (0.0, -8e-5), "force": 1e-4, "frequency": 5e3},
+    ]
+    waves = [ActuatorCase(**fields) for fields in [sine, late, short, *others]]
+
+    def ramps(**plate):
+        case = ramped_case(case_of(plate=PLATE | plate, actuators=waves), 3.0)
+        return [actuator.ramp for actuator in case.actuators]
+
+    assert ramps() == [0, 3, 0, 0, 0]
+    assert ramps(inertia=True) == [3, 3, 0, 0, 0]
+    assert ramped_case(case_of(), 3.0) is None
+
+
+def test_a_measured_motion_is_not_scaled():
+    measured = Case.model_construct(plate=PlatformCase.model_construct(motion="shaker.csv"), name="shaken")
+    with pytest.raises(ValueError, match=r"the motion of its platform is measured, shaker.csv"):
+        advised_case(measured, Trial(2.0, 1.0, 1.0, None, 1e-6, 1e-3, 0.0))
+    assert scaled_case(measured, 2.0, 3.0) is measured
+
+
+def test_scaled_numbers_are_short():
+    case = case_of(stroke=1e-9, frequency=0.7e3)
+    assert scaled_case(case, 3.0, 3.0).actuators[0].stroke == 3.0000000000000004e-09
+    short = scaled_case(case, 3.0, 3.0, shortly=True).actuators[0]
+    assert (short.stroke, short.frequency) == (3e-9, 2100.0)
+    assert scaled_friction(TableCase(loads=(0.0, 1e-7, 2e-7), limits=(0.0, 1e-9, 2e-9)), 3.0).limits == (
+        0.0,
+        3e-9,
+        6e-9,
+    )
 
 
 def test_advice_states_the_pull_just_before_a_part_comes_off_unslipped():

@@ -18,7 +18,7 @@ from pydantic import (
 
 from coupling.case.plates.damping import DampingRatios
 from coupling.case.table import Contradictions, KeyedTable
-from coupling.case.values import Density, Length, Pressure, Tension
+from coupling.case.values import Density, Length, LoadPressure, Pressure, Tension
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -66,7 +66,7 @@ class PlateCase(KeyedTable, ABC):
     """The damping ratio of its modes, with `inertia`; or pairs of a frequency and the ratio there."""
     tension: Tension = Field(default=0.0, examples=["50 N/m"])
     """A residual force per length in its plane, the same in all directions: positive pulls, negative presses."""
-    pressure: Pressure = Field(default=0.0, examples=["100 Pa"])
+    pressure: LoadPressure = Field(default=0.0, examples=["100 Pa"])
     """A uniform pressure that stays what it is, positive up; actuators keep their strokes and forces."""
     top_face: StrictBool = True
     """Whether parts lie on the top face, which bending also moves in its plane, or, if false, on the mid-plane."""

@@ -24,6 +24,7 @@ from coupling.case.values.quantities import (
     Frequency,
     Gravity,
     Length,
+    LoadPressure,
     Mass,
     Point,
     Pressure,

@@ -58,7 +58,7 @@ class _Template:
             told = key in known and known[key].description == field.description and not _names(field)
             if told or (short and key not in needed) or _tables_only(field):
                 continue
-            how = "Required" if key in needed else "Optional" if field.default is None else "Default"
+            how = "Required" if key in needed else _without(field)
             yield from _comment(f"{field.description} {how}: {_wanted(field)}.")
             yield f"{mark if key in needed else '#'}{key} = {_value(field)}"
 
@@ -121,6 +121,15 @@ def _comment(text: str | None) -> list[str]:
     return [line.replace("\0", " ") for line in lines]
 
 
+def _without(field: FieldInfo) -> str:
+    """What becomes of a field that is left out."""
+    return f"Optional, by default {_value(field)}" if _has_default(field) else "Optional"
+
+
+def _has_default(field: FieldInfo) -> bool:
+    return not field.is_required() and field.default is not None and field.default_factory is None
+
+
 def _wanted(field: FieldInfo) -> str:
     """What a value must be, in words."""
     kinds, marks = parts_of(field.annotation), _wanted_by(field.metadata, field.annotation)
@@ -143,7 +152,7 @@ def _wanted(field: FieldInfo) -> str:
 def _value(field: FieldInfo) -> str:
     """The default, an example or the first choice, as TOML."""
     annotation = field.rebuild_annotation()
-    if not field.is_required() and field.default is not None and field.default_factory is None:
+    if _has_default(field):
         return written(field.default, annotation)
     if field.examples:
         example = field.examples[0]

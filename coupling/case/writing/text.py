@@ -29,10 +29,14 @@ def write_case(case: Case, path: Path, said: str = "") -> Path:
     said: a comment to begin with.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    comment = "".join(f"# {line}\n" for line in said.splitlines())
     with whole_file(path) as partial:
-        partial.write_text(comment + ("\n" if said else "") + case_text(case, path.parent), encoding="utf-8")
+        partial.write_text(commented(said) + case_text(case, path.parent), encoding="utf-8")
     return path
+
+
+def commented(said: str) -> str:
+    """A text as a comment at the head of a file, with an empty line below it."""
+    return "".join(f"# {line}\n" for line in said.splitlines()) + ("\n" if said else "")
 
 
 def case_text(case: Case, folder: Path) -> str:

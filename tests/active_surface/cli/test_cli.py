@@ -194,6 +194,28 @@ def test_run_prints_the_summary_as_json(tmp_path):
     assert len(list((tmp_path / "out").glob("*.vtkhdf"))) == 2
 
 
+SHAKEN = """\
+[plate]
+shape = "platform"
+
+[plate.motion.x]
+stroke = "200 um"
+frequency = "100 Hz"
+cycle = "sine"
+
+[part]
+mass = "2 ug"
+position = ["0 um", "0 um"]
+
+[friction]
+model = "coulomb"
+coefficient = 0.2
+
+[run]
+duration = "25 ms"
+"""
+
+
 @pytest.mark.compiled
 def test_run_writes_the_advised_case_which_moves(tmp_path):
     file = tmp_path / "still.toml"
@@ -204,10 +226,22 @@ def test_run_writes_the_advised_case_which_moves(tmp_path):
     done = CliRunner().invoke(main, ["run", str(file), "--advised", str(new), *arguments])
     still = json.loads(done.stdout)
     assert done.exit_code == 0 and still["distance"] == 0 and still["files"][-1] == str(new)
+    kept, written = file.read_text().splitlines(), new.read_text().splitlines()
+    assert len([line for line in written[2:] if line in kept]) > len(kept) / 2
     again = CliRunner().invoke(main, ["run", str(file), "--advised", str(new), *arguments])
     assert again.exit_code == 2 and "must be a new file" in again.output
     moved = json.loads(CliRunner().invoke(main, ["run", str(new), *arguments]).stdout)
     assert moved["distance"] == pytest.approx(still["advice"]["trial"]["distance"], rel=1e-3)
+
+
+@pytest.mark.compiled
+def test_nothing_is_advised_where_the_part_moves_already(tmp_path):
+    file, new = tmp_path / "moves.toml", tmp_path / "new.toml"
+    file.write_text(SHAKEN)
+    done = CliRunner().invoke(main, ["run", str(file), "--advised", str(new), "--output", str(tmp_path)])
+    assert done.exit_code == 0 and not new.exists()
+    assert f"advised     The part of this case moves already; nothing was written to {new}.\n" in done.output
+    assert "warning" not in done.output
 
 
 def test_help_loads_no_solver():

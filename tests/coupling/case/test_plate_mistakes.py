@@ -117,7 +117,7 @@ WRONG = [
     ),
     (
         {"shape": SHAPES["disc"], "plate": 'pressure = "100 N"'},
-        'plate.pressure must be a pressure such as "169 GPa"; got "100 N"',
+        'plate.pressure must be a pressure such as "100 Pa"; got "100 N"',
     ),
     # Places
     (

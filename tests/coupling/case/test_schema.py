@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import tomllib
 from pathlib import Path
@@ -116,3 +117,14 @@ def test_defaults_are_as_a_file_states_them() -> None:
     assert definitions["RunCase"]["properties"]["gravity"]["default"] == "9.80665 m/s^2"
     assert definitions["MeshCase"]["properties"]["mesh_unit"]["default"] == "1 m"
     assert definitions["RunCase"]["properties"]["scheme"]["default"] == "events"
+
+
+def test_a_template_says_what_a_field_is_without_being_given() -> None:
+    text = template("case").replace("\n#   ", " ")
+    said = {match[2]: match[1] for match in re.finditer(r"\. ((?:Required|Optional)[^\n]*)\n#?(\w+) = ", text)}
+    assert said["supports"] == 'Optional, by default "clamped": "clamped", "simply-supported" or "free".'
+    assert said["pressure"] == 'Optional, by default "0 Pa": a pressure such as "100 Pa".'
+    assert said["top_face"] == "Optional, by default true: true or false."
+    assert said["density"].startswith("Optional: a density such as")
+    assert said["thickness"].startswith("Required: a length such as")
+    assert "Default" not in text
