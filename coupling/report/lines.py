@@ -49,11 +49,11 @@ def _outcome(s: Summary) -> list[tuple[str, str]]:
 
 
 def _ended(s: Summary) -> str:
-    """The outcome; of a part that came to rest after it had gone somewhere, how far."""
+    """The outcome; of a part that rests after it has gone somewhere, how far: the sentence says that it rests."""
     if s.outcome != Outcome.STUCK or s.path_length <= max(s.path_error, s.path_resolution):
         return s.outcome
     slips = f" in {count(s.slips, 'slip')}" if s.slips else ""
-    return f"travelled {quantity(s.path_length, 'm', 4)}{slips}, at rest at the end"
+    return f"travelled {quantity(s.path_length, 'm', 4)}{slips}"
 
 
 def _trust(s: Summary) -> list[tuple[str, str]]:

@@ -127,6 +127,24 @@ def test_silicon_has_the_published_moduli(wafer, moduli, ratio):
     assert -compliance[0, 1] / compliance[0, 0] == pytest.approx(ratio, abs=5e-4)
 
 
+@pytest.mark.parametrize(
+    ("wafer", "frequency", "stiffness", "shape"),
+    [("100", -8.5, -16.4, (-0.6, 0.5)), ("110", -2.2, -4.6, (-2.4, 2.7)), ("111", -1.1, -2.2, (0.0, 0.0))],
+)
+def test_the_table_of_silicon_wafers(wafer, frequency, stiffness, shape):
+    """As docs/plate.md has it: percent of what the isotropic plate of 169 GPa and 0.3 has."""
+    mesh, angle = meshes.disc(300e-6, 50e-6), np.linspace(0, np.pi, 17)
+    ring = 150e-6 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    sections = AnisotropicSection.cubic(SILICON, 5e-6, 2330, wafer), PlateSection(169e9, 0.3, 5e-6, 2330)
+    plates = [Plate(mesh, section) for section in sections]
+    (first, isotropic_first), shapes = (p.frequencies(1) for p in plates), [p.influence([[0.0, 0.0]]) for p in plates]
+    ours, isotropic = (one.values(ring) for one in shapes)
+    assert 100 * (first / isotropic_first - 1) == pytest.approx(frequency, abs=0.06)
+    assert 100 * (shapes[0].stiffness / shapes[1].stiffness - 1) == pytest.approx(stiffness, abs=0.06)
+    change = 100 * (ours / isotropic - 1)
+    assert (change.min(), change.max()) == pytest.approx(shape, abs=0.06)
+
+
 def test_a_quarter_turn_from_the_flat_is_the_crystals_axis():
     compliance = np.linalg.inv(AnisotropicSection.cubic(SILICON, 1e-6, angle=np.pi / 4).stiffness)
     assert 1 / compliance[0, 0] == pytest.approx(130.1e9, rel=1e-3)  # along <100>
