@@ -175,6 +175,22 @@ def test_the_infinite_plate_carries_a_unit_load_and_none_elsewhere(law):
     assert shear.mean() * 2 * np.pi == pytest.approx(1.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("section", [wood(0.4), PlateSection(169e9, 0.3, 5e-6)], ids=["wood", "isotropic"])
+def test_the_means_of_the_infinite_plates_response_are_those_of_quadrature(section):
+    model = Plate(meshes.disc(1.0, 0.4), section, "free").model()
+    source = np.array([0.3, -0.2])
+    angle = 2 * np.pi * np.arange(200) / 200
+    ray = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    along = ray @ source
+    end = -along + np.sqrt(along**2 + 1 - source @ source)  # of each ray, on the rim
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    distance = end[:, None] * (1 + nodes) / 2
+    xy = (source + distance[..., None] * ray[:, None]).reshape(-1, 2)
+    area = (np.pi / 100 * end[:, None] / 2 * weights * distance).reshape(-1)
+    expected = (area * model.infinite.point_value(xy, source[None])[:, 0]) @ model.motions(xy)
+    np.testing.assert_allclose(model._known_means(source[None])[:, 0], expected, atol=1e-7 * np.abs(expected).max())
+
+
 def test_close_roots_and_far_ones_give_the_same(monkeypatch):
     law = AnisotropicSection.orthotropic((10e9, 9.5e9), 0.3, 3.76e9, 1e-3).law
     by_integral = anisotropic.AnisotropicPlate(law)
