@@ -31,6 +31,7 @@ from fem_plate import (
     PlateSection as PlateSection,
     PlateShapes as PlateShapes,
     Shapes as Shapes,
+    VaryingSection as VaryingSection,
     analytic as analytic,
     backbone as backbone,
     fit_influence as fit_influence,

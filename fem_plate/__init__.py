@@ -18,6 +18,7 @@ __all__ = [  # public; the stub beside has also what other packages of the progr
     "PlateSection",
     "PlateShapes",
     "Shapes",
+    "VaryingSection",
     "analytic",
     "backbone",
     "fit_influence",

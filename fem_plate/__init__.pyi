@@ -19,6 +19,7 @@ from .optics import (
 from .plate import Plate as Plate
 from .section import PlateSection as PlateSection
 from .shapes import Shapes as Shapes
+from .varying import VaryingSection as VaryingSection
 from .vibration import Modes as Modes
 
 # Not public: for the packages that build on this one.

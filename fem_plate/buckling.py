@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, eigsh
+from scipy.sparse import diags
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from fem_plate.elements import FREE, PlateModel
 
@@ -31,7 +32,7 @@ def buckling_compression(model: PlateModel) -> float:
 
     model: of the plate without a tension, which its supports hold.
     """
-    bending, stretching = model.space.stiffness(model.law), model.space.stretching()
+    bending, stretching = model.pinned_stiffness, model.space.stretching()
     # The largest 1/mu: Lanczos finds that first, and the stretching may be far from singular or not.
     (largest,) = eigsh(
         stretching,
@@ -43,3 +44,13 @@ def buckling_compression(model: PlateModel) -> float:
         return_eigenvectors=False,
     )
     return float(1 / largest) / model.mesh.size**2
+
+
+def check_stability(model: PlateModel) -> None:
+    """ValueError if a plate without actuators has a deflection of negative energy: a pivot of its stiffness is."""
+    matrix = model.pinned_stiffness
+    scale = 1 / np.sqrt(np.abs(matrix.diagonal()))
+    scaled = (diags(scale) @ matrix @ diags(scale)).tocsc()
+    factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    if (factor.U.diagonal() <= 0).any():
+        raise ValueError("Input foundation and forms of Plate must leave it stable without actuators; it buckles")

@@ -8,9 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_plate.anisotropic import AnisotropicSection
 from fem_plate.elements import Fineness, SingularCorner
-from fem_plate.section import PlateSection
+from fem_plate.varying import Section
 from meshes import PlateMesh
 
 FloatArray = NDArray[np.float64]
@@ -20,7 +19,7 @@ class GivenPlate(Protocol):
     """A mesh, a section and supports, as of `fem_plate.Plate`."""
 
     mesh: PlateMesh
-    section: PlateSection | AnisotropicSection
+    section: Section
     supports: dict[str, str]
     tolerance: float | None
     tension: float  # N/m

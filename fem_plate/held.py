@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import diags
 
-from fem_plate.elements import PlateFunctions, PlateModel, SourceBasis, source_basis
+from fem_plate.elements import PlateFunctions, PlateModel, SourceBasis
 from fem_plate.inputs import check_held
 from fem_plate.vibration import HeldPlate
 
@@ -90,7 +90,7 @@ def _held_system(
 ) -> tuple[SourceBasis, FloatArray, FloatArray, FloatArray, FloatArray]:
     """What the forces of held actuators follow from: their basis, the responses to it, G and R in it, the matrix."""
     held = stiffness > 0
-    basis = source_basis(x, held)
+    basis = model.basis(x, held)
     to_forces, to_basis = basis.matrix, basis.matrix.T.tocsr()  # P from coefficients; and what they feel from heights
     responses = model.under_forces(x, basis)
     felt = basis.point_values(model.infinite) + np.asarray((to_basis @ model.space.point_values(x)) @ responses)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_plate.elements import Derivatives, PlateFunctions, PlateModel, source_basis
+from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
 from fem_plate.estimated import Estimated
 from fem_plate.held import held_shapes, held_under_pressure, unheld_shapes
 from fem_plate.shapes import Shapes
@@ -43,7 +43,7 @@ class InfluenceShapes(Shapes, Estimated):
         solve = unheld_shapes if free_motions else held_shapes
         self.functions, self._green = solve(model, points / self.size, actuator_stiffness, self._stiffness_unit)
         self.strengths = self.functions.forces
-        self.rounding = source_basis(points / self.size, actuator_stiffness > 0).rounding
+        self.rounding = model.rounding(points / self.size, actuator_stiffness > 0)
 
     @property
     def compliance(self) -> FloatArray:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fem_plate import vibration
-from fem_plate.anisotropic import AnisotropicSection
 from fem_plate.arrays import PatchedShapes, ProgressCallback, patched_shapes
-from fem_plate.buckling import buckling_compression, check_tension
+from fem_plate.buckling import buckling_compression, check_stability, check_tension
 from fem_plate.deflection import Deflection
 from fem_plate.elements import (
+    MAX_EXPONENT,
     Fineness,
     PlateModel,
     SingularCorner,
@@ -26,15 +27,18 @@ from fem_plate.elements import (
     wedges,
 )
 from fem_plate.estimated import refined
+from fem_plate.general import GeneralModel, plate_energy
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.inputs import as_points, check_points, one_per_point, places_on, stiffness_per_point
 from fem_plate.section import PlateSection
+from fem_plate.varying import Field, Section
 from fem_plate.vibration import HeldPlate, Modes
 from meshes import PlateMesh
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from skfem import BilinearForm
 
     from fem_plate.large_deflection import DeflectedPlate, LargeDeflection
 
@@ -50,7 +54,7 @@ class Plate:
     ----------
     mesh : PlateMesh
         The outline and its cells.
-    section : PlateSection or AnisotropicSection
+    section : PlateSection, AnisotropicSection or VaryingSection
         Material and thickness.
     supports : str or mapping of str to str
         "clamped", "simply-supported" or "free", of the whole rim or by boundary; boundaries left out are free.
@@ -60,14 +64,21 @@ class Plate:
         Modes ignore it; their `error_estimate` says how good they are.
     tension : float
         Residual force per length N0 in the plate's plane, the same in all directions [N/m]: positive pulls, negative
-        presses. It stays what it is while the plate bends. Every boundary must be held then, and the section isotropic.
+        presses. It stays what it is while the plate bends. Every boundary must be held then.
+    foundation : float or callable
+        Winkler's modulus of an elastic foundation under all of the plate [N/m^3]: it pulls back by so much pressure for
+        each metre. As a callable it returns the modulus (n,) at x and y, both (n,) [m]. Negative softens, as an
+        electrode does.
+    forms : sequence of skfem.BilinearForm
+        More of the plate's energy, in SI units: each is symmetric and bilinear in the value, gradient and Hessian of u
+        and v, and depends on places by `w.x` alone.
 
     Raises
     ------
     ValueError
-        Names every unknown support and boundary; the tolerance is not positive; or there is a tension where a boundary
-        is free or the section anisotropic, or a compression at which the plate buckles without actuators, whose
-        buckling load is named.
+        Names every unknown support and boundary; the tolerance is not positive; there is a tension where a boundary
+        is free; thickness, foundation or a form has no use on the plate, with the place; or compression, foundation and
+        forms make the plate buckle without actuators.
 
     Warns
     -----
@@ -78,10 +89,12 @@ class Plate:
     def __init__(
         self,
         mesh: PlateMesh,
-        section: PlateSection | AnisotropicSection,
+        section: Section,
         supports: str | Mapping[str, str] = "clamped",
         tolerance: float | None = None,
         tension: float = 0.0,
+        foundation: float | Field = 0.0,
+        forms: Sequence[BilinearForm] = (),
     ) -> None:
         if tolerance is not None and not tolerance > 0:
             raise ValueError(f"Input tolerance of Plate must be greater than 0; got {tolerance!r}")
@@ -93,9 +106,8 @@ class Plate:
         self.tension = float(tension)
         self.fineness = Fineness.of(mesh, self.relative_tension)
         self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
-        self._isotropic = isinstance(section, PlateSection)
-        if self.tension and not self._isotropic:
-            raise ValueError(f"Input tension of Plate must be 0 for an AnisotropicSection; got {tension!r} N/m")
+        self.energy = plate_energy(mesh, section, foundation, self.tension, forms)
+        self._isotropic = isinstance(section, PlateSection) and self.energy is None
         obtuse = wedges(mesh, self.supports, self.tension)
         # Corner functions are those of isotropic plates.
         self.wedges, self._left_out = (obtuse, 0) if self._isotropic else ([], len(obtuse))
@@ -109,7 +121,9 @@ class Plate:
                 stacklevel=2,
             )
         self._last: tuple[bytes, PlateModel] | None = None
-        self._warn_of_wedges("with an AnisotropicSection", self._left_out)
+        self._warn_of_wedges("that is not isotropic and uniform", self._left_out)
+        if self.energy is not None and replace(self.energy, tension=0.0).may_soften:
+            check_stability(self._model_on(self.cells(), 0.0))
         if tension < 0 and -tension >= (load := self.buckling_load()):
             raise ValueError(
                 f"Input tension of Plate must exceed {-load:.6g} N/m, at which it buckles; got {self.tension!r}"
@@ -139,15 +153,21 @@ class Plate:
 
     def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
         """The plate on cells for actuators at points (N, 2) [m], with the corner functions of its wedges."""
-        mesh = self._graded([*self._other_corners, *(wedge.corner for wedge in self.wedges)], points, halvings)
+        corners = [*self._other_corners, *(wedge.corner for wedge in self.wedges)]
+        if self.energy is not None and points is not None and self.energy.exponent < MAX_EXPONENT:
+            corners += [SingularCorner(point, self.energy.exponent) for point in points]
+        mesh = self._graded(corners, points, halvings)
         key = mesh.points.tobytes()
         if self._last is None or self._last[0] != key:
-            self._last = key, self._model_on(mesh, self.relative_tension)
+            self._last = key, self._model_on(mesh, self.tension)
         return self._last[1]
 
     def _model_on(self, mesh: PlateMesh, tension: float) -> PlateModel:
         rows = corner_rows(mesh, self._other_corners)
-        return PlateModel(mesh, self.supports, self.section.law, rows, tension, self.wedges)
+        if self.energy is not None:
+            return GeneralModel(mesh, self.supports, replace(self.energy, tension=tension), rows)
+        section = self.section
+        return PlateModel(mesh, self.supports, section.law, rows, tension / section.rigidity, self.wedges)
 
     @property
     def singular(self) -> list[SingularCorner]:
@@ -220,6 +240,11 @@ class Plate:
         shapes: InfluenceShapes | PatchedShapes
         if truncation is not None or len(points) > MAX_DENSE:
             cut = TRUNCATION if truncation is None else truncation
+            if self.energy is not None:
+                raise ValueError(
+                    f"Input points of influence must be at most {MAX_DENSE}, without a truncation, on a plate with a "
+                    f"foundation, forms, a varying thickness, or a tension on an anisotropic section; got {len(points)}"
+                )
             self._warn_of_wedges("on patches", len(self.wedges))
             shapes = patched_shapes(self, points, actuator_stiffness, cut, tell)
         else:
@@ -269,10 +294,11 @@ class Plate:
         """
         if self.tension:
             raise ValueError(f"Input tension of Plate must be 0 for large_deflection; got {self.tension!r} N/m")
-        if not self._isotropic:
-            raise ValueError(
-                "Input section of Plate must be a PlateSection for large_deflection; got an anisotropic one"
-            )
+        if not isinstance(self.section, PlateSection):
+            kind = type(self.section).__name__
+            raise ValueError(f"Input section of Plate must be a PlateSection for large_deflection; got a {kind}")
+        if self.energy is not None:
+            raise ValueError("Input foundation and forms of Plate must be none for large_deflection; got some")
         from fem_plate.large_deflection import LargeDeflection, movable_by_boundary  # here: scikit-fem takes a while
 
         points = places_on(self.mesh, points, "large_deflection")

@@ -90,7 +90,7 @@ class HeldPlate:
     def __init__(self, model: PlateModel, held: FloatArray, compliance: FloatArray) -> None:
         self.model, self.held = model, held / model.mesh.size
         space, x = model.space, self.held
-        self.mass = space.mass()
+        self.mass = model.mass
         self.responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without F
         at_held = space.point_values(x)  # B
         green = model.infinite.point_value(x, x) + at_held @ self.responses
@@ -169,7 +169,7 @@ def modes(held_plate: HeldPlate, count: int, unit: float, refine: Callable[[], M
 def singular_masses(model: PlateModel, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """int q F_i (unknowns, N) of F around points x (N, 2), and int F_i F_j (N, M), F_j around y (M, 2)."""
     space = model.space
-    (points, weights), triangles = space.quadrature, space.quadrature_triangles
+    (points, weights), triangles = model.masses, space.quadrature_triangles
     with_singular, of_singular = np.zeros((space.unknowns, len(x))), np.zeros((len(x), len(y)))
     for start in range(0, len(points), CHUNK):
         part = slice(start, start + CHUNK)

@@ -20,7 +20,14 @@ CONTENTS = {  # the pages below a page, by caption
     "index": {
         "First steps": ["quick-start", "gallery/index"],
         "How to": [
-            *("howto/own-mesh", "howto/own-friction", "howto/measured-motion", "howto/waves", "howto/ring"),
+            *(
+                "howto/own-mesh",
+                "howto/own-friction",
+                "howto/general-plates",
+                "howto/measured-motion",
+                "howto/waves",
+                "howto/ring",
+            ),
             *("howto/chladni", "howto/sweep", "howto/aim", "howto/identify", "howto/optimisers", "howto/paraview"),
             "howto/optics",
         ],

@@ -28,6 +28,7 @@ ComplexArray = NDArray[np.complex128]
 
 CLOSE = 0.25  # of the smaller imaginary part: roots closer than this take the integral
 NODES = 12  # of that integral
+ROUNDING = 1e-14  # of an entry of a law
 ORDERS = [[(order - k, k) for k in range(order + 1)] for order in range(4)]  # x and y times of each derivative
 
 
@@ -122,7 +123,7 @@ class AnisotropicPlate(InfinitePlate):
 def is_isotropic(law: FloatArray) -> bool:
     """Whether a law (3, 3) over its rigidity is that of an isotropic plate."""
     nu = law[0, 2]
-    return np.array_equal(law, [[1, 0, nu], [0, 2 * (1 - nu), 0], [nu, 0, 1]])
+    return bool(np.abs(law - [[1, 0, nu], [0, 2 * (1 - nu), 0], [nu, 0, 1]]).max() <= ROUNDING)
 
 
 def _of_square_logarithm(z: ComplexArray, logarithm: ComplexArray, order: int) -> ComplexArray:

@@ -133,9 +133,10 @@ def rim_traces(derivatives: list[FloatArray], normal: FloatArray, law: FloatArra
     return np.stack([value, *slopes, xx * nx + xy * ny, xy * nx + yy * ny, shear])
 
 
-def rim_forms(rim: RimQuadrature) -> tuple[FloatArray, FloatArray]:
+def rim_forms(rim: RimQuadrature, stiffness: FloatArray | float = 1.0) -> tuple[FloatArray, FloatArray]:
     """The rim's terms, as what couples the channels of q (rows) with those of v or g (columns).
 
+    stiffness: (k, n), of the plate at the rim, by which S counts.
     Returns two arrays (k, n, 6, 6), weights included, for the left and the right side of
 
         S(v; q) - R(v; q) - R(q; v) = S(g; q) - R(q; g) + L(q).
@@ -148,6 +149,7 @@ def rim_forms(rim: RimQuadrature) -> tuple[FloatArray, FloatArray]:
     S[..., VALUE, VALUE] = GAMMA_2 / rim.h[:, None] ** 3 * rim.c
     L[..., GRADIENT, MOMENT] = np.eye(2) - rim.T
     L[..., VALUE, SHEAR] = rim.c - 1
+    S *= np.asarray(stiffness)[..., None, None]
     ends[..., VALUE, MOMENT] = rim.twist
     weights = rim.weights[..., None, None]
     R = weights * R + ends

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
 from fem_plate.elements.anisotropic import AnisotropicPlate, is_isotropic
-from fem_plate.elements.close import SourceBasis
+from fem_plate.elements.close import SourceBasis, source_basis
 from fem_plate.elements.enriched import EnrichedSpace
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.forms import rim_traces
@@ -65,6 +65,24 @@ class PlateModel:
         points, weights = self.space.quadrature
         motions = np.column_stack([np.ones(len(points)), points]) @ rigid
         return np.asarray(rigid @ np.linalg.inv(np.linalg.cholesky(motions.T @ (weights[:, None] * motions))).T)
+
+    @cached_property
+    def mass(self) -> csc_matrix:
+        """The matrix of int v q, by the mass per area over that of the section for reference."""
+        return self.space.mass()
+
+    @property
+    def masses(self) -> tuple[FloatArray, FloatArray]:
+        """Points (n, 2) and weights (n,) of integrals over the plate's mass, as of `mass`."""
+        return self.space.quadrature
+
+    def basis(self, x: FloatArray, held: NDArray[np.bool_]) -> SourceBasis:
+        """What to combine forces at x (N, 2) of, where actuators hold the plate."""
+        return source_basis(x, held)
+
+    def rounding(self, x: FloatArray, held: NDArray[np.bool_]) -> float:
+        """The error of shapes of actuators at x (N, 2), relative to their largest value, that finer cells have too."""
+        return self.basis(x, held).rounding
 
     @cached_property
     def mean(self) -> FloatArray:

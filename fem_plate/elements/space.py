@@ -75,8 +75,7 @@ class PlateSpace:
         value, gradient = (self.triangles.derivatives(self.rim.points, self.rim.triangle, k) for k in range(2))
         traces, used = np.concatenate([value, gradient]), slice(forms.GRADIENT.stop)
         coupling = forms.rim_tension_forms(self.rim)[0][..., used, used]
-        at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)
-        np.add.at(matrices, self.rim.triangle, at_rim)
+        np.add.at(matrices, self.rim.triangle, self.at_rim(traces, coupling))
         return self.assembled(matrices)
 
     def _bending(self, law: FloatArray) -> csc_matrix:
@@ -86,7 +85,14 @@ class PlateSpace:
         hessian = self.triangles.derivatives(points, triangle, 2)
         np.add.at(matrices, triangle, forms.bending_at(hessian, weights, law))
         traces, (coupling, _) = self.traces(law), forms.rim_forms(self.rim)
-        at_rim = np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True)  # c: of q, d: of v
+        return self.of_bending(matrices, self.at_rim(traces, coupling))
+
+    def at_rim(self, traces: FloatArray, coupling: FloatArray) -> FloatArray:
+        """The matrices (k, 21, 21) of the rim's edges: traces (6, k, n, 21), coupled by (k, n, 6, 6)."""
+        return np.asarray(np.einsum("ckni,kncd,dknj->kij", traces, coupling, traces, optimize=True))  # c: q, d: v
+
+    def of_bending(self, matrices: FloatArray, at_rim: FloatArray) -> csc_matrix:
+        """The sum of what bends in triangles, (m, 21, 21), and of what the rim adds, (k, 21, 21)."""
         if self._relative is None:
             np.add.at(matrices, self.rim.triangle, at_rim)
             return self.assembled(matrices)
@@ -95,6 +101,12 @@ class PlateSpace:
         np.add.at(matrices, self.rim.triangle, at_rim)
         bent = sum_up(at_corners, self._entities, self._first)
         return (self._bent.T @ bent @ self._bent + self.assembled(matrices)).tocsc()
+
+    def summed(self, loads: FloatArray, triangle: IntArray) -> FloatArray:
+        """The sum of loads (t, 21, k) on functions of triangles (t,), in the independent unknowns, (unknowns, k)."""
+        total = np.zeros((self.all_count, loads.shape[-1]))
+        np.add.at(total, self.dofs[triangle], loads)
+        return np.asarray(self.to_independent(total))
 
     def mass(self) -> csc_matrix:
         """The matrix of int v q."""

@@ -233,8 +233,6 @@ def test_mistakes_are_named_together():
 
 def test_what_anisotropic_plates_cannot_do_is_refused():
     mesh = meshes.disc(1.0, 0.5)
-    with pytest.raises(ValueError, match="tension .* must be 0 for an AnisotropicSection"):
-        Plate(mesh, wood(), tension=1.0)
     with pytest.raises(ValueError, match="must be a PlateSection for large_deflection"):
         Plate(mesh, wood()).large_deflection([[0.0, 0.0]])
     with pytest.warns(UserWarning, match="6 simply supported corners over 90 degrees"):

@@ -1,0 +1,79 @@
+"""Plates on elastic foundations, against Kelvin functions and shifted frequencies."""
+
+import numpy as np
+import pytest
+from radial_plates import disc_on_foundation
+
+import meshes
+from fem_plate import Plate, PlateSection
+
+UNIT = PlateSection(12 * (1 - 0.3**2), 0.3, 1.0, density=1.0)  # rigidity 1 N m
+RADII = np.array([0.05, 0.2, 0.5, 0.7])
+ON_RADII = np.stack([RADII * np.cos(1.0), RADII * np.sin(1.0)], axis=1)
+
+
+@pytest.mark.parametrize("modulus", [1.0, 300.0, 1e5])
+def test_a_clamped_disc_bends_as_kelvins_functions_say(modulus):
+    plate = Plate(meshes.disc(1.0, 0.1), UNIT, foundation=modulus, tolerance=1e-7)
+    found = plate.deflection([[0.0, 0.0]], [1.0])
+    expected = disc_on_foundation(modulus, RADII)
+    error = np.abs(found.evaluate(ON_RADII)[0] - expected).max() / np.abs(expected).max()
+    assert error < 2e-7 and error < 3 * found.error_estimate
+
+
+@pytest.mark.parametrize("support", ["clamped", "simply-supported", "free"])
+def test_a_foundation_adds_its_modulus_over_the_mass_to_squared_frequencies(support):
+    mesh, modulus, rigid = meshes.disc(1.0, 0.3), 300.0, 3 if support == "free" else 0
+    alone = Plate(mesh, UNIT, support).frequencies(4)
+    found = Plate(mesh, UNIT, support, foundation=modulus).frequencies(4 + rigid)
+    expected = np.sqrt(np.concatenate([np.zeros(rigid), alone**2]) + modulus / (2 * np.pi) ** 2)
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_a_free_plate_on_a_foundation_sinks_evenly_under_a_pressure():
+    plate = Plate(meshes.rectangle(1.0, 0.7, 0.2), UNIT, "free", foundation=50.0)
+    w, gradient, _ = plate.pressure(2.0).evaluate([[0.0, 0.0], [0.3, 0.2]])
+    np.testing.assert_allclose(w, 2.0 / 50.0, rtol=1e-8)
+    np.testing.assert_allclose(gradient, 0.0, atol=1e-8)
+
+
+def test_a_foundation_that_varies_and_acts_on_part_of_the_plate():
+    """The work of the foundation is what a force puts into it: no energy is lost."""
+    mesh, point = meshes.disc(1.0, 0.2), np.array([[0.2, 0.1]])
+    plate = Plate(mesh, UNIT, foundation=lambda x, y: 500 * (1 + x), tolerance=1e-6)
+    shape = plate.deflection(point, [1.0])
+    points, weights = shape.model.space.quadrature
+    w = shape.functions.values(points)[:, 0]
+    shift = 1e-4
+    stiffer = Plate(mesh, UNIT, foundation=lambda x, y: (500 + shift) * (1 + x), tolerance=1e-6).deflection(
+        point, [1.0]
+    )
+    change = (stiffer.evaluate(point)[0] - shape.evaluate(point)[0])[0] / shift
+    assert change == pytest.approx(-(weights @ ((1 + points[:, 0]) * w**2)), rel=1e-4)  # dw/dk = -int (1 + x) w^2
+
+
+def test_an_electrode_softens_until_the_plate_buckles():
+    mesh = meshes.disc(1.0, 0.3)
+    first = (2 * np.pi * Plate(mesh, UNIT).frequencies(1)[0]) ** 2
+    soft = Plate(mesh, UNIT, foundation=-0.9 * first)
+    assert 2 * np.pi * soft.frequencies(1)[0] == pytest.approx(np.sqrt(0.1 * first), rel=1e-8)
+    with pytest.raises(ValueError, match="must leave it stable without actuators; it buckles"):
+        Plate(mesh, UNIT, foundation=-1.01 * first)
+
+
+def test_compression_counts_with_a_foundation():
+    mesh = meshes.disc(1.0, 0.3)
+    alone, on_foundation = Plate(mesh, UNIT).buckling_load(), Plate(mesh, UNIT, foundation=200.0).buckling_load()
+    assert on_foundation > 1.2 * alone
+    with pytest.raises(ValueError, match="at which it buckles"):
+        Plate(mesh, UNIT, foundation=200.0, tension=-1.01 * on_foundation)
+    Plate(mesh, UNIT, foundation=200.0, tension=-0.99 * on_foundation)
+
+
+def test_a_foundation_of_no_use_is_named():
+    mesh = meshes.disc(1.0, 0.5)
+    for foundation in (np.nan, "soft"):
+        with pytest.raises(ValueError, match="foundation of Plate must be a finite number or a callable; got"):
+            Plate(mesh, UNIT, foundation=foundation)
+    with pytest.raises(ValueError, match=r"foundation of Plate must be finite on the plate; got inf N/m\^3 at \("):
+        Plate(mesh, UNIT, foundation=lambda x, y: np.where(x > 0.5, np.inf, 1.0))
