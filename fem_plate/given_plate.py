@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_plate.elements import Fineness, SingularCorner
-from fem_plate.varying import Section
+from fem_plate.varying import Field, Section
 from meshes import PlateMesh
 
 FloatArray = NDArray[np.float64]
@@ -23,6 +23,8 @@ class GivenPlate(Protocol):
     supports: dict[str, str]
     tolerance: float | None
     tension: float  # N/m
+    foundation: float | Field  # N/m^3
+    forms: tuple[object, ...]  # of scikit-fem
     corners: list[SingularCorner]
     fineness: Fineness
 

@@ -104,9 +104,11 @@ class Plate:
         self.tolerance = tolerance
         check_tension(tension, self.supports)
         self.tension = float(tension)
+        self.foundation = foundation
+        self.forms = tuple(forms)
         self.fineness = Fineness.of(mesh, self.relative_tension)
         self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
-        self.energy = plate_energy(mesh, section, foundation, self.tension, forms)
+        self.energy = plate_energy(mesh, section, foundation, self.tension, self.forms)
         self._isotropic = isinstance(section, PlateSection) and self.energy is None
         obtuse = wedges(mesh, self.supports, self.tension)
         # Corner functions are those of isotropic plates.
@@ -290,17 +292,12 @@ class Plate:
         ------
         ValueError
             As for `influence`; an in-plane support or boundary is unknown; the membrane does not apply; the plate has a
-            tension.
+            tension, a foundation or forms, or a section that is not a `PlateSection`.
         """
-        if self.tension:
-            raise ValueError(f"Input tension of Plate must be 0 for large_deflection; got {self.tension!r} N/m")
-        if not isinstance(self.section, PlateSection):
-            kind = type(self.section).__name__
-            raise ValueError(f"Input section of Plate must be a PlateSection for large_deflection; got a {kind}")
-        if self.energy is not None:
-            raise ValueError("Input foundation and forms of Plate must be none for large_deflection; got some")
-        from fem_plate.large_deflection import LargeDeflection, movable_by_boundary  # here: scikit-fem takes a while
+        # Here, as scikit-fem takes a while.
+        from fem_plate.large_deflection import LargeDeflection, check_stretches, movable_by_boundary
 
+        check_stretches(self, "large_deflection")
         points = places_on(self.mesh, points, "large_deflection")
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "large_deflection", may_float=True)
         movable = movable_by_boundary(in_plane_supports, self.supports)

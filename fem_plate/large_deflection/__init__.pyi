@@ -16,4 +16,4 @@ from .reduction import (
 )
 from .solution import DiscretePlate as DiscretePlate, NotConverged as NotConverged, level_of as level_of
 from .state import DeflectedPlate as DeflectedPlate
-from .supports import movable_by_boundary as movable_by_boundary
+from .supports import check_stretches as check_stretches, movable_by_boundary as movable_by_boundary

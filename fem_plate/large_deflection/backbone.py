@@ -12,7 +12,7 @@ from fem_plate.inputs import as_points, check_points
 from fem_plate.large_deflection.large_deflection import airy_applies
 from fem_plate.large_deflection.membranes import AIRY, PLANE_STRESS
 from fem_plate.large_deflection.solution import DiscretePlate
-from fem_plate.large_deflection.supports import movable_by_boundary
+from fem_plate.large_deflection.supports import check_stretches, movable_by_boundary
 from fem_plate.vibration import HeldPlate, modes
 
 FloatArray = NDArray[np.float64]
@@ -48,10 +48,10 @@ def backbone(
     Raises
     ------
     ValueError
-        The plate has a tension, or a point is not inside the rim.
+        The plate has a tension, a foundation or forms, or a section that is not a `PlateSection`; or a point is not
+        inside the rim.
     """
-    if plate.tension:
-        raise ValueError(f"Input tension of Plate must be 0 for a backbone; got {plate.tension!r} N/m")
+    check_stretches(plate, "backbone")
     points = as_points([] if held is None else held, "held of backbone")
     if points.size:
         check_points("backbone", points, plate.mesh.outline.gap(points), plate.mesh.size)

@@ -1,13 +1,29 @@
-"""How a plate's rims are held in its plane."""
+"""Which plates stretch, and how their rims are held in their plane."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from fem_plate.elements import FREE
+from fem_plate.given_plate import GivenPlate
+from fem_plate.section import PlateSection
 
 IMMOVABLE, MOVABLE = "immovable", "movable"
 KINDS = (IMMOVABLE, MOVABLE)
+
+
+def check_stretches(plate: GivenPlate, caller: str) -> None:
+    """ValueError, for `caller`, unless a plate is uniform, isotropic and without a tension."""
+    wrong = []
+    if plate.tension:
+        wrong.append(f"Input tension of Plate must be 0 for {caller}; got {plate.tension!r} N/m")
+    if not isinstance(plate.section, PlateSection):
+        kind = type(plate.section).__name__
+        wrong.append(f"Input section of Plate must be a PlateSection for {caller}; got a {kind}")
+    if callable(plate.foundation) or plate.foundation or plate.forms:
+        wrong.append(f"Input foundation and forms of Plate must be none for {caller}; got some")
+    if wrong:
+        raise ValueError("; ".join(wrong))
 
 
 def movable_by_boundary(in_plane_supports: str | Mapping[str, str], supports: Mapping[str, str]) -> dict[str, bool]:

@@ -113,7 +113,8 @@ def fit_influence(
     @lru_cache(maxsize=8)
     def unit_forces(tension: float) -> tuple[FloatArray, FloatArray]:
         """Deflections (P, N) and compliance (N, N) [m/N] under unit forces."""
-        pulled = Plate(plate.mesh, plate.section, plate.supports, tension=tension)  # its mesh is good enough
+        # The plate's mesh is good enough.
+        pulled = Plate(plate.mesh, plate.section, plate.supports, None, tension, plate.foundation, plate.forms)
         shapes = pulled.influence(points, 0.0)
         assert isinstance(shapes, InfluenceShapes)
         return shapes.values(xy), shapes.compliance

@@ -5,7 +5,7 @@ import pytest
 from radial_plates import disc_on_foundation
 
 import meshes
-from fem_plate import Plate, PlateSection
+from fem_plate import MeasuredInfluence, Plate, PlateSection, backbone, fit_influence
 
 UNIT = PlateSection(12 * (1 - 0.3**2), 0.3, 1.0, density=1.0)  # rigidity 1 N m
 RADII = np.array([0.05, 0.2, 0.5, 0.7])
@@ -77,3 +77,19 @@ def test_a_foundation_of_no_use_is_named():
             Plate(mesh, UNIT, foundation=foundation)
     with pytest.raises(ValueError, match=r"foundation of Plate must be finite on the plate; got inf N/m\^3 at \("):
         Plate(mesh, UNIT, foundation=lambda x, y: np.where(x > 0.5, np.inf, 1.0))
+
+
+def test_a_foundation_stays_while_stiffness_and_tension_are_fitted():
+    plate, points = Plate(meshes.disc(1.0, 0.25), UNIT, tension=10.0, foundation=300.0), [[0.3, 0.1], [-0.2, 0.4]]
+    grid = np.stack(np.meshgrid(np.linspace(-0.7, 0.7, 15), np.linspace(-0.7, 0.7, 15)), axis=-1).reshape(-1, 2)
+    values = plate.influence(points, stiffness=40.0).values(grid).T
+    measured = MeasuredInfluence("specula", grid, values, np.arange(2), True, (15, 15))
+    found = fit_influence(measured, Plate(plate.mesh, UNIT, tension=1.0, foundation=300.0), points)
+    assert (found.stiffness, found.tension) == pytest.approx((40.0, 10.0), rel=1e-5)
+
+
+def test_what_stretches_has_no_foundation():
+    plate = Plate(meshes.disc(1.0, 0.5), UNIT, foundation=1.0)
+    for wrong in (lambda: plate.large_deflection([[0.0, 0.0]]), lambda: backbone(plate, 1)):
+        with pytest.raises(ValueError, match="foundation and forms of Plate must be none for (large_deflection|backb)"):
+            wrong()

@@ -108,5 +108,3 @@ def test_what_general_plates_cannot_do_is_refused():
         plate.influence(POINTS, truncation=1e-3)
     with pytest.raises(ValueError, match="must be a PlateSection for large_deflection; got a VaryingSection"):
         plate.large_deflection(POINTS)
-    with pytest.raises(ValueError, match="foundation and forms of Plate must be none for large_deflection"):
-        Plate(meshes.disc(1.0, 0.4), UNIT, foundation=1.0).large_deflection(POINTS)
