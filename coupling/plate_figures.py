@@ -243,6 +243,5 @@ def part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: f
     if isinstance(shapes, PatchedShapes):
         return shapes.compliance_at(start[0]) * force
     springs = np.append(shapes.springs, 0.0)
-    coarse = Plate(plate.mesh, plate.section, plate.supports, tension=plate.tension)  # three digits are enough
-    with_part = coarse.influence(np.concatenate([shapes.points, start]), springs)
+    with_part = plate.as_meshed().influence(np.concatenate([shapes.points, start]), springs)
     return float(with_part.evaluate(start)[0][0, -1]) * force

@@ -61,6 +61,8 @@ _ROWS: Final[tuple[tuple[str, str, Conversion, str], ...]] = (
     ("zeta \u03b6 dampingratio modaldamping", "damping", "same", ""),
     ("q qfactor qualityfactor", "damping", "quality", "It is 1 over twice the quality factor"),
     ("prestress stress residualstress filmstress", "tension", "stress", "It is a stress times the thickness"),
+    ("crystal wafercut wafertype", "wafer", "same", ""),
+    ("winkler winklermodulus subgrade elasticfoundation bedding", "foundation", "same", ""),
     ("meshsize elementsize hmax lc maxelementsize", "cell_size", "same", ""),
     ("meshfile file", "mesh", "same", ""),
     # Actuators and other drives.

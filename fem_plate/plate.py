@@ -189,6 +189,11 @@ class Plate:
         """The tension over the plate's rigidity [1/m^2]."""
         return self.tension / self.section.rigidity
 
+    def as_meshed(self, tension: float | None = None) -> Plate:
+        """The plate on the mesh as it is, without a tolerance; tension: another one [N/m]."""
+        pulled = self.tension if tension is None else tension
+        return Plate(self.mesh, self.section, self.supports, None, pulled, self.foundation, self.forms)
+
     def buckling_load(self) -> float:
         """The compression, the same in all directions, at which the plate buckles without actuators [N/m].
 

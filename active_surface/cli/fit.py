@@ -85,11 +85,11 @@ def _fitted(
     from typing import cast
 
     from coupling.case import PlateCase
-    from fem_plate import Plate, PlateSection, fit_influence
+    from coupling.scene import build_plate
+    from fem_plate import fit_influence
 
     of = cast(PlateCase, case.plate)
-    section = PlateSection(of.youngs_modulus, of.poisson_ratio, of.thickness)
-    plate = Plate(of.build_mesh(), section, of.supports, tension=of.tension if tension is None else tension)
+    plate = build_plate(of).as_meshed(tension)
     fitted = [name for name, kept in (("stiffness", stiffness), ("tension", tension)) if kept is None]
     stated = [actuator.stiffness for actuator in case.actuators if actuator.stiffness]
     begin = stiffness or (sum(stated) / len(stated) if stated else None)

@@ -39,7 +39,9 @@ def _plate(plate: PlateCase) -> str:
     held = f"{HELD[plate.supports]} " if isinstance(plate.supports, str) else ""
     article = "An" if (held or shape)[0] in "aeiou" else "A"
     sides = "" if held else f", {_sides(plate)}"
-    stiffness = f"Young's modulus {quantity_text(plate.youngs_modulus, 'Pa')}"
+    stiffness = f"cut from a ({plate.wafer}) wafer"
+    if plate.youngs_modulus is not None:
+        stiffness = f"Young's modulus {quantity_text(plate.youngs_modulus, 'Pa')}"
     bends = " (it bends and stretches)" if plate.theory == "von-karman" else ""
     thick = f"{quantity_text(plate.thickness, 'm')} thick"
     return f"{article} {held}{shape} {size}{sides}, {thick}, {stiffness}{bends}"

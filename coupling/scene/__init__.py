@@ -7,6 +7,7 @@ from coupling.scene.plate import (
     damping_of,
     lifts_of,
     plate_scene,
+    section_of,
     stretch_model,
     vibration_model,
 )

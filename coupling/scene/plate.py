@@ -16,7 +16,7 @@ from coupling.ringing import RingingModel, make_ringing_model
 from coupling.stretch import Stretch, StretchModel, make_model
 from coupling.surface import Pressed, surface_motion
 from coupling.vibration import Damping, Vibration, VibrationModel, always_running, make_vibration_model
-from fem_plate import TRUNCATION, InfluenceShapes, Plate, PlateSection, PlateShapes, Shapes
+from fem_plate import TRUNCATION, AnisotropicSection, InfluenceShapes, Plate, PlateSection, PlateShapes, Shapes
 from particle import AnyDrive, SurfaceMotion, interruptible
 
 FloatArray = NDArray[np.float64]
@@ -111,10 +111,16 @@ def shapes_faults(shapes: PlateShapes, plate: Plate, points: Sequence[Place], st
     if not other.mesh.same_as(plate.mesh):
         wrong.append("another outline or other cells")
     ours, theirs = (one.section for one in (plate, other))
-    for name in ("youngs_modulus", "poisson_ratio", "thickness"):
+    if isinstance(ours, PlateSection) and isinstance(theirs, PlateSection):
+        names = ["youngs_modulus", "poisson_ratio", "thickness"]
+    else:
+        names = ["thickness"]
+        if type(ours) is not type(theirs) or not np.array_equal(ours.membrane_stiffness, theirs.membrane_stiffness):
+            wrong.append("another material")
+    for name in names:
         if getattr(ours, name) != getattr(theirs, name):
             wrong.append(f"{name} {getattr(theirs, name):g}, not {getattr(ours, name):g}")
-    for name in ("supports", "tension", "tolerance"):
+    for name in ("supports", "tension", "tolerance", "foundation", "forms"):
         if getattr(plate, name) != getattr(other, name):
             wrong.append(f"{name} {getattr(other, name)}, not {getattr(plate, name)}")
     return wrong
@@ -166,10 +172,19 @@ def lifts_of(case: Case) -> list[AnyDrive]:
 
 def build_plate(plate: PlateCase) -> Plate:
     """The plate of a case, without loads."""
-    section = PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
     tolerance = PLATE_TOLERANCE if plate.theory == "linear" else STRETCHED_TOLERANCE
     given = plate.cell_size_given
-    return Plate(plate.build_mesh(), section, plate.supports, None if given else tolerance, plate.tension)
+    mesh, section = plate.build_mesh(), section_of(plate)
+    return Plate(mesh, section, plate.supports, None if given else tolerance, plate.tension, plate.foundation)
+
+
+def section_of(plate: PlateCase) -> PlateSection | AnisotropicSection:
+    """Material and thickness of a case's plate."""
+    if plate.wafer is not None:
+        constants = plate.c11, plate.c12, plate.c44
+        return AnisotropicSection.cubic(constants, plate.thickness, plate.density, plate.wafer, plate.wafer_angle)
+    assert plate.youngs_modulus is not None and plate.poisson_ratio is not None
+    return PlateSection(plate.youngs_modulus, plate.poisson_ratio, plate.thickness, plate.density)
 
 
 def actuator_stiffness(case: Case) -> NDArray[np.float64]:

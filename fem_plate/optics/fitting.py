@@ -113,9 +113,7 @@ def fit_influence(
     @lru_cache(maxsize=8)
     def unit_forces(tension: float) -> tuple[FloatArray, FloatArray]:
         """Deflections (P, N) and compliance (N, N) [m/N] under unit forces."""
-        # The plate's mesh is good enough.
-        pulled = Plate(plate.mesh, plate.section, plate.supports, None, tension, plate.foundation, plate.forms)
-        shapes = pulled.influence(points, 0.0)
+        shapes = plate.as_meshed(tension).influence(points, 0.0)  # fine enough
         assert isinstance(shapes, InfluenceShapes)
         return shapes.values(xy), shapes.compliance
 

@@ -18,6 +18,8 @@ MAX_VIBRATING: Final = 250
 """Actuators of a plate with inertia."""
 MAX_PRESSED: Final = 250
 """Actuators of a plate under pressure."""
+MAX_GENERAL: Final = 250
+"""Actuators of a plate on a foundation, or of a crystal's under a tension."""
 STEADY: Final = 'start = "steady"'
 
 
@@ -32,6 +34,7 @@ def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
                 f"must be 0 with {VON_KARMAN}, whose mid-plane has no stress at rest; got {tension:g} N/m",
             )
     yield from _pressure(plate, parts.context, count)
+    yield from _foundation(plate, parts.context, count)
     inertia = right_value(PlateCase, "inertia", plate, parts.context, False)
     if inertia and count > MAX_VIBRATING:
         yield (
@@ -71,6 +74,23 @@ def _pressure(plate: Any, context: Any, count: int) -> Iterator[Mistake]:
             f"bends the whole plate; got {pressure:g} Pa and {count}; a piece of the array with {MAX_PRESSED} can bear "
             "one",
         )
+
+
+def _foundation(plate: Any, context: Any, count: int) -> Iterator[Mistake]:
+    """Yield that a plate's theory, or so many actuators, leave no room for its foundation or its crystal's tension."""
+    foundation, tension, wafer = (
+        right_value(PlateCase, key, plate, context, missing)
+        for key, missing in (("foundation", 0.0), ("tension", 0.0), ("wafer", None))
+    )
+    if foundation and right_value(PlateCase, "theory", plate, context) == "von-karman":
+        yield ("plate", "foundation"), f"must be 0 with {VON_KARMAN}; got {foundation:g} N/m^3"
+    for key, value, of in (("foundation", foundation, ""), ("tension", wafer and tension, " with a wafer")):
+        if value and count > MAX_GENERAL:
+            yield (
+                ("plate", key),
+                f"must be 0{of} with more than {MAX_GENERAL} actuators, as their shapes are found on patches; got "
+                f"{value:g} {'N/m^3' if key == 'foundation' else 'N/m'} and {count}",
+            )
 
 
 def _stretching(scheme: str | None, count: int) -> Iterator[Mistake]:

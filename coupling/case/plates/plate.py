@@ -18,7 +18,7 @@ from pydantic import (
 
 from coupling.case.plates.damping import DampingRatios
 from coupling.case.table import Contradictions, KeyedTable
-from coupling.case.values import Density, Length, LoadPressure, Pressure, Tension
+from coupling.case.values import Angle, Density, Foundation, Length, LoadPressure, Pressure, Tension
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -26,6 +26,11 @@ if TYPE_CHECKING:
 Theory = Literal["linear", "von-karman"]
 VON_KARMAN: Final = 'theory = "von-karman"'
 INERTIA: Final = "inertia = true"
+
+Wafer = Literal["100", "110", "111"]
+SILICON: Final = (165.7e9, 63.9e9, 79.6e9)
+"""c11, c12 and c44 [Pa] (Hopcroft, Nix and Kenny, 2010)."""
+CONSTANTS: Final = ("c11", "c12", "c44")
 
 SupportName = Literal["clamped", "simply-supported", "free"]
 ONE_SUPPORT, SUPPORT_OF_EACH = "one support", "a support of each boundary"
@@ -52,10 +57,20 @@ class PlateCase(KeyedTable, ABC):
     """Whether the plate only bends, or also stretches as it deflects."""
     in_plane_supports: InPlaneSupports = "immovable"
     """How boundaries that are not free are held in the plane, or a table with how each is; those left out can move."""
-    youngs_modulus: Pressure = Field(gt=0)
-    """Young's modulus."""
-    poisson_ratio: StrictFloat = Field(ge=0, lt=0.5, examples=[0.3])
-    """Poisson's ratio."""
+    youngs_modulus: Pressure | None = Field(default=None, gt=0)
+    """Young's modulus, of an isotropic plate."""
+    poisson_ratio: StrictFloat | None = Field(default=None, ge=0, lt=0.5, examples=[0.3])
+    """Poisson's ratio, of an isotropic plate."""
+    wafer: Wafer | None = Field(default=None, examples=["100"])
+    """The plane in which the plate is cut from a cubic crystal, in place of a Young's modulus and a Poisson's ratio."""
+    wafer_angle: Angle = Field(default=0.0, examples=["0 deg"])
+    """From x to a direction <110> of the crystal, along which a (100) wafer has its primary flat."""
+    c11: Pressure = Field(default=SILICON[0], gt=0)
+    """The crystal's elastic constant c11; that of silicon by default."""
+    c12: Pressure = SILICON[1]
+    """Its elastic constant c12."""
+    c44: Pressure = Field(default=SILICON[2], gt=0)
+    """Its elastic constant c44."""
     thickness: Length = Field(gt=0, examples=["5 um"])
     """How thick it is."""
     density: Density | None = Field(default=None, gt=0)
@@ -68,6 +83,8 @@ class PlateCase(KeyedTable, ABC):
     """A residual force per length in its plane, the same in all directions: positive pulls, negative presses."""
     pressure: LoadPressure = Field(default=0.0, examples=["100 Pa"])
     """A uniform pressure that stays what it is, positive up; actuators keep their strokes and forces."""
+    foundation: Foundation = Field(default=0.0, examples=["1e10 N/m^3"])
+    """The modulus of an elastic foundation under all of the plate, which pulls back; negative: it softens."""
     top_face: StrictBool = True
     """Whether parts lie on the top face, which bending also moves in its plane, or, if false, on the mid-plane."""
 
@@ -81,6 +98,7 @@ class PlateCase(KeyedTable, ABC):
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         if "in_plane_supports" in given and given.get("theory", "linear") == "linear":
             yield "in_plane_supports", f"must not be given without {VON_KARMAN}; a linear plate does not stretch"
+        yield from _material(given)
         inertia = given.get("inertia", False)
         if inertia is True and "density" not in given:
             yield "density", f'is missing; with {INERTIA} it must be a density such as "2330 kg/m^3"'
@@ -106,3 +124,27 @@ class PlateCase(KeyedTable, ABC):
         if isinstance(self.supports, str):
             return dict.fromkeys(boundaries, self.supports)
         return {name: self.supports.get(name, "free") for name in boundaries}
+
+
+def _material(given: Mapping[str, Any]) -> Contradictions:
+    """Yield which keys of the material are missing or too many."""
+    isotropic = {"youngs_modulus": 'a pressure such as "169 GPa"', "poisson_ratio": "a number such as 0.3"}
+    constants = [given.get(name, value) for name, value in zip(CONSTANTS, SILICON, strict=True)]
+    if "wafer" not in given:
+        for key, what in isotropic.items():
+            if key not in given:
+                yield key, f'is missing; it must be {what}, or have a wafer such as "100" in its place'
+        for key in ("wafer_angle", *CONSTANTS):
+            if key in given:
+                yield key, "must not be given without a wafer"
+        return
+    for key in isotropic:
+        if key in given:
+            yield key, "must not be given with a wafer, whose stiffness follows from its elastic constants"
+    if given.get("theory", "linear") == "von-karman":
+        yield "wafer", f"must not be given with {VON_KARMAN}, which is for isotropic plates"
+    if all(isinstance(value, float) for value in constants):
+        c11, c12, _ = constants
+        if not (c11 > abs(c12) and c11 + 2 * c12 > 0):
+            first = next((name for name in CONSTANTS[:2] if name in given), "wafer")
+            yield first, f"must be of a stable crystal, c11 > |c12| and c11 + 2 c12 > 0; got {c11:g} and {c12:g} Pa"

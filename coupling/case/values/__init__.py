@@ -21,6 +21,7 @@ from coupling.case.values.quantities import (
     Directed,
     FileBeside,
     Force,
+    Foundation,
     Frequency,
     Gravity,
     Length,

@@ -14,7 +14,7 @@ DIMENSIONS: Final = {
     "m": "a length", "m^2": "an area", "m^3": "a volume", "rad": "an angle",
     "s": "a time", "Hz": "a frequency", "rad/s": "an angular velocity", "m/s": "a velocity", "m/s^2": "an acceleration",
     "kg": "a mass", "kg/m^3": "a density", "N": "a force", "Pa": "a pressure",
-    "J": "an energy", "J/m^2": "an energy per area", "N/m": "a stiffness",
+    "J": "an energy", "J/m^2": "an energy per area", "N/m": "a stiffness", "N/m^3": "a stiffness per area",
     "W": "a power", "K": "a temperature", "1": "a plain number",
 }  # fmt: skip
 """SI units, and what a quantity in each is called in a message."""
