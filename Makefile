@@ -13,7 +13,7 @@ PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-r
 # Only kernels are compiled: `tests/particle` runs in plain Python, too. In test-all so does what else marches.
 PLAIN := tests/particle
 MARCHES := tests/physics tests/regression tests/active_surface/studies/test_feasible.py
-MARCHES += $(addprefix tests/validation/test_, motion_oracle.py single_stroke.py two_actuators.py)
+MARCHES += $(addprefix tests/validation/test_, single_stroke.py two_actuators.py)
 CHOSEN := -m "not slow"
 
 .PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark clean
