@@ -1,5 +1,5 @@
 # make demo: set up and run the main job.   make test: set up, lint and test, in minutes.
-# make test-all: the long tests as well.    make site: the documentation site.
+# make test-all: the long tests as well.    make coverage: what they cover.    make site: the documentation site.
 PYTHON ?= python3
 BIN := .venv/bin
 # Small dense systems gain nothing from BLAS threads and lose much where cores are busy.
@@ -10,36 +10,39 @@ unexport PYTHONDONTWRITEBYTECODE
 # Tests run on all processors, those of a file on one, as they share what is made for them. tests/conftest.py puts files
 # that take long first.
 PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-reorder
-# Only the kernels of `particle` are compiled: its tests run in plain Python, too, which shows the lines covered. In
-# test-all so does what else marches.
-PLAIN := NUMBA_DISABLE_JIT=1 $(PYTEST) -m "not slow and not compiled"
+# Only kernels are compiled: `tests/particle` runs in plain Python, too. In test-all so does what else marches.
+PLAIN := tests/particle
 MARCHES := tests/physics tests/regression tests/active_surface/studies/test_feasible.py
-MARCHES += $(addprefix tests/validation/test_, motion_oracle.py single_stroke.py two_actuators.py)
+MARCHES += $(addprefix tests/validation/test_, single_stroke.py two_actuators.py)
+CHOSEN := -m "not slow"
 
-.PHONY: demo test test-all plain long-tests forget-coverage lint kernels docs site paper benchmark clean
+.PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/transport.toml
 
 test: .venv/developer
-	@$(MAKE) --no-print-directory -j2 kernels plain COVERAGE="$(COVERAGE)"
+	@$(MAKE) --no-print-directory -j2 kernels plain PLAIN="$(PLAIN)" COVERAGE="$(COVERAGE)"
 	@echo "== all tests, with compiled kernels (2 of 2)"
-	$(PYTEST) $(COVERAGE) -m "not slow"
+	$(PYTEST) $(COVERAGE) $(CHOSEN)
 
 plain: lint
 	@echo "== the part, in plain Python (1 of 2)"
-	$(PLAIN) $(COVERAGE) tests/particle
+	NUMBA_DISABLE_JIT=1 $(PYTEST) $(COVERAGE) -m "not slow and not compiled" $(PLAIN)
 
-test-all: COVERAGE := --cov --cov-append --cov-report=
-test-all: forget-coverage test long-tests
+# Rivals, browsers, clusters, killed runs, long validation as well: in one pass with the others, as tests of a file share
+# what is made for them.
+test-all coverage: PLAIN += $(MARCHES)
+test-all coverage: CHOSEN :=
+test-all: test
+
+# Which lines all these tests run, those of kernels too.
+coverage: COVERAGE := --cov --cov-append --cov-report=
+coverage: forget-coverage test
+	$(BIN)/coverage report
 
 forget-coverage:
 	rm -f .coverage
-
-# What else marches in plain Python, rivals, browsers, clusters, killed runs, long validation.
-long-tests: .venv/developer
-	NUMBA_DISABLE_JIT=1 $(PYTEST) $(COVERAGE) -m "not compiled" $(MARCHES)
-	$(PYTEST) --cov --cov-append -m slow
 
 # Compiled once, on one processor, before several processes would do so at a time.
 kernels: .venv/developer

@@ -9,13 +9,15 @@ from pathlib import Path
 
 import pytest
 
+from particle.kernel_cache import PACKAGE, cache_folder, source_digest
+
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = {"meshes", "fem_plate", "particle", "coupling", "active_surface"}
 SHORT = (ROOT / "examples" / "two_actuators.toml").read_text().replace('duration = "50 ms"', 'duration = "1 ms"')
 
 
 def run(*command, cwd, check=True, **environment):
-    """The ended process; only variables that are given here lead Python anywhere, and kernels are not compiled."""
+    """The ended process; only variables that are given here lead Python anywhere or let kernels be compiled."""
     clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     clean |= {"NUMBA_DISABLE_JIT": "1", "COVERAGE_PROCESS_START": ""} | environment
     done = subprocess.run([*map(str, command)], cwd=cwd, capture_output=True, text=True, env=clean)
@@ -55,6 +57,15 @@ def installed(wheel, tmp_path_factory):
     return made
 
 
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory):
+    """What lets a wheel's program run with kernels, those of this checkout as far as it has compiled them."""
+    mine, cache = cache_folder(PACKAGE, source_digest(PACKAGE)), tmp_path_factory.mktemp("kernels")
+    (cache / "active-surface").mkdir()
+    (cache / "active-surface" / mine.name).symlink_to(mine)
+    return {"NUMBA_DISABLE_JIT": "0", "NUMBA_CACHE_DIR": str(cache)}
+
+
 @pytest.fixture
 def elsewhere(tmp_path):
     (tmp_path / "case.toml").write_text(SHORT)
@@ -80,8 +91,8 @@ def test_examples_are_in_the_wheel_with_what_they_read(installed, elsewhere):
     )
 
 
-def test_the_main_job_runs_from_another_folder(installed, elsewhere):
-    done = run(installed.command, "run", "case.toml", cwd=elsewhere)
+def test_the_main_job_runs_from_another_folder(installed, elsewhere, compiled):
+    done = run(installed.command, "run", "case.toml", cwd=elsewhere, **compiled)
     assert "wrote" in done.stdout and (elsewhere / "results" / "case.png").stat().st_size > 0
 
 
@@ -146,7 +157,7 @@ def test_commands_refuse_a_module_that_hides_a_package_in_one_line(installed, el
 
 
 @pytest.mark.slow
-def test_the_wheel_brings_all_that_it_needs(wheel, elsewhere, tmp_path_factory):
+def test_the_wheel_brings_all_that_it_needs(wheel, elsewhere, compiled, tmp_path_factory):
     """The honest form: nothing is borrowed, every dependency comes from the package index."""
     made = Environment(tmp_path_factory.mktemp("full"))
     try:
@@ -155,6 +166,6 @@ def test_the_wheel_brings_all_that_it_needs(wheel, elsewhere, tmp_path_factory):
         if "No matching distribution found for" in str(error) or "NewConnectionError" in str(error):
             pytest.skip(f"the package index cannot be reached: {str(error)[-300:]}")
         raise
-    run(made.command, "run", "case.toml", cwd=elsewhere, NUMBA_DISABLE_JIT="0")
+    run(made.command, "run", "case.toml", cwd=elsewhere, **compiled)
     run(made.python, "-m", "active_surface", "view", "results/case", cwd=elsewhere)
     assert (elsewhere / "results" / "case.html").exists()

@@ -1,5 +1,7 @@
 """Kogut and Etsion's contact by mpmath's quadrature in 30 digits, with the misprints of (3)-(5) corrected."""
 
+from functools import cache
+
 import mpmath as mp
 
 DIGITS = 30
@@ -17,9 +19,25 @@ def forces(contact, d):
         eps = of(contact.intermolecular_distance) / of(contact.roughness)
         theta = of(contact.adhesion_energy) / (of(contact.roughness) * of(contact.hardness))
 
-        def phi(z):
-            return mp.exp(-((z / s) ** 2) / 2) / (mp.sqrt(2 * mp.pi) * s)
+        narrow, top = -1 / (2 * s**2), 1 / (mp.sqrt(2 * mp.pi) * s)
 
+        def phi(z):
+            return top * mp.exp(narrow * z**2)
+
+        @cache
+        def at(x):
+            """What all integrals over the same range share at a point of it."""
+            return mp.log(x / w), phi(d + x)
+
+        def integrand(x, b):
+            log, density = at(x)
+            return density * mp.exp(b * log)
+
+        def attraction(x):
+            square = (eps / x) ** 2
+            return (square - square**4 / 4) * phi(eps + d - x)
+
+        @cache
         def i(b, low, high):
             low, high = low * w, min(high * w, REACH * s + max(-d, 0))
             if high <= low:
@@ -27,7 +45,7 @@ def forces(contact, d):
             cuts = [low]
             while cuts[-1] < high:
                 cuts.append(min(high, cuts[-1] + s))
-            return mp.quad(lambda x: (x / w) ** of(b) * phi(d + x), cuts)
+            return mp.quad(lambda x: integrand(x, of(b)), cuts)
 
         def j(b, c, low, high):
             return i(b, low, high) * (eps / w) ** of(c)
@@ -35,7 +53,7 @@ def forces(contact, d):
         gaps = [eps * 2**n for n in range(12) if eps * 2**n < 3 * s]
         while gaps[-1] < eps + d + REACH * s:
             gaps.append(min(gaps[-1] + s, eps + d + REACH * s))
-        near = of(4) / 3 * mp.quad(lambda x: ((eps / x) ** 2 - (eps / x) ** 8 / 4) * phi(eps + d - x), gaps)
+        near = of(4) / 3 * mp.quad(attraction, gaps)
         load = i("1.5", 0, 1) + of("1.03") * i("1.425", 1, 6) + of("1.4") * i("1.263", 6, 110)
         load += 3 / k * i(1, 110, mp.inf)
         adhesion = near + of("0.98") * j("0.298", "-0.29", 0, 1) + of("0.79") * j("0.356", "-0.321", 1, 6)

@@ -10,12 +10,12 @@ and t; no derivative is written down.
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
 from motion_problem import Frame, Height, Surface
 from motion_surfaces import still
+from scipy.special import comb
 
 ORDER = 3
 MONOMIALS = sorted((m for m in itertools.product(range(ORDER + 1), repeat=3) if sum(m) <= ORDER), key=sum)
@@ -32,7 +32,7 @@ X, Y, T, TT, XX, YY = (INDEX[m] for m in [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0
 SECOND = [INDEX[m] for m in MONOMIALS if sum(m) == 2]
 SECOND_POWERS = POWERS[SECOND]
 RAISED = np.array([[INDEX.get((i + 1, j, k), 0), INDEX.get((i, j + 1, k), 0)] for i, j, k in MONOMIALS])
-TURNS = ((1, 2), (2, 0), (0, 1))
+NEXT, AFTER = [1, 2, 0], [2, 0, 1]
 FACTORS = np.where(RAISED > 0, POWERS[:, :2] + 1, 0)
 Jets = Callable[[float, float, float], np.ndarray]  # x, y, t -> w (20,)
 
@@ -97,13 +97,14 @@ def polynomial(coefficients) -> Jets:
     """w = sum c[i, j, k] x^i y^j t^k (or c[i, j])."""
     c = np.atleast_3d(np.asarray(coefficients, float))
 
-    def shifted(value: float, count: int) -> np.ndarray:
-        """Taylor coefficients (order, power) of the powers of a variable."""
-        return np.array([[math.comb(n, m) * value ** max(n - m, 0) for n in range(count)] for m in range(ORDER + 1)])
+    orders, powers = np.arange(ORDER + 1)[:, None], np.arange(max(c.shape))
+    lowered, binomial = np.maximum(powers - orders, 0), comb(powers, orders)
 
     def w(x: float, y: float, time: float) -> np.ndarray:
-        p, q, r = (shifted(value, count) for value, count in zip((x, y, time), c.shape, strict=True))
-        return np.einsum("ai,bj,ck,ijk->abc", p, q, r, c, optimize=True)[tuple(POWERS.T)]
+        # Of each variable, the Taylor coefficients (order, power) of its powers.
+        of_x, of_y, of_t = ((binomial * value**lowered)[:, :n] for value, n in zip((x, y, time), c.shape, strict=True))
+        by_y_and_t = of_y @ (c @ of_t.T)  # (power of x, order of y, order of t)
+        return np.tensordot(of_x, by_y_and_t, 1)[tuple(POWERS.T)]
 
     return w
 
@@ -138,11 +139,8 @@ def top_face(
         place[X, 0] += 1
         place[Y, 1] += 1
         along = [FACTORS[:, axis, None] * place[RAISED[:, axis]] for axis in range(2)]
-        across = np.stack(
-            [times(along[0][:, i], along[1][:, j]) - times(along[0][:, j], along[1][:, i]) for i, j in TURNS]
-        )
-        inverse = inverse_root(sum(times(a, a) for a in across))
-        normal = np.stack([times(a, inverse) for a in across], axis=1)
+        across = times(along[0][:, NEXT], along[1][:, AFTER]) - times(along[0][:, AFTER], along[1][:, NEXT])
+        normal = times(across, inverse_root(times(across, across).sum(axis=1))[:, None])
         return _Lifted(place + contact * normal, place + centre * normal, normal[0])
 
     return surface

@@ -38,18 +38,23 @@ def central(radius):
     return DiscShapes([[0.0, 0.0]], radius)
 
 
+@pytest.fixture(scope="module")
+def paths(central):
+    return {name: path(central, drive) for name, (drive, *_) in CASES.items()}
+
+
 @pytest.mark.parametrize("name", CASES)
-def test_the_end_point_is_the_reference_to_1e_6(central, name):
-    drive, end, _ = CASES[name]
-    x, y = path(central, drive).position[-1]
+def test_the_end_point_is_the_reference_to_1e_6(paths, name):
+    _, end, _ = CASES[name]
+    x, y = paths[name].position[-1]
     assert x == pytest.approx(end, rel=2e-8)
     assert abs(y) < 1e-14
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_slips_and_stops_come_at_the_reference_times(central, name):
-    drive, _, events = CASES[name]
-    found = path(central, drive).events
+def test_slips_and_stops_come_at_the_reference_times(paths, name):
+    _, _, events = CASES[name]
+    found = paths[name].events
     assert [event.kind for event in found] == [kind for kind, _ in events]
     assert [event.time for event in found] == pytest.approx([time for _, time in events], rel=1e-6)
 
@@ -70,8 +75,8 @@ def test_the_direction_of_the_start_does_not_matter(central):
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_finite_elements_give_the_same_path(section, radius, central, name):
+def test_finite_elements_give_the_same_path(section, radius, paths, name):
     drive, end, _ = CASES[name]
     shapes = Plate(disc(radius, radius / 8), section).influence([[0.0, 0.0]])
-    gap = path(shapes, drive).position[-1] - path(central, drive).position[-1]
+    gap = path(shapes, drive).position[-1] - paths[name].position[-1]
     assert np.hypot(*gap) < 1e-7 * abs(end - 100e-6)
