@@ -32,12 +32,7 @@ def search(trials: Trials, seed: int, tell: ProgressCallback = no_progress) -> N
 
     tell: gets how many of the starts have settled.
     """
-    from scipy.stats.qmc import Sobol
-
-    count = len(trials.parameters)
-    power = int(np.ceil(np.log2(POINTS * count)))
-    points = trials.of(Sobol(count, rng=seed).random_base2(power))
-    good = sorted((trial for trial in points if np.isfinite(trial.cost)), key=lambda trial: trial.cost)
+    good = sorted((trial for trial in _points(trials, seed) if np.isfinite(trial.cost)), key=lambda trial: trial.cost)
     if not good:
         raise ValueError(
             f"Input bounds of identify must have values with which the case runs; it says: {trials.refusal}"
@@ -46,8 +41,37 @@ def search(trials: Trials, seed: int, tell: ProgressCallback = no_progress) -> N
     for trial in good:
         if all(np.abs(trial.shares - other.shares).max() > APART for other in starts):
             starts.append(trial)
-    free = np.ones((min(len(starts), STARTS), count), dtype=bool)
+    free = np.ones((min(len(starts), STARTS), trials.blocks.count), dtype=bool)
     descend(trials, starts[:STARTS], free, tell=tell)
+
+
+def _points(trials: Trials, seed: int) -> list[Trial]:
+    """Trials all over the bounds, as many for each track as if there were no other."""
+    from scipy.stats.qmc import Sobol
+
+    blocks, slots = trials.blocks, trials.blocks.columns.shape[1]
+    points = Sobol(slots, rng=seed).random_base2(int(np.ceil(np.log2(POINTS * slots))))
+    tried = trials.of(blocks.everywhere(points))
+    return [*tried, *trials.of(_joined(trials, points, tried))] if blocks.several else tried
+
+
+def _joined(trials: Trials, points: FloatArray, tried: Sequence[Trial]) -> FloatArray:
+    """The likeliest shares (k, n) of the shared values of points (p, s), with own values that suit each track there.
+
+    These are the best of the points that are nearest in the shared values: as many as a cell has, if even cells divide
+    all directions alike.
+    """
+    blocks, count = trials.blocks, len(points)
+    shared = points[:, : blocks.shared]
+    apart = np.abs(shared[:, None] - shared[None]).max(axis=2, initial=0)
+    near = np.argsort(apart, axis=1, kind="stable")[:, : round(count ** (1 - blocks.shared / points.shape[1]))]
+    sizes = np.log([trials.losses(trial.residuals) for trial in tried])  # (p, N)
+    shares, likely = blocks.everywhere(points), np.zeros(count)
+    for columns, freedom, size in zip(blocks.columns, trials.freedom, sizes.T, strict=True):
+        best = near[np.arange(count), np.argmin(size[near], axis=1)]
+        shares[:, columns[blocks.shared :]] = points[best, blocks.shared :]
+        likely += freedom * size[best]
+    return shares[np.argsort(likely, kind="stable")[:POINTS]]
 
 
 def descend(
@@ -61,57 +85,39 @@ def descend(
 
     free: (starts, n) which parameters may change.  tell: gets how many of the starts have settled.
     """
-    now, width = list(starts), np.full(len(starts), WIDTH)
+    now, width, blocks = list(starts), np.full(len(starts), WIDTH), trials.blocks
     for _ in range(rounds):
-        active = [k for k in range(len(now)) if width[k] >= NARROWEST and free[k].any() and 0 < now[k].cost < np.inf]
+        active = [k for k in range(len(now)) if width[k] >= NARROWEST and free[k].any() and np.isfinite(now[k].cost)]
         tell(len(now) - len(active), len(now))
         if not active:
             break
-        around = [differences(now[k].shares, free[k], width[k]) for k in active]
+        around = [blocks.differences(now[k].shares, free[k], width[k]) for k in active]
         tried = _split(trials.of(np.concatenate(around)), [len(rows) for rows in around])
-        steps = [
-            _steps(now[k], pair, free[k], trials.weights(now[k].residuals))
-            for k, pair in zip(active, tried, strict=True)
-        ]
+        steps = [_steps(trials, now[k], pairs, free[k]) for k, pairs in zip(active, tried, strict=True)]
         ahead = _split(trials.of(np.concatenate(steps)), [len(rows) for rows in steps])
         for k, pairs, further in zip(active, tried, ahead, strict=True):
-            best = min([now[k], *pairs, *further], key=lambda trial: trial.cost)
+            best = min([_around(trials, now[k], pairs), *further], key=lambda trial: trial.cost)
             if best.cost > now[k].cost * (1 - NEGLIGIBLE / trials.size):
                 width[k] *= NARROWER
             now[k] = best
     return now
 
 
-def differences(shares: FloatArray, free: BoolArray, width: float | FloatArray) -> FloatArray:
-    """Two points (2 f, n) for each free parameter, below and above the shares (n,) as far as the bounds allow."""
-    widths = np.broadcast_to(width, shares.shape)
-    rows = []
-    for k in np.flatnonzero(free):
-        for side in (-1, 1):
-            rows.append(np.array(shares))
-            rows[-1][k] = np.clip(shares[k] + side * widths[k], 0, 1)
-    return np.array(rows).reshape(-1, len(shares))
+def _around(trials: Trials, trial: Trial, pairs: list[Trial]) -> Trial:
+    """The best of a trial and the pairs about it, of which each track takes own values that suit it."""
+    best = min([trial, *pairs], key=lambda one: one.cost)
+    if not trials.blocks.several:
+        return best
+    shared = slice(trials.blocks.shared)
+    same = [one for one in pairs if np.array_equal(one.shares[shared], trial.shares[shared])]
+    return min(best, trials.mixed([trial, *same]), key=lambda one: one.cost)
 
 
-def slopes(pairs: Sequence[Trial], free: BoolArray) -> FloatArray:
-    """The derivatives (m, f) of the residuals, from trials at `differences`; 0 where one cannot be run."""
-    columns = []
-    for k, (low, high) in zip(np.flatnonzero(free), zip(pairs[::2], pairs[1::2], strict=True), strict=True):
-        known = np.isfinite(low.cost) and np.isfinite(high.cost)
-        rise = (high.residuals - low.residuals) if known else np.zeros_like(low.residuals)
-        columns.append(rise / (high.shares[k] - low.shares[k]))
-    return np.array(columns).T
-
-
-def _steps(trial: Trial, pairs: Sequence[Trial], free: BoolArray, weights: FloatArray) -> FloatArray:
+def _steps(trials: Trials, trial: Trial, pairs: Sequence[Trial], free: BoolArray) -> FloatArray:
     """Shares (d, n) after Gauss-Newton steps with each damping, within the bounds."""
-    slope = slopes(pairs, free)
-    matrix, pull = slope.T @ (weights[:, None] * slope), slope.T @ (weights * trial.residuals)
-    scale = np.maximum(np.diag(matrix), 1e-12 * max(float(np.diag(matrix).max()), np.finfo(float).tiny))
-    rows = np.repeat(trial.shares[None], len(DAMPINGS), axis=0)
-    for row, damping in zip(rows, DAMPINGS, strict=True):
-        row[free] -= np.linalg.lstsq(matrix + damping * np.diag(scale), pull, rcond=1e-10)[0]
-    return np.clip(rows, 0, 1)
+    slope, weights = trials.blocks.slopes(pairs, free), trials.weights(trial.residuals)
+    rows = [trial.shares + trials.blocks.step(slope, trial.residuals, weights, damping) for damping in DAMPINGS]
+    return np.clip(np.array(rows), 0, 1)
 
 
 def _split(trials: list[Trial], sizes: Sequence[int]) -> list[list[Trial]]:
