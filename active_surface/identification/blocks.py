@@ -89,6 +89,11 @@ class Blocks:
             matrix[np.ix_(columns, columns)] = weight * slope[rows].T @ slope[rows]
         return found
 
+    def along(self, slope: FloatArray, change: FloatArray) -> FloatArray:
+        """The change (m,) of residuals along slopes (m, s) where shares change (n,)."""
+        pairs = zip(self.columns, self.rows, strict=True)
+        return np.concatenate([slope[rows] @ change[columns] for columns, rows in pairs])
+
     def step(self, slope: FloatArray, residuals: FloatArray, weights: FloatArray, damping: float) -> FloatArray:
         """The change (n,) of shares that makes the weighted squares of residuals (m,) least along slopes (m, s).
 

@@ -10,15 +10,16 @@ import numpy as np
 from scipy.special import fdtri
 
 from active_surface.arrays import FloatArray
-from active_surface.identification.search import NEGLIGIBLE, descend
+from active_surface.identification.search import descend
 from active_surface.identification.trials import Trial, Trials
 from coupling import ProgressCallback, no_progress
 
 LEVEL: Final = 0.95  # of intervals
 FIRST_WIDTH: Final = 1e-3  # of the bounds: that of the first differences
 WIDTHS: Final = 1e-6, 0.05  # of the bounds: the least and the largest
-FOLLOWING: Final = 8  # rounds in which other parameters follow
+NARROWEST: Final = 0.1  # of half a deviation: the last differences by which other parameters follow
 NEAR_ENOUGH: Final = 0.03  # of half an interval: how exact its ends are
+LONGER: Final = 4.0  # a step over the one before
 LEAST: Final = 1e-9  # of the bounds: ends are not sought closer
 MAX_STEPS: Final = 40
 AGAIN: Final = 3  # times that a better optimum, found meanwhile, begins anew
@@ -34,6 +35,7 @@ class _End:
     rise: float  # of -2 log likelihood, there
     inside: Trial  # whose cost is below the threshold, farthest out
     outside: Trial | None = None
+    further: bool = False  # whether it is sought beyond where residuals that are linear would have it
 
     def out(self, trial: Trial) -> float:
         """How far out a trial is."""
@@ -50,6 +52,7 @@ class Spread:
 
     covariance: FloatArray  # (n, n) of shares
     rises: FloatArray  # (n,) of -2 log likelihood, at the ends of each parameter's interval
+    reaches: FloatArray  # (n,) of shares: where these would be, were residuals linear
 
 
 def spread_of(trials: Trials) -> Spread:
@@ -73,22 +76,23 @@ def spread_of(trials: Trials) -> Spread:
     parts = np.diagonal(from_tracks, axis1=1, axis2=2) + np.finfo(float).tiny ** 0.25  # (N, n)
     freedom = parts.sum(axis=0) ** 2 / (parts**2 / trials.freedom[:, None]).sum(axis=0)
     stretch = np.diag(covariance) / np.diag(inverse)
-    return Spread(covariance, freedom * np.log1p(fdtri(1, freedom, LEVEL) / freedom) * stretch)
+    rises = freedom * np.log1p(fdtri(1, freedom, LEVEL) / freedom) * stretch
+    return Spread(covariance, rises, np.sqrt(rises * np.diag(inverse)))
 
 
 def profiled(trials: Trials, tell: ProgressCallback = no_progress) -> list[tuple[float, float]]:
     """The lower and upper end of each parameter's interval, as shares of its bounds; 0 or 1 where it does not end.
 
-    An end is sought from the trial farthest out that is below the threshold, in steps that double until one is above,
-    then between both. All ends are sought side by side.
+    An end is sought just below and above where linear residuals would have it, then from the trial farthest out that is
+    below the threshold, in growing steps until one is above, and between both. All ends are sought side by side.
 
     tell: gets how many of the ends are known.
     """
     for _ in range(AGAIN):
         before, spread = trials.best.cost, spread_of(trials)
         ends = [
-            _End(number, side, float(np.sqrt(spread.covariance[number, number])), rise, trials.best)
-            for number, rise in enumerate(spread.rises.tolist())
+            _End(number, side, (1 - NEAR_ENOUGH / 2) * reach, rise, trials.best)
+            for number, (rise, reach) in enumerate(zip(spread.rises.tolist(), spread.reaches.tolist(), strict=True))
             for side in (-1, 1)
         ]
         for _ in range(MAX_STEPS):
@@ -97,7 +101,7 @@ def profiled(trials: Trials, tell: ProgressCallback = no_progress) -> list[tuple
             if not unsettled:
                 break
             _advance(unsettled, trials, spread.covariance)
-        if trials.best.cost >= before * (1 - NEGLIGIBLE / trials.size):
+        if trials.alike(trials.best.cost, before):
             break
         descend(trials, [trials.best], np.ones((1, trials.blocks.count), dtype=bool))
     _unsettled(ends, trials)
@@ -131,7 +135,8 @@ def _advance(ends: Sequence[_End], trials: Trials, spread: FloatArray) -> None:
         here = float(end.inside.shares[end.number])
         if end.outside is None:
             there = float(np.clip(here + end.side * end.step, 0, 1))
-            end.step *= 2
+            end.step = LONGER * end.step if end.further else 0.9 * NEAR_ENOUGH * end.step
+            end.further = True
         else:
             there = _crossing(end, trials.threshold(end.rise), least)
         following = end.inside.shares + spread[end.number] / spread[end.number, end.number] * (there - here)
@@ -140,7 +145,9 @@ def _advance(ends: Sequence[_End], trials: Trials, spread: FloatArray) -> None:
             rows.append(row)
     tried = trials.of(np.array(rows))
     starts = [min(pair, key=lambda trial: trial.cost) for pair in zip(tried[::2], tried[1::2], strict=True)]
-    for end, trial in zip(ends, descend(trials, starts, free, FOLLOWING), strict=True):
+    enough = [trials.threshold(end.rise) for end in ends]
+    widths = np.clip(np.sqrt(np.diag(spread)) / 2, *WIDTHS)
+    for end, trial in zip(ends, descend(trials, starts, free, enough, widths, NARROWEST), strict=True):
         if trial.cost > trials.threshold(end.rise):
             end.outside = trial
 

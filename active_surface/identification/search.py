@@ -8,6 +8,7 @@ the differences count as trials too, as in a compass search, and nothing is acce
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -20,9 +21,8 @@ POINTS: Final = 32  # for each parameter, anywhere within the bounds
 STARTS: Final = 6  # of these, from which steps are made
 WIDTH: Final = 0.02  # of the bounds: the first width of differences
 NARROWER: Final = 0.2  # the next width over one that led nowhere
-NARROWEST: Final = 1e-5
-DAMPINGS: Final = (0.0, 0.01, 0.1, 1.0, 10.0)  # of a step, over the diagonal of its matrix
-NEGLIGIBLE: Final = 1e-2  # of a cost that one residual adds: less is no progress
+NARROWEST: Final = 5e-4  # of the first: the last width
+DAMPINGS: Final = (1e-4, 1e-3, 0.01, 0.1, 1.0)  # of a step that failed, over the diagonal of its matrix
 MAX_ROUNDS: Final = 40
 APART: Final = 0.05  # of the bounds: starts that are closer are one
 
@@ -78,29 +78,87 @@ def descend(
     trials: Trials,
     starts: Sequence[Trial],
     free: BoolArray,
-    rounds: int = MAX_ROUNDS,
+    enough: Sequence[float] | None = None,
+    widths: float | FloatArray = WIDTH,
+    narrowest: float = NARROWEST,
     tell: ProgressCallback = no_progress,
 ) -> list[Trial]:
     """The best trial that is reached from each start.
 
-    free: (starts, n) which parameters may change.  tell: gets how many of the starts have settled.
+    free: (starts, n) which parameters may change.  enough: (starts,) costs below which nothing more is sought; None:
+    starts are after the same optimum, so one that comes as near to a better one as its differences are wide is given
+    up.  widths: of the first differences.  narrowest: of the last ones, over these.  tell: gets how many have settled.
     """
-    now, width, blocks = list(starts), np.full(len(starts), WIDTH), trials.blocks
-    for _ in range(rounds):
-        active = [k for k in range(len(now)) if width[k] >= NARROWEST and free[k].any() and np.isfinite(now[k].cost)]
+    now, scale = list(starts), np.ones(len(starts))
+    for _ in range(MAX_ROUNDS):
+        least = enough or np.zeros(len(now))
+        active = [
+            k for k in range(len(now)) if scale[k] >= narrowest and free[k].any() and least[k] < now[k].cost < np.inf
+        ]
         tell(len(now) - len(active), len(now))
         if not active:
             break
-        around = [blocks.differences(now[k].shares, free[k], width[k]) for k in active]
+        around = [trials.blocks.differences(now[k].shares, free[k], scale[k] * np.asarray(widths)) for k in active]
         tried = _split(trials.of(np.concatenate(around)), [len(rows) for rows in around])
-        steps = [_steps(trials, now[k], pairs, free[k]) for k, pairs in zip(active, tried, strict=True)]
-        ahead = _split(trials.of(np.concatenate(steps)), [len(rows) for rows in steps])
-        for k, pairs, further in zip(active, tried, ahead, strict=True):
+        models = [_Model.at(trials, now[k], pairs, free[k]) for k, pairs in zip(active, tried, strict=True)]
+        for k, pairs, further, model in zip(active, tried, _stepped(trials, models), models, strict=True):
             best = min([_around(trials, now[k], pairs), *further], key=lambda trial: trial.cost)
-            if best.cost > now[k].cost * (1 - NEGLIGIBLE / trials.size):
-                width[k] *= NARROWER
+            if trials.alike(best.cost, now[k].cost):
+                scale[k] *= NARROWER
+            elif model.holds(best):
+                scale[k] = min(scale[k], float(np.max(np.abs(best.shares - now[k].shares) / widths)))
             now[k] = best
+        if enough is None:
+            _give_up(now, scale)
     return now
+
+
+def _give_up(now: Sequence[Trial], scale: FloatArray) -> None:
+    """Narrow the starts to nothing that are near a better one."""
+    order = sorted(range(len(now)), key=lambda k: now[k].cost)
+    for place, k in enumerate(order):
+        if any(np.abs(now[k].shares - now[j].shares).max() <= scale[k] * WIDTH for j in order[:place]):
+            scale[k] = 0
+
+
+@dataclass(frozen=True)
+class _Model:
+    """Residuals that are linear in the shares about a trial."""
+
+    trials: Trials
+    trial: Trial
+    slope: FloatArray  # (m, s)
+
+    @classmethod
+    def at(cls, trials: Trials, trial: Trial, pairs: Sequence[Trial], free: BoolArray) -> _Model:
+        """That of a trial and the pairs about it."""
+        return cls(trials, trial, trials.blocks.slopes(pairs, free))
+
+    def optimum(self, damping: float) -> FloatArray:
+        """Shares (n,) after a Gauss-Newton step, within the bounds."""
+        weights = self.trials.weights(self.trial.residuals)
+        change = self.trials.blocks.step(self.slope, self.trial.residuals, weights, damping)
+        return np.clip(self.trial.shares + change, 0, 1)
+
+    def cost(self, shares: FloatArray) -> float:
+        """What it expects."""
+        blocks, change = self.trials.blocks, shares - self.trial.shares
+        return self.trials.cost(self.trial.residuals + blocks.along(self.slope, change))
+
+    def holds(self, trial: Trial) -> bool:
+        """Whether a trial gains at least half of what it expects of the undamped step."""
+        return self.trial.cost - trial.cost >= (self.trial.cost - self.cost(self.optimum(0.0))) / 2
+
+
+def _stepped(trials: Trials, models: Sequence[_Model]) -> list[list[Trial]]:
+    """Trials after Gauss-Newton steps: the undamped one, and where it failed against expectation damped ones."""
+    first = trials.of(np.array([model.optimum(0.0) for model in models]))
+    found = [[trial] for trial in first]
+    for own, model in zip(found, models, strict=True):
+        expected = model.cost(own[0].shares)
+        if not (model.holds(own[0]) or trials.alike(expected, model.trial.cost)):
+            own += trials.of(np.array([model.optimum(damping) for damping in DAMPINGS]))
+    return found
 
 
 def _around(trials: Trials, trial: Trial, pairs: list[Trial]) -> Trial:
@@ -111,13 +169,6 @@ def _around(trials: Trials, trial: Trial, pairs: list[Trial]) -> Trial:
     shared = slice(trials.blocks.shared)
     same = [one for one in pairs if np.array_equal(one.shares[shared], trial.shares[shared])]
     return min(best, trials.mixed([trial, *same]), key=lambda one: one.cost)
-
-
-def _steps(trials: Trials, trial: Trial, pairs: Sequence[Trial], free: BoolArray) -> FloatArray:
-    """Shares (d, n) after Gauss-Newton steps with each damping, within the bounds."""
-    slope, weights = trials.blocks.slopes(pairs, free), trials.weights(trial.residuals)
-    rows = [trial.shares + trials.blocks.step(slope, trial.residuals, weights, damping) for damping in DAMPINGS]
-    return np.clip(np.array(rows), 0, 1)
 
 
 def _split(trials: list[Trial], sizes: Sequence[int]) -> list[list[Trial]]:

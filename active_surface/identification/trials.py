@@ -20,6 +20,7 @@ from particle.surface import rim_gap
 Loss = Literal["squares", "absolute"]
 
 MIDDLE: Final = 0.15  # on both sides of the median: the residuals from which their density there is estimated
+NEGLIGIBLE: Final = 1e-2  # of a cost that one residual adds: less is no progress
 EXACT: Final = 1e-12  # m: what is nearer cannot be told from a path
 
 
@@ -94,6 +95,10 @@ class Trials:
         least = EXACT**2 if self.loss == "squares" else EXACT
         return np.array([max(float(sizes[rows].sum()), least) for rows in self.blocks.rows])
 
+    def cost(self, residuals: FloatArray) -> float:
+        """Of residuals (m,)."""
+        return float(np.exp(self.freedom @ np.log(self.losses(residuals)) / self.freedom.sum()))
+
     def weights(self, residuals: FloatArray) -> FloatArray:
         """The weights (m,) with which least squares step towards the least cost."""
         weights, scale = np.empty(len(residuals)), self.freedom / self.losses(residuals)
@@ -117,6 +122,10 @@ class Trials:
         ends = [np.quantile(residuals[rows], (0.5 - MIDDLE, 0.5 + MIDDLE)) for rows in self.blocks.rows]
         deviation = np.array([max(float(high - low), EXACT) / (4 * MIDDLE) for low, high in ends])
         return weight / deviation, weight**2
+
+    def alike(self, cost: float, before: float) -> bool:
+        """Whether a cost is no progress over that before."""
+        return cost > before * (1 - NEGLIGIBLE / self.size)
 
     def threshold(self, rise: float) -> float:
         """The cost at which -2 log likelihood is by a rise above its least."""
@@ -148,10 +157,7 @@ class Trials:
         return residuals[where.reshape(-1)]
 
     def _kept(self, rows: FloatArray, residuals: FloatArray) -> list[Trial]:
-        found = [Trial(np.array(shares), away, self._cost(away)) for shares, away in zip(rows, residuals, strict=True)]
+        found = [Trial(np.array(shares), away, self.cost(away)) for shares, away in zip(rows, residuals, strict=True)]
         self.all += [trial._replace(residuals=np.zeros(0)) for trial in found]
         self.best = min([self.best, *found], key=lambda trial: trial.cost)
         return found
-
-    def _cost(self, residuals: FloatArray) -> float:
-        return float(np.exp(self.freedom @ np.log(self.losses(residuals)) / self.freedom.sum()))
