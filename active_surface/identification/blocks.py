@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.arrays import BoolArray, FloatArray
-
-if TYPE_CHECKING:
-    from active_surface.identification.trials import Trial
 
 SMALL: Final = 1e-5  # singular values of slopes, over the largest: directions without effect
 FLAT: Final = 1e-12  # the diagonal of a field without effect, over the largest
@@ -71,15 +68,17 @@ class Blocks:
                 rows[-1][columns] = np.clip(shares[columns] + side * widths[columns], 0, 1)
         return np.array(rows).reshape(-1, len(shares))
 
-    def slopes(self, pairs: Sequence[Trial], free: BoolArray) -> FloatArray:
-        """The derivatives (m, s) of residuals, from trials at `differences`; 0 where one cannot be run, or is fixed."""
+    def slopes(self, points: Sequence[FloatArray], residuals: Sequence[FloatArray], free: BoolArray) -> FloatArray:
+        """The derivatives (m, s) of residuals, from those at the points of `differences`; 0 of a fixed parameter, and
+        where residuals are infinite."""
         slope = np.zeros((self.rows[-1].stop, self.columns.shape[1]))
         slots = [slot for slot, columns in enumerate(self.columns.T) if free[columns].any()]
-        for slot, low, high in zip(slots, pairs[::2], pairs[1::2], strict=True):
+        for place, slot in enumerate(slots):
+            pair = slice(2 * place, 2 * place + 2)
             for column, rows in zip(self.columns[:, slot], self.rows, strict=True):
-                ends = low.residuals[rows], high.residuals[rows]
-                if free[column] and np.isfinite(ends).all():
-                    slope[rows, slot] = (ends[1] - ends[0]) / (high.shares[column] - low.shares[column])
+                (low, high), (before, after) = points[pair], (one[rows] for one in residuals[pair])
+                if free[column] and np.isfinite([before, after]).all():
+                    slope[rows, slot] = (after - before) / (high[column] - low[column])
         return slope
 
     def information(self, slope: FloatArray, weights: FloatArray) -> FloatArray:

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import fdtri
 
 from active_surface.arrays import FloatArray
-from active_surface.identification.search import descend
+from active_surface.identification.search import descend, slopes
 from active_surface.identification.trials import Trial, Trials
 from coupling import ProgressCallback, no_progress
 
@@ -68,7 +68,7 @@ def spread_of(trials: Trials) -> Spread:
     curvature, variance = trials.curvature()
     unknown = 12 * np.eye(blocks.count)
     for _ in range(2):
-        slope = blocks.slopes(trials.of(blocks.differences(best.shares, free, width)), free)
+        slope = slopes(trials, trials.of(blocks.differences(best.shares, free, width)), free)
         inverse = np.linalg.inv(blocks.information(slope, curvature).sum(axis=0) + unknown)
         width = np.clip(np.sqrt(np.diag(inverse)) / 2, *WIDTHS)
     from_tracks = inverse @ blocks.information(slope, variance) @ inverse

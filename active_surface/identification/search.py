@@ -132,7 +132,7 @@ class _Model:
     @classmethod
     def at(cls, trials: Trials, trial: Trial, pairs: Sequence[Trial], free: BoolArray) -> _Model:
         """That of a trial and the pairs about it."""
-        return cls(trials, trial, trials.blocks.slopes(pairs, free))
+        return cls(trials, trial, slopes(trials, pairs, free))
 
     def optimum(self, damping: float) -> FloatArray:
         """Shares (n,) after a Gauss-Newton step, within the bounds."""
@@ -148,6 +148,11 @@ class _Model:
     def holds(self, trial: Trial) -> bool:
         """Whether a trial gains at least half of what it expects of the undamped step."""
         return self.trial.cost - trial.cost >= (self.trial.cost - self.cost(self.optimum(0.0))) / 2
+
+
+def slopes(trials: Trials, pairs: Sequence[Trial], free: BoolArray) -> FloatArray:
+    """The derivatives (m, s) of residuals, from trials at differences."""
+    return trials.blocks.slopes([one.shares for one in pairs], [one.residuals for one in pairs], free)
 
 
 def _stepped(trials: Trials, models: Sequence[_Model]) -> list[list[Trial]]:

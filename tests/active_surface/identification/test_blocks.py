@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from active_surface.identification.blocks import Blocks
-from active_surface.identification.trials import Trial
 
 SIZES, SHARED, OWN = (7, 12, 9), 2, 3
 COUNT = SHARED + len(SIZES) * OWN
@@ -70,7 +69,7 @@ def test_two_trials_a_slot_give_the_slopes_of_all_tracks(blocks):
     shares[5], free[[1, 8]] = 1.0, False
     rows = blocks.differences(shares, free, 0.01)
     assert len(rows) == 2 * (SHARED - 1 + OWN) and rows.min() >= 0 and rows.max() <= 1
-    found = blocks.slopes([Trial(row, matrix @ row, 1.0) for row in rows], free)
+    found = blocks.slopes(rows, rows @ matrix.T, free)
     np.testing.assert_allclose(dense(blocks, found)[:, free], matrix[:, free], rtol=1e-9, atol=1e-10)
     assert np.abs(dense(blocks, found)[:, ~free]).max() == 0
 
