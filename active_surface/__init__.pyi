@@ -73,6 +73,7 @@ from .identification import (
     Estimate as Estimate,
     Identified as Identified,
     Track as Track,
+    TrackFit as TrackFit,
     identify as identify,
     read_track as read_track,
 )

@@ -1,7 +1,8 @@
 """How often identified fields' 95 % intervals hold the true ones, and what a track costs: tracks made with noise.
 
-`python benchmarks/identification.py [TRIES]` prints the table of docs/howto/identify.md. Each try has its own noise and
-begins at other values of the fields than the true ones. With --picture FILE it draws the first try of the plate.
+`python benchmarks/identification.py [TRIES] [NUMBER ...]` prints the figures of docs/howto/identify.md, for all
+problems or those with these numbers. Each try has its own noise and begins at other values than the true ones. With
+--picture FILE it draws the first try of the plate, with --pictures FILE that of two tables.
 """
 
 from __future__ import annotations
@@ -24,18 +25,47 @@ FloatArray = NDArray[np.float64]
 EXAMPLES = Path(__file__).parents[1] / "examples"
 OUTLIERS = 0.1  # of the places
 FAR = 20.0  # times the noise
+FASTEST = 3  # runs of one path, of which the fastest counts
 
 
 class Problem(NamedTuple):
-    """A case with what is to be found of it."""
+    """Cases with what is to be found of them."""
 
     name: str
-    truth: Case
+    truths: tuple[Case, ...]
     free: tuple[str, ...]
-    noise: float  # m
+    noise: tuple[float, ...]  # m, of each track
     places: int
     loss: Any = "squares"
     outliers: float = 0.0
+    own: tuple[str, ...] = ()
+
+    @property
+    def values(self) -> FloatArray:
+        """The true values: shared ones, then track by track own ones."""
+        own = [_value(truth, name) for truth in self.truths for name in self.own]
+        return np.array([*(_value(self.truths[0], name) for name in self.free), *own])
+
+
+def _value(case: Case, name: str) -> float:
+    table, key = name.split(".")
+    return float(getattr(getattr(case, table), key))
+
+
+def conveyor(frequency: str, squeeze: str) -> Case:
+    """A table that shakes along x, and along z too, so that friction and squeeze differ in what they do."""
+    motion = {"frequency": frequency, "cycle": "sine"}
+    return Case(
+        plate={
+            "shape": "platform",
+            "motion": {"x": motion | {"stroke": "300 um"}, "z": motion | {"stroke": "80 um", "phase": "40 deg"}},
+        },
+        actuators=(),
+        part={"mass": "2e-9 kg", "position": ("0 um", "0 um"), "squeeze": squeeze},
+        friction={"model": "coulomb", "coefficient": 0.3},
+        run={"duration": "15 ms"},
+        name=f"table_{frequency.replace(' ', '')}",
+    )
 
 
 def problems() -> list[Problem]:
@@ -44,77 +74,95 @@ def problems() -> list[Problem]:
     )
     plate = read_case(EXAMPLES / "transport.toml").vary({"run.duration": "12 ms"})
     short = plate.vary({"run.duration": "4 ms"})
-    both = ("friction.coefficient", "friction.adhesion")
+    both, shaken = ("friction.coefficient", "friction.adhesion"), ((squeezed,), ("part.squeeze",), (1e-3,), 81)
+    tables = conveyor("50 Hz", "5 nN"), conveyor("60 Hz", "10 nN")
     return [
-        Problem("shaker, squeeze", squeezed, ("part.squeeze",), 1e-3, 81),
-        Problem("plate, coefficient and adhesion", plate, both, 0.5e-6, 61),
-        Problem("plate for 4 ms, adhesion", short, ("friction.adhesion",), 0.5e-6, 41),
-        Problem("shaker with outliers, squeeze, absolute", squeezed, ("part.squeeze",), 1e-3, 81, "absolute", OUTLIERS),
-        Problem("shaker with outliers, squeeze, squares", squeezed, ("part.squeeze",), 1e-3, 81, "squares", OUTLIERS),
+        Problem("shaker", *shaken),
+        Problem("shaker with outliers, absolute", *shaken, "absolute", OUTLIERS),
+        Problem("shaker with outliers, squares", *shaken, "squares", OUTLIERS),
+        Problem("plate for 4 ms", (short,), ("friction.adhesion",), (0.5e-6,), 41),
+        Problem("plate", (plate,), both, (0.5e-6,), 61),
+        Problem("two tables", tables, ("friction.coefficient",), (2e-6, 1e-6), 41, own=("part.squeeze",)),
     ]
 
 
-def attempt(problem: Problem, path: Trajectory, number: int) -> Identified:
-    """What a try finds, from a track along a path with noise of its own."""
-    truth, generator = problem.truth, np.random.default_rng((number, 1))
-    times = np.linspace(0, truth.run.duration, problem.places)
-    exact = path.at(times).position
-    noise = problem.noise * generator.standard_normal(exact.shape)
-    noise *= np.where(generator.random(exact.shape) < problem.outliers, FAR, 1.0)
-    starts = values_of(problem) * 3 ** generator.uniform(-1, 1, len(problem.free))
-    begin = truth.vary(dict(zip(problem.free, starts, strict=True)))
-    return identify(begin, Track(times, exact + noise), problem.free, loss=problem.loss, seed=number, threads=1)
+def paths_of(problem: Problem) -> list[Trajectory]:
+    """The true path of each track."""
+    return [follow_part(truth, build_surface(truth), build_friction(truth)) for truth in problem.truths]
 
 
-def values_of(problem: Problem) -> FloatArray:
-    """The true values of the free fields."""
-    keys = (name.split(".") for name in problem.free)
-    return np.array([getattr(getattr(problem.truth, table), key) for table, key in keys])
+def attempt(problem: Problem, paths: Sequence[Trajectory], number: int) -> Identified:
+    """What a try finds, from tracks along paths with noise of their own."""
+    generator, begins, tracks = np.random.default_rng((number, 1)), [], []
+    shared = 3 ** generator.uniform(-1, 1, len(problem.free))
+    for truth, path, size in zip(problem.truths, paths, problem.noise, strict=True):
+        times = np.linspace(0, truth.run.duration, problem.places)
+        exact = path.at(times).position
+        noise = size * generator.standard_normal(exact.shape)
+        noise *= np.where(generator.random(exact.shape) < problem.outliers, FAR, 1.0)
+        tracks.append(Track(times, exact + noise))
+        factors = [*shared, *3 ** generator.uniform(-1, 1, len(problem.own))]
+        names = (*problem.free, *problem.own)
+        begins.append(truth.vary({name: _value(truth, name) * f for name, f in zip(names, factors, strict=True)}))
+    return identify(begins, tracks, problem.free, own=problem.own, loss=problem.loss, seed=number, threads=1)
+
+
+def one_path(problem: Problem) -> float:
+    """The processor time of one path, a mean over tracks [s]."""
+    total = 0.0
+    for truth in problem.truths:
+        surface, law, took = build_surface(truth), build_friction(truth), []
+        follow_part(truth, surface, law)
+        for _ in range(FASTEST):
+            start = time.process_time()
+            follow_part(truth, surface, law)
+            took.append(time.process_time() - start)
+        total += min(took)
+    return total / len(problem.truths)
 
 
 def measure(problem: Problem, tries: int) -> None:
     """Print for each field how many intervals hold the true value, and how near the values are."""
-    truth, values = problem.truth, values_of(problem)
-    surface, law = build_surface(truth), build_friction(truth)
-    path = follow_part(truth, surface, law)
-    start = time.process_time()
-    follow_part(truth, surface, law)
-    one = time.process_time() - start
+    values, paths, one = problem.values, paths_of(problem), one_path(problem)
     found, took = [], []
     for number in range(tries):
         start = time.process_time()
-        found.append(attempt(problem, path, number))
+        found.append(attempt(problem, paths, number))
         took.append((time.process_time() - start) / one)
     low, high, value = (
         np.array([[getattr(field, end) for field in result.estimates] for result in found])
         for end in ("low", "high", "value")
     )
-    held, paths = (low <= values) & (values <= high), np.median([result.paths for result in found])
+    held, followed = (low <= values) & (values <= high), np.median([result.paths for result in found])
     errors, widths = np.abs(value / values - 1), (high - low) / values
     print(f"{problem.name}: {tries} tries; one path takes {1e3 * one:.1f} ms of a processor")
-    print(f"  a track takes {paths:.0f} paths, and the time of {np.median(took):.0f} (median), {max(took):.0f} at most")
-    for k, field in enumerate(problem.free):
-        error, width = np.median(errors[:, k]), np.median(widths[:, k])
-        print(f"  {field}: {held[:, k].sum()} of {tries} hold it; median error {error:.2g}, width {width:.2g} of it")
+    print(
+        f"  a try takes {followed:.0f} paths, and the time of {np.median(took):.0f} (median), {max(took):.0f} at most"
+    )
+    for k, field in enumerate(found[0].estimates):
+        error, width, missed = np.median(errors[:, k]), np.median(widths[:, k]), np.flatnonzero(~held[:, k])
+        print(
+            f"  {field.label}: {held[:, k].sum()} of {tries} hold it; median error {error:.2g}, "
+            f"width {width:.2g} of it; missed in {missed.tolist()}"
+        )
     sys.stdout.flush()
 
 
-def draw(file: str) -> None:
-    """Draw the first try of the plate."""
-    problem = problems()[1]
-    path = follow_part(problem.truth, build_surface(problem.truth), build_friction(problem.truth))
-    found = attempt(problem, path, 0)
+def draw(problem: Problem, file: str) -> None:
+    """Draw the first try of a problem."""
+    found = attempt(problem, paths_of(problem), 0)
     print(*found.lines(), *found.warnings(), sep="\n")
     found.plot().savefig(file, dpi=110)
 
 
 def main(words: Sequence[str]) -> None:
-    if words[:1] == ["--picture"]:
-        draw(words[1])
+    if words[:1] in (["--picture"], ["--pictures"]):
+        draw(problems()[4 if words[0] == "--picture" else 5], words[1])
         return
-    tries = int(words[0]) if words else 20
-    for problem in problems():
-        measure(problem, tries)
+    tries, *numbers = map(int, words or ["20"])
+    for number, problem in enumerate(problems()):
+        if not numbers or number in numbers:
+            measure(problem, tries)
 
 
 if __name__ == "__main__":

@@ -6,12 +6,12 @@ import sys
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import click
 
 from active_surface.cli import ctrl_c, options
-from active_surface.cli.group import DEFAULT_OUTPUT, Command, check_kind, main, refusing
+from active_surface.cli.group import DEFAULT_OUTPUT, Spreading, check_kind, main, refusing
 
 if TYPE_CHECKING:
     from active_surface.steering import Route
@@ -22,19 +22,10 @@ SHARE = click.FloatRange(min=0, max=1, min_open=True, max_open=True)
 MISSED = 1  # the exit code where a target is not reached
 
 
-class _Through(Command):
+class _Through(Spreading):
     """A command whose option --through takes all the points that follow it."""
 
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        spread, through = [], False
-        for text in args:
-            point = "," in text and not text.startswith("--") and not Path(text).exists()
-            if through and point:
-                spread.append(f"--through={text}")
-            elif text != "--through":
-                spread.append(text)
-            through = text.startswith("--through") or (through and point)
-        return super().parse_args(ctx, spread)
+    spread: ClassVar = {"--through": lambda text: "," in text and not Path(text).exists()}
 
 
 def _common(command: Callable[..., None]) -> Callable[..., None]:

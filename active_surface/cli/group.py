@@ -11,12 +11,12 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, TypeVar
 
 import click
 
 from active_surface.cli import ctrl_c
-from active_surface.cli.refusal import refusal, refusal_of
+from active_surface.cli.refusal import Refusal, refusal, refusal_of
 from active_surface.cli.usage import mistakes_in, unknown
 from coupling import near
 
@@ -58,6 +58,23 @@ class Command(click.Command):
             return super().invoke(ctx)
         except click.UsageError as error:
             raise refusal(ctx.command_path, mistakes_in(error), bool(ctx.params.get("as_json"))) from None
+
+
+class Spreading(Command):
+    """A command with options that take all the words that follow them, each as long as a test accepts the word."""
+
+    spread: ClassVar[Mapping[str, Callable[[str], bool]]] = {}
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        words, option = [], ""
+        for text in args:
+            if option and not text.startswith("-") and self.spread[option](text):
+                words.append(f"{option}={text}")
+                continue
+            option = next((name for name in self.spread if text == name or text.startswith(f"{name}=")), "")
+            if text != option:
+                words.append(text)
+        return super().parse_args(ctx, words)
 
 
 class Group(Command, click.Group):
@@ -126,6 +143,20 @@ def read(path: Path, may_move: bool = False) -> Case:
 
     check_kind(path, "case")
     return refusing(read_case, path, may_move)
+
+
+def read_all(paths: Sequence[Path]) -> list[Case]:
+    """The cases in files, with the mistakes of all of them in one refusal."""
+    cases, refused = [], []
+    for path in paths:
+        try:
+            cases.append(read(path))
+        except Refusal as error:
+            refused.append(error)
+    if refused:
+        mistakes = [mistake for error in refused for mistake in error.mistakes]
+        raise Refusal("\n".join(error.message for error in refused), mistakes, refused[0].as_json)
+    return cases
 
 
 def check_kind(path: Path, *expected: str) -> None:

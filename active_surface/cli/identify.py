@@ -2,43 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 import click
 
 from active_surface.cli import options
-from active_surface.cli.group import DEFAULT_OUTPUT, Command, main, read, refusing
+from active_surface.cli.group import DEFAULT_OUTPUT, Spreading, main, read_all, refusing
 
 if TYPE_CHECKING:
     from active_surface.identification import Track
     from coupling.case import Case
 
 STAGES = 3
+CASE = ".toml"
 Answer = TypeVar("Answer")
 
 
-class _Free(Command):
-    """A command whose option --free takes all the fields that follow it."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        spread, free = [], False
-        for text in args:
-            field = not text.startswith("-") and not Path(text).exists()
-            if free and field:
-                spread.append(f"--free={text}")
-            elif text != "--free":
-                spread.append(text)
-            free = text.startswith("--free") or (free and field)
-        return super().parse_args(ctx, spread)
+def _field(text: str) -> bool:
+    return not Path(text).exists() and not text.endswith(CASE)
 
 
-@main.command(cls=_Free)
-@click.argument("case", type=click.Path(path_type=Path))
-@click.option("--track", type=click.Path(path_type=Path), required=True, help="CSV file of time, x and y, with units.")
-@click.option("--free", multiple=True, required=True, metavar="FIELD ...", help="Fields to find: part.squeeze ...")
+class _Lists(Spreading):
+    """A command whose options take all the tracks or fields that follow them."""
+
+    spread: ClassVar = {"--track": lambda text: not text.endswith(CASE), "--free": _field, "--own": _field}
+
+
+@main.command(cls=_Lists)
+@click.argument("case", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.option(
+    "--track",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    required=True,
+    metavar="FILE ...",
+    help="CSV file of time, x and y, with units: one for each CASE, or several of one.",
+)
+@click.option("--free", multiple=True, metavar="FIELD ...", help="Fields to find: part.squeeze ...")
+@click.option("--own", multiple=True, metavar="FIELD ...", help="Fields that each track has for itself.")
 @click.option(
     "--bounds", multiple=True, metavar="FIELD=LOW,HIGH", help="Of a field [a tenth and ten times the case's]."
 )
@@ -50,9 +54,10 @@ class _Free(Command):
 @options.quiet
 @options.as_json
 def identify(
-    case: Path,
-    track: Path,
+    case: tuple[Path, ...],
+    track: tuple[Path, ...],
     free: tuple[str, ...],
+    own: tuple[str, ...],
     bounds: tuple[str, ...],
     absolute: bool,
     seed: int,
@@ -62,41 +67,47 @@ def identify(
     quiet: bool,
     as_json: bool,
 ) -> None:
-    """Find the fields of CASE with which its path is closest to a measured track.
+    """Find the fields of each CASE with which paths are closest to measured tracks.
 
-    Fields are those of [part] and [friction]. Each gets a 95 % interval, and a warning where the track does not
-    determine it. Writes NAME_identified.toml with the fields, and NAME_identified.png.
+    Fields are those of [part] and [friction]. Each gets a 95 % interval, and a warning where tracks do not determine
+    it. Writes NAME_identified.toml with the fields for each case, and NAME_identified.png.
     """
-    parsed = read(case)
+    parsed = read_all(case)
     from active_surface.identification import identify as find
     from coupling import StageBar, silent
     from coupling.results import check_folder
 
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    places, ends = refusing(_inputs, parsed, track, free, bounds, folder, overwrite)
+    places, ends = refusing(_inputs, parsed, track, free, own, bounds, folder, overwrite)
     loss = "absolute" if absolute else "squares"
     with nullcontext(silent) if quiet else StageBar(STAGES) as bar:
-        found = refusing(find, parsed, places, free, ends, loss, seed, threads, bar)
+        found = refusing(find, parsed, places, free, ends, own, loss, seed, threads, bar)
     found = refusing(found.written, folder, True)
     figures = found.figures() | {"files": list(map(str, found.files))}
     options.tell(figures, found.lines(), quiet, as_json, found.warnings(), found.files)
 
 
 def _inputs(
-    case: Case, track: Path, free: tuple[str, ...], bounds: tuple[str, ...], folder: Path, overwrite: bool
-) -> tuple[Track, dict[str, list[str]]]:
-    """The track and the bounds; ValueError with all that is wrong with any input."""
-    from active_surface.identification import check_free, free_parameters, read_track
+    cases: Sequence[Case],
+    tracks: Sequence[Path],
+    free: Sequence[str],
+    own: Sequence[str],
+    bounds: Sequence[str],
+    folder: Path,
+    overwrite: bool,
+) -> tuple[list[Track], dict[str, list[str]]]:
+    """The tracks and the bounds; ValueError with all that is wrong with any input."""
+    from active_surface.identification import case_names, check_free, checked, read_track
 
     wrong: list[str] = []
-    places = _unless(wrong, read_track, track)
+    places = [_unless(wrong, read_track, track) for track in tracks]
     ends = _unless(wrong, _bounds, bounds)
-    _unless(wrong, free_parameters, case, free, ends or {})
-    _unless(wrong, check_free, folder, f"{case.name}_identified", overwrite)
-    if places is None or ends is None or wrong:
+    _unless(wrong, checked, cases, places, free, own, ends or {})
+    _unless(wrong, check_free, folder, case_names(cases, len(tracks), bool(own)), overwrite)
+    if ends is None or wrong:
         raise ValueError("\n".join(wrong))
-    return places, ends
+    return [track for track in places if track], ends
 
 
 def _unless(wrong: list[str], work: Callable[..., Answer], *arguments: object) -> Answer | None:
@@ -108,7 +119,7 @@ def _unless(wrong: list[str], work: Callable[..., Answer], *arguments: object) -
         return None
 
 
-def _bounds(texts: tuple[str, ...]) -> dict[str, list[str]]:
+def _bounds(texts: Sequence[str]) -> dict[str, list[str]]:
     """The bounds in texts such as part.squeeze=1 nN,10 nN."""
     bounds, wrong = {}, []
     for text in texts:

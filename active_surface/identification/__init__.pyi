@@ -1,7 +1,9 @@
+from .estimate import Estimate as Estimate
+from .fit import TrackFit as TrackFit
 from .identify import identify as identify
-from .result import Estimate as Estimate, Identified as Identified
+from .result import Identified as Identified
 from .track import Track as Track, read_track as read_track
 
 # Not public: for the packages that build on this one.
-from .parameters import free_parameters as free_parameters
-from .result import check_free as check_free
+from .checks import checked as checked
+from .result import case_names as case_names, check_free as check_free

@@ -1,50 +1,57 @@
-"""One identification, from case and track to fields: this file reads as the pipeline.
+"""One identification, from cases and tracks to fields: this file reads as the pipeline.
 
-parameters -> surface -> search -> profiles -> case, path, correlation
+parameters -> surfaces -> search -> profiles -> cases, paths, correlation
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from active_surface.identification.parameters import Parameter, case_with, free_parameters
-from active_surface.identification.profiles import covariance, profiled
-from active_surface.identification.result import Estimate, Identified
+from active_surface.identification.checks import checked
+from active_surface.identification.estimate import Estimate
+from active_surface.identification.fit import TrackFit
+from active_surface.identification.parameters import FREE, Parameter, case_with
+from active_surface.identification.profiles import profiled, spread_of
+from active_surface.identification.result import Identified, case_names, names_of
 from active_surface.identification.search import search
 from active_surface.identification.track import Track
-from active_surface.identification.trials import Loss, Trials
-from coupling import Progress, build_friction, build_part, build_surface, follow_part, silent
-from coupling.case import Case
-from particle import interruptible
+from active_surface.identification.trials import Loss, Recording, Trials
+from coupling import Progress, build_friction, build_surface, follow_part, silent
+from coupling.case import Case, plain_case
+from particle import SurfaceMotion, interruptible
 
 
 def identify(
-    case: Case,
-    track: Track,
-    free: str | Sequence[str],
+    case: Case | Sequence[Case],
+    track: Track | Sequence[Track],
+    free: str | Sequence[str] = (),
     bounds: Mapping[str, Sequence[Any]] | None = None,
+    own: str | Sequence[str] = (),
     loss: Loss = "squares",
     seed: int = 0,
     threads: int | None = None,
     progress: Progress = silent,
 ) -> Identified:
-    """Find the fields of a case with which its path is closest to a track.
+    """Find the fields of a case, or of several, with which paths are closest to tracks.
 
     Parameters
     ----------
-    case : Case
-        The case. Its drives and its plate or platform stay as they are.
-    track : Track
-        Where the part was.
+    case : Case or sequence of Case
+        The case of each track, or one for all. Their drives and their plate or platform stay as they are.
+    track : Track or sequence of Track
+        Where the part was. A track counts by its own noise, the deviation of its residuals.
     free : str or sequence of str
         Places of fields of `part` and `friction`, as of `Case.vary`: ``"part.squeeze"``, ``"friction.coefficient"``.
+        All tracks share their values.
     bounds : mapping, optional
         The least and largest value of a field, texts with units or SI; by default a tenth and ten times its value in
         the case, where that is positive and no place or velocity.
+    own : str or sequence of str
+        Fields that each track has for itself.
     loss : {"squares", "absolute"}
         What is made least: the sum of the squares of the residuals along x and y, or of their sizes, which outliers
         hardly change.
@@ -58,7 +65,7 @@ def identify(
     Returns
     -------
     identified : Identified
-        The fields with their 95 % intervals, and the case with them.
+        The fields with their 95 % intervals, and the cases with them.
 
     Raises
     ------
@@ -67,67 +74,74 @@ def identify(
     KeyboardInterrupt
         Ctrl-C.
     """
-    free = [free] if isinstance(free, str) else list(free)
-    parameters = _checked(case, track, free, bounds or {}, loss)
-    name = f"{case.name}_identified"
+    cases = [case] if isinstance(case, Case) else list(case)
+    tracks = [track] if isinstance(track, Track) else list(track)
+    shared, alone = ([paths] if isinstance(paths, str) else list(paths) for paths in (free, own))
+    rows = checked(cases, tracks, shared, alone, bounds or {}, loss)
+    names = names_of([one.name for one in cases], len(tracks))
+    written = case_names(cases, len(tracks), bool(alone))
     # Many small systems: BLAS threads would only wait for each other.
     with threadpool_limits(limits=1, user_api="blas"):
         with progress("Solving the plate"):
-            surface = interruptible(build_surface, case)
-            interruptible(follow_part, case, surface, build_friction(case))  # compiles what paths need
-        trials = Trials(case, surface, track, parameters, loss, threads)
+            surfaces = _surfaces(cases)
+        each = len(tracks) // len(cases)  # 1, or all
+        many = zip(cases * each, surfaces * each, tracks, rows * each, strict=True)
+        trials = Trials([Recording(*one) for one in many], len(shared), loss, threads)
         with progress("Searching from many starts") as tell:
             search(trials, seed, tell)
         with progress("Finding the ends of intervals") as tell:
             intervals = profiled(trials, tell)
-        spread, best = covariance(trials), trials.best
-        found = case_with(case, parameters, best.shares).model_copy(update={"name": name})
-        (path,) = trials.paths([(build_part(found), build_friction(found))])
+        spread = spread_of(trials).covariance
+        fits = _fits(trials, names, written * (len(tracks) // len(written)))
     deviation = np.sqrt(np.diag(spread))
     return Identified(
-        case=found,
-        track=track,
-        trajectory=path,
-        estimates=tuple(
-            _estimate(parameter, float(share), *ends)
-            for parameter, share, ends in zip(parameters, best.shares, intervals, strict=True)
-        ),
+        fits=fits,
+        estimates=_estimates(trials, names, intervals),
         correlation=spread / np.outer(deviation, deviation),
-        residuals=best.residuals,
-        paths=len(trials.all),
+        paths=trials.followed,
     )
 
 
-def _checked(
-    case: Case, track: Track, free: Sequence[str], bounds: Mapping[str, Sequence[Any]], loss: str
-) -> list[Parameter]:
-    """The parameters; ValueError with all that is wrong."""
-    wrong, parameters = [], []
-    try:
-        parameters = free_parameters(case, free, bounds)
-    except ValueError as error:
-        wrong.append(str(error))
-    if case.run.scheme != "events":
-        wrong.append(f'Input case of identify must have run.scheme = "events"; got "{case.run.scheme}"')
-    if track.time[-1] > case.run.duration:
-        wrong.append(
-            f"Input track of identify must end within the run's duration, {case.run.duration:g} s; "
-            f"got {track.time[-1]:g} s"
-        )
-    if (measured := int(np.isfinite(track.position).sum())) <= len({*free}) or track.time[-1] <= 0:
-        wrong.append(
-            f"Input track of identify must have more places than free fields, {len({*free})}, and later ones than 0 s; "
-            f"got {measured} until {track.time[-1]:g} s"
-        )
-    if loss not in get_args(Loss):
-        wrong.append(f'Input loss of identify must be "squares" or "absolute"; got {loss!r}')
-    if wrong:
-        raise ValueError("\n".join(wrong))
-    return parameters
+def _surfaces(cases: Sequence[Case]) -> list[SurfaceMotion]:
+    """The surface of each case; cases that differ in part and friction only have one."""
+    built: list[tuple[dict[str, Any], SurfaceMotion]] = []
+    found = []
+    for case in cases:
+        tables = {key: table for key, table in plain_case(case).items() if key not in (*FREE, "name", "source")}
+        surface = next((surface for known, surface in built if known == tables), None)
+        if surface is None:
+            surface = interruptible(build_surface, case)
+            interruptible(follow_part, case, surface, build_friction(case))  # compiles what paths need
+            built.append((tables, surface))
+        found.append(surface)
+    return found
 
 
-def _estimate(parameter: Parameter, share: float, low: float, high: float) -> Estimate:
+def _fits(trials: Trials, names: Sequence[str], written: Sequence[str]) -> tuple[TrackFit, ...]:
+    """Each track with its case and path at the optimum, where the cases have the names to be written."""
+    fits = []
+    for number, (case, _, track, parameters) in enumerate(trials.recordings):
+        shares = trials.best.shares[trials.blocks.columns[number]]
+        run = trials.run(number, shares)
+        assert run is not None  # as it was followed
+        (path,) = trials.paths(number, [run])
+        found = case_with(case, parameters, shares).model_copy(update={"name": written[number]})
+        fits.append(TrackFit(names[number], found, track, path))
+    return tuple(fits)
+
+
+def _estimates(trials: Trials, names: Sequence[str], intervals: Sequence[tuple[float, float]]) -> tuple[Estimate, ...]:
+    """Each parameter with its interval: those shared, then track by track its own."""
+    estimates: dict[int, Estimate] = {}
+    for name, recording, columns in zip(names, trials.recordings, trials.blocks.columns, strict=True):
+        for number, parameter in zip(columns.tolist(), recording.parameters, strict=True):
+            of = name if trials.blocks.several and number >= trials.blocks.shared else None
+            estimates[number] = _estimate(parameter, of, trials.best.shares[number], *intervals[number])
+    return tuple(estimates[number] for number in sorted(estimates))
+
+
+def _estimate(parameter: Parameter, of: str | None, share: float, low: float, high: float) -> Estimate:
     """A field whose value and interval are at shares of its bounds."""
     value, least, most = (float(parameter.value(one)) for one in (share, low, high))
     field = parameter.field
-    return Estimate(field.path, field.unit, value, least, most, low <= 0, high >= 1)
+    return Estimate(field.path, of, field.unit, value, least, most, low <= 0, high >= 1)

@@ -1,9 +1,9 @@
-"""The parameters of an identification: free fields of a case, with bounds."""
+"""The parameters of an identification: free fields of cases, with bounds."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -33,28 +33,57 @@ class Parameter:
         return self.low + (self.high - self.low) * share
 
 
-def free_parameters(case: Case, free: Sequence[str], bounds: Bounds) -> list[Parameter]:
-    """The parameters of a case; ValueError with every mistake in their paths and bounds."""
-    parameters: list[Parameter] = []
-    wrong = [("bounds", f"must be of free fields; got {path}") for path in bounds if path not in free]
-    wrong += [
-        ("free", f"must name each field once; got {path} twice") for path in sorted({*free}) if free.count(path) > 1
-    ]
-    if not free:
-        wrong.append(("free", "must name at least one field, such as friction.coefficient"))
-    for path in dict.fromkeys(free):
-        try:
-            field = _field(case, path)
-        except ValueError as error:
-            wrong.append(("free", str(error)))
-            continue
-        try:
-            parameters.append(_bounded(field, bounds.get(path)))
-        except ValueError as error:
-            wrong.append(("bounds", f"of {path} {error}"))
+def parameters_of(
+    cases: Sequence[Case], free: Sequence[str], own: Sequence[str], bounds: Bounds
+) -> list[list[Parameter]]:
+    """For each case its parameters: shared ones, with the same bounds for all, then own ones.
+
+    Raises ValueError with every mistake in their paths and bounds, and the cases that have it if not all do.
+    """
+    kinds = dict.fromkeys(own, "own") | dict.fromkeys(free, "free")
+    wrong = _miswritten(free, own, bounds)
+    mistakes: dict[tuple[str, str], list[str]] = {}
+    columns = {
+        path: [one for case in cases if (one := _parameter(case, path, kind, bounds, mistakes))]
+        for path, kind in kinds.items()
+    }
+    for (name, mistake), names in mistakes.items():
+        wrong.append((name, mistake if len(names) == len(cases) else f"{mistake} (in {', '.join(names)})"))
     if wrong:
         raise ValueError("\n".join(f"Input {name} of identify {mistake}" for name, mistake in wrong))
-    return parameters
+    for path in free:
+        low, high = min(one.low for one in columns[path]), max(one.high for one in columns[path])
+        columns[path] = [replace(one, low=low, high=high) for one in columns[path]]
+    return [list(row) for row in zip(*(columns[path] for path in (*free, *own)), strict=True)]
+
+
+def _miswritten(free: Sequence[str], own: Sequence[str], bounds: Bounds) -> list[tuple[str, str]]:
+    """What is wrong with the paths, whatever the cases have."""
+    wrong = [("bounds", f"must be of free fields; got {path}") for path in bounds if path not in (*free, *own)]
+    for name, paths in (("free", free), ("own", own)):
+        twice = sorted(path for path in {*paths} if paths.count(path) > 1)
+        wrong += [(name, f"must name each field once; got {path} twice") for path in twice]
+    both = [path for path in dict.fromkeys(own) if path in free]
+    wrong += [("own", f"must be other fields than the shared ones of free; got {path} in both") for path in both]
+    if not (free or own):
+        wrong.append(("free", "must name at least one field, such as friction.coefficient"))
+    return wrong
+
+
+def _parameter(
+    case: Case, path: str, kind: str, bounds: Bounds, mistakes: dict[tuple[str, str], list[str]]
+) -> Parameter | None:
+    """A parameter of a case; None where it has none, with the case's name added to those with that mistake."""
+    try:
+        field = _field(case, path)
+    except ValueError as error:
+        mistakes.setdefault((kind, str(error)), []).append(case.name)
+        return None
+    try:
+        return _bounded(field, bounds.get(path))
+    except ValueError as error:
+        mistakes.setdefault(("bounds", f"of {path} {error}"), []).append(case.name)
+        return None
 
 
 def _field(case: Case, path: str) -> Field:

@@ -1,7 +1,8 @@
-"""Identified: the case whose path is closest to a track, and how well its fields are known."""
+"""Identified: the cases whose paths are closest to tracks, and how well their fields are known."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -9,6 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from active_surface.arrays import FloatArray
+from active_surface.identification.estimate import Estimate
+from active_surface.identification.fit import TrackFit
 from active_surface.identification.track import Track
 from coupling.case import Case, write_case
 from meshes import quantity_text
@@ -20,45 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ALIKE: Final = 0.95  # a correlation that tells of two fields which hardly differ in what they do
-TELLING: Final = 3.0  # standard deviations of the correlation of successive residuals that are independent
-MOST_DIGITS: Final = 9
-EARLY: Final = 1e-9  # of the track's end
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A field with its 95 % interval by the profile of the likelihood."""
-
-    field: str
-    unit: str  # SI, "1" of a plain number
-    value: float  # in it
-    low: float  # in it; a bound of the search where `open_low`
-    high: float  # in it
-    open_low: bool  # the data do not say how small it may be
-    open_high: bool  # nor how large
-
-    @property
-    def determined(self) -> bool:
-        """Whether the data bound it on either side."""
-        return not (self.open_low and self.open_high)
-
-    @property
-    def text(self) -> str:
-        """The value with its interval, in words."""
-        low, high = (self._written(value) for value in (self.low, self.high))
-        if not self.determined:
-            return f"not determined: any value from {low} to {high} describes the track as well"
-        if self.open_low or self.open_high:
-            return f"{self._written(self.value)}, at {f'most {high}' if self.open_low else f'least {low}'} (95 %)"
-        return f"{self._written(self.value)}, from {low} to {high} (95 %)"
-
-    def _written(self, value: float) -> str:
-        """A value with as many digits as tell the ends apart."""
-        size, width = abs(self.value), self.high - self.low
-        digits = (
-            MOST_DIGITS if not width else int(np.clip(np.ceil(np.log10(max(size / width, 1.0))) + 2, 3, MOST_DIGITS))
-        )
-        return f"{value:.{digits}g}" if self.unit == "1" else quantity_text(value, self.unit, digits)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -67,30 +31,47 @@ class Identified:
 
     Parameters
     ----------
-    case : Case
-        The case with the fields that were found.
-    track : Track
-        What it was fitted to.
-    trajectory : Trajectory
-        Its path, until the track ends.
+    fits : tuple of TrackFit
+        Each track with its case and path.
     estimates : tuple of Estimate
-        Each free field.
+        Each free field: those that tracks share, then track by track its own.
     correlation : (n, n) array
         Of the errors of the fields, by the slopes of the residuals.
-    residuals : (m,) array
-        Path minus track, m.
     paths : int
         How many were followed.
     """
 
-    case: Case
-    track: Track
-    trajectory: Trajectory
+    fits: tuple[TrackFit, ...]
     estimates: tuple[Estimate, ...]
     correlation: FloatArray
-    residuals: FloatArray
     paths: int
     files: tuple[Path, ...] = field(default=())
+
+    @property
+    def case(self) -> Case:
+        """The case of the only track; ValueError with several, whose cases are in `fits`."""
+        return self._only.case
+
+    @property
+    def track(self) -> Track:
+        """The only track; ValueError with several."""
+        return self._only.track
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """The path of the only track; ValueError with several."""
+        return self._only.trajectory
+
+    @property
+    def _only(self) -> TrackFit:
+        if len(self.fits) > 1:
+            raise ValueError(f"Input fits of Identified must be one; got {len(self.fits)}: take one of fits")
+        return self.fits[0]
+
+    @property
+    def residuals(self) -> FloatArray:
+        """Paths minus tracks (m,) [m], track by track."""
+        return np.concatenate([fit.residuals for fit in self.fits])
 
     @property
     def residual(self) -> float:
@@ -98,34 +79,33 @@ class Identified:
         return float(np.sqrt(np.mean(self.residuals**2)))
 
     @property
-    def succession(self) -> float:
-        """The correlation of each residual along x or y with the next; near 0 where they are noise."""
-        away = np.where(np.isfinite(self.track.position), self._away, 0.0)
-        total = float((away**2).sum())
-        return float((away[1:] * away[:-1]).sum() / total) if total else 0.0
-
-    @property
-    def _away(self) -> FloatArray:
-        """Path minus track (k, 2) [m]."""
-        return np.asarray(self.trajectory.at(self.track.time).position - self.track.position)
-
-    @property
     def table(self) -> pandas.DataFrame:
-        """The fields with value, low, high, unit and whether the data determine them."""
+        """The fields with value, low, high, unit and whether the data determine them.
+
+        Its index is the field; with own fields the field and the case whose own it is, "" of shared ones.
+        """
         import pandas
 
         names = ("value", "low", "high", "unit", "determined")
         rows = [[getattr(one, name) for name in names] for one in self.estimates]
-        return pandas.DataFrame(
-            rows, index=pandas.Index([one.field for one in self.estimates], name="field"), columns=names
-        )
+        index: pandas.Index[Any] = pandas.Index([one.field for one in self.estimates], name="field")
+        if any(one.case for one in self.estimates):
+            pairs = [(one.field, one.case or "") for one in self.estimates]
+            index = pandas.MultiIndex.from_tuples(pairs, names=["field", "case"])
+        return pandas.DataFrame(rows, index=index, columns=names)
 
     @property
     def alike(self) -> list[tuple[str, str, float]]:
-        """Pairs of fields that the data hardly tell apart, with the correlation of their errors."""
-        names = [one.field for one in self.estimates]
-        pairs = zip(*np.triu_indices(len(names), 1), strict=True)
-        return [(names[i], names[j], float(r)) for i, j in pairs if abs(r := self.correlation[i, j]) > ALIKE]
+        """Pairs of fields that the data hardly tell apart, with the correlation of their errors.
+
+        Own fields of two tracks are left out: they are alike only as both are like a shared one.
+        """
+        found = []
+        for i, j in zip(*np.triu_indices(len(self.estimates), 1), strict=True):
+            first, second, r = self.estimates[i], self.estimates[j], float(self.correlation[i, j])
+            if abs(r) > ALIKE and (first.case is None or first.case == second.case):
+                found.append((first.label, second.label, r))
+        return found
 
     def warnings(self) -> list[str]:
         """What limits the trust in it."""
@@ -133,57 +113,63 @@ class Identified:
             f"{first} and {second} can hardly be told apart: the correlation of their errors is {r:.3f}"
             for first, second, r in self.alike
         ]
-        told += [f"{one.field} is not determined by this track" for one in self.estimates if not one.determined]
-        if self.succession > TELLING / np.sqrt(len(self.residuals)):
-            told.append(
-                f"residuals follow each other (correlation {self.succession:.2f}): the model leaves more than noise, "
-                "and intervals are too narrow"
-            )
-        if self.trajectory.time[-1] < self.track.time[-1] * (1 - EARLY) and self.trajectory.at_rest_since is None:
-            told.append(f"the path ends before the track: {self.trajectory.sentence}")
+        these = "this track" if len(self.fits) == 1 else "these tracks"
+        told += [f"{one.label} is not determined by {these}" for one in self.estimates if not one.determined]
+        for fit in self.fits:
+            told += [f"{fit.name}: {text}" if len(self.fits) > 1 else text for text in fit.warnings()]
         return told
 
     def figures(self) -> dict[str, Any]:
         """The figures by name, in SI units."""
         return {
-            "fields": {one.field: {**vars(one), "determined": one.determined} for one in self.estimates},
+            "fields": {one.label: {**vars(one), "determined": one.determined} for one in self.estimates},
             "correlation": self.correlation.tolist(),
-            "residual": self.residual,
-            "succession": self.succession,
-            "measured": len(self.residuals),
+            "tracks": {
+                fit.name: {
+                    "residual": fit.residual,
+                    "succession": fit.succession,
+                    "measured": len(fit.residuals),
+                }
+                for fit in self.fits
+            },
             "paths": self.paths,
             "warnings": self.warnings(),
         }
 
     def lines(self) -> list[tuple[str, str]]:
         """Rows (label, text) to print."""
-        rows = [("field", f"{one.field} = {one.text}") for one in self.estimates]
-        rows.append(
-            ("residual", f"{quantity_text(self.residual, 'm')} root mean square of {len(self.residuals)} places")
-        )
+        rows = [("field", f"{one.label} = {one.text}") for one in self.estimates]
+        for fit in self.fits:
+            of = f" of {fit.name}" if len(self.fits) > 1 else ""
+            size = quantity_text(fit.residual, "m")
+            rows.append(("residual", f"{size} root mean square of {len(fit.residuals)} places{of}"))
         return [*rows, ("paths", str(self.paths))]
 
     def written(self, folder: Path, overwrite: bool = False) -> Identified:
-        """The same with its files NAME_identified.toml and NAME_identified.png in a folder.
+        """The same with its files NAME_identified.toml, one for each case, and NAME_identified.png, named by the first.
 
         Raises ValueError where they exist and are not to be replaced.
         """
         from active_surface.identification.picture import draw_identified
 
-        file, picture = check_free(folder, self.case.name, overwrite)
-        said = "\n".join(f"{one.field} = {one.text}" for one in self.estimates)
-        case = write_case(self.case, file, f"Fitted to a track:\n{said}")
-        return replace(self, files=(case, draw_identified(self, picture)))
+        cases = {fit.case.name: fit for fit in self.fits}
+        *files, picture = check_free(folder, list(cases), overwrite)
+        for file, fit in zip(files, cases.values(), strict=True):
+            of = [one for one in self.estimates if one.case in (None, fit.name)]
+            said = "\n".join(f"{one.field} = {one.text}" for one in of)
+            write_case(fit.case, file, f"Fitted to a track:\n{said}")
+        return replace(self, files=(*files, draw_identified(self, picture)))
 
     def plot(self, axes: Axes | None = None) -> Figure:
-        """Draw the track beside the path, over the plane and over time; with axes only over the plane, into these."""
+        """Draw tracks beside paths, over the plane and over time; with axes only over the plane, into these."""
         from active_surface.identification.picture import plot_identified  # here, as matplotlib is for pictures only
 
         return plot_identified(self, axes)
 
     def __repr__(self) -> str:
-        found = "; ".join(f"{one.field} = {one.text}" for one in self.estimates)
-        return f"Identified {self.case.name!r}: {found}. Residuals of {quantity_text(self.residual, 'm')}"
+        found = "; ".join(f"{one.label} = {one.text}" for one in self.estimates)
+        names = ", ".join(repr(fit.case.name) for fit in self.fits)
+        return f"Identified {names}: {found}. Residuals of {quantity_text(self.residual, 'm')}"
 
     def _repr_html_(self) -> str:
         from meshes import notebook_html
@@ -191,9 +177,20 @@ class Identified:
         return notebook_html(self)
 
 
-def check_free(folder: Path, name: str, overwrite: bool) -> tuple[Path, Path]:
-    """The files of an identified case; ValueError where they exist and are not to be replaced."""
-    files = folder / f"{name}.toml", folder / f"{name}.png"
+def names_of(names: Sequence[str], count: int) -> list[str]:
+    """Names of a number of things, of which those with one name are numbered; one name stands for all."""
+    many = list(names) * (count // len(names) if len(names) == 1 else 1)
+    return [f"{name}_{number}" if many.count(name) > 1 else name for number, name in enumerate(many)]
+
+
+def case_names(cases: Sequence[Case], tracks: int, own: bool) -> list[str]:
+    """The names of identified cases: one for each case, or each track if those of one case have fields of their own."""
+    return names_of([f"{case.name}_identified" for case in cases], tracks if own else len(cases))
+
+
+def check_free(folder: Path, names: Sequence[str], overwrite: bool) -> list[Path]:
+    """The files of identified cases, and the picture's; ValueError where they exist and are not to be replaced."""
+    files = [*(folder / f"{name}.toml" for name in names), folder / f"{names[0]}.png"]
     if not overwrite and (there := [str(file) for file in files if file.exists()]):
         raise ValueError(
             f"Input output of identify must be free of an earlier result; got {', '.join(there)}: "
