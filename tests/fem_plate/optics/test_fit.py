@@ -48,6 +48,33 @@ def test_uncertainties_hold_what_noise_does(shapes, untold, tmp_path):
     assert abs(fit.tension - TENSION) < 4 * fit.tension_error < 0.04 * TENSION
 
 
+def test_one_function_is_fitted_as_well_as_its_noise_allows(section, shapes, untold, tmp_path):
+    """Cramer and Rao's bound by central differences about the truth, gain and all: errors are it, fits scatter so."""
+    exact, values = measured(shapes, tmp_path, "proper"), {}
+    level = 0.01 * np.nanmax(exact.values)
+    xy = POINTS[exact.actuators[0]] + exact.offsets
+    on = untold.mesh.outline.gap(xy) > 0
+    for stiffness, tension in [(1, 1), (1 - 1e-3, 1), (1 + 1e-3, 1), (1, 1 - 1e-3), (1, 1 + 1e-3)]:
+        plate = Plate(untold.mesh, section, tension=tension * TENSION)
+        found = plate.influence(POINTS, stiffness * STIFFNESS).values(xy[on])[:, exact.actuators[0]]
+        values[stiffness, tension] = found / found.max()
+    slopes = [
+        (values[1 + 1e-3, 1] - values[1 - 1e-3, 1]) / 2e-3,
+        (values[1, 1 + 1e-3] - values[1, 1 - 1e-3]) / 2e-3,
+        values[1, 1],
+    ]
+    bound = level * np.sqrt(np.diag(np.linalg.inv(np.array(slopes) @ np.array(slopes).T)))[:2]
+    fits = []
+    for seed in range(4):
+        errors = np.random.default_rng(seed).standard_normal(exact.values.shape)
+        noisy = replace(exact, values=exact.values + level * errors)
+        fits.append(fit_influence(noisy, untold, POINTS, STIFFNESS))
+        assert fits[-1].stiffness_error / STIFFNESS == pytest.approx(bound[0], rel=0.2)
+        assert fits[-1].tension_error / TENSION == pytest.approx(bound[1], rel=0.2)
+    off = np.array([(fit.stiffness / STIFFNESS - 1, fit.tension / TENSION - 1) for fit in fits])
+    assert (np.sqrt(np.mean((off / bound) ** 2, axis=0)) < 2).all()
+
+
 @pytest.mark.slow
 def test_one_per_cent_of_noise_leaves_a_thousandth(shapes, untold, tmp_path):
     """With 125 000 pixels: what 1 % of noise tells of each is good to 3e-4 and 6e-4."""
