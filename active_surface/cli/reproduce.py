@@ -14,7 +14,7 @@ from active_surface.cli.group import DEFAULT_OUTPUT, main, refusing
 if TYPE_CHECKING:
     from coupling import Progress
 
-READINGS = "readings"
+READINGS, READING_STAGES = "readings", 3
 
 
 @main.command()
@@ -40,7 +40,7 @@ def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: 
     modules = refusing(modules_of, names) if names or not figures else []
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(silent) if quiet else StageBar(max(len(modules), 1)) as bar:
+    with nullcontext(silent) if quiet else StageBar(len(modules) + READING_STAGES * (len(names) < len(figures))) as bar:
         if len(names) < len(figures):
             _readings(folder, bar, quiet, as_json and not modules)
         if not modules:

@@ -104,4 +104,4 @@ def test_each_stroke_in_1_over_f_makes_the_cycle_twice_as_long():
 
 @pytest.mark.parametrize(("model", "count"), [(PAPER, 4), (CLOSED, 10)])
 def test_figure_18_has_the_threshold_of_the_paper_at_150_um(bench, model, count):
-    assert threshold.loss_from(bench, model, 150e-6, 20.0, count, 280.0) == pytest.approx(320, abs=20)
+    assert threshold.loss_from(bench, model, 150e-6, 20.0, count) == pytest.approx(320, abs=20)

@@ -43,14 +43,12 @@ def find(bench: Bench, effort: Effort) -> FigureResult:
     def draw(figure: Figure) -> None:
         axes = figure.subplots(3, len(MODELS), sharey="row")
         titles = {"17a": f"figure 17a, {LOW:g} Hz", "17b": f"figure 17b, {HIGH:g} Hz", "19": f"figure 19, {ANY:g} Hz"}
-        for row, (name, by_model) in zip(axes, results.items(), strict=True):
-            for panel, (model, paths) in zip(row, by_model.items(), strict=True):
-                _draw_ways(panel, paths, bench.parameters.far)
-                title = f"{titles[name]}: {MODELS[model]}"
-                across = "time [ms]" if row is axes[-1] else ""
-                finish(
-                    panel, across, "distance from\nthe actuator [µm]" if panel is row[0] else "", title, legend=False
-                )
+        for i, (name, by_model) in enumerate(results.items()):
+            for k, (model, paths) in enumerate(by_model.items()):
+                _draw_ways(axes[i, k], paths, bench.parameters.far)
+                across = "time [ms]" if i == len(results) - 1 else ""
+                up = "distance from\nthe actuator [µm]" if k == 0 else ""
+                finish(axes[i, k], across, up, f"{titles[name]}: {MODELS[model]}", legend=False)
         figure.legend(handles=_handles(), loc="outside lower center", ncols=7, frameon=False, fontsize=9)
 
     return FigureResult("fig17-19", "Convergence to one actuator", verdicts, data, draw, (14.0, 9.0),

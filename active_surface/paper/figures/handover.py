@@ -62,12 +62,13 @@ def find(bench: Bench, effort: Effort) -> FigureResult:
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots(len(shown), len(SURFACES), sharex=True, sharey=True)
-        for row, (title, (one, both)) in zip(axes, shown.items(), strict=True):
-            for panel, (name, rows) in zip(row, both.items(), strict=True):
+        for i, (title, (one, both)) in enumerate(shown.items()):
+            for k, (name, rows) in enumerate(both.items()):
+                panel = axes[i, k]
                 draw_plane(panel, rows, p.pitch, one.frequencies)
                 said = f"{title}: {share_of(arrives(bench, one, path) for path in rows)} arrive"
-                finish(panel, "x [µm]" if row is axes[-1] else "", "y [µm]" if panel is row[0] else "",
-                       f"{name}\n{said}" if row is axes[0] else said, legend=False)  # fmt: skip
+                across, up = "x [µm]" if i == len(shown) - 1 else "", "y [µm]" if k == 0 else ""
+                finish(panel, across, up, f"{name}\n{said}" if i == 0 else said, legend=False)
                 panel.set_xlim(-MICRO * p.radius - 20, MICRO * (p.pitch + p.radius) + 20)
                 panel.set_ylim(-MICRO * p.radius - 20, MICRO * p.radius + 20)
         legend(figure, slow=True)

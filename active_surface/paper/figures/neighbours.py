@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from active_surface.paper.figure_result import MICRO, FigureResult, finish
 from active_surface.paper.figures.coming_off import length, off_numbers
-from active_surface.paper.figures.pairs import JUMPS, SURFACES, Paths, draw_plane, joined, legend, paths_of, reaches
+from active_surface.paper.figures.pairs import JUMPS, SURFACES, Paths, draw_x, joined, legend, paths_of, reaches
 from active_surface.paper.models import PAPER, Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import Path
@@ -51,15 +51,16 @@ def find(bench: Bench, effort: Effort) -> FigureResult:
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots(len(SURFACES), len(SIXTEEN), sharex=True, sharey=True)
-        for row, name in zip(axes, SURFACES, strict=True):
-            for one, frequency in zip(row, SIXTEEN, strict=True):
-                draw_plane(one, paths[frequency][name], p.pitch, [frequency] * 2)
-                title = f"{frequency:g} Hz" if row is axes[0] else ""
+        for i, name in enumerate(SURFACES):
+            for k, frequency in enumerate(SIXTEEN):
+                draw_x(axes[i, k], paths[frequency][name], p.pitch, frequency)
                 finish(
-                    one, "x [µm]" if row is axes[-1] else "", f"{name}\ny [µm]" if one is row[0] else "", title, False
+                    axes[i, k],
+                    "time [cycles]" if i == len(SURFACES) - 1 else "",
+                    f"{name}\nx [µm]" if k == 0 else "",
+                    f"{frequency:g} Hz" if i == 0 else "",
+                    legend=False,
                 )
-                one.set_xlim(-150, MICRO * p.pitch + 150)
-                one.set_ylim(-60, 60)
         legend(figure, slow=False)
 
     data: dict[str, Any] = {"frequencies": list(SIXTEEN), "start": list(START)}
@@ -67,7 +68,7 @@ def find(bench: Bench, effort: Effort) -> FigureResult:
         f"{f:g} Hz, {name}": rows[0].drawn(300).tolist() for f, both in paths.items() for name, rows in both.items()
     }
     verdicts = (_third(p.pitch, p.radius), _verdict(paths, p.pitch))
-    return FigureResult("fig16", "Two actuators at one frequency", verdicts, data, draw, (14.0, 9.0),
+    return FigureResult("fig16", "Two actuators at one frequency", verdicts, data, draw, (14.0, 10.0),
                  f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycle, and how all "
                  "starts end.")  # fmt: skip
 

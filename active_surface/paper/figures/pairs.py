@@ -103,6 +103,19 @@ def draw_plane(axes: Axes, paths: Sequence[Path], pitch: float, frequencies: Seq
     axes.set_aspect("equal")
 
 
+def draw_x(axes: Axes, paths: Sequence[Path], pitch: float, frequency: float, drawn: int = 8) -> None:
+    """Places along x over time in cycles, the first heavy, and how all end; lines: the actuators and half-way."""
+    for k, path in reversed(list(enumerate(paths))):
+        colour = "black" if k == 0 else "#9ab5d6"
+        if k < drawn:
+            axes.plot(frequency * path.time, MICRO * path.place[:, 0], color=colour, linewidth=1.0, zorder=2 - (k > 0))
+        mark, colour = MARKS[next(name for name, how in ENDS.items() if how(path))]
+        axes.plot(frequency * path.time[-1], MICRO * path.place[-1, 0], mark, color=colour, markersize=5, zorder=4)
+    axes.plot(0, MICRO * paths[0].place[0, 0], "D", color="none", markeredgecolor="black", markersize=6, zorder=5)
+    for place, style in ((0.0, "-"), (pitch / 2, ":"), (pitch, "-")):
+        axes.axhline(MICRO * place, color="#8a8a8a", linewidth=0.8, linestyle=style)
+
+
 def legend(figure: Figure, slow: bool) -> None:
     """What the marks of all planes mean, below them."""
     styles: list[tuple[str, dict[str, Any]]] = [

@@ -23,6 +23,7 @@ from active_surface.paper.verdict import Answer, Verdict, of_checks
 LOWEST, HIGHEST = 160.0, 760.0  # Hz
 SHOWN: Final = 520.0  # Hz, up to which starts are followed at the stated stroke
 STATED_THRESHOLD, STATED_STROKE, THRESHOLD_WITHIN = 320.0, 150e-6, 20.0  # Hz, m, Hz: what counts as the same
+FROM: Final = 0.7  # of the stated threshold, scaled by the stroke, where its search begins
 NEAREST, FARTHEST = 40e-6, 160e-6  # m from the actuator: the starts
 MOVED: Final = 1e-6  # m: a part that friction holds where it was placed shows nothing
 NANOMETRES: Final = 9  # digits of strokes in m
@@ -78,8 +79,9 @@ def ends_of(bench: Bench, model: str, stroke: float, frequencies: Sequence[float
     return ends
 
 
-def loss_from(bench: Bench, model: str, stroke: float, step: float, count: int, lowest: float = LOWEST) -> float:
-    """The threshold [Hz] at a stroke [m], looked for upwards from the lowest frequency; nan: none up to HIGHEST."""
+def loss_from(bench: Bench, model: str, stroke: float, step: float, count: int) -> float:
+    """The threshold [Hz] at a stroke [m], looked for upwards from well below the stated one; nan: none to HIGHEST."""
+    lowest = FROM * STATED_THRESHOLD * STATED_STROKE / stroke
     for frequency in np.arange(step * np.ceil(lowest / step), HIGHEST + 1, step).tolist():
         level = first_loss(np.array([frequency, frequency + step]), ends_of(bench, model, stroke, [frequency], count))
         if np.isfinite(level):
@@ -161,12 +163,12 @@ def draw_thresholds(
     fine = np.linspace(strokes[0], strokes[-1], 100)
     for k, (model, row) in enumerate(levels.items()):
         style, fit = look(model), fits[model]
-        axes.errorbar(MICRO * strokes + 0.8 * (k - 1), row, step / 2, fmt="osx"[k], color=style["color"], markersize=4,
-                      capsize=2, linewidth=0.8, label=f"{MODELS[model]}" if fit else f"{MODELS[model]}")  # fmt: skip
+        across = MICRO * strokes + 0.8 * (k - 1)
+        bars = {"fmt": "osx"[k], "color": style["color"], "markersize": 4, "capsize": 2, "linewidth": 0.8}
+        axes.errorbar(across, row, step / 2, **bars)
         if fit:
-            own = {key: style[key] for key in ("color", "linestyle", "linewidth")}
-            label = f"its quadratic, off by {fit.quadratic_misfit:.0f} Hz"
-            axes.plot(MICRO * fine, np.polyval(fit.coefficients, fine / fit.unit), **own, label=label)
+            style["label"] += f"; quadratic off by {fit.quadratic_misfit:.0f} Hz"
+            axes.plot(MICRO * fine, np.polyval(fit.coefficients, fine / fit.unit), **style)
     axes.plot(
         MICRO * STATED_STROKE, STATED_THRESHOLD, "*", color=GOLD, markersize=14, label="the paper's 320 Hz", zorder=5
     )

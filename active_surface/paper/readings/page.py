@@ -2,106 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Final, NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import Final
 
-from active_surface.paper.models import CLOSED, MODELS, PAPER, PLATE
-from active_surface.paper.readings.reading import LAWS, Reading
+from active_surface.paper.models import CLOSED, MODELS, PAPER
+from active_surface.paper.parameters import PARAMETERS
+from active_surface.paper.readings.cases import STATEMENTS, Case, best_row, cases_of, cell, met, where
+from active_surface.paper.readings.contact import Variant
+from active_surface.paper.readings.device import Device
+from active_surface.paper.readings.reading import LAWS
 from active_surface.paper.readings.sweep import Row, Sweep
 from active_surface.paper.share import NEARLY_ALL
 
-STATEMENTS: Final = {
-    "5": "three strokes begin to move parts at about 200 Hz; the area grows, peaks and falls",
-    "6": "the integral is largest at 300 to 400 Hz for three strokes",
-    "5, 6 (range)": "300 to 1000 Hz are feasible, almost whatever the stroke",
-    "11": "velocities along x and y are constant multiples",
-    "12": "the path from (170.08, 170.08) um is straight",
-    "13, 14": "straight decline by 20.9 m/s^2",
-    "15": "from a lowest frequency, held by friction, to a highest, where it comes off",
-    "VI-B": "150 um are 33 % of the wavelength",
-    "16": "at 250 Hz it returns to the first actuator, at 350 to 650 Hz it goes to the neighbour",
-    "17a": "at 300 Hz it converges",
-    "17b": "at 600 Hz it leaves in two strokes",
-    "18": "the threshold is 320 Hz, below it parts converge",
-    "18 (above)": "above the threshold parts leave",
-    "18 (curve)": "the threshold is a quadratic function of the stroke",
-    "19": "at 250 Hz all states converge",
-    "20": "it leaves the 450 Hz actuator and converges to the 300 Hz one",
-    "20 (five cycles)": "that takes five oscillations",
-    "21": "it leaves the 400 Hz actuator and converges to the 300 Hz one",
-    "VI-C (anywhere)": "from anywhere parts converge to the low frequency",
-    "22": "parts lie within 5 um",
-    "22 (1 um)": "some lie within 1 um",
-    "22 (two cases)": "the two stated ones lie within 1 um",
-}
-CHOICES_SHOWN: Final = 3
-
-
-class Case(NamedTuple):
-    """One reading with one choice of what a statement leaves open besides."""
-
-    reading: Reading
-    choice: str
-    share: float
-
-    @property
-    def holds(self) -> bool:
-        """Whether nearly all starts do what the paper says."""
-        return self.share >= NEARLY_ALL
-
-
-def cases_of(rows: Iterable[Row], model: str, statement: str) -> list[Case]:
-    """All cases of a statement in a model."""
-    return [
-        Case(row.reading, choice, share)
-        for row in rows
-        for choice, share in row.shares.get(model, {}).get(statement, {}).items()
-    ]
-
-
-def where(holding: Sequence[Case], every: Sequence[Case]) -> str:
-    """For which values of what is open some cases hold; what holds for all values is not named."""
-    parts = []
-    radii = sorted({case.reading.radius for case in holding})
-    if len(radii) < len({case.reading.radius for case in every}):
-        parts.append("a = " + ", ".join(f"{1e6 * radius:g}" for radius in radii))
-    gravities = {case.reading.gravity for case in holding}
-    if len(gravities) < len({case.reading.gravity for case in every}):
-        parts.append("gravity" if holding[0].reading.gravity else "no gravity")
-    laws = {case.reading.law for case in holding}
-    if len(laws) < len({case.reading.law for case in every}):
-        parts.append(", ".join(laws))
-    choices = list(dict.fromkeys(case.choice for case in holding))
-    if len(choices) < len({case.choice for case in every}):
-        parts.append(" or ".join(choices[:CHOICES_SHOWN]) + (" or others" if len(choices) > CHOICES_SHOWN else ""))
-    return "; ".join(parts) or "all"
-
-
-def cell(cases: Sequence[Case]) -> str:
-    """How often a statement holds, in a cell."""
-    if not cases:
-        return "-"
-    holding = [case for case in cases if case.holds]
-    if len(holding) == len(cases):
-        return f"**everywhere** ({len(cases)})"
-    if not holding:
-        return f"**nowhere**, at most {100 * max(case.share for case in cases):.0f} %"
-    return f"{len(holding)} of {len(cases)}"
-
-
-def best_shares(row: Row, model: str) -> dict[str, float]:
-    """By statement the best share over what it leaves open besides the reading."""
-    return {name: max(shares.values()) for name, shares in row.shares.get(model, {}).items()}
-
-
-def met(row: Row, model: str) -> list[str]:
-    """The statements that hold by one reading."""
-    return [name for name, share in best_shares(row, model).items() if share >= NEARLY_ALL]
-
-
-def best_row(sweep: Sweep) -> Row:
-    """The reading by which most statements hold in the paper's scheme, and among these in our equations."""
-    return max(sweep.rows, key=lambda row: (len(met(row, PAPER)), len(met(row, CLOSED)), len(met(row, PLATE))))
+VARIED: Final = ("13, 14", "17a", "17b", "18", "18 (above)", "19", "22")  # by the contact
+UNTOUCHED: Final = ("VI-B",)  # has no surface
+DEVICE: Final = f"{1e6 * PARAMETERS.thickness:g} um thick"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -110,9 +25,9 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(row) + " |" for row in lines) + "\n"
 
 
-def page_of_readings(sweep: Sweep, device: Mapping[str, str] | None = None) -> str:
-    """The page in Markdown; device: what a real plate does, by statement."""
-    best, size = best_row(sweep), sweep.size
+def page_of_readings(sweep: Sweep, variants: Sequence[Variant] = (), device: Device | None = None) -> str:
+    """The page in Markdown; variants: of the contact; device: what a real plate does."""
+    best = best_row(sweep)
     head = [
         "# The paper over its readings\n",
         "The paper does not state all that its figures rest on. A *reading* settles it. This page has, for each of the "
@@ -137,8 +52,9 @@ def page_of_readings(sweep: Sweep, device: Mapping[str, str] | None = None) -> s
         f"**{best.reading.name}**: {len(met(best, PAPER))} of {len(STATEMENTS)} statements hold in the paper's scheme, "
         f"{len(met(best, CLOSED))} in our equations. The next ones:\n",
         _ranking(sweep),
+        *_variants(variants),
+        *(_builder(device, best) if device else []),
     ]
-    assert size.starts
     return "\n".join(head).replace(" um", " µm").replace("m/s^2", "m/s²").rstrip() + "\n"
 
 
@@ -167,7 +83,7 @@ def _axes(sweep: Sweep) -> str:
     ])  # fmt: skip
 
 
-def _main_table(sweep: Sweep, device: Mapping[str, str] | None) -> str:
+def _main_table(sweep: Sweep, device: Device | None) -> str:
     rows = []
     for name, text in STATEMENTS.items():
         every = {model: cases_of(sweep.rows, model, name) for model in MODELS}
@@ -177,8 +93,49 @@ def _main_table(sweep: Sweep, device: Mapping[str, str] | None) -> str:
             holding = [case for case in cases if case.holds]
             if holding and len(holding) < len(cases) and (text_of := where(holding, cases)) not in said:
                 said.append(text_of if model == PAPER else f"{'ours' if model == CLOSED else 'plate'}: {text_of}")
-        rows.append([name, text, *cells, ". ".join(said) or "-", *([device.get(name, "-")] if device else [])])
+        rows.append([name, text, *cells, ". ".join(said) or "-", *([_on_device(device, name)] if device else [])])
     return table(["figure", "the paper", *MODELS.values(), "where", *(["device"] if device else [])], rows)
+
+
+def _on_device(device: Device, name: str) -> str:
+    shares = device.shares.get(name)
+    if not shares or name in UNTOUCHED:
+        return "-"
+    best = max(shares.values())
+    return f"{'**yes**, ' if best >= NEARLY_ALL else ''}{100 * best:.0f} %"
+
+
+def _builder(device: Device, best: Row) -> list[str]:
+    """What a builder would see."""
+    off = f"half of them within {1e6 * device.off_within:.1f} um of the actuator" if device.come_off.hits else "none"
+    threshold = "no threshold" if device.threshold != device.threshold else f"a threshold of {device.threshold:.0f} Hz"
+    return [
+        "## What a builder would see\n",
+        f"The column *device* is the reading {best.reading.name} on a clamped, immovable silicon disc, {DEVICE}: the "
+        "plate stretches (von Karman), and the part lies on its top face. It has the best share over what a statement "
+        "leaves open.\n",
+        f"- **It would break.** At a stroke of 150 um the largest strain is {100 * device.strain:.0f} %, the largest "
+        f"slope {device.slope:.2f}; silicon breaks near 1 %. Only something as soft as rubber bears that.",
+        "- **Another surface.** A stretched plate is more pointed at its actuator than equation (2). At 150 um and 300 "
+        f"Hz {device.come_off} of the parts come off it, {off}; figure 18 has {threshold} there.",
+        "- **Inertia is not the matter.** The plate's first frequency with its actuator held is "
+        f"{device.first_frequency / 1e3:.0f} kHz, so that its mass changes the surface's acceleration by some "
+        f"{100 * device.inertia_error:.1g} % at most; a soft plate would ring.\n",
+    ]
+
+
+def _variants(variants: Sequence[Variant]) -> list[str]:
+    rows = []
+    for one in variants:
+        shares = [max(one.shares[name].values()) for name in VARIED]
+        level = "none" if one.threshold != one.threshold else f"{one.threshold:.0f}"
+        rows.append([one.name, f"{one.limit:.4g}", f"{one.pull_off:.4g}", level, *(f"{100 * s:.0f}" for s in shares)])
+    head = ["changed", "Q(0)/m, m/s^2", "pull-off/m, m/s^2", "threshold of 18, Hz", *(f"{name}, %" for name in VARIED)]
+    return [
+        "## How much the contact matters\n",
+        "One thing changed at a time: our equations on the closed form of one actuator.\n",
+        table(head, rows),
+    ]
 
 
 def _radius_table(sweep: Sweep) -> str:

@@ -7,7 +7,10 @@ from time import perf_counter
 from typing import Any, Final, NamedTuple
 
 from active_surface.paper.models import CLOSED, PAPER
-from active_surface.paper.readings.page import STATEMENTS, best_row, met, page_of_readings
+from active_surface.paper.readings.cases import STATEMENTS, best_row, met
+from active_surface.paper.readings.contact import variants_of
+from active_surface.paper.readings.device import device_of
+from active_surface.paper.readings.page import page_of_readings
 from active_surface.paper.readings.reading import SweepSize
 from active_surface.paper.readings.sweep import USUAL, Sweep, sweep_readings
 from active_surface.paper.reproduction import FOLDER, replace_file, written_as_json
@@ -47,10 +50,20 @@ def reproduce_readings(output: Path, size: SweepSize = USUAL, progress: Progress
     begun, kept = perf_counter(), output / FOLDER / KEPT
     sweep = sweep_readings(size, kept, progress)
     page, data = output / PAGE, output / FOLDER / DATA
-    replace_file(page, page_of_readings(sweep))
+    best = best_row(sweep).reading
+    variants, device = variants_of(best, size, progress), device_of(best, size, progress)
+    replace_file(page, page_of_readings(sweep, variants, device))
     rows = [row._asdict() | {"reading": row.reading._asdict()} for row in sweep.rows]
     replace_file(
-        data, written_as_json({"title": TITLE, "size": sweep.size._asdict() | {"readings": len(rows)}, "rows": rows})
+        data,
+        written_as_json(
+            {
+                "title": TITLE,
+                "size": sweep.size._asdict() | {"readings": len(rows)},
+                "rows": rows,
+                "device": device._asdict(),
+            }
+        ),
     )
     kept.unlink(missing_ok=True)
     return Readings(sweep, (page, data), perf_counter() - begun)

@@ -59,7 +59,6 @@ LEAVING: Final = {"two cycles": 2.0, "one cycle": 1.0}
 FARS: Final = (150e-6, 200e-6)  # m, beyond which a part has left
 CURVE_STROKES: Final = np.array([100e-6, 125e-6, STATED_STROKE, 175e-6, 200e-6])
 MAP: Final = np.arange(240.0, 441.0, 20.0)  # Hz, of figure 18 at its stated stroke
-FROM: Final = 0.7  # of the stated threshold, scaled by the stroke, where its search begins
 
 
 def areas_of(bench: Bench, model: str, size: SweepSize) -> Shares:
@@ -133,7 +132,7 @@ def thresholds_of(bench: Bench, model: str, size: SweepSize) -> tuple[Shares, fl
     levels = np.array([
         level
         if stroke == STATED_STROKE
-        else loss_from(bench, model, stroke, size.step, count, FROM * STATED_THRESHOLD * STATED_STROKE / stroke)
+        else loss_from(bench, model, stroke, size.step, count)
         for stroke in CURVE_STROKES.tolist()
     ])  # fmt: skip
     fit = fits_of(CURVE_STROKES, levels, STATED_STROKE)
