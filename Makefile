@@ -77,10 +77,10 @@ site: .venv/site
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/site
 	@echo "wrote       build/site/index.html"
 
-# The pages about the paper, in minutes.
+# The pages about the paper: its figures, then its statements over all readings. Both take minutes.
 paper: .venv/installed
 	$(BIN)/active-surface reproduce all --output docs
-	$(BIN)/python docs/paper_sensitivity.py
+	$(BIN)/active-surface reproduce readings --output docs
 
 .venv/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed; try make PYTHON=python3.12"; exit 2; }

@@ -49,15 +49,16 @@ class Bench:
     """Computes paths in every model; surfaces are made once."""
 
     parameters: Parameters = PARAMETERS
-    _grounds: dict[tuple[str, str], Ground] = field(default_factory=dict)
+    margin: float = 0.0  # m, by which two actuators' closed forms go on flat beyond their rim
+    grounds: dict[tuple[str, str], Ground] = field(default_factory=dict)  # may be shared where only parts differ
 
     def ground(self, model: str, actuators: str = "one") -> Ground:
         """The ground of a model; actuators: "one", or for two "superposed" or "nearest", which a plate knows not."""
         key = ("plate" if model == PLATE else "profiles", "two" if model == PLATE and actuators != "one" else actuators)
-        if key not in self._grounds:
+        if key not in self.grounds:
             with threadpool_limits(limits=1, user_api="blas"):
-                self._grounds[key] = self._make(*key)
-        return self._grounds[key]
+                self.grounds[key] = self._make(*key)
+        return self.grounds[key]
 
     def _make(self, kind: str, actuators: str) -> Ground:
         p = self.parameters
@@ -72,8 +73,8 @@ class Bench:
         if actuators == "one":
             shapes = DiscShapes([[0.0, 0.0]], p.radius)
             return Ground(surface_motion(shapes, [still]), shapes.outline, np.zeros(2))
-        surface = profile_surface(actuators, p.pitch, p.radius, [still, still])
-        return Ground(surface, profile_outline(p.pitch, p.radius), np.zeros(2))
+        surface = profile_surface(actuators, p.pitch, p.radius, [still, still], self.margin)
+        return Ground(surface, profile_outline(p.pitch, p.radius, self.margin), np.zeros(2))
 
     def drive(self, frequency: float, stroke: float | None = None, cycles: int | None = None) -> Drive:
         """An up-down drive, continuous or with a number of cycles."""
@@ -83,6 +84,10 @@ class Bench:
     def duration(self, *drives: Drive) -> float:
         """How long [s] continuous drives run, by cycles of the slowest."""
         return self.parameters.cycles / min(drive.frequency for drive in drives)
+
+    def surface(self, model: str, drives: Sequence[Drive], actuators: str, duration: float) -> SurfaceMotion:
+        """The ground under drives; some grounds must know how long [s]."""
+        return self.ground(model, actuators).surface.driven_by(drives)
 
     def paths(
         self,
@@ -97,7 +102,7 @@ class Bench:
     ) -> list[Path]:
         """One path from each start (n, 2) [m], with velocities (n, 2) or (2,) [m/s]; places count from actuator 1."""
         p, ground = self.parameters, self.ground(model, actuators)
-        surface = ground.surface.driven_by(drives)
+        surface = self.surface(model, drives, actuators, duration)
         places = np.atleast_2d(np.asarray(starts, dtype=float))
         speeds = np.broadcast_to(np.asarray(velocities, dtype=float), places.shape)
         parts = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from particle import ConstantFriction, KogutEtsion
+from particle import KogutEtsion
 from particle.friction import Contact
 
 Place = tuple[float, float]  # m
@@ -15,20 +15,22 @@ Place = tuple[float, float]  # m
 class Parameters:
     """What the paper states, and what it leaves open (docs/paper-open-points.md): one set for all figures.
 
-    What one figure alone needs and the paper does not state stands in its module; of the platform of figure 4 here.
+    What one figure alone needs and the paper does not state stands in its module.
     """
 
     radius: float = 300e-6  # m, a of equation (2); left open
     pitch: float = 150e-6  # m, between two actuators
     stroke: float = 150e-6  # m
-    strokes: tuple[float, ...] = (100e-6, 150e-6, 200e-6)  # m, where several are compared
+    strokes: tuple[float, ...] = (100e-6, 200e-6)  # m, least and largest of figure 18
+    slipping: tuple[float, ...] = (80e-6, 95e-6, 110e-6)  # m, strokes of figures 5 and 6; left open
+    carrying: tuple[float, ...] = (60e-6, 70e-6, 80e-6, 90e-6, 100e-6)  # m, strokes of figure 15; left open
     mass: float = 2e-9  # kg
-    gravity: float = 9.80665  # m/s^2; left open
+    gravity: float = 0.0  # m/s^2; the paper's forces have no weight
     friction: Contact = field(default_factory=KogutEtsion.paper)
     start: Place = (100e-6, 100e-6)  # figure 17, and wherever none is given
     period_share: float = 1.0  # periods of an up-down drive in 1/frequency; 0.5: each of its strokes takes 1/frequency
     cycles: int = 30  # how long continuous drives run
-    time_step: float = 1e-6  # s, of the paper's scheme; left open
+    time_step: float = 2e-6  # s, of the paper's scheme; left open
     tolerance: float = 1e-8  # of the located events
     jitter: float = 1e-6  # m, by which starts are displaced at most along x and along y: places are given in um
     near: float = 30e-6  # m: a part has converged that spends the last five cycles so close to the actuator
@@ -37,14 +39,7 @@ class Parameters:
     poisson_ratio: float = 0.3  # of the plate
     thickness: float = 5e-6  # m
     contact_side: float = 100e-6  # m, of the part's square contact
-    platform_limit: float = 23.524  # m/s^2, friction on the platform of figure 4, from its 2.41 s
-    platform_rate: float = 3.2  # rad/s of its motion x = t sin(rate t), in m; left open
     seed: int = 4
-
-    @property
-    def platform_friction(self) -> Contact:
-        """The platform's constant friction."""
-        return ConstantFriction(self.platform_limit * self.mass)
 
 
 PARAMETERS = Parameters()
@@ -58,12 +53,12 @@ class Effort(NamedTuple):
     starts_by_steps: int  # with the paper's scheme, whose paths take a hundred times longer
     frequencies: int  # of figures 5, 6 and 15
     step: float  # Hz, between frequencies of figure 18
-    strokes: int  # of figures 15 and 18
+    strokes: int  # of figure 18
     across: int  # places along the plate, figures 5 and 6
     pitches: int  # of the dead zones
     candidates: int  # frequencies tried there
 
 
-QUICK = Effort("quick", 60, 40, 40, 20.0, 5, 50, 11, 6)
+QUICK = Effort("quick", 60, 36, 40, 20.0, 5, 50, 11, 6)
 FULL = Effort("full", 400, 100, 80, 10.0, 9, 120, 11, 12)
 TINY = Effort("tiny", 2, 1, 3, 200.0, 2, 12, 1, 1)  # for tests: shows that it runs, and nothing else

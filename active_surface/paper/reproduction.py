@@ -76,7 +76,7 @@ def reproduce(
     seconds = perf_counter() - begun
     if output is not None and len(modules) == len(MODULES):
         page = Path(output) / PAGE
-        _replace(page, page_of(results, effort, parameters, FOLDER))
+        replace_file(page, page_of(results, effort, parameters, FOLDER))
         files.append(page)
     return Reproduction(tuple(results), tuple(files), seconds)
 
@@ -94,8 +94,13 @@ def write(result: FigureResult, folder: Path) -> list[Path]:
     data = folder / f"{result.name}.json"
     verdicts = [verdict.as_dict() for verdict in result.verdicts]
     whole = {"title": result.title, "verdicts": verdicts, "data": result.data}
-    _replace(data, json.dumps(rounded(whole), allow_nan=False) + "\n")
+    replace_file(data, written_as_json(whole))
     return [picture, data]
+
+
+def written_as_json(value: Any) -> str:
+    """The text of a JSON file."""
+    return json.dumps(rounded(value), allow_nan=False) + "\n"
 
 
 def rounded(value: Any) -> Any:
@@ -109,7 +114,8 @@ def rounded(value: Any) -> Any:
     return value
 
 
-def _replace(path: Path, text: str) -> None:
+def replace_file(path: Path, text: str) -> None:
+    """Writes a file whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with whole_file(path) as partial:
         partial.write_text(text)

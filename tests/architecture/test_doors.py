@@ -22,7 +22,6 @@ INSIDE = {  # scripts that measure or describe parts of rooms, which are not pub
     "benchmarks/stretched_nodes.py",
     "benchmarks/stretched_paths.py",
     "docs/extensions/fields.py",
-    "docs/paper_sensitivity.py",
     "docs/theory_pictures.py",
 }
 

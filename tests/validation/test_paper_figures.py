@@ -6,12 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from active_surface.paper.figures import deceleration, friction_logic, radial
+from active_surface.paper.figures import deceleration, friction_logic, radial, threshold
 from active_surface.paper.figures.feasible_area import onset
 from active_surface.paper.figures.radial import one_cycle
 from active_surface.paper.models import CLOSED, MODELS, PAPER, Bench
 from active_surface.paper.parameters import PARAMETERS, TINY
-from active_surface.paper.sensitivity import threshold
 
 pytestmark = pytest.mark.compiled
 
@@ -30,26 +29,32 @@ def test_figure_11_has_a_constant_ratio_and_figure_12_a_straight_path_to_1e_9(be
 
 
 def test_figures_13_and_14_slow_down_along_one_line_and_table_1_gives_another_value(bench):
-    straight, value = deceleration.find(bench, TINY).verdicts
-    assert straight.verdict == "reproduced" and value.verdict == "not"
+    slows, value = deceleration.find(bench, TINY).verdicts
+    assert slows.verdict == "reproduced" and value.verdict == "not"
     assert value.numbers["preset_at_zero_load"] == pytest.approx(20.9, abs=0.01)
     assert value.numbers["table_1_at_zero_load"] == pytest.approx(2334.4, abs=0.1)
     assert value.numbers["distance_with_table_1"] == [0.0, 0.0]
     for model in MODELS:
-        assert [one["rate"] for one in straight.numbers[model]] == pytest.approx([20.98, 20.98], abs=0.01)
-    for name, rates in (("held_up", [22.865, 22.855]), ("held_up_without_gravity", [19.68, 19.08])):
-        assert [one["rate"] for one in straight.numbers[name]] == pytest.approx(rates, abs=0.01)
+        assert [one["rate"] for one in slows.numbers[model]] == pytest.approx([20.90, 20.90], abs=0.01)
+    for name, rates in (("held_up", [19.68, 19.08]), ("with_gravity", [20.98, 20.98])):
+        assert [one["rate"] for one in slows.numbers[name]] == pytest.approx(rates, abs=0.01)
+    weighty = Bench(replace(PARAMETERS, gravity=9.80665))
+    assert deceleration.slows_as_stated(bench, CLOSED, one_cycle(bench)) == 1.0
+    assert deceleration.slows_as_stated(weighty, CLOSED, one_cycle(weighty)) == 0.0
 
 
-def test_figure_4_slips_and_sticks_when_the_paper_says_and_is_not_at_rest_at_reversals(bench):
+def test_figure_4_slips_and_turns_when_the_paper_says_and_is_at_rest_once_after_each_reversal(bench):
     _, four, reversals = friction_logic.find(bench, TINY).verdicts
+    assert four.verdict == "reproduced" and reversals.verdict == "partly"
+    cubic, linear = (four.numbers[platform.name] for platform in friction_logic.PLATFORMS)
     for model in (PAPER, CLOSED):
-        found = four.numbers[f"slips_{model}"]
-        assert found["slips"] == pytest.approx(2.41, abs=0.005)  # the platform's friction was chosen for that
-        assert found["sticks"] == pytest.approx(2.87, abs=0.01)
-        assert found["turns"]
-    assert reversals.numbers["reversals"][-2:] == pytest.approx([2.49, 3.46], abs=0.01)
-    assert reversals.verdict == "not"
+        for own, pause in ((cubic, 0.0), (linear, 0.38)):
+            found = own[model]
+            assert found["slips"] == pytest.approx(2.41, abs=0.005)  # the platforms' friction was chosen for that
+            assert found["sticks"] == pytest.approx(2.87, abs=0.01)
+            assert found["turns"] and found["again"] - found["sticks"] == pytest.approx(pause, abs=0.01)
+    assert cubic["reversals"][-3:] == pytest.approx(np.pi / 6.25 * np.array([5, 6, 7]), abs=1e-6)
+    assert linear["reversals"][-2:] == pytest.approx([2.49, 3.46], abs=0.01)
 
 
 @pytest.mark.parametrize("stroke", [100e-6, 150e-6, 200e-6])
@@ -97,5 +102,6 @@ def test_each_stroke_in_1_over_f_makes_the_cycle_twice_as_long():
     assert deceleration.slowing(part, 1.0, drive).straight == pytest.approx(1.0)
 
 
-def test_figure_18_has_the_threshold_of_the_paper_at_150_um(bench):
-    assert threshold(bench, PAPER, 1).frequency == pytest.approx(320, abs=30)
+@pytest.mark.parametrize(("model", "count"), [(PAPER, 4), (CLOSED, 10)])
+def test_figure_18_has_the_threshold_of_the_paper_at_150_um(bench, model, count):
+    assert threshold.loss_from(bench, model, 150e-6, 20.0, count) == pytest.approx(320, abs=20)

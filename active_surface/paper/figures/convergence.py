@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from active_surface.arrays import FloatArray
-from active_surface.paper.figure_result import MICRO, MILLI, FigureResult, finish, look
+from active_surface.paper.figure_result import MICRO, MILLI, FigureResult, finish
 from active_surface.paper.figures.coming_off import end_said, off_numbers, off_said
+from active_surface.paper.figures.pairs import ENDS, MARKS
 from active_surface.paper.models import CLOSED, MODELS, Bench
 from active_surface.paper.parameters import Effort
 from active_surface.paper.path import Path
@@ -19,7 +23,7 @@ from active_surface.paper.verdict import Answer, Verdict
 LOW, HIGH, ANY = 300.0, 600.0, 250.0  # Hz, figures 17a, 17b and 19
 STROKES_TO_LEAVE: Final = 2  # in which the part of figure 17b is gone: taken as cycles
 REACH, FASTEST = 150e-6, 0.02  # m and m/s: the states of figure 19, which the paper does not list
-DRAWN: Final = 8  # paths of figure 19
+DRAWN: Final = 12  # paths
 ACTUATOR: Final = ((0.0, 0.0),)  # m
 
 
@@ -31,36 +35,52 @@ def find(bench: Bench, effort: Effort) -> FigureResult:
         results["17a"][model], results["17b"][model] = (from_start(bench, model, f, count) for f in (LOW, HIGH))
         results["19"][model] = from_states(bench, model, count)
     verdicts = (_converges(bench, results["17a"]), _leaves(bench, results["17b"]), _all_converge(bench, results["19"]))
-    drawn = {f: {m: paths[0].drawn(800) for m, paths in rows.items()} for f, rows in results.items() if f != "19"}
-    several = [path.drawn() for path in results["19"][CLOSED][:DRAWN]]
+    data: dict[str, Any] = {
+        f: {m: paths[0].drawn(800).tolist() for m, paths in rows.items()} for f, rows in results.items() if f != "19"
+    }
+    data["19_closed"] = [path.drawn().tolist() for path in results["19"][CLOSED][:DRAWN]]
 
     def draw(figure: Figure) -> None:
-        axes = figure.subplots(2, 3)
-        for k, (name, frequency) in enumerate((("17a", LOW), ("17b", HIGH))):
-            for model, rows in drawn[name].items():
-                axes[0, k].plot(MILLI * rows[:, 0], MICRO * np.hypot(rows[:, 1], rows[:, 2]), **look(model))
-                axes[1, k].plot(MICRO * rows[:, 1], MICRO * rows[:, 2], **look(model))
-            finish(
-                axes[0, k], "time [ms]", "distance from the actuator [µm]", f"figure {name}: {frequency:g} Hz", False
-            )
-        for rows in several:
-            axes[0, 2].plot(MILLI * rows[:, 0], MICRO * np.hypot(rows[:, 1], rows[:, 2]), linewidth=0.8)
-            axes[1, 2].plot(MICRO * rows[:, 1], MICRO * rows[:, 2], linewidth=0.8)
-            axes[1, 2].plot(*(MICRO * rows[0, 1:]), "k.", markersize=5)
-        title = f"figure 19: {ANY:g} Hz, {len(several)} states"
-        finish(axes[0, 2], "time [ms]", "distance from the actuator [µm]", title, legend=False)
-        for one in axes[1]:
-            one.plot(0, 0, "^", color="white", markeredgecolor="black", markersize=8)
-            one.set_aspect("equal", "datalim")
-            finish(one, "x [µm]", "y [µm]", legend=False)
-        handles, names = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside lower center", ncols=len(names), frameon=False, fontsize=9)
+        axes = figure.subplots(3, len(MODELS), sharey="row")
+        titles = {"17a": f"figure 17a, {LOW:g} Hz", "17b": f"figure 17b, {HIGH:g} Hz", "19": f"figure 19, {ANY:g} Hz"}
+        for i, (name, by_model) in enumerate(results.items()):
+            for k, (model, paths) in enumerate(by_model.items()):
+                _draw_ways(axes[i, k], paths, bench.parameters.far)
+                across = "time [ms]" if i == len(results) - 1 else ""
+                up = "distance from\nthe actuator [µm]" if k == 0 else ""
+                finish(axes[i, k], across, up, f"{titles[name]}: {MODELS[model]}", legend=False)
+        figure.legend(handles=_handles(), loc="outside lower center", ncols=7, frameon=False, fontsize=9)
 
-    data: dict[str, Any] = {f"{f}_{m}": rows.tolist() for f, both in drawn.items() for m, rows in both.items()}
-    data |= {"19_closed": [rows.tolist() for rows in several]}
-    return FigureResult("fig17-19", "Convergence to one actuator", verdicts, data, draw, (13.0, 7.4),
-                 "Continuous cycles of 150 µm: the paper's start (paths of all three models), and other "
-                 "states.")  # fmt: skip
+    return FigureResult("fig17-19", "Convergence to one actuator", verdicts, data, draw, (14.0, 9.0),
+                 "Continuous cycles of 150 µm: how far from the actuator the part is. Black: the paper's "
+                 "start (19: the "
+                 "first of the states).")  # fmt: skip
+
+
+def _draw_ways(axes: Axes, paths: Sequence[Path], far: float) -> None:
+    """Distances over time, the first heavy, and how all of them end."""
+    for k, path in reversed(list(enumerate(paths))):
+        away = MICRO * path.away()
+        if k < DRAWN:
+            colour = "black" if k == 0 else "#9ab5d6"
+            axes.plot(
+                MILLI * path.time, away, color=colour, linewidth=0.9 if k == 0 else 0.5, zorder=3 if k == 0 else 2
+            )
+        mark, colour = MARKS[next(name for name, how in ENDS.items() if how(path))]
+        axes.plot(MILLI * path.time[-1], away[-1], mark, color=colour, markerfacecolor="none", markersize=5, zorder=4)
+    axes.axhline(MICRO * far, color="#b8862d", linewidth=0.9)
+
+
+def _handles() -> list[Line2D]:
+    ends = [
+        Line2D([], [], marker=m, linestyle="", color=c, markerfacecolor="none", label=e) for e, (m, c) in MARKS.items()
+    ]
+    return [
+        Line2D([], [], color="black", label="the stated start"),
+        Line2D([], [], color="#9ab5d6", label="others"),
+        *ends,
+        Line2D([], [], color="#b8862d", label="beyond it, it has left"),
+    ]
 
 
 def from_start(bench: Bench, model: str, frequency: float, count: int) -> list[Path]:
@@ -112,9 +132,9 @@ def _convergence(bench: Bench, paths: list[Path], frequency: float, what: str) -
         "share": share.value, "lost": lost.value, "unknown": unknown.value, "to_and_fro": to_and_fro,
         "starts": len(paths),
     }  # fmt: skip
-    text = f"{share} of {len(paths)} {what} converge, {100 * to_and_fro:.0f} % go to and fro over the actuator"
-    text += f", {100 * lost.value:.0f} % are lost" if lost.hits else ""
-    return Answer(text, share.met), numbers
+    more = f"of {len(paths)} {what} {100 * to_and_fro:.0f} % go to and fro over the actuator"
+    more += f", {100 * lost.value:.0f} % are lost" if lost.hits else ""
+    return Answer(str(share), share.met, more), numbers
 
 
 def _converges(bench: Bench, results: dict[str, list[Path]]) -> Verdict:
@@ -124,7 +144,7 @@ def _converges(bench: Bench, results: dict[str, list[Path]]) -> Verdict:
         answer, numbers[model] = _convergence(bench, paths, LOW, "starts")
         stated = bool(converge(bench, paths[:1], LOW).hits)
         numbers[model]["stated_start_converges"] = stated
-        answers[model] = answer._replace(text=f"{answer.text}; the stated start {'does' if stated else 'does not'}")
+        answers[model] = answer._replace(more=f"{answer.more}; the stated start {'does' if stated else 'does not'}")
     return Verdict(
         "17a", "From rest at (100, 100) um the part converges to the actuator at 300 Hz.", answers,
         f"Converged: on the surface after {p.cycles} cycles, within {MICRO * p.near:g} um of the actuator for the "
@@ -145,11 +165,11 @@ def _leaves(bench: Bench, results: dict[str, list[Path]]) -> Verdict:
             "coming_off": off_numbers(paths, ACTUATOR), "starts": len(paths),
         }  # fmt: skip
         stated = f"leaves after {first:.2f} cycles" if np.isfinite(first) else "never leaves"
-        text = (
-            f"{leaves} of {len(paths)} starts leave, {soon} in {STROKES_TO_LEAVE} cycles; "
-            f"{off_said(paths, ACTUATOR)}; the stated start {stated} and {end_said(paths[0], ACTUATOR)}"
+        more = (
+            f"of {len(paths)} starts {off_said(paths, ACTUATOR)}; the stated start {stated} and "
+            f"{end_said(paths[0], ACTUATOR)}"
         )
-        answers[model] = Answer(text, (leaves.met + soon.met) / 2)
+        answers[model] = Answer(f"{leaves} leave, {soon} in two", (leaves.met + soon.met) / 2, more)
     return Verdict(
         "17b", "From the same start at 600 Hz it leaves the actuator's region in two strokes.", answers,
         f"It has left once it is {MICRO * p.far:g} um away or over the rim; strokes are taken as cycles. A part that "

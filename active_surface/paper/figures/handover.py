@@ -7,17 +7,17 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from active_surface.paper.figure_result import LOOK, MICRO, MILLI, FigureResult, finish
+from active_surface.paper.figure_result import MICRO, FigureResult, finish
 from active_surface.paper.figures.coming_off import end_said, off_numbers, off_said
-from active_surface.paper.figures.pairs import JUMPS, SURFACES, WIDTHS, Paths, draw_plane, joined, paths_of, reaches
+from active_surface.paper.figures.pairs import JUMPS, SURFACES, Paths, draw_plane, joined, legend, paths_of, reaches
 from active_surface.paper.models import Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import Path
 from active_surface.paper.share import share_of
 from active_surface.paper.verdict import Answer, Verdict
 
-PLOTTED: Final = 40.0  # ms
-OSCILLATIONS, WITHIN = 5.0, 1.0  # of the fast actuator, after which figure 20's part is with the slow one
+AROUND: Final = 100e-6  # m beyond the actuators, from where parts are placed anywhere
+OSCILLATIONS, LATE = 5.0, 1.0  # of the fast actuator, after which figure 20's part is with the slow one
 
 
 class Handover(NamedTuple):
@@ -47,34 +47,51 @@ LEFT_OPEN: Final = (
 
 
 def find(bench: Bench, effort: Effort) -> FigureResult:
-    """Both figures."""
+    """Both figures, and starts anywhere."""
     p = bench.parameters
-    paths = {figure: paths_of(bench, effort, *one, p.cycles) for figure, one in HANDOVERS.items()}
-    drawn = {figure: {name: rows[0].drawn(800) for name, rows in both.items()} for figure, both in paths.items()}
+    paths = {}
+    for figure, one in HANDOVERS.items():
+        drives = [bench.drive(frequency) for frequency in one.frequencies]
+        paths[figure] = paths_of(bench, effort, drives, one.start, bench.duration(*drives))
+    everywhere = {
+        name: anywhere(bench, model, surface, bench.starts_of(model, effort))
+        for name, (model, surface) in SURFACES.items()
+    }
+    shown = {f"figure {name}": (HANDOVERS[name], both) for name, both in paths.items()}
+    shown["anywhere"] = (HANDOVERS["20"], everywhere)
 
     def draw(figure: Figure) -> None:
-        axes = figure.subplots(2, 2)
-        for (over_time, plane), (name, rows) in zip(axes, drawn.items(), strict=True):
-            for key, row in rows.items():
-                model, surface = SURFACES[key]
-                style: dict[str, Any] = LOOK[model] | {"linewidth": WIDTHS[surface]}
-                over_time.plot(MILLI * row[:, 0], MICRO * row[:, 1], **style, label=key)
-            for place in (0.0, p.pitch):
-                over_time.axhline(MICRO * place, color="#8a8a8a", linewidth=0.7)
-            finish(over_time, "time [ms]", "x [µm]", f"figure {name}", legend=False)
-            over_time.set_xlim(0, PLOTTED)
-            draw_plane(plane, rows, p.pitch)
-            finish(plane, "x [µm]", "y [µm]", legend=False)
-        handles, names = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside lower center", ncols=len(names), frameon=False, fontsize=9)
+        axes = figure.subplots(len(shown), len(SURFACES), sharex=True, sharey=True)
+        for i, (title, (one, both)) in enumerate(shown.items()):
+            for k, (name, rows) in enumerate(both.items()):
+                panel = axes[i, k]
+                draw_plane(panel, rows, p.pitch, one.frequencies)
+                said = f"{title}: {share_of(arrives(bench, one, path) for path in rows)} arrive"
+                across, up = "x [µm]" if i == len(shown) - 1 else "", "y [µm]" if k == 0 else ""
+                finish(panel, across, up, f"{name}\n{said}" if i == 0 else said, legend=False)
+                panel.set_xlim(-MICRO * p.radius - 20, MICRO * (p.pitch + p.radius) + 20)
+                panel.set_ylim(-MICRO * p.radius - 20, MICRO * p.radius + 20)
+        legend(figure, slow=True)
 
     data: dict[str, Any] = {
-        f"{figure}: {name}": rows.tolist() for figure, both in drawn.items() for name, rows in both.items()
+        f"{title}: {name}": rows[0].drawn(800).tolist()
+        for title, (_, both) in shown.items()
+        for name, rows in both.items()
     }
     verdicts = [_arrives(bench, figure, paths[figure]) for figure in HANDOVERS]
     verdicts.insert(1, _in_five(bench, paths["20"]))
-    return FigureResult("fig20-21", "From a high to a low frequency", tuple(verdicts), data, draw, (12.5, 8.0),
-                 "The paths from the stated starts; crosses: their ends.")  # fmt: skip
+    verdicts.append(_anywhere(bench, everywhere))
+    return FigureResult("fig20-21", "From a high to a low frequency", tuple(verdicts), data, draw, (15.5, 10.0),
+                 "The paths from the stated starts, some others, and how all of them end.")  # fmt: skip
+
+
+def anywhere(bench: Bench, model: str, surface: str, count: int) -> list[Path]:
+    """Paths from places drawn around both actuators, with figure 20's frequencies; the same ones in every model."""
+    p, one = bench.parameters, HANDOVERS["20"]
+    random = np.random.default_rng(p.seed)
+    places = random.uniform([-AROUND, -AROUND], [p.pitch + AROUND, AROUND], (count, 2))
+    drives = [bench.drive(frequency) for frequency in one.frequencies]
+    return bench.paths(model, drives, places, bench.duration(*drives), actuators=surface)
 
 
 def arrives(bench: Bench, one: Handover, path: Path) -> bool:
@@ -97,9 +114,8 @@ def _arrives(bench: Bench, figure: str, paths: Paths) -> Verdict:
             f"coming_off, {name}": off_numbers(rows, places), f"stated_start_arrives, {name}": does[0],
         }  # fmt: skip
         stated = "arrives" if does[0] else end_said(rows[0], places)
-        answers[name] = Answer(
-            f"{share} arrive, {rim} go over the rim, {off_said(rows, places)}; the stated start {stated}", share.met
-        )
+        more = f"{rim} go over the rim, {off_said(rows, places)}; the stated start {stated}"
+        answers[name] = Answer(f"{share}", share.met, more)
     why = f"Converged as in figure 17. {JUMPS}{LEFT_OPEN if figure == '20' else ''}".strip()
     return Verdict(figure, STATEMENTS[figure], joined(answers), why, numbers)
 
@@ -115,15 +131,40 @@ def _in_five(bench: Bench, paths: Paths) -> Verdict:
     numbers: dict[str, Any] = {}
     for name, rows in paths.items():
         cycles = np.array([cycles_until_there(bench, HANDOVERS["20"], path) for path in rows])
-        come, soon = share_of(np.isfinite(cycles)), share_of(np.abs(cycles - OSCILLATIONS) <= WITHIN)
-        text = f"{come} get there"
+        come, soon = share_of(np.isfinite(cycles)), share_of(np.abs(cycles - OSCILLATIONS) <= LATE)
+        text, more = f"{soon}", f"{come} get there"
         if come.hits:
-            text += f", half of these within {np.median(cycles[np.isfinite(cycles)]):.1f} cycles; {soon} after five"
+            more += f", half of these within {np.median(cycles[np.isfinite(cycles)]):.1f} cycles"
         numbers |= {f"share, {name}": soon.value, f"get_there, {name}": come.value}
         numbers[f"cycles_of_the_stated_start, {name}"] = float(cycles[0])
-        answers[name] = Answer(text, soon.met)
+        answers[name] = Answer(text, soon.met, more)
     return Verdict(
         "20 (five cycles)", "After five oscillations of the fast actuator the part is in the slow one's region.",
         joined(answers), f"When it is first nearer than half a pitch to the slow actuator; {OSCILLATIONS:g} cycles, "
-        f"give or take {WITHIN:g}. It may leave again.", numbers,
+        f"give or take {LATE:g}. It may leave again.", numbers,
+    )  # fmt: skip
+
+
+def _anywhere(bench: Bench, paths: Paths) -> Verdict:
+    one = HANDOVERS["20"]
+    answers: dict[str, Answer] = {}
+    numbers: dict[str, Any] = {}
+    for name, rows in paths.items():
+        share, rim, off = (
+            share_of(does)
+            for does in (
+                [arrives(bench, one, path) for path in rows],
+                [path.over_rim for path in rows],
+                [path.came_off for path in rows],
+            )
+        )
+        numbers[name] = {"share": share.value, "over_the_rim": rim.value, "come_off": off.value, "starts": len(rows)}
+        answers[name] = Answer(f"{share}", share.met, f"{rim} go over the rim, {off} come off")
+    return Verdict(
+        "VI-C (anywhere)", "A part that is placed anywhere on the workcell leaves the high frequency and "
+        "converges to the "
+        "low one.", joined(answers),
+        f"At rest, drawn evenly from the rectangle that reaches {MICRO * AROUND:g} um beyond both actuators, "
+        "with figure "
+        f"20's frequencies. {JUMPS}Parts that friction holds where they are placed do not arrive.".strip(), numbers,
     )  # fmt: skip

