@@ -133,6 +133,13 @@ class AnisotropicSection:
         in_plane = compliance[np.ix_(*PLANE)]  # the stresses out of the plane are 0
         return AnisotropicSection(_turned(np.linalg.inv(in_plane), angle), thickness, density)
 
+    def mirrored(self, line: tuple[float, float]) -> AnisotropicSection:
+        """The plate seen in a mirror along a line, given by its direction."""
+        twice = 2 * math.atan2(line[1], line[0])
+        flip = np.diag([1.0, 1.0, -1.0])  # of strains, in a mirror along x
+        turned = np.array(_turned(flip @ np.array(self.stiffness) @ flip, twice))
+        return AnisotropicSection(tuple(map(tuple, turned.tolist())), self.thickness, self.density)
+
     @property
     def membrane_stiffness(self) -> FloatArray:
         """Forces per length (xx, yy, xy) from strains (xx, yy, 2 xy) of the mid-plane, (3, 3) [N/m]."""

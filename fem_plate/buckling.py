@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.sparse import diags
+from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from fem_plate.elements import FREE, PlateModel
@@ -32,25 +32,33 @@ def buckling_compression(model: PlateModel) -> float:
 
     model: of the plate without a tension, which its supports hold.
     """
-    bending, stretching = model.pinned_stiffness, model.space.stretching()
-    # The largest 1/mu: Lanczos finds that first, and the stretching may be far from singular or not.
+    return 1 / _largest(model, model.space.stretching()) / model.mesh.size**2
+
+
+def softest_foundation(model: PlateModel) -> float:
+    """The negative modulus of an even foundation at which a plate buckles, its size over the rigidity [1/m^4]."""
+    return 1 / _largest(model, model.space.mass()) / model.mesh.size**4
+
+
+def _largest(model: PlateModel, matrix: csc_matrix) -> float:
+    """The largest eigenvalue of a symmetric matrix over a plate's stiffness."""
+    # Lanczos finds that first, and the matrix may be far from singular or not.
     (largest,) = eigsh(
-        stretching,
+        matrix,
         1,
-        M=bending,
-        Minv=LinearOperator(bending.shape, matvec=model.solve, dtype=float),
+        M=model.pinned_stiffness,
+        Minv=LinearOperator(matrix.shape, matvec=model.solve, dtype=float),
         which="LA",
         v0=np.ones(model.unknowns),  # eigsh would start from a random vector, and differ from run to run
         return_eigenvectors=False,
     )
-    return float(1 / largest) / model.mesh.size**2
+    return float(largest)
 
 
-def check_stability(model: PlateModel) -> None:
-    """ValueError if a plate without actuators has a deflection of negative energy: a pivot of its stiffness is."""
+def is_stable(model: PlateModel) -> bool:
+    """Whether no deflection of a plate without actuators has a negative energy: all pivots are positive."""
     matrix = model.pinned_stiffness
     scale = 1 / np.sqrt(np.abs(matrix.diagonal()))
     scaled = (diags(scale) @ matrix @ diags(scale)).tocsc()
     factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    if (factor.U.diagonal() <= 0).any():
-        raise ValueError("Input foundation and forms of Plate must leave it stable without actuators; it buckles")
+    return bool((factor.U.diagonal() > 0).all())

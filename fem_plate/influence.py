@@ -42,7 +42,7 @@ class InfluenceShapes(Shapes, Estimated):
         self._stiffness_unit = rigidity / self.size**2  # N/m
         solve = unheld_shapes if free_motions else held_shapes
         self.functions, self._green = solve(model, points / self.size, actuator_stiffness, self._stiffness_unit)
-        self.strengths = self.functions.forces
+        self.strengths = model.infinite.logarithms(points / self.size)[:, None] * self.functions.forces
         self.rounding = model.rounding(points / self.size, actuator_stiffness > 0)
 
     @property
@@ -61,7 +61,7 @@ class InfluenceShapes(Shapes, Estimated):
     @property
     def stiffness(self) -> FloatArray:
         """Force at i for a unit stroke of actuator j, (N, N) [N/m]; for a floating one, for a unit force."""
-        return self.strengths * self._stiffness_unit
+        return self.functions.forces * self._stiffness_unit
 
     def under_pressure(self, pressure: float) -> PlateFunctions:
         """The plate's deflection under a uniform pressure [Pa], up, while its actuators' strokes and forces are 0.

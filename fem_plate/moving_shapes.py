@@ -30,7 +30,8 @@ class MovingShapes(Shapes):
         outline: Outline,
         scales: FloatArray,
     ) -> None:
-        self.functions, self.strengths = functions, functions.forces
+        self.functions = functions
+        self.strengths = functions.infinite.logarithms(functions.sources)[:, None] * functions.forces
         self.points, self.springs = np.ascontiguousarray(points), springs
         self.size, self.outline = size, outline
         self._scales = scales

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fem_plate import vibration
 from fem_plate.arrays import PatchedShapes, ProgressCallback, patched_shapes
-from fem_plate.buckling import buckling_compression, check_stability, check_tension
+from fem_plate.buckling import buckling_compression, check_tension, is_stable, softest_foundation
 from fem_plate.deflection import Deflection
 from fem_plate.elements import (
     MAX_EXPONENT,
@@ -31,7 +31,7 @@ from fem_plate.general import GeneralModel, plate_energy
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.inputs import as_points, check_points, one_per_point, places_on, stiffness_per_point
 from fem_plate.section import PlateSection
-from fem_plate.varying import Field, Section
+from fem_plate.varying import Field, Section, VaryingSection
 from fem_plate.vibration import HeldPlate, Modes
 from meshes import PlateMesh
 
@@ -77,8 +77,8 @@ class Plate:
     ------
     ValueError
         Names every unknown support and boundary; the tolerance is not positive; there is a tension where a boundary
-        is free; thickness, foundation or a form has no use on the plate, with the place; or compression, foundation and
-        forms make the plate buckle without actuators.
+        is free; thickness, foundation or a form is not valid somewhere on the plate, and the message names the place;
+        or compression, foundation and forms make the plate buckle without actuators.
 
     Warns
     -----
@@ -105,7 +105,7 @@ class Plate:
         check_tension(tension, self.supports)
         self.tension = float(tension)
         self.foundation = foundation
-        self.forms = tuple(forms)
+        self.forms = tuple(forms) if isinstance(forms, Sequence) else (forms,)
         self.fineness = Fineness.of(mesh, self.relative_tension)
         self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
         self.energy = plate_energy(mesh, section, foundation, self.tension, self.forms)
@@ -123,9 +123,9 @@ class Plate:
                 stacklevel=2,
             )
         self._last: tuple[bytes, PlateModel] | None = None
-        self._warn_of_wedges("that is not isotropic and uniform", self._left_out)
-        if self.energy is not None and replace(self.energy, tension=0.0).may_soften:
-            check_stability(self._model_on(self.cells(), 0.0))
+        self._warn_of_wedges("on a foundation, with forms, or that is not isotropic and uniform", self._left_out)
+        if self.energy is not None and self.energy.may_soften:
+            self._check_stability(max(self.tension, 0.0))
         if tension < 0 and -tension >= (load := self.buckling_load()):
             raise ValueError(
                 f"Input tension of Plate must exceed {-load:.6g} N/m, at which it buckles; got {self.tension!r}"
@@ -189,6 +189,19 @@ class Plate:
         """The tension over the plate's rigidity [1/m^2]."""
         return self.tension / self.section.rigidity
 
+    def _check_stability(self, tension: float) -> None:
+        """ValueError if the plate buckles without actuators, under another tension [N/m]."""
+        if is_stable(self._model_on(self.cells(), tension)):
+            return
+        if callable(self.foundation) or self.forms:
+            raise ValueError("Input foundation and forms of Plate must leave it stable without actuators; it buckles")
+        alone = Plate(self.mesh, self.section, self.supports, tension=tension)
+        critical = softest_foundation(alone.model()) * self.section.rigidity
+        raise ValueError(
+            f"Input foundation of Plate must exceed {-critical:.6g} N/m^3, at which it buckles without actuators; got "
+            f"{self.foundation!r}"
+        )
+
     def as_meshed(self, tension: float | None = None) -> Plate:
         """The plate on the mesh as it is, without a tolerance; tension: another one [N/m]."""
         pulled = self.tension if tension is None else tension
@@ -197,14 +210,17 @@ class Plate:
     def buckling_load(self) -> float:
         """The compression, the same in all directions, at which the plate buckles without actuators [N/m].
 
-        It is D mu with the lowest mu of int M(v):H(q) = mu int grad v.grad q, whatever tension the plate has.
+        It is D mu with the lowest mu of a(v, q) = mu int grad v.grad q, whatever tension the plate has, with a the form
+        of bending, foundation and users' forms.
 
         Raises
         ------
         ValueError
-            A boundary is free.
+            A boundary is free, or foundation and forms make the plate buckle by themselves.
         """
         check_tension(1.0, self.supports)
+        if self.energy is not None and self.energy.may_soften:
+            self._check_stability(0.0)
         corners = [*self._other_corners, *(wedge.corner for wedge in self.wedges)]
         mesh = graded(self.mesh, Fineness.of(self.mesh), corners)
         return buckling_compression(self._model_on(mesh, 0.0)) * self.section.rigidity
@@ -405,7 +421,11 @@ class Plate:
         width, height = np.ptp(self.mesh.outline.box, axis=0)
         rims = ", ".join(f"{name} {support}" for name, support in self.supports.items())
         tension = f"; tension {self.tension:.4g} N/m" if self.tension else ""
-        return f"Plate of {width:.4g} m x {height:.4g} m, {self.section.thickness:.4g} m thick; {rims}{tension}"
+        about = "about " if isinstance(self.section, VaryingSection) else ""
+        more = "; on a foundation" if callable(self.foundation) or self.foundation else ""
+        more += f"; with {len(self.forms)} forms" if self.forms else ""
+        thick = f"{about}{self.section.thickness:.4g} m thick"
+        return f"Plate of {width:.4g} m x {height:.4g} m, {thick}; {rims}{tension}{more}"
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rim by its supports and the mesh, into axes in m or new ones."""

@@ -37,7 +37,8 @@ class Shapes(ABC):
     springs : (N,) array
         Stiffness of the actuators [N/m]; inf is rigid, 0 floating.
     strengths : (N, N) array
-        Dimensionless force at i in the shape of actuator j.
+        How much of F is at i in the shape of actuator j: of a uniform, isotropic plate the dimensionless force there.
+        Where the stiffness depends on direction, F is the mean over directions.
     size : float
         The length that makes everything dimensionless [m].
     outline : Outline

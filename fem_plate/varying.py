@@ -30,17 +30,24 @@ class VaryingSection:
     Raises
     ------
     ValueError
-        The section is of another kind. `Plate` raises it where the thickness is not positive on the plate.
+        The section is of another kind, or the thickness no callable. `Plate` raises it where the thickness is not
+        positive on the plate.
     """
 
     section: PlateSection | AnisotropicSection
     thickness_at: Field
 
     def __post_init__(self) -> None:
+        wrong: list[str] = []
         if not isinstance(self.section, PlateSection | AnisotropicSection):
-            raise ValueError(
+            wrong.append(
                 f"Input section of VaryingSection must be a PlateSection or AnisotropicSection; got {self.section!r}"
             )
+        if not callable(self.thickness_at):
+            got = repr(self.thickness_at)
+            wrong.append(f"Input thickness_at of VaryingSection must be a callable of x and y; got {got}")
+        if wrong:
+            raise ValueError("; ".join(wrong))
 
     def relative_thickness(self, xy: FloatArray) -> FloatArray:
         """The thickness at points (n, 2) [m] over that for reference, (n,)."""
@@ -65,11 +72,6 @@ class VaryingSection:
     def law(self) -> FloatArray:
         """As of the section for reference."""
         return self.section.law
-
-    @property
-    def membrane_stiffness(self) -> FloatArray:
-        """As of the section for reference."""
-        return self.section.membrane_stiffness
 
     @property
     def poisson_ratio(self) -> float:

@@ -11,10 +11,13 @@ from scipy.spatial import cKDTree
 
 from active_surface.arrays import FloatArray
 from coupling.case import AnnulusCase, Case, DiscCase, EllipseCase, PlateCase, RectangleCase, length_text
+from coupling.scene import section_of
+from fem_plate import PlateSection
 
 Direction = tuple[float, float]
 
 ON_LINE: Final = 1e-12  # of the largest distance from the centre: tolerance of lying on the line
+SAME_LAW: Final = 1e-9  # of the rigidity: materials with laws that differ by less are alike
 ALONG: Final = ((1.0, 0.0), (0.0, 1.0))
 DIAGONAL: Final = ((math.sqrt(0.5), math.sqrt(0.5)), (math.sqrt(0.5), -math.sqrt(0.5)))
 
@@ -77,7 +80,16 @@ def _is_symmetric(places: FloatArray, kinds: Sequence[object], line: Direction, 
 
 
 def _mirrors(case: Case, plate: PlateCase, movers: Sequence[int]) -> Iterator[Direction]:
-    """Yield the directions of the axes of symmetry of a plate; for a round one those that matter."""
+    """Yield the directions of the axes of symmetry of a plate and its material; for a round one those that matter."""
+    section = section_of(plate)
+    for line in _mirrors_of_outline(case, plate, movers):
+        mirrored = section if isinstance(section, PlateSection) else section.mirrored(line)
+        if np.allclose(mirrored.law, section.law, rtol=0, atol=SAME_LAW):
+            yield line
+
+
+def _mirrors_of_outline(case: Case, plate: PlateCase, movers: Sequence[int]) -> Iterator[Direction]:
+    """Yield the same of the outline with its supports."""
     if isinstance(plate, (DiscCase, AnnulusCase)) or (
         isinstance(plate, EllipseCase) and plate.semi_axis_x == plate.semi_axis_y
     ):

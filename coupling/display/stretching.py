@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from coupling.drives import stroke_heights
 from coupling.scene import PlateScene
 from coupling.stretch import Stretch
+from fem_plate import PlateSection
 
 FloatArray = NDArray[np.float64]
 
@@ -51,6 +52,7 @@ class Stretching:
         quadratic = x * x, x * y, y * y
         middle = [motions @ e.T + q / 2 for e, q in zip(self._in_plane, quadratic, strict=True)]
         section, tension = self._plate.section, self._plate.tension
+        assert isinstance(section, PlateSection)  # as of all plates that stretch
         xx, xy, yy = middle
         of_x, of_y, of_xy = np.tensordot(section.membrane_stiffness, np.stack([xx, yy, 2 * xy]), axes=1)
         force = of_x + tension, of_xy, of_y + tension

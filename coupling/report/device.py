@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
@@ -39,12 +40,14 @@ def _plate(plate: PlateCase) -> str:
     held = f"{HELD[plate.supports]} " if isinstance(plate.supports, str) else ""
     article = "An" if (held or shape)[0] in "aeiou" else "A"
     sides = "" if held else f", {_sides(plate)}"
-    stiffness = f"cut from a ({plate.wafer}) wafer"
+    turned = f", turned by {math.degrees(plate.wafer_angle):g} degrees" if plate.wafer_angle else ""
+    stiffness = f"cut from a ({plate.wafer}) wafer{turned}"
     if plate.youngs_modulus is not None:
         stiffness = f"Young's modulus {quantity_text(plate.youngs_modulus, 'Pa')}"
     bends = " (it bends and stretches)" if plate.theory == "von-karman" else ""
     thick = f"{quantity_text(plate.thickness, 'm')} thick"
-    return f"{article} {held}{shape} {size}{sides}, {thick}, {stiffness}{bends}"
+    rests = f", on a foundation of {plate.foundation:.4g} N/m^3" if plate.foundation else ""
+    return f"{article} {held}{shape} {size}{sides}, {thick}, {stiffness}{bends}{rests}"
 
 
 def _outline(plate: PlateCase) -> tuple[str, str]:

@@ -115,14 +115,16 @@ def shapes_faults(shapes: PlateShapes, plate: Plate, points: Sequence[Place], st
         names = ["youngs_modulus", "poisson_ratio", "thickness"]
     else:
         names = ["thickness"]
-        if type(ours) is not type(theirs) or not np.array_equal(ours.membrane_stiffness, theirs.membrane_stiffness):
+        if getattr(ours, "stiffness", None) != getattr(theirs, "stiffness", None) or type(ours) is not type(theirs):
             wrong.append("another material")
     for name in names:
         if getattr(ours, name) != getattr(theirs, name):
             wrong.append(f"{name} {getattr(theirs, name):g}, not {getattr(ours, name):g}")
-    for name in ("supports", "tension", "tolerance", "foundation", "forms"):
+    for name in ("supports", "tension", "tolerance"):
         if getattr(plate, name) != getattr(other, name):
             wrong.append(f"{name} {getattr(other, name)}, not {getattr(plate, name)}")
+    if plate.foundation != other.foundation or other.forms:
+        wrong.append("another foundation, or forms")
     return wrong
 
 

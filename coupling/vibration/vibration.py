@@ -12,7 +12,7 @@ from coupling.drives import fastest_acceleration, stroke_heights
 from coupling.surface import ActuatedSurface, PressureShape, surface_motion
 from coupling.vibration.choice import ChosenModes, Damping, choose_modes, motion_of
 from coupling.vibration.motion import ModalMotion
-from fem_plate import Excitation, InfluenceShapes, MovingShapes, PlateSection
+from fem_plate import AnisotropicSection, Excitation, InfluenceShapes, MovingShapes, PlateSection
 from particle import AnyDrive
 from particle.drives import QuinticDrive
 
@@ -84,7 +84,7 @@ class Vibration:
 
 def make_vibration_model(
     shapes: InfluenceShapes,
-    section: PlateSection,
+    section: PlateSection | AnisotropicSection,
     damping: Damping,
     sets: Sequence[Sequence[AnyDrive]],
     end: float,

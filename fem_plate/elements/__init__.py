@@ -11,6 +11,6 @@ from fem_plate.elements.infinite import InfinitePlate, Radial, infinite_plate
 from fem_plate.elements.model import PlateModel
 from fem_plate.elements.rim import rigid_motions, rim_quadrature
 from fem_plate.elements.singular import UNIT_STRENGTH, point_load, point_value
-from fem_plate.elements.space import PlateSpace
+from fem_plate.elements.space import QUADRATURE, PlateSpace
 from fem_plate.elements.supports import CLAMPED, FREE, SIMPLY_SUPPORTED, by_boundary
 from fem_plate.elements.wedges import rounded_corners, wedges

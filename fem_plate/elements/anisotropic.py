@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from fem_plate.elements.infinite import InfinitePlate, Radial
 from fem_plate.elements.rim import unit_gauss
+from fem_plate.elements.singular import UNIT_STRENGTH
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -95,6 +96,10 @@ class AnisotropicPlate(InfinitePlate):
         (x, y), ((value,),) = np.moveaxis(xy - source, -1, 0), self._derivatives(xy - source, [0])
         squares = [(weight * (x + m * y) ** 2 + rate * 2 * y * (x + m * y)).real for m, weight, rate in self._terms]
         return Radial(value, np.asarray(sum(squares)))
+
+    def logarithms(self, sources: FloatArray) -> FloatArray:
+        mean = sum((weight * (1 + m**2) / 2 + rate * m).real for m, weight, rate in self._terms)  # of r^2 ln r
+        return np.full(len(sources), mean / UNIT_STRENGTH)
 
     def pressure_derivatives(self, xy: FloatArray) -> list[FloatArray]:
         """Those of r^4 over what a plate of this law carries by it."""

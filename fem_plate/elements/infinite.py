@@ -71,6 +71,10 @@ class InfinitePlate:
     def pressure_derivatives(self, xy: FloatArray) -> list[FloatArray]:
         return singular.pressure_derivatives(xy)
 
+    def logarithms(self, sources: FloatArray) -> FloatArray:
+        """What multiplies r^2 ln(r) / (8 pi) close to unit forces at sources (N, 2), (N,), the mean over directions."""
+        return np.ones(len(sources))
+
 
 @dataclass(frozen=True)
 class StretchedPlate(InfinitePlate):

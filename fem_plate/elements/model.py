@@ -144,6 +144,15 @@ class PlateModel:
 
     def under_forces(self, sources: FloatArray, basis: SourceBasis | None = None) -> FloatArray:
         """The smooth parts (unknowns, N) of the responses to unit forces at sources (N, 2), or to those of a basis."""
+        responses = self._smooth_under(sources, basis)
+        if not self.rigid.size:
+            return responses
+        # The springs respond to the known functions too, by a rigid motion.
+        means = self._known_means(sources)
+        return responses - self.space.linear() @ (self.rigid @ (means if basis is None else means @ basis.matrix))
+
+    def _smooth_under(self, sources: FloatArray, basis: SourceBasis | None) -> FloatArray:
+        """The same, but for what springs under a plate that can move rigidly add."""
         responses = np.empty((self.unknowns, len(sources)), order="F")
         rim = self.space.rim.points
         for start in range(0, len(sources), CHUNK):
@@ -153,11 +162,7 @@ class PlateModel:
                 rest = self.infinite.point_derivatives(rim, sources[parent])
                 known[k - start] = [(one - other) / length for one, other in zip(known[k - start], rest, strict=True)]
             responses[:, part.start : part.stop] = self._smooth_parts(known)
-        if not self.rigid.size:
-            return responses
-        # The springs respond to the known functions too, by a rigid motion.
-        means = self._known_means(sources)
-        return responses - self.space.linear() @ (self.rigid @ (means if basis is None else means @ basis.matrix))
+        return responses
 
     def _known_means(self, sources: FloatArray) -> FloatArray:
         """The integrals of F around sources (N, 2) with the rigid motions, (r, N).

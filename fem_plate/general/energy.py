@@ -6,13 +6,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_plate import elements
 from fem_plate.anisotropic import AnisotropicSection
-from fem_plate.general.reading import CHANNELS, form_coefficients
+from fem_plate.general.reading import JET, form_coefficients
 from fem_plate.section import PlateSection
 from fem_plate.varying import Field, Section, VaryingSection, values_at
 from meshes import PlateMesh
@@ -32,7 +34,7 @@ class PlateEnergy:
     """The form a(w, q) of a plate on a mesh: bending, a foundation, a tension and forms of users.
 
     section: its rigidity makes the form dimensionless, and `size` [m] places.  foundation: N/m^3.  tension: N/m.
-    points: (n, 2) m, of the mesh, by which the kind of the form is told.
+    points: (n, 2) m, all over the plate, at which the form is examined.
     """
 
     section: Section
@@ -45,14 +47,14 @@ class PlateEnergy:
     def at(self, xy: FloatArray) -> FloatArray:
         """The matrices (..., 6, 6) at places (..., 2), all dimensionless."""
         places = xy.reshape(-1, 2) * self.size
-        own = np.zeros((len(places), CHANNELS, CHANNELS))
+        own = np.zeros((len(places), JET, JET))
         for k, form in enumerate(self.forms):
             own += form_coefficients(form, places, f"forms[{k}] of Plate")
         own[:, VALUE, VALUE] += self._foundation_at(places)
         own[:, GRADIENT, GRADIENT] += self.tension * np.eye(2)
         own *= self.size ** (4.0 - ORDERS - ORDERS[:, None]) / self.section.rigidity
-        own[:, HESSIAN, HESSIAN] += self.section.law * self.relative_mass(xy).reshape(-1, 1, 1) ** 3
-        return own.reshape(*xy.shape[:-1], CHANNELS, CHANNELS)
+        own[:, HESSIAN, HESSIAN] += self.section.law * self.relative_thickness(xy).reshape(-1, 1, 1) ** 3
+        return own.reshape(*xy.shape[:-1], JET, JET)
 
     def _foundation_at(self, places: FloatArray) -> FloatArray | float:
         if callable(self.foundation):
@@ -63,8 +65,8 @@ class PlateEnergy:
         """The laws of bending (n, 3, 3) at places (n, 2)."""
         return self.at(xy)[:, HESSIAN, HESSIAN]
 
-    def relative_mass(self, xy: FloatArray) -> FloatArray:
-        """The mass per area at places (..., 2) over that of the section for reference, (...)."""
+    def relative_thickness(self, xy: FloatArray) -> FloatArray:
+        """The thickness at places (..., 2) over that for reference, (...); so is the mass per area."""
         if not isinstance(self.section, VaryingSection):
             return np.ones(xy.shape[:-1])
         return self.section.relative_thickness(xy.reshape(-1, 2) * self.size).reshape(xy.shape[:-1])
@@ -83,11 +85,6 @@ class PlateEnergy:
         return bool(np.ptp(laws, axis=0).max() <= VARIES * np.abs(laws).max())
 
     @property
-    def only_bends(self) -> bool:
-        """Whether rigid motions cost no energy."""
-        return not (self._has(slice(3), slice(3)) or self._has(slice(3), HESSIAN))
-
-    @property
     def exponent(self) -> float:
         """What w less the response of the infinite plate with the law at an actuator is there, r^(exponent + 1) ln r.
 
@@ -97,41 +94,45 @@ class PlateEnergy:
             return 2.0
         return 3.0 if self._has(GRADIENT, GRADIENT) or self._has(VALUE, HESSIAN) else math.inf
 
+    def check(self) -> None:
+        """ValueError where the law of bending is not positive definite, with the first place."""
+        lowest = np.linalg.eigvalsh(self._at_points[:, HESSIAN, HESSIAN])[:, 0]
+        if (lowest <= 0).any():
+            x, y = self.points[int(np.argmax(lowest <= 0))].tolist()
+            raise ValueError(
+                f"Input forms of Plate must leave it a positive bending stiffness; it has none at ({x:.6g}, {y:.6g}) m"
+            )
+
     @property
     def may_soften(self) -> bool:
-        """Whether the plate may have a deflection of negative energy."""
-        lowest = np.linalg.eigvalsh(self._at_points)[:, 0]
-        return bool(lowest.min() < -VARIES * np.abs(self._at_points).max())
+        """Whether what is added to bending may have a negative energy."""
+        return callable(self.foundation) or self.foundation < 0 or bool(self.forms)
 
 
 def plate_energy(
-    mesh: PlateMesh,
-    section: Section,
-    foundation: float | Field,
-    tension: float,
-    forms: Sequence[BilinearForm],
+    mesh: PlateMesh, section: Section, foundation: float | Field, tension: float, forms: Sequence[BilinearForm]
 ) -> PlateEnergy | None:
     """The energy of a plate that has more than a uniform section (isotropic, if it has a tension); else None.
 
-    Raises ValueError, naming the foundation or form that is none, or the first place where one has no use.
+    Raises ValueError, naming the foundation or forms that are of the wrong type, or the first place where one is not
+    valid.
     """
     wrong = [
         f"Input forms[{k}] of Plate must be a skfem.BilinearForm; got {form!r}"
         for k, form in enumerate(forms)
         if not callable(getattr(form, "form", None))
     ]
-    if not callable(foundation) and not (isinstance(foundation, int | float) and math.isfinite(foundation)):
+    if not callable(foundation) and not (isinstance(foundation, Real) and math.isfinite(foundation)):
         wrong.append(f"Input foundation of Plate must be a finite number or a callable; got {foundation!r}")
     if wrong:
         raise ValueError("; ".join(wrong))
     uniform = isinstance(section, PlateSection) or (isinstance(section, AnisotropicSection) and not tension)
     if uniform and not callable(foundation) and not foundation and not forms:
         return None
-    energy = PlateEnergy(section, foundation, tension, tuple(forms), mesh.points, mesh.size)
-    lowest = np.linalg.eigvalsh(energy.laws(mesh.points / mesh.size))[:, 0]
-    if (lowest <= 0).any():
-        x, y = mesh.points[int(np.argmax(lowest <= 0))].tolist()
-        raise ValueError(
-            f"Input forms of Plate must leave it a positive bending stiffness; it has none at ({x:.6g}, {y:.6g}) m"
-        )
+    xy, _ = elements.forms.triangle_quadrature(elements.QUADRATURE)
+    one, two, three = np.moveaxis(mesh.points[mesh.triangles], 1, 0)[..., None, :]
+    share = xy + 1 / 3
+    inside = one + share[:, :1] * (two - one) + share[:, 1:] * (three - one)
+    energy = PlateEnergy(section, foundation, tension, tuple(forms), inside.reshape(-1, 2), mesh.size)
+    energy.check()
     return energy

@@ -56,6 +56,10 @@ class LocalPlate(InfinitePlate):
         own = plate.radial(xy, source)
         return Radial(factor * own.value, factor * own.square)
 
+    def logarithms(self, sources: FloatArray) -> FloatArray:
+        parts = [factor * plate.logarithms(source[None])[0] for plate, factor, source in self._plates(sources)]
+        return np.array(parts)
+
     def pressure_derivatives(self, xy: FloatArray) -> list[FloatArray]:
         """0: elements follow all of a pressure's deflection."""
         return [np.zeros((order + 1, *xy.shape[:-1])) for order in range(4)]

@@ -20,7 +20,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
-from fem_plate.elements import PlateModel, PlateSpace, SourceBasis, forms, monomials, rigid_motions, source_basis
+from fem_plate.anisotropic import MEAN
+from fem_plate.elements import (
+    QUADRATURE,
+    PlateModel,
+    PlateSpace,
+    SourceBasis,
+    forms,
+    monomials,
+    rigid_motions,
+    source_basis,
+)
 from fem_plate.general.energy import GRADIENT, HESSIAN, PlateEnergy
 from fem_plate.general.local import LocalPlate
 from meshes import PlateMesh
@@ -28,10 +38,9 @@ from meshes import PlateMesh
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-CHUNK = 400  # triangles at a time, to bound memory
+CHUNK, SOURCES = 400, 50  # triangles and forces at a time, to bound memory
 FREE = 1e-10  # of the largest energy of a rigid motion: those with less are free
 EPSILON = float(np.finfo(float).eps)
-MEAN = np.array([3, 0, 1, 0, 1, 0, 1, 0, 3]).reshape(3, 3) / 8  # of a law: its stiffness averaged over directions
 
 
 class GeneralModel(PlateModel):
@@ -47,28 +56,35 @@ class GeneralModel(PlateModel):
 
     def _free(self, rigid: FloatArray) -> FloatArray:
         """The rigid motions (3, r) among those that the supports allow which cost no energy."""
-        if not rigid.size or self.energy.only_bends:
+        if not rigid.size:
             return rigid
-        motions = self.space.linear() @ self._orthonormal(rigid)
-        energies, turned = np.linalg.eigh(motions.T @ (self.stiffness @ motions))
-        return self._orthonormal(rigid) @ turned[:, np.abs(energies) <= FREE * np.abs(energies).max()]
+        even = self._orthonormal(rigid)
+        motions = self.space.linear() @ even
+        energies, turned = np.linalg.eigh(motions.T @ (self._parts[1] @ motions))
+        return np.asarray(even @ turned[:, np.abs(energies) <= FREE * np.abs(energies).max()])
 
     @cached_property
     def mass(self) -> csc_matrix:
         matrices = np.zeros((len(self.space.triangles.centre), 21, 21))
         for triangle, points, weights in self._cells():
             value = self.space.triangles.derivatives(points, triangle, 0)[0]
-            np.add.at(matrices, triangle, forms.mass_at(value, weights * self.energy.relative_mass(points)))
+            np.add.at(matrices, triangle, forms.mass_at(value, weights * self.energy.relative_thickness(points)))
         return self.space.assembled(matrices)
 
     @property
     def masses(self) -> tuple[FloatArray, FloatArray]:
         points, weights = self.space.quadrature
-        return points, weights * self.energy.relative_mass(points)
+        return points, weights * self.energy.relative_thickness(points)
 
-    @cached_property
+    @property
     def stiffness(self) -> csc_matrix:
         """The symmetric matrix of the form and of its terms at the rim."""
+        bending, rest = self._parts
+        return (bending + rest).tocsc()
+
+    @cached_property
+    def _parts(self) -> tuple[csc_matrix, csc_matrix]:
+        """The matrices of bending with all terms at the rim, and of the rest of the form."""
         bending, rest = np.zeros((2, len(self.space.triangles.centre), 21, 21))
         for triangle, points, weights in self._cells():
             table, own = self._table(points, triangle), self.energy.at(points) * weights[..., None, None]
@@ -77,18 +93,15 @@ class GeneralModel(PlateModel):
             if np.any(own):
                 np.add.at(rest, triangle, _products(table, _times(own, table)))
         at_rim = self.space.at_rim(self._own_traces, self._couplings[0])
-        return (self.space.of_bending(bending, at_rim) + self.space.assembled(rest)).tocsc()
+        return self.space.of_bending(bending, at_rim), self.space.assembled(rest)
 
     @property
     def pinned_stiffness(self) -> csc_matrix:
         return (self.stiffness + self.pins.T @ self.pins).tocsc()
 
-    def under_forces(self, sources: FloatArray, basis: SourceBasis | None = None) -> FloatArray:
-        """As of `PlateModel`; a basis has no dipoles, see `basis`."""
-        responses = self.solve(self._loads(sources)) if len(sources) else np.zeros((self.unknowns, 0))
-        if not self.rigid.size or not len(sources):
-            return responses
-        return np.asarray(responses - self.space.linear() @ (self.rigid @ self._known_means(sources)))
+    def _smooth_under(self, sources: FloatArray, basis: SourceBasis | None) -> FloatArray:
+        parts = [self._loads(sources[start : start + SOURCES]) for start in range(0, len(sources), SOURCES)]
+        return self.solve(np.concatenate(parts, axis=1)) if parts else np.zeros((self.unknowns, 0))
 
     def under_pressure(self) -> FloatArray:
         return self.solve(self.space.mass() @ self.space.linear()[:, :1])
@@ -110,13 +123,12 @@ class GeneralModel(PlateModel):
             table, own = self._table(points, triangle), self.energy.at(points)
             known = self.infinite.point_load(points.reshape(-1, 2), sources)
             value, gradient, hessian = (part.reshape(*weights.shape, *part.shape[1:]) for part in known)
-            curvature = np.stack([hessian[..., 0, 0], hessian[..., 0, 1], hessian[..., 1, 1]], axis=-1)
-            derivatives = np.concatenate([value[..., None], gradient, curvature], axis=-1)  # (t, n, N, 6)
-            rest = own[:, :, None].repeat(len(sources), axis=2)
-            rest[..., HESSIAN, HESSIAN] -= laws
-            with np.errstate(invalid="ignore"):  # 0 inf at a source
-                density = (rest @ derivatives[..., None])[..., 0] * weights[..., None, None]
-            density = np.where(np.isfinite(density), density, 0.0).transpose(3, 0, 1, 2)  # (6, t, n, N)
+            curvature = np.stack([hessian[..., 0, 0], hessian[..., 0, 1], hessian[..., 1, 1]])
+            jets = np.concatenate([value[None], np.moveaxis(gradient, -1, 0), curvature])  # (6, t, n, N)
+            with np.errstate(invalid="ignore"):  # inf - inf at a source
+                density = _times(own, jets)
+                density[HESSIAN] -= np.einsum("Nab,btnN->atnN", laws, curvature)
+            density = np.where(np.isfinite(density), density * weights[..., None], 0.0)
             loads -= self.space.summed(_products(table, density), triangle)
         return loads - self.space.summed(self._rim_loads(sources, laws), self.space.rim.triangle)
 
@@ -152,7 +164,7 @@ class GeneralModel(PlateModel):
         rim the form may not be defined.
         """
         space, triangle = self.space, self.space.rim.triangle
-        xy, _ = forms.triangle_quadrature(6)
+        xy, _ = forms.triangle_quadrature(QUADRATURE)
         triangles = space.triangles
         inside = triangles.centre[triangle, None] + np.einsum("mij,nj->mni", triangles.jacobian[triangle], xy)
         fit = np.linalg.pinv(monomials(*xy.T))  # (21, n)
@@ -195,7 +207,7 @@ class GeneralModel(PlateModel):
     def _cells(self) -> Iterator[tuple[IntArray, FloatArray, FloatArray]]:
         """Triangles (t,), quadrature points (t, n, 2) and weights (t, n), some at a time, and then the slivers."""
         triangles = self.space.triangles
-        xy, weights = forms.triangle_quadrature(6)
+        xy, weights = forms.triangle_quadrature(QUADRATURE)
         for start in range(0, len(triangles.centre), CHUNK):
             triangle = np.arange(start, min(start + CHUNK, len(triangles.centre)))
             points = np.einsum("mij,nj->mni", triangles.jacobian[triangle], xy) + triangles.centre[triangle, None]

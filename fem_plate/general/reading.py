@@ -19,35 +19,41 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-CHANNELS = 6
-SYMMETRIC = 1e-9  # of the largest entry at a point: more asymmetry is no rounding
+JET = 6  # w and its derivatives to the second
+ROUNDING = 1e-9  # of the largest entry at a point
 
 
 def form_coefficients(form: BilinearForm, xy: FloatArray, name: str) -> FloatArray:
     """The matrices (n, 6, 6) of a form at points (n, 2) [m], in N m, and 1/m of it for each derivative less.
 
-    Raises ValueError where it uses more than `w.x`, is not finite, or not symmetric.
+    Raises ValueError where it uses more than `w.x`, or is not real, finite, symmetric and bilinear.
     """
     from skfem import DiscreteField  # here, because it takes a while
     from skfem.assembly.form.form import FormExtraParams
 
     places = FormExtraParams(x=DiscreteField(np.ascontiguousarray(xy.T)[:, :, None]))
-    units = [_unit_field(channel, len(xy)) for channel in range(CHANNELS)]
-    entries = np.empty((len(xy), CHANNELS, CHANNELS))
-    for row, v in enumerate(units):
-        for column, u in enumerate(units):
-            try:
-                with np.errstate(all="ignore"):  # what is not finite is refused below
-                    entries[:, row, column] = np.broadcast_to(form.form(u, v, places), (len(xy), 1))[:, 0]
-            except (AttributeError, KeyError, TypeError, IndexError, ValueError) as wrong:
-                raise ValueError(
-                    f"Input {name} must be a form of u, v, their gradients and Hessians, and w.x alone: {wrong}"
-                ) from None
+
+    def returned(u: FloatArray, v: FloatArray) -> FloatArray:
+        try:
+            with np.errstate(all="ignore"):  # what is not finite is refused below
+                values = np.broadcast_to(form.form(_field(u, len(xy)), _field(v, len(xy)), places), (len(xy), 1))[:, 0]
+        except (AttributeError, KeyError, TypeError, IndexError, ValueError) as wrong:
+            raise ValueError(
+                f"Input {name} must be a form of u, v, their gradients and Hessians, and w.x alone: {wrong}"
+            ) from None
+        if np.iscomplexobj(values):
+            raise ValueError(f"Input {name} must be real; it returns complex numbers")
+        return values
+
+    entries = np.array([[returned(u, v) for u in np.eye(JET)] for v in np.eye(JET)], dtype=float).transpose(2, 0, 1)
     size = np.abs(entries).max(axis=(1, 2))
     _refuse(~np.isfinite(size), xy, name, "finite")
     asymmetry = np.abs(entries - entries.swapaxes(1, 2)).max(axis=(1, 2))
-    _refuse(asymmetry > SYMMETRIC * size, xy, name, "symmetric in u and v")
-    return (entries + entries.swapaxes(1, 2)) / 2
+    _refuse(asymmetry > ROUNDING * size, xy, name, "symmetric in u and v")
+    u, v = np.cos(np.arange(JET)), -2 * np.sin(1 + np.arange(JET))
+    expected, most = v @ entries @ u, np.abs(v) @ np.abs(entries) @ np.abs(u)
+    _refuse(~(np.abs(returned(u, v) - expected) <= ROUNDING * most), xy, name, "linear in u and in v")
+    return np.asarray((entries + entries.swapaxes(1, 2)) / 2)
 
 
 def _refuse(faulty: NDArray[np.bool_], xy: FloatArray, name: str, what: str) -> None:
@@ -56,16 +62,9 @@ def _refuse(faulty: NDArray[np.bool_], xy: FloatArray, name: str, what: str) -> 
         raise ValueError(f"Input {name} must be {what} on the plate; it is not at ({x:.6g}, {y:.6g}) m")
 
 
-def _unit_field(channel: int, count: int) -> DiscreteField:
-    """A field (count, 1) one of whose derivatives is 1; the mixed one is both off-diagonal entries of the Hessian."""
+def _field(jet: FloatArray, count: int) -> DiscreteField:
+    """The field at `count` points that has the value and derivatives of a jet (6,) at each."""
     from skfem import DiscreteField
 
-    value, gradient, hessian = np.zeros((count, 1)), np.zeros((2, count, 1)), np.zeros((2, 2, count, 1))
-    if channel == 0:
-        value[:] = 1.0
-    elif channel < 3:
-        gradient[channel - 1] = 1.0
-    else:
-        for i, j in {3: [(0, 0)], 4: [(0, 1), (1, 0)], 5: [(1, 1)]}[channel]:
-            hessian[i, j] = 1.0
-    return DiscreteField(value=value, grad=gradient, hess=hessian)
+    w, x, y, xx, xy, yy = np.tile(jet[:, None, None], (1, count, 1))
+    return DiscreteField(value=w, grad=np.stack([x, y]), hess=np.array([[xx, xy], [xy, yy]]))

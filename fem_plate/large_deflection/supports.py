@@ -20,8 +20,10 @@ def check_stretches(plate: GivenPlate, caller: str) -> None:
     if not isinstance(plate.section, PlateSection):
         kind = type(plate.section).__name__
         wrong.append(f"Input section of Plate must be a PlateSection for {caller}; got a {kind}")
-    if callable(plate.foundation) or plate.foundation or plate.forms:
-        wrong.append(f"Input foundation and forms of Plate must be none for {caller}; got some")
+    if callable(plate.foundation) or plate.foundation:
+        wrong.append(f"Input foundation of Plate must be 0 for {caller}; got {plate.foundation!r}")
+    if plate.forms:
+        wrong.append(f"Input forms of Plate must be empty for {caller}; got {len(plate.forms)}")
     if wrong:
         raise ValueError("; ".join(wrong))
 

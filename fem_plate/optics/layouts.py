@@ -15,6 +15,7 @@ from fem_plate.arrays import PatchedShapes
 from fem_plate.influence import InfluenceShapes
 from fem_plate.optics.package import fits_package
 from fem_plate.section import PlateSection
+from fem_plate.varying import VaryingSection
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -105,8 +106,17 @@ def _header(shapes: PlateShapes, layout: str) -> Any:
     if isinstance(section, PlateSection):
         header["YOUNGS"] = (section.youngs_modulus, "[Pa] Young's modulus")
         header["POISSON"] = (section.poisson_ratio, "Poisson's ratio")
-    header["RIGIDITY"] = (section.rigidity, "[N m] flexural, the mean over directions")
-    header["THICKNES"] = (section.thickness, "[m] of the plate")
+    varies = isinstance(section, VaryingSection)
+    header["RIGIDITY"] = (
+        section.rigidity,
+        "[N m] reference, it varies" if varies else "[N m] flexural, mean of directions",
+    )
+    header["THICKNES"] = (section.thickness, "[m] reference, it varies" if varies else "[m] of the plate")
+    foundation = shapes.plate.foundation
+    if foundation:
+        header["FOUNDATN"] = ("varies" if callable(foundation) else foundation, "[N/m^3] modulus under the plate")
+    if shapes.plate.forms:
+        header["FORMS"] = (len(shapes.plate.forms), "further terms of the plate's energy")
     return header
 
 

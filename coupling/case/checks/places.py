@@ -83,7 +83,8 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
         yield from _free_tension(
             supported, mesh, right_value(PlateCase, "tension", plate, parts.context, 0.0), written_plate
         )
-        if held is not None and not (parts.context or {}).get(MAY_MOVE):
+        rests = right_value(PlateCase, "foundation", plate, parts.context, 0.0)
+        if held is not None and not rests and not (parts.context or {}).get(MAY_MOVE):
             yield from _rigid_motion(supported, mesh, held)
 
 

@@ -19,7 +19,7 @@ MAX_VIBRATING: Final = 250
 MAX_PRESSED: Final = 250
 """Actuators of a plate under pressure."""
 MAX_GENERAL: Final = 250
-"""Actuators of a plate on a foundation, or of a crystal's under a tension."""
+"""Actuators of a plate on a foundation, or of a wafer under a tension."""
 STEADY: Final = 'start = "steady"'
 
 
@@ -77,7 +77,7 @@ def _pressure(plate: Any, context: Any, count: int) -> Iterator[Mistake]:
 
 
 def _foundation(plate: Any, context: Any, count: int) -> Iterator[Mistake]:
-    """Yield that a plate's theory, or so many actuators, leave no room for its foundation or its crystal's tension."""
+    """Yield that a plate's theory, or so many actuators, rule out its foundation, or a wafer's tension."""
     foundation, tension, wafer = (
         right_value(PlateCase, key, plate, context, missing)
         for key, missing in (("foundation", 0.0), ("tension", 0.0), ("wafer", None))

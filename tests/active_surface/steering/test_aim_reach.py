@@ -88,3 +88,13 @@ def test_a_target_where_the_part_is_already_is_refused_unless_the_part_moves(tmp
     assert not refused(case, (5.06e-5, 0.0), (1, 4, 8))
     moving = case.part.model_copy(update={"velocity": (1e-3, 0.0)})
     assert not refused(case.model_copy(update={"part": moving}), (5.04e-5, 0.0), (1, 4, 8))
+
+
+@pytest.mark.parametrize(
+    ("wafer", "angle", "kept"), [("110", 20, False), ("110", 0, True), ("100", 45, True), ("111", 20, True)]
+)
+def test_a_wafer_keeps_a_part_on_its_own_lines_of_symmetry(tmp_path, wafer, angle, kept):
+    isotropic = 'youngs_modulus = "169 GPa"\npoisson_ratio = 0.3\n'
+    changes = [(isotropic, f'wafer = "{wafer}"\nwafer_angle = "{angle} deg"\n')]
+    case = nine(tmp_path, (5e-5, 0.0), *changes)
+    assert ("these 3 actuators move the part only along the line" in refused(case, OFF, (1, 4, 7))) == kept

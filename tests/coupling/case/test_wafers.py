@@ -69,3 +69,9 @@ def test_a_large_lattice_has_no_foundation():
             friction={"model": "coulomb", "coefficient": 0.1},
             run={"duration": 1e-3},
         )
+
+
+def test_a_foundation_holds_a_free_plate():
+    with pytest.raises(InputError, match="supports .* leave the plate free to move"):
+        case_of(**ISOTROPIC, supports="free")
+    assert not build_plate(case_of(**ISOTROPIC, supports="free", foundation=1e9).plate).model().rigid.size

@@ -1,5 +1,7 @@
 """Plates on elastic foundations, against Kelvin functions and shifted frequencies."""
 
+import re
+
 import numpy as np
 import pytest
 from radial_plates import disc_on_foundation
@@ -37,8 +39,21 @@ def test_a_free_plate_on_a_foundation_sinks_evenly_under_a_pressure():
     np.testing.assert_allclose(gradient, 0.0, atol=1e-8)
 
 
-def test_a_foundation_that_varies_and_acts_on_part_of_the_plate():
-    """The work of the foundation is what a force puts into it: no energy is lost."""
+def test_a_pad_between_the_mesh_s_points_holds_the_plate():
+    """Its modulus is 0 at all vertices; the rigid motions of the plate are none, whatever the cells."""
+
+    def pad(x, y):
+        return 300 * np.exp(-(((x - 0.11) ** 2 + (y - 0.07) ** 2) / 0.004))
+
+    coarse, fine = (Plate(meshes.disc(1.0, cell), UNIT, "free", foundation=pad) for cell in (0.5, 0.2))
+    assert not coarse.model().rigid.size
+    np.testing.assert_allclose(coarse.frequencies(3), fine.frequencies(3), rtol=0.05)
+    with pytest.raises(ValueError, match="must leave it stable"):
+        Plate(meshes.disc(1.0, 0.5), UNIT, foundation=lambda x, y: -60 * pad(x, y))
+
+
+def test_the_compliance_follows_the_modulus():
+    """dw/dk = -int (1 + x) w^2 at a unit force."""
     mesh, point = meshes.disc(1.0, 0.2), np.array([[0.2, 0.1]])
     plate = Plate(mesh, UNIT, foundation=lambda x, y: 500 * (1 + x), tolerance=1e-6)
     shape = plate.deflection(point, [1.0])
@@ -49,7 +64,7 @@ def test_a_foundation_that_varies_and_acts_on_part_of_the_plate():
         point, [1.0]
     )
     change = (stiffer.evaluate(point)[0] - shape.evaluate(point)[0])[0] / shift
-    assert change == pytest.approx(-(weights @ ((1 + points[:, 0]) * w**2)), rel=1e-4)  # dw/dk = -int (1 + x) w^2
+    assert change == pytest.approx(-(weights @ ((1 + points[:, 0]) * w**2)), rel=1e-4)
 
 
 def test_an_electrode_softens_until_the_plate_buckles():
@@ -57,8 +72,13 @@ def test_an_electrode_softens_until_the_plate_buckles():
     first = (2 * np.pi * Plate(mesh, UNIT).frequencies(1)[0]) ** 2
     soft = Plate(mesh, UNIT, foundation=-0.9 * first)
     assert 2 * np.pi * soft.frequencies(1)[0] == pytest.approx(np.sqrt(0.1 * first), rel=1e-8)
-    with pytest.raises(ValueError, match="must leave it stable without actuators; it buckles"):
+    with pytest.raises(ValueError, match="foundation of Plate must exceed .*, at which it buckles") as wrong:
         Plate(mesh, UNIT, foundation=-1.01 * first)
+    assert float(re.search(r"exceed (\S+) N", str(wrong.value))[1]) == pytest.approx(-first, rel=1e-5)
+    pulled = Plate(mesh, UNIT, foundation=-1.2 * first, tension=50.0)  # a stretched membrane over an electrode
+    assert pulled.frequencies(1)[0] > 0
+    with pytest.raises(ValueError, match="foundation of Plate must exceed"):
+        pulled.buckling_load()
 
 
 def test_compression_counts_with_a_foundation():
@@ -91,5 +111,5 @@ def test_a_foundation_stays_while_stiffness_and_tension_are_fitted():
 def test_what_stretches_has_no_foundation():
     plate = Plate(meshes.disc(1.0, 0.5), UNIT, foundation=1.0)
     for wrong in (lambda: plate.large_deflection([[0.0, 0.0]]), lambda: backbone(plate, 1)):
-        with pytest.raises(ValueError, match="foundation and forms of Plate must be none for (large_deflection|backb)"):
+        with pytest.raises(ValueError, match="foundation of Plate must be 0 for (large_deflection|backb)"):
             wrong()

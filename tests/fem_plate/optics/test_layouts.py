@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from astropy.io import fits
 
-from fem_plate import Plate, read_influence, save_influence
+from fem_plate import Plate, VaryingSection, read_influence, save_influence
 from meshes import annulus, disc, rectangle
 
 RADIUS, PITCH = 300e-6, 90e-6
@@ -215,3 +215,11 @@ def test_a_file_that_ends_too_early_is_refused(shapes, tmp_path):
     path.write_bytes(path.read_bytes()[:9000])
     with pytest.raises(ValueError, match="^Input path of read_influence must "):
         read_influence(path)
+
+
+def test_headers_say_that_a_plate_is_not_uniform(section, tmp_path):
+    varying = VaryingSection(section, lambda x, y: 5e-6 * (1 + 0.1 * x / RADIUS))
+    plate = Plate(disc(RADIUS, RADIUS / 4), varying, foundation=1e10)
+    header = fits.getheader(saved(plate.influence(POINTS), tmp_path, "specula"))
+    assert header["FOUNDATN"] == 1e10 and "it varies" in header.comments["THICKNES"]
+    assert "it varies" in header.comments["RIGIDITY"] and "FORMS" not in header
