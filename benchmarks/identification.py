@@ -159,7 +159,7 @@ def main(words: Sequence[str]) -> None:
     if words[:1] in (["--picture"], ["--pictures"]):
         draw(problems()[4 if words[0] == "--picture" else 5], words[1])
         return
-    tries, *numbers = map(int, words or ["20"])
+    tries, *numbers = map(int, words or ["100"])
     for number, problem in enumerate(problems()):
         if not numbers or number in numbers:
             measure(problem, tries)

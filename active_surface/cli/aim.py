@@ -25,7 +25,7 @@ MISSED = 1  # the exit code where a target is not reached
 class _Through(Spreading):
     """A command whose option --through takes all the points that follow it."""
 
-    spread: ClassVar = {"--through": lambda text: "," in text and not Path(text).exists()}
+    spread: ClassVar = {"--through": lambda text: "," in text and not text.startswith("--") and not Path(text).exists()}
 
 
 def _common(command: Callable[..., None]) -> Callable[..., None]:

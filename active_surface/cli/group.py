@@ -68,7 +68,7 @@ class Spreading(Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         words, option = [], ""
         for text in args:
-            if option and not text.startswith("-") and self.spread[option](text):
+            if option and self.spread[option](text):
                 words.append(f"{option}={text}")
                 continue
             option = next((name for name in self.spread if text == name or text.startswith(f"{name}=")), "")

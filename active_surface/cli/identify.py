@@ -21,14 +21,18 @@ CASE = ".toml"
 Answer = TypeVar("Answer")
 
 
+def _track(text: str) -> bool:
+    return not text.startswith("-") and not text.endswith(CASE)
+
+
 def _field(text: str) -> bool:
-    return not Path(text).exists() and not text.endswith(CASE)
+    return _track(text) and not Path(text).exists()
 
 
 class _Lists(Spreading):
     """A command whose options take all the tracks or fields that follow them."""
 
-    spread: ClassVar = {"--track": lambda text: not text.endswith(CASE), "--free": _field, "--own": _field}
+    spread: ClassVar = {"--track": _track, "--free": _field, "--own": _field}
 
 
 @main.command(cls=_Lists)
