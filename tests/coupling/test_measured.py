@@ -156,6 +156,17 @@ def test_smooth_motions_get_no_jump(noise):
         assert not fit_motion("x", SAMPLED, samples)[1].jumps
 
 
+@pytest.mark.parametrize(("frequency", "noise", "seed"), [(10, 2e-6, 1), (20, 2e-6, 0), (10, 1e-5, 0), (10, 1e-5, 3)])
+def test_strokes_up_and_down_are_no_impacts(frequency, noise, seed):
+    """The jerk jumps where they meet. With noise each such jump alone looks much as one of velocity."""
+    rng = np.random.default_rng(seed)
+    times = np.arange(961) / 960
+    turn = (times * frequency + rng.uniform(0, 1)) % 1
+    up, down = np.clip(2 * turn, 0, 1), np.clip(2 * turn - 1, 0, 1)
+    strokes = 1e-3 * (up**3 * (10 - 15 * up + 6 * up**2) - down**3 * (10 - 15 * down + 6 * down**2))
+    assert not fit_motion("x", times, strokes + rng.normal(0, noise, len(times)))[1].jumps
+
+
 def test_velocities_and_accelerations_count_by_their_own_noise():
     rng = np.random.default_rng(4)
     h, v, a = growing(TIMES)

@@ -41,6 +41,16 @@ def test_regular_polygons_under_pressure_and_force(sides):
         assert error < 1e-11 or 0.2 < error / deflection.error_estimate < 5
 
 
+def test_the_square_meets_its_tolerance_where_its_cells_alone_do_not():
+    """Its functions are Argyris's alone, though w is like r^4 log r at a right angle."""
+    xy, mesh = places(4), regular_polygon(4, 1.0, 0.15)
+    w = polygons.Polygon(4, "pressure").at(xy @ [1, 1j])
+    for tolerance, low, high in ((None, 1e-6, 2e-6), (1e-6, 0.0, 2e-7)):
+        found = Plate(mesh, UNIT, S, tolerance).pressure(1.0)
+        error = np.abs(found.evaluate(xy)[0] - w).max() / np.abs(w).max()
+        assert low < error < high and error < 3 * found.error_estimate
+
+
 @pytest.mark.parametrize("sides", [6, pytest.param(24, marks=pytest.mark.slow)])
 def test_first_frequencies_of_regular_polygons(sides):
     modes = plate(sides, 0.22).modes(1)
