@@ -87,8 +87,13 @@ def values_at(field: Field, xy: FloatArray, name: str, unit: str, positive: bool
 
     Raises ValueError where they are no numbers, not finite, or not positive where they must be, with the first place.
     """
-    with np.errstate(all="ignore"):  # what is not finite is refused below
-        values = np.asarray(field(xy[:, 0], xy[:, 1]))
+    try:
+        with np.errstate(all="ignore"):  # what is not finite is refused below
+            values = np.asarray(field(xy[:, 0], xy[:, 1]))
+    except (TypeError, ValueError) as failure:
+        raise ValueError(
+            f"Input {name} must be a function of two arrays, x and y, both ({len(xy)},): {failure}"
+        ) from None
     try:
         values = np.broadcast_to(values, len(xy)).astype(float, casting="same_kind")
     except (ValueError, TypeError):

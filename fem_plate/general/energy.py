@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -26,6 +27,7 @@ FloatArray = NDArray[np.float64]
 
 VALUE, GRADIENT, HESSIAN = 0, slice(1, 3), slice(3, 6)  # of the channels (w, w_x, w_y, w_xx, w_xy, w_yy)
 ORDERS = np.array([0, 1, 1, 2, 2, 2])
+JUMP = 0.05  # of the largest entry: what polynomials may leave in a cell a quarter as large as the mesh's
 VARIES = 1e-12  # of the largest entry: less is rounding
 
 
@@ -103,6 +105,22 @@ class PlateEnergy:
                 f"Input forms of Plate must leave it a positive bending stiffness; it has none at ({x:.6g}, {y:.6g}) m"
             )
 
+    def warn_of_jumps(self, table: FloatArray) -> None:
+        """Warn where no polynomial follows the form in a cell.
+
+        table: (n, 21), monomials at the points of a cell; those of each cell come in succession.
+        """
+        cells = self._at_points.reshape(-1, len(table), JET * JET)
+        scale = np.abs(cells).max(axis=(0, 1))
+        rest = np.abs(cells - table @ (np.linalg.pinv(table) @ cells)) / np.where(scale > 0, scale, 1.0)
+        if rest.max() > JUMP:
+            x, y = self.points[int(np.argmax(rest.max(axis=2)))].tolist()
+            warnings.warn(
+                f"Thickness, foundation or forms of Plate change abruptly at ({x:.4g}, {y:.4g}) m, inside a cell. No "
+                "polynomial follows a jump there, and the error estimate is far too small. Put edges of cells along it",
+                stacklevel=5,
+            )
+
     @property
     def may_soften(self) -> bool:
         """Whether what is added to bending may have a negative energy."""
@@ -129,10 +147,13 @@ def plate_energy(
     uniform = isinstance(section, PlateSection) or (isinstance(section, AnisotropicSection) and not tension)
     if uniform and not callable(foundation) and not foundation and not forms:
         return None
+    fine = mesh.refined().refined()
     xy, _ = elements.forms.triangle_quadrature(elements.QUADRATURE)
-    one, two, three = np.moveaxis(mesh.points[mesh.triangles], 1, 0)[..., None, :]
+    one, two, three = np.moveaxis(fine.points[fine.triangles], 1, 0)[..., None, :]
     share = xy + 1 / 3
     inside = one + share[:, :1] * (two - one) + share[:, 1:] * (three - one)
     energy = PlateEnergy(section, foundation, tension, tuple(forms), inside.reshape(-1, 2), mesh.size)
     energy.check()
+    if isinstance(section, VaryingSection) or callable(foundation) or forms:
+        energy.warn_of_jumps(elements.monomials(*xy.T))
     return energy

@@ -36,7 +36,8 @@ def form_coefficients(form: BilinearForm, xy: FloatArray, name: str) -> FloatArr
     def returned(u: FloatArray, v: FloatArray) -> FloatArray:
         try:
             with np.errstate(all="ignore"):  # what is not finite is refused below
-                values = np.broadcast_to(form.form(_field(u, len(xy)), _field(v, len(xy)), places), (len(xy), 1))[:, 0]
+                result = form.form(_field(u, len(xy)), _field(v, len(xy)), places)
+            values = np.broadcast_to(np.nan if result is None else result, (len(xy), 1))[:, 0]
         except (AttributeError, KeyError, TypeError, IndexError, ValueError) as wrong:
             raise ValueError(
                 f"Input {name} must be a form of u, v, their gradients and Hessians, and w.x alone: {wrong}"

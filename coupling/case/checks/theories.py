@@ -83,13 +83,14 @@ def _foundation(plate: Any, context: Any, count: int) -> Iterator[Mistake]:
         for key, missing in (("foundation", 0.0), ("tension", 0.0), ("wafer", None))
     )
     if foundation and right_value(PlateCase, "theory", plate, context) == "von-karman":
-        yield ("plate", "foundation"), f"must be 0 with {VON_KARMAN}; got {foundation:g} N/m^3"
+        yield ("plate", "foundation"), f"must be 0 with {VON_KARMAN}; got {foundation:g} N/m^3; leave out one of them"
     for key, value, of in (("foundation", foundation, ""), ("tension", wafer and tension, " with a wafer")):
         if value and count > MAX_GENERAL:
             yield (
                 ("plate", key),
                 f"must be 0{of} with more than {MAX_GENERAL} actuators, as their shapes are found on patches; got "
-                f"{value:g} {'N/m^3' if key == 'foundation' else 'N/m'} and {count}",
+                f"{value:g} {'N/m^3' if key == 'foundation' else 'N/m'} and {count}; a piece of the array with "
+                f"{MAX_GENERAL} can have one",
             )
 
 

@@ -142,8 +142,12 @@ def _material(given: Mapping[str, Any]) -> Contradictions:
         if key in given:
             yield key, "must not be given with a wafer, whose stiffness follows from its elastic constants"
     if given.get("theory", "linear") == "von-karman":
-        yield "wafer", f"must not be given with {VON_KARMAN}, which is for isotropic plates"
-    if all(isinstance(value, float) for value in constants):
+        yield "wafer", f"must not be given with {VON_KARMAN}, which is for isotropic plates; leave out theory"
+    if 0 < sum(name in given for name in CONSTANTS) < len(CONSTANTS):
+        for name in CONSTANTS:
+            if name not in given:
+                yield name, "is missing; a crystal that is not silicon has three constants, pressures such as 128 GPa"
+    elif all(isinstance(value, float) for value in constants):
         c11, c12, _ = constants
         if not (c11 > abs(c12) and c11 + 2 * c12 > 0):
             first = next((name for name in CONSTANTS[:2] if name in given), "wafer")

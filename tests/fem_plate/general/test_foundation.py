@@ -113,3 +113,11 @@ def test_what_stretches_has_no_foundation():
     for wrong in (lambda: plate.large_deflection([[0.0, 0.0]]), lambda: backbone(plate, 1)):
         with pytest.raises(ValueError, match="foundation of Plate must be 0 for (large_deflection|backb)"):
             wrong()
+
+
+def test_a_jump_inside_a_cell_draws_a_warning_and_along_edges_it_does_not():
+    mesh = meshes.rectangle(2.0, 1.0, 0.25)
+    assert np.any(mesh.points[:, 0] == 0)
+    with pytest.warns(UserWarning, match=r"change abruptly at \(0.0.*, .*\) m, inside a cell"):
+        Plate(mesh, UNIT, foundation=lambda x, y: np.where(x > 0.06, 1e3, 0.0))
+    Plate(mesh, UNIT, foundation=lambda x, y: np.where(x > 0, 1e3, 0.0))
