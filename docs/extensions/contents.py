@@ -28,7 +28,7 @@ CONTENTS = {  # the pages below a page, by caption
             *("commands", "case-file", "results", "animations", "page", "plot"),
             *("python", "messages", "sweeps", "aim", "feasibility"),
         ],
-        "Theory and trust": ["theory", "accuracy", "validation", "paper", "paper-open-points", "limits", "benchmarks"],
+        "Theory and trust": ["theory", "accuracy", "validation", "paper", "paper-readings", "paper-open-points", "limits", "benchmarks"],
         "Reference": ["conventions", "api/index"],
         "Inside": ["architecture", "decisions/index", "contributing", "changes"],
     },

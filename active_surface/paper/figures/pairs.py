@@ -94,7 +94,7 @@ def draw_plane(axes: Axes, paths: Sequence[Path], pitch: float, frequencies: Seq
     for place, frequency in zip((0.0, MICRO * pitch), frequencies, strict=True):
         slow = frequency == min(frequencies)
         face = "#b8862d" if slow and len(set(frequencies)) > 1 else "white"
-        axes.plot(place, 0, "^", color=face, markeredgecolor="black", markersize=8, zorder=5)
+        axes.plot(place, 0, "^", color=face, markeredgecolor="black", markersize=9, zorder=3)
         if len(set(frequencies)) > 1:
             axes.annotate(
                 f"{frequency:g} Hz", (place, 0), (0, -14), textcoords="offset points", ha="center", fontsize=7

@@ -10,7 +10,7 @@ from active_surface.paper.parameters import PARAMETERS
 from active_surface.paper.readings.cases import STATEMENTS, Case, best_row, cases_of, cell, met, where
 from active_surface.paper.readings.contact import Variant
 from active_surface.paper.readings.device import Device
-from active_surface.paper.readings.reading import LAWS
+from active_surface.paper.readings.reading import HEAVY, LAWS
 from active_surface.paper.readings.sweep import Row, Sweep
 from active_surface.paper.share import NEARLY_ALL
 
@@ -33,9 +33,8 @@ def page_of_readings(sweep: Sweep, variants: Sequence[Variant] = (), device: Dev
         "The paper does not state all that its figures rest on. A *reading* settles it. This page has, for each of the "
         "paper's statements, the readings by which it holds; [the paper, figure by figure](paper.md) shows one of "
         "them.\n",
-        f"Written by `active-surface reproduce readings --output docs`, which took {sweep.seconds / 60:.0f} "
-        "minutes of two "
-        "shared cores.\n",
+        "Written by `active-surface reproduce readings --output docs`; the sweep's readings took "
+        f"{sweep.seconds / 60:.0f} minutes in all, on two cores that others used as well.\n",
         _axes(sweep),
         "## Where each statement holds\n",
         _main_table(sweep, device),
@@ -62,7 +61,7 @@ def _axes(sweep: Sweep) -> str:
     radii = sorted({row.reading.radius for row in sweep.rows})
     lines = [
         f"- the radius a of the profile: {', '.join(f'{1e6 * radius:g}' for radius in radii)} um",
-        "- gravity: none, as in the paper's forces, or 9.80665 m/s^2",
+        f"- gravity: none, as in the paper's forces; with a = {1e6 * HEAVY[0]:g} um also {HEAVY[1]} m/s^2",
         f"- what stands for the paper's 20.9 m/s^2, which Table 1 does not give: {' or '.join(LAWS)} (without "
         "pull-off; in "
         "the paper's scheme the first alone)",
