@@ -85,10 +85,6 @@ class Bench:
         """How long [s] continuous drives run, by cycles of the slowest."""
         return self.parameters.cycles / min(drive.frequency for drive in drives)
 
-    def surface(self, model: str, drives: Sequence[Drive], actuators: str, duration: float) -> SurfaceMotion:
-        """The ground under drives; some grounds must know how long [s]."""
-        return self.ground(model, actuators).surface.driven_by(drives)
-
     def paths(
         self,
         model: str,
@@ -102,7 +98,7 @@ class Bench:
     ) -> list[Path]:
         """One path from each start (n, 2) [m], with velocities (n, 2) or (2,) [m/s]; places count from actuator 1."""
         p, ground = self.parameters, self.ground(model, actuators)
-        surface = self.surface(model, drives, actuators, duration)
+        surface = ground.surface.driven_by(drives)
         places = np.atleast_2d(np.asarray(starts, dtype=float))
         speeds = np.broadcast_to(np.asarray(velocities, dtype=float), places.shape)
         parts = [

@@ -25,7 +25,7 @@ STATES: Final[tuple[tuple[Place, Place], ...]] = (
 """Places [m] and velocities [m/s]; the paper names the first and the third."""
 BAND, FINE = 5e-6, 1e-6  # m
 NAMED: Final = ((0, 250.0), (2, 300.0))  # states and Hz for which it states less than FINE
-FEWER_STARTS: Final = 4
+FEWER_STARTS: Final = 5
 TOP: Final = 400.0  # um, where parts that are gone are drawn
 
 

@@ -94,7 +94,7 @@ def draw_plane(axes: Axes, paths: Sequence[Path], pitch: float, frequencies: Seq
     for place, frequency in zip((0.0, MICRO * pitch), frequencies, strict=True):
         slow = frequency == min(frequencies)
         face = "#b8862d" if slow and len(set(frequencies)) > 1 else "white"
-        axes.plot(place, 0, "^", color=face, markeredgecolor="black", markersize=8, zorder=5)
+        axes.plot(place, 0, "^", color=face, markeredgecolor="black", markersize=9, zorder=3)
         if len(set(frequencies)) > 1:
             axes.annotate(
                 f"{frequency:g} Hz", (place, 0), (0, -14), textcoords="offset points", ha="center", fontsize=7
@@ -122,11 +122,12 @@ def legend(figure: Figure, slow: bool) -> None:
         ("the stated start and its path", {"marker": "D", "markerfacecolor": "none", "color": "black"}),
         ("paths of others", {"color": "#9ab5d6"}),
         *((name, {"marker": mark, "linestyle": "", "color": colour}) for name, (mark, colour) in MARKS.items()),
-        ("actuators", {"marker": "^", "linestyle": "", "markerfacecolor": "white", "color": "black"}),
     ]
     if slow:
-        styles.append(
-            ("the slow one", {"marker": "^", "linestyle": "", "markerfacecolor": "#b8862d", "color": "black"})
-        )
+        triangle = {"marker": "^", "linestyle": "", "color": "black"}
+        styles += [
+            ("actuators", triangle | {"markerfacecolor": "white"}),
+            ("the slow one", triangle | {"markerfacecolor": "#b8862d"}),
+        ]
     handles = [Line2D([], [], label=name, **style) for name, style in styles]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=8)

@@ -110,6 +110,8 @@ def one_cycle(bench: Bench) -> Drive:
 def _ratio(path: Path, start: Place) -> float:
     """By how much the ratio of the velocities differs from that of the start's coordinates, relative."""
     v = path.trajectory.velocity
+    if not path.trajectory.path_length:
+        return np.inf  # it does not move
     fast = np.hypot(*v.T) > SLOW * np.hypot(*v.T).max()
     return float(np.abs(v[fast, 1] / v[fast, 0] / (start[1] / start[0]) - 1).max())
 
@@ -117,6 +119,8 @@ def _ratio(path: Path, start: Place) -> float:
 def _bend(path: Path, start: Place) -> float:
     """The largest distance from the line through start and actuator, over the way gone."""
     x, y = path.place.T
+    if not path.trajectory.path_length:
+        return np.inf
     away = np.abs(x * start[1] - y * start[0]) / np.hypot(*start)
     return float(away.max() / path.trajectory.path_length)
 

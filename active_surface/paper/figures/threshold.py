@@ -27,7 +27,7 @@ FROM: Final = 0.7  # of the stated threshold, scaled by the stroke, where its se
 NEAREST, FARTHEST = 40e-6, 160e-6  # m from the actuator: the starts
 MOVED: Final = 1e-6  # m: a part that friction holds where it was placed shows nothing
 NANOMETRES: Final = 9  # digits of strokes in m
-FEWER_STARTS: Final = 3  # times fewer starts than elsewhere, as each is followed at every frequency
+FEWER_STARTS: Final = 4  # times fewer starts than elsewhere, as each is followed at every frequency
 GOLD: Final = "#b8862d"
 MARKS: Final = {"converges": ("o", "#3d8a4e"), "is lost": ("x", "#c8371b"), "goes to and fro": (".", "#707070")}
 

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+import numpy as np
+
 from active_surface.paper.models import CLOSED, MODELS, PAPER
-from active_surface.paper.parameters import PARAMETERS
 from active_surface.paper.readings.cases import STATEMENTS, Case, best_row, cases_of, cell, met, where
 from active_surface.paper.readings.contact import Variant
-from active_surface.paper.readings.device import Device
-from active_surface.paper.readings.reading import LAWS
-from active_surface.paper.readings.sweep import Row, Sweep
+from active_surface.paper.readings.reading import HEAVY, LAWS
+from active_surface.paper.readings.sweep import Sweep
 from active_surface.paper.share import NEARLY_ALL
 
 VARIED: Final = ("13, 14", "17a", "17b", "18", "18 (above)", "19", "22")  # by the contact
-UNTOUCHED: Final = ("VI-B",)  # has no surface
-DEVICE: Final = f"{1e6 * PARAMETERS.thickness:g} um thick"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -25,20 +23,19 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(row) + " |" for row in lines) + "\n"
 
 
-def page_of_readings(sweep: Sweep, variants: Sequence[Variant] = (), device: Device | None = None) -> str:
-    """The page in Markdown; variants: of the contact; device: what a real plate does."""
+def page_of_readings(sweep: Sweep, variants: Sequence[Variant] = ()) -> str:
+    """The page in Markdown; variants: of the contact."""
     best = best_row(sweep)
     head = [
         "# The paper over its readings\n",
         "The paper does not state all that its figures rest on. A *reading* settles it. This page has, for each of the "
         "paper's statements, the readings by which it holds; [the paper, figure by figure](paper.md) shows one of "
         "them.\n",
-        f"Written by `active-surface reproduce readings --output docs`, which took {sweep.seconds / 60:.0f} "
-        "minutes of two "
-        "shared cores.\n",
+        "Written by `active-surface reproduce readings --output docs`; the sweep's readings took "
+        f"{sweep.seconds / 60:.0f} minutes in all, on two cores that others used as well.\n",
         _axes(sweep),
         "## Where each statement holds\n",
-        _main_table(sweep, device),
+        _main_table(sweep),
         "Statements 3, 4 and 13, 14 with Table 1 need none of these choices: see [the "
         "paper](paper.md#verdicts). In 5 and "
         "6 the paper's scheme is ours, as the part rests. The plate is asked where there are two actuators; "
@@ -53,7 +50,6 @@ def page_of_readings(sweep: Sweep, variants: Sequence[Variant] = (), device: Dev
         f"{len(met(best, CLOSED))} in our equations. The next ones:\n",
         _ranking(sweep),
         *_variants(variants),
-        *(_builder(device, best) if device else []),
     ]
     return "\n".join(head).replace(" um", " µm").replace("m/s^2", "m/s²").rstrip() + "\n"
 
@@ -62,7 +58,7 @@ def _axes(sweep: Sweep) -> str:
     radii = sorted({row.reading.radius for row in sweep.rows})
     lines = [
         f"- the radius a of the profile: {', '.join(f'{1e6 * radius:g}' for radius in radii)} um",
-        "- gravity: none, as in the paper's forces, or 9.80665 m/s^2",
+        f"- gravity: none, as in the paper's forces; with a = {1e6 * HEAVY[0]:g} um also {HEAVY[1]} m/s^2",
         f"- what stands for the paper's 20.9 m/s^2, which Table 1 does not give: {' or '.join(LAWS)} (without "
         "pull-off; in "
         "the paper's scheme the first alone)",
@@ -83,7 +79,7 @@ def _axes(sweep: Sweep) -> str:
     ])  # fmt: skip
 
 
-def _main_table(sweep: Sweep, device: Device | None) -> str:
+def _main_table(sweep: Sweep) -> str:
     rows = []
     for name, text in STATEMENTS.items():
         every = {model: cases_of(sweep.rows, model, name) for model in MODELS}
@@ -93,47 +89,21 @@ def _main_table(sweep: Sweep, device: Device | None) -> str:
             holding = [case for case in cases if case.holds]
             if holding and len(holding) < len(cases) and (text_of := where(holding, cases)) not in said:
                 said.append(text_of if model == PAPER else f"{'ours' if model == CLOSED else 'plate'}: {text_of}")
-        rows.append([name, text, *cells, ". ".join(said) or "-", *([_on_device(device, name)] if device else [])])
-    return table(["figure", "the paper", *MODELS.values(), "where", *(["device"] if device else [])], rows)
-
-
-def _on_device(device: Device, name: str) -> str:
-    shares = device.shares.get(name)
-    if not shares or name in UNTOUCHED:
-        return "-"
-    best = max(shares.values())
-    return f"{'**yes**, ' if best >= NEARLY_ALL else ''}{100 * best:.0f} %"
-
-
-def _builder(device: Device, best: Row) -> list[str]:
-    """What a builder would see."""
-    off = f"half of them within {1e6 * device.off_within:.1f} um of the actuator" if device.come_off.hits else "none"
-    threshold = "no threshold" if device.threshold != device.threshold else f"a threshold of {device.threshold:.0f} Hz"
-    return [
-        "## What a builder would see\n",
-        f"The column *device* is the reading {best.reading.name} on a clamped, immovable silicon disc, {DEVICE}: the "
-        "plate stretches (von Karman), and the part lies on its top face. It has the best share over what a statement "
-        "leaves open.\n",
-        f"- **It would break.** At a stroke of 150 um the largest strain is {100 * device.strain:.0f} %, the largest "
-        f"slope {device.slope:.2f}; silicon breaks near 1 %. Only something as soft as rubber bears that.",
-        "- **Another surface.** A stretched plate is more pointed at its actuator than equation (2). At 150 um and 300 "
-        f"Hz {device.come_off} of the parts come off it, {off}; figure 18 has {threshold} there.",
-        "- **Inertia is not the matter.** The plate's first frequency with its actuator held is "
-        f"{device.first_frequency / 1e3:.0f} kHz, so that its mass changes the surface's acceleration by some "
-        f"{100 * device.inertia_error:.1g} % at most; a soft plate would ring.\n",
-    ]
+        rows.append([name, text, *cells, ". ".join(said) or "-"])
+    return table(["figure", "the paper", *MODELS.values(), "where"], rows)
 
 
 def _variants(variants: Sequence[Variant]) -> list[str]:
     rows = []
     for one in variants:
         shares = [max(one.shares[name].values()) for name in VARIED]
-        level = "none" if one.threshold != one.threshold else f"{one.threshold:.0f}"
+        level = _level(one.threshold)
         rows.append([one.name, f"{one.limit:.4g}", f"{one.pull_off:.4g}", level, *(f"{100 * s:.0f}" for s in shares)])
     head = ["changed", "Q(0)/m, m/s^2", "pull-off/m, m/s^2", "threshold of 18, Hz", *(f"{name}, %" for name in VARIED)]
     return [
         "## How much the contact matters\n",
-        "One thing changed at a time: our equations on the closed form of one actuator.\n",
+        "One thing changed at a time from the reading of [the figures](paper.md): our equations on the closed form of "
+        "one actuator.\n",
         table(head, rows),
     ]
 
@@ -189,7 +159,7 @@ def _ranking(sweep: Sweep) -> str:
             row.reading.name,
             str(len(met(row, PAPER))),
             str(len(met(row, CLOSED))),
-            f"{row.thresholds.get(PAPER, float('nan')):.0f}",
+            _level(row.thresholds[PAPER]),
         ]
         for row in order[:6]
         if PAPER in row.shares
@@ -197,3 +167,7 @@ def _ranking(sweep: Sweep) -> str:
     return table(
         ["reading", "hold, paper's scheme", "hold, our equations", "threshold of figure 18, paper's scheme, Hz"], rows
     )
+
+
+def _level(frequency: float) -> str:
+    return "none" if np.isnan(frequency) else f"{frequency:.0f}"

@@ -7,16 +7,17 @@ from time import perf_counter
 from typing import Any, Final, NamedTuple
 
 from active_surface.paper.models import CLOSED, PAPER
+from active_surface.paper.parameters import PARAMETERS
 from active_surface.paper.readings.cases import STATEMENTS, best_row, met
 from active_surface.paper.readings.contact import variants_of
-from active_surface.paper.readings.device import device_of
 from active_surface.paper.readings.page import page_of_readings
-from active_surface.paper.readings.reading import SweepSize
+from active_surface.paper.readings.reading import INDEX, Reading, SweepSize
 from active_surface.paper.readings.sweep import USUAL, Sweep, sweep_readings
 from active_surface.paper.reproduction import FOLDER, replace_file, written_as_json
 from coupling import Progress, silent
 
 PAGE, DATA, KEPT = "paper-readings.md", "readings.json", "readings.partial.jsonl"
+FIGURES: Final = Reading(PARAMETERS.radius, PARAMETERS.gravity, INDEX)  # the reading of docs/paper.md
 TITLE: Final = "The paper's statements over its readings"
 
 
@@ -50,9 +51,8 @@ def reproduce_readings(output: Path, size: SweepSize = USUAL, progress: Progress
     begun, kept = perf_counter(), output / FOLDER / KEPT
     sweep = sweep_readings(size, kept, progress)
     page, data = output / PAGE, output / FOLDER / DATA
-    best = best_row(sweep).reading
-    variants, device = variants_of(best, size, progress), device_of(best, size, progress)
-    replace_file(page, page_of_readings(sweep, variants, device))
+    variants = variants_of(FIGURES, size, progress)
+    replace_file(page, page_of_readings(sweep, variants))
     rows = [row._asdict() | {"reading": row.reading._asdict()} for row in sweep.rows]
     replace_file(
         data,
@@ -61,7 +61,7 @@ def reproduce_readings(output: Path, size: SweepSize = USUAL, progress: Progress
                 "title": TITLE,
                 "size": sweep.size._asdict() | {"readings": len(rows)},
                 "rows": rows,
-                "device": device._asdict(),
+                "variants": [one._asdict() for one in variants],
             }
         ),
     )
