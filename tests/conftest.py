@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
+import gc
 import signal
+from contextlib import suppress
 from pathlib import Path
 
 import numba
@@ -43,6 +46,15 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for item in items:
             if "compiled" in item.keywords:
                 item.add_marker(skip)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    # Processes run thousands of tests: what the C library keeps for the next request would come to gigabytes.
+    if nextitem is None or nextitem.path != item.path:
+        gc.collect()
+        with suppress(OSError, AttributeError):  # glibc's
+            ctypes.CDLL(None).malloc_trim(0)
 
 
 @pytest.fixture(scope="session")
