@@ -195,11 +195,11 @@ class Plate:
             return
         if callable(self.foundation) or self.forms:
             raise ValueError("Input foundation and forms of Plate must leave it stable without actuators; it buckles")
-        alone = Plate(self.mesh, self.section, self.supports, tension=tension)
-        critical = softest_foundation(alone.model()) * self.section.rigidity
+        alone = Plate(self.mesh, self.section, self.supports, tension=tension).model()
+        critical = 0.0 if alone.rigid.size else -softest_foundation(alone) * self.section.rigidity
         raise ValueError(
-            f"Input foundation of Plate must exceed {-critical:.6g} N/m^3, at which it buckles without actuators; got "
-            f"{self.foundation!r}"
+            f"Input foundation of Plate must exceed {critical:.6g} N/m^3, at which it buckles without actuators; "
+            f"got {self.foundation!r}"
         )
 
     def as_meshed(self, tension: float | None = None) -> Plate:

@@ -84,7 +84,7 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
             supported, mesh, right_value(PlateCase, "tension", plate, parts.context, 0.0), written_plate
         )
         rests = right_value(PlateCase, "foundation", plate, parts.context, 0.0)
-        if held is not None and not rests and not (parts.context or {}).get(MAY_MOVE):
+        if held is not None and rests is not None and rests <= 0 and not (parts.context or {}).get(MAY_MOVE):
             yield from _rigid_motion(supported, mesh, held)
 
 

@@ -75,4 +75,6 @@ def test_a_large_lattice_has_no_foundation():
 def test_a_foundation_holds_a_free_plate():
     with pytest.raises(InputError, match="supports .* leave the plate free to move"):
         case_of(**ISOTROPIC, supports="free")
+    with pytest.raises(InputError, match="supports .* leave the plate free to move"):
+        case_of(**ISOTROPIC, supports="free", foundation=-1e9)
     assert not build_plate(case_of(**ISOTROPIC, supports="free", foundation=1e9).plate).model().rigid.size

@@ -81,6 +81,11 @@ def test_an_electrode_softens_until_the_plate_buckles():
         pulled.buckling_load()
 
 
+def test_any_softening_moves_a_free_plate():
+    with pytest.raises(ValueError, match=r"must exceed 0 N/m\^3, at which it buckles .*; got -1.0"):
+        Plate(meshes.disc(1.0, 0.5), UNIT, "free", foundation=-1.0)
+
+
 def test_compression_counts_with_a_foundation():
     mesh = meshes.disc(1.0, 0.3)
     alone, on_foundation = Plate(mesh, UNIT).buckling_load(), Plate(mesh, UNIT, foundation=200.0).buckling_load()
