@@ -53,7 +53,7 @@ def test_cells_follow_the_logarithm_at_each_actuator(reference):
     sloped = VaryingSection(section, lambda x, y: 5e-6 * (1 + 0.3 * x / RADIUS))
     shapes = Plate(meshes.disc(RADIUS, 60e-6), sloped, tolerance=1e-6).influence(POINTS)
     surface = surface_motion(shapes, [Drive(1e-6, 1.0), Drive(0.0, 1.0)])
-    near = np.array(POINTS[0]) + 1e-6 * np.array([[3.0, 1.0], [-1.0, 2.0]])
+    near = np.array(POINTS[0]) + 1e-7 * np.array([[3.0, 1.0], [-1.0, 2.0]])
     state = surface.evaluate(near, 0.5)  # the first actuator is up
     np.testing.assert_allclose(state.hessian, shapes.evaluate(near, np.array([1e-6, 0.0]))[2], rtol=2e-3)
 
