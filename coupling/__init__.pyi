@@ -23,13 +23,14 @@ from .limits import limit_warnings as limit_warnings
 from . import report as report
 from .report import warnings as warnings
 from .part import build_friction as build_friction, build_part as build_part, friction_law as friction_law
-from .run import build_scene as build_scene, follow_part as follow_part
+from .run import build_scene as build_scene, follow_part as follow_part, run_over as run_over
 from .shared_surface import (
     StretchedSurface as StretchedSurface,
     VibratingSurface as VibratingSurface,
     answers_drives as answers_drives,
     shared_surface as shared_surface,
 )
+from .solved_plates import SolvedPlates as SolvedPlates
 from .suggestion import near as near, same_values as same_values
 from .margins import Margin as Margin
 from .summary import PlateSummary as PlateSummary, Summary as Summary, summary_of as summary_of

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from threadpoolctl import threadpool_limits
 
 from coupling.case import Case, RunCase
 from coupling.progress import Progress, silent
-from coupling.run import Result, build_friction, build_part, build_scene, follow_part, tighter_tolerance
-from coupling.scene import PlateScene, Scene, actuator_stiffness, lifts_of
+from coupling.run import Result, build_friction, build_part, follow_part, tighter_tolerance
+from coupling.scene import PlateScene, Scene
 from coupling.shared_surface import answers_drives
+from coupling.solved_plates import SolvedPlates
 from coupling.summary import summarise
-from fem_plate import PlateShapes
 from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, interruptible, simulate_many
 from particle.friction import Contact
 
@@ -28,34 +27,6 @@ class _Job(NamedTuple):
     scene: Scene
     friction: Contact
     part: Micropart
-
-
-@dataclass
-class _Plates:
-    """The plates that cases lie on, each solved when it is first needed."""
-
-    progress: Progress
-
-    def __post_init__(self) -> None:
-        self._scenes: dict[str, PlateScene] = {}
-        self._shapes: dict[str, PlateShapes] = {}
-
-    def scene(self, case: Case) -> Scene:
-        """The scene of a case, which shares its plate's shapes, and its cells where it only bends."""
-        plate = _plate_key(case)
-        ground = f"{plate} {case.run.surface_tolerance!r} {case.plate.model_dump_json()}"
-        if ground in self._scenes:
-            shared = self._scenes[ground]
-            drives = lifts_of(case)
-            pressed = shared.pressed and shared.pressed.driven_by(drives)
-            surface = shared.surface.driven_by(drives)
-            return PlateScene(shared.plate, shared.shapes, drives, surface, pressed=pressed)
-        scene = build_scene(case, self.progress, self._shapes.get(plate))
-        if isinstance(scene, PlateScene):
-            self._shapes[plate] = scene.shapes
-            if not answers_drives(case):
-                self._scenes[ground] = scene
-        return scene
 
 
 def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progress = silent) -> list[Result]:
@@ -88,7 +59,7 @@ def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progr
     """
     if threads is not None and threads < 1:
         raise ValueError(f"Input threads of run_cases must be at least 1; got {threads!r}")
-    plates = _Plates(progress)
+    plates = SolvedPlates(progress)
     # Many small systems: BLAS threads would only wait for each other.
     with threadpool_limits(limits=1, user_api="blas"):
         jobs = [_job(number, case, plates) for number, case in enumerate(cases)]
@@ -108,7 +79,7 @@ def run_cases(cases: Sequence[Case], threads: int | None = None, progress: Progr
     return results
 
 
-def _job(number: int, case: Case, plates: _Plates) -> _Job:
+def _job(number: int, case: Case, plates: SolvedPlates) -> _Job:
     try:
         return _Job(number, case, plates.scene(case), build_friction(case), build_part(case))
     except ValueError as error:
@@ -142,10 +113,3 @@ def _follow(group: Sequence[_Job], threads: int | None, tighter: bool) -> list[T
         drives,
         threads,
     )
-
-
-def _plate_key(case: Case) -> str:
-    """What shapes follow from, beyond the plate's own table."""
-    held = [(one.position, spring) for one, spring in zip(case.actuators, actuator_stiffness(case), strict=True)]
-    unheard = {"top_face", "density", "inertia", "damping", "pressure"}
-    return f"{case.plate.model_dump_json(exclude=unheard)} {held}"

@@ -18,7 +18,7 @@ from coupling.case import Case, PlatformCase, RunCase
 from coupling.drives import build_drives as build_drives
 from coupling.part import build_friction, build_part
 from coupling.progress import Progress, silent
-from coupling.results import check_csv, record_of, write_results
+from coupling.results import CaseRecord, check_csv, record_of, write_results
 from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
 from coupling.surface import check_surface, write_surface
@@ -160,7 +160,26 @@ def _run(
     shapes: PlateShapes | None,
 ) -> Result:
     record = None if output is None else record_of(case)  # its files may be others when the path is found
-    scene = build_scene(case, progress, shapes)
+    return run_over(case, build_scene(case, progress, shapes), output, progress, csv, save_surface, forces, record)
+
+
+def run_over(
+    case: Case,
+    scene: Scene,
+    output: Path | None = None,
+    progress: Progress = silent,
+    csv: bool = False,
+    save_surface: bool = False,
+    forces: bool = False,
+    record: CaseRecord | None = None,
+    picture: bool = True,
+) -> Result:
+    """Run a case over its scene, as `run_case` does.
+
+    record: of the case, for the files; None: it is taken now.  picture: whether there is one among the files.
+    """
+    if output is not None and record is None:
+        record = record_of(case)
     with progress("Following the part"):
         friction = build_friction(case)
         trajectory = interruptible(follow_part, case, scene.surface, friction)
@@ -171,7 +190,7 @@ def _run(
         return Result(case, scene, trajectory, summary)
     with progress("Writing the results") as tell:
         law = friction if forces else None
-        files = write_results(case, record, scene, trajectory, summary, output, csv, tell, law)
+        files = write_results(case, record, scene, trajectory, summary, output, csv, tell, law, picture)
         if save_surface:
             files += (write_surface(scene.surface, output / f"{case.name}.surface.h5"),)
     return Result(case, scene, trajectory, summary, files)

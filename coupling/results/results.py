@@ -63,6 +63,7 @@ def write_results(
     csv: bool = False,
     tell: ProgressCallback = no_progress,
     friction: Contact | None = None,
+    with_picture: bool = True,
 ) -> tuple[Path, ...]:
     """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
 
@@ -70,7 +71,7 @@ def write_results(
 
     record: of the case, taken before the work: later its files may be others.  csv: whether to write NAME.csv as well.
     tell: gets how many time steps are written, and of how many.  friction: the contact's forces go to the part's file
-    and the CSV, too.
+    and the CSV, too.  with_picture: whether the picture is wanted.
     """
     folder.mkdir(parents=True, exist_ok=True)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
@@ -117,14 +118,15 @@ def write_results(
     picture = folder / f"{case.name}.png"
     files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
     _clear(folder, case.name)
-    try:
-        from coupling.pictures import draw_run  # here, because it loads matplotlib
+    if with_picture:
+        try:
+            from coupling.pictures import draw_run  # here, because it loads matplotlib
 
-        moment = float(times[most_deflected(np.concatenate(spread))])
-        draw_run(case, scene, trajectory, ground, moment, picture, summary.margins, curves)
-        files.append(picture)
-    except Exception as error:  # the run is finished, whatever becomes of its picture
-        warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
+            moment = float(times[most_deflected(np.concatenate(spread))])
+            draw_run(case, scene, trajectory, ground, moment, picture, summary.margins, curves)
+            files.append(picture)
+        except Exception as error:  # the run is finished, whatever becomes of its picture
+            warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
     if csv:
         files.append(write_csv(trajectory, folder / f"{case.name}.csv", times, friction is not None, rough))
     return tuple(files)

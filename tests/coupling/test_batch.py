@@ -137,7 +137,7 @@ def test_a_case_that_cannot_be_run_is_named_by_its_number(monkeypatch):
         raise ValueError("it has no law")
 
     monkeypatch.setattr("coupling.batch.build_friction", failing)
-    monkeypatch.setattr("coupling.batch._Plates.scene", lambda plates, one: None)
+    monkeypatch.setattr("coupling.batch.SolvedPlates.scene", lambda plates, one: None)
     with pytest.raises(ValueError, match=r"^Input cases\[0\] of run_cases cannot be run: it has no law"):
         run_cases([base])
 
