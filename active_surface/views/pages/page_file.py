@@ -23,13 +23,13 @@ def write_page(path: Path, title: str, body: str, texts: Mapping[str, str], data
     """
     from plotly.offline import get_plotlyjs
 
-    text = Template(_part("page.html")).substitute(
+    text = Template(part("page.html")).substitute(
         title=escape(title),
-        style=_part("page.css"),
-        main=Template(_part(body)).substitute(texts),
+        style=part("page.css"),
+        main=Template(part(body)).substitute(texts),
         data=json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c"),
         library=get_plotlyjs(),
-        programs="\n".join(_part(name) for name in ("common.js", *programs)),
+        programs="\n".join(part(name) for name in ("common.js", *programs)),
     )
     with whole_file(path) as partial:
         partial.write_text(text, encoding="utf-8")
@@ -62,5 +62,6 @@ def _items(texts: Sequence[str]) -> str:
     return f"<ul>\n{items}\n</ul>" if texts else ""
 
 
-def _part(name: str) -> str:
+def part(name: str) -> str:
+    """The text of a file in `page/`."""
     return (PARTS / name).read_text(encoding="utf-8")

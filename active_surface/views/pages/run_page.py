@@ -6,7 +6,7 @@ from collections import Counter
 from html import escape
 from pathlib import Path
 
-from active_surface.views.pages.page_file import rows_of, trust_of, write_page
+from active_surface.views.pages.page_file import part, rows_of, trust_of, write_page
 from active_surface.views.pages.run_data import run_data
 from coupling import report, summary_of
 from coupling.results import SavedRun
@@ -24,6 +24,7 @@ def write_run_page(run: SavedRun, path: Path) -> Path:
     warnings = [*([] if run.complete else [PARTIAL]), *report.warnings(summary)]
     versions = ", ".join(f"{name} {version}" for name, version in run.versions.items())
     texts = {
+        "views": part("views.html"),
         "name": escape(run.name),
         "device": escape(device),
         "sentence": escape(report.with_micro_signs(" ".join([summary.sentence, *motion(run)]))),

@@ -1,10 +1,14 @@
 "use strict";
 // What the pages of runs and of sweeps have in common.
 
-const pageData = JSON.parse(document.getElementById("data").textContent);
+let pageData = JSON.parse(document.getElementById("data").textContent); // null: it comes later
 const ARRAYS = { f4: Float32Array, f8: Float64Array, u1: Uint8Array, u2: Uint16Array, i2: Int16Array, u4: Uint32Array };
-const INK = "#1d2733", SOFT = "#56636f", PATH = "#c8371b";
+// The colours of page.css, which has others for the dark.
+const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const INK = colour("ink"), SOFT = colour("soft"), PATH = colour("path"), CARD = colour("card"), GRID = colour("grid");
 const FONT = { family: 'system-ui, "Segoe UI", Roboto, sans-serif', size: 13, color: INK };
+// Plotly keeps the colours that it was given.
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => location.reload());
 const NARROW = window.innerWidth < 700;
 const CONFIG = { responsive: true, displaylogo: false, displayModeBar: !NARROW, modeBarButtonsToRemove: ["select2d", "lasso2d", "resetCameraLastSave3d"] };
 

@@ -1,9 +1,16 @@
 // The curves of a run over time, behind them bands for the state of the part.
 
-const panels = pageData.curves.panels, curves = panels.map((panel) => panel.lines.map((line) => unpack(line.values)));
-const moments = pageData.curves.times.map((times) => unpack(times).map((t) => t * pageData.perSecond));
-const COLOURS = [INK, PATH, "#1b4f9c", "#2d7d46"], DASHES = ["solid", "dash", "dashdot", "dot"], SIGNS = ["━", "╍╍", "━╍", "┅┅"];
-const time = unpack(pageData.time), last = time.length - 1;
+let panels, curves, moments, time, last;
+const COLOURS = [INK, PATH, colour("accent"), colour("good")], DASHES = ["solid", "dash", "dashdot", "dot"], SIGNS = ["━", "╍╍", "━╍", "┅┅"];
+
+// What this file draws, from the data of the page.
+function takeCurves() {
+  panels = pageData.curves.panels;
+  curves = panels.map((panel) => panel.lines.map((line) => unpack(line.values)));
+  moments = pageData.curves.times.map((times) => unpack(times).map((t) => t * pageData.perSecond));
+  time = unpack(pageData.time);
+  last = time.length - 1;
+}
 
 // Bands behind the curves while the part is stuck or in flight.
 function stateShades() {
@@ -32,10 +39,10 @@ function drawCurves() {
   const gap = 0.055, height = (1 - gap * (panels.length - 1)) / panels.length;
   const traces = stateShades(), annotations = [];
   const layout = {
-    font: FONT, margin: { l: 64, r: 12, t: 22, b: 44 }, paper_bgcolor: "#ffffff", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "x",
+    font: FONT, margin: { l: 64, r: 12, t: 22, b: 44 }, paper_bgcolor: CARD, plot_bgcolor: "rgba(0,0,0,0)", hovermode: "x",
     showlegend: false, dragmode: "zoom",
     xaxis: { title: { text: `time [${units.time}]` }, range: [time[0], time[last] > time[0] ? time[last] : time[0] + 1],
-      hoverformat: besideFormat(time[last] / 100), anchor: `y${panels.length + 1}`, showgrid: false, zeroline: false, showline: true, linecolor: "#8a96a1" },
+      hoverformat: besideFormat(time[last] / 100), anchor: `y${panels.length + 1}`, showgrid: false, zeroline: false, showline: true, linecolor: SOFT },
     yaxis: { range: [0, 1], domain: [0, 1], visible: false, fixedrange: true },
     shapes: [{ type: "line", xref: "x", yref: "paper", x0: time[shown], x1: time[shown], y0: 0, y1: 1, line: { color: INK, width: 2 } }],
     annotations,
@@ -43,8 +50,8 @@ function drawCurves() {
   panels.forEach((panel, k) => {
     const top = 1 - k * (height + gap);
     layout[`yaxis${k + 2}`] = {
-      title: { text: panel.unit, standoff: 6 }, domain: [top - height, top], gridcolor: "#e6eaee",
-      zerolinecolor: "#aab4bd", nticks: 6, showline: true, linecolor: "#8a96a1", anchor: "x",
+      title: { text: panel.unit, standoff: 6 }, domain: [top - height, top], gridcolor: GRID,
+      zerolinecolor: SOFT, nticks: 6, showline: true, linecolor: SOFT, anchor: "x",
     };
     const format = besideFormat(largest(...curves[k]));
     panel.lines.forEach((line, n) => traces.push({
@@ -68,5 +75,5 @@ function drawCurves() {
   traces.push({ x: pageData.events.map((event) => event.time), y: pageData.events.map(() => 0), yaxis: "y", mode: "markers",
     text: pageData.events.map((event) => plain([event.text, event.by].filter(Boolean).join("; "))), hovertemplate: "%{text}<extra></extra>",
     cliponaxis: false, showlegend: false, marker: { symbol: "triangle-up", size: 8, color: "#b8862d", line: { color: INK, width: 0.7 } } });
-  return Plotly.newPlot("curves", traces, layout, CONFIG);
+  return Plotly.react("curves", traces, layout, CONFIG);
 }

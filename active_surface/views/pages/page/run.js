@@ -1,7 +1,9 @@
 // The page of a run: a slider over its steps, with the surface and the curves of surface.js and curves.js.
 
 const STATES = ["stuck", "slipping", "in flight"];
-const slider = element("step"), load = unpack(pageData.load.values), friction = unpack(pageData.friction.values);
+const slider = element("step");
+let load, friction;
+let stepShown = () => {}; // what else follows the clock
 let playing = false, turn = 0, looking = false, drawing = null, wanted = null;
 
 function readOut(step) {
@@ -34,6 +36,7 @@ function show(step) {
   shown = step;
   slider.value = step;
   readOut(step);
+  stepShown(step);
   wanted = step;
   drawing ??= draw().finally(() => { drawing = null; });
   return drawing;
@@ -163,30 +166,50 @@ function listEvents() {
   if (pageData.moreEvents) element("events-caption").textContent = `${pageData.moreEvents} later events are not listed.`;
 }
 
-slider.max = last;
-listEvents();
-element("exaggeration").value = exaggeration;
-element("play").disabled = last === 0;
-element("flights").hidden = !unpack(pageData.stretches.flying).length;
-const asked = location.hash.match(/^#t=([0-9.e-]+)$/); // page.html#t=12.5 opens at that time
-shown = asked ? stepAt(Number(asked[1])) : 0;
-slider.value = shown;
-readOut(shown);
-caption();
+// Show a run, or another in place of it, from its first step or the one nearest to a time.
+async function takeRun(data, moment = 0) {
+  if (playing) play();
+  await drawing; // of the run before
+  pageData = data;
+  takeSurface();
+  takeCurves();
+  [load, friction] = [unpack(pageData.load.values), unpack(pageData.friction.values)];
+  closeBy = closeBy && Boolean(pageData.window);
+  exaggeration = pageData.exaggeration[closeBy ? 1 : 0];
+  slider.max = last;
+  listEvents();
+  element("exaggeration").value = exaggeration;
+  element("play").disabled = last === 0;
+  element("flights").hidden = !unpack(pageData.stretches.flying).length;
+  element("close-by").hidden = !pageData.window;
+  element("close-by").setAttribute("aria-pressed", closeBy);
+  shown = stepAt(moment);
+  slider.value = shown;
+  readOut(shown);
+  caption();
+  keepCamera();
+  const first = !element("surface").data;
+  const [scene, charts] = await Promise.all([drawSurface(), drawCurves()]);
+  if (first) {
+    scene.on("plotly_relayout", (change) => { if ("scene.camera" in change && !looking) press(null); });
+    charts.on("plotly_click", (event) => {
+      if (playing) play();
+      show(stepAt(event.points[0].x));
+    });
+  }
+  if (shown) await show(shown);
+  stepShown(shown);
+}
+
 element("pace").addEventListener("change", () => { if (playing) { play(); play(); } });
 slider.addEventListener("input", () => { if (playing) play(); show(Number(slider.value)); });
 element("play").addEventListener("click", play);
-element("close-by").hidden = !pageData.window;
 element("close-by").addEventListener("click", () => come(!closeBy));
 element("exaggeration").addEventListener("change", exaggerate);
 for (const button of document.querySelectorAll("[data-eye]")) button.addEventListener("click", () => look(button.dataset.eye));
-Promise.all([drawSurface(), drawCurves()]).then(([scene, charts]) => {
-  scene.on("plotly_relayout", (change) => { if ("scene.camera" in change && !looking) press(null); });
-  charts.on("plotly_click", (event) => {
-    if (playing) play();
-    show(stepAt(event.points[0].x));
-  });
-  return shown ? show(shown) : null;
-}).then(() => {
-  document.body.dataset.ready = "true";
-}).catch((error) => tellTrouble(error.message));
+if (pageData) {
+  const asked = location.hash.match(/^#t=([0-9.e-]+)$/); // page.html#t=12.5 opens at that time
+  takeRun(pageData, asked ? Number(asked[1]) : 0).then(() => {
+    document.body.dataset.ready = "true";
+  }).catch((error) => tellTrouble(error.message));
+}

@@ -6,7 +6,7 @@ const distance = unpack(pageData.distance), outcome = unpack(pageData.outcome), 
 const starts = unpack(pageData.starts), ends = unpack(pageData.ends), repeats = pageData.repeats, kept = pageData.kept; // ends of a cell
 const paths = unpackPaths(pageData.paths);
 const MARK = 1; // the number of the trace that marks the chosen cell
-const AXIS = { gridcolor: "#e6eaee", zeroline: false, showline: true, linecolor: "#8a96a1", automargin: true };
+const AXIS = { gridcolor: GRID, zeroline: false, showline: true, linecolor: SOFT, automargin: true };
 let chosen = 0, value = "distance";
 
 function unpackPaths(packed) {

@@ -70,7 +70,7 @@ function drawMap() {
     line: { color: PATH, width: 3 }, marker: { symbol: "circle-open", size: 16, color: PATH, line: { width: 3 } } };
   const upwards = isMap || (pageData.kind === "points" && axes.length > 1) ? axisLayout(axes[1])
     : { ...AXIS, title: { text: `distance from the start [${units.distance}]` }, rangemode: "tozero" };
-  const layout = { font: FONT, margin: { l: 62, r: 10, t: 34, b: 48 }, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff", showlegend: false,
+  const layout = { font: FONT, margin: { l: 62, r: 10, t: 34, b: 48 }, paper_bgcolor: CARD, plot_bgcolor: CARD, showlegend: false,
     xaxis: axisLayout(axes[0]), yaxis: upwards, hovermode: "closest", hoverdistance: pageData.kind === "points" ? -1 : 20, dragmode: "zoom", uirevision: "kept" };
   return Plotly.react("map", [mainTrace(), mark, ...overMap()], layout, CONFIG);
 }

@@ -18,11 +18,11 @@ function pathTraces(cell) {
       line: { color: PATH, width: path ? 2.5 : 1.5, dash: path ? "solid" : "dot" } });
   }
   if (kept > 1 && of.some(Number.isFinite)) {
-    traces.push({ x: even(of), y: odd(of), mode: "markers", name: `ends of ${repeats} starts`, marker: { size: 5, color: "#1b4f9c", opacity: 0.6 } });
+    traces.push({ x: even(of), y: odd(of), mode: "markers", name: `ends of ${repeats} starts`, marker: { size: 5, color: colour("accent"), opacity: 0.6 } });
   }
   if (!isFirst) return traces; // the first start was refused
-  traces.push({ ...start, mode: "markers", name: "start", marker: { symbol: "circle-open", size: 11, color: "#000000", line: { width: 2 } } });
-  traces.push({ x: [of[0]], y: [of[1]], mode: "markers", name: "end", marker: { symbol: "x-thin-open", size: 10, color: "#000000", line: { width: 2.5 } } });
+  traces.push({ ...start, mode: "markers", name: "start", marker: { symbol: "circle-open", size: 11, color: INK, line: { width: 2 } } });
+  traces.push({ x: [of[0]], y: [of[1]], mode: "markers", name: "end", marker: { symbol: "x-thin-open", size: 10, color: INK, line: { width: 2.5 } } });
   return traces;
 }
 
@@ -37,7 +37,7 @@ function padded(numbers) {
 function drawPath(cell) {
   const traces = pathTraces(cell);
   const axis = { ...AXIS, constrain: "domain" }, of = (name) => padded(traces.flatMap((trace) => Array.from(trace[name])));
-  const layout = { font: FONT, margin: { l: 62, r: 10, t: 60, b: 48 }, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff",
+  const layout = { font: FONT, margin: { l: 62, r: 10, t: 60, b: 48 }, paper_bgcolor: CARD, plot_bgcolor: CARD,
     xaxis: { ...axis, range: of("x"), title: { text: `x [${units.length}]` } },
     yaxis: { ...axis, range: of("y"), title: { text: `y [${units.length}]` }, scaleanchor: "x" },
     legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom" }, showlegend: true };

@@ -1,11 +1,8 @@
 // The surface of a run in three dimensions, with the part and its trail on it at the step that is shown.
 
-const surface = unpackSurface(pageData.surface);
-const part = Object.fromEntries(["x", "y", "z", "height", "speed", "state"].map((name) => [name, unpack(pageData.part[name])]));
-const trail = unpackSpots(pageData.trail);
-trail.step = unpack(pageData.trail.step);
-const below = unpackSpots(pageData.part.below); // the part, at every step
-const units = pageData.units;
+let surface, part, trail, units;
+let below; // the part, at every step
+let still; // the places of traces that move only up and down
 const FLYING = 2; // of the part's states
 // Of the surface's length, by which what lies on it is lifted so that it is seen: the part is a ball that big.
 const LIFTS = { lines: 0.002, rim: 0.002, actuators: 0.012, trail: 0.006, part: 0.035 };
@@ -16,7 +13,17 @@ const EYES = {
   side: { eye: { x: 0, y: -1.5, z: 0 }, up: { x: 0, y: 0, z: 1 } },
 };
 const MESH = 0, LINES = 1, RIM = 2, ACTUATORS = 3, AHEAD = 4, TRAIL = 5, PART = 6;
-let closeBy = false, exaggeration = pageData.exaggeration[0], shown = 0;
+let closeBy = false, exaggeration = 1, shown = 0;
+
+// What this file draws, from the data of the page.
+function takeSurface() {
+  surface = unpackSurface(pageData.surface);
+  part = Object.fromEntries(["x", "y", "z", "height", "speed", "state"].map((name) => [name, unpack(pageData.part[name])]));
+  trail = { ...unpackSpots(pageData.trail), step: unpack(pageData.trail.step) };
+  below = unpackSpots(pageData.part.below);
+  units = pageData.units;
+  still = Object.fromEntries(["x", "y"].map((axis) => [axis, [alongRim(surface[axis]), atActuators(surface[axis])]]));
+}
 
 function unpackSpots(spots) {
   return { corners: unpack(spots.corners), weights: unpack(spots.weights) };
@@ -104,11 +111,6 @@ function trailAt(step, z) {
   return { passed, ahead };
 }
 
-// The places of traces that move only up and down.
-const still = Object.fromEntries(["x", "y"].map((axis) => [
-  axis, [alongRim(surface[axis]), atActuators(surface[axis])],
-]));
-
 // What the traces of the surface show at a step.
 function changingAt(step) {
   const z = heightsAt(step), { passed, ahead } = trailAt(step, z);
@@ -151,19 +153,19 @@ function drawSurface() {
     { ...quiet, mode: "markers", x: now.x[PART], y: now.y[PART], z: now.z[PART], name: "part", showlegend: true,
       marker: { size: 8, color: "#ffcc33", line: { color: "#000000", width: 2 } } },
   ];
-  const axis = { showbackground: false, gridcolor: "#dfe5ea", zeroline: false, showspikes: false, nticks: 6, tickfont: { size: 11 } };
+  const axis = { showbackground: false, gridcolor: GRID, zeroline: false, showspikes: false, nticks: 6, tickfont: { size: 11 } };
   const title = (text) => ({ title: { text, font: { size: NARROW ? 11 : 13 } } });
   const layout = {
-    font: FONT, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: "#f7f9fb", uirevision: "kept",
+    font: FONT, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: CARD, uirevision: "kept",
     legend: { orientation: "h", x: 0, y: 1, bgcolor: "rgba(0,0,0,0)", itemclick: false, itemdoubleclick: false },
     scene: {
       xaxis: { ...axis, ...title(`x [${units.length}]`) },
       yaxis: { ...axis, ...title(`y [${units.length}]`) },
       zaxis: { ...axis, ...title(""), showticklabels: false, nticks: 4, range: heightRange() }, // the bar tells heights
-      bgcolor: "#f7f9fb", aspectmode: "manual", aspectratio: proportions(), camera: camera("slanted"), dragmode: "orbit",
+      bgcolor: CARD, aspectmode: "manual", aspectratio: proportions(), camera: element("surface").layout?.scene.camera ?? camera("slanted"), dragmode: "orbit",
     },
   };
-  return Plotly.newPlot("surface", traces, layout, CONFIG);
+  return Plotly.react("surface", traces, layout, CONFIG);
 }
 
 function camera(name) {
