@@ -37,8 +37,7 @@ class SolvedPlates:
 
         progress: in place of that of all.  Raises as `build_scene` does.
         """
-        plate = _plate_key(case)
-        ground = f"{plate} {case.run.surface_tolerance!r} {case.plate.model_dump_json()}"
+        plate, ground = _plate_key(case), _ground_key(case)
         if (shared := self._known(self._scenes, ground)) is not None:
             drives = lifts_of(case)
             pressed = shared.pressed and shared.pressed.driven_by(drives)
@@ -50,6 +49,11 @@ class SolvedPlates:
             if not answers_drives(case):
                 self._take(self._scenes, ground, scene)
         return scene
+
+    def knows(self, case: Case) -> bool:
+        """Whether the plate of a case that only bends is solved, and some of its cells are made."""
+        with self._lock:
+            return _ground_key(case) in self._scenes
 
     def _known(self, kept: OrderedDict[str, Kept], key: str) -> Kept | None:
         with self._lock:
@@ -70,3 +74,8 @@ def _plate_key(case: Case) -> str:
     held = [(one.position, spring) for one, spring in zip(case.actuators, actuator_stiffness(case), strict=True)]
     unheard = {"top_face", "density", "inertia", "damping", "pressure"}
     return f"{case.plate.model_dump_json(exclude=unheard)} {held}"
+
+
+def _ground_key(case: Case) -> str:
+    """What the cells of a moving surface follow from."""
+    return f"{_plate_key(case)} {case.run.surface_tolerance!r} {case.plate.model_dump_json()}"

@@ -3,6 +3,7 @@
 from active_surface.cli import (
     aim,
     animate,
+    app,
     check,
     completion,
     example,
@@ -27,6 +28,7 @@ __all__ = [
     "main",
     "aim",
     "animate",
+    "app",
     "check",
     "completion",
     "example",

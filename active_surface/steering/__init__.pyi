@@ -9,7 +9,9 @@ from .tables import Settings as Settings
 from .task import Task as Task
 
 # Not public: for the packages that build on this one.
+from .aiming import aim_over as aim_over
 from .following import ATTEMPTS as ATTEMPTS, next_leg as next_leg, progress_of as progress_of
 from .read import read_measured as read_measured, read_place as read_place, read_settings as read_settings
 from . import report as report
 from .tables import AimTables as AimTables
+from .stages import prepared as prepared

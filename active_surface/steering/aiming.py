@@ -5,6 +5,7 @@ task -> surface -> approach, leg by leg: knobs, search -> case and path -> case 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from active_surface.steering.approach import Approach
@@ -15,7 +16,7 @@ from active_surface.steering.stages import check_free, drawn, prepared, searched
 from active_surface.steering.task import Task
 from coupling import ProgressCallback, no_progress
 from coupling.case import length_text
-from particle import SurfaceMotion
+from particle import SurfaceMotion, Trajectory
 
 
 def aim(
@@ -67,9 +68,19 @@ def aim_over(
     threads: int | None = None,
     tell: ProgressCallback = no_progress,
     file: Path | None = None,
+    watch: Callable[[Callable[[], Trajectory | None]], object] | None = None,
 ) -> Aimed:
-    """The same over an existing surface; writes a case file at most, before it looks at the scatter."""
-    approach = Approach(surface, task, threads, tell)
+    """The same over an existing surface; writes a case file at most, before it looks at the scatter.
+
+    watch: gets, after each batch of paths, what finds the path of the best drives so far.
+    """
+
+    def told(done: int, of: int) -> None:
+        tell(done, of)
+        if watch is not None:
+            watch(approach.look)
+
+    approach = Approach(surface, task, threads, told)
 
     def close() -> Aimed:
         way = approach.close()

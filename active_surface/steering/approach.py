@@ -142,18 +142,32 @@ class Approach:
         self._before, self._search = self.paths, None
         if not search.has_drives:
             return
-        leg, task, chain = search.leg(start), self._task, self._chain if start > 0 else None
-        legs, stops = ((*chain.legs, leg), chain.stops) if chain else ((leg,), ())
-        if len(legs) > 1:
-            case = scheduled(task.case, legs, self._horizon)
-        else:
-            case = task.case.model_copy(update={"actuators": leg.actuators, "source": None})
+        legs, stops = self._with_leg(search, start)
+        task, case = self._task, self._case_of(legs)
         path = self._follow(case)
-        way = Way(legs, case, path, search.cost if task.settings.is_robust else self._cost(path), stops + search.stops)
+        way = Way(legs, case, path, search.cost if task.settings.is_robust else self._cost(path), stops)
         before = self._chain.cost if self._chain else math.inf
         if way.cost <= max(NEARER * before, task.settings.tolerance) or self._chain is None:
             self._chain = way
         self._keep(way)
+
+    def look(self) -> Trajectory | None:
+        """The path of the drives that are best so far in the current search; None: there are none."""
+        if self._search is None or not self._search[0].has_drives:
+            return None if self._best is None else self._best.path
+        return self._follow(self._case_of(self._with_leg(*self._search)[0]))
+
+    def _with_leg(self, search: LegSearch, start: float) -> tuple[tuple[Leg, ...], tuple[Stop, ...]]:
+        """The legs before a time [s] and that of a search, and the knobs of these at a bound."""
+        leg, chain = search.leg(start), self._chain if start > 0 else None
+        return ((*chain.legs, leg), chain.stops + search.stops) if chain else ((leg,), search.stops)
+
+    def _case_of(self, legs: tuple[Leg, ...]) -> Case:
+        """The case with the drives of legs."""
+        case = self._task.case
+        if len(legs) > 1:
+            return scheduled(case, legs, self._horizon)
+        return case.model_copy(update={"actuators": legs[0].actuators, "source": None})
 
     def _keep(self, way: Way) -> None:
         if self._best is None or way.cost < self._best.cost:

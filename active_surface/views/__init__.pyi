@@ -5,3 +5,6 @@ from .prints.plots import plot as plot
 
 # Not public: for the packages that build on this one.
 from .result_file import is_of as is_of, result_of as result_of
+from .pages.packed import packed as packed
+from .pages.page_file import PARTS as PARTS, part as part
+from .pages.run_data import run_data as run_data

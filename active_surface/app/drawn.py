@@ -1,0 +1,78 @@
+"""Drawn: paths and plates in the numbers of the page, in the unit of its map."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from active_surface.arrays import FloatArray
+from active_surface.views import packed
+from coupling import report
+from coupling.case import Case, PlateCase
+from fem_plate import extent
+from meshes import Unit, quantity_text, rim_curves, unit_for
+from particle import Trajectory
+
+SAMPLES: Final = 1500  # of a path
+SEEN: Final = 1e-3  # of the extent of a path: nearer points are one
+MAX_DRAGGED: Final = 300  # actuators; more are dots
+
+
+def map_of(case: Case) -> dict[str, Any]:
+    """The plate from above with what lies on it."""
+    box = _box(case)
+    unit = unit_for(box, "m")
+    curves: list[FloatArray] = []
+    if isinstance(case.plate, PlateCase):
+        outline = case.plate.coarse_mesh.outline
+        curves = rim_curves(outline, extent(outline.box) / 150)
+    places = np.array([one.position for one in case.actuators]).reshape(-1, 2)
+    return {
+        "unit": unit.name,
+        "perSI": unit.per_si,
+        "box": (box * unit.per_si).tolist(),
+        "rim": [packed(curve * unit.per_si, "f4") for curve in curves],
+        "actuators": (places * unit.per_si).tolist(),
+        "dragged": len(places) <= MAX_DRAGGED,
+        "start": (np.array(case.part.position) * unit.per_si).tolist(),
+    }
+
+
+def path_of(path: Trajectory, unit: Unit) -> dict[str, Any]:
+    """A path, how it ended and how far the part came."""
+    times = np.union1d(np.linspace(0, float(path.time[-1]), SAMPLES), [event.time for event in path.events])
+    line = _spread(path.at(times).position)
+    return {
+        "line": packed(line * unit.per_si, "f4"),
+        "outcome": path.outcome.value,
+        "sentence": report.with_micro_signs(path.sentence),
+        "distance": quantity_text(path.distance, "m", 4),
+        "duration": quantity_text(float(path.time[-1]), "s", 3),
+        "end": (path.position[-1] * unit.per_si).tolist(),
+    }
+
+
+def unit_of(case: Case) -> Unit:
+    """The unit of the map."""
+    return unit_for(_box(case), "m")
+
+
+def _box(case: Case) -> FloatArray:
+    """The corners (2, 2) [m] of the plate, or of the surroundings of a part on a platform."""
+    if isinstance(case.plate, PlateCase):
+        return np.asarray(case.plate.coarse_mesh.outline.box)
+    start = np.array(case.part.position)
+    reach = max(float(np.abs(start).max()), 1e-4)
+    return np.stack([start - reach, start + reach])
+
+
+def _spread(line: FloatArray) -> FloatArray:
+    """A line (n, 2) without the points that nobody can tell from the one before."""
+    near = SEEN * max(extent(np.stack([line.min(axis=0), line.max(axis=0)])), 1e-12)
+    kept, last = [0], line[0]
+    for k in range(1, len(line) - 1):
+        if abs(line[k, 0] - last[0]) + abs(line[k, 1] - last[1]) >= near:
+            kept.append(k)
+            last = line[k]
+    return line[[*kept, len(line) - 1]]

@@ -1,0 +1,64 @@
+"""Full answers: a run and what its page shows, for when the hand rests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from active_surface.views import run_data
+from coupling import ProgressCallback, Result, SolvedPlates, limit_warnings, read_run, report
+from coupling.case import Case
+from coupling.run import run_over
+
+Tell = Callable[[str, int, int], object]
+"""Gets a stage, and how many of its pieces are done, and of how many; raises Superseded where nobody waits any more."""
+
+
+class Superseded(Exception):
+    """Another request took the place of the one that is worked on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Full:
+    """A result, and what the page shows of it."""
+
+    result: Result
+    shown: dict[str, Any]
+
+
+def full_answer(case: Case, plates: SolvedPlates, tell: Tell) -> Full:
+    """Run a case as `active-surface run` does.
+
+    Raises ValueError where it cannot be run, and what `tell` raises.
+    """
+
+    @contextmanager
+    def progress(stage: str) -> Iterator[ProgressCallback]:
+        tell(stage, 0, 0)
+        yield lambda done, of: tell(stage, done, of)
+
+    with TemporaryDirectory(prefix="active-surface-") as folder:
+        named = case.model_copy(update={"name": "run"})
+        scene = plates.scene(named, progress)
+        result = run_over(named, scene, Path(folder), progress, picture=False)
+        tell("Drawing", 0, 0)
+        data = run_data(read_run(Path(folder, "run")))
+    summary = result.summary
+    return Full(
+        result,
+        {
+            "data": data,
+            "sentence": report.with_micro_signs(summary.sentence),
+            "trust": report.with_micro_signs(report.trust(summary)),
+            "warnings": [
+                report.with_micro_signs(text)
+                for text in [*report.warnings(summary), *limit_warnings(case, result.shapes)]
+            ],
+            "rows": [[label, report.with_micro_signs(text)] for label, text in report.lines(summary)],
+            "figures": {"distance": summary.distance, "end": summary.end_position, "outcome": summary.outcome},
+        },
+    )

@@ -1,0 +1,264 @@
+// The page of the app: what is done on it goes to the program, whose answers are drawn. One change is on its way at a
+// time; of what is dragged meanwhile, the latest follows.
+
+const delays = []; // ms from an input to its path on the screen, the latest thousand
+const RUNS = { now: null, saved: null };
+let link = null, asked = 0, onTheWay = null, next = null, gesture = 0, gestureOf = null, caseData = null, runData = null, searching = false;
+
+function connect() {
+  const address = new URL("socket", location.href);
+  address.protocol = "ws:";
+  address.searchParams.set("tab", sessionStorage.getItem("tab") ?? "");
+  link = new WebSocket(address);
+  link.addEventListener("message", (event) => take(JSON.parse(event.data)));
+  link.addEventListener("close", () => {
+    element("lost").hidden = false;
+    for (const control of document.querySelectorAll("button, input, select")) control.disabled = true;
+  });
+}
+
+function ask(message) { if (link.readyState === WebSocket.OPEN) link.send(JSON.stringify(message)); }
+
+// Change fields: { path: text }.
+function change(changes, rest, stamp) {
+  next = { changes: { ...next?.changes, ...changes }, rest: rest || Boolean(next?.rest), stamp: next?.stamp ?? stamp, gesture };
+  if (!onTheWay) sendNext();
+}
+
+function sendNext() {
+  if (!next) return;
+  onTheWay = { ...next, asked: ++asked };
+  next = null;
+  ask({ do: "set", turn: asked, gesture: onTheWay.gesture, changes: onTheWay.changes, rest: onTheWay.rest });
+}
+
+// The answer to the change that is on its way.
+function arrived(answer, draw) {
+  const of = answer.turn === onTheWay?.asked ? onTheWay : null;
+  requestAnimationFrame(() => {
+    draw();
+    if (of) setTimeout(() => { // the frame is on the screen
+      delays.push(performance.now() - of.stamp);
+      if (delays.length > 1000) delays.shift();
+    });
+  });
+  if (!of) return;
+  onTheWay = null;
+  sendNext();
+}
+
+const TAKES = {
+  tab({ tab }) { sessionStorage.setItem("tab", tab); },
+  menu({ examples }) {
+    element("menu").hidden = false;
+    element("examples").replaceChildren(...examples.map(([name, about]) => {
+      const item = document.createElement("li"), button = document.createElement("button"), title = document.createElement("strong");
+      title.textContent = name;
+      button.type = "button";
+      button.append(title, about);
+      button.addEventListener("click", () => ask({ do: "open", name }));
+      item.append(button);
+      return item;
+    }));
+    document.body.dataset.ready = "menu";
+  },
+  case(data) {
+    const first = !caseData || caseData.file !== data.file || caseData.name !== data.name;
+    caseData = data;
+    for (const [id, hidden] of [["menu", true], ["opened", false], ["bar", false]]) element(id).hidden = hidden;
+    element("name").textContent = data.name + (data.changed ? ", changed" : "");
+    document.title = `${data.name}: active-surface`;
+    element("device").textContent = data.device;
+    element("file").textContent = data.file ?? "an example; Save keeps a copy of yours";
+    element("undo").disabled = !data.undo;
+    element("redo").disabled = !data.redo;
+    element("back").disabled = !data.changed;
+    element("save-folder").textContent = data.folder;
+    if (first) element("save-name").value = data.file ? data.file.split(/[\\/]/).pop() : `${data.name}.toml`;
+    mapData = { ...data.map, selected: data.selected };
+    showSelection(data);
+    if (!next && !onTheWay) showKnobs(data.groups);
+    const focused = document.activeElement?.dataset?.key;
+    if (!dragged) {
+      drawMap();
+      if (focused) document.querySelector(`[data-key="${focused}"]`)?.focus();
+    }
+  },
+  path(answer) {
+    arrived(answer, () => {
+      clearMistakes();
+      nowPath = { points: pairs(answer.line), coarse: answer.coarse, exact: false };
+      element("run").classList.add("old");
+      drawPath();
+      tellPath(answer);
+    });
+  },
+  later(answer) { arrived(answer, () => { clearMistakes(); element("coarse").textContent = "The path follows when the plate is solved."; }); },
+  refused(answer) {
+    const changed = Object.keys(onTheWay?.changes ?? {});
+    if (searching && answer.mistakes.some(({ field }) => field === "target")) endSearch();
+    if (element("save-dialog").open) {
+      element("save-mistake").textContent = answer.mistakes.map(({ message }) => message).join("; ");
+      element("save-replace").hidden = !element("save-mistake").textContent.includes("there already");
+    } else arrived(answer, () => { showMistakes(answer.mistakes, changed); if (!dragged) drawMap(); });
+  },
+  async run(answer) {
+    nowPath = { points: pairs(answer.line), coarse: [], exact: true };
+    runData = answer;
+    if (answer.saved) { RUNS.saved = answer.rows; savedPath = nowPath; }
+    RUNS.now = answer.rows;
+    element("busy").textContent = "";
+    element("run").hidden = false;
+    element("run").classList.remove("old");
+    tellPath({ ...answer, coarse: [] });
+    tellTrust(answer);
+    tellRows();
+    const before = pageData ? time[shown] : 0;
+    await takeRun(answer.data, before);
+    drawMap();
+    document.body.dataset.ready = "run";
+  },
+  busy({ stage, done, of }) { element("busy").textContent = of ? `${stage}: ${done} of ${of} …` : `${stage} …`; },
+  idle() { element("busy").textContent = ""; },
+  note({ text }) {
+    element("save-dialog").close();
+    element("note").hidden = false;
+    element("note").textContent = text;
+    setTimeout(() => { element("note").hidden = true; }, 8000);
+  },
+  picture({ name, bytes }) {
+    const data = Uint8Array.from(atob(bytes), (letter) => letter.charCodeAt(0));
+    const anchor = Object.assign(document.createElement("a"), { download: name, href: URL.createObjectURL(new Blob([data], { type: "image/png" })) });
+    anchor.click();
+    setTimeout(() => URL.revokeObjectURL(anchor.href), 10000);
+    element("picture").disabled = false;
+  },
+  search({ done, of, line, distance }) {
+    if (of) element("busy").textContent = `Searching: ${done} of at most ${of} paths …`;
+    if (!line) return;
+    nowPath = { points: pairs(arguments[0].line), coarse: ["search"], exact: false };
+    drawPath();
+    element("coarse").textContent = `Best drives so far: the part ends ${distance} from its start.`;
+  },
+  found({ text }) {
+    endSearch();
+    if (text) TAKES.note({ text });
+  },
+  trouble({ text }) { tellTrouble(text); },
+};
+
+function take(message) { TAKES[message.kind](message); }
+
+function tellPath({ sentence, distance, duration, coarse }) {
+  element("quick").textContent = `${sentence} It is ${distance} from its start after ${duration}.`;
+  element("coarse").textContent = coarse.length ? `Coarser while you drag: ${coarse.join(", ")}. The exact path follows when you let go.` : "";
+}
+
+function tellTrust({ trust, warnings }) {
+  const card = element("trust");
+  card.hidden = false;
+  card.className = `trust ${warnings.length ? "warnings" : "trusted"}`;
+  element("verdict").textContent = `Trust: ${warnings.length || "no"} warning${warnings.length === 1 ? "" : "s"}.`;
+  element("trust-figures").textContent = `${trust[0].toUpperCase()}${trust.slice(1)}.`;
+  element("warnings").replaceChildren(...warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+}
+
+// The summary beside that of the saved case; what differs stands out.
+function tellRows() {
+  const beside = RUNS.saved && RUNS.saved !== RUNS.now;
+  element("saved-head").hidden = !beside;
+  const saved = new Map(RUNS.saved ?? []), rows = RUNS.now.map(([label, text]) => [label, text, saved.get(label) ?? ""]);
+  element("rows").replaceChildren(...rows.map(([label, text, other]) => {
+    const row = document.createElement("tr"), head = document.createElement("th");
+    head.scope = "row";
+    head.textContent = label;
+    row.append(head, ...[text, ...(beside ? [other] : [])].map((words, k) => Object.assign(document.createElement("td"), {
+      textContent: words, className: k === 0 && beside && text !== other ? "other" : "" })));
+    return row;
+  }));
+}
+
+function showSelection({ selected, map }) {
+  const chosen = element("chosen"), count = map.actuators.length;
+  element("chosen-label").hidden = !selected || !count;
+  if (chosen.options.length !== count + 1) chosen.replaceChildren(...[...Array(count).keys(), "*"].map((k) => new Option(k === "*" ? "all" : k, k)));
+  chosen.value = selected;
+}
+
+// A change of one thing is one step to undo, until the hand lets go.
+function gestureFor(what) {
+  if (gestureOf !== what) { gestureOf = what; gesture++; }
+}
+
+function endSearch() {
+  searching = false;
+  element("stop").hidden = true;
+  element("aim").hidden = false;
+  element("busy").textContent = "";
+}
+
+function setAiming(on) {
+  aiming = on;
+  element("aim").setAttribute("aria-pressed", on);
+  element("map-box").classList.toggle("aiming", on);
+  target = on ? target ?? [...mapData.start] : null;
+  element("coarse").textContent = on ? "Click where the part is to go; Escape ends aiming." : "";
+  drawMap();
+  if (on) document.querySelector('[data-key="target"]')?.focus();
+}
+
+onTurn = (knob, text, rest, stamp) => {
+  gestureFor(knob.data.path);
+  change({ [knob.data.path]: text }, rest, stamp);
+  if (rest) gestureOf = null;
+};
+const placeTexts = ({ kind, number, at }) => {
+  const path = kind === "start" ? "part.position" : `actuators.${number}.position`, digits = 3 - Math.floor(Math.log10(frameBox[1][0] - frameBox[0][0]));
+  const unit = mapData.unit.replace("µ", "u").replace("μ", "u");
+  return Object.fromEntries(at.map((c, k) => [`${path}.${k}`, `${Number(c.toFixed(Math.max(0, Math.min(12, digits + 1))))} ${unit}`]));
+};
+onDrag = (what, stamp) => { gestureFor(what.group.dataset.key); change(placeTexts(what), false, stamp); };
+onDrop = (what) => { change(placeTexts(what), true, performance.now()); gestureOf = null; };
+onPick = (number) => ask({ do: "select", actuator: String(number) });
+onTarget = (place) => {
+  target = place;
+  aiming = false;
+  element("aim").setAttribute("aria-pressed", false);
+  element("map-box").classList.remove("aiming");
+  drawMap();
+  searching = true;
+  element("aim").hidden = true;
+  element("stop").hidden = false;
+  element("busy").textContent = "Searching …";
+  ask({ do: "aim", target: place.map((c) => c / mapData.perSI) });
+};
+stepShown = (step) => drawHeights(step);
+
+for (const name of ["undo", "redo", "back", "stop"]) element(name).addEventListener("click", () => ask({ do: name }));
+element("picture").addEventListener("click", () => { element("picture").disabled = true; ask({ do: "picture" }); });
+element("aim").addEventListener("click", () => setAiming(!aiming));
+element("chosen").addEventListener("change", (event) => onPick(event.target.value));
+element("save").addEventListener("click", () => {
+  element("save-mistake").textContent = "";
+  element("save-replace").hidden = true;
+  element("save-dialog").showModal();
+});
+const saveAs = (replace) => ask({ do: "save", name: element("save-name").value.trim(), replace });
+element("save-form").addEventListener("submit", (event) => { event.preventDefault(); saveAs(false); });
+element("save-replace").addEventListener("click", () => saveAs(true));
+element("save-cancel").addEventListener("click", () => element("save-dialog").close());
+element("save-name").addEventListener("input", () => { element("save-replace").hidden = true; element("save-mistake").textContent = ""; });
+for (const button of document.querySelectorAll("[data-window]")) {
+  button.addEventListener("click", () => {
+    around = button.dataset.window === "path";
+    for (const other of document.querySelectorAll("[data-window]")) other.setAttribute("aria-pressed", other === button);
+    drawMap();
+  });
+}
+document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape" && aiming) setAiming(false);
+  if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || document.activeElement?.type === "text") return;
+  event.preventDefault();
+  ask({ do: event.shiftKey ? "redo" : "undo" });
+});
+connect();

@@ -1,0 +1,224 @@
+// The map: the plate from above with what can be dragged, the path, and the surface at the moment of the clock.
+
+const SVG = "http://www.w3.org/2000/svg";
+const GRIP = { actuator: 7, start: 7, touch: 16 }; // pixels, half of a side
+const STEP = 0.01, FINE = 0.1; // of the window's width for an arrow key, and of that with Shift
+let mapData = null, frameBox = null, around = false, dragged = null, aiming = false, target = null;
+let nowPath = null, savedPath = null;
+let onDrag = () => {}, onDrop = () => {}, onPick = () => {}, onTarget = () => {};
+
+function svg(name, attributes = {}, parent = null) {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  parent?.append(made);
+  return made;
+}
+
+function pairs(packed) {
+  const numbers = unpack(packed), points = [];
+  for (let k = 0; k < numbers.length; k += 2) points.push([numbers[k], numbers[k + 1]]);
+  return points;
+}
+
+function pointsOf(line) { return line.map(([x, y]) => `${x},${-y}`).join(" "); }
+
+// One pixel in the unit of the map.
+function pixel() {
+  const { clientWidth, clientHeight } = element("map-box"), [low, high] = frameBox;
+  return Math.max((high[0] - low[0]) / clientWidth, (high[1] - low[1]) / clientHeight);
+}
+
+// What the map shows: all of the plate, or the surroundings of the path and its start.
+function chooseFrame() {
+  const box = mapData.box, room = 0.06 * Math.max(box[1][0] - box[0][0], box[1][1] - box[0][1]);
+  frameBox = [box[0].map((c) => c - room), box[1].map((c) => c + room)];
+  if (!around || !nowPath) return;
+  const points = [...nowPath.points, ...(savedPath?.points ?? [])];
+  const lows = [0, 1].map((k) => points.reduce((low, p) => Math.min(low, p[k]), Infinity));
+  const highs = [0, 1].map((k) => points.reduce((high, p) => Math.max(high, p[k]), -Infinity));
+  const size = Math.max(highs[0] - lows[0], highs[1] - lows[1], 1e-4 * (box[1][0] - box[0][0]));
+  const middle = [0, 1].map((k) => (lows[k] + highs[k]) / 2);
+  frameBox = [middle.map((c) => c - 0.7 * size), middle.map((c) => c + 0.7 * size)];
+}
+
+// Draw all of the map.
+function drawMap() {
+  if (!mapData) return;
+  if (!dragged) chooseFrame();
+  const [low, high] = frameBox, map = element("map"), px = pixel();
+  map.setAttribute("viewBox", `${low[0]} ${-high[1]} ${high[0] - low[0]} ${high[1] - low[1]}`);
+  map.replaceChildren();
+  for (const curve of mapData.rim) svg("polyline", { class: "rim", points: pointsOf(pairs(curve)) }, map);
+  if (savedPath) svg("polyline", { class: "before", points: pointsOf(savedPath.points) }, map);
+  svg("polyline", { class: "path", id: "path-line" }, map);
+  svg("path", { class: "end", id: "path-end" }, map);
+  drawActuators(map, px);
+  handle(map, "start", mapData.start, px, `Start of the part at ${place(mapData.start)}`);
+  if (target) drawTarget(map, px);
+  svg("circle", { class: "part", id: "map-part", r: 6 * px, visibility: "hidden" }, map);
+  drawScale(map, px);
+  drawPath();
+  drawHeights();
+}
+
+function place([x, y]) { return `(${said(x)}, ${said(y)}) ${mapData.unit}`; }
+
+function drawActuators(map, px) {
+  if (!mapData.dragged) { // too many to be held
+    const dots = mapData.actuators.map(([x, y]) => `M${x - px},${-y}h${2 * px}`).join("");
+    svg("path", { class: "bar-line", d: dots }, map);
+    return;
+  }
+  mapData.actuators.forEach((at, k) => handle(map, "actuator", at, px, `Actuator ${k} at ${place(at)}`, k));
+}
+
+function handle(map, kind, at, px, label, number = null) {
+  const group = svg("g", { class: `handle ${kind}`, tabindex: 0, role: "button", "aria-label": `${label}. Arrow keys move it.` }, map);
+  const size = GRIP[kind] * px;
+  svg("circle", { class: "touch", r: GRIP.touch * px }, group);
+  if (kind === "start") svg("circle", { class: "grip", r: size }, group);
+  else {
+    svg("rect", { x: -size, y: -size, width: 2 * size, height: 2 * size }, group);
+    svg("text", { y: -1.5 * size, "font-size": 13 * px }, group).textContent = number;
+    if (String(number) === mapData.selected || mapData.selected === "*") group.classList.add("selected");
+  }
+  put(group, at);
+  const what = { kind, number, group, at: [...at] };
+  group.addEventListener("pointerdown", (event) => grab(event, what));
+  group.addEventListener("keydown", (event) => nudge(event, what));
+  group.addEventListener("focus", () => { if (kind === "actuator" && String(number) !== mapData.selected && !dragged) onPick(number); });
+  group.dataset.key = kind === "start" ? "start" : `actuator ${number}`;
+  return group;
+}
+
+function put(group, [x, y]) { group.setAttribute("transform", `translate(${x} ${-y})`); }
+
+function drawTarget(map, px) {
+  const size = 11 * px, group = svg("g", { class: "handle", tabindex: 0, role: "button", "aria-label": `Target at ${place(target)}. Arrow keys move it, Enter starts the search.` }, map);
+  svg("circle", { class: "touch", r: GRIP.touch * px }, group);
+  svg("path", { class: "target", d: `M${-size},0H${size}M0,${-size}V${size}M${-size / 2},0a${size / 2},${size / 2} 0 1 0 ${size},0a${size / 2},${size / 2} 0 1 0 ${-size},0` }, group);
+  put(group, target);
+  group.dataset.key = "target";
+  group.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") { onTarget(target); return; }
+    const [dx, dy] = arrow(event);
+    if (!dx && !dy) return;
+    target = [target[0] + dx, target[1] + dy];
+    put(group, target);
+  });
+}
+
+function drawScale(map, px) {
+  const [low, high] = frameBox, width = element("map-box").clientWidth * px, about = 0.2 * width;
+  const power = 10 ** Math.floor(Math.log10(about)), length = [5, 2, 1].map((n) => n * power).find((n) => n <= about);
+  const middle = (low[0] + high[0]) / 2, left = middle - width / 2 + 14 * px, y = -low[1] - 10 * px;
+  svg("path", { class: "bar-line", d: `M${left},${y}h${length}` }, map);
+  svg("text", { class: "bar-text", x: left + length / 2, y: y - 6 * px, "font-size": 13 * px }, map).textContent = `${said(length)} ${mapData.unit}`;
+}
+
+// The path as it is known now.
+function drawPath() {
+  const line = element("path-line"), end = element("path-end");
+  if (!line) return;
+  const points = nowPath?.points ?? [], px = pixel();
+  line.setAttribute("points", pointsOf(points));
+  line.classList.toggle("coarse", Boolean(nowPath?.coarse.length));
+  element("map-box").classList.toggle("coarse", Boolean(nowPath && !nowPath.exact));
+  if (!points.length) return;
+  const [x, y] = points[points.length - 1], size = 6 * px;
+  end.setAttribute("d", `M${x - size},${-y - size}l${2 * size},${2 * size}M${x - size},${-y + size}l${2 * size},${-2 * size}`);
+}
+
+// The surface at the moment of the clock as a shade, and the part there.
+function drawHeights(step = shown) {
+  const canvas = element("heights"), part_ = element("map-part");
+  const { clientWidth, clientHeight } = canvas, scale = window.devicePixelRatio || 1;
+  canvas.width = clientWidth * scale;
+  canvas.height = clientHeight * scale;
+  if (!pageData || !mapData || !nowPath?.exact) { part_?.setAttribute("visibility", "hidden"); return; }
+  const [low, high] = frameBox, px = pixel(), paint = canvas.getContext("2d");
+  const left = (low[0] + high[0]) / 2 - clientWidth * px / 2, top = (low[1] + high[1]) / 2 + clientHeight * px / 2;
+  const ratio = mapData.perSI / perMetre(units.length), z = heightsAt(step), [least, most] = surface.range;
+  const across = (n) => (surface.x[n] * ratio - left) / px * scale, down = (n) => (top - surface.y[n] * ratio) / px * scale;
+  for (let k = 0; k < surface.triangles.length; k += 3) {
+    const [a, b, c] = surface.triangles.subarray(k, k + 3);
+    const share = most > least ? ((z[a] + z[b] + z[c]) / 3 - least) / (most - least) : 0;
+    paint.fillStyle = paint.strokeStyle = shade(share);
+    paint.beginPath();
+    paint.moveTo(across(a), down(a));
+    paint.lineTo(across(b), down(b));
+    paint.lineTo(across(c), down(c));
+    paint.closePath();
+    paint.fill();
+    paint.stroke(); // no seams
+  }
+  part_.setAttribute("cx", part.x[step] * ratio);
+  part_.setAttribute("cy", -part.y[step] * ratio);
+  part_.setAttribute("visibility", "visible");
+}
+
+function perMetre(unit) { return { m: 1, mm: 1e3, "µm": 1e6, "μm": 1e6, um: 1e6, nm: 1e9 }[unit] ?? mapData.perSI; }
+
+// The colour of a share of the range of heights, as in the surface's bar.
+function shade(share) {
+  const stops = surface.colours, k = Math.min(stops.length - 2, Math.max(0, Math.floor(share * (stops.length - 1))));
+  const [from, to] = [stops[k], stops[k + 1]], t = Math.min(1, Math.max(0, (share - from[0]) / (to[0] - from[0])));
+  const mix = [1, 3, 5].map((n) => Math.round((1 - t) * parseInt(from[1].slice(n, n + 2), 16) + t * parseInt(to[1].slice(n, n + 2), 16)));
+  return `rgb(${mix.join(",")})`;
+}
+
+// Where a pointer is on the map.
+function placeOf(event) {
+  const box = element("map").getBoundingClientRect(), px = pixel(), [low, high] = frameBox;
+  return [(low[0] + high[0]) / 2 + (event.clientX - box.left - box.width / 2) * px, (low[1] + high[1]) / 2 - (event.clientY - box.top - box.height / 2) * px];
+}
+
+function grab(event, what) {
+  if (aiming) return;
+  event.preventDefault();
+  what.group.focus();
+  const from = placeOf(event), began = [...what.at];
+  dragged = what;
+  what.group.setPointerCapture(event.pointerId);
+  const move = (moved) => {
+    const to = placeOf(moved);
+    what.at = began.map((c, k) => c + to[k] - from[k]);
+    put(what.group, what.at);
+    onDrag(what, moved.timeStamp);
+  };
+  const drop = () => {
+    what.group.removeEventListener("pointermove", move);
+    dragged = null;
+    if (what.at.some((c, k) => c !== began[k])) onDrop(what);
+  };
+  what.group.addEventListener("pointermove", move);
+  what.group.addEventListener("pointerup", drop, { once: true });
+  what.group.addEventListener("pointercancel", drop, { once: true });
+}
+
+// How far an arrow key goes.
+function arrow(event) {
+  const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }, way = ways[event.key];
+  if (!way || event.ctrlKey || event.metaKey || event.altKey) return [0, 0];
+  event.preventDefault();
+  const step = STEP * (event.shiftKey ? FINE : 1) * (frameBox[1][0] - frameBox[0][0]);
+  return way.map((c) => c * step);
+}
+
+let nudging = null;
+function nudge(event, what) {
+  const [dx, dy] = arrow(event);
+  if (!dx && !dy) return;
+  what.at = [what.at[0] + dx, what.at[1] + dy];
+  put(what.group, what.at);
+  onDrag(what, event.timeStamp);
+  clearTimeout(nudging);
+  nudging = setTimeout(() => onDrop(what), 350);
+}
+
+element("map-box").addEventListener("pointerdown", (event) => {
+  if (!aiming || !mapData) return;
+  event.preventDefault();
+  onTarget(placeOf(event));
+});
+new ResizeObserver(() => drawMap()).observe(element("map-box"));

@@ -1,0 +1,116 @@
+"""Quick paths: what is drawn while a field is dragged, exact where that takes milliseconds, else coarser."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from dataclasses import dataclass
+from threading import Lock
+from typing import Final
+
+import numpy as np
+
+from coupling import Progress, SolvedPlates, answers_drives, build_friction, follow_part, shared_surface
+from coupling.case import Case, PlateCase, scaled_case
+from coupling.scene import lifts_of
+from particle import SurfaceMotion, Trajectory
+
+BUDGET: Final = 0.03  # s that a path may take: a longer one is cut short until the hand rests
+CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer side
+COARSE: Final = 1e-4  # the surface's tolerance there
+MAX_ACTUATORS: Final = 60  # of a plate that is solved coarsely while something is dragged
+ROOM: Final = (0.5, 1.25)  # of the strokes: those that a model of a plate that stretches is made for
+KEPT: Final = 2  # such models
+
+LINEAR: Final = "linear theory without inertia"
+PLATE: Final = "a coarse plate"
+
+
+@dataclass(frozen=True, eq=False)
+class Quick:
+    """A path, and in which way it is coarser than that of a run; nothing: it is the same."""
+
+    path: Trajectory
+    coarse: tuple[str, ...] = ()
+
+
+class QuickPaths:
+    """Finds paths fast, over plates that are known or solved coarsely."""
+
+    def __init__(self, plates: SolvedPlates) -> None:
+        self._plates, self._lock = plates, Lock()
+        self._coarse = SolvedPlates(keep=4)
+        self._models: OrderedDict[str, SurfaceMotion] = OrderedDict()
+        self._pace = 0.0  # s of work for a second of the part, lately
+
+    def of(self, case: Case) -> Quick | None:
+        """The path of a case; None where nothing quick is known, such as for a thousand actuators on another plate.
+
+        Raises ValueError where the case cannot be run.
+        """
+        surface, how = self._surface(case)
+        if surface is None:
+            return None
+        coarse = [how] if how else []
+        if self._pace * case.run.duration > BUDGET:
+            shorter = BUDGET / self._pace
+            case = case.model_copy(update={"run": case.run.model_copy(update={"duration": shorter})})
+            coarse.append(f"only its first {shorter * 1e3:.3g} ms")
+        begun = time.perf_counter()
+        path = follow_part(case, surface, build_friction(case))
+        pace = (time.perf_counter() - begun) / max(float(path.time[-1]), 1e-2 * case.run.duration)
+        self._pace = pace if self._pace == 0 else 0.5 * (self._pace + pace)
+        return Quick(path, tuple(coarse))
+
+    def prepare(self, case: Case, progress: Progress) -> None:
+        """Make the model that quick paths over a plate that stretches or vibrates take, unless it is there."""
+        if not answers_drives(case) or self._model(case) is not None:
+            return
+        sets = [lifts_of(scaled_case(case, 1.0, room)) for room in ROOM]
+        surface = shared_surface(case, sets, case.run.duration, progress)
+        with self._lock:
+            self._models[_ground(case)] = surface
+            while len(self._models) > KEPT:
+                self._models.popitem(last=False)
+
+    def _surface(self, case: Case) -> tuple[SurfaceMotion | None, str]:
+        """A surface for a case, and what is coarse about it."""
+        if not answers_drives(case):
+            return self._bending(case)
+        if (model := self._model(case)) is not None:
+            try:
+                return model.driven_by(lifts_of(case)), "a model made for these strokes"  # type: ignore[attr-defined]
+            except ValueError:  # other strokes than the model is made for
+                pass
+        linear = _plate_with(case, theory="linear", in_plane_supports="immovable", inertia=False)
+        run = case.run.model_copy(update={"start": "rest"})
+        surface, how = self._bending(linear.model_copy(update={"run": run}))
+        return surface, " over ".join([LINEAR, *([how] if how else [])])
+
+    def _bending(self, case: Case) -> tuple[SurfaceMotion | None, str]:
+        """A surface for a case whose plate only bends, and what is coarse about it."""
+        if not isinstance(case.plate, PlateCase) or self._plates.knows(case):
+            return self._plates.scene(case).surface, ""
+        if len(case.actuators) > MAX_ACTUATORS or "cell_size" not in type(case.plate).model_fields:
+            return None, ""  # a mesh from a file has the cells that it has
+        size = float(np.ptp(case.plate.coarse_mesh.outline.box, axis=0).max()) / 2
+        coarse = _plate_with(case, cell_size=size / CELLS)
+        run = case.run.model_copy(update={"surface_tolerance": COARSE})
+        return self._coarse.scene(coarse.model_copy(update={"run": run})).surface, PLATE
+
+    def _model(self, case: Case) -> SurfaceMotion | None:
+        with self._lock:
+            return self._models.get(_ground(case))
+
+
+def _plate_with(case: Case, **changes: object) -> Case:
+    """The case with other values in its plate's table."""
+    return case.model_copy(update={"plate": case.plate.model_copy(update=changes)})
+
+
+def _ground(case: Case) -> str:
+    """What a model of a plate follows from."""
+    places = [(one.position, one.stiffness, one.force is None) for one in case.actuators]
+    return (
+        f"{case.plate.model_dump_json()} {places} {case.run.duration!r} {case.run.start} {case.run.surface_tolerance!r}"
+    )
