@@ -8,6 +8,7 @@ page are compared with those of a run.
 """
 
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -51,7 +52,7 @@ LAYOUTS = {
     9: [(x, y) for x in (-100, 0, 100) for y in (-100, 0, 100)],
     25: [(x, y) for x in (-140, -70, 0, 70, 140) for y in (-140, -70, 0, 70, 140)],
 }
-FLAGS = ("headless=new", "no-sandbox", "disable-dev-shm-usage", "use-gl=angle", "use-angle=swiftshader")
+FLAGS = ("headless=new", "no-sandbox", "disable-dev-shm-usage", "enable-unsafe-swiftshader", "window-size=1400,1300")
 MOVE = """
 const [path, seconds, done] = arguments, slider = knobs.get(path).slider, begun = performance.now();
 delays.length = 0;
@@ -131,9 +132,9 @@ def ready(driver):
 def main():
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0
     options = webdriver.ChromeOptions()
-    for flag in (*FLAGS, "enable-unsafe-swiftshader", "window-size=1400,1300"):
+    for flag in FLAGS:
         options.add_argument(f"--{flag}")
-    driver = webdriver.Chrome(options=options)
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
     driver.set_script_timeout(10 * seconds)
     print("actuators  what      paths/s  median [ms]  95 % [ms]  largest [ms]")
     try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, TableCase
 from particle import ConstantFriction, CoulombAdhesion, FrictionTable, KogutEtsion, Micropart
 from particle.friction import Contact
@@ -12,8 +14,9 @@ def build_friction(case: Case) -> Contact:
     return friction_law(case.friction)
 
 
+@lru_cache(maxsize=64)
 def friction_law(law: FrictionCase) -> Contact:
-    """The friction law of a case's table."""
+    """The friction law of a case's table; one that was made lately is not tabulated again."""
     if isinstance(law, ConstantCase):
         return ConstantFriction(law.limit)
     if isinstance(law, CoulombCase):

@@ -15,7 +15,9 @@ from coupling.case import Case, PlateCase, scaled_case
 from coupling.scene import lifts_of
 from particle import SurfaceMotion, Trajectory
 
-BUDGET: Final = 0.03  # s that a path may take: a longer one is cut short until the hand rests
+BUDGET: Final = 0.02  # s that a path may take: one that takes longer is coarser, or cut short, until the hand rests
+LOOSE: Final = 1e-6  # the tolerance of coarser steps
+FORGET: Final = 0.97  # of the work of exact ones, with each coarser path: so they are tried again
 CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer side
 COARSE: Final = 1e-4  # the surface's tolerance there
 MAX_ACTUATORS: Final = 60  # of a plate that is solved coarsely while something is dragged
@@ -41,7 +43,7 @@ class QuickPaths:
         self._plates, self._lock = plates, Lock()
         self._coarse = SolvedPlates(keep=4)
         self._models: OrderedDict[str, SurfaceMotion] = OrderedDict()
-        self._pace = 0.0  # s of work for a second of the part, lately
+        self._pace: dict[tuple[float, int], float] = {}  # what `_work` gives
 
     def of(self, case: Case) -> Quick | None:
         """The path of a case; None where nothing quick is known, such as for a thousand actuators on another plate.
@@ -52,14 +54,20 @@ class QuickPaths:
         if surface is None:
             return None
         coarse = [how] if how else []
-        if self._pace * case.run.duration > BUDGET:
-            shorter = BUDGET / self._pace
-            case = case.model_copy(update={"run": case.run.model_copy(update={"duration": shorter})})
-            coarse.append(f"only its first {shorter * 1e3:.3g} ms")
+        exact, duration, count = case.run.tolerance, case.run.duration, len(case.actuators)
+        tolerance = exact if self._work(exact, count) * duration <= BUDGET else max(exact, LOOSE)
+        if tolerance > exact:
+            coarse.append(f"steps to {tolerance:g}")
+        if (work := self._work(tolerance, count) * duration) > BUDGET:
+            duration *= BUDGET / work
+            coarse.append(f"only its first {duration * 1e3:.3g} ms")
+        run = case.run.model_copy(update={"tolerance": tolerance, "duration": duration})
         begun = time.perf_counter()
-        path = follow_part(case, surface, build_friction(case))
-        pace = (time.perf_counter() - begun) / max(float(path.time[-1]), 1e-2 * case.run.duration)
-        self._pace = pace if self._pace == 0 else 0.5 * (self._pace + pace)
+        path = follow_part(case.model_copy(update={"run": run}), surface, build_friction(case))
+        work = (time.perf_counter() - begun) / max(float(path.time[-1]), 1e-2 * duration)
+        self._pace[tolerance, count] = 0.5 * (work + (self._work(tolerance, count) or work))
+        if tolerance > exact:
+            self._pace[exact, count] *= FORGET
         return Quick(path, tuple(coarse))
 
     def prepare(self, case: Case, progress: Progress) -> None:
@@ -72,6 +80,10 @@ class QuickPaths:
             self._models[_ground(case)] = surface
             while len(self._models) > KEPT:
                 self._models.popitem(last=False)
+
+    def _work(self, tolerance: float, actuators: int) -> float:
+        """The work [s] for a second of a path, lately, at a tolerance with so many actuators; 0: not known."""
+        return self._pace.get((tolerance, actuators), 0.0)
 
     def _surface(self, case: Case) -> tuple[SurfaceMotion | None, str]:
         """A surface for a case, and what is coarse about it."""

@@ -112,7 +112,7 @@ class Server:
     def disconnect(self, tab: str) -> None:
         """A tab is gone; for good if it is not back soon."""
         self._connected.pop(tab, None)
-        self._tabs[tab].send = lambda message: None
+        self._tabs[tab].disconnect()
         self._leaving[tab] = asyncio.get_running_loop().call_later(GRACE, self._forget, tab)
 
     def _forget(self, tab: str) -> None:
@@ -196,9 +196,8 @@ class Socket(WebSocketHandler):
     def open(self, *_: str, **__: str) -> None:
         self.set_nodelay(True)
         self._tab, self._session = self._server.connect(self.get_query_argument("tab", ""), self)
-        self._session.send = self._send
         self._send({"kind": "tab", "tab": self._tab})
-        self._session.start()
+        self._session.connect(self._send)
 
     def on_message(self, message: str | bytes) -> None:
         try:

@@ -77,7 +77,7 @@ const TAKES = {
     if (first) element("save-name").value = data.file ? data.file.split(/[\\/]/).pop() : `${data.name}.toml`;
     mapData = { ...data.map, selected: data.selected };
     showSelection(data);
-    if (!next && !onTheWay) showKnobs(data.groups);
+    showKnobs(data.groups, Boolean(next || onTheWay));
     const focused = document.activeElement?.dataset?.key;
     if (!dragged) {
       drawMap();
@@ -88,7 +88,7 @@ const TAKES = {
     arrived(answer, () => {
       clearMistakes();
       nowPath = { points: pairs(answer.line), coarse: answer.coarse, exact: false };
-      element("run").classList.add("old");
+      for (const id of ["run", "trust"]) element(id).classList.add("old");
       drawPath();
       tellPath(answer);
     });
@@ -113,8 +113,7 @@ const TAKES = {
     tellPath({ ...answer, coarse: [] });
     tellTrust(answer);
     tellRows();
-    const before = pageData ? time[shown] : 0;
-    await takeRun(answer.data, before);
+    await takeRun(answer.data, pageData ? time[shown] : highest(answer.data));
     drawMap();
     document.body.dataset.ready = "run";
   },
@@ -146,6 +145,13 @@ const TAKES = {
   },
   trouble({ text }) { tellTrouble(text); },
 };
+
+// When the surface is highest.
+function highest(data) {
+  const moments = unpack(data.time), amplitudes = unpack(data.surface.amplitudes), rank = amplitudes.length / moments.length;
+  const sizes = Array.from(moments, (_, k) => amplitudes.subarray(k * rank, (k + 1) * rank).reduce((sum, a) => sum + a * a, 0));
+  return moments[sizes.indexOf(Math.max(...sizes))];
+}
 
 function take(message) { TAKES[message.kind](message); }
 

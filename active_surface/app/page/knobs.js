@@ -5,9 +5,10 @@ let knobs = new Map(); // by path
 let onTurn = () => {};
 
 // Show groups of fields; what is there already is only brought up to date, so that focus and sliders stay.
-function showKnobs(groups) {
+function showKnobs(groups, busy) {
   const wanted = groups.flatMap((group) => group.knobs);
   const same = wanted.length === knobs.size && wanted.every((knob) => knobs.get(knob.path)?.data.scale === knob.scale);
+  if (same && busy) return; // the hand knows better
   if (!same) {
     knobs = new Map();
     element("knobs").replaceChildren(...groups.map(({ title, knobs: some }) => {
@@ -94,9 +95,9 @@ function clearMistakes() {
 function showMistakes(mistakes, changed) {
   clearMistakes();
   const others = [];
-  for (const { field, message } of mistakes) {
-    const knob = knobOf(field, changed);
-    if (!knob) { others.push(`${field} ${message}`.trim()); continue; }
+  for (const { field: named, message } of mistakes) {
+    const field = named.replaceAll(/\[(\d+)\]/g, ".$1"), knob = knobOf(field, changed);
+    if (!knob) { others.push(`${named} ${message}`.trim()); continue; }
     knob.field.setAttribute("aria-invalid", "true");
     knob.mistake.textContent = [knob.mistake.textContent, message].filter(Boolean).join("; ");
   }

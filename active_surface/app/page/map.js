@@ -86,7 +86,11 @@ function handle(map, kind, at, px, label, number = null) {
   const what = { kind, number, group, at: [...at] };
   group.addEventListener("pointerdown", (event) => grab(event, what));
   group.addEventListener("keydown", (event) => nudge(event, what));
-  group.addEventListener("focus", () => { if (kind === "actuator" && String(number) !== mapData.selected && !dragged) onPick(number); });
+  group.addEventListener("focus", () => {
+    for (const other of map.querySelectorAll(".actuator.selected")) other.classList.remove("selected");
+    if (kind === "actuator") group.classList.add("selected");
+    if (kind === "actuator" && String(number) !== mapData.selected && !dragged) onPick(number);
+  });
   group.dataset.key = kind === "start" ? "start" : `actuator ${number}`;
   return group;
 }
@@ -124,6 +128,7 @@ function drawPath() {
   line.setAttribute("points", pointsOf(points));
   line.classList.toggle("coarse", Boolean(nowPath?.coarse.length));
   element("map-box").classList.toggle("coarse", Boolean(nowPath && !nowPath.exact));
+  if (!nowPath?.exact) element("map-part").setAttribute("visibility", "hidden");
   if (!points.length) return;
   const [x, y] = points[points.length - 1], size = 6 * px;
   end.setAttribute("d", `M${x - size},${-y - size}l${2 * size},${2 * size}M${x - size},${-y + size}l${2 * size},${-2 * size}`);

@@ -1,0 +1,181 @@
+"""Answers: the path of a case at once, all of its run where the hand rests, and a search that is watched."""
+
+from __future__ import annotations
+
+import asyncio
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from active_surface.app.aiming import Search
+from active_surface.app.drawn import path_of, unit_of
+from active_surface.app.full import Full, Superseded, full_answer
+from active_surface.app.lanes import Lanes
+from active_surface.steering import Aimed
+from coupling import Progress, ProgressCallback, report
+from coupling.case import Case, InputError
+from particle import Trajectory
+
+Send = Callable[[dict[str, Any]], object]
+Mistakes = list[tuple[str, str]]
+"""Fields, and what is wrong with each."""
+
+
+class Refused(ValueError):
+    """What somebody did on the page makes no sense."""
+
+    def __init__(self, mistakes: Mistakes) -> None:
+        super().__init__(mistakes)
+        self.mistakes = mistakes
+
+
+def mistakes_of(error: Exception, field: str = "") -> Mistakes | None:
+    """What is wrong where work for the page raised an error; None: it is a mistake of the program."""
+    if isinstance(error, Refused):
+        return error.mistakes
+    if isinstance(error, InputError):
+        return error.problems
+    if isinstance(error, ValueError | OSError):
+        return [(field, text) for text in str(error).split("\n")]
+    return None
+
+
+class Answers:
+    """What is sent to a tab about its case; of what answers an earlier case nothing is sent any more."""
+
+    def __init__(self, lanes: Lanes) -> None:
+        self.send: Send = lambda message: None  # while nobody is connected
+        self.full: Full | None = None
+        self._lanes, self._turn = lanes, 0
+        self._search: Search | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def forget(self) -> None:
+        """Answer no more of what was asked before."""
+        self._turn += 1
+
+    def close(self) -> None:
+        """The tab is gone for good."""
+        self.forget()
+        self.send = lambda message: None
+        self.stop()
+
+    async def answer(self, case: Case, saved: bool, rest: bool, page_turn: object = None) -> None:
+        """The quick path of a case, and all of its run where the hand rests; saved: whether it is as it is saved."""
+        turn = self._turn
+        try:
+            quick = await self._lanes.run(self._lanes.quick, self._lanes.quick_paths.of, case)
+        except Exception as error:
+            self.tell_error(error, page_turn)
+            return
+        if quick is None:
+            self.send({"kind": "later", "turn": page_turn})
+        elif turn == self._turn:
+            drawn = path_of(quick.path, unit_of(case))
+            self.send({"kind": "path", "turn": page_turn, "coarse": list(quick.coarse), **drawn})
+        if rest:
+            self.spawn(self._run(case, saved, turn))
+
+    async def _run(self, case: Case, saved: bool, turn: int) -> None:
+        busy = self._from_thread()
+
+        def tell(stage: str, done: int, of: int) -> None:
+            if turn != self._turn:
+                raise Superseded
+            busy({"kind": "busy", "stage": stage, "done": done, "of": of})
+
+        try:
+            full = await self._lanes.run(self._lanes.full, full_answer, case, self._lanes.plates, tell)
+        except Superseded:
+            return
+        except Exception as error:
+            if turn == self._turn:
+                self.send({"kind": "idle"})
+                self.tell_error(error)
+            return
+        if turn == self._turn:
+            self.full = full
+            drawn = path_of(full.result.trajectory, unit_of(case))
+            self.send({"kind": "run", **drawn, **full.shown, "saved": saved})
+            self.spawn(self._prepare(case))
+
+    async def _prepare(self, case: Case) -> None:
+        """Make quick paths possible over a plate that stretches or vibrates."""
+        try:
+            work = self._lanes.quick_paths.prepare
+            await self._lanes.run(self._lanes.models, work, case, _noting(self._from_thread()))
+        except ValueError:  # strokes beyond those of the case ask too much: linear theory has to do
+            pass
+        except Exception as error:
+            self.tell_error(error)
+        else:
+            self.send({"kind": "idle"})
+
+    def aim(self, case: Case, target: tuple[float, float], take: Callable[[Case], object]) -> None:
+        """Search for drives to a target [m]; take: gets the case with them.
+
+        Raises Refused while another search is on.
+        """
+        if self._search is not None:
+            raise Refused([("target", "must wait for the search that is on: stop it first")])
+        self._search = Search(case, target)
+        self.spawn(self._aim(self._search, take))
+
+    def stop(self) -> None:
+        """End the search, if there is one, with its best drives so far."""
+        if self._search is not None:
+            self._search.stop()
+
+    async def _aim(self, search: Search, take: Callable[[Case], object]) -> None:
+        unit, found = unit_of(search.case), self._from_thread()
+
+        def watch(done: int, of: int, best: Trajectory | None) -> None:
+            found({"kind": "search", "done": done, "of": of, **({} if best is None else path_of(best, unit))})
+
+        try:
+            result: Aimed | None = await self._lanes.run(self._lanes.full, search.run, watch)
+        except Exception as error:
+            self.send({"kind": "found", "text": ""})
+            self.tell_error(error, field="target")
+            return
+        finally:
+            self._search = None
+        if result is None:
+            self.send({"kind": "found", "text": "The search was stopped before it had any drives."})
+            return
+        self.send({"kind": "found", "text": search.text(result)})
+        take(result.case.model_copy(update={"name": search.case.name}))
+
+    def tell_error(self, error: Exception, page_turn: object = None, field: str = "") -> None:
+        """Mistakes at their fields; of one of the program a sentence, and its traceback for whoever started it."""
+        mistakes = mistakes_of(error, field)
+        if mistakes is None:
+            traceback.print_exception(error)
+            self.send({"kind": "trouble", "text": f"the program failed: {error!r}"})
+            return
+        told = [{"field": name, "message": report.with_micro_signs(message)} for name, message in mistakes]
+        self.send({"kind": "refused", "turn": page_turn, "mistakes": told})
+
+    def spawn(self, work: Any) -> None:
+        """Let a coroutine go on by itself."""
+        task = asyncio.get_running_loop().create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def _from_thread(self) -> Send:
+        """What sends from another thread."""
+        loop = asyncio.get_running_loop()
+        return lambda message: loop.call_soon_threadsafe(self.send, message)
+
+
+def _noting(send: Send) -> Progress:
+    """A progress that tells the page its stages."""
+
+    @contextmanager
+    def progress(stage: str) -> Iterator[ProgressCallback]:
+        text = f"Preparing quick paths: {stage[0].lower()}{stage[1:]}"
+        send({"kind": "busy", "stage": text, "done": 0, "of": 0})
+        yield lambda done, of: send({"kind": "busy", "stage": text, "done": done, "of": of})
+
+    return progress
