@@ -26,8 +26,10 @@ from .friction_input import (
     point_mistakes as point_mistakes,
 )
 from .interrupt import (
+    Stopped as Stopped,
     interruptible as interruptible,
     is_held_back as is_held_back,
+    stoppable as stoppable,
     unbroken as unbroken,
     wait as wait,
 )

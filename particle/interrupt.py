@@ -1,4 +1,4 @@
-"""Ctrl-C: heard for sure while one thread waits for others, and held back where work must not be broken off."""
+"""Interrupt: Ctrl-C, heard for sure or held back, and work on one thread that another breaks off."""
 
 from __future__ import annotations
 
@@ -6,12 +6,42 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
+
+from numpy.typing import NDArray
 
 Answer = TypeVar("Answer")
 
 AWAKE: Final = 0.1  # s between looks
 _held_back: list[object] = []  # a note of each `unbroken` block that is running
+
+
+class Stopped(Exception):
+    """Another thread has broken off what a block of `stoppable` does."""
+
+
+class _Flag(threading.local):
+    """What another thread may set to 1, so that the kernels of this one end within a step."""
+
+    value: NDArray[Any] | None = None
+
+
+_flag = _Flag()
+
+
+@contextmanager
+def stoppable(flag: NDArray[Any]) -> Iterator[None]:
+    """Has `simulate` raise Stopped in its block, on this thread, once another one sets `flag` (1,) to 1."""
+    before, _flag.value = _flag.value, flag
+    try:
+        yield
+    finally:
+        _flag.value = before
+
+
+def stop_flag() -> NDArray[Any] | None:
+    """The flag of this thread; None: nobody may stop it."""
+    return _flag.value
 
 
 def wait(ended: Callable[[float], bool]) -> None:
@@ -33,7 +63,10 @@ def interruptible(work: Callable[..., Answer], *arguments: object) -> Answer:
     """work(*arguments) on another thread, so that Ctrl-C ends the wait for it.
 
     A signal that arrives inside a compiled kernel, or while one is compiled, would otherwise be handled late or never.
+    A thread that gets no signals does the work itself.
     """
+    if threading.current_thread() is not threading.main_thread():
+        return work(*arguments)
     results: list[Answer] = []
     errors: list[BaseException] = []
     ended = threading.Event()

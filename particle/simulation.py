@@ -10,6 +10,7 @@ import numpy as np
 from particle.events import Part, Request
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
 from particle.friction import Contact
+from particle.interrupt import Stopped, stop_flag
 from particle.micropart import Micropart
 from particle.path import find_path, find_path_by_steps
 from particle.surface import SurfaceMotion, rim_gap
@@ -87,8 +88,9 @@ def simulate(
         raise ValueError("; ".join(wrong))
     request = new_request(surface, part, friction, duration, gravity, tolerance, after_detachment == "fly")
     if scheme == "events":
-        found = find_path(surface, request, tolerance)
-        assert found
+        found = find_path(surface, request, tolerance, stop_flag())
+        if found is None:
+            raise Stopped
         return found
     step = float(default_step(surface, duration) if time_step is None else time_step)
     steps = step_count(request.duration, step)

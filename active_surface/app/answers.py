@@ -8,10 +8,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
+
 from active_surface.app.aiming import Search
 from active_surface.app.drawn import path_of, unit_of
 from active_surface.app.full import Full, Superseded, full_answer
-from active_surface.app.lanes import Lanes
+from active_surface.app.lanes import Lanes, tidy
 from active_surface.steering import Aimed
 from coupling import Progress, ProgressCallback, report
 from coupling.case import Case, InputError
@@ -47,13 +49,15 @@ class Answers:
     def __init__(self, lanes: Lanes) -> None:
         self.send: Send = lambda message: None  # while nobody is connected
         self.full: Full | None = None
-        self._lanes, self._turn = lanes, 0
+        self._lanes, self._turn, self._stop = lanes, 0, np.zeros(1, np.int64)
         self._search: Search | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
     def forget(self) -> None:
         """Answer no more of what was asked before."""
         self._turn += 1
+        self._stop[0] = 1
+        self._stop = np.zeros(1, np.int64)
 
     def close(self) -> None:
         """The tab is gone for good."""
@@ -86,7 +90,7 @@ class Answers:
             busy({"kind": "busy", "stage": stage, "done": done, "of": of})
 
         try:
-            full = await self._lanes.run(self._lanes.full, full_answer, case, self._lanes.plates, tell)
+            full = await self._lanes.run(self._lanes.full, full_answer, case, self._lanes.plates, tell, self._stop)
         except Superseded:
             return
         except Exception as error:
@@ -96,6 +100,7 @@ class Answers:
             return
         if turn == self._turn:
             self.full = full
+            self._lanes.models.submit(tidy)
             drawn = path_of(full.result.trajectory, unit_of(case))
             self.send({"kind": "run", **drawn, **full.shown, "saved": saved})
             self.spawn(self._prepare(case))

@@ -34,6 +34,7 @@ def map_of(case: Case) -> dict[str, Any]:
         "box": (box * unit.per_si).tolist(),
         "rim": [packed(curve * unit.per_si, "f4") for curve in curves],
         "actuators": (places * unit.per_si).tolist(),
+        "endless": not isinstance(case.plate, PlateCase),  # so that the path gives the frame
         "dragged": len(places) <= MAX_DRAGGED,
         "start": (np.array(case.part.position) * unit.per_si).tolist(),
     }

@@ -9,10 +9,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from active_surface.views import run_data
-from coupling import ProgressCallback, Result, SolvedPlates, limit_warnings, read_run, report
+from coupling import ProgressCallback, Result, SolvedPlates, limit_warnings, read_run, report, run_over
 from coupling.case import Case
-from coupling.run import run_over
+from particle import Stopped, stoppable
 
 Tell = Callable[[str, int, int], object]
 """Gets a stage, and how many of its pieces are done, and of how many; raises Superseded where nobody waits any more."""
@@ -30,11 +33,20 @@ class Full:
     shown: dict[str, Any]
 
 
-def full_answer(case: Case, plates: SolvedPlates, tell: Tell) -> Full:
+def full_answer(case: Case, plates: SolvedPlates, tell: Tell, stop: NDArray[np.int64]) -> Full:
     """Run a case as `active-surface run` does.
 
-    Raises ValueError where it cannot be run, and what `tell` raises.
+    stop: (1,), what another thread sets to 1 where nobody waits any more.
+    Raises ValueError where the case cannot be run, and Superseded.
     """
+    try:
+        with stoppable(stop):
+            return _full_answer(case, plates, tell)
+    except Stopped:
+        raise Superseded from None
+
+
+def _full_answer(case: Case, plates: SolvedPlates, tell: Tell) -> Full:
 
     @contextmanager
     def progress(stage: str) -> Iterator[ProgressCallback]:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import ctypes
+import gc
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import Final, TypeVar
 
 from active_surface.app.quick import QuickPaths
@@ -12,13 +15,15 @@ from coupling import SolvedPlates
 
 Answer = TypeVar("Answer")
 
-KEPT_PLATES: Final = 12
+KEPT_PLATES: Final = 4
+ARENA_MAX, MMAP_THRESHOLD, LARGE = -8, -3, 1 << 18  # the numbers of settings in malloc.h, and bytes
 
 
 class Lanes:
     """What all tabs share: threads, plates that were solved, and quick paths over them."""
 
     def __init__(self) -> None:
+        _spare_memory()
         self.plates = SolvedPlates(keep=KEPT_PLATES)
         self.quick_paths = QuickPaths(self.plates)
         self.quick = ThreadPoolExecutor(1, "quick")
@@ -33,3 +38,17 @@ class Lanes:
         """Take no more work."""
         for lane in (self.quick, self.full, self.models):
             lane.shutdown(wait=False, cancel_futures=True)
+
+
+def tidy() -> None:
+    """Give memory of plates and runs that are gone back to the system."""
+    gc.collect()
+    with suppress(OSError, AttributeError):
+        ctypes.CDLL(None).malloc_trim(0)
+
+
+def _spare_memory() -> None:
+    """Have glibc, which is made for short-lived programs, keep less: few pools, and large arrays by themselves."""
+    with suppress(OSError, AttributeError):
+        for setting, value in ((ARENA_MAX, 2), (MMAP_THRESHOLD, LARGE)):
+            ctypes.CDLL(None).mallopt(setting, value)

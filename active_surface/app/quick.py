@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections import OrderedDict
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from threading import Lock
 from typing import Final
 
 import numpy as np
@@ -13,10 +15,12 @@ import numpy as np
 from coupling import Progress, SolvedPlates, answers_drives, build_friction, follow_part, shared_surface
 from coupling.case import Case, PlateCase, scaled_case
 from coupling.scene import lifts_of
-from particle import SurfaceMotion, Trajectory
+from particle import Stopped, SurfaceMotion, Trajectory, stoppable
 
 BUDGET: Final = 0.02  # s that a path may take: one that takes longer is coarser, or cut short, until the hand rests
 LOOSE: Final = 1e-6  # the tolerance of coarser steps
+LIMIT: Final = 0.3  # s after which a path is broken off that was thought to be shorter
+TRIES, FAR = 4, 10.0  # then a shorter piece is tried, as if it had been so many times too long
 FORGET: Final = 0.97  # of the work of exact ones, with each coarser path: so they are tried again
 CELLS: Final = 3.0  # of a coarse plate across its radius or half of its longer side
 COARSE: Final = 1e-4  # the surface's tolerance there
@@ -40,13 +44,13 @@ class QuickPaths:
     """Finds paths fast, over plates that are known or solved coarsely."""
 
     def __init__(self, plates: SolvedPlates) -> None:
-        self._plates, self._lock = plates, Lock()
+        self._plates, self._lock = plates, threading.Lock()
         self._coarse = SolvedPlates(keep=4)
         self._models: OrderedDict[str, SurfaceMotion] = OrderedDict()
         self._pace: dict[tuple[float, int], float] = {}  # what `_work` gives
 
     def of(self, case: Case) -> Quick | None:
-        """The path of a case; None where nothing quick is known, such as for a thousand actuators on another plate.
+        """The path of a case; None where nothing quick is known, as for a thousand actuators on another plate.
 
         Raises ValueError where the case cannot be run.
         """
@@ -54,21 +58,30 @@ class QuickPaths:
         if surface is None:
             return None
         coarse = [how] if how else []
-        exact, duration, count = case.run.tolerance, case.run.duration, len(case.actuators)
-        tolerance = exact if self._work(exact, count) * duration <= BUDGET else max(exact, LOOSE)
-        if tolerance > exact:
-            coarse.append(f"steps to {tolerance:g}")
-        if (work := self._work(tolerance, count) * duration) > BUDGET:
-            duration *= BUDGET / work
-            coarse.append(f"only its first {duration * 1e3:.3g} ms")
-        run = case.run.model_copy(update={"tolerance": tolerance, "duration": duration})
-        begun = time.perf_counter()
-        path = follow_part(case.model_copy(update={"run": run}), surface, build_friction(case))
-        work = (time.perf_counter() - begun) / max(float(path.time[-1]), 1e-2 * duration)
-        self._pace[tolerance, count] = 0.5 * (work + (self._work(tolerance, count) or work))
-        if tolerance > exact:
-            self._pace[exact, count] *= FORGET
-        return Quick(path, tuple(coarse))
+        law, exact, count = build_friction(case), case.run.tolerance, len(case.actuators)
+        tolerance, duration = exact, case.run.duration
+        for _ in range(TRIES):
+            if self._work(tolerance, count) * duration > BUDGET:
+                tolerance = max(exact, LOOSE)
+            if (work := self._work(tolerance, count) * duration) > BUDGET:
+                duration *= BUDGET / work
+            run = case.run.model_copy(update={"tolerance": tolerance, "duration": duration})
+            begun = time.perf_counter()
+            try:
+                with _limited():
+                    path = follow_part(case.model_copy(update={"run": run}), surface, law)
+            except Stopped:
+                self._pace[tolerance, count] = FAR * LIMIT / duration
+                continue
+            work = (time.perf_counter() - begun) / max(float(path.time[-1]), 1e-2 * duration)
+            self._pace[tolerance, count] = 0.5 * (work + (self._work(tolerance, count) or work))
+            if tolerance > exact:
+                self._pace[exact, count] *= FORGET
+                coarse.append(f"steps to {tolerance:g}")
+            if duration < case.run.duration:
+                coarse.append(f"only its first {duration * 1e3:.3g} ms")
+            return Quick(path, tuple(coarse))
+        return None
 
     def prepare(self, case: Case, progress: Progress) -> None:
         """Make the model that quick paths over a plate that stretches or vibrates take, unless it is there."""
@@ -113,6 +126,20 @@ class QuickPaths:
     def _model(self, case: Case) -> SurfaceMotion | None:
         with self._lock:
             return self._models.get(_ground(case))
+
+
+@contextmanager
+def _limited() -> Iterator[None]:
+    """Breaks paths in its block off after LIMIT, with Stopped."""
+    stop = np.zeros(1, dtype=np.int64)
+    timer = threading.Timer(LIMIT, stop.__setitem__, (0, 1))
+    timer.daemon = True
+    timer.start()
+    try:
+        with stoppable(stop):
+            yield
+    finally:
+        timer.cancel()
 
 
 def _plate_with(case: Case, **changes: object) -> Case:

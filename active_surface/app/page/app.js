@@ -73,6 +73,7 @@ const TAKES = {
     element("undo").disabled = !data.undo;
     element("redo").disabled = !data.redo;
     element("back").disabled = !data.changed;
+    element("aim").disabled = data.map.endless; // a platform has no actuators
     element("save-folder").textContent = data.folder;
     if (first) element("save-name").value = data.file ? data.file.split(/[\\/]/).pop() : `${data.name}.toml`;
     mapData = { ...data.map, selected: data.selected };

@@ -32,11 +32,11 @@ function pixel() {
 function chooseFrame() {
   const box = mapData.box, room = 0.06 * Math.max(box[1][0] - box[0][0], box[1][1] - box[0][1]);
   frameBox = [box[0].map((c) => c - room), box[1].map((c) => c + room)];
-  if (!around || !nowPath) return;
+  if (!nowPath || !(around || mapData.endless)) return;
   const points = [...nowPath.points, ...(savedPath?.points ?? [])];
   const lows = [0, 1].map((k) => points.reduce((low, p) => Math.min(low, p[k]), Infinity));
   const highs = [0, 1].map((k) => points.reduce((high, p) => Math.max(high, p[k]), -Infinity));
-  const size = Math.max(highs[0] - lows[0], highs[1] - lows[1], 1e-4 * (box[1][0] - box[0][0]));
+  const size = Math.max(highs[0] - lows[0], highs[1] - lows[1], (mapData.endless ? 1 : 1e-4) * (box[1][0] - box[0][0]));
   const middle = [0, 1].map((k) => (lows[k] + highs[k]) / 2);
   frameBox = [middle.map((c) => c - 0.7 * size), middle.map((c) => c + 0.7 * size)];
 }
