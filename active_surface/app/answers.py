@@ -14,6 +14,7 @@ from active_surface.app.aiming import Search
 from active_surface.app.drawn import path_of, unit_of
 from active_surface.app.full import Full, Superseded, full_answer
 from active_surface.app.lanes import Lanes, tidy
+from active_surface.app.quick import ground_of
 from active_surface.steering import Aimed
 from coupling import Progress, ProgressCallback, report
 from coupling.case import Case, InputError
@@ -50,6 +51,7 @@ class Answers:
         self.send: Send = lambda message: None  # while nobody is connected
         self.full: Full | None = None
         self._lanes, self._turn, self._stop = lanes, 0, np.zeros(1, np.int64)
+        self._ground = ""  # what models of the plate of the case follow from
         self._search: Search | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -62,12 +64,13 @@ class Answers:
     def close(self) -> None:
         """The tab is gone for good."""
         self.forget()
+        self._ground = ""
         self.send = lambda message: None
         self.stop()
 
     async def answer(self, case: Case, saved: bool, rest: bool, page_turn: object = None) -> None:
         """The quick path of a case, and all of its run where the hand rests; saved: whether it is as it is saved."""
-        turn = self._turn
+        turn, self._ground = self._turn, ground_of(case)
         try:
             quick = await self._lanes.run(self._lanes.quick, self._lanes.quick_paths.of, case)
         except Exception as error:
@@ -107,11 +110,17 @@ class Answers:
 
     async def _prepare(self, case: Case) -> None:
         """Make quick paths possible over a plate that stretches or vibrates."""
+        ground = self._ground
+
+        def wanted() -> bool:
+            return ground == self._ground
+
         try:
             work = self._lanes.quick_paths.prepare
-            await self._lanes.run(self._lanes.models, work, case, _noting(self._from_thread()))
-        except ValueError:  # strokes beyond those of the case ask too much: linear theory has to do
-            pass
+            if wanted():
+                await self._lanes.run(self._lanes.models, work, case, _noting(self._from_thread(), wanted))
+        except (Superseded, ValueError):  # of strokes beyond those of the case, which may ask too much
+            self.send({"kind": "idle"})
         except Exception as error:
             self.tell_error(error)
         else:
@@ -174,13 +183,19 @@ class Answers:
         return lambda message: loop.call_soon_threadsafe(self.send, message)
 
 
-def _noting(send: Send) -> Progress:
-    """A progress that tells the page its stages."""
+def _noting(send: Send, wanted: Callable[[], bool]) -> Progress:
+    """A progress that tells the page its stages; Superseded once it is not wanted any more."""
 
     @contextmanager
     def progress(stage: str) -> Iterator[ProgressCallback]:
         text = f"Preparing quick paths: {stage[0].lower()}{stage[1:]}"
-        send({"kind": "busy", "stage": text, "done": 0, "of": 0})
-        yield lambda done, of: send({"kind": "busy", "stage": text, "done": done, "of": of})
+
+        def tell(done: int, of: int) -> None:
+            if not wanted():
+                raise Superseded
+            send({"kind": "busy", "stage": text, "done": done, "of": of})
+
+        tell(0, 0)
+        yield tell
 
     return progress

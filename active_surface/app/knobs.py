@@ -182,7 +182,8 @@ def _range(case: Case, key: str, unit: str, value: float | None) -> tuple[float,
     if key.startswith("velocity"):
         return -max(2 * size, 0.1), max(2 * size, 0.1), "linear"
     if key == "phase":
-        return -math.pi, math.pi, "linear"
+        most = max(math.pi, size)
+        return -most, most, "linear"
     if key == "poisson_ratio":
         return 0.0, 0.49, "linear"
     if key == "damping":

@@ -16,6 +16,7 @@ from coupling import SolvedPlates
 Answer = TypeVar("Answer")
 
 KEPT_PLATES: Final = 4
+FULL: Final = 4  # threads of runs: one may take seconds to hear that nobody waits for it
 ARENA_MAX, MMAP_THRESHOLD, LARGE = -8, -3, 1 << 18  # the numbers of settings in malloc.h, and bytes
 
 
@@ -27,7 +28,7 @@ class Lanes:
         self.plates = SolvedPlates(keep=KEPT_PLATES)
         self.quick_paths = QuickPaths(self.plates)
         self.quick = ThreadPoolExecutor(1, "quick")
-        self.full = ThreadPoolExecutor(2, "full")
+        self.full = ThreadPoolExecutor(FULL, "full")
         self.models = ThreadPoolExecutor(1, "models")
 
     async def run(self, lane: ThreadPoolExecutor, work: Callable[..., Answer], *arguments: object) -> Answer:

@@ -90,7 +90,7 @@ class QuickPaths:
         sets = [lifts_of(scaled_case(case, 1.0, room)) for room in ROOM]
         surface = shared_surface(case, sets, case.run.duration, progress)
         with self._lock:
-            self._models[_ground(case)] = surface
+            self._models[ground_of(case)] = surface
             while len(self._models) > KEPT:
                 self._models.popitem(last=False)
 
@@ -125,7 +125,7 @@ class QuickPaths:
 
     def _model(self, case: Case) -> SurfaceMotion | None:
         with self._lock:
-            return self._models.get(_ground(case))
+            return self._models.get(ground_of(case))
 
 
 @contextmanager
@@ -147,7 +147,7 @@ def _plate_with(case: Case, **changes: object) -> Case:
     return case.model_copy(update={"plate": case.plate.model_copy(update=changes)})
 
 
-def _ground(case: Case) -> str:
+def ground_of(case: Case) -> str:
     """What a model of a plate follows from."""
     places = [(one.position, one.stiffness, one.force is None) for one in case.actuators]
     return (

@@ -1,0 +1,95 @@
+"""Quick paths: those of a run where that is quick, and marked where they are not."""
+
+import numpy as np
+import pytest
+
+from active_surface.app import quick
+from active_surface.app.quick import LINEAR, PLATE, QuickPaths
+from coupling import SolvedPlates, read_case, run_case, silent
+
+CASE = """
+[plate]
+shape = "disc"
+radius = "300 um"
+supports = "clamped"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+density = "2330 kg/m^3"
+[[actuators]]
+position = ["0 um", "0 um"]
+stroke = "60 um"
+frequency = "900 Hz"
+[part]
+mass = "2e-9 kg"
+position = ["80 um", "30 um"]
+[friction]
+model = "constant"
+limit = "40 nN"
+[run]
+duration = "3 ms"
+"""
+
+
+@pytest.fixture
+def case(tmp_path):
+    (tmp_path / "one.toml").write_text(CASE)
+    return read_case(tmp_path / "one.toml")
+
+
+@pytest.fixture
+def patient(monkeypatch):
+    monkeypatch.setattr(quick, "BUDGET", 1e3)
+    monkeypatch.setattr(quick, "LIMIT", 1e3)
+
+
+@pytest.mark.compiled
+def test_over_a_known_plate_it_is_the_path_of_a_run(case, patient):
+    plates = SolvedPlates()
+    plates.scene(case)
+    changed = case.vary({"actuators.0.frequency": "1 kHz", "part.mass": "3e-9 kg"})
+    found = QuickPaths(plates).of(changed)
+    assert found.coarse == ()
+    np.testing.assert_array_equal(found.path.position, run_case(changed).trajectory.position)
+
+
+@pytest.mark.compiled
+def test_over_an_unknown_plate_it_is_near_and_marked(case, patient):
+    moved = case.vary({"actuators.0.position.0": "20 um"})
+    found = QuickPaths(SolvedPlates()).of(moved)
+    exact = run_case(moved).trajectory
+    assert found.coarse == (PLATE,)
+    assert np.abs(found.path.position[-1] - exact.position[-1]).max() < 1e-3 * exact.path_length
+
+
+@pytest.mark.compiled
+def test_a_path_that_takes_too_long_is_cut_and_marked(case, monkeypatch):
+    plates = SolvedPlates()
+    plates.scene(case)
+    paths = QuickPaths(plates)
+    whole = paths.of(case).path
+    monkeypatch.setattr(quick, "BUDGET", 1e-9)
+    paths.of(case)  # how long its coarser steps take is not known before
+    cut = paths.of(case)
+    assert cut.path.time[-1] < whole.time[-1]
+    assert any("first" in text for text in cut.coarse) and any("steps" in text for text in cut.coarse)
+
+
+@pytest.mark.compiled
+def test_a_plate_that_stretches_is_linear_until_its_model_is_made(case, patient):
+    stretching = case.vary(
+        {"plate.theory": "von-karman", "actuators.0.stroke": "2 um", "actuators.0.frequency": "5 kHz"}
+    )
+    paths = QuickPaths(SolvedPlates())
+    assert paths.of(stretching).coarse[0].startswith(LINEAR)
+    paths.prepare(stretching, silent)
+    prepared = paths.of(stretching)
+    exact = run_case(stretching).trajectory
+    assert prepared.coarse == ("a model made for these strokes",)
+    assert np.abs(prepared.path.position[-1] - exact.position[-1]).max() < 1e-3 * max(exact.path_length, 1e-9)
+    assert paths.of(stretching.vary({"actuators.0.stroke": "9 um"})).coarse[0].startswith(LINEAR)  # beyond the model
+
+
+def test_too_many_actuators_on_an_unknown_plate_wait(case, monkeypatch):
+    monkeypatch.setattr(quick, "MAX_ACTUATORS", 0)
+    assert QuickPaths(SolvedPlates()).of(case) is None
