@@ -40,7 +40,7 @@ def mistakes_of(error: Exception, field: str = "") -> Mistakes | None:
     if isinstance(error, InputError):
         return error.problems
     if isinstance(error, ValueError | OSError):
-        return [(field, text) for text in str(error).split("\n")]
+        return [(field, text.removeprefix(f"{field} ")) for text in str(error).split("\n")]
     return None
 
 

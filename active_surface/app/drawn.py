@@ -16,13 +16,13 @@ from particle import Trajectory
 
 PIECES: Final = 3  # of a path between two rows
 SEEN: Final = 1e-3  # of the extent of a path: nearer points are one
+MICROMETRES, LARGE = Unit("\N{MICRO SIGN}m", 1e6), 1e-2  # m
 MAX_DRAGGED: Final = 300  # actuators; more are dots
 
 
 def map_of(case: Case) -> dict[str, Any]:
     """The plate from above with what lies on it."""
-    box = _box(case)
-    unit = unit_for(box, "m")
+    box, unit = _box(case), unit_of(case)
     curves: list[FloatArray] = []
     if isinstance(case.plate, PlateCase):
         outline = case.plate.coarse_mesh.outline
@@ -54,8 +54,9 @@ def path_of(path: Trajectory, unit: Unit) -> dict[str, Any]:
 
 
 def unit_of(case: Case) -> Unit:
-    """The unit of the map."""
-    return unit_for(_box(case), "m")
+    """The unit of the map: micrometres, in which case files have places, up to LARGE."""
+    box = _box(case)
+    return MICROMETRES if float(np.abs(box).max()) < LARGE else unit_for(box, "m")
 
 
 def _box(case: Case) -> FloatArray:

@@ -2,6 +2,8 @@
 
 const SVG = "http://www.w3.org/2000/svg";
 const GRIP = { actuator: 7, start: 7, touch: 16 }; // pixels, half of a side
+const COARSE = 2, SHADES = 256, EDGE = 1e-4; // pixels of the page to one of the shade, its steps, and what belongs to both neighbours
+const CLOSEST = 0.02; // of the plate, what is shown around a path at least
 const STEP = 0.01, FINE = 0.1; // of the window's width for an arrow key, and of that with Shift
 let mapData = null, frameBox = null, around = false, dragged = null, aiming = false, target = null;
 let nowPath = null, savedPath = null;
@@ -36,7 +38,7 @@ function chooseFrame() {
   const points = [...nowPath.points, ...(savedPath?.points ?? [])];
   const lows = [0, 1].map((k) => points.reduce((low, p) => Math.min(low, p[k]), Infinity));
   const highs = [0, 1].map((k) => points.reduce((high, p) => Math.max(high, p[k]), -Infinity));
-  const size = Math.max(highs[0] - lows[0], highs[1] - lows[1], (mapData.endless ? 1 : 1e-4) * (box[1][0] - box[0][0]));
+  const size = Math.max(highs[0] - lows[0], highs[1] - lows[1], (mapData.endless ? 1 : CLOSEST) * (box[1][0] - box[0][0]));
   const middle = [0, 1].map((k) => (lows[k] + highs[k]) / 2);
   frameBox = [middle.map((c) => c - 0.7 * size), middle.map((c) => c + 0.7 * size)];
 }
@@ -136,30 +138,38 @@ function drawPath() {
 
 // The surface at the moment of the clock as a shade, and the part there.
 function drawHeights(step = shown) {
-  const canvas = element("heights"), part_ = element("map-part");
-  const { clientWidth, clientHeight } = canvas, scale = window.devicePixelRatio || 1;
-  canvas.width = clientWidth * scale;
-  canvas.height = clientHeight * scale;
-  if (!pageData || !mapData || !nowPath?.exact) { part_?.setAttribute("visibility", "hidden"); return; }
-  const [low, high] = frameBox, px = pixel(), paint = canvas.getContext("2d");
-  const left = (low[0] + high[0]) / 2 - clientWidth * px / 2, top = (low[1] + high[1]) / 2 + clientHeight * px / 2;
+  const canvas = element("heights"), part_ = element("map-part"), { clientWidth, clientHeight } = canvas;
+  canvas.width = Math.ceil(clientWidth / COARSE);
+  canvas.height = Math.ceil(clientHeight / COARSE);
+  if (!pageData || !mapData || !nowPath?.exact || !canvas.width || !canvas.height) { part_?.setAttribute("visibility", "hidden"); return; }
+  const [low, high] = frameBox, px = pixel() * COARSE, paint = canvas.getContext("2d"), image = paint.createImageData(canvas.width, canvas.height);
+  const left = (low[0] + high[0]) / 2 - canvas.width * px / 2, top = (low[1] + high[1]) / 2 + canvas.height * px / 2;
   const ratio = mapData.perSI / perMetre(units.length), z = heightsAt(step), [least, most] = surface.range;
-  const across = (n) => (surface.x[n] * ratio - left) / px * scale, down = (n) => (top - surface.y[n] * ratio) / px * scale;
-  for (let k = 0; k < surface.triangles.length; k += 3) {
-    const [a, b, c] = surface.triangles.subarray(k, k + 3);
-    const share = most > least ? ((z[a] + z[b] + z[c]) / 3 - least) / (most - least) : 0;
-    paint.fillStyle = paint.strokeStyle = shade(share);
-    paint.beginPath();
-    paint.moveTo(across(a), down(a));
-    paint.lineTo(across(b), down(b));
-    paint.lineTo(across(c), down(c));
-    paint.closePath();
-    paint.fill();
-    paint.stroke(); // no seams
-  }
+  const u = Float32Array.from(surface.x, (x) => (x * ratio - left) / px), v = Float32Array.from(surface.y, (y) => (top - y * ratio) / px);
+  const shades = Array.from({ length: SHADES + 1 }, (_, k) => shade(k / SHADES));
+  const share = Float32Array.from(z, (w) => most > least ? (w - least) / (most - least) : 0);
+  for (let k = 0; k < surface.triangles.length; k += 3) fill(image, surface.triangles.subarray(k, k + 3), u, v, share, shades);
+  paint.putImageData(image, 0, 0);
   part_.setAttribute("cx", part.x[step] * ratio);
   part_.setAttribute("cy", -part.y[step] * ratio);
   part_.setAttribute("visibility", "visible");
+}
+
+// Fill a triangle of an image, whose shade changes evenly from corner to corner.
+function fill(image, [a, b, c], u, v, share, shades) {
+  const area = (u[b] - u[a]) * (v[c] - v[a]) - (u[c] - u[a]) * (v[b] - v[a]), { width, height, data } = image;
+  if (!area) return;
+  const begin = Math.max(0, Math.floor(Math.min(v[a], v[b], v[c]))), end = Math.min(height - 1, Math.ceil(Math.max(v[a], v[b], v[c])));
+  const from = Math.max(0, Math.floor(Math.min(u[a], u[b], u[c]))), to = Math.min(width - 1, Math.ceil(Math.max(u[a], u[b], u[c])));
+  for (let row = begin; row <= end; row++) {
+    for (let column = from; column <= to; column++) {
+      const second = ((column - u[a]) * (v[c] - v[a]) - (u[c] - u[a]) * (row - v[a])) / area;
+      const third = ((u[b] - u[a]) * (row - v[a]) - (column - u[a]) * (v[b] - v[a])) / area;
+      if (second < -EDGE || third < -EDGE || second + third > 1 + EDGE) continue;
+      const value = (1 - second - third) * share[a] + second * share[b] + third * share[c];
+      data.set(shades[Math.min(SHADES, Math.max(0, Math.round(SHADES * value)))], 4 * (row * width + column));
+    }
+  }
 }
 
 function perMetre(unit) { return { m: 1, mm: 1e3, "µm": 1e6, "μm": 1e6, um: 1e6, nm: 1e9 }[unit] ?? mapData.perSI; }
@@ -169,7 +179,7 @@ function shade(share) {
   const stops = surface.colours, k = Math.min(stops.length - 2, Math.max(0, Math.floor(share * (stops.length - 1))));
   const [from, to] = [stops[k], stops[k + 1]], t = Math.min(1, Math.max(0, (share - from[0]) / (to[0] - from[0])));
   const mix = [1, 3, 5].map((n) => Math.round((1 - t) * parseInt(from[1].slice(n, n + 2), 16) + t * parseInt(to[1].slice(n, n + 2), 16)));
-  return `rgb(${mix.join(",")})`;
+  return [...mix, 255];
 }
 
 // Where a pointer is on the map.
