@@ -14,7 +14,7 @@ from active_surface.cli.group import DEFAULT_OUTPUT, main, refusing
 if TYPE_CHECKING:
     from coupling import Progress
 
-READINGS, READING_STAGES = "readings", 2
+READINGS, READING_STAGES = "readings", 7
 
 
 @main.command()

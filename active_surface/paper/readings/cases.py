@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, Protocol
 
 from active_surface.paper.models import CLOSED, PAPER, PLATE
 from active_surface.paper.readings.reading import Reading
+from active_surface.paper.readings.single import Shares
 from active_surface.paper.readings.sweep import Row, Sweep
 from active_surface.paper.share import NEARLY_ALL
 
@@ -37,6 +38,15 @@ STATEMENTS: Final = {
 CHOICES_SHOWN: Final = 3
 
 
+class Shared(Protocol):
+    """A row of any sweep."""
+
+    @property
+    def reading(self) -> Reading: ...
+    @property
+    def shares(self) -> dict[str, Shares]: ...
+
+
 class Case(NamedTuple):
     """One reading with one choice of what a statement leaves open besides."""
 
@@ -50,7 +60,7 @@ class Case(NamedTuple):
         return self.share >= NEARLY_ALL
 
 
-def cases_of(rows: Iterable[Row], model: str, statement: str) -> list[Case]:
+def cases_of(rows: Iterable[Shared], model: str, statement: str) -> list[Case]:
     """All cases of a statement in a model."""
     return [
         Case(row.reading, choice, share)
@@ -89,7 +99,7 @@ def cell(cases: Sequence[Case]) -> str:
     return f"{len(holding)} of {len(cases)}"
 
 
-def best_shares(row: Row, model: str) -> dict[str, float]:
+def best_shares(row: Shared, model: str) -> dict[str, float]:
     """By statement the best share over what it leaves open besides the reading."""
     return {name: max(shares.values()) for name, shares in row.shares.get(model, {}).items()}
 
