@@ -17,7 +17,7 @@ IN_SHORT = {REPRODUCED: "**yes**", PARTLY: "partly", NOT: "**no**"}
 
 
 def page_of(
-    results: Sequence[FigureResult], effort: Effort, parameters: Parameters, folder: str, builder: Sequence[str]
+    results: Sequence[FigureResult], effort: Effort, parameters: Parameters, folder: str, builder: Sequence[str] = ()
 ) -> str:
     """The page in Markdown; pictures are in a folder beside it; builder: sentences on what a builder would see."""
     verdicts = [verdict for one in results for verdict in one.verdicts]

@@ -35,7 +35,6 @@ STATEMENTS: Final = {
     "22 (1 um)": "some lie within 1 um",
     "22 (two cases)": "the two stated ones lie within 1 um",
 }
-CHOICES_SHOWN: Final = 3
 
 
 class Shared(Protocol):
@@ -83,7 +82,8 @@ def where(holding: Sequence[Case], every: Sequence[Case]) -> str:
         parts.append(", ".join(laws))
     choices = list(dict.fromkeys(case.choice for case in holding))
     if len(choices) < len({case.choice for case in every}):
-        parts.append(" or ".join(choices[:CHOICES_SHOWN]) + (" or others" if len(choices) > CHOICES_SHOWN else ""))
+        others = f" or {len(choices) - 1} other{'s' * (len(choices) > 2)}" if len(choices) > 1 else ""
+        parts.append(choices[0] + others)
     return "; ".join(parts) or "all"
 
 

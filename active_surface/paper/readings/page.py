@@ -61,11 +61,10 @@ def _axes(sweep: Sweep) -> str:
         f"- the radius a of the profile: {', '.join(f'{1e6 * radius:g}' for radius in radii)} um",
         f"- gravity: none, as in the paper's forces, or {GRAVITY} m/s^2",
         f"- what stands for the paper's 20.9 m/s^2, which Table 1 does not give: {' or '.join(LAWS)} (without "
-        "pull-off)",
+        "pull-off)\n",
+        f"These {len(sweep.rows)} are combined. Statement by statement there are besides, with each of them:\n",
         "- where the surface ends: at the profiles' rim, or flat beyond it (15, 20, 21, anywhere)",
         "- how two profiles are put together: added, or the nearest alone",
-        "All of these are combined.\n",
-        "Varied besides, statement by statement:\n",
         "- strokes (5, 6, 15), cycles (16, 17b), starts (15, 16), how far a part is that has left (17b), "
         "which actuator is "
         "where (20)",
