@@ -20,6 +20,7 @@ from active_surface.paper.readings.tables import percent, spread, table
 from active_surface.paper.readings.windows import CYCLES, HALF, RATIOS, THICKNESS, Passage, Window, Windows
 from active_surface.paper.share import HARDLY_ANY, NEARLY_ALL
 
+RUBBER: Final = 1e6, 1e3  # Pa and kg/m^3, of silicone, about
 BREAKS: Final = 0.01  # strain at which single-crystal silicon breaks, about
 PUT: Final = [name for name in STATEMENTS if name not in GEOMETRY]
 
@@ -180,6 +181,9 @@ def _strain_said(plates: Sequence[Strained]) -> str:
         spread(*_ends(getattr(one, name) * factor for one in full))
         for name, factor in (("strain", 100), ("force", 1), ("slope", 1))
     )
+    p = PARAMETERS
+    slower = np.sqrt(RUBBER[0] / RUBBER[1] / (p.youngs_modulus / p.density))
+    soft = spread(*_ends(slower * one.frequency / 1e3 for one in full), ".2g")
     bear = {one.radius: one.stroke for one in plates if one.strain < BREAKS and one.thickness == THICKNESS}
     said = " and ".join(f"{1e6 * stroke:g} um with a = {1e6 * radius:g} um" for radius, stroke in bear.items())
     breaks = "breaks any stiff plate" if min(one.strain for one in full) > BREAKS else "on stiff plates"
@@ -187,7 +191,8 @@ def _strain_said(plates: Sequence[Strained]) -> str:
         f"**The paper's stroke {breaks}.** {1e6 * PARAMETERS.stroke:g} um strain it by {strain} % and "
         f"take {force} N; silicon breaks near {100 * BREAKS:g} %. Slopes of {slope} are beyond von Karman's theory, "
         f"too, so numbers for these strokes show a trend. {1e6 * THICKNESS:g} um of silicon bear {said or 'none'} of "
-        "the smaller strokes tried."
+        f"the smaller strokes tried. Rubber of {RUBBER[0] / 1e6:g} MPa would bear more, but rings: the first frequency "
+        f"of the same plates is then {soft} kHz, and their mass counts."
     )
 
 
