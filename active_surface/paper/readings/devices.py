@@ -58,7 +58,7 @@ LADDER: Final = (
 """One thing more at a time."""
 OTHERS: Final = tuple(
     Device(radius, thickness, part)
-    for radius, thickness in ((PARAMETERS.radius, 5e-6), (PARAMETERS.radius, 50e-6), (455e-6, 20e-6))
+    for radius, thickness in ((PARAMETERS.radius, 50e-6), (455e-6, 20e-6), (PARAMETERS.radius, 10e-6))
     for part in (TILE, BLOCK)
 )
 DEVICES: Final = LADDER + OTHERS
