@@ -13,12 +13,14 @@ from active_surface.paper.readings.builder import LINEAR, Builder
 from active_surface.paper.readings.cases import STATEMENTS, best_shares, cases_of
 from active_surface.paper.readings.devices import GEOMETRY, DeviceRow
 from active_surface.paper.readings.losses import Losses
+from active_surface.paper.readings.picture import NAME
 from active_surface.paper.readings.plates import DRIVEN, Strained
 from active_surface.paper.readings.reading import GRAVITY
 from active_surface.paper.readings.single import ROUGHLY
 from active_surface.paper.readings.sweep import Row
 from active_surface.paper.readings.tables import percent, spread, table
 from active_surface.paper.readings.windows import CYCLES, HALF, RATIOS, THICKNESS, Passage, Window, Windows
+from active_surface.paper.reproduction import FOLDER
 from active_surface.paper.share import HARDLY_ANY, NEARLY_ALL
 
 RUBBER: Final = 1e6, 1e3  # Pa and kg/m^3, of silicone, about
@@ -69,6 +71,8 @@ def section(builder: Builder, linear: Row | None) -> list[str]:
         f"{builder.windows.placing[-1].frequency:.0f} Hz. One actuator: parts at rest 40 to 160 um from it, which "
         "converge as in figure 17. Moves from: the lowest frequency at which friction holds less than half of them; "
         f"loses from: the lowest at which more than {percent(HARDLY_ANY)} % come off or leave.\n",
+        f"![Strokes and frequencies that work]({FOLDER}/{NAME})\n",
+        "What becomes of the parts, at each stroke and frequency.\n",
         _placing(builder),
         "Two actuators, at the frequencies at which at least half of the parts converge to one: parts at rest in the "
         "region of the one that is to hand them on, which runs so many times faster, or rests. The best share over "

@@ -12,6 +12,7 @@ from active_surface.paper.readings.builder import ALL, Builder, BuilderSize, see
 from active_surface.paper.readings.builder_page import summary
 from active_surface.paper.readings.cases import STATEMENTS, best_row, met
 from active_surface.paper.readings.page import page_of_readings
+from active_surface.paper.readings.picture import NAME, draw_windows
 from active_surface.paper.readings.reading import INDEX, Reading, SweepSize
 from active_surface.paper.readings.sensitivity import sensitivity_of
 from active_surface.paper.readings.sweep import USUAL, Sweep, sweep_readings
@@ -59,7 +60,8 @@ def reproduce_readings(
     sweep = sweep_readings(size, folder / KEPT, progress)
     sensitivity = sensitivity_of(FIGURES, size, progress)
     builder = see(size, more, folder / KEPT_DEVICES, progress)
-    page, data = output / PAGE, folder / DATA
+    page, data, picture = output / PAGE, folder / DATA, folder / NAME
+    draw_windows(builder.windows.placing, picture)
     replace_file(page, page_of_readings(sweep, sensitivity, builder))
     rows, devices = (
         [row._asdict() | {name: getattr(row, name)._asdict()} for row in own]  # type: ignore[attr-defined]
@@ -76,4 +78,4 @@ def reproduce_readings(
     replace_file(data, written_as_json(whole))
     for name in (KEPT, KEPT_DEVICES):
         (folder / name).unlink(missing_ok=True)
-    return Readings(sweep, builder, (page, data), perf_counter() - begun)
+    return Readings(sweep, builder, (page, data, picture), perf_counter() - begun)

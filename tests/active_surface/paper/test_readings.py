@@ -112,7 +112,8 @@ def test_data_and_page_are_written_and_what_was_kept_goes(tmp_path, monkeypatch)
     monkeypatch.setattr("active_surface.paper.readings.reproduction.sensitivity_of", lambda *_: Sensitivity([], [], []))
     monkeypatch.setattr("active_surface.paper.readings.reproduction.see", lambda *_: BUILDER)
     done = reproduce_readings(tmp_path, SIZE)
-    assert [file.name for file in done.files] == ["paper-readings.md", "readings.json"] and not kept.exists()
+    assert [file.name for file in done.files] == ["paper-readings.md", "readings.json", "windows.png"]
+    assert all(file.exists() for file in done.files) and not kept.exists()
     data = json.loads(done.files[1].read_text())
     assert len(data["rows"]) == 2 and data["rows"][0]["shares"]["paper"]["16"]["one cycle"] == 1.0
     assert data["devices"][0]["device"]["part"] == "silicon block" and data["losses"][1]["off"] == 3
