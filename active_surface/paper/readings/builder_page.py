@@ -16,7 +16,7 @@ from active_surface.paper.readings.losses import Losses
 from active_surface.paper.readings.picture import NAME
 from active_surface.paper.readings.plates import DRIVEN, Strained
 from active_surface.paper.readings.reading import GRAVITY
-from active_surface.paper.readings.single import ROUGHLY
+from active_surface.paper.readings.single import ROUGHLY, SLOW
 from active_surface.paper.readings.sweep import Row
 from active_surface.paper.readings.tables import percent, spread, table
 from active_surface.paper.readings.windows import CYCLES, HALF, RATIOS, THICKNESS, Passage, Window, Windows
@@ -54,8 +54,8 @@ def section(builder: Builder, linear: Row | None) -> list[str]:
         _plates(builder.plates),
         "### The statements on devices\n",
         "The best share [%] over all else. **Bold**: it holds. 13, 14 ask for 20.9 m/s^2; a part with weight slows "
-        f"down by {weighty:.2f} on a surface at rest. 11 and 12 are met to {ROUGHLY[0]:g} of the ratio and "
-        f"{ROUGHLY[1]:g} of the path here, as elements are rough.\n",
+        f"down by {weighty:.2f} on a surface at rest. 11 and 12 are met to {ROUGHLY[0]:g} of the ratio, down to "
+        f"{SLOW:g} of the largest speed, and to {ROUGHLY[1]:g} of the path here, as elements are rough.\n",
         *(f"{k}. {name}" for k, name in enumerate(names(builder, linear), 1)),
         "",
         _statements(builder, linear),

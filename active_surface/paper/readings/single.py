@@ -56,7 +56,7 @@ AREA_STROKES: Final = {
 CARRYING: Final = {"60 to 100 um": (60e-6, 80e-6, 100e-6), "100 to 200 um": (100e-6, 150e-6, 200e-6)}
 CARRIED: Final[dict[str, Place]] = {"(100, 100) um": (100e-6, 100e-6), "(170, 0) um": (170e-6, 0.0)}
 ROUND: Final = 1e-6, 1e-6  # how constant the ratio of velocities, and how straight a path is, on a closed form
-ROUGHLY: Final = 0.1, 1e-3  # on a device's elements, whose slopes are rough: slow parts count in the ratio, too
+ROUGHLY, SLOW = (0.1, 1e-3), 0.1  # on a device's elements, whose slopes are rough, and down to which share of the speed
 LEAVING: Final = {"two cycles": 2.0, "one cycle": 1.0}
 FARS: Final = (150e-6, 200e-6)  # m, beyond which a part has left
 CURVE_STROKES: Final = np.array([100e-6, 125e-6, STATED_STROKE, 175e-6, 200e-6])
@@ -84,7 +84,7 @@ def strokes_of(bench: Bench, model: str) -> Shares:
     """Figures 11 to 14, and the wavelength: one cycle at 1.6 kHz."""
     p = bench.parameters
     inside = max(np.hypot(*place) for place in RADIAL_STARTS) < p.radius
-    errors = radial_errors(bench, model) if inside else (np.inf, np.inf)
+    errors = radial_errors(bench, model, *([SLOW] if model == DEVICE else [])) if inside else (np.inf, np.inf)
     results: Shares = {
         name: {ONLY: float(error < bound)}
         for name, error, bound in zip(("11", "12"), errors, ROUGHLY if model == DEVICE else ROUND, strict=True)
