@@ -8,7 +8,16 @@ from typing import Final, NamedTuple
 
 from active_surface.paper.models import CLOSED, DEVICE
 from active_surface.paper.parameters import PARAMETERS
-from active_surface.paper.readings.devices import DEVICES, LADDER, POINT, Device, DeviceRow, bench_of, sweep_devices
+from active_surface.paper.readings.devices import (
+    DEVICES,
+    LADDER,
+    POINT,
+    THIN,
+    Device,
+    DeviceRow,
+    bench_of,
+    sweep_devices,
+)
 from active_surface.paper.readings.losses import Losses, losses_of
 from active_surface.paper.readings.plates import Inertia, Strained, inertia_of, strained
 from active_surface.paper.readings.reading import GRAVITY, INDEX, RIM, Reading, SweepSize, benches_of
@@ -22,7 +31,8 @@ class BuilderSize(NamedTuple):
     """How much of it is computed."""
 
     devices: tuple[Device, ...] = DEVICES
-    ladder: tuple[Device, ...] = LADDER  # on which losses are looked at; the last one also with its mass
+    losing: tuple[Device, ...] = LADDER + THIN  # on which losses are looked at
+    weighed: Device = LADDER[-1]  # also with the plate's mass
     losses: int = 24  # starts at each frequency
     windows: Grid = Grid()
 
@@ -47,17 +57,17 @@ def see(size: SweepSize, more: BuilderSize = ALL, kept: Path | None = None, prog
     rows = sweep_devices(more.devices, size, kept, progress)
     begun, worked = perf_counter(), process_time()
     with progress("Straining the plates"):
-        thick = sorted({(device.radius, device.thickness) for device in more.devices})
+        thick = sorted({(device.radius, device.thickness) for device in more.devices + more.losing})
         plates = [strained(Device(*one, POINT).parameters(), PARAMETERS.stroke) for one in thick]
         thin = [Device(radius, THICKNESS, POINT).parameters() for radius in more.windows.radii]
         plates += [strained(p, stroke) for p in thin for stroke in more.windows.strokes]
     with progress("Adding the plate's mass"):
-        inertia = inertia_of(more.ladder[-1].parameters())
+        inertia = inertia_of(more.weighed.parameters())
     with progress("Looking at what pulls parts off"):
-        linear = benches_of(Reading(more.ladder[0].radius, GRAVITY, INDEX), {})[RIM]
+        linear = benches_of(Reading(more.losing[0].radius, GRAVITY, INDEX), {})[RIM]
         losses = losses_of(LINEAR, linear, CLOSED, more.losses)
         grounds = {}  # type: ignore[var-annotated]
-        for device in more.ladder:
+        for device in more.losing:
             losses += losses_of(device.name, bench_of(device, grounds), DEVICE, more.losses)
     windows = windows_of(more.windows, progress)
     seconds = perf_counter() - begun + sum(row.seconds for row in rows)

@@ -37,7 +37,8 @@ def section(builder: Builder, linear: Row | None) -> list[str]:
         "A device is not the paper's surface: its plate stretches as it bends, and its points move in its plane; its "
         "parts lie on the top face, which bending moves more; their mass is higher still; they have weight, and the "
         "plate has mass. The paper "
-        f"states neither a thickness nor a modulus. Here {thicknesses(builder)} um and {p.youngs_modulus / 1e9:g} GPa, "
+        f"states neither a thickness nor a modulus. Here {thicknesses(builder)} um (what comes off also with "
+        f"{1e6 * THICKNESS:g} um; the other statements take too long there) and {p.youngs_modulus / 1e9:g} GPa, "
         "von Karman's theory, a clamped rim that cannot move, rigid point actuators, gravity, rough contact. The part "
         "has the paper's mass on its square contact: a tile of tungsten, or a block of silicon, whose mass is "
         f"{heights(builder)} um over the face. Shapes do not depend on the modulus, "
@@ -232,7 +233,7 @@ def _losses_said(builder: Builder) -> list[str]:
     enough = float(np.average([one.by_stroke for one in gone], weights=[one.off for one in gone]))
     title = "over the corner, on the stroke's way down" if decided > HALF > enough else "by the stroke itself"
     first, *ladder = kinds
-    steps = ", ".join(f"{percent(off[name])} % ({name.split(', ')[-1]})" for name in ladder)
+    steps = ", ".join(f"{percent(off[name])} % ({name.split(', ', 1)[1]})" for name in ladder)
     return [
         f"**Parts come off {title}.** The downward stroke alone is enough in "
         f"{percent(enough)} % of the losses; in {percent(decided)} % the corner over the point actuator decides, "

@@ -58,10 +58,12 @@ LADDER: Final = (
 """One thing more at a time."""
 OTHERS: Final = tuple(
     Device(radius, thickness, part)
-    for radius, thickness in ((PARAMETERS.radius, 50e-6), (455e-6, 20e-6), (PARAMETERS.radius, 10e-6))
+    for radius, thickness in ((PARAMETERS.radius, 50e-6), (455e-6, 20e-6))
     for part in (TILE, BLOCK)
 )
 DEVICES: Final = LADDER + OTHERS
+THIN: Final = tuple(Device(PARAMETERS.radius, 5e-6, part) for part in (TILE, BLOCK))
+"""Of which only losses are looked at: over ten thicknesses no splines give the corrections, and paths are slow."""
 
 
 class DeviceRow(NamedTuple):

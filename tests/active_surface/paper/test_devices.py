@@ -98,6 +98,6 @@ def test_the_sections_of_the_page():
     assert "stroke breaks any stiff plate" in strain and "5 um of silicon bear 5 um with a = 300 um" in strain
     assert "0 hold on all 2 devices (-), 1 on some (12), 20 on none (5;" in held
     assert "over the corner" in lost and "The downward stroke alone is enough in 0 % of the losses; in 100 %" in lost
-    assert "0 % come off the linear plate; off the one that stretches: 75 % (point on the mid-plane)" in ladder
+    assert "0 % come off the linear plate; off the one that stretches: 75 % (20 um thick, point on the mid-plane)" in ladder
     assert "with 20 um at 1000 Hz (silicon block, a = 300 um)." in windows
     assert "12 % where it runs 1.33 times as fast, 0 % where it runs 1.5 times as fast, 62 % where it rests" in handed
