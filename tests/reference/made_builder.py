@@ -1,8 +1,7 @@
 """What a builder sees, made up: two devices of which one meets figure 12, losses at one frequency, one good window."""
 
 from active_surface.paper.readings.builder import LINEAR, Builder
-from active_surface.paper.readings.builder_page import PUT
-from active_surface.paper.readings.devices import Device, DeviceRow
+from active_surface.paper.readings.devices import PUT, Device, DeviceRow
 from active_surface.paper.readings.losses import Losses
 from active_surface.paper.readings.plates import Inertia, Strained
 from active_surface.paper.readings.windows import Passage, Window, Windows
@@ -24,8 +23,8 @@ BUILDER = Builder(
     ],
     inertia=Inertia(300.0, 1.94e6, 34.5e-6, 10e-9),
     losses=[
-        Losses(LINEAR, 600.0, 4, 0, *[NAN] * 8),
-        Losses(POINT.name, 600.0, 4, 3, 2e-6, 0.15, -900.0, -200.0, -391.0, 0.0, 1.0, 0.0),
+        Losses(LINEAR, 600.0, 4, 3, 1, 0, *[NAN] * 8),
+        Losses(POINT.name, 600.0, 4, 0, 1, 3, 2e-6, 0.15, -900.0, -200.0, -391.0, 0.0, 1.0, 0.0),
     ],
     windows=Windows(
         [

@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Final
-
-import numpy as np
+from collections.abc import Iterable
 
 from active_surface.paper.models import CLOSED, DEVICE, PLATE
 from active_surface.paper.parameters import PARAMETERS
 from active_surface.paper.readings.builder import LINEAR, Builder
-from active_surface.paper.readings.cases import STATEMENTS, best_shares, cases_of
-from active_surface.paper.readings.devices import GEOMETRY, DeviceRow
+from active_surface.paper.readings.cases import best_shares
+from active_surface.paper.readings.conclusions import kinds_of, summary
+from active_surface.paper.readings.devices import PUT
 from active_surface.paper.readings.losses import Losses
 from active_surface.paper.readings.picture import NAME
 from active_surface.paper.readings.plates import DRIVEN, Strained
 from active_surface.paper.readings.reading import GRAVITY
 from active_surface.paper.readings.single import ROUGHLY, SLOW
 from active_surface.paper.readings.sweep import Row
-from active_surface.paper.readings.tables import percent, spread, table
-from active_surface.paper.readings.windows import CYCLES, HALF, RATIOS, THICKNESS, Passage, Window, Windows
+from active_surface.paper.readings.tables import percent, table
+from active_surface.paper.readings.windows import CYCLES, HALF, RATIOS, THICKNESS, Windows
 from active_surface.paper.reproduction import FOLDER
 from active_surface.paper.share import HARDLY_ANY, NEARLY_ALL
-
-RUBBER: Final = 1e6, 1e3  # Pa and kg/m^3, of silicone, about
-BREAKS: Final = 0.01  # strain at which single-crystal silicon breaks, about
-PUT: Final = [name for name in STATEMENTS if name not in GEOMETRY]
 
 
 def section(builder: Builder, linear: Row | None) -> list[str]:
@@ -61,7 +55,8 @@ def section(builder: Builder, linear: Row | None) -> list[str]:
         "",
         _statements(builder, linear),
         "### What pulls parts off\n",
-        f"Parts at rest around one actuator with the paper's stroke. Accelerations as they come off, medians, of which "
+        "Parts at rest around one actuator with the paper's stroke: which converge as in figure 17, which leave as in "
+        "17b, and which come off; the others go to and fro. Accelerations as they come off, medians, of which "
         f"{p.friction.pull_off / p.mass:.0f} m/s^2 suffice: of stroke and weight, of the slope that turns under a "
         "part that slides, of the corner over the actuator (v.H v), and of the heights of face and part. Corner: "
         "share of losses that would not be without it.\n",
@@ -82,14 +77,9 @@ def section(builder: Builder, linear: Row | None) -> list[str]:
     ]
 
 
-def summary(builder: Builder) -> list[str]:
-    """In a few sentences."""
-    return [_strain_said(builder.plates), _statements_said(builder), *_losses_said(builder), *_windows_said(builder)]
-
-
 def thicknesses(builder: Builder) -> str:
     """Those of the devices, in um."""
-    return ", ".join(f"{1e6 * one:g}" for one in sorted({row.device.thickness for row in builder.rows}))
+    return " and ".join(f"{1e6 * one:g}" for one in sorted({row.device.thickness for row in builder.rows}))
 
 
 def heights(builder: Builder) -> str:
@@ -135,15 +125,18 @@ def _plates(plates: Iterable[Strained]) -> str:
 
 
 def _losses(losses: Iterable[Losses]) -> str:
-    head = ["surface and part", "Hz", "come off, %", "distance from the actuator, um", "speed, m/s", "stroke",
-            "turning", "corner", "heights", "corner decides, %"]  # fmt: skip
-    return table(head, (
-        [one.name, f"{one.frequency:g}", percent(one.off / one.parts), *(
-            [f"{1e6 * one.distance:.2g}", f"{one.speed:.2g}", f"{one.stroke:.0f}", f"{one.turning:.0f}",
-             f"{one.corner:.0f}", f"{one.height:.0f}", percent(one.by_corner)]
-            if one.off else ["-"] * 7)]
-        for one in losses
-    ))  # fmt: skip
+    head = ["surface and part", "Hz", "converge, %", "leave, %", "come off, %", "distance from the actuator, um",
+            "speed, m/s", "stroke", "turning", "corner", "heights", "corner decides, %"]  # fmt: skip
+    rows = []
+    for one in losses:
+        shares = [percent(count / one.parts) for count in (one.converge, one.leave, one.off)]
+        pulls = ["-"] * 7
+        if one.off:
+            terms = one.stroke, one.turning, one.corner, one.height
+            pulls = [f"{1e6 * one.distance:.2g}", f"{one.speed:.2g}", *(f"{round(term)}" for term in terms)]
+            pulls.append(percent(one.by_corner))
+        rows.append([one.name, f"{one.frequency:g}", *shares, *pulls])
+    return table(head, rows)
 
 
 def _placing(builder: Builder) -> str:
@@ -151,7 +144,7 @@ def _placing(builder: Builder) -> str:
             "at, Hz", "then from the actuator, um"]  # fmt: skip
     strains = {(one.radius, one.thickness, one.stroke): one.strain for one in builder.plates}
     rows = []
-    for radius, part, stroke in _kinds(builder.windows.placing):
+    for radius, part, stroke in kinds_of(builder.windows.placing):
         own = [one for one in builder.windows.placing if one[:3] == (radius, part, stroke)]
         best = max(own, key=lambda one: one.converge)
         there = [f"{best.frequency:.0f}", f"{1e6 * best.away:.1f}"] if best.converge else ["-", "-"]
@@ -167,108 +160,12 @@ def _placing(builder: Builder) -> str:
 def _passing(windows: Windows) -> str:
     head = ["a, um", "part", "stroke, um", *(f"{one:.3g} times, %" if one else "rests, %" for one in RATIOS)]
     rows = []
-    for radius, part, stroke in _kinds(windows.passing):
+    for radius, part, stroke in kinds_of(windows.passing):
         own = [one for one in windows.passing if one[:3] == (radius, part, stroke)]
         best = [max(one.arrive for one in own if one.ratio == ratio) for ratio in RATIOS]
         rows.append([f"{1e6 * radius:g}", part, f"{1e6 * stroke:g}", *map(_cell, best)])
     return table(head, rows)
 
 
-def _kinds(rows: Iterable[Window] | Iterable[Passage]) -> list[tuple[float, str, float]]:
-    return list(dict.fromkeys((one.radius, one.part, one.stroke) for one in rows))
-
-
 def _first(frequencies: Iterable[float]) -> str:
     return next((f"{one:.0f}" for one in frequencies), "-")
-
-
-def _strain_said(plates: Sequence[Strained]) -> str:
-    full = [one for one in plates if one.stroke == PARAMETERS.stroke]
-    strain, force, slope = (
-        spread(*_ends(getattr(one, name) * factor for one in full))
-        for name, factor in (("strain", 100), ("force", 1), ("slope", 1))
-    )
-    p = PARAMETERS
-    slower = np.sqrt(RUBBER[0] / RUBBER[1] / (p.youngs_modulus / p.density))
-    soft = spread(*_ends(slower * one.frequency / 1e3 for one in full), ".2g")
-    bear = {one.radius: one.stroke for one in plates if one.strain < BREAKS and one.thickness == THICKNESS}
-    said = " and ".join(f"{1e6 * stroke:g} um with a = {1e6 * radius:g} um" for radius, stroke in bear.items())
-    breaks = "breaks any stiff plate" if min(one.strain for one in full) > BREAKS else "on stiff plates"
-    return (
-        f"**The paper's stroke {breaks}.** {1e6 * PARAMETERS.stroke:g} um strain it by {strain} % and "
-        f"take {force} N; silicon breaks near {100 * BREAKS:g} %. Slopes of {slope} are beyond von Karman's theory, "
-        f"too, so numbers for these strokes show a trend. {1e6 * THICKNESS:g} um of silicon bear {said or 'none'} of "
-        f"the smaller strokes tried. Rubber of {RUBBER[0] / 1e6:g} MPa would bear more, but rings: the first frequency "
-        f"of the same plates is then {soft} kHz, and their mass counts."
-    )
-
-
-def _ends(values: Iterable[float]) -> tuple[float, float]:
-    every = list(values)
-    return min(every), max(every)
-
-
-def _statements_said(builder: Builder) -> str:
-    held = {name: _holding(builder.rows, name) for name in PUT}
-    count = len(builder.rows)
-    kinds = {
-        f"hold on all {count} devices": [name for name, own in held.items() if len(own) == count],
-        "on some": [name for name, own in held.items() if 0 < len(own) < count],
-        "on none": [name for name, own in held.items() if not own],
-    }
-    said = ", ".join(f"{len(own)} {where} ({'; '.join(own) or '-'})" for where, own in kinds.items())
-    return f"**Of {len(PUT)} statements** {said}."
-
-
-def _holding(rows: Sequence[DeviceRow], name: str) -> list[DeviceRow]:
-    return [row for row in rows if any(case.holds for case in cases_of([row], DEVICE, name))]
-
-
-def _losses_said(builder: Builder) -> list[str]:
-    kinds = list(dict.fromkeys(one.name for one in builder.losses))
-    own = {name: [one for one in builder.losses if one.name == name] for name in kinds}
-    off = {name: sum(one.off for one in rows) / sum(one.parts for one in rows) for name, rows in own.items()}
-    gone = [one for one in builder.losses if one.off]
-    decided = float(np.average([one.by_corner for one in gone], weights=[one.off for one in gone]))
-    enough = float(np.average([one.by_stroke for one in gone], weights=[one.off for one in gone]))
-    title = "over the corner, on the stroke's way down" if decided > HALF > enough else "by the stroke itself"
-    first, *ladder = kinds
-    steps = ", ".join(f"{percent(off[name])} % ({name.split(', ', 1)[1]})" for name in ladder)
-    return [
-        f"**Parts come off {title}.** The downward stroke alone is enough in "
-        f"{percent(enough)} % of the losses; in {percent(decided)} % the corner over the point actuator decides, "
-        f"within a median of {spread(*_ends(1e6 * one.distance for one in gone), '.1g')} um of it. A part is "
-        f"{1e6 * PARAMETERS.contact_side:g} um wide and a pin has a size: the model's point part on a point actuator "
-        "sees that corner, a device less of it.",
-        f"**What stretching, face and height do.** Over all three frequencies "
-        f"{percent(off[first])} % come off the linear plate; off the one that stretches: {steps}.",
-    ]
-
-
-def _windows_said(builder: Builder) -> list[str]:
-    placing, passing = builder.windows
-    good = [one for one in placing if one.converge >= NEARLY_ALL]
-    best = max(placing, key=lambda one: one.converge)
-    text = f"**One actuator.** On {1e6 * THICKNESS:g} um of silicon "
-    if good:
-        text += "nearly all parts converge to one actuator with " + "; ".join(
-            _window_said([one for one in good if one[:3] == kind]) for kind in _kinds(good)
-        )
-    else:
-        text += f"at best {percent(best.converge)} % of the parts converge to one actuator, with {_window_said([best])}"
-    if not passing:
-        return [text + "."]
-    both = [max((one for one in passing if one.ratio == ratio), key=lambda one: one.arrive) for ratio in RATIOS]
-    said = ", ".join(
-        f"{percent(one.arrive)} % where it {f'runs {one.ratio:.3g} times as fast' if one.ratio else 'rests'}"
-        for one in both
-    )
-    return [
-        text + ".",
-        f"**To the next actuator** come, of parts around the one that is to hand them on, at best {said}.",
-    ]
-
-
-def _window_said(rows: Sequence[Window]) -> str:
-    one, frequencies = rows[0], spread(*_ends(row.frequency for row in rows), ".0f")
-    return f"{1e6 * one.stroke:g} um at {frequencies} Hz ({one.part}, a = {1e6 * one.radius:g} um)"

@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 
 from active_surface.paper.models import DEVICE, Bench, Ground
 from active_surface.paper.parameters import PARAMETERS, Parameters
+from active_surface.paper.readings.cases import STATEMENTS
 from active_surface.paper.readings.kept import keep, kept_rows
 from active_surface.paper.readings.reading import GRAVITY, INDEX, RIM, Reading, SweepSize
 from active_surface.paper.readings.single import Shares, of_one
@@ -18,7 +19,7 @@ from coupling import Progress, silent
 
 DENSITIES: Final = {"point": None, "tungsten tile": 19300.0, "silicon block": 2330.0}  # kg/m^3
 POINT, TILE, BLOCK = DENSITIES
-GEOMETRY: Final = ("VI-B",)  # statements without a path
+PUT: Final = [name for name in STATEMENTS if name != "VI-B"]  # statements with a path
 
 
 class Device(NamedTuple):
@@ -95,7 +96,7 @@ def device_row(device: Device, size: SweepSize, grounds: Grounds) -> DeviceRow:
     bench = bench_of(device, grounds)
     shares, level = of_one({RIM: bench}, RIM, DEVICE, size)
     shares |= of_two({RIM: bench}, DEVICE, size)
-    own = {name: row for name, row in shares.items() if name not in GEOMETRY}
+    own = {name: row for name, row in shares.items() if name in PUT}
     return DeviceRow(device, {DEVICE: own}, level, perf_counter() - begun, process_time() - worked)
 
 

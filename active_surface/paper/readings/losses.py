@@ -1,4 +1,4 @@
-"""Losses: what pulls a part off its surface, term by term of the normal force, where it comes off."""
+"""Losses: what becomes of parts around one actuator, and what pulls them off, term by term of the normal force."""
 
 from __future__ import annotations
 
@@ -16,11 +16,13 @@ NEAREST, FARTHEST = 40e-6, 160e-6  # m from the actuator: parts at rest, as of f
 
 
 class Losses(NamedTuple):
-    """The parts that come off one actuator; accelerations [m/s^2] are medians, negative ones pull the part off."""
+    """Parts around one actuator. Accelerations [m/s^2] are medians as parts come off; negative ones pull."""
 
     name: str
     frequency: float  # Hz
     parts: int
+    converge: int
+    leave: int  # get far away, or over the rim
     off: int
     distance: float  # m from the actuator, the median
     speed: float  # m/s, the median
@@ -43,16 +45,21 @@ def _losses(name: str, bench: Bench, model: str, frequency: float, starts: int) 
     places = np.column_stack([np.linspace(NEAREST, FARTHEST, starts), np.zeros(starts)])
     paths = bench.paths(model, [drive], places, duration)
     off = [path for path in paths if path.came_off]
+    p = bench.parameters
+    converge = sum(path.converged(1 / drive.frequency, p.near) for path in paths)
+    leave = sum(not path.came_off and path.lost(p.far) for path in paths)
     if not off:
         nan = float("nan")
-        return Losses(name, frequency, starts, 0, nan, nan, nan, nan, nan, nan, nan, nan)
+        return Losses(name, frequency, starts, converge, leave, 0, nan, nan, nan, nan, nan, nan, nan, nan)
     terms = normal_terms(bench, model, frequency, off)
     away, speed = np.array([path.off_at((0.0, 0.0)) for path in off]).T
-    limit = -bench.parameters.friction.pull_off / bench.parameters.mass
+    limit = -p.friction.pull_off / p.mass
     corner = terms.sum(axis=1) - terms[:, 2] > limit
     stroke = terms[:, 0] <= limit
     medians = np.median([away, speed, *terms.T], axis=1).tolist()
-    return Losses(name, frequency, starts, len(off), *(*medians, float(corner.mean()), float(stroke.mean())))
+    return Losses(
+        name, frequency, starts, converge, leave, len(off), *(*medians, float(corner.mean()), float(stroke.mean()))
+    )
 
 
 def normal_terms(bench: Bench, model: str, frequency: float, off: Sequence[Path]) -> FloatArray:

@@ -9,8 +9,8 @@ from typing import Any, Final, NamedTuple
 from active_surface.paper.models import CLOSED, PAPER
 from active_surface.paper.parameters import PARAMETERS
 from active_surface.paper.readings.builder import ALL, Builder, BuilderSize, see
-from active_surface.paper.readings.builder_page import summary
 from active_surface.paper.readings.cases import STATEMENTS, best_row, met
+from active_surface.paper.readings.conclusions import summary
 from active_surface.paper.readings.page import page_of_readings
 from active_surface.paper.readings.picture import NAME, draw_windows
 from active_surface.paper.readings.reading import INDEX, Reading, SweepSize
