@@ -76,7 +76,7 @@ def _losses_said(builder: Builder) -> list[str]:
     gone = [one for one in builder.losses if one.off]
     decided = float(np.average([one.by_corner for one in gone], weights=[one.off for one in gone]))
     enough = float(np.average([one.by_stroke for one in gone], weights=[one.off for one in gone]))
-    title = "over the corner, on the stroke's way down" if decided > HALF > enough else "by the stroke itself"
+    title = "over the corner, around the top of the stroke" if decided > HALF > enough else "by the stroke itself"
     first, *ladder = kinds
     steps = ", ".join(f"{percent(off[name])} % ({name.split(', ', 1)[1]})" for name in ladder)
     limit = -PARAMETERS.friction.pull_off / PARAMETERS.mass
@@ -87,9 +87,9 @@ def _losses_said(builder: Builder) -> list[str]:
     )
     near = spread(*_ends(1e6 * one.distance for one in gone), ".2g")
     return [
-        f"**Parts come off {title}.** The downward stroke alone is enough in {percent(enough)} % of the losses; in "
-        f"{percent(decided)} % the corner over the point actuator decides. Of the pull that it takes stroke and "
-        f"corner make {shares}. Medians of the distance from the actuator are {near} um; a part is "
+        f"**Parts come off {title}.** The stroke's acceleration is enough in {percent(enough)} % of the losses; in "
+        f"{percent(decided)} % the corner over the point actuator decides. Of the pull-off, stroke and corner make "
+        f"{shares}. Medians of the distance from the actuator are {near} um; a part is "
         f"{1e6 * PARAMETERS.contact_side:g} um wide and a pin has a size, so a device sees less of that corner than a "
         "point part on a point actuator.",
         "**What stretching, face and height do.** Over all three frequencies "

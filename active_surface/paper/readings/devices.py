@@ -86,8 +86,11 @@ Grounds = dict[tuple[float, float], dict[tuple[str, str], Ground]]  # by radius 
 
 
 def bench_of(device: Device, grounds: Grounds) -> Bench:
-    """The bench of a device; those of the same plate share its surfaces."""
-    return Bench(device.parameters(), grounds=grounds.setdefault((device.radius, device.thickness), {}))
+    """The bench of a device; those of the same plate share its surfaces, as long as no other plate comes between."""
+    plate = device.radius, device.thickness
+    if plate not in grounds:
+        grounds.clear()  # they take gigabytes
+    return Bench(device.parameters(), grounds=grounds.setdefault(plate, {}))
 
 
 def device_row(device: Device, size: SweepSize, grounds: Grounds) -> DeviceRow:

@@ -104,9 +104,9 @@ def test_the_sections_of_the_page():
     assert "stroke breaks any stiff plate" in strain and "5 um of silicon bear 5 um with a = 300 um" in strain
     assert "0 hold on all 2 devices (-), 1 on some (12), 20 on none (5;" in held
     assert (
-        "stroke and corner make 60 and 26 % at 600 Hz" in lost
+        "make 60 and 26 % at 600 Hz" in lost
         and "over the corner" in lost
-        and "The downward stroke alone is enough in 0 % of the losses; in 100 %" in lost
+        and "The stroke's acceleration is enough in 0 % of the losses; in 100 %" in lost
     )
     assert (
         "0 % come off the linear plate; off the one that stretches: 75 % (20 um thick, point on the mid-plane)"
