@@ -56,7 +56,8 @@ def section(builder: Builder, linear: Row | None) -> list[str]:
         _statements(builder, linear),
         "### What pulls parts off\n",
         "Parts at rest around one actuator with the paper's stroke: which converge as in figure 17, which leave as in "
-        "17b, and which come off; the others go to and fro. Accelerations as they come off, medians, of which "
+        "17b, and which come off; the others are held, go to and fro, or are not followed. "
+        "Accelerations as they come off, medians, of which "
         f"{p.friction.pull_off / p.mass:.0f} m/s^2 suffice: of stroke and weight, of the slope that turns under a "
         "part that slides, of the corner over the actuator (v.H v), and of the heights of face and part. Corner: "
         "share of losses that would not be without it.\n",

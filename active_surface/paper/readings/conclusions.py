@@ -82,7 +82,7 @@ def _losses_said(builder: Builder) -> list[str]:
     limit = -PARAMETERS.friction.pull_off / PARAMETERS.mass
     shares = "; ".join(
         f"{percent(_mean(rows, 'stroke') / limit)} and {percent(_mean(rows, 'corner') / limit)} % at {frequency:g} Hz"
-        for frequency in dict.fromkeys(one.frequency for one in gone)
+        for frequency in sorted({one.frequency for one in gone})
         if (rows := [one for one in gone if one.frequency == frequency])
     )
     near = spread(*_ends(1e6 * one.distance for one in gone), ".2g")
