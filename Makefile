@@ -77,10 +77,10 @@ site: .venv/site
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/site
 	@echo "wrote       build/site/index.html"
 
-# The pages about the paper: its figures, then its statements over all readings. Both take minutes.
+# The pages about the paper: its statements over all readings and on devices, then its figures, whose page sums these up.
 paper: .venv/installed
-	$(BIN)/active-surface reproduce all --output docs
 	$(BIN)/active-surface reproduce readings --output docs
+	$(BIN)/active-surface reproduce all --output docs
 
 .venv/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Python 3.11 or newer is needed; try make PYTHON=python3.12"; exit 2; }

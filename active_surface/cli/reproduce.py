@@ -14,7 +14,7 @@ from active_surface.cli.group import DEFAULT_OUTPUT, main, refusing
 if TYPE_CHECKING:
     from coupling import Progress
 
-READINGS, READING_STAGES = "readings", 2
+READINGS, READING_STAGES = "readings", 7
 
 
 @main.command()
@@ -28,8 +28,8 @@ def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: 
 
     Each in three models: the paper's scheme on its closed-form surface, our equations on that surface, and our
     equations on a plate of finite elements. Writes a picture and the data of each; of all a page as well. READINGS in
-    place of a figure: over which choices of what the paper leaves open each of its statements holds, as a page; a
-    sweep that was stopped goes on where it was.
+    place of a figure: over which choices of what the paper leaves open each of its statements holds, and on which
+    devices, as a page; a sweep that was stopped goes on where it was.
     """
     from active_surface.paper import FULL, QUICK, modules_of, rounded
     from active_surface.paper import reproduce as run

@@ -2,13 +2,14 @@
 
 "paper": the paper's scheme of fixed steps on the surface of equation (2).  "closed": our equations with located events
 on the same surface.  "plate": the same on a plate of finite elements, which all actuators are attached to.
+"device": the same on a plate that stretches, whose top face carries a part of some height; the readings alone have it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final, NamedTuple
 
@@ -17,16 +18,17 @@ from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
+from active_surface.paper.device import device_surface
 from active_surface.paper.parameters import PARAMETERS, Effort, Parameters, Place
 from active_surface.paper.path import Path
 from active_surface.paper.profiles import profile_outline, profile_surface
-from coupling import surface_motion
+from coupling import StretchedSurface, surface_motion
 from fem_plate import DiscShapes, Plate, PlateSection, Shapes
 from meshes import Outline, disc
 from particle import Drive, Micropart, SurfaceMotion, Trajectory, processors, simulate, simulate_many
 from particle.friction import Contact
 
-PAPER, CLOSED, PLATE = "paper", "closed", "plate"
+PAPER, CLOSED, PLATE, DEVICE = "paper", "closed", "plate", "device"
 MODELS: Final = {
     PAPER: "paper's scheme, closed form",
     CLOSED: "our equations, closed form",
@@ -54,7 +56,8 @@ class Bench:
 
     def ground(self, model: str, actuators: str = "one") -> Ground:
         """The ground of a model; actuators: "one", or for two "superposed" or "nearest", which a plate knows not."""
-        key = ("plate" if model == PLATE else "profiles", "two" if model == PLATE and actuators != "one" else actuators)
+        solid = model in (PLATE, DEVICE)
+        key = (model if solid else "profiles", "two" if solid and actuators != "one" else actuators)
         if key not in self.grounds:
             with threadpool_limits(limits=1, user_api="blas"):
                 self.grounds[key] = self._make(*key)
@@ -63,10 +66,12 @@ class Bench:
     def _make(self, kind: str, actuators: str) -> Ground:
         p = self.parameters
         still = Drive(p.stroke, 1.0)
-        if kind == "plate":
+        if kind in (PLATE, DEVICE):
             points = np.array([[0.0, 0.0]] if actuators == "one" else [[0.0, 0.0], [p.pitch, 0.0]])
             offset = points.mean(axis=0)
-            section = PlateSection(p.youngs_modulus, p.poisson_ratio, p.thickness, 2330.0)
+            if kind == DEVICE:
+                return Ground(device_surface(p, points - offset), disc(p.radius, p.radius).outline, -offset)
+            section = PlateSection(p.youngs_modulus, p.poisson_ratio, p.thickness, p.density)
             plate = Plate(disc(p.radius, p.radius / RINGS), section, tolerance=PLATE_TOLERANCE)
             shapes: Shapes = plate.influence(points - offset)  # type: ignore[assignment]
             return Ground(surface_motion(shapes, [still] * len(points)), shapes.outline, -offset)
@@ -85,6 +90,13 @@ class Bench:
         """How long [s] continuous drives run, by cycles of the slowest."""
         return self.parameters.cycles / min(drive.frequency for drive in drives)
 
+    def surface(self, model: str, drives: Sequence[Drive], duration: float, actuators: str = "one") -> SurfaceMotion:
+        """The surface of a model under drives, for a time [s]."""
+        surface = self.ground(model, actuators).surface
+        if isinstance(surface, StretchedSurface):
+            surface = replace(surface, half_thickness=self.parameters.half_thickness, end=duration)
+        return surface.driven_by(drives)
+
     def paths(
         self,
         model: str,
@@ -98,11 +110,11 @@ class Bench:
     ) -> list[Path]:
         """One path from each start (n, 2) [m], with velocities (n, 2) or (2,) [m/s]; places count from actuator 1."""
         p, ground = self.parameters, self.ground(model, actuators)
-        surface = ground.surface.driven_by(drives)
+        surface = self.surface(model, drives, duration, actuators)
         places = np.atleast_2d(np.asarray(starts, dtype=float))
         speeds = np.broadcast_to(np.asarray(velocities, dtype=float), places.shape)
         parts = [
-            Micropart(p.mass, (float(x), float(y)), (float(u), float(v)))
+            Micropart(p.mass, (float(x), float(y)), (float(u), float(v)), p.centre_height)
             for (x, y), (u, v) in zip(places + ground.offset, speeds, strict=True)
         ]
         law = p.friction if friction is None else friction

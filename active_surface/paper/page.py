@@ -16,8 +16,10 @@ SAID = {REPRODUCED: "**reproduced**", PARTLY: "partly", NOT: "**not**", BEYOND: 
 IN_SHORT = {REPRODUCED: "**yes**", PARTLY: "partly", NOT: "**no**"}
 
 
-def page_of(results: Sequence[FigureResult], effort: Effort, parameters: Parameters, folder: str) -> str:
-    """The page in Markdown; pictures are in a folder beside it."""
+def page_of(
+    results: Sequence[FigureResult], effort: Effort, parameters: Parameters, folder: str, builder: Sequence[str] = ()
+) -> str:
+    """The page in Markdown; pictures are in a folder beside it; builder: sentences on what a builder would see."""
     verdicts = [verdict for one in results for verdict in one.verdicts]
     parts = [
         "# The paper, figure by figure\n",
@@ -32,6 +34,7 @@ def page_of(results: Sequence[FigureResult], effort: Effort, parameters: Paramet
         _how(effort, parameters),
         "## Verdicts\n",
         _table(verdicts),
+        *_builder(builder),
         "## Figures\n",
     ]
     for one in results:
@@ -43,6 +46,18 @@ def page_of(results: Sequence[FigureResult], effort: Effort, parameters: Paramet
             parts += [f"  - {MODELS[model]}: {one.more}." for model, one in verdict.answers.items() if one.more]
         parts.append("")
     return "\n".join(parts).replace(" um", " µm").replace("m/s^2", "m/s²").rstrip() + "\n"
+
+
+def _builder(sentences: Sequence[str]) -> list[str]:
+    if not sentences:
+        return []
+    return [
+        "## What a builder would see\n",
+        "The same statements on plates that stretch, with parts of some height on their top face and with gravity, "
+        "as computed for the [readings](paper-readings.md#what-a-builder-would-see):\n",
+        *(f"- {one}" for one in sentences),
+        "",
+    ]
 
 
 def counted(verdicts: Sequence[Verdict]) -> str:

@@ -38,6 +38,9 @@ class Parameters:
     youngs_modulus: float = 169e9  # Pa; with rigid actuators and a clamped rim neither it nor the thickness counts
     poisson_ratio: float = 0.3  # of the plate
     thickness: float = 5e-6  # m
+    density: float = 2330.0  # kg/m^3, of the plate; counts with inertia alone
+    half_thickness: float = 0.0  # m: the height over a device's mid-plane that parts lie at; the paper's lie on it
+    centre_height: float = 0.0  # m, of a part's mass over the surface; the paper's part is a point
     contact_side: float = 100e-6  # m, of the part's square contact
     seed: int = 4
 

@@ -21,6 +21,7 @@ from active_surface.paper.verdict import Verdict
 from coupling import Progress, silent, whole_file
 
 FOLDER, PAGE = "paper", "paper.md"
+READINGS = "readings.json"  # of `reproduce readings`, whose summary the page repeats
 
 
 class Reproduction(NamedTuple):
@@ -76,9 +77,14 @@ def reproduce(
     seconds = perf_counter() - begun
     if output is not None and len(modules) == len(MODULES):
         page = Path(output) / PAGE
-        replace_file(page, page_of(results, effort, parameters, FOLDER))
+        replace_file(page, page_of(results, effort, parameters, FOLDER, builder_of(page.parent / FOLDER / READINGS)))
         files.append(page)
     return Reproduction(tuple(results), tuple(files), seconds)
+
+
+def builder_of(data: Path) -> list[str]:
+    """What a builder would see, in a few sentences, from the readings' data; nothing where these are not there."""
+    return list(json.loads(data.read_text()).get("builder", [])) if data.exists() else []
 
 
 def write(result: FigureResult, folder: Path) -> list[Path]:

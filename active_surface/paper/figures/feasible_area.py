@@ -81,8 +81,8 @@ def find(bench: Bench, effort: Effort) -> FigureResult:
 def areas(bench: Bench, model: str, stroke: float, factors: FloatArray, across: int) -> Feasible:
     """The feasible areas of one actuator with a stroke [m], at factors (F,) of LOWEST_AREA."""
     p, ground, drive = bench.parameters, bench.ground(model), bench.drive(LOWEST_AREA, stroke)
-    part = Micropart(p.mass, (0.0, 0.0))
-    surface, window = ground.surface.driven_by([drive]), 1 / drive.frequency
+    part, window = Micropart(p.mass, (0.0, 0.0), centre_height=p.centre_height), 1 / drive.frequency
+    surface = bench.surface(model, [drive], window)
     return find_feasible(surface, ground.outline, part, p.friction, window, factors, p.gravity, across)
 
 

@@ -21,7 +21,7 @@ FREQUENCY, DURATION = 1600.0, 3e-3  # Hz, s
 RADIAL_STARTS: Final = (START, OFF_DIAGONAL)
 WITHIN: Final = 1e-9
 TOLERANCE: Final = 1e-12
-SLOW: Final = 1e-3  # of the largest speed, below which no ratio is taken
+SLOW: Final = 1e-3  # of the largest speed
 
 
 def find(bench: Bench, effort: Effort) -> FigureResult:
@@ -87,14 +87,17 @@ def find(bench: Bench, effort: Effort) -> FigureResult:
                  "the ratio of the start's coordinates, lies on the x velocity, the statement holds.")  # fmt: skip
 
 
-def radial_errors(bench: Bench, model: str) -> tuple[float, float]:
-    """By how much velocities depart from a constant ratio and paths from a straight line, relative; the worst start."""
-    return _errors(bench.paths(model, [one_cycle(bench)], list(RADIAL_STARTS), DURATION))
+def radial_errors(bench: Bench, model: str, slow: float = SLOW) -> tuple[float, float]:
+    """By how much velocities depart from a constant ratio and paths from a straight line, relative; the worst start.
+
+    slow: share of the largest speed below which no ratio is taken.
+    """
+    return _errors(bench.paths(model, [one_cycle(bench)], list(RADIAL_STARTS), DURATION), slow)
 
 
-def _errors(paths: Sequence[Path]) -> tuple[float, float]:
+def _errors(paths: Sequence[Path], slow: float = SLOW) -> tuple[float, float]:
     both = list(zip(paths, RADIAL_STARTS, strict=True))
-    return max(_ratio(*one) for one in both), max(_bend(*one) for one in both)
+    return max(_ratio(*one, slow) for one in both), max(_bend(*one) for one in both)
 
 
 def _once(k: int) -> dict[str, Any]:
@@ -107,12 +110,12 @@ def one_cycle(bench: Bench) -> Drive:
     return bench.drive(FREQUENCY, cycles=1)
 
 
-def _ratio(path: Path, start: Place) -> float:
+def _ratio(path: Path, start: Place, slow: float) -> float:
     """By how much the ratio of the velocities differs from that of the start's coordinates, relative."""
     v = path.trajectory.velocity
     if not path.trajectory.path_length:
         return np.inf  # it does not move
-    fast = np.hypot(*v.T) > SLOW * np.hypot(*v.T).max()
+    fast = np.hypot(*v.T) > slow * np.hypot(*v.T).max()
     return float(np.abs(v[fast, 1] / v[fast, 0] / (start[1] / start[0]) - 1).max())
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, Protocol
 
 from active_surface.paper.models import CLOSED, PAPER, PLATE
 from active_surface.paper.readings.reading import Reading
+from active_surface.paper.readings.single import Shares
 from active_surface.paper.readings.sweep import Row, Sweep
 from active_surface.paper.share import NEARLY_ALL
 
@@ -34,7 +35,15 @@ STATEMENTS: Final = {
     "22 (1 um)": "some lie within 1 um",
     "22 (two cases)": "the two stated ones lie within 1 um",
 }
-CHOICES_SHOWN: Final = 3
+
+
+class Shared(Protocol):
+    """A row of any sweep."""
+
+    @property
+    def reading(self) -> Reading: ...
+    @property
+    def shares(self) -> dict[str, Shares]: ...
 
 
 class Case(NamedTuple):
@@ -50,7 +59,7 @@ class Case(NamedTuple):
         return self.share >= NEARLY_ALL
 
 
-def cases_of(rows: Iterable[Row], model: str, statement: str) -> list[Case]:
+def cases_of(rows: Iterable[Shared], model: str, statement: str) -> list[Case]:
     """All cases of a statement in a model."""
     return [
         Case(row.reading, choice, share)
@@ -73,7 +82,8 @@ def where(holding: Sequence[Case], every: Sequence[Case]) -> str:
         parts.append(", ".join(laws))
     choices = list(dict.fromkeys(case.choice for case in holding))
     if len(choices) < len({case.choice for case in every}):
-        parts.append(" or ".join(choices[:CHOICES_SHOWN]) + (" or others" if len(choices) > CHOICES_SHOWN else ""))
+        others = f" or {len(choices) - 1} other{'s' * (len(choices) > 2)}" if len(choices) > 1 else ""
+        parts.append(choices[0] + others)
     return "; ".join(parts) or "all"
 
 
@@ -89,7 +99,7 @@ def cell(cases: Sequence[Case]) -> str:
     return f"{len(holding)} of {len(cases)}"
 
 
-def best_shares(row: Row, model: str) -> dict[str, float]:
+def best_shares(row: Shared, model: str) -> dict[str, float]:
     """By statement the best share over what it leaves open besides the reading."""
     return {name: max(shares.values()) for name, shares in row.shares.get(model, {}).items()}
 

@@ -11,8 +11,8 @@ from active_surface.paper.parameters import PARAMETERS, Parameters
 from particle import ConstantFriction, KogutEtsion
 from particle.friction import Contact
 
-RADII: Final = (210e-6, 227e-6, 300e-6, 400e-6, 455e-6)  # m
-HEAVY: Final = (PARAMETERS.radius, 9.80665)  # m and m/s^2: gravity is tried at the radius of the figures
+RADII: Final = (210e-6, 227e-6, 260e-6, 300e-6, 310e-6, 350e-6, 400e-6, 455e-6)  # m
+GRAVITY: Final = 9.80665  # m/s^2; the paper's forces have none
 INDEX, CONSTANT = "rough contact", "constant friction"
 LAWS: Final[dict[str, Contact]] = {INDEX: KogutEtsion.paper(), CONSTANT: ConstantFriction(20.9 * PARAMETERS.mass)}
 """What stands for the paper's 20.9 m/s^2, which Table 1 does not give: another plasticity index, or that itself."""
@@ -52,8 +52,7 @@ class SweepSize(NamedTuple):
     across: int  # places of figures 5 and 6
 
 
-GROUNDS: Final = (*((radius, 0.0) for radius in RADII), HEAVY)
-READINGS: Final = tuple(Reading(*ground, law) for ground, law in product(GROUNDS, LAWS))
+READINGS: Final = tuple(Reading(*one) for one in product(RADII, (0.0, GRAVITY), LAWS))
 
 
 def benches_of(reading: Reading, grounds: dict[str, dict[tuple[str, str], Ground]]) -> dict[str, Bench]:

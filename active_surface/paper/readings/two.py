@@ -18,7 +18,7 @@ from active_surface.paper.figures import (
     settled,
     trend_of,
 )
-from active_surface.paper.models import PLATE, Bench
+from active_surface.paper.models import DEVICE, PLATE, Bench
 from active_surface.paper.parameters import Place
 from active_surface.paper.profiles import NEAREST, SUPERPOSED
 from active_surface.paper.readings.reading import RIM, SweepSize
@@ -44,9 +44,10 @@ FEWER: Final = 2  # times fewer starts in figure 16, whose readings are many
 def of_two(benches: dict[str, Bench], model: str, size: SweepSize) -> Shares:
     """All of them."""
     results: Shares = {}
-    ways = [(RIM, SUPERPOSED)] if model == PLATE else [(end, way) for end in benches for way in (NEAREST, SUPERPOSED)]
+    solid = model in (PLATE, DEVICE)
+    ways = [(RIM, SUPERPOSED)] if solid else [(end, way) for end in benches for way in (NEAREST, SUPERPOSED)]
     for end, way in ways:
-        name = "" if model == PLATE else f"{way}, {end}"
+        name = "" if solid else f"{way}, {end}"
         for statement, shares in _own(benches[end], model, way, size).items():
             own = {", ".join(filter(None, (choice, name))): share for choice, share in shares.items()}
             results.setdefault(statement, {}).update(own)

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from made_builder import BUILDER
 
 from active_surface.paper.readings import (
     Reading,
@@ -15,10 +16,12 @@ from active_surface.paper.readings import (
     sweep_readings,
 )
 from active_surface.paper.readings.cases import STATEMENTS, cases_of, cell, where
-from active_surface.paper.readings.contact import Variant
+from active_surface.paper.readings.effects import CHANGES, differences, pairs_of
 from active_surface.paper.readings.reading import CONSTANT, FLAT, INDEX, RIM, benches_of
+from active_surface.paper.readings.sensitivity import Left, Sensitivity, Variant
 from active_surface.paper.readings.single import strokes_of
 from active_surface.paper.readings.two import _sixteen
+from active_surface.paper.reproduction import builder_of
 
 ONE, TWO, HEAVY = Reading(300e-6, 0.0, INDEX), Reading(400e-6, 0.0, INDEX), Reading(300e-6, 9.80665, INDEX)
 SIZE = SweepSize((ONE, TWO), 8, 20.0, 18, 14)
@@ -27,7 +30,9 @@ SIZE = SweepSize((ONE, TWO), 8, 20.0, 18, 14)
 def row(reading, **shares):
     """In the paper's scheme; nothing holds in ours."""
     own = {name: {"": 0.0} for name in STATEMENTS} | shares
-    return Row(reading, {"paper": own, "closed": {name: {"": 0.0} for name in STATEMENTS}}, {"paper": 310.0}, 60.0)
+    return Row(
+        reading, {"paper": own, "closed": {name: {"": 0.0} for name in STATEMENTS}}, {"paper": 310.0}, 60.0, 90.0
+    )
 
 
 ROWS = [
@@ -58,7 +63,7 @@ def test_a_sweep_that_was_stopped_goes_on_where_it_was(tmp_path):
     lines = [json.dumps({"size": list(SIZE[1:])} | one._asdict()) for one in ROWS]
     kept.write_text("\n".join([*lines, '{"size": [1, 2']))  # the last line was cut off
     done = sweep_readings(SIZE, kept)
-    assert done.rows == ROWS and done.seconds == 120.0 and done.rows[0].reading == ONE
+    assert done.rows == ROWS and done.seconds == 120.0 and done.processor == 180.0 and done.rows[0].reading == ONE
 
 
 @pytest.mark.compiled
@@ -76,20 +81,42 @@ def test_two_readings_as_oracle():
     assert shares["one cycle from (-100, 0) um"] >= 2 / 3 and shares["one cycle from (-50, 15) um"] == 0.0
 
 
-def test_the_page_has_the_contact():
+def test_gravity_and_the_contact_by_pairs():
+    """Of two pairs of readings one gains a statement with gravity, and loses another."""
+    rows = [
+        row(ONE, **{"16": {"": 1.0}, "17a": {"": 1.0}}),
+        row(HEAVY, **{"16": {"": 1.0}, "19": {"": 0.9}}),
+        row(TWO, **{"16": {"": 1.0}}),
+    ]
+    sweep = Sweep(SIZE, rows)
+    (pair,) = pairs_of(sweep, CHANGES["gravity in place of none"])
+    assert differences([pair], "paper") == (["19"], ["17a"]) and differences([pair], "closed") == ([], [])
+    page = page_of_readings(sweep)
+    assert "| gravity in place of none, 1 pairs | 1: 19 (1) | 1: 17a (1) | 0: - | 0: - |" in page
+    assert "constant friction in place" not in page  # no pair of readings differs in it
+
+
+def test_the_page_has_contact_step_and_what_has_left():
     shares = {name: {"": 0.5} for name in STATEMENTS} | {"17a": {"": 0.95}}
     table_1 = Variant("plasticity index 2.5 (Table 1)", 2334.0, 1858.0, float("nan"), shares)
-    page = page_of_readings(Sweep(SIZE, ROWS), [table_1])
+    left = [Left("paper", 150e-6, 1.0, 0.25), Left("closed", 150e-6, 0.9, 0.0)]
+    page = page_of_readings(Sweep(SIZE, ROWS), Sensitivity([table_1], [table_1._replace(name="10 us")], left))
     assert "| plasticity index 2.5 (Table 1) | 2334 | 1858 | none | 50 | 95 |" in page
+    assert "| 10 µs | none | 50 | 95 |" in page and "| 150 | 100 | 25 | 90 | 0 |" in page
 
 
 def test_data_and_page_are_written_and_what_was_kept_goes(tmp_path, monkeypatch):
     kept = tmp_path / "paper" / "readings.partial.jsonl"
     kept.parent.mkdir()
     kept.write_text("".join(json.dumps({"size": list(SIZE[1:])} | one._asdict()) + "\n" for one in ROWS))
-    monkeypatch.setattr("active_surface.paper.readings.reproduction.variants_of", lambda *_: [])
+    monkeypatch.setattr("active_surface.paper.readings.reproduction.sensitivity_of", lambda *_: Sensitivity([], [], []))
+    monkeypatch.setattr("active_surface.paper.readings.reproduction.see", lambda *_: BUILDER)
     done = reproduce_readings(tmp_path, SIZE)
-    assert [file.name for file in done.files] == ["paper-readings.md", "readings.json"] and not kept.exists()
+    assert [file.name for file in done.files] == ["paper-readings.md", "readings.json", "windows.png"]
+    assert all(file.exists() for file in done.files) and not kept.exists()
     data = json.loads(done.files[1].read_text())
     assert len(data["rows"]) == 2 and data["rows"][0]["shares"]["paper"]["16"]["one cycle"] == 1.0
+    assert data["devices"][0]["device"]["part"] == "silicon block" and data["losses"][1]["off"] == 3
     assert done.summary["best_reading"]["radius"] == 300e-6 and ("best", ONE.name) in done.lines
+    assert builder_of(done.files[1]) == done.summary["builder"] == data["builder"]
+    assert builder_of(tmp_path / "none.json") == []
