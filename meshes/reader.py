@@ -121,6 +121,14 @@ def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> P
     if not len(corners):
         mistakes.append("no triangles")
         _refuse(mistakes, wrong)
+    for cells, what in ((corners, "triangles"), (middles, "curved triangles"), (pairs, "lines")):
+        lowest = -1 if cells is middles else 0
+        wild = ((cells < lowest) | (cells >= len(points))).any(axis=1)
+        if wild.any():
+            rows = f"the first with points {cells[wild][0].tolist()}, counted from 0"
+            mistakes.append(f"{wild.sum()} {what} between points that are not there, of {len(points)}: {rows}")
+    if mistakes:
+        _refuse(mistakes, wrong)
     used = np.unique(np.concatenate([corners.ravel(), middles[middles >= 0]]))
     lost = used[~np.isfinite(points[used]).all(axis=1)]
     if len(lost):
@@ -134,6 +142,9 @@ def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> P
     corners, middles = _turned_over(points, corners, middles)
     _check_cells(points, corners, box.prod(), mistakes)
     rim = _edges(points, corners, middles, mistakes)
+    pieces = _pieces(corners)
+    if pieces > 1:
+        mistakes.append(f"{pieces} pieces that do not hang together: a plate is one")
     names = np.array(_names(pairs, line_sets, points, rim.edges, mistakes))
     _refuse(mistakes, wrong)
     kept, rows = np.unique(corners, return_inverse=True)
@@ -162,6 +173,17 @@ def _cells(mesh: Any, mistakes: list[str]) -> tuple[IntArray, IntArray]:
 def _turned_over(points: FloatArray, corners: IntArray, middles: IntArray) -> tuple[IntArray, IntArray]:
     """The cells, reversed if all run clockwise."""
     return (corners[:, [0, 2, 1]], middles[:, [2, 1, 0]]) if (areas(points, corners) < 0).all() else (corners, middles)
+
+
+def _pieces(corners: IntArray) -> int:
+    """How many pieces cells (m, 3) make that have no point in common."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    used, rows = np.unique(corners, return_inverse=True)
+    start, end = sides(rows.reshape(-1, 3)).T
+    links = coo_array((np.ones(len(start)), (start, end)), shape=(len(used), len(used)))
+    return int(connected_components(links, directed=False)[0])
 
 
 def _check_cells(points: FloatArray, corners: IntArray, box: float, mistakes: list[str]) -> None:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 CELLS_OF_A_DISC = 64 * math.pi
 """Without a cell size a plate has as many cells as a disc with 8 from centre to rim."""
+MAX_SLENDER = 1000.0  # times as long as wide
+MAX_CELLS = 100_000  # of a size that is given: their matrix fills some GB
 COARSER = 2.0  # times: the cells that refinement of a stretching plate begins with
 
 
@@ -46,7 +48,16 @@ class ShapeCase(PlateCase):
 
     @cached_property
     def coarse_mesh(self) -> PlateMesh:
-        return self.mesh_of(self.measures[0] / 2)
+        width, area = self.measures
+        if not area <= MAX_SLENDER * width**2:
+            times = f"it is {area / width**2:.4g} times as long as wide" if width > 0 else "it has no width"
+            raise ValueError(f"must be of a plate at most {MAX_SLENDER:g} times as long as wide; {times}")
+        return self.mesh_of(width / 2)
+
+    @property
+    def min_cell_size(self) -> float:
+        """The smallest size [m] that its cells may have."""
+        return math.sqrt(self.measures[1] / (MAX_CELLS * math.sqrt(0.1875)))
 
     def mesh_of(self, cell_size: float) -> PlateMesh:
         """The mesh with cells of a size [m]."""
