@@ -7,8 +7,9 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from active_surface.studies.dataset import differences, key_of, read_dataset
+from active_surface.studies.dataset import read_dataset
 from active_surface.studies.read import read_study
+from active_surface.studies.stored import differences, key_of
 from active_surface.studies.study import Study
 from coupling.case import CaseError, read_case
 
