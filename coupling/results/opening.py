@@ -67,8 +67,9 @@ def _message(error: Exception) -> str:
         return f"it has no {missing[1] or missing[2]}"
     if lacking := FIELDS.search(text):
         return f"its {lacking[1].lower()} lacks {lacking[2].replace(chr(39), '')}"
-    inner = OF_HDF5.fullmatch(text)
-    return inner[1] if inner else text
+    if isinstance(error, (MemoryError, OSError, RuntimeError)) or OF_HDF5.search(text):
+        return "it cannot be read to its end"
+    return text
 
 
 def _written(path: Path) -> str:
