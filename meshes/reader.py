@@ -121,12 +121,12 @@ def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> P
     if not len(corners):
         mistakes.append("no triangles")
         _refuse(mistakes, wrong)
-    for cells, what in ((corners, "triangles"), (middles, "curved triangles"), (pairs, "lines")):
-        lowest = -1 if cells is middles else 0
-        wild = ((cells < lowest) | (cells >= len(points))).any(axis=1)
+    for numbers, what in ((corners, "triangles"), (middles, "curved triangles"), (pairs, "lines")):
+        lowest = -1 if numbers is middles else 0
+        wild = ((numbers < lowest) | (numbers >= len(points))).any(axis=1)
         if wild.any():
-            rows = f"the first with points {cells[wild][0].tolist()}, counted from 0"
-            mistakes.append(f"{wild.sum()} {what} between points that are not there, of {len(points)}: {rows}")
+            first = f"the first with points {numbers[wild][0].tolist()}, counted from 0"
+            mistakes.append(f"{wild.sum()} {what} between points that are not there, of {len(points)}: {first}")
     if mistakes:
         _refuse(mistakes, wrong)
     used = np.unique(np.concatenate([corners.ravel(), middles[middles >= 0]]))

@@ -6,10 +6,12 @@ import json
 import math
 import tomllib
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import h5netcdf
+import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,6 +46,16 @@ def stored_records(path: Path) -> Iterator[tuple[int, Records]]:
             yield start, records
 
 
+@contextmanager
+def whole(path: Path) -> Iterator[None]:
+    """Raise ValueError, which names the file, where what is read from it in the block is not as it must be."""
+    try:
+        yield
+    except UNREADABLE as error:
+        what = str(error) if isinstance(error, _DamageError) else LOST
+        raise ValueError(f"{path}: is a sweep that is damaged: {what}; remove it and sweep again") from error
+
+
 def key_of(path: Path) -> str | None:
     """The key of the study whose results a file holds; None: there is no such file.
 
@@ -52,16 +64,13 @@ def key_of(path: Path) -> str | None:
     if not path.is_file():
         return None
     try:
-        with h5netcdf.File(path, "r") as file:
+        with h5py.File(path, "r") as file:  # h5netcdf prints a traceback where it cannot open one
             if file.attrs.get("kind") != KIND_ATTRIBUTE:
                 return None
     except UNREADABLE:
         return None
-    try:
+    with whole(path):
         return _checked_key(path)
-    except UNREADABLE as error:
-        what = str(error) if isinstance(error, _DamageError) else LOST
-        raise ValueError(f"{path}: is a sweep that is damaged: {what}; remove it and sweep again") from error
 
 
 def _checked_key(path: Path) -> str:

@@ -10,7 +10,7 @@ import json
 import math
 import re
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from numbers import Real
@@ -67,7 +67,7 @@ class Quantity:
     unit: str
     example: str
     name: str = ""
-    positive: bool = field(default=False, compare=False)
+    positive: bool = False
 
     @property
     def expected(self) -> str:
