@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from skfem import MeshTri1, MeshTri2
 
 PLANE = 1e-9  # of the box: how far points may lie off their plane
+FARTHEST, SMALLEST = 1e6, 1e-15  # m, where points are and how far apart, beyond which squares lose their digits
 MIN_AREA = 1e-12  # of the box
 STRAIGHT = 1e-9  # of the chord: edges whose middle is closer to it are straight
 RIM = "rim"  # the boundary of a mesh that names none
@@ -134,7 +135,13 @@ def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> P
     if len(lost):
         _note(mistakes, len(lost), "points that are not finite", points[lost])
         _refuse(mistakes, wrong)
+    far = used[(np.abs(points[used]) * unit > FARTHEST).any(axis=1)]
+    if len(far):
+        _note(mistakes, len(far), f"points more than {FARTHEST:g} m from the origin", points[far])
+        _refuse(mistakes, wrong)
     box = np.ptp(points[used, :2], axis=0)
+    if box.max() * unit < SMALLEST:
+        _refuse([f"all its points within {box.max() * unit:g} m"], wrong)
     if points.shape[1] == 3:
         off = used[np.abs(points[used, 2] - np.median(points[used, 2])) > PLANE * box.max()]
         _note(mistakes, len(off), "points off the plane of the others", points[off])

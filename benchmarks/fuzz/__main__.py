@@ -12,6 +12,7 @@ import json
 import os
 import resource
 import select
+import shutil
 import signal
 import sys
 import tempfile
@@ -21,9 +22,9 @@ from pathlib import Path
 from typing import Final
 
 from fuzz import seeds
-from fuzz.trial import WAITING, Finding, trial
+from fuzz.trial import WAITING, Finding, ended, trial
 
-BATCH: Final = 100  # inputs of a process
+BATCH: Final = 400  # inputs of a process
 MEMORY: Final = 4 * 2**30  # bytes that an input may take
 ADDRESSES: Final = 8 * 2**30  # bytes that may be asked for, more than are used
 SILENT: Final = WAITING + 15  # s until a process that says nothing is ended
@@ -92,7 +93,7 @@ def main() -> None:
     given = parser.parse_args()
     made = seeds.ROOT / "build" / "fuzz" / "seeds"
     seeds.make(made)
-    _load()
+    _load(made)
     begun, number, end = time.monotonic(), given.first, given.first + given.count
     counts: Counter[str] = Counter()
     codes: Counter[str] = Counter()
@@ -120,26 +121,26 @@ def main() -> None:
     sys.exit(1 if findings else 0)
 
 
-def _load() -> None:
-    """Load what the processes need once, before they are forked."""
-    import importlib
-
-    names = (
-        "cli.program",
-        "studies.pictures",
-        "studies.run",
-        "steering.read",
-        "views.prints",
-        "views.pages",
-        "identification",
-    )
-    for name in names:
-        importlib.import_module(f"active_surface.{name}")
-    for name in ("coupling.run", "coupling.pictures", "meshio", "pint", "pandas", "xarray"):
-        importlib.import_module(name)
-    from coupling.case.values.dimensions import si_of
-
-    si_of("furlong")
+def _load(made: Path) -> None:
+    """Load what the processes need once, before they are forked: by right inputs of all kinds."""
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        for path in made.iterdir():
+            shutil.copy(path, path.name)
+        Path("points.csv").write_text(seeds.FRICTION)
+        Path("motion.csv").write_text(seeds.MOTION)
+        meshes = {f"{ending}.toml": seeds.case_with("mesh", ending=ending) for ending in ("msh", "vtu", "xdmf")}
+        texts = meshes | {"friction.toml": seeds.case_with("friction"), "platform.toml": seeds.PLATFORM}
+        texts |= {"lattice.toml": seeds.lattice_case(), "aim.toml": seeds.AIM}
+        for name, text in texts.items():
+            Path(name).write_text(text.replace("plate.", "a."))
+        commands = [["check", name, "--json"] for name in (*texts, "study.toml")]
+        commands += [["reading", "quick"], ["reading", "study.nc"], ["export", "quick", "--format", "csv", "-o", "out"]]
+        commands += [["plot", "study.nc", "--format", "svg", "-o", "out"], ["run", "quick.toml", "--json", "-o", "out"]]
+        for command in commands:
+            what, code, output = ended(command)
+            assert not what and code == 0, f"{command}: {what} {output}"
+        os.chdir(made)
     gc.freeze()
 
 

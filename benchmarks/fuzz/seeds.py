@@ -120,7 +120,8 @@ MOTION: Final = "time [ms], x [um], z [um]\n" + "".join(
 def case_with(name: str, **words: str) -> str:
     """The quick case with something in a file."""
     pattern, new = WITH_FILES[name]
-    return re.sub(pattern, new.format(**words), QUICK)
+    text = QUICK.replace('cell_size = "150 um"\n', "") if name == "mesh" else QUICK
+    return re.sub(pattern, new.format(**words), text)
 
 
 def lattice_case(**formulas: str) -> str:

@@ -49,7 +49,7 @@ def trial(seed: int, number: int, made: Path, folder: Path) -> tuple[str, Findin
     os.symlink("loop", "loop")
     kind, command = make(seed, number, made)
     before = _files(folder)
-    what, code, output = _ended(command)
+    what, code, output = ended(command)
     if not what and (raw := RAW.search(output)):
         what = f"words of a library: {raw[0]}"
     if not what and code == 0 and "--json" in command and "--help" not in command and output.strip():
@@ -69,8 +69,8 @@ def _named(name: str, command: list[str]) -> bool:
     return usual or name.endswith((".html", ".toml", ".pdf", ".svg", ".png", ".csv", ".vtkhdf", ".pvd", ".xdmf", ".h5"))
 
 
-def _ended(command: list[str]) -> tuple[str, int | None, str]:
-    """What was wrong, the exit code, and the output."""
+def ended(command: list[str]) -> tuple[str, int | None, str]:
+    """What was wrong with how a command ended, its exit code, and its output."""
 
     def alarm(*_: Any) -> None:
         raise _HangError

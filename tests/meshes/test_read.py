@@ -315,3 +315,16 @@ def test_a_cell_on_a_point_that_is_not_there_is_refused(tmp_path):
     path.write_text(re.sub(r"0\s+1\s+2", "0 1 7", path.read_text(), count=1))
     with pytest.raises(ValueError, match=r"1 triangles between points that are not there, of 3: .* \[0, 1, 7\]"):
         read(path)
+
+
+@pytest.mark.parametrize(
+    ("place", "wrong"),
+    [("1e300", "2 points more than 1e+06 m from the origin"), ("1e-300", "all its points within 1e-300 m")],
+)
+def test_a_mesh_has_a_size(tmp_path, place, wrong):
+    nodes = f"3\n1 0 0 0\n2 {place} 0 0\n3 0 {place} 0\n"
+    cells = "1\n1 2 2 0 1 1 2 3\n"
+    head = ISLANDS.partition("$Nodes")[0]
+    (tmp_path / "mesh.msh").write_text(f"{head}$Nodes\n{nodes}$EndNodes\n$Elements\n{cells}$EndElements\n")
+    with pytest.raises(ValueError, match=re.escape(wrong)):
+        read(tmp_path / "mesh.msh")
