@@ -37,7 +37,11 @@ def batch(seed: int, first: int, count: int, made: Path, folder: Path, pipe: int
     for stream in (0, 1, 2):
         os.dup2(null, stream)
     for number in range(first, first + count):
-        kind, finding, code = trial(seed, number, made, folder)
+        try:
+            kind, finding, code = trial(seed, number, made, folder)
+        except BaseException as error:  # of the fuzzer itself
+            kind, code = "?", ""
+            finding = Finding(number, kind, f"no trial: {type(error).__name__} {error}"[:300], [])
         used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
         if used > MEMORY and finding is None:
             finding = Finding(number, kind, f"{used / 2**30:.1f} GB of memory", [])

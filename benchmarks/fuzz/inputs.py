@@ -249,8 +249,8 @@ MAKERS: Final[Mapping[str, Maker]] = {
     "run result": Maker(result, 0.09),
     "sweep result": Maker(sweep, 0.09),
     "formula": Maker(formula, 0.10),
-    "command line": Maker(command, 0.055),
-    "extreme run": Maker(extreme, 0.005),
+    "command line": Maker(command, 0.059),
+    "extreme run": Maker(extreme, 0.001),
 }
 
 

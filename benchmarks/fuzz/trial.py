@@ -52,7 +52,7 @@ def trial(seed: int, number: int, made: Path, folder: Path) -> tuple[str, Findin
     what, code, output = ended(command)
     if not what and (raw := RAW.search(output)):
         what = f"words of a library: {raw[0]}"
-    if not what and code == 0 and "--json" in command and "--help" not in command and output.strip():
+    if not what and code == 0 and "--json" in command and not {"--help", "--version"} & {*command} and output.strip():
         what = _json_fault(output)
     if not what and (strange := [name for name in _files(folder) - before if not _named(name, command)]):
         what = f"wrote {strange[0]}"

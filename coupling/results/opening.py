@@ -67,7 +67,7 @@ def _message(error: Exception) -> str:
         return f"it has no {missing[1] or missing[2]}"
     if lacking := FIELDS.search(text):
         return f"its {lacking[1].lower()} lacks {lacking[2].replace(chr(39), '')}"
-    if isinstance(error, (ArithmeticError, AssertionError, AttributeError, IndexError, TypeError)):
+    if isinstance(error, (ArithmeticError, AssertionError, AttributeError, IndexError, TypeError, UnicodeError)):
         return "something in it has another form than a run writes"
     if isinstance(error, (MemoryError, OSError, RuntimeError)) or OF_HDF5.search(text):
         return "it cannot be read to its end"
