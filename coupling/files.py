@@ -35,6 +35,16 @@ def contents(path: str | os.PathLike[str], most: int) -> bytes:
     return data
 
 
+def check_room(folder: Path, needed: int, kept: str = "") -> None:
+    """Raise OSError unless a folder has room for so many bytes of results: HDF5 does not survive a full disk.
+
+    kept: what to say of what is there already.
+    """
+    free = shutil.disk_usage(folder).free
+    if free < needed:
+        raise OSError(f"{folder}: the results take {needed / 1e6:.1f} MB, and {free / 1e6:.1f} MB are free{kept}")
+
+
 @contextmanager
 def whole_file(
     path: Path,

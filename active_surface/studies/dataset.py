@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -18,7 +17,7 @@ from active_surface.studies.heights import heights_key
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.stored import AT_ONCE, KIND_ATTRIBUTE, slabs, stored_records
 from active_surface.studies.study import Study, versions
-from coupling import whole_file
+from coupling import check_room, whole_file
 from coupling.case import Case, PlateCase
 from meshes import rim_curves
 
@@ -89,10 +88,8 @@ def _check_room(study: Study, folder: Path) -> None:
     count = len(study.points)
     coordinates = 0 if study.points.sampling == "grid" else 8 * len(study.points.axes) * count // study.points.repeats
     # Twice: while they are put in order they are on disk once more.
-    needed, free = 2 * KIND.itemsize * count + coordinates + ROOM, shutil.disk_usage(folder).free
-    if free < needed:
-        sizes = f"the results take {needed / 1e6:.1f} MB, and {free / 1e6:.1f} MB are free"
-        raise OSError(f"{folder}: {sizes}; finished chunks are kept, and the same command goes on from them")
+    needed = 2 * KIND.itemsize * count + coordinates + ROOM
+    check_room(folder, needed, "; finished chunks are kept, and the same command goes on from them")
 
 
 def _fill(kind: str) -> float | None:

@@ -97,7 +97,7 @@ def main() -> None:
     given = parser.parse_args()
     made = seeds.ROOT / "build" / "fuzz" / "seeds"
     seeds.make(made)
-    _load(made)
+    load(made)
     begun, number, end = time.monotonic(), given.first, given.first + given.count
     counts: Counter[str] = Counter()
     codes: Counter[str] = Counter()
@@ -125,7 +125,7 @@ def main() -> None:
     sys.exit(1 if findings else 0)
 
 
-def _load(made: Path) -> None:
+def load(made: Path) -> None:
     """Load what the processes need once, before they are forked: by right inputs of all kinds."""
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)

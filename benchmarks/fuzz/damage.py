@@ -25,7 +25,7 @@ def damaged_hdf5(data: bytes, chance: random.Random) -> bytes:
             try:
                 name = chance.choice(names)
                 _damage(file, name, chance)
-            except (AttributeError, LookupError, OSError, RuntimeError, TypeError, ValueError):
+            except (AttributeError, LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError):
                 continue
     return memory.getvalue()
 

@@ -137,6 +137,8 @@ def extreme(chance: random.Random, _: Path) -> Command:
         if chance.random() < 0.3:
             value = math.exp(chance.uniform(math.log(low), math.log(high)))
             text = text.replace(f'"{old}"', f'"{value:.4g} {unit}"', 1)
+            if old == "300 um":  # as many cells
+                text = text.replace('"150 um"', f'"{value / 2:.4g} m"')
     _write("input.toml", text)
     return ["run", "input.toml", "--json", "-o", "out"]
 

@@ -22,7 +22,7 @@ from coupling.results.case_record import CaseRecord, case_of
 from coupling.results.opening import EXPECTED, opened, readable
 from coupling.results.other_file import described, meant
 from coupling.summary import summary_of
-from particle import Event, EventKind, Outcome, Samples, dataset_of, table_of
+from particle import Event, EventKind, Outcome, Samples, State, dataset_of, table_of
 
 if TYPE_CHECKING:
     import pandas
@@ -128,6 +128,8 @@ class SavedRun:
             readable(self.plate_path, self.part_path, f"whose field {name} is damaged"),
         ):
             data = file[f"VTKHDF/PointData/{name}"]
+            if len(data) < len(self.time) * n:
+                raise ValueError(f"it lacks some of {len(self.time)} steps")
             values = np.empty((rows.size, n, *data.shape[1:]), data.dtype)
             for row, step in zip(values, np.atleast_1d(rows).tolist(), strict=True):
                 row[...] = data[step * n : (step + 1) * n]
@@ -209,6 +211,9 @@ def _check(run: SavedRun, k: int) -> None:
     for name, columns in (("position", 3), ("velocity", 3)):
         if getattr(run, name).shape != (k, columns):
             raise ValueError(f"{name} has the shape {getattr(run, name).shape}, not {(k, columns)}")
+    for states in (run.state, run.rows.state):
+        if states.dtype.kind not in "iu" or not np.isin(states, list(State)).all():
+            raise ValueError("a state is none of the part's")
     if (np.diff(run.time) <= 0).any() or (np.diff(run.rows.time) < 0).any():
         raise ValueError("a time is earlier than the one before")
     if run.triangles.min() < 0 or run.triangles.max() >= len(run.points):

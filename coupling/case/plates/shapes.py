@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 CELLS_OF_A_DISC = 64 * math.pi
 """Without a cell size a plate has as many cells as a disc with 8 from centre to rim."""
 MAX_SLENDER = 1000.0  # times as long as wide
-MAX_CELLS = 100_000  # of a size that is given: their matrix fills some GB
+MAX_CELLS = 25_000  # of a size that is given: halved for an estimate of the error, they fill some GB
 COARSER = 2.0  # times: the cells that refinement of a stretching plate begins with
 
 
