@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, Records
 from active_surface.studies.study import Study
-from coupling import UNREADABLE, check_hdf5
+from coupling import UNREADABLE, check_hdf5, survives
 
 KIND_ATTRIBUTE: Final = "active-surface sweep"
 AT_ONCE: Final = 65536  # points whose coordinates or records are read or written together
@@ -61,7 +61,7 @@ def key_of(path: Path) -> str | None:
 
     Raises ValueError when the results are damaged.
     """
-    if not path.is_file():
+    if not path.is_file() or not survives(path):
         return None
     try:
         with h5py.File(path, "r") as file:  # h5netcdf prints a traceback where it cannot open one

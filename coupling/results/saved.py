@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
-from coupling.hdf5 import check_hdf5
+from coupling.hdf5 import DEADLY, check_hdf5, survives
 from coupling.margins import MarginCurves
 from coupling.results.case_record import CaseRecord, case_of
 from coupling.results.opening import EXPECTED, opened, readable
@@ -281,6 +281,8 @@ def _split(path: Path) -> tuple[str, str | None, bool]:
 
 
 def _run(path: Path) -> str:
+    if not survives(path):
+        raise ValueError(f"{EXPECTED}; got {path}, which is damaged: {DEADLY}")
     with opened(path) as file, readable(path, path):
         check_hdf5(path, "VTKHDF/PointData")
         return str(file["active_surface"].attrs["run"])

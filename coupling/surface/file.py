@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from coupling.files import whole_file
-from coupling.hdf5 import UNREADABLE, check_hdf5
+from coupling.hdf5 import UNREADABLE, check_hdf5, survives
 from particle import SurfaceMotion
 from particle.drives import DriveTable
 from particle.surface import BuiltCells, Cells
@@ -118,7 +118,7 @@ def _read(path: Path) -> SurfaceMotion:
 
 def is_surface(path: Path) -> bool:
     """Whether `write_surface` wrote a file."""
-    if not h5py.is_hdf5(path):
+    if not h5py.is_hdf5(path) or not survives(path):
         return False
     with h5py.File(path, "r") as file:
         return bool(file.attrs.get("kind") == KIND and file.attrs.get("version") == VERSION)

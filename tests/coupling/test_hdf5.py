@@ -1,10 +1,14 @@
 """HDF5 files that lie about what they hold."""
 
+import os
+import signal
+import time
+
 import h5py
 import numpy as np
 import pytest
 
-from coupling import check_hdf5
+from coupling import check_hdf5, hdf5, survives
 
 
 def huge(file):
@@ -50,3 +54,18 @@ def test_zeros_may_be_packed_and_groups_may_hold_themselves(tmp_path):
         file["group/itself"] = file.create_group("group/inner")
         file["group/above"] = file["group"]
     check_hdf5(tmp_path / "file.h5")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+@pytest.mark.parametrize(
+    "harm", [lambda: os.kill(os.getpid(), signal.SIGKILL), lambda: time.sleep(60)], ids=["crash", "circle"]
+)
+def test_a_file_on_which_the_library_dies_is_found_out(tmp_path, monkeypatch, harm):
+    with h5py.File(tmp_path / "file.h5", "w") as file:
+        file["right"] = np.zeros(10)
+    assert survives(tmp_path / "file.h5")
+    (tmp_path / "text.h5").write_text("no HDF5")
+    assert survives(tmp_path / "text.h5")
+    monkeypatch.setattr(hdf5, "_read_all", lambda path: harm())
+    monkeypatch.setattr(hdf5, "PATIENCE", 0.2)
+    assert not survives(tmp_path / "file.h5")
