@@ -56,6 +56,14 @@ def test_zeros_may_be_packed_and_groups_may_hold_themselves(tmp_path):
     check_hdf5(tmp_path / "file.h5")
 
 
+def crash():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def circle():
+    time.sleep(60)
+
+
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 @pytest.mark.parametrize(
     "harm", [lambda: os.kill(os.getpid(), signal.SIGKILL), lambda: time.sleep(60)], ids=["crash", "circle"]
