@@ -38,7 +38,7 @@ COMMANDS: dict[str, list[str]] = {
         *("animate", "made/quick", "-o", "out/film.gif", "--renderer", "matplotlib", "--size", "160x90"),
         *("--fps", "4", "--quiet"),
     ],
-    "view": ["view", "made/quick", "-o", "out/page.html", "--no-open", "--quiet"],
+    "view": ["view", "made/quick", "-o", "out/page.html", "--quiet"],
 }
 
 
