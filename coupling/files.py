@@ -1,14 +1,48 @@
-"""Files that are written as a whole or not at all."""
+"""Files that are written as a whole or not at all, and read as a whole or not at all."""
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
+import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+MAX_TEXT = 2**24  # bytes of a case, study or aim
+MAX_NUMBERS = 2**26  # bytes of a table of numbers
 _open: set[Path] = set()
+
+
+def contents(path: str | os.PathLike[str], most: int) -> bytes:
+    """What a file holds.
+
+    Raises OSError when it cannot be read, has more than `most` bytes, or is a pipe or device, which need not end.
+    """
+    name = os.fspath(path)
+    # Without waiting for who might write to a pipe.
+    descriptor = os.open(name, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    with open(descriptor, "rb") as file:
+        status = os.fstat(descriptor)
+        if stat.S_ISDIR(status.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), name)
+        if not stat.S_ISREG(status.st_mode):
+            raise OSError(errno.EINVAL, "it is a pipe or a device, not a file", name)
+        data = file.read(most + 1) if status.st_size <= most else b""
+        if len(data) > most or status.st_size > most:
+            raise OSError(errno.EFBIG, f"it has more than {most // 2**20} MiB, the most that is read", name)
+    return data
+
+
+def check_room(folder: Path, needed: int, kept: str = "") -> None:
+    """Raise OSError unless a folder has room for so many bytes of results: HDF5 does not survive a full disk.
+
+    kept: what to say of what is there already.
+    """
+    free = shutil.disk_usage(folder).free
+    if free < needed:
+        raise OSError(f"{folder}: the results take {needed / 1e6:.1f} MB, and {free / 1e6:.1f} MB are free{kept}")
 
 
 @contextmanager

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 import io
+import re
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
+
+DAMAGED = "it is damaged, or its parts do not fit together"
+MAX_SIZE = 2**28  # bytes of a mesh file
+MAX_COUNT = 10_000_000  # points, cells and their numbers
+SIZES = {
+    ".msh": (rb"\$(?:Nodes|Elements|PhysicalNames|Entities|Periodic)\s+((?:\d+[ \t\r\n]+){1,4})",),
+    ".vtu": (rb"NumberOf[A-Za-z]+\s*=\s*[\"']\s*(\d+)",),
+    ".xdmf": (rb"(?:Dimensions|NumberOfElements)\s*=\s*[\"']([\d\s]+)",),
+}
+"""Where files say how much they hold, by their endings."""
 
 
 def load(path: Path) -> Any:
@@ -14,16 +25,34 @@ def load(path: Path) -> Any:
 
     if not path.is_file():
         raise ValueError(f"Input path of read must be a mesh file; there is no {path}")
+    _check_sizes(path)
     printed = io.StringIO()  # meshio prints its complaint and calls sys.exit
     try:
         with redirect_stdout(printed), redirect_stderr(printed):
             return meshio.read(path)
     except (Exception, SystemExit) as error:
-        text = "" if isinstance(error, SystemExit) else f"{type(error).__name__}: {error}"
-        reason = " ".join(f"{printed.getvalue()} {text}".split())
+        readable = isinstance(error, (meshio.ReadError, SyntaxError))  # a ParseError of XML is one
+        text = f"{type(error).__name__}: {error}" if readable else DAMAGED
+        text = "" if isinstance(error, SystemExit) else text
+        reason = " ".join(re.sub(r"\x1b\[[\d;]*m", "", f"{printed.getvalue()} {text}").split())[:200]
         raise ValueError(
             f"Input path of read must be a .msh, .vtu or first-order .xdmf file; {path} cannot be read as one: {reason}"
         ) from error
+
+
+def _check_sizes(path: Path) -> None:
+    """Raise ValueError where a file says that it holds more than it can, before a reader makes room for that."""
+    wrong = f"Input path of read must be a mesh file of a size that it has; {path}"
+    size = path.stat().st_size
+    if size > MAX_SIZE:
+        raise ValueError(f"{wrong} has {size} bytes, of which at most {MAX_SIZE} are read")
+    data = path.read_bytes()
+    for pattern in SIZES.get(path.suffix.lower(), ()):
+        for match in re.finditer(pattern, data):
+            for number in match[1].split():
+                # A compressed file can be a thousand times smaller than its numbers.
+                if len(number) > 18 or not 0 <= int(number) <= min(MAX_COUNT, 1000 * size):
+                    raise ValueError(f"{wrong} says that it has {number[:30].decode()} of something")
 
 
 def line_names(mesh: Any) -> list[set[str]]:

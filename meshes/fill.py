@@ -12,6 +12,7 @@ from meshes.outline import BoolArray, Outline
 from meshes.triangles import angles, areas, cross, edge_numbers, sides
 
 MIN_ANGLE = np.deg2rad(27)  # cells with a smaller angle get a new point, where the corners of the rim allow it
+MAX_CELLS = 1_000_000
 ROUNDS = 200  # most refinements end within 30
 SMOOTHINGS = 10
 
@@ -39,6 +40,13 @@ class RimEdges:
         return np.concatenate([points, self.project(points[edges].mean(axis=1), sides)])
 
 
+def check_count(shape: str, cells: float, cell_size: float) -> None:
+    """Raise ValueError where an outline has too many cells, before there is room for them."""
+    if not cells <= MAX_CELLS:
+        few = f"so large that there are at most {MAX_CELLS} cells"
+        raise ValueError(f"Input cell_size of {shape} must be {few}; got {cell_size!r} m, which makes {cells:.3g}")
+
+
 def fill(points: FloatArray, rim: RimEdges, outline: Outline, cell_size: float) -> tuple[FloatArray, IntArray]:
     """Points (n, 2), rim points first, and triangles (m, 3) of about `cell_size` [m]; cuts the rim's edges.
 
@@ -46,6 +54,7 @@ def fill(points: FloatArray, rim: RimEdges, outline: Outline, cell_size: float) 
     that are no edges of the Delaunay triangulation, or see a point at an obtuse angle, are cut; thin and large cells
     get a new point at their circumcentre, unless that is so near a rim edge that the edge is cut instead.
     """
+    check_count("a plate", 4 * float(((outline.box[1] - outline.box[0]) / cell_size + 1).prod()), cell_size)
     points = np.concatenate([points, _lattice(outline, cell_size)])
     for _ in range(ROUNDS):
         triangles = delaunay(points, outline)
@@ -67,6 +76,7 @@ def fill(points: FloatArray, rim: RimEdges, outline: Outline, cell_size: float) 
                 break
             points = np.concatenate([points, centres])
         points = rim.cut(points, cut)
+        check_count("a plate", 2.0 * len(points), cell_size)
     else:
         raise ValueError(
             f"Input cell_size of a plate must be small enough for cells to fit the outline; got {cell_size!r} m"
@@ -87,9 +97,12 @@ def _lattice(outline: Outline, cell_size: float) -> FloatArray:
 
 def delaunay(points: FloatArray, outline: Outline) -> IntArray:
     """The counter-clockwise Delaunay triangles (m, 3) inside the outline."""
-    from scipy.spatial import Delaunay  # here, because standard outlines do without it
+    from scipy.spatial import Delaunay, QhullError  # here, because standard outlines do without it
 
-    triangles = Delaunay(points).simplices.astype(np.int64)
+    try:
+        triangles = Delaunay(points).simplices.astype(np.int64)
+    except (QhullError, ValueError):
+        raise ValueError("Input corners of a plate must be far enough apart for cells between them") from None
     area = areas(points, triangles)
     triangles[area < 0] = triangles[area < 0][:, ::-1]
     # Rounding leaves flat triangles between points on one straight side.

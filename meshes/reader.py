@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from skfem import MeshTri1, MeshTri2
 
 PLANE = 1e-9  # of the box: how far points may lie off their plane
+FARTHEST, SMALLEST = 1e6, 1e-15  # m, where points are and how far apart, beyond which squares lose their digits
 MIN_AREA = 1e-12  # of the box
 STRAIGHT = 1e-9  # of the chord: edges whose middle is closer to it are straight
 RIM = "rim"  # the boundary of a mesh that names none
@@ -121,12 +122,26 @@ def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> P
     if not len(corners):
         mistakes.append("no triangles")
         _refuse(mistakes, wrong)
+    for numbers, what in ((corners, "triangles"), (middles, "curved triangles"), (pairs, "lines")):
+        lowest = -1 if numbers is middles else 0
+        wild = ((numbers < lowest) | (numbers >= len(points))).any(axis=1)
+        if wild.any():
+            first = f"the first with points {numbers[wild][0].tolist()}, counted from 0"
+            mistakes.append(f"{wild.sum()} {what} between points that are not there, of {len(points)}: {first}")
+    if mistakes:
+        _refuse(mistakes, wrong)
     used = np.unique(np.concatenate([corners.ravel(), middles[middles >= 0]]))
     lost = used[~np.isfinite(points[used]).all(axis=1)]
     if len(lost):
         _note(mistakes, len(lost), "points that are not finite", points[lost])
         _refuse(mistakes, wrong)
+    far = used[(np.abs(points[used]) * unit > FARTHEST).any(axis=1)]
+    if len(far):
+        _note(mistakes, len(far), f"points more than {FARTHEST:g} m from the origin", points[far])
+        _refuse(mistakes, wrong)
     box = np.ptp(points[used, :2], axis=0)
+    if box.max() * unit < SMALLEST:
+        _refuse([f"all its points within {box.max() * unit:g} m"], wrong)
     if points.shape[1] == 3:
         off = used[np.abs(points[used, 2] - np.median(points[used, 2])) > PLANE * box.max()]
         _note(mistakes, len(off), "points off the plane of the others", points[off])
@@ -134,6 +149,9 @@ def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> P
     corners, middles = _turned_over(points, corners, middles)
     _check_cells(points, corners, box.prod(), mistakes)
     rim = _edges(points, corners, middles, mistakes)
+    pieces = _pieces(corners)
+    if pieces > 1:
+        mistakes.append(f"{pieces} pieces that do not hang together: a plate is one")
     names = np.array(_names(pairs, line_sets, points, rim.edges, mistakes))
     _refuse(mistakes, wrong)
     kept, rows = np.unique(corners, return_inverse=True)
@@ -162,6 +180,17 @@ def _cells(mesh: Any, mistakes: list[str]) -> tuple[IntArray, IntArray]:
 def _turned_over(points: FloatArray, corners: IntArray, middles: IntArray) -> tuple[IntArray, IntArray]:
     """The cells, reversed if all run clockwise."""
     return (corners[:, [0, 2, 1]], middles[:, [2, 1, 0]]) if (areas(points, corners) < 0).all() else (corners, middles)
+
+
+def _pieces(corners: IntArray) -> int:
+    """How many pieces cells (m, 3) make that have no point in common."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    used, rows = np.unique(corners, return_inverse=True)
+    start, end = sides(rows.reshape(-1, 3)).T
+    links = coo_array((np.ones(len(start)), (start, end)), shape=(len(used), len(used)))
+    return int(connected_components(links, directed=False)[0])
 
 
 def _check_cells(points: FloatArray, corners: IntArray, box: float, mistakes: list[str]) -> None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from meshes.curves import Circle, Ellipse
-from meshes.fill import RimEdges, fill
+from meshes.fill import RimEdges, check_count, fill
 from meshes.mesh import PlateMesh
 from meshes.nearest import FloatArray, nearest_on_ellipse
 from meshes.outline import Outline, straight
@@ -49,9 +49,10 @@ def disc(radius: float, cell_size: float) -> PlateMesh:
     Raises
     ------
     ValueError
-        A length is not positive and finite.
+        A length is not positive and finite; or there are more than a million cells.
     """
     refuse(check_lengths("disc", radius=radius, cell_size=cell_size))
+    check_count("disc", 6 * (radius / cell_size) ** 2, cell_size)
     rings = max(2, math.ceil(radius / cell_size * (1 - 1e-12)))
     points = np.concatenate([np.zeros((1, 2)), *(_ring(k, radius * k / rings) for k in range(1, rings + 1))])
     triangles = []
@@ -86,12 +87,14 @@ def rectangle(width: float, height: float, cell_size: float) -> PlateMesh:
     Raises
     ------
     ValueError
-        Names every length that is not positive and finite.
+        Names every length that is not positive and finite; or there are more than a million cells.
     """
     refuse(check_lengths("rectangle", width=width, height=height, cell_size=cell_size))
     lengths = np.array([width, height])
     count = 2 * np.ceil(lengths / (2 * cell_size) * (1 - 1e-12))
-    nx, ny = np.maximum(count, 2 * np.round(lengths / (2 * (lengths / count).min()))).astype(int).tolist()
+    count = np.maximum(count, 2 * np.round(lengths / (2 * (lengths / count).min())))
+    check_count("rectangle", 2 * float(count.prod()), cell_size)
+    nx, ny = count.astype(int).tolist()
     i, j = np.meshgrid(np.arange(nx + 1), np.arange(ny + 1), indexing="ij")
     points = np.stack([(2 * i - nx) / (2 * nx) * width, (2 * j - ny) / (2 * ny) * height], axis=-1).reshape(-1, 2)
     row = i * (ny + 1) + j
@@ -126,7 +129,8 @@ def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> Plate
     Raises
     ------
     ValueError
-        Names every length that is not positive and finite; or the inner radius is not smaller than the outer one.
+        Names every length that is not positive and finite; or the inner radius is not smaller than the outer one; or
+        there are more than a million cells.
     """
     lengths = {"inner_radius": inner_radius, "outer_radius": outer_radius, "cell_size": cell_size}
     mistakes = check_lengths("annulus", **lengths)
@@ -135,11 +139,13 @@ def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> Plate
             f"Input inner_radius of annulus must be less than its outer_radius, {outer_radius!r}; got {inner_radius!r}"
         )
     refuse(mistakes)
-    growth = math.log(outer_radius / inner_radius)
+    growth = math.log1p((outer_radius - inner_radius) / inner_radius)
     around = max(12.0, math.sqrt(3) * math.pi * outer_radius / cell_size * (1 - 1e-12))
     per_ring = math.sqrt(3) * math.pi  # log of a ring's radii times the cells around, for equilateral cells
+    check_count("annulus", 2 * growth * around**2 / per_ring, cell_size)
     rings = max(2, round(growth * around / per_ring))
     # A multiple of four, so that the mesh mirrors in both axes.
+    check_count("annulus", 2 * rings * max(around, rings * per_ring / growth), cell_size)
     around = 4 * math.ceil(max(around, rings * per_ring / growth) / 4 * (1 - 1e-12))
     k, i = np.meshgrid(np.arange(rings + 1), np.arange(around), indexing="ij")
     radius = inner_radius * (outer_radius / inner_radius) ** (np.arange(rings + 1) / rings)
@@ -174,7 +180,7 @@ def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMe
     Raises
     ------
     ValueError
-        Names every length that is not positive and finite.
+        Names every length that is not positive and finite; or there are more than a million cells.
     """
     lengths = {"semi_axis_x": semi_axis_x, "semi_axis_y": semi_axis_y, "cell_size": cell_size}
     refuse(check_lengths("ellipse", **lengths))
@@ -187,6 +193,7 @@ def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMe
     length = np.minimum(size, LONGEST_ARC * speed**3 / axes.prod())
     number = np.concatenate([[0], np.cumsum(speed * np.diff(angle) / length)])
     count = math.ceil(number[-1])
+    check_count("ellipse", max(4.0 * count, 2 * math.pi * axes.prod() / size**2), cell_size)
     quarter = np.interp(np.arange(count) * number[-1] / count, number, angle)
     angle = np.concatenate([quarter, np.pi - np.append(quarter[1:], np.pi / 2)[::-1]])
     angle = np.concatenate([angle, angle + np.pi])

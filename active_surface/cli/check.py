@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +48,7 @@ def check(file: Path, quiet: bool, as_json: bool) -> None:
         figures = {"actuators": count, "duration": case.run.duration}
         summary = f"{_counted(count, 'actuator') if count else 'a platform'}, {case.run.duration * 1e3:g} ms"
     if as_json:
-        click.echo(json.dumps({"file": str(file), "mistakes": [], "warnings": warnings, **figures}, indent=2))
+        click.echo(options.json_text({"file": str(file), "mistakes": [], "warnings": warnings, **figures}))
     elif not quiet:
         click.echo(f"{file}: fine; {summary}")
         options.warn(warnings)

@@ -212,7 +212,7 @@ def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:
     """work(*arguments), with a refused input said in one message and exit code 2."""
     try:
         return work(*arguments)
-    except (ValueError, OSError, RuntimeError) as error:
+    except (ValueError, OSError, RuntimeError, ArithmeticError, MemoryError) as error:
         context = click.get_current_context()
         words = {param.name or "": _word(param) for param in context.command.params}
         raise refusal_of(error, context.command_path, bool(context.params.get("as_json")), words) from None

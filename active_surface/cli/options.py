@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
@@ -36,13 +37,26 @@ def tell(
 ) -> None:
     """Prints what a command found, as figures or in words."""
     if as_json:
-        click.echo(json.dumps(figures, indent=2))
+        click.echo(json_text(figures))
     elif not quiet:
         for label, text in lines:
             click.echo(f"{label:<{WIDTH}}{text}")
         warn(warnings)
         for file in files:
             click.echo(f"{'wrote':<{WIDTH}}{file}")
+
+
+def json_text(figures: Mapping[str, Any]) -> str:
+    """Figures as JSON, which has no nan and no infinity: they become null."""
+    return json.dumps(_finite(dict(figures)), indent=2, allow_nan=False)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def warn(warnings: Iterable[str]) -> None:

@@ -9,6 +9,14 @@ from typing import IO, Any, NamedTuple
 
 import click
 
+_SIZES = "its numbers are too far apart, too large or too small to compute with"
+BEYOND = {
+    "MemoryError": "it needs more memory than there is",
+    "RecursionError": "something in it is nested too deeply",
+    **dict.fromkeys(("ArithmeticError", "LinAlgError", "MatrixRankWarning"), _SIZES),
+}
+"""What errors of numbers and machines mean, by the names of their classes; they have no words for users."""
+
 
 class Mistake(NamedTuple):
     """One mistake: where it is, as far as it has a file or line, and in which input; what is wrong with that."""
@@ -47,8 +55,11 @@ def refusal_of(error: Exception, command: str, as_json: bool, words: Mapping[str
         problems: Iterable[Any] = getattr(error, "problems", ())
         mistakes = [Mistake(file, problem.line, problem.field, problem.message) for problem in problems]
         return Refusal(str(error), mistakes, as_json)
-    if not isinstance(error, ValueError):  # no mistake, but something in the way
-        said = str(error)
+    beyond = next(
+        (words for name, words in BEYOND.items() if name in [one.__name__ for one in type(error).__mro__]), ""
+    )
+    if beyond or not isinstance(error, ValueError):  # no mistake, but something in the way
+        said = beyond or str(error)
         if isinstance(error, OSError) and error.strerror:
             said = ": ".join([*([str(error.filename)] if error.filename else []), error.strerror.lower()])
         return Refusal(f"{command}: {said}", [Mistake(None, None, "", said)], as_json)

@@ -3,7 +3,7 @@ from .run import Sweep as Sweep, run_study as run_study
 from .study import Study as Study
 
 # Not public: for the packages that build on this one.
-from .dataset import key_of as key_of
+from .stored import key_of as key_of
 from .engine import AT_ONCE as AT_ONCE, Engine as Engine
 from .record import OUTCOMES as OUTCOMES, REFUSED as REFUSED, SENTENCES as SENTENCES
 from .refusal import contact_of as contact_of, start_faults as start_faults

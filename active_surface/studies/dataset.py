@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import json
-import math
-import shutil
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import h5netcdf
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.axis import Axis
 from active_surface.studies.heights import heights_key
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
+from active_surface.studies.stored import AT_ONCE, KIND_ATTRIBUTE, slabs, stored_records
 from active_surface.studies.study import Study, versions
-from coupling import whole_file
+from coupling import check_room, whole_file
 from coupling.case import Case, PlateCase
 from meshes import rim_curves
 
@@ -27,14 +25,11 @@ if TYPE_CHECKING:
     import xarray
 
 
-KIND_ATTRIBUTE: Final = "active-surface sweep"
 ENGINE: Final = "h5netcdf"
 LOGARITHMIC: Final = "logarithmic"
 LABELS: Final = ("axes", "study", "case")  # attributes that say how the numbers are labelled and described
 RIM_PIECES: Final = 200  # of the longer side of the plate's box: how fine the rim is
-AT_ONCE: Final = 65536  # points whose coordinates are written together
 ROOM: Final = 1_000_000  # bytes, for what does not grow with the points
-Slab = tuple[slice, ...]
 
 
 def write_dataset(
@@ -60,21 +55,6 @@ def renew_labels(study: Study, path: Path) -> None:
             return
         warnings = str(file.attrs["warnings"]).splitlines()
     write_dataset(study, stored_records(path), path, warnings)
-
-
-def stored_records(path: Path) -> Iterator[tuple[int, Records]]:
-    """Yield the number of the first path of each lot of records in a file, and the records."""
-    with h5netcdf.File(path, "r") as file:
-        shape = file["outcome"].shape
-        count = math.prod(shape)
-        for start in range(0, count, AT_ONCE):
-            stop = min(start + AT_ONCE, count)
-            records, first = np.empty(stop - start, KIND), 0
-            for slab, length in slabs(shape, start, stop):
-                for name in COLUMNS:
-                    records[name][first : first + length] = file[name][slab].ravel()
-                first += length
-            yield start, records
 
 
 def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:
@@ -108,10 +88,8 @@ def _check_room(study: Study, folder: Path) -> None:
     count = len(study.points)
     coordinates = 0 if study.points.sampling == "grid" else 8 * len(study.points.axes) * count // study.points.repeats
     # Twice: while they are put in order they are on disk once more.
-    needed, free = 2 * KIND.itemsize * count + coordinates + ROOM, shutil.disk_usage(folder).free
-    if free < needed:
-        sizes = f"the results take {needed / 1e6:.1f} MB, and {free / 1e6:.1f} MB are free"
-        raise OSError(f"{folder}: {sizes}; finished chunks are kept, and the same command goes on from them")
+    needed = 2 * KIND.itemsize * count + coordinates + ROOM
+    check_room(folder, needed, "; finished chunks are kept, and the same command goes on from them")
 
 
 def _fill(kind: str) -> float | None:
@@ -170,57 +148,6 @@ def _axis(file: h5netcdf.File, axis: Axis, dimension: str) -> h5netcdf.Variable:
     return variable
 
 
-def key_of(path: Path) -> str | None:
-    """The key of the study whose results a file holds; None: there is no such file."""
-    if not path.is_file():
-        return None
-    try:
-        with h5netcdf.File(path, "r") as file:
-            return str(file.attrs["key"]) if file.attrs.get("kind") == KIND_ATTRIBUTE else None
-    except OSError:
-        return None
-
-
-def differences(study: Study, path: Path) -> list[str]:
-    """In what a study differs from the one whose results a file holds."""
-    with h5netcdf.File(path, "r") as file:
-        known = json.loads(file.attrs.get("traits", "{}"))
-    return [name for name, trait in study.traits.items() if known.get(name) != trait]
-
-
-class Coordinates(NamedTuple):
-    """The points whose results a file holds, as it has them."""
-
-    axes: list[tuple[str, NDArray[Any]]]  # the field of each axis, and its values: of a grid each once
-    sampling: str
-    repeats: int
-    stream: tuple[float, int | None]  # as of `Points`
-    heights: str
-
-
-def stored_coordinates(path: Path) -> Coordinates | None:
-    """The points of the results in a file; None: it does not have all of them."""
-    with h5netcdf.File(path, "r") as file:
-        if not {"stream", "heights"} <= set(file.attrs):
-            return None
-        variables = [file[name] for name in str(file.attrs["axes"]).split()]
-        jitter, seed = json.loads(str(file.attrs["stream"]))
-        return Coordinates(
-            [(str(variable.attrs["field"]), _plain(variable[...])) for variable in variables],
-            str(file.attrs["sampling"]),
-            file.dimensions["repeat"].size if "repeat" in file.dimensions else 1,
-            (jitter, seed),
-            str(file.attrs["heights"]),
-        )
-
-
-def _plain(values: NDArray[Any]) -> NDArray[Any]:
-    """Values with texts as Python has them."""
-    if values.dtype != object:
-        return values
-    return np.array([text.decode() if isinstance(text, bytes) else text for text in values], object)
-
-
 def read_dataset(path: Path, axes: Sequence[str] | None = None) -> xarray.Dataset:
     """The results of a sweep, read from the file on demand until the dataset is closed.
 
@@ -235,30 +162,3 @@ def read_dataset(path: Path, axes: Sequence[str] | None = None) -> xarray.Datase
     renamed = dataset.rename(names).assign_attrs(axes=" ".join(axes))
     renamed.set_close(dataset.close)
     return renamed
-
-
-def slabs(shape: Sequence[int], start: int, stop: int) -> Iterator[tuple[Slab, int]]:
-    """Yield the boxes, in order, that elements start to stop - 1 of an array make up, each with its number of them."""
-    if start >= stop:
-        return
-    if len(shape) == 1:
-        yield (slice(start, stop),), stop - start
-        return
-    inner = math.prod(shape[1:])
-    first, last = start // inner, (stop - 1) // inner
-    if first == last:
-        yield from _within(first, slabs(shape[1:], start - first * inner, stop - first * inner))
-        return
-    whole_from, whole_to = -(-start // inner), stop // inner
-    if start % inner:
-        yield from _within(first, slabs(shape[1:], start % inner, inner))
-    if whole_to > whole_from:
-        rest = tuple(slice(0, n) for n in shape[1:])
-        yield (slice(whole_from, whole_to), *rest), (whole_to - whole_from) * inner
-    if stop % inner:
-        yield from _within(last, slabs(shape[1:], 0, stop % inner))
-
-
-def _within(index: int, inner: Iterator[tuple[Slab, int]]) -> Iterator[tuple[Slab, int]]:
-    for slab, count in inner:
-        yield (slice(index, index + 1), *slab), count

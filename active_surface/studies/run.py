@@ -19,12 +19,13 @@ import numpy as np
 from active_surface.arrays import IntArray
 from active_surface.studies.chunk_store import ChunkStore
 from active_surface.studies.cluster import records_on
-from active_surface.studies.dataset import differences, key_of, read_dataset, renew_labels, write_dataset
+from active_surface.studies.dataset import read_dataset, renew_labels, write_dataset
 from active_surface.studies.engine import Engine
 from active_surface.studies.growth import Kept, kept_paths
 from active_surface.studies.lock import alone_in
 from active_surface.studies.pictures import draw_sweep
 from active_surface.studies.record import KIND, OUTCOMES, Records
+from active_surface.studies.stored import differences, key_of
 from active_surface.studies.study import Study
 from active_surface.studies.validity import model_warnings
 from coupling import ProgressCallback, no_progress

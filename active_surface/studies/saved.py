@@ -7,8 +7,9 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from active_surface.studies.dataset import differences, key_of, read_dataset
+from active_surface.studies.dataset import read_dataset
 from active_surface.studies.read import read_study
+from active_surface.studies.stored import differences, key_of, whole
 from active_surface.studies.study import Study
 from coupling.case import CaseError, read_case
 
@@ -35,7 +36,7 @@ def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Da
         if others:
             raise ValueError(f"{EXPECTED} of {study.name}; got {path}, which is of other {' and '.join(others)}")
         return study, read_dataset(path, [axis.name for axis in study.points.axes])
-    with read_dataset(path) as opened:
+    with whole(path), read_dataset(path) as opened:
         texts = {name: str(opened.attrs[name]) for name in ("study", "case")}
     if not texts["study"]:
         raise ValueError(f"{EXPECTED}; got {path}, whose study was made without a file")
@@ -45,7 +46,8 @@ def read_sweep(path: Path, study: Study | None = None) -> tuple[Study, xarray.Da
             file.parent.mkdir()
             file.write_text(texts[name], encoding="utf-8")
         try:
-            dataset = read_dataset(path)
+            with whole(path):
+                dataset = read_dataset(path)
             points = _points_file(dataset, Path(folder, "points.csv"))
             return read_study(files["study"], read_case(files["case"]), points), dataset
         except CaseError as error:

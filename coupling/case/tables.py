@@ -11,7 +11,7 @@ from coupling.case.actuators import ActuatorCase, LatticeCase
 from coupling.case.friction import AnyFriction
 from coupling.case.plates import AnyPlate
 from coupling.case.table import WRONG, Contradictions, KeyedTable, Table
-from coupling.case.values import Force, Gravity, Length, Mass, Point, Time, Velocity
+from coupling.case.values import Force, Gravity, Length, Mass, Point, PositiveLength, PositiveTime, Velocity
 
 MAX_STEPS: Final = 100_000_000  # of a fixed scheme
 
@@ -25,7 +25,7 @@ class PartCase(Table):
     """Where it is at the start; on the plate, or counted from the platform."""
     velocity: Velocity = (0.0, 0.0)
     """How fast it moves at the start, over the platform if there is one."""
-    size: Length | None = Field(default=None, gt=0, examples=["100 um"])
+    size: PositiveLength | None = Field(default=None, gt=0, examples=["100 um"])
     """The side of its footprint, for the check of curvature; without it the root of the contact area."""
     squeeze: Force = Field(default=0.0, ge=0)
     """A constant force that presses it onto the surface, along the normal."""
@@ -36,7 +36,7 @@ class PartCase(Table):
 class RunCase(KeyedTable):
     """The run, in s and m/s^2."""
 
-    duration: Time = Field(gt=0, examples=["50 ms"])
+    duration: PositiveTime = Field(gt=0, examples=["50 ms"])
     """How long the part is followed."""
     start: Literal["rest", "steady"] = "rest"
     """Whether a plate with inertia begins at rest, or in the steady state of drives that have always been running."""
@@ -46,11 +46,11 @@ class RunCase(KeyedTable):
     """The error of one step of the integrator, relative to half of the plate's longer side."""
     surface_tolerance: StrictFloat = Field(default=1e-8, ge=1e-13, le=1e-3)
     """The error of the moving surface, relative to a stroke."""
-    frames: StrictInt | None = Field(default=None, ge=2, examples=[200])
+    frames: StrictInt | None = Field(default=None, ge=2, le=1_000_000, examples=[200])
     """The time steps in the result files; without it 20 a cycle, from 100 to 1000."""
     scheme: Literal["events", "fixed", "paper"] = "events"
     """How the path is found: by located events, or for comparison by fixed steps."""
-    time_step: Time | None = Field(default=None, gt=0, examples=["0.1 us"])
+    time_step: PositiveTime | None = Field(default=None, gt=0, examples=["0.1 us"])
     """That of fixed steps; without it 1e-4 of the shortest stroke."""
     after_detachment: Literal["stop", "fly"] = "stop"
     """Whether the run ends where the part comes off, or follows its flight."""

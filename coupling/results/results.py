@@ -15,6 +15,7 @@ from coupling.case import Case
 from coupling.display import DisplaySurface, display_surface, most_deflected, moving_heights, onto_surface
 from coupling.drives import frame_times
 from coupling.environment import versions
+from coupling.files import check_room
 from coupling.margins import MarginCurves, event_actuators, margin_curves
 from coupling.part import build_friction
 from coupling.progress import ProgressCallback, no_progress
@@ -29,6 +30,7 @@ from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
 
+PART_STEP, ROOM = 500, 2_000_000  # bytes of a step of the part, and of what does not grow with the run
 AT_ONCE = 64  # time steps whose deflections are computed and written together
 UNITS = {
     "time": "s",
@@ -93,6 +95,9 @@ def write_results(
     law = build_friction(case)
     curves = margin_curves(case, scene.surface, trajectory, law)
     by = event_actuators(case, scene, trajectory, law)
+    check_room(
+        folder, _needed(_fields(ground, heights[:1], speeds[:1], len(scene.lifts), times[:1]), times, trajectory)
+    )
     spread: list[FloatArray] = []
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
@@ -130,6 +135,12 @@ def write_results(
     if csv:
         files.append(write_csv(trajectory, folder / f"{case.name}.csv", times, friction is not None, rough))
     return tuple(files)
+
+
+def _needed(fields: dict[str, NDArray[np.float32]], times: FloatArray, trajectory: Trajectory) -> int:
+    """How many bytes the files take at most; fields: of one time step."""
+    rows = sum(np.asarray(getattr(trajectory, key)).nbytes for key in Samples._fields)
+    return len(times) * (sum(values.nbytes for values in fields.values()) + PART_STEP) + rows + ROOM
 
 
 def _contact_fields(trajectory: Trajectory, times: FloatArray, friction: KogutEtsion | None) -> dict[str, FloatArray]:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-import re
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
@@ -16,15 +14,15 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
 from coupling.case import Case
-from coupling.environment import versions
+from coupling.hdf5 import DEADLY, check_hdf5, survives
 from coupling.margins import MarginCurves
 from coupling.results.case_record import CaseRecord, case_of
+from coupling.results.opening import EXPECTED, opened, readable
 from coupling.results.other_file import described, meant
 from coupling.summary import summary_of
-from particle import Event, EventKind, Outcome, Samples, dataset_of, table_of
+from particle import Event, EventKind, Outcome, Samples, State, dataset_of, table_of
 
 if TYPE_CHECKING:
     import pandas
@@ -40,13 +38,6 @@ OF_PART = ("velocity", "state", "normal_force", "friction_force")
 OVER_TIME = ("time", "position", *OF_PART)
 LOSSES = (EventKind.DETACHES, EventKind.LEAVES_PLATE, EventKind.OVERLOADS)
 LOST = tuple(outcome.value for outcome in (Outcome.DETACHED, Outcome.LEFT_PLATE, Outcome.OVERLOADED))
-EXPECTED = "Input path must be a result of `active-surface run`"
-UNREADABLE = (AttributeError, IndexError, KeyError, OSError, RuntimeError, TypeError, ValueError)
-"""What reading raises where something is not there, or not as a run writes it."""
-LACKS = re.compile(r"\bobject '([^']+)' doesn't exist|attribute: '([^']+)'")
-OF_HDF5 = re.compile(r"(?:Unable to|Can't) (?:synchronously )?[\w ]+ \((.*)\)")
-FIELDS = re.compile(r"(\w+)\.(?:__init__|__new__)\(\) missing [^:]+: (.+)")
-"""How h5py says that something is missing, and how it wraps what HDF5 says; how Python does of a record."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +72,7 @@ class SavedRun:
 
         Raises ValueError when the file holds no valid case.
         """
-        with _opened(self.part_path) as file, _readable(self.part_path, self.part_path, "whose case is damaged"):
+        with opened(self.part_path) as file, readable(self.part_path, self.part_path, "whose case is damaged"):
             ours = file["active_surface"]
             files = {name: data[()].tobytes() for name, data in ours["files"].items()}
             text, source = ours["case"]["json"][()].tobytes().decode(), ours.attrs["case"]
@@ -133,10 +124,12 @@ class SavedRun:
         rows = np.arange(len(self.time))[steps]
         n = len(self.points)
         with (
-            _opened(self.plate_path) as file,
-            _readable(self.plate_path, self.part_path, f"whose field {name} is damaged"),
+            opened(self.plate_path) as file,
+            readable(self.plate_path, self.part_path, f"whose field {name} is damaged"),
         ):
             data = file[f"VTKHDF/PointData/{name}"]
+            if len(data) < len(self.time) * n:
+                raise ValueError(f"it lacks some of {len(self.time)} steps")
             values = np.empty((rows.size, n, *data.shape[1:]), data.dtype)
             for row, step in zip(values, np.atleast_1d(rows).tolist(), strict=True):
                 row[...] = data[step * n : (step + 1) * n]
@@ -163,12 +156,12 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
         There is no such file, or it is no result of a run, is damaged, or has no other beside it.
     """
     paths = _pair(Path(path))
-    with _opened(paths["plate"]) as plate, _opened(paths["part"]) as part:
-        with _readable(path, paths["part"]):
+    with opened(paths["plate"]) as plate, opened(paths["part"]) as part:
+        with readable(path, paths["part"]):
             k = min(int(file["VTKHDF/Steps"].attrs["NSteps"]) for file in (plate, part))
         if k == 0:
             raise ValueError(f"{EXPECTED}; got {paths['part']}, to which no step was written")
-        with _readable(path, paths["part"]):
+        with readable(path, paths["part"]):
             run = _read(plate, part, paths, k)
             _check(run, k)
             return replace(run, complete=run.complete and bool(run.time[-1] >= run.summary["end_time"]))
@@ -211,8 +204,29 @@ def _check(run: SavedRun, k: int) -> None:
         if len(getattr(run, name)) != k:
             raise ValueError(f"{name} has {len(getattr(run, name))} of {k} steps")
     _check_finite(time=run.time, points=run.points, position=run.position, rows=run.rows.position)
+    _check_shapes("rows", run.rows._asdict(), {"position": 2, "velocity": 2})
+    _check_shapes("margins", run.margins._asdict(), {})
+    if len(run.event_actuators) != len(run.events):
+        raise ValueError(f"events has {len(run.event_actuators)} actuators of {len(run.events)}")
+    for name, columns in (("position", 3), ("velocity", 3)):
+        if getattr(run, name).shape != (k, columns):
+            raise ValueError(f"{name} has the shape {getattr(run, name).shape}, not {(k, columns)}")
+    for states in (run.state, run.rows.state):
+        if states.dtype.kind not in "iu" or not np.isin(states, list(State)).all():
+            raise ValueError("a state is none of the part's")
+    if (np.diff(run.time) <= 0).any() or (np.diff(run.rows.time) < 0).any():
+        raise ValueError("a time is earlier than the one before")
     if run.triangles.min() < 0 or run.triangles.max() >= len(run.points):
         raise ValueError(f"a triangle has a corner that is none of the {len(run.points)} points")
+
+
+def _check_shapes(group: str, arrays: Mapping[str, NDArray], columns: Mapping[str, int]) -> None:
+    """Raises ValueError unless all arrays of a group are as long, and have one number a row, or so many as stated."""
+    length = len(next(iter(arrays.values())))
+    for name, array in arrays.items():
+        shape = (length, columns[name]) if name in columns else (length,)
+        if np.shape(array) != shape:
+            raise ValueError(f"{group} has {name} of the shape {np.shape(array)}, not {shape}")
 
 
 def _check_finite(**arrays: NDArray) -> None:
@@ -238,42 +252,6 @@ def _pair(path: Path) -> dict[str, Path]:
         if _run(plate) == _run(part):
             return {"plate": plate, "part": part}
     raise ValueError(f"{EXPECTED}; got {path}, but {found['plate'][0]} and {found['part'][0]} are of different runs")
-
-
-def _message(error: Exception) -> str:
-    """What is wrong, on one line."""
-    if isinstance(error, ValidationError):
-        return ", ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
-    text = str(error.args[0] if isinstance(error, KeyError) else error).replace("\n", " ")
-    if missing := LACKS.search(text):
-        return f"it has no {missing[1] or missing[2]}"
-    if lacking := FIELDS.search(text):
-        return f"its {lacking[1].lower()} lacks {lacking[2].replace(chr(39), '')}"
-    inner = OF_HDF5.fullmatch(text)
-    return inner[1] if inner else text
-
-
-def _written(path: Path) -> str:
-    """That another version of the program wrote a file, if so."""
-    try:
-        with h5py.File(path, "r") as file:
-            then = json.loads(file["active_surface"].attrs["versions"])["active-surface"]
-    except UNREADABLE:
-        return ""
-    now = versions()["active-surface"]
-    return "" if then == now else f"; version {then} wrote it, and this is {now}: run its case again"
-
-
-@contextmanager
-def _readable(path: str | os.PathLike[str], part: Path, but: str = "which is damaged") -> Iterator[None]:
-    """Raises ValueError, with the file and what is wrong with it, where what is read from it is not as it must be.
-
-    part: the file of the run that names the version that wrote it.
-    """
-    try:
-        yield
-    except UNREADABLE as error:
-        raise ValueError(f"{EXPECTED}; got {path}, {but}: {_message(error)}{_written(part)}") from error
 
 
 def name_of(path: Path) -> str:
@@ -303,21 +281,8 @@ def _split(path: Path) -> tuple[str, str | None, bool]:
 
 
 def _run(path: Path) -> str:
-    with _opened(path) as file:
+    if not survives(path):
+        raise ValueError(f"{EXPECTED}; got {path}, which is damaged: {DEADLY}")
+    with opened(path) as file, readable(path, path):
+        check_hdf5(path, "VTKHDF/PointData")
         return str(file["active_surface"].attrs["run"])
-
-
-@contextmanager
-def _opened(path: Path) -> Iterator[h5py.File]:
-    if not h5py.is_hdf5(path):
-        raise ValueError(f"{EXPECTED}; got {path}, which is no HDF5 file")
-    try:
-        file = h5py.File(path, "r")
-    except BlockingIOError as error:  # its writer keeps others out
-        raise ValueError(f"{EXPECTED}; got {path}, which is being written: its run has not ended") from error
-    except OSError as error:
-        raise ValueError(f"{EXPECTED}; got {path}, which is damaged: {_message(error)}") from error
-    with file:
-        if "VTKHDF" not in file or "run" not in getattr(file.get("active_surface"), "attrs", ()):
-            raise ValueError(f"{EXPECTED}; got {path}, which is HDF5 but holds something else")
-        yield file

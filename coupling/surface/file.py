@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 
 from coupling.files import whole_file
+from coupling.hdf5 import UNREADABLE, check_hdf5, survives
 from particle import SurfaceMotion
 from particle.drives import DriveTable
 from particle.surface import BuiltCells, Cells
@@ -88,6 +89,17 @@ def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
     path = Path(path)
     if path.exists() and not is_surface(path):
         raise ValueError(f"Input path of read_surface must be a file that write_surface wrote; got {path}")
+    try:
+        check_hdf5(path)
+        return _read(path)
+    except UNREADABLE as error:
+        if isinstance(error, OSError) and not path.is_file():
+            raise
+        why = "is damaged, or of another version"
+        raise ValueError(f"Input path of read_surface must be whole; got {path}, which {why}") from error
+
+
+def _read(path: Path) -> SurfaceMotion:
     with h5py.File(path, "r") as file:
         tables = {
             group: {name: value[()] if value.shape else value[()].item() for name, value in file[group].items()}
@@ -106,7 +118,7 @@ def read_surface(path: str | os.PathLike[str]) -> SurfaceMotion:
 
 def is_surface(path: Path) -> bool:
     """Whether `write_surface` wrote a file."""
-    if not h5py.is_hdf5(path):
+    if not h5py.is_hdf5(path) or not survives(path):
         return False
     with h5py.File(path, "r") as file:
         return bool(file.attrs.get("kind") == KIND and file.attrs.get("version") == VERSION)

@@ -43,6 +43,7 @@ CONTENTS = {  # the pages below a page, by caption
             "paper-readings",
             "paper-open-points",
             "limits",
+            "trust",
             "benchmarks",
         ],
         "Reference": ["conventions", "api/index"],

@@ -271,3 +271,60 @@ def test_files_that_cannot_be_read_are_named(tmp_path, capfd, monkeypatch, name,
 def test_a_unit_that_is_no_length_is_refused(unit):
     with pytest.raises(ValueError, match=re.escape(f"Input unit of read must be a positive length in m; got {unit!r}")):
         read(L_WITH_HOLE, unit)
+
+
+ISLANDS = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+6
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 5 0 0
+5 6 0 0
+6 5 1 0
+$EndNodes
+$Elements
+2
+1 2 2 0 1 1 2 3
+2 2 2 0 1 4 5 6
+$EndElements
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "wrong"),
+    [
+        ("", "", "2 pieces that do not hang together: a plate is one"),
+        ("1 4 5 6", "1 4 5 9", "it is damaged, or its parts do not fit together"),
+        ("6\n1 0 0 0", "99999999999\n1 0 0 0", "says that it has 99999999999 of something"),
+        ("2\n1 2 2", "99999999999\n1 2 2", "says that it has 99999999999 of something"),
+    ],
+)
+def test_a_file_whose_numbers_do_not_fit_is_refused(tmp_path, old, new, wrong):
+    (tmp_path / "mesh.msh").write_text(ISLANDS.replace(old, new) if old else ISLANDS)
+    with pytest.raises(ValueError, match=re.escape(wrong)):
+        read(tmp_path / "mesh.msh")
+
+
+def test_a_cell_on_a_point_that_is_not_there_is_refused(tmp_path):
+    text = meshio.Mesh(np.eye(3), [("triangle", np.array([[0, 1, 2]]))])
+    text.write(tmp_path / "mesh.vtu", binary=False)
+    path = tmp_path / "mesh.vtu"
+    path.write_text(re.sub(r"0\s+1\s+2", "0 1 7", path.read_text(), count=1))
+    with pytest.raises(ValueError, match=r"1 triangles between points that are not there, of 3: .* \[0, 1, 7\]"):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    ("place", "wrong"),
+    [("1e300", "2 points more than 1e+06 m from the origin"), ("1e-300", "all its points within 1e-300 m")],
+)
+def test_a_mesh_has_a_size(tmp_path, place, wrong):
+    nodes = f"3\n1 0 0 0\n2 {place} 0 0\n3 0 {place} 0\n"
+    cells = "1\n1 2 2 0 1 1 2 3\n"
+    head = ISLANDS.partition("$Nodes")[0]
+    (tmp_path / "mesh.msh").write_text(f"{head}$Nodes\n{nodes}$EndNodes\n$Elements\n{cells}$EndElements\n")
+    with pytest.raises(ValueError, match=re.escape(wrong)):
+        read(tmp_path / "mesh.msh")

@@ -14,8 +14,9 @@ from pydantic import TypeAdapter
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.axis import Axis
-from active_surface.studies.dataset import LOGARITHMIC, key_of, read_dataset
+from active_surface.studies.dataset import LOGARITHMIC, read_dataset
 from active_surface.studies.points import longest
+from active_surface.studies.stored import key_of, whole
 from active_surface.studies.threshold import Threshold, read_threshold
 from coupling.case import Field
 
@@ -64,11 +65,15 @@ def read_findings(path: Path) -> Iterator[Findings]:
     """Yield the findings in a file that a sweep left, which is closed at the end; ValueError when it is none."""
     if key_of(path) is None:
         raise ValueError(f"{path}: must be the netCDF file of a sweep; it is not")
-    with read_dataset(path) as dataset:
+    with whole(path):
+        dataset = read_dataset(path)
+    with dataset:
         if not {"axes", "rim"} <= dataset.attrs.keys():
             raise ValueError(f"{path}: must be of a sweep by this version of active-surface; it is of an older one")
-        condition = tomllib.loads(dataset.attrs["study"]).get("map", {}).get("threshold")
-        yield Findings.of(path.stem, dataset, read_threshold(condition) if condition else None)
+        with whole(path):
+            condition = tomllib.loads(dataset.attrs["study"]).get("map", {}).get("threshold")
+            findings = Findings.of(path.stem, dataset, read_threshold(condition) if condition else None)
+        yield findings
 
 
 def _axis(name: str, array: xarray.DataArray, listed: bool) -> Axis:

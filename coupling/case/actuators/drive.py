@@ -11,9 +11,22 @@ from pydantic_core import CoreSchema, core_schema
 
 from coupling.case.actuators.heights import heights_of, limit_faults
 from coupling.case.table import WRONG, Contradictions, KeyedTable
-from coupling.case.values import Angle, Force, Frequency, Length, Point, Stiffness, Time, quoted
+from coupling.case.values import (
+    Angle,
+    Force,
+    Frequency,
+    Length,
+    Point,
+    PositiveForce,
+    PositiveLength,
+    Stiffness,
+    Time,
+    quoted,
+)
 
 ENDLESS: Final = "endless"
+MAX_PASSES: Final = 1_000_000_000
+"""Cycles, or repeats, of a drive."""
 MIN_SPACING: Final = 1e-12  # of points of a table, over its whole time
 
 
@@ -25,6 +38,8 @@ class _Passes:
 
     def validate(self, value: object) -> object:
         if value == ENDLESS or (isinstance(value, int) and not isinstance(value, bool) and value >= 1):
+            if isinstance(value, int) and value > MAX_PASSES:
+                raise ValueError(f'must be at most {MAX_PASSES}, or "{ENDLESS}"; got {quoted(value)}')
             return value
         raise ValueError(f"must be {self.expected}; got {quoted(value)}")
 
@@ -32,7 +47,7 @@ class _Passes:
         return core_schema.no_info_plain_validator_function(self.validate)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return {"anyOf": [{"type": "integer", "minimum": 1}, {"const": ENDLESS}]}
+        return {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_PASSES}, {"const": ENDLESS}]}
 
 
 @dataclass(frozen=True)
@@ -199,7 +214,7 @@ class DriveCase(Driven):
     """One cycle takes one over this, and the dwells."""
     cycle: Cycle = "up-down"
     """Up in the first half and down in the second; up once and held; or sines."""
-    cycles: StrictInt | None = Field(default=None, ge=1, examples=[5])
+    cycles: StrictInt | None = Field(default=None, ge=1, le=MAX_PASSES, examples=[5])
     """How many cycles there are, after which it rests where it began; without it they do not end."""
     dwell: Time = Field(default=0.0, ge=0)
     """The rest after each stroke, up and down."""
@@ -224,9 +239,9 @@ class _Place(KeyedTable):
     """In place of a stroke: it floats and pushes with this force; negative: it pulls."""
     stiffness: Stiffness | None = Field(default=None, gt=0)
     """That of a spring between actuator and plate; without it there is none. Not with a force."""
-    max_stroke: Length | None = Field(default=None, gt=0, examples=["150 um"])
+    max_stroke: PositiveLength | None = Field(default=None, gt=0, examples=["150 um"])
     """The largest height, up or down, that it can reach. Not with a force."""
-    max_force: Force | None = Field(default=None, gt=0, examples=["100 mN"])
+    max_force: PositiveForce | None = Field(default=None, gt=0, examples=["100 mN"])
     """The largest force, up or down, that it can bear."""
 
 

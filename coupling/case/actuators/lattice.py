@@ -9,18 +9,20 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 from pydantic import Field, GetCoreSchemaHandler, StrictInt, ValidationError, ValidatorFunctionWrapHandler
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case.actuators.drive import ActuatorCase, Cycle, Driven, Points, Ramp, Repeats, SegmentCase
+from coupling.case.actuators.drive import MAX_PASSES, ActuatorCase, Cycle, Driven, Points, Ramp, Repeats, SegmentCase
 from coupling.case.mistakes import RULES
 from coupling.case.table import WRONG, Contradictions
 from coupling.case.values import (
+    RANGES,
     Amount,
     Choice,
     Condition,
     Directed,
-    Force,
     Formula,
     Length,
     Point,
+    PositiveForce,
+    PositiveLength,
     Quantity,
     adapter,
     quoted,
@@ -47,6 +49,9 @@ def broken_rule(key: str, value: float) -> str:
         adapter(ActuatorCase, key).validate_python(value)
     except ValidationError as error:
         detail: Any = error.errors()[0]
+        if detail["type"] == "value_error":
+            least, most = RANGES[AMOUNTS[key].unit]
+            return f"from {least:g} to {most:g} {AMOUNTS[key].unit}"
         return RULES[detail["type"]].format(**detail.get("ctx", {}))
     return ""
 
@@ -124,7 +129,7 @@ class LatticeCase(Driven):
     """As of an actuator, or an expression and its unit."""
     cycle: Cycle = "up-down"
     """As of an actuator, the same for all."""
-    cycles: StrictInt | None = Field(default=None, ge=1, examples=[5])
+    cycles: StrictInt | None = Field(default=None, ge=1, le=MAX_PASSES, examples=[5])
     """As of an actuator, the same for all."""
     dwell: Annotated[float | Formula, AMOUNTS["dwell"], _Ruled("dwell")] = 0.0
     """As of an actuator, or an expression and its unit."""
@@ -140,9 +145,9 @@ class LatticeCase(Driven):
     """As of an actuator, the same for all."""
     repeats: Repeats = 1
     """As of an actuator, the same for all."""
-    max_stroke: Length | None = Field(default=None, gt=0, examples=["150 um"])
+    max_stroke: PositiveLength | None = Field(default=None, gt=0, examples=["150 um"])
     """As of an actuator, the same for all."""
-    max_force: Force | None = Field(default=None, gt=0, examples=["100 mN"])
+    max_force: PositiveForce | None = Field(default=None, gt=0, examples=["100 mN"])
     """As of an actuator, the same for all."""
     delay: Annotated[float | Formula, AMOUNTS["delay"], _Ruled("delay")] = Field(
         default=0.0, examples=["0.05 * (row + column) ms"]

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from coupling.case.actuators import ActuatorCase
+from coupling.case.checks.cycles import check_cycles
 from coupling.case.checks.kinds import with_meant_kinds
 from coupling.case.checks.parts import Parts
 from coupling.case.checks.places import check_places, mesh_of, stand_of
@@ -38,6 +39,7 @@ def check(written: Mapping[str, Any], context: Any = None) -> Checked:
     parts = Parts(dict(tables) if tables else written, written, context)
     points, in_points = _friction_points(parts)
     lattice, misplaced = _places(parts, errors)
+    misplaced += check_cycles(parts, lattice)
     reported = {error["loc"] for error in errors}
     errors += errors_of(mistake for mistake in (*in_kinds, *in_points, *misplaced) if mistake[0] not in reported)
     return Checked(tables, points, lattice, errors)

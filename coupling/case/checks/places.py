@@ -110,9 +110,11 @@ def _cell_size(outline: PlateCase, cell_size: float | None, plate: Any) -> Mista
     if not isinstance(outline, ShapeCase) or cell_size is None:
         return
     most, written = outline.measures[0] / 2, _written(plate, "cell_size")
+    got = quoted(written) if isinstance(written, str) else length_text(written)
+    if cell_size < (least := outline.min_cell_size):
+        yield ("plate", "cell_size"), f"must be at least {length_text(least, written_unit(written))}; got {got}"
     if cell_size > most * (1 + SAME_PLACE):
         limit = f"half of the plate's smallest width, {length_text(most, written_unit(written))}"
-        got = quoted(written) if isinstance(written, str) else length_text(written)
         yield ("plate", "cell_size"), f"must not exceed {limit}; got {got}"
 
 

@@ -17,7 +17,7 @@ from pydantic import (
 from coupling.case.friction import points
 from coupling.case.mistakes import Location, Mistake
 from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, validate_with
-from coupling.case.values import Area, FileBeside, Force, Length, Pressure, SurfaceEnergy
+from coupling.case.values import FileBeside, Force, PositiveArea, PositiveLength, PositivePressure, SurfaceEnergy
 from particle import PAPER_PLASTICITY_INDEX
 from particle import KogutEtsionInput as Default
 
@@ -33,22 +33,22 @@ class KogutEtsionCase(KeyedTable):
     """The law: rough surfaces with adhesion, after Kogut and Etsion."""
     preset: Literal["paper"] | None = None
     """All parameters as the paper has them, the plasticity index 4.9128 among them."""
-    roughness: Length = Field(default=Default.roughness, gt=0)
+    roughness: PositiveLength = Field(default=Default.roughness, gt=0)
     """The standard deviation of the heights of asperities."""
-    contact_area: Area = Field(default=Default.contact_area, gt=0)
+    contact_area: PositiveArea = Field(default=Default.contact_area, gt=0)
     """The nominal area of contact, the footprint of the part."""
-    hardness: Pressure = Field(default=Default.hardness, gt=0)
+    hardness: PositivePressure = Field(default=Default.hardness, gt=0)
     """The hardness of the softer material."""
     poisson_ratio: StrictFloat = Field(default=Default.poisson_ratio, ge=0, lt=0.5)
     """That of the softer material."""
     adhesion_energy: SurfaceEnergy = Field(default=Default.adhesion_energy, gt=0)
     """The work of adhesion of the two surfaces."""
-    plasticity_index: StrictFloat = Field(default_factory=_plasticity_index, gt=0, examples=[2.5])
+    plasticity_index: StrictFloat = Field(default_factory=_plasticity_index, ge=0.001, le=1000, examples=[2.5])
     """How far asperities yield: well below 1 they are elastic, well above plastic. Without it 2.5."""
     # The model takes the root of 1 - 3.717e-4 / asperity_beta^2.
-    asperity_beta: StrictFloat = Field(default=Default.asperity_beta, gt=math.sqrt(3.717e-4))
+    asperity_beta: StrictFloat = Field(default=Default.asperity_beta, gt=math.sqrt(3.717e-4), le=1000)
     """Density of asperities times their radius times the roughness."""
-    intermolecular_distance: Length = Field(default=Default.intermolecular_distance, gt=0)
+    intermolecular_distance: PositiveLength = Field(default=Default.intermolecular_distance, gt=0)
     """The distance of atoms in equilibrium."""
     coefficients: Literal["printed", "unrounded"] = "printed"
     """Numbers of the model as its authors printed them, or without their rounding."""
@@ -81,11 +81,11 @@ class CoulombCase(KeyedTable):
 
     model: Literal["coulomb"] = "coulomb"
     """The law: in proportion to the load, with adhesion added to it."""
-    coefficient: StrictFloat = Field(ge=0, examples=[0.3])
+    coefficient: StrictFloat = Field(ge=0, le=1e6, examples=[0.3])
     """Friction force over load while the part slides."""
     adhesion: Force = Field(default=0.0, ge=0)
     """A force added to the load; the part comes off where it is pulled harder."""
-    static_coefficient: StrictFloat | None = Field(default=None, ge=0, examples=[0.4])
+    static_coefficient: StrictFloat | None = Field(default=None, ge=0, le=1e6, examples=[0.4])
     """The same while the part rests; without it as while it slides."""
 
     @classmethod
@@ -111,7 +111,7 @@ class TableCase(Table):
     """Net loads, increasing; the first is minus the pull-off force."""
     limits: points.Forces | None = Field(default=None, examples=[["4 nN", "18 nN", "35 nN", "52 nN"]])
     """The largest friction force at each load; it does not fall."""
-    static_ratio: StrictFloat = Field(default=1.0, ge=1)
+    static_ratio: StrictFloat = Field(default=1.0, ge=1, le=1e6)
     """The limit at rest over that of sliding."""
     file: FileBeside | None = Field(default=None, examples=["friction.csv"])
     """A CSV file with a column of each, in place of the two lists, beside the case file."""

@@ -54,7 +54,8 @@ def meaning_of(key: str, table: Mapping[str, Any], fields: Fields, why_wrong: Wh
 
 def _meaning(key: str, table: Mapping[str, Any], fields: Fields, why_wrong: WhyWrong) -> Meaning | None:
     options = sorted(synonyms(key, fields), key=lambda option: any(name in table for name in option.keys))
-    units = {quantity_of(fields[o.keys[0]].annotation, fields[o.keys[0]].metadata) for o in options}
+    quantities = [quantity_of(fields[o.keys[0]].annotation, fields[o.keys[0]].metadata) for o in options]
+    units = {quantity.unit if quantity else None for quantity in quantities}
     if isinstance(table[key], float) and len(units) > 1:  # SI, in Python: a number does not tell which it is
         return Meaning(options[0].keys, f"did you mean {' or '.join(option.keys[0] for option in options)}?")
     for option in options:

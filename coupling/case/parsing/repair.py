@@ -5,11 +5,16 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from coupling.case.mistakes import in_double_brackets
 
 MAX_LINES: Final = 200  # that are repaired one by one
+MAX_LINE: Final = 2000  # characters of a line that is repaired
+MAX_READ: Final = 50_000_000  # characters, in all passes over a text
+MAX_DEPTH: Final = 20  # tables and lists inside each other
+TOO_DEEP: Final = "tables or lists are nested too deeply (at end of document)"
+TOO_LONG: Final = "a number has too many digits (at end of document)"
 
 _CURLY: Final = str.maketrans("“”„‟″‘’‚′", '"""""\'\'\'\'')
 _BLANK: Final = str.maketrans("\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{ZERO WIDTH NO-BREAK SPACE}", "   ")
@@ -78,15 +83,34 @@ _UNLIKE: Final = re.compile(r"""(=\s*)(?:'([^'"#]*)"|"([^'"#]*)')(?=\s*(?:#|$))"
 _QUOTES: Final = _Rule(_UNLIKE, r'\1"\2\3"', "a text ends with the quote that it begins with")
 
 
+def loads(text: str) -> dict[str, Any]:
+    """The tables of a text; raises TOMLDecodeError where it has none, or they are nested too deeply."""
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except RecursionError:
+        raise tomllib.TOMLDecodeError(TOO_DEEP) from None
+    except ValueError:  # of an integer, whose digits Python limits
+        raise tomllib.TOMLDecodeError(TOO_LONG) from None
+    inner: list[Any] = [tables]
+    for _ in range(MAX_DEPTH):
+        both = [item for item in inner if isinstance(item, (dict, list)) and item]
+        if not both:
+            return tables
+        inner = [one for item in both for one in (item.values() if isinstance(item, dict) else item)]
+    raise tomllib.TOMLDecodeError(TOO_DEEP)
+
+
 def repaired(text: str) -> tuple[str, list[Wrong]]:
     """The text of valid TOML that is meant by one, and what was wrong with it; or the text as far as it could be read.
 
     The text is valid where `tomllib` reads it, which is for the caller to see.
     """
     text, wrong = _typographic(text)
-    for _ in range(MAX_LINES):
+    for _ in range(min(MAX_LINES, 1 + MAX_READ // max(1, len(text)))):
         try:
-            tomllib.loads(text)
+            loads(text)
         except tomllib.TOMLDecodeError as error:
             reason, number = _place(str(error), text)
             lines = text.split("\n")
@@ -95,8 +119,9 @@ def repaired(text: str) -> tuple[str, list[Wrong]]:
                 wrong.append(single[1])
                 text = single[0]
                 continue
-            number = next((n for n, one in enumerate(lines, 1) if _UNLIKE.search(one)), number)
-            rule = next((rule for rule in (_QUOTES, *_RULES) if rule.pattern.search(lines[number - 1])), None)
+            number = next((n for n, one in enumerate(lines, 1) if len(one) <= MAX_LINE and _UNLIKE.search(one)), number)
+            rules = (_QUOTES, *_RULES) if len(lines[number - 1]) <= MAX_LINE else ()
+            rule = next((rule for rule in rules if rule.pattern.search(lines[number - 1])), None)
             line = rule.pattern.sub(rule.right, lines[number - 1]) if rule else lines[number - 1]
             if rule is None or line == lines[number - 1]:
                 wrong.append(Wrong(number, "", f"is not valid TOML: {_readable(reason)}"))
@@ -112,7 +137,7 @@ def repaired(text: str) -> tuple[str, list[Wrong]]:
 def _typographic(text: str) -> tuple[str, list[Wrong]]:
     """A text with the quotes and blanks of programs, in place of those of word processors."""
     try:
-        tomllib.loads(text)
+        loads(text)
         return text, []  # where they stand in texts and comments
     except tomllib.TOMLDecodeError:
         plain = text.translate(_CURLY).translate(_BLANK)

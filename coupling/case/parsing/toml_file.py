@@ -29,8 +29,9 @@ from coupling.case.mistakes import (
     value_at,
 )
 from coupling.case.parsing.other_file import folder_text, what_else
-from coupling.case.parsing.repair import repaired
+from coupling.case.parsing.repair import loads, repaired
 from coupling.case.values import UNITS_REQUIRED
+from coupling.files import MAX_TEXT, contents
 from coupling.suggestion import near, near_file
 
 _TOKEN = re.compile(
@@ -138,7 +139,7 @@ def parse(path: str | os.PathLike[str], lenient: bool = False) -> TomlFile:
     """
     name = os.fspath(path)
     try:
-        data = Path(path).read_bytes()
+        data = contents(path, MAX_TEXT)
         if message := what_else(Path(path), data):
             raise _unreadable(name, message)
         text = text_of(data)
@@ -160,13 +161,13 @@ def parse(path: str | os.PathLike[str], lenient: bool = False) -> TomlFile:
         message = str(error)
         raise _unreadable(name, message if message.startswith("is ") else f"cannot be read: {message}") from None
     try:
-        return TomlFile(name, text, tomllib.loads(text))
+        return TomlFile(name, text, loads(text))
     except tomllib.TOMLDecodeError:
         right, wrong = repaired(text)
     problems = tuple(Problem(*one) for one in wrong)
     if lenient:
         with suppress(tomllib.TOMLDecodeError):
-            return TomlFile(name, text, tomllib.loads(right), problems, right)
+            return TomlFile(name, text, loads(right), problems, right)
     raise CaseError(name, problems)
 
 

@@ -2,7 +2,7 @@
 
 from coupling.case.plates.any_plate import PLATES, PLATFORM, AnyPlate, ShapelessCase, kind, outline_of
 from coupling.case.plates.plate import INERTIA, VON_KARMAN, PlateCase
-from coupling.case.plates.platform import RATES, MotionCase, PlatformCase, platform_of
+from coupling.case.plates.platform import RATES, AxisCase, MotionCase, PlatformCase, platform_of
 from coupling.case.plates.shapes import (
     AnnulusCase,
     DiscCase,

@@ -14,20 +14,22 @@ from pydantic_core import CoreSchema, core_schema
 
 from coupling.case.plates.plate import PlateCase
 from coupling.case.table import Contradictions
-from coupling.case.values import Angle, FileBeside, Length, Point, length_text, quoted
+from coupling.case.values import Angle, FileBeside, Point, PositiveLength, length_text, quoted
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
 
 CELLS_OF_A_DISC = 64 * math.pi
 """Without a cell size a plate has as many cells as a disc with 8 from centre to rim."""
+MAX_SLENDER = 1000.0  # times as long as wide
+MAX_CELLS = 25_000  # of a size that is given: halved for an estimate of the error, they fill some GB
 COARSER = 2.0  # times: the cells that refinement of a stretching plate begins with
 
 
 class ShapeCase(PlateCase):
     """A plate given by a few lengths in m, around the origin."""
 
-    cell_size: Length | None = Field(default=None, gt=0, examples=["50 um"])
+    cell_size: PositiveLength | None = Field(default=None, gt=0, examples=["50 um"])
     """The size of the mesh's cells, at most half of the smallest width; without it the mesh is refined as it needs."""
 
     @property
@@ -46,7 +48,16 @@ class ShapeCase(PlateCase):
 
     @cached_property
     def coarse_mesh(self) -> PlateMesh:
-        return self.mesh_of(self.measures[0] / 2)
+        width, area = self.measures
+        if not area <= MAX_SLENDER * width**2:
+            times = f"it is {area / width**2:.4g} times as long as wide" if width > 0 else "it has no width"
+            raise ValueError(f"must be of a plate at most {MAX_SLENDER:g} times as long as wide; {times}")
+        return self.mesh_of(width / 2)
+
+    @property
+    def min_cell_size(self) -> float:
+        """The smallest size [m] that its cells may have."""
+        return math.sqrt(self.measures[1] / (MAX_CELLS * math.sqrt(0.1875)))
 
     def mesh_of(self, cell_size: float) -> PlateMesh:
         """The mesh with cells of a size [m]."""
@@ -61,7 +72,7 @@ class DiscCase(ShapeCase):
 
     shape: Literal["disc"]
     """A disc around the origin; its boundary is rim."""
-    radius: Length = Field(gt=0, examples=["300 um"])
+    radius: PositiveLength = Field(gt=0, examples=["300 um"])
     """From the centre to the rim."""
 
     @property
@@ -74,9 +85,9 @@ class RectangleCase(ShapeCase):
 
     shape: Literal["rectangle"]
     """A rectangle around the origin; its boundaries are left, right, bottom and top."""
-    width: Length = Field(gt=0, examples=["600 um"])
+    width: PositiveLength = Field(gt=0, examples=["600 um"])
     """Along x."""
-    height: Length = Field(gt=0, examples=["400 um"])
+    height: PositiveLength = Field(gt=0, examples=["400 um"])
     """Along y."""
 
     @property
@@ -89,9 +100,9 @@ class AnnulusCase(ShapeCase):
 
     shape: Literal["annulus"]
     """A disc with a round hole; its boundaries are inner and outer."""
-    inner_radius: Length = Field(gt=0, examples=["100 um"])
+    inner_radius: PositiveLength = Field(gt=0, examples=["100 um"])
     """The radius of the hole."""
-    outer_radius: Length = Field(gt=0, examples=["300 um"])
+    outer_radius: PositiveLength = Field(gt=0, examples=["300 um"])
     """The radius of the disc."""
 
     @classmethod
@@ -111,9 +122,9 @@ class EllipseCase(ShapeCase):
 
     shape: Literal["ellipse"]
     """An ellipse around the origin; its boundary is rim."""
-    semi_axis_x: Length = Field(gt=0, examples=["300 um"])
+    semi_axis_x: PositiveLength = Field(gt=0, examples=["300 um"])
     """Half of its axis along x."""
-    semi_axis_y: Length = Field(gt=0, examples=["200 um"])
+    semi_axis_y: PositiveLength = Field(gt=0, examples=["200 um"])
     """Half of its axis along y."""
 
     @property
@@ -184,7 +195,7 @@ class RegularPolygonCase(ShapeCase):
     """A regular polygon around the origin, by its sides and its radius; its boundary is rim."""
     sides: StrictInt = Field(ge=3, le=1000, examples=[6])
     """How many sides it has."""
-    radius: Length = Field(gt=0, examples=["300 um"])
+    radius: PositiveLength = Field(gt=0, examples=["300 um"])
     """From the centre to a corner."""
     rotation: Angle = Field(default=0.0, examples=["30 deg"])
     """Turns it counter-clockwise; without it a corner lies on the x axis."""
@@ -208,7 +219,7 @@ class MeshCase(PlateCase):
 
     mesh: FileBeside = Field(examples=["plate.msh"])
     """A mesh file of gmsh, VTU or XDMF, beside the case file; its boundaries are the physical curves."""
-    mesh_unit: Length = Field(default=1.0, gt=0, examples=["1 um"])
+    mesh_unit: PositiveLength = Field(default=1.0, gt=0, examples=["1 um"])
     """What one unit of its coordinates stands for."""
 
     @cached_property

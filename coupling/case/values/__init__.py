@@ -11,7 +11,7 @@ from coupling.case.values.csv_columns import (
     read_rows,
     unreadable,
 )
-from coupling.case.values.dimensions import DIMENSIONS
+from coupling.case.values.dimensions import DIMENSIONS, RANGES
 from coupling.case.values.formula import Amount, Choice, Condition, Formula
 from coupling.case.values.quantities import (
     AXES,
@@ -28,6 +28,11 @@ from coupling.case.values.quantities import (
     LoadPressure,
     Mass,
     Point,
+    PositiveArea,
+    PositiveForce,
+    PositiveLength,
+    PositivePressure,
+    PositiveTime,
     Pressure,
     Stiffness,
     SurfaceEnergy,

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from coupling.case.values.dimensions import DIMENSIONS
 from coupling.case.values.units import Quantity, quoted
+from coupling.files import MAX_NUMBERS, contents
 from coupling.suggestion import near, near_file
 
 MAX_MISTAKES = 10  # of a file that are listed one by one
@@ -44,7 +45,7 @@ def read_rows(path: Path, example: str) -> Rows | str:
     Raises OSError when the file cannot be read, and ValueError when no file can have that name.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = contents(path, MAX_NUMBERS).decode("utf-8-sig")
     except UnicodeDecodeError:
         return "is not UTF-8 text"
     rows = [

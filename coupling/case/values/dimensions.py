@@ -19,6 +19,13 @@ DIMENSIONS: Final = {
 }  # fmt: skip
 """SI units, and what a quantity in each is called in a message."""
 
+RANGES: Final = {
+    "m": (1e-15, 1e3), "m^2": (1e-24, 1e6), "rad": (1e-9, 1e6), "s": (1e-12, 1e6), "Hz": (1e-6, 1e12),
+    "m/s": (1e-15, 1e6), "m/s^2": (1e-12, 1e9), "kg": (1e-24, 1e3), "kg/m^3": (1e-3, 1e7), "N": (1e-21, 1e6),
+    "Pa": (1e-3, 1e15), "J/m^2": (1e-9, 1e3), "N/m": (1e-12, 1e12), "N/m^3": (1e-6, 1e21),
+}  # fmt: skip
+"""Between which sizes a quantity in an SI unit may be: the smallest of one that must not be 0, and the largest."""
+
 
 @cache
 def registry() -> pint.UnitRegistry[Any]:

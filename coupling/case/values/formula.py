@@ -78,7 +78,7 @@ class Amount(Quantity):
             if not words or (digits and len(words) == 1) or (digits and len(words) == 2 and words[0] in ("+", "-")):
                 return super().parse(text)
             expression = _parsed(text, words, FORMULA)
-            return Formula(text, expression, rest, self.convert(text, "1", rest))
+            return Formula(text, expression, rest, self.value_of(text, "1", rest))
         except ValueError:
             reason = unreadable(rest) if rest else ""
             if not reason and re.search(rf"\b({'|'.join((*KEYWORDS, *NAMES))})\b", rest):

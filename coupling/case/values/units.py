@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
-from coupling.case.values.dimensions import DIMENSIONS, dimension_of, is_unit, registry, root_of, si_of
+from coupling.case.values.dimensions import DIMENSIONS, RANGES, dimension_of, is_unit, registry, root_of, si_of
 from coupling.case.values.spelling import MAX_MEANT, MISREAD, MULTIPLES, meant_number, meant_units
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ _NUMBER_AND_UNIT: Final = re.compile(
 WRITTEN: Final = r"^\s*[+-]?\.?[0-9][0-9_.]*([eE][+-]?[0-9]+)?\s*([^0-9_.,;\s]|[0-9]+/).*$"
 POSITIVE: Final = WRITTEN.replace("[+-]?", "[+]?", 1)
 
+LONGEST: Final = 200  # characters of a quantity as text
 _SMALL, _LARGE = 0.05, 1e6
 _SAME_ANYWAY: Final = ("Hz", "kg/m^3")  # units that people leave out because they are SI
 _MAY_BE_NONE: Final = ("m", "s", "rad", "m/s", "m/s^2", "N", "N/m")
@@ -59,12 +60,14 @@ _NOT_FINITE: Final = ", which is not finite"
 class Quantity:
     """Marks a float as a quantity in the SI unit `unit`, a key of `DIMENSIONS`; `example` shows how to write one.
 
-    name: what it is called, where that is not its unit's name in `DIMENSIONS`.
+    name: what it is called, where that is not its unit's name in `DIMENSIONS`.  positive: whether it must not be 0, and
+    so not all but 0 either.
     """
 
     unit: str
     example: str
     name: str = ""
+    positive: bool = False
 
     @property
     def expected(self) -> str:
@@ -72,7 +75,9 @@ class Quantity:
         return f'{self.name or DIMENSIONS[self.unit]} such as "{self.example}"'
 
     def parse(self, text: str) -> float:
-        """Return the quantity that `text` states, in `unit`; ValueError unless it is a finite one of this dimension."""
+        """Return the quantity that `text` states, in `unit`; ValueError unless it is one of this dimension and size."""
+        if len(text) > LONGEST:
+            raise self.refusal(text, f", which is longer than {LONGEST} characters")
         match = _NUMBER_AND_UNIT.fullmatch(text.strip())
         if match is None:
             raise self.refusal(text, self._other_number(text))
@@ -80,6 +85,10 @@ class Quantity:
 
     def convert(self, text: str, number: str, unit: str) -> float:
         """Return `number` of a unit, in `self.unit`; raises ValueError as `parse` does, quoting `text`."""
+        return self._in_range(text, self.value_of(text, number, unit))
+
+    def value_of(self, text: str, number: str, unit: str) -> float:
+        """The same, however large or small that is."""
         if not unit:
             raise self.refusal(text, _NO_UNIT)
         base, exponent = prefixed(unit)
@@ -95,6 +104,16 @@ class Quantity:
             value = self._convert_by_pint(text, number, unit)
         if not math.isfinite(value):
             raise self.refusal(text, _NOT_FINITE)
+        return value
+
+    def _in_range(self, text: object, value: float) -> float:
+        """Return a value; ValueError, quoting `text`, where no such quantity can be that large or that small."""
+        least, most = RANGES.get(self.unit, (0.0, math.inf))
+        no = f"but no {(self.name or DIMENSIONS[self.unit]).split(' ', 1)[1]} may be"
+        if abs(value) > most:
+            raise self.refusal(text, f", {no} above {most:g} {self.unit}")
+        if self.positive and 0 < abs(value) < least:
+            raise self.refusal(text, f", {no} below {least:g} {self.unit}")
         return value
 
     def _convert_by_pint(self, text: str, number: str, unit: str) -> float:
@@ -124,7 +143,7 @@ class Quantity:
             raise self.refusal(value, _NO_UNIT + (self._none if value == 0 else self._in_si(float(value))))
         if not math.isfinite(value):
             raise self.refusal(value, _NOT_FINITE)
-        return float(value)
+        return self._in_range(value, float(value))
 
     def _fits(self, unit: str) -> bool:
         """Whether a unit has this dimension; raises anything where there is no such unit."""
@@ -133,14 +152,15 @@ class Quantity:
     def _meant(self, text: str, unit: str) -> str:
         """The question whether a unit that a text ends with, which is wrong, stands for another; "" for none."""
         head = text.strip().removesuffix(unit).rstrip()
-        units = {Quantity(self.unit, "").parse(f"1 {meant}"): meant for meant in meant_units(unit, is_unit, self._fits)}
+        units = {self.value_of("", "1", meant): meant for meant in meant_units(unit, is_unit, self._fits)}
         texts = [f"{head} {meant}" for meant in units.values()]
         if not 1 <= len(texts) <= MAX_MEANT:
             return self._converted(head, unit)
         question = f"; did you mean {' or '.join(map(quoted, texts))}"
         compound = len(texts) == 1 and re.search(r"[/^ ]", texts[0].removeprefix(f"{head} "))
-        if compound and _NUMBER_AND_UNIT.fullmatch(head) and float(head) != (value := self.parse(texts[0])):
-            question += f", which is {value:.6g} {self.unit}"
+        if compound and _NUMBER_AND_UNIT.fullmatch(head):
+            value = self.value_of(texts[0], head, texts[0].removeprefix(f"{head} "))
+            question += f", which is {value:.6g} {self.unit}" if value != float(head) else ""
         return question + "?"
 
     def _converted(self, head: str, unit: str) -> str:
@@ -157,7 +177,8 @@ class Quantity:
             turns = number * float(registry().Quantity(Decimal(1), unit).m_as("rad/s")) / (2 * math.pi)
             return f'; in cycles that is "{turns:.10g} Hz"'
         if key == ("Hz", "s") and number > 0:
-            return f'; the frequency of that period is "{1 / Quantity("s", "").parse(f"{head} {unit}"):.10g} Hz"'
+            period = Quantity("s", "").value_of("", match["number"], unit)
+            return f'; the frequency of that period is "{1 / period:.10g} Hz"'
         if unit in MULTIPLES.get(self.unit, {}):
             each, name = MULTIPLES[self.unit][unit]
             return f'; did you mean "{number * each:.10g} {name}"?'
@@ -224,7 +245,7 @@ def number_and_unit(text: str) -> tuple[str, str]:
 
 def length_text(length: float, unit: str = "um") -> str:
     """Return a length in m as text in a unit of length."""
-    return f"{length / Quantity('m', '150 um').convert('', '1', unit):g} {unit}"
+    return f"{length / Quantity('m', '150 um').value_of('', '1', unit):g} {unit}"
 
 
 def written_unit(value: object) -> str:

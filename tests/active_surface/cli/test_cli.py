@@ -153,7 +153,7 @@ def test_missing_file_exits_2():
 def test_contact_without_a_stable_branch_is_refused(tmp_path):
     text = (EXAMPLES / "one_actuator.toml").read_text()
     path = tmp_path / "sticky.toml"
-    path.write_text(text.replace('preset = "paper"', 'adhesion_energy = "1e9 J/m^2"'))
+    path.write_text(text.replace('preset = "paper"', 'adhesion_energy = "1e3 J/m^2"'))
     done = CliRunner().invoke(main, ["check", str(path)])
     assert done.exit_code == 2
     assert "Inputs of KogutEtsion" in done.output

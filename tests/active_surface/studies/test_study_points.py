@@ -9,7 +9,7 @@ from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from active_surface.studies import read_study
 from active_surface.studies.axis import spaced
-from active_surface.studies.dataset import slabs
+from active_surface.studies.stored import slabs
 from active_surface.studies.variants import Variants
 from coupling import read_case
 

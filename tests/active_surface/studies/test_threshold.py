@@ -8,12 +8,13 @@ from matplotlib.figure import Figure
 from sweeps import PLATE, PLATFORM, written
 
 from active_surface.studies import read_study, run_study
-from active_surface.studies.dataset import key_of, read_dataset, write_dataset
+from active_surface.studies.dataset import read_dataset, write_dataset
 from active_surface.studies.engine import Engine
 from active_surface.studies.pictures.findings import Findings, read_findings
 from active_surface.studies.pictures.map import compose
 from active_surface.studies.record import OUTCOMES, new_records
 from active_surface.studies.saved import read_sweep
+from active_surface.studies.stored import key_of
 from active_surface.studies.threshold import Threshold, lowest, read_threshold
 from coupling.case import CaseError
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ import pytest
 from case_files import STROKE, changed, problems
 
 from coupling.case import Quantity
-from coupling.case.values import units
+from coupling.case.values import RANGES, units
 
 
 @pytest.mark.parametrize(
@@ -80,7 +81,27 @@ def test_prefixed_units_are_those_of_pint(prefix: str, base: str) -> None:
     quantity = Quantity(si, "")
     assert quantity._fits(prefix + base)
     for number in ("1", "0.3", "123456.789e-3"):
-        assert quantity.parse(f"{number} {prefix}{base}") == quantity._convert_by_pint("", number, prefix + base)
+        assert quantity.value_of("", number, prefix + base) == quantity._convert_by_pint("", number, prefix + base)
+
+
+@pytest.mark.parametrize("unit", RANGES)
+def test_no_quantity_is_larger_or_smaller_than_anything_here(unit: str) -> None:
+    quantity, (least, most) = Quantity(unit, "1", positive=True), RANGES[unit]
+    assert quantity.parse(f"{least!r} {unit}") == least and quantity.parse(f"-{most!r} {unit}") == -most
+    for value, wrong in (
+        (2 * most, f"above {most:g} {unit}"),
+        (-1e300, "above"),
+        (least / 2, f"below {least:g} {unit}"),
+    ):
+        with pytest.raises(ValueError, match=f"but no .* may be {re.escape(wrong)}"):
+            quantity.parse(f"{value!r} {unit}")
+    assert Quantity(unit, "1").parse(f"{least / 2!r} {unit}") == least / 2  # as a place that rounding leaves near 0
+
+
+@pytest.mark.parametrize("text", ["1 " + "m" * 100_000, "1" * 100_000 + " m", "1 " + "kg*" * 40_000 + "m"], ids=len)
+def test_long_texts_are_refused_at_once(text: str) -> None:
+    with pytest.raises(ValueError, match="which is longer than 200 characters"):
+        Quantity("m", "150 um").parse(text)
 
 
 @pytest.mark.parametrize("unit", units.DIMENSIONS)

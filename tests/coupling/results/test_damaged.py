@@ -78,6 +78,11 @@ def chunk_that_cannot_be_read(file):
     data.id.write_direct_chunk((8,), b"no gzip")
 
 
+def rows_that_are_not_there(file):
+    del file["active_surface/rows/time"]
+    file.create_dataset("active_surface/rows/time", (10**12,), "f8", chunks=(1000,))
+
+
 DAMAGES = [
     ("part", summary_without("squeeze"), "which is damaged: the summary lacks squeeze, as that of another version may"),
     ("part", with_summary('{"some": 1}'), "which is damaged: the summary lacks "),
@@ -89,6 +94,12 @@ DAMAGES = [
     ("part", lambda file: put(file, "active_surface/events/kind", [99]), "99 is not a valid EventKind"),
     ("part", lambda file: put(file, "VTKHDF/Points", np.zeros((3, 3))), "position has 3 of 11 steps"),
     ("part", lambda file: put(file, "VTKHDF/Points", np.full((11, 3), np.nan)), "position has a number that is not"),
+    ("part", lambda file: put(file, "active_surface/rows/height", [0.0]), "rows has height of the shape"),
+    ("part", lambda file: put(file, "active_surface/margins/slip", [0.0]), "margins has slip of the shape"),
+    ("part", lambda file: put(file, "VTKHDF/PointData/state", np.full(11, 9)), "a state is none of the part's"),
+    ("part", lambda file: put(file, "VTKHDF/PointData/velocity", np.zeros(11)), "velocity has the shape"),
+    ("part", rows_that_are_not_there, "rows/time says that it has 8000000000000 bytes, of which 0 are there"),
+    ("part", lambda file: put(file, "active_surface/rows", h5py.ExternalLink("/etc/passwd", "/")), "rows is a link"),
     ("plate", lambda file: put(file, "VTKHDF/Connectivity", [0, 1, 99]), "a corner that is none of the 4 points"),
 ]
 DAMAGES_BESIDE = [

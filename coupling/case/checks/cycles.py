@@ -1,0 +1,58 @@
+"""Checking: how many strokes all drives make in a run, which take time each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Final
+
+from coupling.case.actuators import ENDLESS, ActuatorCase
+from coupling.case.checks.parts import Parts
+from coupling.case.mistakes import Mistake
+from coupling.case.plates import AxisCase
+from coupling.case.table import right_value
+from coupling.case.tables import RunCase
+
+MAX_CYCLES: Final = 10_000_000  # of all drives: a run of so many takes about an hour
+
+
+def check_cycles(parts: Parts, lattice: Iterable[ActuatorCase]) -> Iterator[Mistake]:
+    """Yield that drives make more strokes in a run than can be followed; lattice: its actuators."""
+    duration = right_value(RunCase, "duration", parts.tables.get("run"), parts.context)
+    if not isinstance(duration, float):
+        return
+    drives = [ActuatorCase.values_of(one, parts.context) for one, _ in parts.items("actuators") if _is_table(one)]
+    drives += [dict(one) for one in lattice]
+    plate = parts.tables.get("plate")
+    motion = plate.get("motion") if isinstance(plate, Mapping) else getattr(plate, "motion", None)
+    axes = motion.values() if isinstance(motion, Mapping) else vars(motion).values() if _is_table(motion) else ()
+    drives += [AxisCase.values_of(one, parts.context) for one in axes if _is_table(one)]
+    count = sum(_cycles(drive, duration) for drive in drives)
+    if count > MAX_CYCLES:
+        yield (
+            ("run", "duration"),
+            f"must hold at most {MAX_CYCLES} cycles of all drives together; got {count:.3g} in {duration:g} s",
+        )
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, Mapping) or hasattr(value, "model_fields_set")
+
+
+def _cycles(drive: Mapping[str, Any], duration: float) -> float:
+    """How many cycles, or points and segments, a drive runs through in a time [s]; 0 where it is wrong."""
+    table, segments, frequency = drive["table"], drive["segments"], drive["frequency"]
+    if isinstance(table, tuple) and table:
+        return _passes(drive["repeats"], duration, table[-1][0]) * len(table)
+    if isinstance(segments, tuple) and segments:
+        times = [one.cycles * (1 / one.frequency if one.frequency else one.dwell) for one in segments]
+        return _passes(drive["repeats"], duration, sum(times)) * sum(one.cycles for one in segments)
+    if not isinstance(frequency, float) or drive["cycle"] == "up":
+        return 0.0
+    cycles = drive["cycles"]
+    return min(duration * frequency, cycles if isinstance(cycles, int) else math.inf)
+
+
+def _passes(repeats: Any, duration: float, each: float) -> float:
+    most = 1.0 + (duration / each if each > 0 else 0.0)
+    return most if repeats == ENDLESS else min(most, repeats) if isinstance(repeats, int) else 0.0

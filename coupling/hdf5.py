@@ -1,0 +1,113 @@
+"""HDF5 files that others may have made: whether they hold what they say, before any of it is read."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import suppress
+
+import h5py
+
+UNREADABLE = (
+    *(AttributeError, AssertionError, IndexError, KeyError, LookupError, MemoryError, OSError, OverflowError),
+    *(RecursionError, RuntimeError, SyntaxError, TypeError, ValueError),
+)
+"""What reading raises where something is not there, or not as it was written."""
+DEADLY = "HDF5 does not come to the end of it"
+PATIENCE = 10.0  # s, for a file that takes a fraction of one
+MAX_TRIED = 2**26  # bytes of its numbers that are tried
+MAX_OBJECTS = 100_000
+PACKED = 1100  # times: by how much gzip packs zeros, and a little more
+UNSTORED = 2**16  # bytes that a dataset may have without any in the file
+MAX_BYTES = 2**31  # of a dataset that is read at once
+
+
+def survives(path: str | os.PathLike[str]) -> bool:
+    """Whether HDF5 reads a file without crashing or going round in circles, as it may in one that is damaged.
+
+    A child process tries, where there is fork; elsewhere nobody does, and it is taken to be so.
+    """
+    if not hasattr(os, "fork"):
+        return True
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of threads that do not live on in the child, which needs none
+        child = os.fork()
+    if child == 0:
+        try:
+            null = os.open(os.devnull, os.O_RDWR)
+            for stream in (0, 1, 2):  # where a library that fails would print
+                os.dup2(null, stream)
+            _read_all(path)
+        finally:
+            os._exit(0)  # also after an error, which the reader will see for itself
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        ended, status = os.waitpid(child, os.WNOHANG)
+        if ended:
+            return os.WIFEXITED(status)
+        time.sleep(0.001)
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return False
+
+
+def _read_all(path: str | os.PathLike[str]) -> None:
+    """Read all attributes of an HDF5 file, and its datasets as far as there is time."""
+    with h5py.File(path, "r") as file:
+        left = MAX_TRIED
+        for one in (file, *(one for _, one in _objects(file))):
+            with suppress(*UNREADABLE):
+                for name in one.attrs:
+                    with suppress(*UNREADABLE):
+                        one.attrs[name]
+                if isinstance(one, h5py.Dataset) and one.size * one.dtype.itemsize <= left:
+                    left -= one.size * one.dtype.itemsize
+                    one[...]
+
+
+def check_hdf5(path: str | os.PathLike[str], by_steps: str = "") -> None:
+    """Raise ValueError where a file leads to other files, or a dataset in it says that it is far larger than it is.
+
+    by_steps: the group whose datasets are read piece by piece, however large they are.
+    Raises any of UNREADABLE where the file cannot be read.
+    """
+    with h5py.File(path, "r") as file:
+        for name, dataset in _datasets(file):
+            if dataset.is_virtual or dataset.external:
+                raise ValueError(f"its {name} is in another file")
+            size, stored = dataset.size * dataset.dtype.itemsize, dataset.id.get_storage_size()
+            if size > PACKED * stored + UNSTORED:
+                raise ValueError(f"its {name} says that it has {size} bytes, of which {stored} are there")
+            if size > MAX_BYTES and not (by_steps and name.startswith(f"{by_steps}/")):
+                raise ValueError(f"its {name} has {size} bytes; at most {MAX_BYTES} are read")
+
+
+def _datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
+    """Yield the datasets of a file with their names, each once; ValueError where a link leads out of it."""
+    yield from ((name, one) for name, one in _objects(file) if isinstance(one, h5py.Dataset))
+
+
+def _objects(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset | h5py.Group]]:
+    """Yield the datasets and groups of a file with their names, each once; ValueError where a link leads out of it."""
+    groups, seen, count = [("", file)], set(), 0
+    while groups:
+        above, group = groups.pop()
+        for key in group:
+            name = f"{above}/{key}".lstrip("/")
+            count += 1
+            if count > MAX_OBJECTS:
+                raise ValueError(f"it has more than {MAX_OBJECTS} objects")
+            if not isinstance(group.get(key, getlink=True), h5py.HardLink):
+                raise ValueError(f"its {name} is a link")
+            one = group[key]
+            info = h5py.h5o.get_info(one.id)
+            if (info.fileno, info.addr) in seen:
+                continue
+            seen.add((info.fileno, info.addr))
+            if isinstance(one, (h5py.Dataset, h5py.Group)):
+                yield name, one
+            if isinstance(one, h5py.Group):
+                groups.append((name, one))

@@ -1,0 +1,144 @@
+"""Cases that would take without end, or more memory than there is, are refused at once."""
+
+import os
+
+import pytest
+
+from coupling.case import CaseError, parse, read_case
+
+PLATE = """[plate]
+shape = "disc"
+radius = "300 um"
+youngs_modulus = "169 GPa"
+poisson_ratio = 0.3
+thickness = "5 um"
+
+[[actuators]]
+position = ["0 um", "30 um"]
+{drive}
+
+[part]
+mass = "2e-9 kg"
+position = ["30 um", "20 um"]
+
+[friction]
+model = "coulomb"
+coefficient = 0.3
+
+[run]
+duration = "1 ms"
+"""
+STROKE = 'stroke = "1 um"\nfrequency = "300 Hz"'
+POINTS = ", ".join(f'["{k} ms", "{k % 7} um"]' for k in range(3000))
+
+
+def refused(tmp_path, text):
+    (tmp_path / "case.toml").write_text(text)
+    with pytest.raises(CaseError) as error:
+        read_case(tmp_path / "case.toml")
+    return [f"{problem.field} {problem.message}".strip() for problem in error.value.problems]
+
+
+@pytest.mark.parametrize(
+    ("drive", "count"),
+    [
+        ('stroke = "1 um"\nfrequency = "1e11 Hz"', "1e+08"),
+        ('force = "1 uN"\nfrequency = "1e12 Hz"\ncycle = "sine"', "1e+09"),
+        ('table = [["0 s", "0 um"], ["1e-11 s", "1 um"], ["2e-11 s", "0 um"]]\nrepeats = "endless"', "1.5e+08"),
+        (
+            '[[actuators.segments]]\nstroke = "1 um"\nfrequency = "1e12 Hz"\ncycles = 1000000\n'.replace(
+                "[[", "repeats = 1000000000\n[["
+            ),
+            "1e+09",
+        ),
+    ],
+)
+def test_a_run_has_a_largest_number_of_cycles(tmp_path, drive, count):
+    wrong = f"must hold at most 10000000 cycles of all drives together; got {count} in 0.001 s"
+    assert refused(tmp_path, PLATE.format(drive=drive)) == [f"run.duration {wrong}"]
+
+
+def test_drives_that_end_in_time_may_be_fast(tmp_path):
+    (tmp_path / "case.toml").write_text(PLATE.format(drive='stroke = "1 um"\nfrequency = "1e12 Hz"\ncycles = 1000'))
+    assert read_case(tmp_path / "case.toml").actuators[0].cycles == 1000
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "wrong"),
+    [
+        (
+            'duration = "1 ms"',
+            'duration = "1e300 ms"',
+            "run.duration must be a time .* but no time may be above 1e\\+06 s",
+        ),
+        ('frequency = "300 Hz"', 'frequency = "1e300 Hz"', ".*no frequency may be above 1e\\+12 Hz"),
+        ('frequency = "300 Hz"', 'frequency = "5e-324 Hz"', ".*no frequency may be below 1e-06 Hz"),
+        ('radius = "300 um"', 'radius = "1e-300 um"', ".*no length may be below 1e-15 m"),
+        ('radius = "300 um"', 'radius = "300 um"\ndensity = "5e-324 kg/m^3"', ".*no density may be below 0.001 kg/m"),
+        ('duration = "1 ms"', 'duration = "1 ms"\nframes = 99999999999', "run.frames must be at most 1e\\+06"),
+        ('frequency = "300 Hz"', 'frequency = "300 Hz"\ncycles = 99999999999', ".*cycles must be at most 1e\\+09"),
+        ('radius = "300 um"', 'radius = "300 um"\ncell_size = "0.1 um"', "plate.cell_size must be at least .* um"),
+        (
+            'shape = "disc"\nradius = "300 um"',
+            'shape = "rectangle"\nwidth = "600 um"\nheight = "1 nm"',
+            "plate.shape must be of a plate at most 1000 times as long as wide; it is 6e\\+05 times",
+        ),
+        (
+            'shape = "disc"\nradius = "300 um"',
+            'shape = "annulus"\ninner_radius = "299.9 um"\nouter_radius = "300 um"',
+            "plate.shape must be of a plate at most 1000 times as long as wide; it is 1.885e\\+04 times",
+        ),
+        (
+            'shape = "disc"\nradius = "300 um"',
+            'shape = "ellipse"\nsemi_axis_x = "1 m"\nsemi_axis_y = "1e-15 m"',
+            "plate.shape must be of a plate at most 1000 times as long as wide",
+        ),
+    ],
+)
+def test_sizes_are_those_of_plates(tmp_path, old, new, wrong):
+    text = PLATE.format(drive=STROKE)
+    assert old in text
+    import re
+
+    found = refused(tmp_path, text.replace(old, new))
+    assert any(re.match(wrong, one) for one in found), found
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("a = " + "[" * 5000 + "]" * 5000, "is not valid TOML: tables or lists are nested too deeply"),
+        (".".join("a" * 3000) + " = 1", "is not valid TOML: tables or lists are nested too deeply"),
+        ("[" + ".".join("a" * 3000) + "]", "is not valid TOML: tables or lists are nested too deeply"),
+        ("a = " + "1" * 5000, "is not valid TOML: a number has too many digits"),
+        (f'table = [{POINTS}, ["3000 ms]]', "is not valid TOML: invalid character in a text"),
+        (f"table = [{POINTS}$]", "is not valid TOML: unclosed array"),
+    ],
+    ids=["lists", "keys", "tables", "digits", "text", "list"],
+)
+def test_texts_that_would_take_without_end(tmp_path, text, wrong):
+    (tmp_path / "case.toml").write_text(text)
+    with pytest.raises(CaseError) as error:
+        parse(tmp_path / "case.toml")
+    (problem,) = error.value.problems
+    assert problem.message.startswith(wrong.partition(": ")[0])
+    if "too" in wrong:
+        assert problem.message == wrong
+
+
+def test_one_mistake_in_a_long_line_is_told_at_once(tmp_path):
+    for mistake in ('["3000 ms" "1 um"]', '["3000 ms, "1 um"]', "3000 ms", "True"):
+        text = PLATE.format(drive=f"table = [{POINTS}, {mistake}]")
+        assert refused(tmp_path, text)[0].startswith("is not valid TOML")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_pipe_or_a_device_is_no_file(tmp_path):
+    os.mkfifo(tmp_path / "pipe.csv")
+    os.mkfifo(tmp_path / "pipe.toml")
+    with pytest.raises(CaseError, match="it is a pipe or a device, not a file"):
+        read_case(tmp_path / "pipe.toml")
+    for name in ("pipe.csv", "/dev/zero"):
+        platform = f'[plate]\nshape = "platform"\nmotion = "{name}"\n'
+        text = platform + PLATE.partition("{drive}")[2]
+        assert "it is a pipe or a device, not a file" in refused(tmp_path, text)[0]
