@@ -68,8 +68,8 @@ const step = (now) => {
 requestAnimationFrame(step);
 """
 DRAG = """
-const [seconds, done] = arguments, begun = performance.now(), what = { kind: "actuator", number: 0, at: [...mapData.actuators[0]],
-  group: document.querySelector('[data-key="actuator 0"]') }, from = [...what.at];
+const [seconds, done] = arguments, begun = performance.now(), group = document.querySelector('[data-key="actuator 0"]');
+const what = { kind: "actuator", number: 0, at: [...mapData.actuators[0]], group }, from = [...what.at];
 delays.length = 0;
 let moves = 0;
 dragged = what;

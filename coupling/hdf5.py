@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 import time
 import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 
 import h5py
+from h5py._objects import phil
 
 UNREADABLE = (
     *(AttributeError, AssertionError, IndexError, KeyError, LookupError, MemoryError, OSError, OverflowError),
@@ -28,11 +30,11 @@ MAX_BYTES = 2**31  # of a dataset that is read at once
 def survives(path: str | os.PathLike[str]) -> bool:
     """Whether HDF5 reads a file without crashing or going round in circles, as it may in one that is damaged.
 
-    A child process tries, where there is fork; elsewhere nobody does, and it is taken to be so.
+    A child process tries, where there is fork and on the main thread; elsewhere nobody does, and it is taken to be so.
     """
-    if not hasattr(os, "fork"):
+    if not hasattr(os, "fork") or threading.current_thread() is not threading.main_thread():
         return True
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), phil:  # held, so that no other thread is at HDF5 when only this one lives on
         warnings.simplefilter("ignore")  # of threads that do not live on in the child, which needs none
         child = os.fork()
     if child == 0:

@@ -17,7 +17,7 @@ from coupling.case import Case, PlateCase, scaled_case
 from coupling.scene import lifts_of
 from particle import Stopped, SurfaceMotion, Trajectory, stoppable
 
-BUDGET: Final = 0.02  # s that a path may take: one that takes longer is coarser, or cut short, until the hand rests
+BUDGET: Final = 0.01  # s that a path may take: one that takes longer is coarser, or cut short, until the hand rests
 LOOSE: Final = 1e-6  # the tolerance of coarser steps
 LIMIT: Final = 0.3  # s after which a path is broken off that was thought to be shorter
 TRIES, FAR = 4, 10.0  # then a shorter piece is tried, as if it had been so many times too long

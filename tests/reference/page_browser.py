@@ -19,6 +19,7 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shuti
 DRIVER = shutil.which("chromedriver")
 PATIENCE = 600.0  # s: WebGL by software is slow on a busy machine
 OFFLINE = {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0}
+ONLINE = OFFLINE | {"offline": False, "downloadThroughput": -1, "uploadThroughput": -1}
 CASE = altered(
     PLATE,
     ('cell_size = "80 um"', 'density = "2330 kg/m^3"\ncell_size = "100 um"'),

@@ -1,0 +1,132 @@
+"""The app in a real browser: the screen shows what a run gives, nothing leaves the machine, nonsense is survived."""
+
+import json
+import random
+import subprocess
+import sys
+import time
+
+import pytest
+
+from coupling import read_case, run_case
+
+pytest.importorskip("selenium", reason="selenium is not installed")
+pytest.importorskip("tornado", reason="tornado is not installed")
+from page_browser import CASE, ONLINE, chromium, errors, wait  # noqa: E402
+from selenium.webdriver.common.by import By  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
+
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::ResourceWarning")]
+
+ACTIONS = 80
+ACT = """
+const [act, r, text] = arguments, all = [...knobs.values()], knob = all[Math.floor(r[0] * all.length)];
+const said = (control, value, ...kinds) => {
+  control.value = value;
+  for (const kind of kinds) control.dispatchEvent(new Event(kind, { bubbles: true }));
+};
+if (act === "slide" && knob.slider) said(knob.slider, 1000 * r[1], "input", ...(r[2] < 0.5 ? ["change"] : []));
+if (act === "text" && knob.slider) said(knob.field, text, "change");
+if (act === "clock") said(slider, r[1] * slider.max, "input");
+if (act === "drag") {
+  const number = Math.floor(r[3] * mapData.actuators.length), [low, high] = mapData.box;
+  const [kind, key] = r[0] < 0.5 ? ["start", "start"] : ["actuator", `actuator ${number}`];
+  const group = document.querySelector(`[data-key="${key}"]`);
+  const what = { kind, number, group, at: [0, 1].map((k) => low[k] + r[k + 1] * (high[k] - low[k])) };
+  onDrag(what, performance.now());
+  onDrop(what);
+}
+if (act === "press") {
+  const some = [...document.querySelectorAll("#undo, #redo, #back, [data-window], [data-eye]")];
+  some[Math.floor(r[1] * some.length)].click();
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as driver:
+        driver.execute_cdp_cmd("Network.emulateNetworkConditions", ONLINE)
+        yield driver
+
+
+@pytest.fixture
+def opened(browser, tmp_path):
+    """The page of a case, and its program; afterwards only its own address was asked for, and nothing failed."""
+    path = tmp_path / "mine.toml"
+    path.write_text("# Mine.\n" + CASE)
+    command = [sys.executable, "-m", "active_surface", "app", str(path), "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program:
+        address = program.stdout.readline().split()[1]
+        browser.get_log("performance")
+        browser.get(address)
+        wait(lambda: browser.execute_script("return document.body.dataset.ready") == "run")
+        yield browser, path
+        messages = [json.loads(entry["message"])["message"] for entry in browser.get_log("performance")]
+        asked = [m["params"]["request"]["url"] for m in messages if m["method"] == "Network.requestWillBeSent"]
+        assert asked and all(url.startswith((address, "data:", "blob:")) for url in asked)
+        assert not errors(browser)
+        assert not browser.find_element(By.ID, "trouble").is_displayed()
+        browser.get("about:blank")
+        program.send_signal(2)
+        assert program.wait(20) == 130
+        assert program.stderr.read().strip() == "interrupted"
+
+
+def rows(browser):
+    return dict(browser.execute_script("return RUNS.now"))
+
+
+def test_the_screen_shows_what_a_run_of_the_saved_case_gives(opened):
+    browser, path = opened
+    field = browser.find_element(By.ID, "knob-actuators-0-frequency")
+    before = rows(browser)
+    field.clear()  # which is a mistake, too
+    field.send_keys("12 mm", Keys.TAB)
+    mistake = browser.find_element(By.ID, "knob-actuators-0-frequency-mistake")
+    wait(lambda: mistake.text == 'must be a frequency such as "300 Hz"; got "12 mm", a length')
+    assert field.get_attribute("aria-invalid") == "true"
+    field.clear()
+    field.send_keys("410 Hz", Keys.TAB)
+    wait(lambda: rows(browser) != before)
+    browser.find_element(By.ID, "save").click()
+    browser.find_element(By.ID, "save-now").click()
+    wait(lambda: browser.find_element(By.ID, "save-replace").is_displayed())
+    browser.find_element(By.ID, "save-replace").click()
+    wait(lambda: "Saved" in browser.find_element(By.ID, "note").text)
+    assert path.read_text().startswith("# Mine.\n") and '"410 Hz"' in path.read_text()
+    command = [sys.executable, "-m", "active_surface", "run", str(path), "--output", str(path.parent)]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    shown = rows(browser)
+    for label in ("outcome", "end", "distance", "contact"):
+        assert f"{label:<12}{shown[label]}".replace("\u00b5", "u") in printed
+    figures = browser.execute_script("return runData.figures")
+    assert figures["distance"] == run_case(read_case(path)).summary.distance
+
+
+def test_an_actuator_moves_by_the_keyboard_and_back_by_undo(opened):
+    browser, _ = opened
+    places = "return caseData.map.actuators[1]"
+    began = browser.execute_script(places)
+    handle = browser.find_element(By.CSS_SELECTOR, '[data-key="actuator 1"]')
+    browser.execute_script("arguments[0].focus()", handle)
+    wait(lambda: browser.execute_script("return caseData.selected") == "1")
+    browser.switch_to.active_element.send_keys(Keys.ARROW_UP)
+    wait(lambda: browser.execute_script(places) != began)
+    assert browser.execute_script(places)[1] > began[1]
+    browser.find_element(By.ID, "undo").click()
+    wait(lambda: browser.execute_script(places) == began)
+
+
+def test_random_actions_end_in_a_page_that_works(opened):
+    browser, _ = opened
+    chance = random.Random(5)
+    for _ in range(ACTIONS):
+        act = chance.choice(["slide", "slide", "slide", "text", "drag", "press", "clock"])
+        text = chance.choice(["12 um", "-3 ms", "nonsense", "1e300 Hz", "5", "<b>x</b>", "", "400 Hz", "2 ug"])
+        browser.execute_script(ACT, act, [chance.random() for _ in range(4)], text)
+        time.sleep(chance.choice([0, 0.02, 0.1]))
+    wait(lambda: browser.execute_script("return !onTheWay && !next"))
+    browser.execute_script("ask({ do: 'back' })")
+    wait(lambda: browser.execute_script("return !caseData.changed && !document.querySelector('#run.old')"))
+    assert "outcome" in rows(browser)
