@@ -32,7 +32,7 @@ CONTENTS = {  # the pages below a page, by caption
             "howto/optics",
         ],
         "The program": [
-            *("commands", "case-file", "results", "animations", "page", "plot"),
+            *("commands", "case-file", "results", "animations", "page", "app", "plot"),
             *("python", "messages", "sweeps", "aim", "feasibility"),
         ],
         "Theory and trust": [
