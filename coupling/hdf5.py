@@ -46,14 +46,18 @@ def survives(path: str | os.PathLike[str]) -> bool:
         finally:
             os._exit(0)  # also after an error, which the reader will see for itself
     end = time.monotonic() + PATIENCE
-    while time.monotonic() < end:
-        ended, status = os.waitpid(child, os.WNOHANG)
-        if ended:
-            return os.WIFEXITED(status)
-        time.sleep(0.001)
-    os.kill(child, signal.SIGKILL)
-    os.waitpid(child, 0)
-    return False
+    try:
+        while time.monotonic() < end:
+            ended, status = os.waitpid(child, os.WNOHANG)
+            if ended:
+                child = 0
+                return os.WIFEXITED(status)
+            time.sleep(0.001)
+        return False
+    finally:
+        if child:  # it takes too long, or Ctrl-C came
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
 
 
 def _read_all(path: str | os.PathLike[str]) -> None:

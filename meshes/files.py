@@ -42,17 +42,20 @@ def load(path: Path) -> Any:
 
 def _check_sizes(path: Path) -> None:
     """Raise ValueError where a file says that it holds more than it can, before a reader makes room for that."""
-    wrong = f"Input path of read must be a mesh file of a size that it has; {path}"
+    wrong = "Input path of read must be a mesh file"
     size = path.stat().st_size
     if size > MAX_SIZE:
-        raise ValueError(f"{wrong} has {size} bytes, of which at most {MAX_SIZE} are read")
+        raise ValueError(f"{wrong} of at most {MAX_SIZE} bytes; {path} has {size}")
     data = path.read_bytes()
     for pattern in SIZES.get(path.suffix.lower(), ()):
         for match in re.finditer(pattern, data):
             for number in match[1].split():
                 # A compressed file can be a thousand times smaller than its numbers.
                 if len(number) > 18 or not 0 <= int(number) <= min(MAX_COUNT, 1000 * size):
-                    raise ValueError(f"{wrong} says that it has {number[:30].decode()} of something")
+                    count = number[:30].decode()
+                    raise ValueError(
+                        f"{wrong} with counts that fit its size; {path} states {count}, more than its {size} bytes hold"
+                    )
 
 
 def line_names(mesh: Any) -> list[set[str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from typing import Final
@@ -10,6 +11,7 @@ from active_surface.steering import Aimed, Task, aim_over, prepared
 from coupling.case import Case, length_text
 from particle import Trajectory
 
+NEARER: Final = 0.99  # of the distance at the start: drives that leave more are not taken
 APART: Final = 0.2  # s, of looks at the search
 
 Watch = Callable[[int, int, Trajectory | None], object]
@@ -52,7 +54,19 @@ class Search:
         """End the search with the best drives so far."""
         self._stopped = True
 
+    def away(self, path: Trajectory) -> str:
+        """How far from the target a path ends."""
+        return length_text(math.dist(path.position[-1].tolist(), self.target))
+
+    def helps(self, result: Aimed) -> bool:
+        """Whether the drives bring the part nearer to the target than it starts."""
+        return result.distance < NEARER * math.dist(self.case.part.position, self.target)
+
     def text(self, result: Aimed) -> str:
         """How near the drives bring the part."""
-        away = length_text(result.distance)
-        return f"After {result.paths} paths the part ends {away} from the target."
+        found = f"After {result.paths} paths the part ends {length_text(result.distance)} from the target"
+        if result.reached:
+            return f"{found}."
+        if self.helps(result):
+            return f"{found}: it is not reached. A longer run, other strokes or a nearer target may help."
+        return f"{found}: no drives bring it nearer, and yours stay. Other strokes or a nearer target may help."

@@ -58,6 +58,7 @@ class Answers:
     def forget(self) -> None:
         """Answer no more of what was asked before."""
         self._turn += 1
+        self.full = None
         self._stop[0] = 1
         self._stop = np.zeros(1, np.int64)
 
@@ -80,7 +81,9 @@ class Answers:
             self.send({"kind": "later", "turn": page_turn})
         elif turn == self._turn:
             drawn = path_of(quick.path, unit_of(case))
-            self.send({"kind": "path", "turn": page_turn, "coarse": list(quick.coarse), **drawn})
+            self.send({"kind": "path", "turn": page_turn, "coarse": list(quick.coarse), "rest": rest, **drawn})
+        else:  # another case has come in its place, but the page waits for an answer
+            self.send({"kind": "passed", "turn": page_turn})
         if rest:
             self.spawn(self._run(case, saved, turn))
 
@@ -119,12 +122,19 @@ class Answers:
             work = self._lanes.quick_paths.prepare
             if wanted():
                 await self._lanes.run(self._lanes.models, work, case, _noting(self._from_thread(), wanted))
-        except (Superseded, ValueError):  # of strokes beyond those of the case, which may ask too much
-            self.send({"kind": "idle"})
+        except Superseded:
+            return
+        except ValueError:  # of strokes beyond those of the case, which may ask too much
+            pass
         except Exception as error:
             self.tell_error(error)
-        else:
+        if wanted() and not self.searching:
             self.send({"kind": "idle"})
+
+    @property
+    def searching(self) -> bool:
+        """Whether a search is on."""
+        return self._search is not None
 
     def aim(self, case: Case, target: tuple[float, float], take: Callable[[Case], object]) -> None:
         """Search for drives to a target [m]; take: gets the case with them.
@@ -132,7 +142,7 @@ class Answers:
         Raises Refused while another search is on.
         """
         if self._search is not None:
-            raise Refused([("target", "must wait for the search that is on: stop it first")])
+            raise Refused([("", "a search is on: stop it first")])
         self._search = Search(case, target)
         self.spawn(self._aim(self._search, take))
 
@@ -145,20 +155,23 @@ class Answers:
         unit, found = unit_of(search.case), self._from_thread()
 
         def watch(done: int, of: int, best: Trajectory | None) -> None:
-            found({"kind": "search", "done": done, "of": of, **({} if best is None else path_of(best, unit))})
+            shown = {} if best is None else path_of(best, unit) | {"away": search.away(best)}
+            found({"kind": "search", "done": done, "of": of, **shown})
 
         try:
             result: Aimed | None = await self._lanes.run(self._lanes.full, search.run, watch)
         except Exception as error:
-            self.send({"kind": "found", "text": ""})
+            self.send({"kind": "found", "text": "", "good": False})
             self.tell_error(error, field="target")
             return
         finally:
             self._search = None
         if result is None:
-            self.send({"kind": "found", "text": "The search was stopped before it had any drives."})
+            self.send({"kind": "found", "text": "The search was stopped before it had any drives.", "good": False})
             return
-        self.send({"kind": "found", "text": search.text(result)})
+        self.send({"kind": "found", "text": search.text(result), "good": result.reached})
+        if not search.helps(result):
+            return
         take(result.case.model_copy(update={"name": search.case.name}))
 
     def tell_error(self, error: Exception, page_turn: object = None, field: str = "") -> None:

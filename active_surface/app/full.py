@@ -54,11 +54,10 @@ def _full_answer(case: Case, plates: SolvedPlates, tell: Tell) -> Full:
         yield lambda done, of: tell(stage, done, of)
 
     with TemporaryDirectory(prefix="active-surface-") as folder:
-        named = case.model_copy(update={"name": "run"})
-        scene = plates.scene(named, progress)
-        result = run_over(named, scene, Path(folder), progress, picture=False)
+        scene = plates.scene(case, progress)
+        result = run_over(case, scene, Path(folder), progress, picture=False)
         tell("Drawing", 0, 0)
-        data = run_data(read_run(Path(folder, "run")))
+        data = run_data(read_run(Path(folder, case.name)))
     summary = result.summary
     return Full(
         result,

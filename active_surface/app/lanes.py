@@ -44,12 +44,12 @@ class Lanes:
 def tidy() -> None:
     """Give memory of plates and runs that are gone back to the system."""
     gc.collect()
-    with suppress(OSError, AttributeError):
+    with suppress(OSError, AttributeError, TypeError):  # elsewhere than with glibc
         ctypes.CDLL(None).malloc_trim(0)
 
 
 def _spare_memory() -> None:
     """Have glibc, which is made for short-lived programs, keep less: few pools, and large arrays by themselves."""
-    with suppress(OSError, AttributeError):
+    with suppress(OSError, AttributeError, TypeError):  # elsewhere than with glibc
         for setting, value in ((ARENA_MAX, 2), (MMAP_THRESHOLD, LARGE)):
             ctypes.CDLL(None).mallopt(setting, value)

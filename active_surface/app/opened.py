@@ -45,11 +45,12 @@ class Opened:
 
         Raises ValueError where the name is none of a case file, or is taken and not to be replaced.
         """
+        name = name if "." in name else f"{name}.toml"
         path = self.folder_to_save / name
         if Path(name).name != name or not name.endswith(".toml") or name.startswith("."):
-            raise ValueError(f'must be the name of a file such as "my_case.toml"; got "{name}"')
+            raise ValueError(f'the name must be that of a file in this folder, such as "my_case.toml"; got "{name}"')
         if path.exists() and not replace:
-            raise ValueError(f"must be a free name, or be replaced; got {name}, which is there already")
+            raise ValueError(f"{name} exists; replace it, or choose another name")
         write_edited(self.case, self.saved, self.folder, path)
         self.saved, self.folder, self.file = read_case(path), path.parent, path
         self.case = self.saved

@@ -19,6 +19,8 @@ from coupling.case import Case, PlateCase
 
 Message = Mapping[str, Any]
 
+FIRST, OUTSIDE = ("studies/moderate", "transport"), "Outside"
+CHANGING: Final = ("set", "undo", "redo", "back", "open", "save")
 DOTS: Final = 150  # per inch, of the picture
 
 
@@ -35,10 +37,11 @@ class Session:
         """Show what there is, to a page that has just connected."""
         self._answers.send = send
         if self._opened is None:
-            send({"kind": "menu", "examples": [[name, about] for name, about in example_cases().items()]})
+            send(_menu())
         else:
             self._show_case()
-            self._answers.spawn(self._answer(rest=True))
+            if not self._answers.searching:
+                self._answers.spawn(self._answer(rest=True))
 
     def disconnect(self) -> None:
         """Nobody listens for now."""
@@ -49,15 +52,10 @@ class Session:
         self._answers.close()
 
     def take(self, message: object) -> None:
-        """Take a message of the page; of what is dragged only the latest that waits counts."""
+        """Take a message of the page; they are worked on one after the other."""
         if not isinstance(message, dict) or not isinstance(message.get("do"), str):
-            self._answers.tell_error(Refused([("", 'must be a message with "do"')]))
+            self._answers.tell_error(Refused([("", 'a message must have "do", the name of what is to be done')]))
             return
-        last = self._waiting[-1] if self._waiting else {}
-        if message["do"] == last.get("do") == "set" and message.get("gesture") == last.get("gesture"):
-            self._waiting.pop()
-            pairs = (one.get("changes") for one in (last, message))
-            message = {**message, "changes": {k: v for one in pairs if isinstance(one, dict) for k, v in one.items()}}
         self._waiting.append(message)
         if not self._working:
             self._working = True
@@ -71,6 +69,9 @@ class Session:
                     await self._do(message)
                 except Exception as error:
                     self._answers.tell_error(error, message.get("turn"))
+                    if message.get("rest") and self._opened is not None and self._answers.full is None:
+                        self._show_case()  # in place of what was drawn while it was dragged
+                        self._answers.spawn(self._answer(rest=True))
         finally:
             self._working = False
 
@@ -80,18 +81,24 @@ class Session:
             raise Refused([("", f"there is nothing to do that is called {message['do']}")])
         if self._opened is None and message["do"] != "open":
             raise Refused([("", "there is no case yet: choose an example")])
+        if self._answers.searching and message["do"] in CHANGING:
+            raise Refused([("", "a search is on, and its drives are for the case as it is: stop it first")])
         await work(message)
 
     async def _do_open(self, message: Message) -> None:
         """Open an example."""
-        self._opened, self._selected, self._answers.full = open_example(str(message.get("name"))), "0", None
+        self._opened, self._selected = open_example(str(message.get("name"))), "0"
         await self._stepped()
+
+    async def _do_menu(self, message: Message) -> None:
+        """Show the examples."""
+        self._answers.send(_menu())
 
     async def _do_set(self, message: Message) -> None:
         """Change fields to texts."""
         case, changes = self._open.case, message.get("changes")
         if not isinstance(changes, dict) or not all(isinstance(text, str) for text in changes.values()):
-            raise Refused([("", "must change fields to texts")])
+            raise Refused([("", "changes must map fields to texts")])
         wanted: dict[str, Any] = {}
         for path, text in changes.items():
             if not allowed(case, path):
@@ -112,7 +119,7 @@ class Session:
         """Show the fields of an actuator, or of all."""
         chosen, count = str(message.get("actuator")), len(self._open.case.actuators)
         if chosen != ALL and not (chosen.isdecimal() and int(chosen) < count):
-            raise Refused([("", f"must be the number of an actuator, of {count}, or {ALL} for all; got {chosen}")])
+            raise Refused([("", f"actuator must be a number below {count}, or {ALL} for all; got {chosen}")])
         self._selected = chosen
         self._show_case()
 
@@ -130,7 +137,10 @@ class Session:
         await self._stepped()
 
     async def _do_save(self, message: Message) -> None:
-        path = self._open.save(str(message.get("name")), bool(message.get("replace")))
+        name = message.get("name")
+        if not isinstance(name, str):
+            raise Refused([("", 'the name must be that of a file, such as "my_case.toml"')])
+        path = self._open.save(name, bool(message.get("replace")))
         self._answers.send({"kind": "note", "text": f"Saved {path}"})
         await self._stepped()
 
@@ -190,6 +200,12 @@ class Session:
                 "changed": case is not opened.saved,
             }
         )
+
+
+def _menu() -> dict[str, Any]:
+    """The examples, those within every bound of the model first."""
+    examples = sorted(example_cases().items(), key=lambda item: (OUTSIDE in item[1], item[0] not in FIRST))
+    return {"kind": "menu", "examples": [[name, about] for name, about in examples]}
 
 
 def _picture(full: Full) -> str:

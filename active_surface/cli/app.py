@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import click
 
@@ -39,5 +40,12 @@ def _serve(case: Path | None, port: int, no_browser: bool) -> None:
     click.echo(f"{'page':<12}{server.address}")
     click.echo(f"{'ends':<12}with its last tab, or Ctrl-C")
     # Many small systems: BLAS threads would only wait for each other.
-    with threadpool_limits(limits=1, user_api="blas"):
-        server.run(lambda: None if no_browser else click.launch(server.address))
+    with threadpool_limits(limits=1, user_api="blas"), TemporaryDirectory(prefix="active-surface-") as folder:
+        server.run(lambda: None if no_browser else _open(server.address, Path(folder, "open.html")))
+
+
+def _open(address: str, page: Path) -> None:
+    """Open an address in the browser, by a file that leads there: other users see the words of commands."""
+    page.touch(mode=0o600)
+    page.write_text(f'<!doctype html><meta http-equiv="refresh" content="0; url={address}">', encoding="utf-8")
+    click.launch(page.absolute().as_uri())

@@ -5,6 +5,7 @@ from fem_plate.elements.anisotropic import AnisotropicPlate, is_isotropic
 from fem_plate.elements.argyris import monomials
 from fem_plate.elements.close import SourceBasis, source_basis
 from fem_plate.elements.corners import MAX_EXPONENT
+from fem_plate.elements.factor import factorised
 from fem_plate.elements.functions import Derivatives, PlateFunctions
 from fem_plate.elements.grading import GAIN, Fineness, SingularCorner, corner_rows, graded, singular_corners
 from fem_plate.elements.infinite import InfinitePlate, Radial, infinite_plate

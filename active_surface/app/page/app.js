@@ -62,14 +62,17 @@ const TAKES = {
     }));
     document.body.dataset.ready = "menu";
   },
+  passed(answer) { arrived(answer, () => {}); },
   case(data) {
+    if (!next && !onTheWay && caseData && (caseData.undo !== data.undo || caseData.redo !== data.redo)) clearMistakes();
     const first = !caseData || caseData.file !== data.file || caseData.name !== data.name;
     caseData = data;
     for (const [id, hidden] of [["menu", true], ["opened", false], ["bar", false]]) element(id).hidden = hidden;
+    if (first) { RUNS.saved = savedPath = nowPath = null; element("run").hidden = element("trust").hidden = true; element("undo").focus(); }
     element("name").textContent = data.name + (data.changed ? ", changed" : "");
     document.title = `${data.name}: active-surface`;
     element("device").textContent = data.device;
-    element("file").textContent = data.file ?? "an example; Save keeps a copy of yours";
+    element("file").textContent = data.file ?? "an example; Save writes a copy";
     element("undo").disabled = !data.undo;
     element("redo").disabled = !data.redo;
     element("back").disabled = !data.changed;
@@ -87,7 +90,7 @@ const TAKES = {
   },
   path(answer) {
     arrived(answer, () => {
-      clearMistakes();
+      if (answer.turn) clearMistakes();
       nowPath = { points: pairs(answer.line), coarse: answer.coarse, exact: false };
       for (const id of ["run", "trust"]) element(id).classList.add("old");
       drawPath();
@@ -97,11 +100,12 @@ const TAKES = {
   later(answer) { arrived(answer, () => { clearMistakes(); element("coarse").textContent = "The path follows when the plate is solved."; }); },
   refused(answer) {
     const changed = Object.keys(onTheWay?.changes ?? {});
+    element("picture").disabled = false;
     if (searching && answer.mistakes.some(({ field }) => field === "target")) endSearch();
-    if (element("save-dialog").open) {
+    if (element("save-dialog").open && answer.turn === null) {
       element("save-mistake").textContent = answer.mistakes.map(({ message }) => message).join("; ");
-      element("save-replace").hidden = !element("save-mistake").textContent.includes("there already");
-    } else arrived(answer, () => { showMistakes(answer.mistakes, changed); if (!dragged) drawMap(); });
+      element("save-replace").hidden = !element("save-mistake").textContent.includes("exists");
+    } else arrived(answer, () => { showMistakes(answer.mistakes, changed); if (!dragged) settleHandles(); });
   },
   async run(answer) {
     nowPath = { points: pairs(answer.line), coarse: [], exact: true };
@@ -120,9 +124,10 @@ const TAKES = {
   },
   busy({ stage, done, of }) { element("busy").textContent = of ? `${stage}: ${done} of ${of} …` : `${stage} …`; },
   idle() { element("busy").textContent = ""; },
-  note({ text }) {
+  note({ text, good = true }) {
     element("save-dialog").close();
     element("note").hidden = false;
+    element("note").classList.toggle("care", !good);
     element("note").textContent = text;
     setTimeout(() => { element("note").hidden = true; }, 8000);
   },
@@ -133,18 +138,26 @@ const TAKES = {
     setTimeout(() => URL.revokeObjectURL(anchor.href), 10000);
     element("picture").disabled = false;
   },
-  search({ done, of, line, distance }) {
+  search({ done, of, line, away }) {
+    beginSearch();
     if (of) element("busy").textContent = `Searching: ${done} of at most ${of} paths …`;
     if (!line) return;
-    nowPath = { points: pairs(arguments[0].line), coarse: ["search"], exact: false };
+    nowPath = { points: pairs(line), coarse: ["search"], exact: false };
     drawPath();
-    element("coarse").textContent = `Best drives so far: the part ends ${distance} from its start.`;
+    element("coarse").textContent = `Best drives so far: the part ends ${away} from the target.`;
   },
-  found({ text }) {
+  found({ text, good }) {
     endSearch();
-    if (text) TAKES.note({ text });
+    target = null;
+    element("coarse").textContent = "";
+    drawMap();
+    if (text) TAKES.note({ text, good });
   },
-  trouble({ text }) { tellTrouble(text); },
+  trouble({ text }) {
+    element("picture").disabled = false;
+    element("trouble").hidden = false;
+    element("trouble").textContent = `Sorry: ${text}`;
+  },
 };
 
 // When the surface is highest.
@@ -156,9 +169,18 @@ function highest(data) {
 
 function take(message) { TAKES[message.kind](message); }
 
-function tellPath({ sentence, distance, duration, coarse }) {
-  element("quick").textContent = `${sentence} It is ${distance} from its start after ${duration}.`;
-  element("coarse").textContent = coarse.length ? `Coarser while you drag: ${coarse.join(", ")}. The exact path follows when you let go.` : "";
+function tellPath({ sentence, distance, duration, coarse, rest }) {
+  const linear = coarse.some((text) => text.startsWith("linear theory")); // may be far off
+  element("quick").classList.toggle("coarse", coarse.length > 0);
+  element("quick").textContent = linear && rest ? "Computing …" : `${sentence} It is ${distance} from its start after ${duration}.`;
+  const follows = rest ? "The exact path is being computed." : "The exact path follows when you let go.";
+  element("coarse").textContent = coarse.length ? `Preview: ${coarse.join(", ")}. ${follows}` : "";
+}
+
+function beginSearch() {
+  searching = true;
+  element("aim").hidden = true;
+  element("stop").hidden = false;
 }
 
 function tellTrust({ trust, warnings }) {
@@ -224,7 +246,12 @@ const placeTexts = ({ kind, number, at }) => {
   const unit = mapData.unit.replace("µ", "u").replace("μ", "u");
   return Object.fromEntries(at.map((c, k) => [`${path}.${k}`, `${Number(c.toFixed(Math.max(0, Math.min(12, digits + 1))))} ${unit}`]));
 };
-onDrag = (what, stamp) => { gestureFor(what.group.dataset.key); change(placeTexts(what), false, stamp); };
+onDrag = (what, stamp) => {
+  const texts = placeTexts(what);
+  gestureFor(what.group.dataset.key);
+  showTexts(texts);
+  change(texts, false, stamp);
+};
 onDrop = (what) => { change(placeTexts(what), true, performance.now()); gestureOf = null; };
 onPick = (number) => ask({ do: "select", actuator: String(number) });
 onTarget = (place) => {
@@ -233,15 +260,14 @@ onTarget = (place) => {
   element("aim").setAttribute("aria-pressed", false);
   element("map-box").classList.remove("aiming");
   drawMap();
-  searching = true;
-  element("aim").hidden = true;
-  element("stop").hidden = false;
+  beginSearch();
   element("busy").textContent = "Searching …";
   ask({ do: "aim", target: place.map((c) => c / mapData.perSI) });
 };
 stepShown = (step) => drawHeights(step);
 
 for (const name of ["undo", "redo", "back", "stop"]) element(name).addEventListener("click", () => ask({ do: name }));
+element("menu-button").addEventListener("click", () => ask({ do: "menu" }));
 element("picture").addEventListener("click", () => { element("picture").disabled = true; ask({ do: "picture" }); });
 element("aim").addEventListener("click", () => setAiming(!aiming));
 element("chosen").addEventListener("change", (event) => onPick(event.target.value));

@@ -57,15 +57,16 @@ function addKnob(data) {
 
 // A slider keeps its ends while its value is well within them.
 function refresh(knob, data, anew) {
-  if (knob.field.getAttribute("aria-invalid") === "true" && !anew) return; // what is wrong stays to be mended
+  const typed = knob.field.getAttribute("aria-invalid") === "true" || knob.field === document.activeElement;
+  if (typed && !anew) return; // what is wrong stays to be mended
   const { low, high } = knob.data, inside = data.value > low + 0.02 * (high - low) && data.value < high - 0.02 * (high - low);
   const kept = !anew && inside && knob.data.unit === data.unit ? { low, high } : {};
   knob.data = { ...data, ...kept };
   knob.field.value = data.text;
   if (!knob.slider) return;
-  knob.field.placeholder = data.value === null ? "they differ" : "";
+  knob.field.placeholder = data.value === null ? "mixed" : "";
   knob.slider.value = NOTCHES * shareAt(knob.data, data.value);
-  knob.slider.setAttribute("aria-valuetext", data.text || "they differ");
+  knob.slider.setAttribute("aria-valuetext", data.text || "mixed");
 }
 
 function shareAt({ low, high, scale }, value) {
@@ -82,6 +83,11 @@ function textAt({ data: { low, high, scale, unit, whole } }, share) {
 
 // To four digits of the size that counts.
 function rounded(value, size) { return size > 0 ? value.toFixed(Math.max(0, Math.min(15, 3 - Math.floor(Math.log10(size))))) : "0"; }
+
+// Have fields show texts that were not typed into them.
+function showTexts(texts) {
+  for (const [path, text] of Object.entries(texts)) if (knobs.has(path)) knobs.get(path).field.value = text;
+}
 
 function clearMistakes() {
   for (const { field, mistake } of knobs.values()) {

@@ -63,6 +63,15 @@ function drawMap() {
   drawHeights();
 }
 
+// Bring what can be held, and is not, back to where the case has it.
+function settleHandles() {
+  for (const group of element("map").querySelectorAll(".handle")) {
+    const [kind, number] = (group.dataset.key ?? "").split(" ");
+    if (kind === "start") put(group, mapData.start);
+    if (kind === "actuator") put(group, mapData.actuators[Number(number)]);
+  }
+}
+
 function place([x, y]) { return `(${said(x)}, ${said(y)}) ${mapData.unit}`; }
 
 function drawActuators(map, px) {
@@ -189,7 +198,7 @@ function placeOf(event) {
 }
 
 function grab(event, what) {
-  if (aiming) return;
+  if (aiming || event.button) return;
   event.preventDefault();
   what.group.focus();
   const from = placeOf(event), began = [...what.at];
@@ -207,8 +216,7 @@ function grab(event, what) {
     if (what.at.some((c, k) => c !== began[k])) onDrop(what);
   };
   what.group.addEventListener("pointermove", move);
-  what.group.addEventListener("pointerup", drop, { once: true });
-  what.group.addEventListener("pointercancel", drop, { once: true });
+  what.group.addEventListener("lostpointercapture", drop, { once: true }); // however it ends
 }
 
 // How far an arrow key goes.
@@ -232,7 +240,7 @@ function nudge(event, what) {
 }
 
 element("map-box").addEventListener("pointerdown", (event) => {
-  if (!aiming || !mapData) return;
+  if (!aiming || !mapData || event.button) return;
   event.preventDefault();
   onTarget(placeOf(event));
 });

@@ -160,7 +160,7 @@ class Quantity:
         compound = len(texts) == 1 and re.search(r"[/^ ]", texts[0].removeprefix(f"{head} "))
         if compound and _NUMBER_AND_UNIT.fullmatch(head):
             value = self.value_of(texts[0], head, texts[0].removeprefix(f"{head} "))
-            question += f", which is {value:.6g} {self.unit}" if value != float(head) else ""
+            question += f", which is {value:.6g} {self.unit}" if value != float(Decimal(head)) else ""
         return question + "?"
 
     def _converted(self, head: str, unit: str) -> str:

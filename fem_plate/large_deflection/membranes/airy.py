@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
-from fem_plate.elements import CLAMPED, FREE, PlateModel, PlateSpace, SingularCorner, singular_corners
-from fem_plate.large_deflection.membranes.factor import factorised
+from fem_plate.elements import CLAMPED, FREE, PlateModel, PlateSpace, SingularCorner, factorised, singular_corners
 from fem_plate.large_deflection.membranes.membrane import AIRY, Membrane
 from fem_plate.large_deflection.membranes.samples import Samples
 from fem_plate.section import bending_law

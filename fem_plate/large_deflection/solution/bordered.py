@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
-from fem_plate.large_deflection.membranes import factorised
+from fem_plate.elements import factorised
 from fem_plate.large_deflection.solution.trial import Trial
 
 FloatArray = NDArray[np.float64]
