@@ -103,7 +103,7 @@ paper: .venv/installed
 	@touch $@
 
 .venv/installed: .venv/python pyproject.toml constraints.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[app]"
 	@touch $@
 
 .venv/developer: .venv/python pyproject.toml constraints.txt
