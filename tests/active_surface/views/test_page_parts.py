@@ -196,7 +196,7 @@ def test_a_page_is_whole_or_not_there(tmp_path, monkeypatch):
     with pytest.raises(KeyError):  # a text is missing
         write_page(tmp_path / "page.html", "t", "run.html", {}, {}, ["run.js"])
     with pytest.raises(ValueError, match="JSON"):
-        texts = dict.fromkeys(("name", "device", "sentence", "trust", "rows", "case"), "")
+        texts = dict.fromkeys(("name", "device", "sentence", "trust", "views", "rows", "case"), "")
         write_page(tmp_path / "page.html", "t", "run.html", texts, {"x": float("nan")}, ["run.js"])
     assert not list(tmp_path.iterdir())
 
