@@ -298,8 +298,8 @@ $EndElements
     [
         ("", "", "2 pieces that do not hang together: a plate is one"),
         ("1 4 5 6", "1 4 5 9", "it is damaged, or its parts do not fit together"),
-        ("6\n1 0 0 0", "99999999999\n1 0 0 0", "says that it has 99999999999 of something"),
-        ("2\n1 2 2", "99999999999\n1 2 2", "says that it has 99999999999 of something"),
+        ("6\n1 0 0 0", "99999999999\n1 0 0 0", "states 99999999999, more than its"),
+        ("2\n1 2 2", "99999999999\n1 2 2", "states 99999999999, more than its"),
     ],
 )
 def test_a_file_whose_numbers_do_not_fit_is_refused(tmp_path, old, new, wrong):
