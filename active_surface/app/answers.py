@@ -179,7 +179,7 @@ class Answers:
         mistakes = mistakes_of(error, field)
         if mistakes is None:
             traceback.print_exception(error)
-            self.send({"kind": "trouble", "text": f"the program failed: {error!r}"})
+            self.send({"kind": "trouble", "turn": page_turn, "text": f"the program failed: {error!r}"})
             return
         told = [{"field": name, "message": report.with_micro_signs(message)} for name, message in mistakes]
         self.send({"kind": "refused", "turn": page_turn, "mistakes": told})

@@ -1,4 +1,4 @@
-"""The command `active-surface`: one module for each command or two, over all the packages."""
+"""The command `active-surface`: what its commands have in common, and these in a room of their own."""
 
 import lazy_loader
 

@@ -1,49 +1,6 @@
 """The command `active-surface`, with all its commands."""
 
-from active_surface.cli import (
-    aim,
-    animate,
-    app,
-    check,
-    completion,
-    example,
-    export,
-    feasibility,
-    fit,
-    identify,
-    influence,
-    plot,
-    reproduce,
-    rerun,
-    response,
-    run,
-    schema,
-    sweep,
-    verify,
-    view,
-)
+from active_surface.cli import commands
 from active_surface.cli.group import main
 
-__all__ = [
-    "main",
-    "aim",
-    "animate",
-    "app",
-    "check",
-    "completion",
-    "example",
-    "export",
-    "feasibility",
-    "fit",
-    "identify",
-    "influence",
-    "plot",
-    "reproduce",
-    "rerun",
-    "response",
-    "run",
-    "schema",
-    "sweep",
-    "verify",
-    "view",
-]
+__all__ = ["commands", "main"]

@@ -56,7 +56,7 @@ const TAKES = {
       title.textContent = name;
       button.type = "button";
       button.append(title, about);
-      button.addEventListener("click", () => ask({ do: "open", name }));
+      button.addEventListener("click", () => { element("menu").hidden = Boolean(caseData); ask({ do: "open", name }); });
       item.append(button);
       return item;
     }));
@@ -67,7 +67,8 @@ const TAKES = {
     if (!next && !onTheWay && caseData && (caseData.undo !== data.undo || caseData.redo !== data.redo)) clearMistakes();
     const first = !caseData || caseData.file !== data.file || caseData.name !== data.name;
     caseData = data;
-    for (const [id, hidden] of [["menu", true], ["opened", false], ["bar", false]]) element(id).hidden = hidden;
+    for (const id of ["opened", "bar"]) element(id).hidden = false;
+    if (first) element("menu").hidden = true;
     if (first) { RUNS.saved = savedPath = nowPath = null; element("run").hidden = element("trust").hidden = true; element("undo").focus(); }
     element("name").textContent = data.name + (data.changed ? ", changed" : "");
     document.title = `${data.name}: active-surface`;
@@ -153,7 +154,8 @@ const TAKES = {
     drawMap();
     if (text) TAKES.note({ text, good });
   },
-  trouble({ text }) {
+  trouble({ text, turn }) {
+    arrived({ turn }, () => {});
     element("picture").disabled = false;
     element("trouble").hidden = false;
     element("trouble").textContent = `Sorry: ${text}`;
@@ -267,7 +269,10 @@ onTarget = (place) => {
 stepShown = (step) => drawHeights(step);
 
 for (const name of ["undo", "redo", "back", "stop"]) element(name).addEventListener("click", () => ask({ do: name }));
-element("menu-button").addEventListener("click", () => ask({ do: "menu" }));
+element("menu-button").addEventListener("click", () => {
+  if (element("menu").hidden) ask({ do: "menu" });
+  else element("menu").hidden = true;
+});
 element("picture").addEventListener("click", () => { element("picture").disabled = true; ask({ do: "picture" }); });
 element("aim").addEventListener("click", () => setAiming(!aiming));
 element("chosen").addEventListener("change", (event) => onPick(event.target.value));

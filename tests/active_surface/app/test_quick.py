@@ -2,33 +2,11 @@
 
 import numpy as np
 import pytest
+from app_case import CASE
 
 from active_surface.app import quick
 from active_surface.app.quick import LINEAR, PLATE, QuickPaths
 from coupling import SolvedPlates, read_case, run_case, silent
-
-CASE = """
-[plate]
-shape = "disc"
-radius = "300 um"
-supports = "clamped"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
-density = "2330 kg/m^3"
-[[actuators]]
-position = ["0 um", "0 um"]
-stroke = "60 um"
-frequency = "900 Hz"
-[part]
-mass = "2e-9 kg"
-position = ["80 um", "30 um"]
-[friction]
-model = "constant"
-limit = "40 nN"
-[run]
-duration = "3 ms"
-"""
 
 
 @pytest.fixture

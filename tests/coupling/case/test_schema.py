@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
+from active_surface.cli.commands.schema import AIM, CASE, STUDY, _model
 from active_surface.cli.program import main
-from active_surface.cli.schema import AIM, CASE, STUDY, _model
 from coupling.case.table import all_tables
 
 EXAMPLES = Path(__file__).parents[3] / "examples"

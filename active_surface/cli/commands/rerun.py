@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import click
 
 from active_surface.cli import options
+from active_surface.cli.commands.run import STAGES
 from active_surface.cli.group import main, refusing
-from active_surface.cli.run import STAGES
 
 if TYPE_CHECKING:
     from coupling import Rerun
