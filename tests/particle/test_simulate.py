@@ -16,8 +16,10 @@ from particle import (
     Micropart,
     Outcome,
     State,
+    Stopped,
     polynomial_surface,
     simulate,
+    stoppable,
 )
 
 MASS = 2e-9
@@ -250,3 +252,14 @@ def test_no_row_is_lost_when_the_record_grows():
     assert (np.diff(trajectory.time) > 0).all()
     assert (np.diff([event.time for event in trajectory.events]) > 0).all()
     assert trajectory.time[-1] == 8.0
+
+
+def test_another_thread_can_stop_a_path():
+    part, law = Micropart(MASS, (0.0, 0.0)), ConstantFriction(1e-9)
+    flag = np.zeros(1, dtype=np.int64)
+    with stoppable(flag):
+        assert simulate(slope(0.3), part, law, 1e-3).outcome is Outcome.MOVING
+        flag[0] = 1
+        with pytest.raises(Stopped):
+            simulate(slope(0.3), part, law, 1e-3)
+    assert simulate(slope(0.3), part, law, 1e-3).outcome is Outcome.MOVING  # after the block it counts no more
