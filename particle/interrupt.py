@@ -6,9 +6,10 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from numpy.typing import NDArray
+if TYPE_CHECKING:  # every command loads this module, and not all of them numpy
+    from numpy.typing import NDArray
 
 Answer = TypeVar("Answer")
 
