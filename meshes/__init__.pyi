@@ -18,6 +18,7 @@ from .drawing import (
     plotted as plotted,
 )
 from .fill import delaunay as delaunay
+from .hdf5 import DEADLY as DEADLY, UNREADABLE as UNREADABLE, check_hdf5 as check_hdf5, survives as survives
 from .outline import rim_curves as rim_curves
 from .prefixes import (
     NOTHING as NOTHING,

@@ -26,6 +26,12 @@ def load(path: Path) -> Any:
     if not path.is_file():
         raise ValueError(f"Input path of read must be a mesh file; there is no {path}")
     _check_sizes(path)
+    if path.suffix.lower() == ".xdmf":
+        from meshes.xdmf import wrong_numbers  # here, because h5py is slow to import
+
+        if wrong := list(wrong_numbers(path, MAX_SIZE)):
+            text = f"Input path of read must be a mesh file whose numbers can be read; of those that {path} names,"
+            raise ValueError("\n  ".join([text, *wrong]))
     printed = io.StringIO()  # meshio prints its complaint and calls sys.exit
     try:
         with redirect_stdout(printed), redirect_stderr(printed):

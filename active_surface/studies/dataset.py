@@ -17,7 +17,7 @@ from active_surface.studies.heights import heights_key
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.stored import AT_ONCE, KIND_ATTRIBUTE, slabs, stored_records
 from active_surface.studies.study import Study, versions
-from coupling import check_room, whole_file
+from coupling import NewFile, check_room, whole_file
 from coupling.case import Case, PlateCase
 from meshes import rim_curves
 
@@ -59,7 +59,7 @@ def renew_labels(study: Study, path: Path) -> None:
 
 def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:
     sizes = study.points.dimensions
-    with h5netcdf.File(path, "w") as file:
+    with NewFile(path) as numbers, h5netcdf.File(numbers, "w") as file:
         file.dimensions = sizes
         file.attrs.update(_about(study), warnings="\n".join(warnings))
         _write_axes(file, study)

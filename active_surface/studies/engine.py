@@ -20,7 +20,7 @@ from active_surface.studies.refusal import contact_of, mistakes_of, start_faults
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Base, Variants
 from coupling import build_drives, build_part, shared_surface, silent
-from coupling.case import Case, PlatformCase, RunCase
+from coupling.case import Case, PlatformCase, RunCase, cycles_fault
 from coupling.scene import platform_scene
 from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact
@@ -136,7 +136,9 @@ class Engine:
             for (row, case, _), place, messages in zip(several, starts.tolist(), faults, strict=True):
                 records["start_x"][row], records["start_y"][row] = place
                 law = contact_of(case.friction)
-                if messages := messages + [fault for fault in (law, surface) if isinstance(fault, str)]:
+                if fault := cycles_fault(case):
+                    messages.append(fault)
+                if messages := messages + [what for what in (law, surface) if isinstance(what, str)]:
                     wrong[row] = messages
                 elif not isinstance(law, str):
                     part = build_part(case, (place[0], place[1]))

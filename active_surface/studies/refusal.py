@@ -18,6 +18,7 @@ from coupling.case import (
     FrictionCase,
     PlateCase,
     beyond,
+    cycles_fault,
     gaps,
     half_size,
     in_file,
@@ -53,7 +54,9 @@ def refusals(study: Study, variants: Variants, k: int) -> list[str]:
         start = study.points.displacements([k])[0] + case.part.position
     except ValidationError as error:
         return mistakes_of(error)
-    return [law] if isinstance(law := contact_of(case.friction), str) else start_faults(base.case, start[None])[0]
+    if isinstance(law := contact_of(case.friction), str):
+        return [law]
+    return start_faults(base.case, start[None])[0] + [fault for fault in [cycles_fault(case)] if fault]
 
 
 def mistakes_of(error: ValidationError) -> list[str]:

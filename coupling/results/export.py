@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.files import whole_file
+from coupling.new_file import NewFile
 from coupling.progress import ProgressCallback, no_progress
 from coupling.results.csv_file import HEADER, check_csv, csv_rows
 from coupling.results.saved import OF_PART, SavedRun
@@ -149,7 +150,7 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
 def _numbers(folder: Path, name: str) -> Iterator[h5py.File]:
     """NAME.h5 to write to; once whole it replaces the old one, and NAME.xdmf, which is of the old numbers, goes."""
     with whole_file(folder / f"{name}.h5") as partial:
-        with h5py.File(partial, "w") as file:
+        with NewFile(partial) as file:
             yield file
         (folder / f"{name}.xdmf").unlink(missing_ok=True)
 

@@ -13,7 +13,7 @@ import h5py
 from pydantic import ValidationError
 
 from coupling.environment import versions
-from coupling.hdf5 import UNREADABLE
+from meshes import UNREADABLE
 
 EXPECTED = "Input path must be a result of `active-surface run`"
 LACKS = re.compile(r"\bobject '([^']+)' doesn't exist|attribute: '([^']+)'")

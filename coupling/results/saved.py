@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
-from coupling.hdf5 import DEADLY, check_hdf5, survives
 from coupling.margins import MarginCurves
 from coupling.results.case_record import CaseRecord, case_of
 from coupling.results.opening import EXPECTED, opened, readable
 from coupling.results.other_file import described, meant
 from coupling.summary import summary_of
+from meshes import DEADLY, check_hdf5, survives
 from particle import Event, EventKind, Outcome, Samples, State, dataset_of, table_of
 
 if TYPE_CHECKING:

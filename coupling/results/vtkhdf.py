@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from coupling.files import whole_file
+from coupling.new_file import NewFile
 from coupling.results.steps_file import GZIP, Filters, Metadata, StepsFile, growing
 
 
@@ -128,7 +129,7 @@ def _written(
     partial = Path(directory, f"{name}.partial.{kind}.vtkhdf")
     with whole_file(Path(directory, f"{name}.{kind}.vtkhdf"), partial, keep=True):
         try:
-            opened = h5py.File(partial, "w")
+            opened = NewFile(partial)
         except BlockingIOError as error:
             raise BlockingIOError(error.errno, "another run is writing it", str(partial)) from error
         with opened as file:

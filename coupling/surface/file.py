@@ -10,7 +10,8 @@ import h5py
 import numpy as np
 
 from coupling.files import whole_file
-from coupling.hdf5 import UNREADABLE, check_hdf5, survives
+from coupling.new_file import NewFile
+from meshes import UNREADABLE, check_hdf5, survives
 from particle import SurfaceMotion
 from particle.drives import DriveTable
 from particle.surface import BuiltCells, Cells
@@ -46,7 +47,7 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
     """
     path = Path(path)
     check_surface(path)
-    with whole_file(path) as partial, h5py.File(partial, "w") as file:
+    with whole_file(path) as partial, NewFile(partial) as file:
         file.attrs.update(kind=KIND, version=VERSION, error=surface.error, moving_base=surface.moving_base)
         file.attrs["in_plane_count"] = surface.in_plane_count
         file.attrs.update({name: getattr(surface, name) for name in LENGTHS})

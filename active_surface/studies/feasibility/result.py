@@ -181,7 +181,7 @@ class Feasibility:
         folder.mkdir(parents=True, exist_ok=True)
         data = folder / f"{self.case.name}.feasibility.nc"
         with whole_file(data) as partial:
-            self.dataset().to_netcdf(partial, engine="h5netcdf")
+            partial.write_bytes(self.dataset().to_netcdf(engine="h5netcdf"))
         return data, draw_feasibility(self, folder / f"{self.case.name}.feasibility.png", picked)
 
 

@@ -117,7 +117,7 @@ class FrequencyResponse:
         folder.mkdir(parents=True, exist_ok=True)
         data = folder / f"{self.case.name}.response.nc"
         with whole_file(data) as partial:
-            self.dataset().drop_vars("response").to_netcdf(partial, engine="h5netcdf")
+            partial.write_bytes(self.dataset().drop_vars("response").to_netcdf(engine="h5netcdf"))
         return data, draw_response(self, folder / f"{self.case.name}.response.png")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from coupling.case.actuators import ENDLESS, ActuatorCase
 from coupling.case.checks.parts import Parts
@@ -12,6 +12,9 @@ from coupling.case.mistakes import Mistake
 from coupling.case.plates import AxisCase
 from coupling.case.table import right_value
 from coupling.case.tables import RunCase
+
+if TYPE_CHECKING:
+    from coupling.case.case import Case
 
 MAX_CYCLES: Final = 10_000_000  # of all drives: a run of so many takes about an hour
 
@@ -27,12 +30,23 @@ def check_cycles(parts: Parts, lattice: Iterable[ActuatorCase]) -> Iterator[Mist
     motion = plate.get("motion") if isinstance(plate, Mapping) else getattr(plate, "motion", None)
     axes = motion.values() if isinstance(motion, Mapping) else vars(motion).values() if _is_table(motion) else ()
     drives += [AxisCase.values_of(one, parts.context) for one in axes if _is_table(one)]
+    if wrong := _too_many(drives, duration):
+        yield ("run", "duration"), wrong
+
+
+def cycles_fault(case: Case) -> str:
+    """That the drives of a case make more strokes than can be followed, or nothing."""
+    motion = getattr(case.plate, "motion", None)
+    axes = vars(motion).values() if _is_table(motion) else ()
+    drives = [vars(one) for one in (*case.actuators, *axes) if _is_table(one)]
+    wrong = _too_many(drives, case.run.duration)
+    return f"run.duration {wrong}" if wrong else ""
+
+
+def _too_many(drives: Iterable[Mapping[str, Any]], duration: float) -> str:
     count = sum(_cycles(drive, duration) for drive in drives)
-    if count > MAX_CYCLES:
-        yield (
-            ("run", "duration"),
-            f"must hold at most {MAX_CYCLES} cycles of all drives together; got {count:.3g} in {duration:g} s",
-        )
+    text = f"must hold at most {MAX_CYCLES} cycles of all drives together; got {count:.3g} in {duration:g} s"
+    return text if count > MAX_CYCLES else ""
 
 
 def _is_table(value: Any) -> bool:

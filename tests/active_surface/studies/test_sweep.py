@@ -12,6 +12,7 @@ from active_surface.cli.program import main
 from active_surface.studies import engine, read_study, run_study
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, new_records
 from coupling import read_case
+from coupling.case import CaseError
 from coupling.run import build_friction, build_surface, follow_part
 
 STROKES = """\
@@ -122,6 +123,20 @@ def test_a_point_that_cannot_be_run_is_refused_and_told(tmp_path):
     assert sweep.outcomes["refused"] == 2 and OUTCOMES[int(sweep.dataset["outcome"][0, 0])] == "refused"
     assert np.isnan(sweep.dataset["end_x"].values[:, 0]).all() and (sweep.dataset["evaluations"][:, 0] == 0).all()
     assert sweep.first_refused == ["friction.static_coefficient must be at least coefficient, 0.2; got 0.1"]
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("case", [PLATE, PLATFORM], ids=["plate", "platform"])
+def test_a_point_with_cycles_without_end_is_refused(tmp_path, case):
+    field = "plate.motion.x.frequency" if case is PLATFORM else "actuators.0.frequency"
+    axes = f'[[axes]]\nfield = "{field}"\nvalues = ["400 Hz", "1e12 Hz"]\n'
+    sweep = run_study(read_study(written(tmp_path, axes, case)))
+    assert sweep.dataset["mistakes"].values.tolist() == [0, 1]
+    (said,) = sweep.first_refused
+    assert said.startswith("run.duration must hold at most 10000000 cycles of all drives together; got ")
+    axes = axes.replace('"400 Hz"', '"1e11 Hz"')
+    with pytest.raises(CaseError, match="at every point: run.duration must hold at most 10000000 cycles"):
+        run_study(read_study(written(tmp_path, axes, case)))
 
 
 @pytest.mark.compiled

@@ -1,0 +1,93 @@
+"""HDF5 files on a disk that fills while they are written: an error, no crash, and what was flushed can be read."""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+import sys
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from coupling import NewFile
+from coupling.results import vtkhdf
+
+STEPS = 60
+
+
+def written(path: Path, kind: type[h5py.File]) -> None:
+    noise = np.random.default_rng(1).normal(size=(STEPS, 500))
+    with kind(path, "w") if kind is h5py.File else kind(path) as file:
+        rows = file.create_dataset("rows", (0, 500), "f8", maxshape=(None, 500), chunks=(1, 500), compression="gzip")
+        for k in range(STEPS):
+            rows.resize(k + 1, axis=0)
+            rows[k] = noise[k]
+            if k % 10 == 9:
+                file.flush()
+
+
+def test_the_bytes_are_those_that_hdf5_writes_itself(tmp_path: Path) -> None:
+    (tmp_path / "one").write_bytes(b"older and longer" * 100_000)
+    written(tmp_path / "one", NewFile)
+    written(tmp_path / "other", h5py.File)
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "other").read_bytes()
+
+
+def test_a_file_that_is_being_written_is_left_alone(tmp_path: Path) -> None:
+    with NewFile(tmp_path / "file") as file:
+        file["x"] = 1.0
+        file.flush()
+        with pytest.raises(BlockingIOError):
+            NewFile(tmp_path / "file")
+        file["y"] = 2.0
+    with h5py.File(tmp_path / "file") as file:
+        assert file["x"][()] == 1.0 and file["y"][()] == 2.0
+
+
+def test_a_folder_is_no_file(tmp_path: Path) -> None:
+    with pytest.raises(IsADirectoryError):
+        NewFile(tmp_path)
+
+
+def on_a_small_disk(folder: Path, most: int, sender: Connection) -> None:
+    """Write a run of steps where no file may have more than so many bytes; says what came of it."""
+    import resource
+
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+    noise, steps = np.random.default_rng(1).normal(size=(STEPS, 3)), 0
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    try:
+        with vtkhdf.plate_file(folder, "run", corners, [[0, 1, 2]]) as plate:
+            for k in range(STEPS):
+                plate.append(float(k), deflection=noise[k])
+                plate.flush()
+                steps = k + 1
+    except OSError as error:
+        sender.send((steps, error.strerror, error.filename))
+    else:
+        sender.send((steps, "", ""))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no limits of file sizes")
+@pytest.mark.parametrize("most", [0, 100, 512, 2048, 4096, 8192, 15_000, 30_000, 10**6])
+def test_a_full_disk_is_an_error_and_leaves_what_was_flushed(tmp_path: Path, most: int) -> None:
+    receiver, sender = multiprocessing.Pipe(duplex=False)
+    child = multiprocessing.get_context("spawn").Process(target=on_a_small_disk, args=(tmp_path, most, sender))
+    child.start()
+    child.join()
+    assert child.exitcode == 0
+    steps, said, name = receiver.recv()
+    partial = tmp_path / "run.partial.plate.vtkhdf"
+    if most == 10**6:
+        assert steps == STEPS and not said
+        return
+    assert said == "File too large" and name == str(partial)
+    assert not (tmp_path / "run.plate.vtkhdf").exists()
+    if steps:
+        with h5py.File(partial) as file:
+            assert steps <= file["VTKHDF/Steps"].attrs["NSteps"] <= steps + 1
+            assert np.isfinite(file["VTKHDF/PointData/deflection"][: 3 * steps]).all()
