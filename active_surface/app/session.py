@@ -56,6 +56,9 @@ class Session:
         if not isinstance(message, dict) or not isinstance(message.get("do"), str):
             self._answers.tell_error(Refused([("", 'a message must have "do", the name of what is to be done')]))
             return
+        if type(message.get("turn", 0)) is not int:  # it goes back to the page with the answer
+            self._answers.tell_error(Refused([("", "turn must be a whole number")]))
+            return
         self._waiting.append(message)
         if not self._working:
             self._working = True

@@ -18,6 +18,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
@@ -56,6 +57,7 @@ def tried(seed: int, first: int, count: int, made: Path, folder: Path) -> list[t
     receiver, sender = os.pipe()
     child = os.fork()
     if child == 0:
+        os.setpgid(0, 0)
         os.close(receiver)
         code = 1
         try:
@@ -70,7 +72,8 @@ def tried(seed: int, first: int, count: int, made: Path, folder: Path) -> list[t
         ready, _, _ = select.select([receiver], [], [], SILENT)
         if not ready:
             hung = True
-            os.kill(child, signal.SIGKILL)
+            with suppress(ProcessLookupError):  # with its own children, who hold the pipe, too
+                os.killpg(child, signal.SIGKILL)
         piece = os.read(receiver, 65536)
         if not piece:
             break

@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 from fuzz import seeds
 from fuzz.damage import damaged_hdf5
 from fuzz.mutations import NUMBERS, WORDS, mutated_bytes, mutated_text, quantity
+from fuzz.page import messages
 
 Command = list[str]
 
@@ -251,7 +252,8 @@ MAKERS: Final[Mapping[str, Maker]] = {
     "run result": Maker(result, 0.09),
     "sweep result": Maker(sweep, 0.09),
     "formula": Maker(formula, 0.10),
-    "command line": Maker(command, 0.059),
+    "command line": Maker(command, 0.055),
+    "page": Maker(messages, 0.004),
     "extreme run": Maker(extreme, 0.001),
 }
 

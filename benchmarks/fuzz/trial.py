@@ -15,6 +15,7 @@ from typing import Any, Final, NamedTuple
 from click.testing import CliRunner
 
 from fuzz.inputs import make
+from fuzz.page import taken
 
 LONGEST: Final = 20  # s of processors
 WAITING: Final = 60  # s, in which it may also wait
@@ -79,6 +80,8 @@ def ended(command: list[str]) -> tuple[str, int | None, str]:
     try:
         if command[0] == "reading":
             return _read(command[1])
+        if command[0] == "messages":
+            return taken(*command[1:])
         from active_surface.cli import main
 
         done = CliRunner().invoke(main, command)

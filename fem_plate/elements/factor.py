@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import weakref
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future
 from functools import cache, partial
+from queue import SimpleQueue
 from typing import Any
 
 import numpy as np
@@ -45,13 +47,35 @@ def _kept(factor: Callable[[], Any]) -> list[Any]:
     """
     if threading.current_thread() is threading.main_thread():
         return [factor()]
-    return [_thread().submit(factor).result()]
+    made: Future[Any] = Future()
+    _queue().put(partial(_make, factor, made))
+    return [made.result()]
 
 
 def _drop(kept: list[Any]) -> None:
-    _thread().submit(kept.clear)
+    # The garbage collector calls this at any moment, in the midst of what holds a lock: this queue needs none.
+    _queue().put(kept.clear)
+
+
+def _make(factor: Callable[[], Any], made: Future[Any]) -> None:
+    try:
+        made.set_result(factor())
+    except BaseException as error:
+        made.set_exception(error)
 
 
 @cache
-def _thread() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(1, "factors")
+def _queue() -> SimpleQueue[Callable[[], None]]:
+    """The work of that thread."""
+    queue: SimpleQueue[Callable[[], None]] = SimpleQueue()
+
+    def work() -> None:
+        while True:
+            queue.get()()
+
+    threading.Thread(target=work, name="factors", daemon=True).start()
+    return queue
+
+
+if hasattr(os, "register_at_fork"):  # a child has the queue, and not the thread
+    os.register_at_fork(after_in_child=_queue.cache_clear)

@@ -96,7 +96,7 @@ def test_mistakes_are_at_their_fields_in_the_words_of_check_and_change_nothing(p
 @pytest.mark.parametrize(
     "message",
     [
-        *(None, 3, [], {"do": 4}, {"do": "fly"}, {"do": "open", "name": "../x"}),
+        *(None, 3, [], {"do": 4}, {"do": "fly"}, {"do": "open", "name": "../x"}, {"do": "menu", "turn": 1e400}),
         *({"do": "set"}, {"do": "set", "changes": [1]}, {"do": "set", "changes": {"a": 1}}),
         *({"do": "select", "actuator": "9"}, {"do": "select"}),
         *({"do": "save", "name": name} for name in (None, "../x.toml", "/tmp/x.toml", ".toml", "x.txt")),
