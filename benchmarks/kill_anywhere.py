@@ -2,13 +2,15 @@
 
     python benchmarks/kill_anywhere.py [--count 35] [--seed 1]
 
-So many kills of each of run, sweep, aim, export, animate and view, at moments spread over all that each does. Then a
-disk that is full, a folder that vanishes, and two processes in one folder. `kills.py` looks at what was flushed.
+So many kills of each of run, sweep, aim, export, animate, view and app, at moments spread over all that each does.
+Then a disk that is full, a folder that vanishes, and two processes in one folder. `kills.py` looks at what was flushed.
 """
 
 from __future__ import annotations
 
 import argparse
+import asyncio
+import json
 import os
 import random
 import resource
@@ -24,6 +26,8 @@ import numpy as np
 from fuzz import seeds
 from fuzz.__main__ import load
 from PIL import Image
+from tornado.httpclient import HTTPRequest
+from tornado.websocket import websocket_connect
 
 from coupling import read_case, read_run
 
@@ -39,7 +43,9 @@ COMMANDS: dict[str, list[str]] = {
         *("--fps", "4", "--quiet"),
     ],
     "view": ["view", "made/quick", "-o", "out/page.html", "--quiet"],
+    "app": ["app", "out/mine.toml"],
 }
+SAVED = 12  # cases, by the app
 
 
 def started(command: list[str], before: Callable[[], None] = lambda: None) -> int:
@@ -53,14 +59,44 @@ def started(command: list[str], before: Callable[[], None] = lambda: None) -> in
         for stream in (0, 1, 2):
             os.dup2(null, stream)
         before()
-        from active_surface.cli import main
+        if command[0] == "app":
+            code = saving(Path(command[1]))
+        else:
+            from active_surface.cli import main
 
-        main(command, prog_name="active-surface")
-        code = 0
+            main(command, prog_name="active-surface")
+            code = 0
     except SystemExit as end:
         code = end.code if isinstance(end.code, int) else 1
     finally:
         os._exit(code)
+
+
+def saving(case: Path) -> int:
+    """Serve a case to a page that changes and saves it, in one process; returns 1 where a case could not be saved."""
+    from active_surface.app import Server, open_case
+
+    server, refused = Server(lambda: open_case(case)), []
+
+    async def page() -> None:
+        address = server.address.replace("http", "ws") + "socket"
+        origin = {"Origin": f"http://127.0.0.1:{server.port}"}
+        socket = await websocket_connect(HTTPRequest(address, headers=origin))
+        for k in range(1, 1 + SAVED):
+            name = f"saved{k}.toml"
+            await socket.write_message(json.dumps({"do": "set", "changes": {"actuators.0.stroke": f"{0.1 * k:g} um"}}))
+            await socket.write_message(json.dumps({"do": "save", "name": name, "replace": True}))
+            while (answer := json.loads(str(await socket.read_message())))["kind"] not in (
+                "note",
+                "refused",
+                "trouble",
+            ):
+                pass
+            refused.extend([name] if answer["kind"] != "note" else [])
+        os._exit(1 if refused else 0)
+
+    server.run(lambda: asyncio.get_running_loop().create_task(page()))
+    return 0
 
 
 def ended(child: int) -> int:
@@ -77,13 +113,20 @@ def prepare(folder: Path, made: Path) -> None:
     for name, text in (("quick", seeds.QUICK), ("study", STUDY), ("aim", AIM)):
         Path(f"{name}.toml").write_text(text)
     os.symlink(made, "made")
+    Path("out", "mine.toml").write_text(seeds.QUICK)
 
 
 def finished() -> dict[str, object]:
     """What is finished among the results in the current folder, by its name; raises where it is not whole."""
     there: dict[str, object] = {}
     for path in sorted(Path("out").rglob("*")):
-        if path.is_dir() or ".partial" in path.name or ".sweep" in path.parent.name or path.suffix == ".lock":
+        if (
+            path.is_dir()
+            or path.name == "mine.toml"
+            or ".partial" in path.name
+            or ".sweep" in path.parent.name
+            or path.suffix == ".lock"
+        ):
             continue
         name = path.relative_to("out").as_posix()
         if path.suffix in (".png", ".gif"):
