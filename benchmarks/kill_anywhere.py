@@ -86,13 +86,10 @@ def saving(case: Path) -> int:
             name = f"saved{k}.toml"
             await socket.write_message(json.dumps({"do": "set", "changes": {"actuators.0.stroke": f"{0.1 * k:g} um"}}))
             await socket.write_message(json.dumps({"do": "save", "name": name, "replace": True}))
-            while (answer := json.loads(str(await socket.read_message())))["kind"] not in (
-                "note",
-                "refused",
-                "trouble",
-            ):
-                pass
-            refused.extend([name] if answer["kind"] != "note" else [])
+            kind = ""
+            while kind not in ("note", "refused", "trouble"):
+                kind = json.loads(str(await socket.read_message()))["kind"]
+            refused.extend([name] if kind != "note" else [])
         os._exit(1 if refused else 0)
 
     server.run(lambda: asyncio.get_running_loop().create_task(page()))
@@ -120,13 +117,8 @@ def finished() -> dict[str, object]:
     """What is finished among the results in the current folder, by its name; raises where it is not whole."""
     there: dict[str, object] = {}
     for path in sorted(Path("out").rglob("*")):
-        if (
-            path.is_dir()
-            or path.name == "mine.toml"
-            or ".partial" in path.name
-            or ".sweep" in path.parent.name
-            or path.suffix == ".lock"
-        ):
+        unfinished = ".partial" in path.name or ".sweep" in path.parent.name or path.suffix == ".lock"
+        if path.is_dir() or unfinished or path.name == "mine.toml":
             continue
         name = path.relative_to("out").as_posix()
         if path.suffix in (".png", ".gif"):

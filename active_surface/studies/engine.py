@@ -136,7 +136,7 @@ class Engine:
             for (row, case, _), place, messages in zip(several, starts.tolist(), faults, strict=True):
                 records["start_x"][row], records["start_y"][row] = place
                 law = contact_of(case.friction)
-                if fault := cycles_fault(case):
+                if fault := cycles_fault(case.plate, case.actuators, case.run.duration):
                     messages.append(fault)
                 if messages := messages + [what for what in (law, surface) if isinstance(what, str)]:
                     wrong[row] = messages

@@ -56,7 +56,8 @@ def refusals(study: Study, variants: Variants, k: int) -> list[str]:
         return mistakes_of(error)
     if isinstance(law := contact_of(case.friction), str):
         return [law]
-    return start_faults(base.case, start[None])[0] + [fault for fault in [cycles_fault(case)] if fault]
+    fault = cycles_fault(case.plate, case.actuators, case.run.duration)
+    return start_faults(base.case, start[None])[0] + ([fault] if fault else [])
 
 
 def mistakes_of(error: ValidationError) -> list[str]:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from coupling.case.actuators import ENDLESS, ActuatorCase
 from coupling.case.checks.parts import Parts
 from coupling.case.mistakes import Mistake
 from coupling.case.plates import AxisCase
-from coupling.case.table import right_value
+from coupling.case.table import Table, right_value
 from coupling.case.tables import RunCase
-
-if TYPE_CHECKING:
-    from coupling.case.case import Case
 
 MAX_CYCLES: Final = 10_000_000  # of all drives: a run of so many takes about an hour
 
@@ -34,12 +31,11 @@ def check_cycles(parts: Parts, lattice: Iterable[ActuatorCase]) -> Iterator[Mist
         yield ("run", "duration"), wrong
 
 
-def cycles_fault(case: Case) -> str:
-    """That the drives of a case make more strokes than can be followed, or nothing."""
-    motion = getattr(case.plate, "motion", None)
+def cycles_fault(plate: Table, actuators: Iterable[Table], duration: float) -> str:
+    """That the drives of a case make more strokes in a time [s] than can be followed, or nothing."""
+    motion = getattr(plate, "motion", None)
     axes = vars(motion).values() if _is_table(motion) else ()
-    drives = [vars(one) for one in (*case.actuators, *axes) if _is_table(one)]
-    wrong = _too_many(drives, case.run.duration)
+    wrong = _too_many([vars(one) for one in (*actuators, *axes) if _is_table(one)], duration)
     return f"run.duration {wrong}" if wrong else ""
 
 
