@@ -2,6 +2,9 @@
 # make test-all: the long tests as well.    make coverage: what they cover.    make site: the documentation site.
 # make fuzz, paths, kills: abuse.
 PYTHON ?= python3
+# What is tested with. .ci/versions has others.
+CONSTRAINTS ?= constraints.txt
+LINT ?= lint
 BIN := .venv/bin
 # Small dense systems gain nothing from BLAS threads and lose much where cores are busy.
 export OPENBLAS_NUM_THREADS ?= 1
@@ -27,7 +30,7 @@ test: .venv/developer
 	@echo "== all tests, with compiled kernels (2 of 2)"
 	$(PYTEST) $(COVERAGE) $(CHOSEN)
 
-plain: lint
+plain: $(LINT)
 	@echo "== the part, in plain Python (1 of 2)"
 	NUMBA_DISABLE_JIT=1 $(PYTEST) $(COVERAGE) -m "not slow and not compiled" $(PLAIN)
 
@@ -102,20 +105,20 @@ paper: .venv/installed
 	$(PYTHON) -m venv .venv
 	@touch $@
 
-.venv/installed: .venv/python pyproject.toml constraints.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[app]"
+.venv/installed: .venv/python pyproject.toml $(CONSTRAINTS)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c $(CONSTRAINTS) -e ".[app]"
 	@touch $@
 
-.venv/developer: .venv/python pyproject.toml constraints.txt
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev,cluster,parquet]"
+.venv/developer: .venv/python pyproject.toml $(CONSTRAINTS)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c $(CONSTRAINTS) -e ".[dev,cluster,parquet]"
 	@touch .venv/installed $@
 
 .venv/benchmarks: .venv/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[benchmarks]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c $(CONSTRAINTS) -e ".[benchmarks]"
 	@touch $@
 
 .venv/site: .venv/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[docs]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c $(CONSTRAINTS) -e ".[docs]"
 	@touch $@
 
 clean:
