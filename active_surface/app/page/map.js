@@ -150,11 +150,15 @@ function drawHeights(step = shown) {
   const canvas = element("heights"), part_ = element("map-part"), { clientWidth, clientHeight } = canvas;
   canvas.width = Math.ceil(clientWidth / COARSE);
   canvas.height = Math.ceil(clientHeight / COARSE);
-  if (!pageData || !mapData || !nowPath?.exact || !canvas.width || !canvas.height) { part_?.setAttribute("visibility", "hidden"); return; }
+  const blank = !pageData || !mapData || !nowPath?.exact || !canvas.width || !canvas.height;
+  element("shades").hidden = blank;
+  if (blank) { part_?.setAttribute("visibility", "hidden"); return; }
   const [low, high] = frameBox, px = pixel() * COARSE, paint = canvas.getContext("2d"), image = paint.createImageData(canvas.width, canvas.height);
   const left = (low[0] + high[0]) / 2 - canvas.width * px / 2, top = (low[1] + high[1]) / 2 + canvas.height * px / 2;
   const ratio = mapData.perSI / perMetre(units.length), z = heightsAt(step), [least, most] = surface.range;
   const u = Float32Array.from(surface.x, (x) => (x * ratio - left) / px), v = Float32Array.from(surface.y, (y) => (top - y * ratio) / px);
+  element("shades-bar").style.background = `linear-gradient(to right, ${surface.colours.map(([at, colour]) => `${colour} ${100 * at}%`).join(", ")})`;
+  element("shades-range").textContent = `height, ${said(least)} to ${said(most)} ${units.height}`;
   const shades = Array.from({ length: SHADES + 1 }, (_, k) => shade(k / SHADES));
   const share = Float32Array.from(z, (w) => most > least ? (w - least) / (most - least) : 0);
   for (let k = 0; k < surface.triangles.length; k += 3) fill(image, surface.triangles.subarray(k, k + 3), u, v, share, shades);
