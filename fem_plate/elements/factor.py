@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import threading
 import weakref
@@ -65,15 +66,23 @@ def _make(factor: Callable[[], Any], made: Future[Any]) -> None:
 
 
 @cache
-def _queue() -> SimpleQueue[Callable[[], None]]:
+def _queue() -> SimpleQueue[Callable[[], None] | None]:
     """The work of that thread."""
-    queue: SimpleQueue[Callable[[], None]] = SimpleQueue()
+    queue: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
 
     def work() -> None:
-        while True:
-            queue.get()()
+        for task in iter(queue.get, None):
+            task()
+            del task  # with what it holds
 
-    threading.Thread(target=work, name="factors", daemon=True).start()
+    def end() -> None:
+        queue.put(None)
+        thread.join()
+
+    thread = threading.Thread(target=work, name="factors", daemon=True)
+    thread.start()
+    # scipy raises an error in whoever ends a thread with factors other than itself, such as the interpreter.
+    atexit.register(end)
     return queue
 
 

@@ -3,6 +3,8 @@
 import gc
 import os
 import signal
+import subprocess
+import sys
 import threading
 from concurrent.futures.thread import _global_shutdown_lock
 
@@ -120,3 +122,19 @@ def test_they_solve_alike():
     load = np.array([1.0, 2.0, 3.0])
     np.testing.assert_array_equal(found[0](load), factorised(MATRIX)(load))
     np.testing.assert_allclose(found[0](load), load / [2.0, 3.0, 4.0], rtol=1e-15)
+
+
+def test_the_program_ends_without_a_word_while_factors_of_another_thread_are_there():
+    code = """
+import threading
+import numpy as np
+from scipy.sparse import csc_matrix, diags
+from fem_plate.elements.factor import factorised
+kept = []
+worker = threading.Thread(target=lambda: kept.append(factorised(csc_matrix(diags(np.arange(1.0, 300.0))))))
+worker.start()
+worker.join()
+print(kept[0](np.ones(299))[1])
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0.5\n", "")
