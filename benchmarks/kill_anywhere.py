@@ -32,7 +32,7 @@ from tornado.websocket import websocket_connect
 from coupling import read_case, read_run
 
 AIM = seeds.AIM.replace("paths = 20", "paths = 100").replace("scatter = 5", "scatter = 10")
-STUDY = seeds.STUDY.replace("repeats = 2", "repeats = 10")
+STUDY = seeds.STUDY.replace("repeats = 2", "repeats = 5")
 COMMANDS: dict[str, list[str]] = {
     "run": ["run", "quick.toml", "--csv", "-o", "out", "--quiet"],
     "sweep": ["sweep", "study.toml", "-o", "out", "--quiet", "--threads", "1"],

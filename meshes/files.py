@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+import warnings
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
@@ -34,7 +35,8 @@ def load(path: Path) -> Any:
             raise ValueError("\n  ".join([text, *wrong]))
     printed = io.StringIO()  # meshio prints its complaint and calls sys.exit
     try:
-        with redirect_stdout(printed), redirect_stderr(printed):
+        with redirect_stdout(printed), redirect_stderr(printed), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of numbers that fit no type, which are checked below
             return meshio.read(path)
     except (Exception, SystemExit) as error:
         readable = isinstance(error, (meshio.ReadError, SyntaxError))  # a ParseError of XML is one

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 import time
 import warnings
@@ -11,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 import h5py
+import numpy as np
 from h5py._objects import phil
 
 UNREADABLE = (
@@ -21,14 +23,17 @@ UNREADABLE = (
 DEADLY = "HDF5 does not come to the end of it"
 PATIENCE = 10.0  # s, for a file that takes a fraction of one
 MAX_TRIED = 2**26  # bytes of its numbers that are tried
+MEMORY = 2**31  # bytes that reading may take: a length that is wrong can have HDF5 ask for any
 MAX_OBJECTS = 100_000
 PACKED = 1100  # times: by how much gzip packs zeros, and a little more
 UNSTORED = 2**16  # bytes that a dataset may have without any in the file
-MAX_BYTES = 2**31  # of a dataset that is read at once
+MAX_BYTES = 2**30  # of a dataset that is read at once
+AXES, AXIS_OF, AXIS_COLUMNS = "DIMENSION_LIST", "REFERENCE_LIST", ("dataset", "dimension")
+"""The attributes by which netCDF files say which datasets are the axes of others, as HDF5 defines them."""
 
 
 def survives(path: str | os.PathLike[str]) -> bool:
-    """Whether HDF5 reads a file without crashing or going round in circles, as it may in one that is damaged.
+    """Whether HDF5 reads a file without crashing, going round in circles or taking all memory, as one that is damaged.
 
     A child process tries, where there is fork and on the main thread; elsewhere nobody does, and it is taken to be so.
     """
@@ -48,22 +53,33 @@ def survives(path: str | os.PathLike[str]) -> bool:
             null = os.open(os.devnull, os.O_RDWR)
             for stream in (0, 1, 2):  # where a library that fails would print
                 os.dup2(null, stream)
-            _read_all(path)
+            before = _most_memory()
+            with suppress(Exception):  # which the reader will see for itself
+                _read_all(path)
+            os._exit(0 if _most_memory() - before <= MEMORY else 1)
         finally:
-            os._exit(0)  # also after an error, which the reader will see for itself
+            os._exit(0)
     end = time.monotonic() + PATIENCE
     try:
         while time.monotonic() < end:
             ended, status = os.waitpid(child, os.WNOHANG)
             if ended:
                 child = 0
-                return os.WIFEXITED(status)
+                return os.waitstatus_to_exitcode(status) == 0
             time.sleep(0.001)
         return False
     finally:
         if child:  # it takes too long, or Ctrl-C came
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
+
+
+def _most_memory() -> int:
+    """Bytes that this process has had at most."""
+    import resource  # here, because Windows has none
+
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most if sys.platform == "darwin" else 1024 * most
 
 
 def _read_all(path: str | os.PathLike[str]) -> None:
@@ -95,6 +111,24 @@ def check_hdf5(path: str | os.PathLike[str], by_steps: str = "") -> None:
                 raise ValueError(f"its {name} says that it has {size} bytes, of which {stored} are there")
             if size > MAX_BYTES and not (by_steps and name.startswith(f"{by_steps}/")):
                 raise ValueError(f"its {name} has {size} bytes; at most {MAX_BYTES} are read")
+            if not _has_right_axes(dataset):
+                raise ValueError(f"its {name} names its axes in another form than netCDF")
+
+
+def _has_right_axes(dataset: h5py.Dataset) -> bool:
+    """Whether the attributes of axes, if there are any, are references: with others HDF5 spoils its memory."""
+    if AXES in dataset.attrs:
+        attribute = dataset.attrs.get_id(AXES)
+        if attribute.shape != (dataset.ndim,) or not _refers(h5py.check_vlen_dtype(attribute.dtype)):
+            return False
+    if AXIS_OF in dataset.attrs:
+        kind = dataset.attrs.get_id(AXIS_OF).dtype
+        return kind.names == AXIS_COLUMNS and _refers(kind[0])
+    return True
+
+
+def _refers(kind: np.dtype | None) -> bool:
+    return kind is not None and h5py.check_ref_dtype(kind) is h5py.Reference
 
 
 def _datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:

@@ -18,8 +18,9 @@ from meshes import UNREADABLE
 EXPECTED = "Input path must be a result of `active-surface run`"
 LACKS = re.compile(r"\bobject '([^']+)' doesn't exist|attribute: '([^']+)'")
 OF_HDF5 = re.compile(r"(?:Unable to|Can't) (?:synchronously )?[\w ]+ \((.*)\)")
+NO_NUMBER = re.compile(r"invalid literal for|could not convert")
 FIELDS = re.compile(r"(\w+)\.(?:__init__|__new__)\(\) missing [^:]+: (.+)")
-"""How h5py says that something is missing, and how it wraps what HDF5 says; how Python does of a record."""
+"""How h5py says that something is missing, how it wraps what HDF5 says; what Python says of numbers and records."""
 
 
 @contextmanager
@@ -69,6 +70,8 @@ def _message(error: Exception) -> str:
         return f"its {lacking[1].lower()} lacks {lacking[2].replace(chr(39), '')}"
     if isinstance(error, (ArithmeticError, AssertionError, AttributeError, IndexError, TypeError, UnicodeError)):
         return "something in it has another form than a run writes"
+    if NO_NUMBER.match(text):
+        return "something in it that should be a number is none"
     if isinstance(error, (MemoryError, OSError, RuntimeError)) or OF_HDF5.search(text):
         return "it cannot be read to its end"
     return text

@@ -77,3 +77,34 @@ def test_a_file_on_which_the_library_dies_is_found_out(tmp_path, monkeypatch, ha
     monkeypatch.setattr(hdf5, "_read_all", lambda path: harm())
     monkeypatch.setattr(hdf5, "PATIENCE", 0.2)
     assert not survives(tmp_path / "file.h5")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+def test_a_file_that_takes_too_much_memory_is_not_read(tmp_path, monkeypatch):
+    (tmp_path / "file.h5").touch()
+    monkeypatch.setattr(hdf5, "_read_all", lambda path: np.ones(3 * 10**8 // 8))
+    assert survives(tmp_path / "file.h5")
+    monkeypatch.setattr(hdf5, "MEMORY", 10**8)
+    assert not survives(tmp_path / "file.h5")
+
+
+def other_axes(name, value):
+    def change(file):
+        scale, rows = file.create_dataset("scale", data=np.zeros(3)), file.create_dataset("rows", data=np.zeros(3))
+        scale.make_scale("x")
+        rows.dims[0].attach_scale(scale)
+        del file["rows" if name == "DIMENSION_LIST" else "scale"].attrs[name]
+        file["rows" if name == "DIMENSION_LIST" else "scale"].attrs[name] = value
+
+    return change
+
+
+@pytest.mark.parametrize("value", [5, "x", [1, 2, 3], h5py.Empty("f8")], ids=str)
+@pytest.mark.parametrize("name", ["DIMENSION_LIST", "REFERENCE_LIST"])
+def test_axes_in_another_form_are_refused(tmp_path, name, value):
+    path = tmp_path / "file.h5"
+    with h5py.File(path, "w") as file:
+        other_axes(name, value)(file)
+    of = "rows" if name == "DIMENSION_LIST" else "scale"
+    with pytest.raises(ValueError, match=f"its {of} names its axes in another form than netCDF"):
+        check_hdf5(path)
