@@ -39,15 +39,7 @@ def survives(path: str | os.PathLike[str]) -> bool:
     """
     if not hasattr(os, "fork") or threading.current_thread() is not threading.main_thread():
         return True
-    with warnings.catch_warnings(), phil:  # held, so that no other thread is at HDF5 when only this one lives on
-        warnings.simplefilter("ignore")  # of threads that do not live on in the child, which needs none
-        parent = os.getpid()
-        try:
-            child = os.fork()
-        except SystemError:  # scipy's factors of other threads leave an error in the child
-            if os.getpid() == parent:
-                raise
-            child = 0
+    child = _forked()
     if child == 0:
         try:
             null = os.open(os.devnull, os.O_RDWR)
@@ -72,6 +64,22 @@ def survives(path: str | os.PathLike[str]) -> bool:
         if child:  # it takes too long, or Ctrl-C came
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
+
+
+def _forked() -> int:
+    """As os.fork, without a word of other threads: of those the child, which needs none, has no more."""
+    parent, said = os.getpid(), sys.unraisablehook
+    with warnings.catch_warnings(), phil:  # held, so that no other thread is at HDF5 when only this one lives on
+        warnings.simplefilter("ignore")
+        sys.unraisablehook = lambda _: None  # scipy raises an error in the child for factors that another thread had
+        try:
+            return os.fork()
+        except SystemError:
+            if os.getpid() == parent:
+                raise
+            return 0
+        finally:
+            sys.unraisablehook = said
 
 
 def _most_memory() -> int:
