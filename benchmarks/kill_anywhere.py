@@ -73,7 +73,7 @@ def started(command: list[str], before: Callable[[], None] = lambda: None) -> in
 
 
 def saving(case: Path) -> int:
-    """Serve a case to a page that changes and saves it, in one process; returns 1 where a case could not be saved."""
+    """Serve a case to a page that changes and saves it, in one process; it ends with 1 where one is not saved."""
     from active_surface.app import Server, open_case
 
     server, refused = Server(lambda: open_case(case)), []
@@ -88,7 +88,8 @@ def saving(case: Path) -> int:
             await socket.write_message(json.dumps({"do": "save", "name": name, "replace": True}))
             kind = ""
             while kind not in ("note", "refused", "trouble"):
-                kind = json.loads(str(await socket.read_message()))["kind"]
+                answer = await socket.read_message()
+                kind = "trouble" if answer is None else json.loads(answer)["kind"]
             refused.extend([name] if kind != "note" else [])
         os._exit(1 if refused else 0)
 

@@ -32,7 +32,7 @@ BLOCK = 250  # paths
 AGAIN = 20  # blocks, of which one is followed again
 TOLERANCE = 1e-9
 FINER = 1e-12
-SEEN = 1e-7  # m of a way, from which a part moves
+SEEN = 1e-7  # m; a part that goes less counts as at rest
 BALANCE = 1e-6  # of the energy that went through a path
 PLATES: tuple[dict[str, Any], ...] = (
     {"shape": "rectangle", "width": 600e-6, "height": 400e-6},
@@ -190,7 +190,7 @@ def against_oracle(count: int, seed: int) -> list[str]:
     off.sort(reverse=True)
     quantiles = np.quantile([gap for gap, *_ in off], [0.5, 0.9, 0.99, 1.0])
     return [
-        f"oracle           {len(off)} paths, {failed} that it could not follow; {moved} of them move",
+        f"oracle           {len(off)} paths, {failed} more that it could not follow; {moved} paths move",
         f"                 as many events in {same}",
         "                 ends apart, over the way: median {:.1e}, 90 % {:.1e}, 99 % {:.1e}, largest {:.1e}".format(
             *quantiles

@@ -10,7 +10,7 @@ from .surface.motion import surface_motion as surface_motion
 from .drives import build_drive as build_drive, build_drives as build_drives
 from .environment import PACKAGES as PACKAGES, versions as versions
 from .files import check_room as check_room, remove_partial_files as remove_partial_files, whole_file as whole_file
-from .new_file import NewFile as NewFile
+from .new_file import NewFile as NewFile, Sink as Sink
 from .progress import (
     CountBar as CountBar,
     Progress as Progress,

@@ -10,6 +10,7 @@ import time
 import warnings
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import chain
 
 import h5py
 import numpy as np
@@ -94,7 +95,7 @@ def _read_all(path: str | os.PathLike[str]) -> None:
     """Read all attributes of an HDF5 file, and its datasets as far as there is time."""
     with h5py.File(path, "r") as file:
         left = MAX_TRIED
-        for one in (file, *(one for _, one in _objects(file))):
+        for one in chain([file], (one for _, one in _objects(file))):
             with suppress(*UNREADABLE):
                 for name in one.attrs:
                     with suppress(*UNREADABLE):

@@ -12,11 +12,11 @@ from meshes.hdf5 import DEADLY, UNREADABLE, check_hdf5, survives
 def wrong_numbers(path: Path, most: int) -> Iterator[str]:
     """Yield what is wrong with each file of numbers, of at most so many bytes, that the XDMF file at a path names.
 
-    What is no XML names none.
+    A file that is not XML names none; meshio reports it.
     """
     try:
         items = list(ElementTree.parse(path).iter("DataItem"))
-    except (ElementTree.ParseError, ValueError, OSError):
+    except (ElementTree.ParseError, LookupError, ValueError, OSError):
         return
     named = {(item.get("Format"), (item.text or "").strip()) for item in items if "Reference" not in item.attrib}
     for form, text in sorted(named, key=str):

@@ -17,7 +17,7 @@ from active_surface.studies.heights import heights_key
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.stored import AT_ONCE, KIND_ATTRIBUTE, slabs, stored_records
 from active_surface.studies.study import Study, versions
-from coupling import NewFile, check_room, whole_file
+from coupling import Sink, check_room, whole_file
 from coupling.case import Case, PlateCase
 from meshes import rim_curves
 
@@ -58,29 +58,35 @@ def renew_labels(study: Study, path: Path) -> None:
 
 
 def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:
+    with Sink(path) as sink:
+        with h5netcdf.File(sink, "w") as file:
+            _fill_in(file, study, chunks, warnings)
+        sink.check()
+
+
+def _fill_in(file: h5netcdf.File, study: Study, chunks: Iterable[tuple[int, Records]], warnings: Sequence[str]) -> None:
     sizes = study.points.dimensions
-    with NewFile(path) as numbers, h5netcdf.File(numbers, "w") as file:
-        file.dimensions = sizes
-        file.attrs.update(_about(study), warnings="\n".join(warnings))
-        _write_axes(file, study)
-        for name, column in COLUMNS.items():
-            variable = file.create_variable(name, tuple(sizes), column.kind, fillvalue=_fill(column.kind))
-            variable.attrs["long_name"] = column.meaning
-            variable.attrs["coordinates"] = " ".join(axis.name for axis in study.points.axes)
-            if column.unit:
-                variable.attrs["units"] = column.unit
-        file["outcome"].attrs.update(
-            flag_values=np.arange(len(OUTCOMES), dtype="i1"),
-            flag_meanings=" ".join(outcome.replace(" ", "_") for outcome in OUTCOMES),
-            sentences="\n".join(SENTENCES),
-        )
-        for start, records in chunks:
-            first = 0
-            for slab, count in slabs(tuple(sizes.values()), start, start + len(records)):
-                shape = [piece.stop - piece.start for piece in slab]
-                for name in COLUMNS:
-                    file[name][slab] = records[name][first : first + count].reshape(shape)
-                first += count
+    file.dimensions = sizes
+    file.attrs.update(_about(study), warnings="\n".join(warnings))
+    _write_axes(file, study)
+    for name, column in COLUMNS.items():
+        variable = file.create_variable(name, tuple(sizes), column.kind, fillvalue=_fill(column.kind))
+        variable.attrs["long_name"] = column.meaning
+        variable.attrs["coordinates"] = " ".join(axis.name for axis in study.points.axes)
+        if column.unit:
+            variable.attrs["units"] = column.unit
+    file["outcome"].attrs.update(
+        flag_values=np.arange(len(OUTCOMES), dtype="i1"),
+        flag_meanings=" ".join(outcome.replace(" ", "_") for outcome in OUTCOMES),
+        sentences="\n".join(SENTENCES),
+    )
+    for start, records in chunks:
+        first = 0
+        for slab, count in slabs(tuple(sizes.values()), start, start + len(records)):
+            shape = [piece.stop - piece.start for piece in slab]
+            for name in COLUMNS:
+                file[name][slab] = records[name][first : first + count].reshape(shape)
+            first += count
 
 
 def _check_room(study: Study, folder: Path) -> None:

@@ -77,6 +77,8 @@ def _checked_key(path: Path) -> str:
     """The key; raises _DamageError, or any of UNREADABLE, where the file is not as `write_dataset` makes it."""
     try:
         check_hdf5(path)
+    except UnicodeError:
+        raise
     except ValueError as error:
         raise _DamageError(str(error)) from None
     with h5netcdf.File(path, "r") as file:

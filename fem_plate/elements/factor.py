@@ -8,7 +8,7 @@ import threading
 import weakref
 from collections.abc import Callable
 from concurrent.futures import Future
-from functools import cache, partial
+from functools import partial
 from queue import SimpleQueue
 from typing import Any
 
@@ -54,8 +54,9 @@ def _kept(factor: Callable[[], Any]) -> list[Any]:
 
 
 def _drop(kept: list[Any]) -> None:
-    # The garbage collector calls this at any moment, in the midst of what holds a lock: this queue needs none.
-    _queue().put(kept.clear)
+    # The garbage collector calls this at any moment, in the midst of what holds a lock: this takes none.
+    if _work is not None:
+        _work.put(kept.clear)
 
 
 def _make(factor: Callable[[], Any], made: Future[Any]) -> None:
@@ -65,10 +66,22 @@ def _make(factor: Callable[[], Any], made: Future[Any]) -> None:
         made.set_exception(error)
 
 
-@cache
-def _queue() -> SimpleQueue[Callable[[], None] | None]:
-    """The work of that thread."""
-    queue: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+Work = SimpleQueue[Callable[[], None] | None]
+_work: Work | None = None
+_beginning = threading.Lock()
+
+
+def _queue() -> Work:
+    """The work of that thread, which begins with the first."""
+    global _work
+    with _beginning:
+        if _work is None:
+            _work = _begun()
+        return _work
+
+
+def _begun() -> Work:
+    queue: Work = SimpleQueue()
 
     def work() -> None:
         for task in iter(queue.get, None):
@@ -86,5 +99,11 @@ def _queue() -> SimpleQueue[Callable[[], None] | None]:
     return queue
 
 
-if hasattr(os, "register_at_fork"):  # a child has the queue, and not the thread
-    os.register_at_fork(after_in_child=_queue.cache_clear)
+def _forget() -> None:
+    """A forked process has the queue, and not the thread."""
+    global _work, _beginning
+    _work, _beginning = None, threading.Lock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget)

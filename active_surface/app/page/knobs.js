@@ -65,7 +65,7 @@ function refresh(knob, data, anew) {
   knob.field.value = data.text;
   if (!knob.slider) return;
   knob.field.placeholder = data.value === null ? "mixed" : "";
-  knob.slider.title = `${textAt(knob, 0)} to ${textAt(knob, 1)}; the field beside it takes any value`;
+  knob.slider.title = `${textAt(knob, 0)} to ${textAt(knob, 1)}; the field also takes values beyond these`;
   knob.slider.value = NOTCHES * shareAt(knob.data, data.value);
   knob.slider.setAttribute("aria-valuetext", data.text || "mixed");
 }

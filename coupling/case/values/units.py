@@ -149,10 +149,17 @@ class Quantity:
         """Whether a unit has this dimension; raises anything where there is no such unit."""
         return root_of(unit) == root_of(self.unit)
 
+    def _may_be(self, unit: str) -> bool:
+        """The same, and False where there is no such unit, or none that pint can take apart."""
+        try:
+            return self._fits(unit)
+        except Exception:
+            return False
+
     def _meant(self, text: str, unit: str) -> str:
         """The question whether a unit that a text ends with, which is wrong, stands for another; "" for none."""
         head = text.strip().removesuffix(unit).rstrip()
-        units = {self.value_of("", "1", meant): meant for meant in meant_units(unit, is_unit, self._fits)}
+        units = {self.value_of("", "1", meant): meant for meant in meant_units(unit, is_unit, self._may_be)}
         texts = [f"{head} {meant}" for meant in units.values()]
         if not 1 <= len(texts) <= MAX_MEANT:
             return self._converted(head, unit)
