@@ -90,7 +90,7 @@ def _fill_in(file: h5netcdf.File, study: Study, chunks: Iterable[tuple[int, Reco
 
 
 def _check_room(study: Study, folder: Path) -> None:
-    """Raise OSError unless a folder has room for the results: HDF5 does not survive a full disk."""
+    """Raise OSError unless a folder has room for the results."""
     count = len(study.points)
     coordinates = 0 if study.points.sampling == "grid" else 8 * len(study.points.axes) * count // study.points.repeats
     # Twice: while they are put in order they are on disk once more.
