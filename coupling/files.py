@@ -36,7 +36,7 @@ def contents(path: str | os.PathLike[str], most: int) -> bytes:
 
 
 def check_room(folder: Path, needed: int, kept: str = "") -> None:
-    """Raise OSError unless a folder has room for so many bytes of results, so that a run does not begin that cannot end.
+    """Raise OSError unless a folder has room for so many bytes of results: a run shall not begin that cannot end.
 
     kept: what to say of what is there already.
     """
