@@ -36,10 +36,10 @@ STUDY = seeds.STUDY.replace("repeats = 2", "repeats = 5")
 COMMANDS: dict[str, list[str]] = {
     "run": ["run", "quick.toml", "--csv", "-o", "out", "--quiet"],
     "sweep": ["sweep", "study.toml", "-o", "out", "--quiet", "--threads", "1"],
-    "aim": ["aim", "aim.toml", "-o", "out", "--quiet", "--threads", "1"],
+    "aim": ["aim", "aim.toml", "-o", "out", "--quiet", "--threads", "1", "--overwrite"],
     "export": ["export", "made/quick", "--format", "pvd", "-o", "out", "--quiet"],
     "animate": [
-        *("animate", "made/quick", "-o", "out/film.gif", "--renderer", "matplotlib", "--size", "160x90"),
+        *("animate", "made/quick", "-o", "out/film.gif", "--renderer", "matplotlib", "--size", "320x240"),
         *("--fps", "4", "--quiet"),
     ],
     "view": ["view", "made/quick", "-o", "out/page.html", "--quiet"],
