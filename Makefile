@@ -2,7 +2,7 @@
 # make test-all: the long tests as well.    make coverage: what they cover.    make site: the documentation site.
 # make fuzz, paths, kills: abuse.
 PYTHON ?= python3
-# What is tested with. .ci/versions has others.
+# For pip; .ci/versions has others, and leaves out lint, which depends on its own versions.
 CONSTRAINTS ?= constraints.txt
 LINT ?= lint
 BIN := .venv/bin

@@ -25,13 +25,14 @@ class Sink(io.FileIO):
     Raises BlockingIOError where another process writes the file, OSError where it cannot be opened.
     """
 
+    _handler: Callable[[int, FrameType | None], Any] | None = None  # of Ctrl-C outside
+
     def __init__(self, path: str | os.PathLike[str]) -> None:
         super().__init__(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+")
         self._name = os.fspath(path)
         self._error: OSError | None = None
         self._marked, self._before = 0, list[tuple[int, bytes]]()  # bytes then, and what they were where they changed
         self._interrupted = False
-        self._handler: Callable[[int, FrameType | None], Any] | None = None
         try:
             _lock(self.fileno())
             super().truncate(0)

@@ -19,18 +19,17 @@ def wrong_numbers(path: Path, most: int) -> Iterator[str]:
     except (ElementTree.ParseError, LookupError, ValueError, OSError):
         return
     named = {(item.get("Format"), (item.text or "").strip()) for item in items if "Reference" not in item.attrib}
-    for form, text in sorted(named, key=str):
-        # As meshio finds them: HDF5 beside the mesh, raw numbers from the folder in which the program runs.
-        if form == "HDF":
-            yield from _wrong_file(path.resolve().parent / text.split(":")[0], most, hdf5=True)
-        elif form == "Binary":
-            yield from _wrong_file(Path(text), most, hdf5=False)
+    # As meshio finds them: HDF5 beside the mesh, raw numbers from the folder in which the program runs.
+    for file in sorted({path.resolve().parent / text.split(":")[0] for form, text in named if form == "HDF"}):
+        yield from _wrong_file(file, most, hdf5=True)
+    for file in sorted({Path(text) for form, text in named if form == "Binary"}):
+        yield from _wrong_file(file, most, hdf5=False)
 
 
 def _wrong_file(path: Path, most: int, hdf5: bool) -> Iterator[str]:
     try:
         if not path.is_file():
-            yield f"{path} is no file"
+            yield f"{path} is a folder, a pipe or a device, not a file" if path.exists() else f"{path} is missing"
         elif (size := path.stat().st_size) > most:
             yield f"{path} has {size} bytes; at most {most} are read"
         elif hdf5 and not survives(path):

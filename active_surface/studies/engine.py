@@ -16,11 +16,11 @@ from threadpoolctl import threadpool_limits
 from active_surface.arrays import IntArray
 from active_surface.studies.heights import drive_sets, largest
 from active_surface.studies.record import Records, new_records, put
-from active_surface.studies.refusal import contact_of, mistakes_of, start_faults
+from active_surface.studies.refusal import case_faults, contact_of, mistakes_of, start_faults
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Base, Variants
 from coupling import build_drives, build_part, shared_surface, silent
-from coupling.case import Case, PlatformCase, RunCase, cycles_fault
+from coupling.case import Case, PlatformCase, RunCase
 from coupling.scene import platform_scene
 from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact
@@ -136,10 +136,8 @@ class Engine:
             for (row, case, _), place, messages in zip(several, starts.tolist(), faults, strict=True):
                 records["start_x"][row], records["start_y"][row] = place
                 law = contact_of(case.friction)
-                if fault := cycles_fault(case.plate, case.actuators, case.run.duration):
-                    messages.append(fault)
-                if messages := messages + [what for what in (law, surface) if isinstance(what, str)]:
-                    wrong[row] = messages
+                if faults_here := [*messages, *case_faults(case), *([surface] if isinstance(surface, str) else [])]:
+                    wrong[row] = faults_here
                 elif not isinstance(law, str):
                     part = build_part(case, (place[0], place[1]))
                     groups[case.run].append(_Path(row, case, part, law))

@@ -54,10 +54,13 @@ def refusals(study: Study, variants: Variants, k: int) -> list[str]:
         start = study.points.displacements([k])[0] + case.part.position
     except ValidationError as error:
         return mistakes_of(error)
-    if isinstance(law := contact_of(case.friction), str):
-        return [law]
-    fault = cycles_fault(case.plate, case.actuators, case.run.duration)
-    return start_faults(base.case, start[None])[0] + ([fault] if fault else [])
+    return start_faults(base.case, start[None])[0] + case_faults(case)
+
+
+def case_faults(case: Case) -> list[str]:
+    """What is wrong with a case beside its tables and its start."""
+    faults = cycles_fault(case.plate, case.actuators, case.run.duration), contact_of(case.friction)
+    return [fault for fault in faults if isinstance(fault, str) and fault]
 
 
 def mistakes_of(error: ValidationError) -> list[str]:

@@ -35,6 +35,8 @@ def stored_records(path: Path) -> Iterator[tuple[int, Records]]:
     """Yield the number of the first path of each lot of records in a file, and the records."""
     with h5netcdf.File(path, "r") as file:
         shape = file["outcome"].shape
+        if 0 in shape:
+            raise _DamageError("it has no points")
         count = math.prod(shape)
         for start in range(0, count, AT_ONCE):
             stop = min(start + AT_ONCE, count)

@@ -41,8 +41,9 @@ def cycles_fault(plate: Table, actuators: Iterable[Table], duration: float) -> s
 
 def _too_many(drives: Iterable[Mapping[str, Any]], duration: float) -> str:
     count = sum(_cycles(drive, duration) for drive in drives)
-    text = f"must hold at most {MAX_CYCLES} cycles of all drives together; got {count:.3g} in {duration:g} s"
-    return text if count > MAX_CYCLES else ""
+    if count <= MAX_CYCLES:
+        return ""
+    return f"must hold at most {MAX_CYCLES} cycles of all drives together; got {count:.3g} in {duration:g} s"
 
 
 def _is_table(value: Any) -> bool:

@@ -45,6 +45,20 @@ def attribute(name, value):
     return change
 
 
+def no_points(file):
+    (axis,) = (name for name in file if "field" in file[name].attrs)
+    field = file[axis].attrs["field"]
+    for name in list(file):
+        kind = file[name].dtype
+        del file[name]
+        file.create_dataset(name, (0,), kind)
+    file[axis].attrs["field"] = field
+    file[axis].make_scale(axis)
+    for name in file:
+        if name != axis:
+            file[name].dims[0].attach_scale(file[axis])
+
+
 def huge(file):
     del file["distance"]
     file.create_dataset("distance", (10**12,), "f8", chunks=(1000,))
@@ -61,6 +75,7 @@ DAMAGES = [
     (put("distance", np.zeros(7)), "(its distance does not fit its outcomes|it cannot be read to its end)"),
     (huge, "its distance says that it has 8000000000000 bytes, of which 0 are there"),
     (put("distance", h5py.SoftLink("/nowhere")), "its distance is a link"),
+    (no_points, "it has no points"),
 ]
 
 
