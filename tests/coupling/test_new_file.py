@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import multiprocessing
 import signal
 import sys
@@ -102,6 +103,42 @@ def test_ctrl_c_within_the_library_waits(tmp_path: Path, monkeypatch: pytest.Mon
         signal.signal(signal.SIGINT, handler)
     with h5py.File(tmp_path / "file") as file:
         assert file["x"][()] == 1.0 and file["y"][()] == 2.0
+
+
+def test_ctrl_c_within_weakref_waits_too(tmp_path: Path) -> None:
+    """Python drops what is raised there."""
+    callback = {"__name__": "weakref", "signal": signal}
+    exec("def call(): signal.raise_signal(signal.SIGINT)", callback)
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with NewFile(tmp_path / "file") as file:
+            callback["call"]()
+            with pytest.raises(KeyboardInterrupt):
+                file.flush()
+            file["x"] = 1.0
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    with h5py.File(tmp_path / "file") as file:
+        assert file["x"][()] == 1.0
+
+
+def test_after_an_error_the_bytes_are_those_that_were_marked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(sink: Sink, size: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    path = tmp_path / "file"
+    with Sink(path) as sink:
+        sink.write(b"0123456789")
+        sink.mark()
+        for place, new in ((2, b"ab"), (3, b"cde"), (8, b"xyz")):
+            sink.seek(place)
+            sink.write(new)
+        assert path.read_bytes() == b"01acde67xyz"
+        monkeypatch.setattr(Sink, "_note", full)
+        sink.write(b"more")
+        with pytest.raises(OSError, match="No space left on device"):
+            sink.check()
+    assert path.read_bytes()[:10] == b"0123456789"
 
 
 def on_a_small_disk(folder: Path, most: int, sender: Connection) -> None:

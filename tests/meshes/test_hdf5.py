@@ -80,6 +80,14 @@ def test_a_file_on_which_the_library_dies_is_found_out(tmp_path, monkeypatch, ha
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+def test_attributes_are_tried_before_a_link_that_is_refused(tmp_path, monkeypatch):
+    with h5py.File(tmp_path / "file.h5", "w") as file:
+        file.attrs["kind"], file["elsewhere"] = "x", h5py.SoftLink("/nowhere")
+    monkeypatch.setattr(h5py.AttributeManager, "__getitem__", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
+    assert not survives(tmp_path / "file.h5")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 def test_a_file_that_takes_too_much_memory_is_not_read(tmp_path, monkeypatch):
     (tmp_path / "file.h5").touch()
     monkeypatch.setattr(hdf5, "_read_all", lambda path: np.ones(3 * 10**8 // 8))

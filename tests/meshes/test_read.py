@@ -328,3 +328,12 @@ def test_a_mesh_has_a_size(tmp_path, place, wrong):
     (tmp_path / "mesh.msh").write_text(f"{head}$Nodes\n{nodes}$EndNodes\n$Elements\n{cells}$EndElements\n")
     with pytest.raises(ValueError, match=re.escape(wrong)):
         read(tmp_path / "mesh.msh")
+
+
+def test_a_refusal_has_no_warnings_of_numpy(tmp_path):
+    path = write(tmp_path / "mesh.msh")
+    head, nodes = path.read_text().split("$Nodes\n5\n")
+    path.write_text(f"{head}$Nodes\n5\n{nodes.replace('1 ', 'nan ', 1)}")
+    with pytest.raises(ValueError, match="Input path of read must be") as error:
+        read(path)
+    assert "Warning" not in str(error.value) and "dtype" not in str(error.value)

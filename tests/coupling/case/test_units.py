@@ -118,3 +118,9 @@ def test_other_units_are_left_to_pint(unit: str) -> None:
 def test_import_does_not_load_pint() -> None:
     code = "import coupling.case, sys; sys.exit('pint' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[3]).returncode == 0
+
+
+@pytest.mark.parametrize("text", ["2 kg0", "2 kg^0", "2 g**0"])
+def test_a_unit_that_pint_cannot_take_apart_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="must be a mass"):
+        Quantity("kg", "a mass").parse(text)
