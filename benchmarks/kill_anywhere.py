@@ -1,6 +1,6 @@
 """Kills commands (SIGKILL) at random moments: nothing unfinished passes as finished, and the next run works.
 
-    python benchmarks/kill_anywhere.py [--count 35] [--seed 1]
+    python benchmarks/kill_anywhere.py [--count 29] [--seed 1]
 
 So many kills of each of run, sweep, aim, export, animate, view and app, at moments spread over all that each does.
 Then a disk that is full, a folder that vanishes, and two processes in one folder. `kills.py` looks at what was flushed.
@@ -238,7 +238,7 @@ def together(name: str, folder: Path, made: Path) -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="Kill commands at random moments.")
-    parser.add_argument("--count", type=int, default=35)
+    parser.add_argument("--count", type=int, default=29)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", choices=list(COMMANDS))
     asked = parser.parse_args()
