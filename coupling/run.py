@@ -226,6 +226,10 @@ def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tighter: 
     if run.scheme != "events" and (run.time_step or tighter):
         time_step = run.time_step or default_step(surface, run.duration)
         steps = {"time_step": time_step / 2 if tighter else time_step}
-    return particle.simulate(
-        surface, part, friction, run.duration, run.gravity, tolerance, run.scheme, run.after_detachment, **steps
-    )
+    try:
+        return particle.simulate(
+            surface, part, friction, run.duration, run.gravity, tolerance, run.scheme, run.after_detachment, **steps
+        )
+    except MemoryError:
+        text = "run.duration must be shorter, as the steps of the path take more memory than there is"
+        raise ValueError(f"{text}; got {run.duration:g} s") from None

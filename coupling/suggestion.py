@@ -6,8 +6,11 @@ import difflib
 import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Final
 
 from coupling.synonyms import choices, synonyms
+
+LIKE: Final = 0.65  # share of letters; less is another word
 
 
 def near(word: str, known: Iterable[str]) -> str | None:
@@ -15,7 +18,7 @@ def near(word: str, known: Iterable[str]) -> str | None:
     there, given = list(known), word.strip().lower()
     meant = [synonym.keys[0] for synonym in synonyms(word, there)]
     begun = [choice for choice in there if len(given) > 2 and choice.lower().startswith(given)]
-    alike = difflib.get_close_matches(given, there, 1)
+    alike = difflib.get_close_matches(given, there, 1, LIKE)
     return next(iter([*meant, *choices(word, there), *alike, *(begun if len(begun) == 1 else ())]), None)
 
 

@@ -43,7 +43,8 @@ def mistakes_in(
 def unknown(name: str, known: Iterable[str], owner: str) -> Mistake:
     """That there is no command or option of a name."""
     choices = sorted(known)
-    meant = near(name, choices)
+    words = {choice.lstrip("-"): choice for choice in choices}
+    meant = words.get(near(name.lstrip("-"), words) or "")
     return name, "is not known; " + (f"did you mean {meant}?" if meant else f"{owner} has {', '.join(choices)}")
 
 

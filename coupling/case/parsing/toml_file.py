@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from pydantic import BaseModel
 
@@ -40,6 +40,9 @@ _TOKEN = re.compile(
     r"|[\[\]{}\n]",
     re.DOTALL,
 )
+
+
+MAX_NAME: Final = 200  # bytes, so that there is room for the endings of results
 
 
 @dataclass(frozen=True)
@@ -160,15 +163,24 @@ def parse(path: str | os.PathLike[str], lenient: bool = False) -> TomlFile:
     except ValueError as error:  # also where no file can have such a name
         message = str(error)
         raise _unreadable(name, message if message.startswith("is ") else f"cannot be read: {message}") from None
+    unfit = [Problem(None, "", message)] if (message := _unfit(Path(path).stem)) else []
     try:
-        return TomlFile(name, text, loads(text))
+        return TomlFile(name, text, loads(text), tuple(unfit))
     except tomllib.TOMLDecodeError:
         right, wrong = repaired(text)
-    problems = tuple(Problem(*one) for one in wrong)
+    problems = (*unfit, *(Problem(*one) for one in wrong))
     if lenient:
         with suppress(tomllib.TOMLDecodeError):
             return TomlFile(name, text, loads(right), problems, right)
     raise CaseError(name, problems)
+
+
+def _unfit(stem: str) -> str:
+    """What is wrong with the name of a file, which its results take over."""
+    if not stem.isprintable():
+        return "must have a name that can be printed, as its results have it too; rename it"
+    size = len(stem.encode())
+    return f"must have a shorter name, of at most {MAX_NAME} bytes; got {size}; rename it" if size > MAX_NAME else ""
 
 
 def _unreadable(file: str, message: str, line: int | None = None) -> CaseError:

@@ -133,7 +133,7 @@ def test_ctrl_c_ends_a_command_that_compiles(command, file, end, tmp_path):
 def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
     text = (EXAMPLES / "one_actuator.toml").read_text()
     case = tmp_path / "long.toml"
-    case.write_text(re.sub('duration = "[^"]*"', 'duration = "1000 s"', text))
+    case.write_text(re.sub('duration = "[^"]*"', 'duration = "200 s"', text))
     code = MARCHING.format(words=["run", str(case), "--output", str(tmp_path / "out")])
     pipe = subprocess.PIPE
     with subprocess.Popen([sys.executable, "-c", code], stdout=pipe, stderr=pipe, text=True) as run:

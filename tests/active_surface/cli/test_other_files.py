@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -120,3 +122,27 @@ def test_a_byte_order_mark_and_tabs_are_no_mistake(folder: Path) -> None:
 def test_a_file_without_its_command_or_with_another_is_told_which(folder: Path, words: list[str], said: str) -> None:
     message = refused(*words)
     assert said in message and len(message.splitlines()) == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has no such names")
+@pytest.mark.parametrize("name", [b"a\xff.toml", b"a\x1b[31mred.toml", b"a\nb.toml"])
+def test_a_name_that_cannot_be_printed_is_refused_and_does_not_reach_the_terminal(folder, name):
+    Path(os.fsdecode(name)).write_text(GOOD)
+    said = refused("check", os.fsdecode(name))
+    assert said.endswith("the file  must have a name that can be printed, as its results have it too; rename it\n")
+    assert "\x1b" not in said
+    assert "\x1b" not in refused("run", os.fsdecode(name[:-1]))  # which names the file that is meant
+
+
+def test_a_name_leaves_room_for_those_of_results(folder):
+    said = "must have a shorter name, of at most 200 bytes; got 210; rename it\n"
+    Path("é" * 100 + ".toml").write_text(GOOD)
+    assert CliRunner().invoke(main, ["check", "é" * 100 + ".toml"]).exit_code == 0
+    Path("é" * 105 + ".toml").write_text(GOOD)
+    assert refused("check", "é" * 105 + ".toml").endswith(said)
+
+
+def test_texts_of_a_file_do_not_reach_the_terminal_as_commands(folder):
+    Path("case.toml").write_text(GOOD.replace('shape = "disc"', 'shape = "\\u001b[2J\\u202e"'))
+    said = refused("check", "case.toml")
+    assert "\\u001b[2J\\u202e" in said and "\x1b" not in said

@@ -32,6 +32,7 @@ MISUSES = [
     ),
     (["run", "x", "y"], "  y is one argument too many; the command is active-surface run [OPTIONS] CASE"),
     (["run", "x", "--ouput", "y"], "active-surface run: 1 mistake\n  --ouput is not known; did you mean --output?"),
+    (["run", "x", "--bogus"], "  --bogus is not known; active-surface run has --advised"),
     (
         ["run", "x", "--frob"],
         "  --frob is not known; active-surface run has --advised, --csv, --forces, --help, --json, --output",
@@ -59,6 +60,20 @@ def test_misuse_exits_2_with_all_that_is_wrong(words, said):
     done = CliRunner().invoke(main, words, prog_name="active-surface")
     assert (done.exit_code, done.stdout) == (2, "")
     assert said in done.stderr and "Traceback" not in done.stderr and "Usage:" not in done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
+@pytest.mark.parametrize(
+    "words", [["check", "CASE"], ["check", "CASE", "--json"], ["--help"], ["check", "x", "--json"]]
+)
+def test_an_output_that_is_full_ends_with_a_sentence(words):
+    case = str(ROOT / "examples/one_actuator.toml")
+    command = [sys.executable, "-m", "active_surface", *(case if word == "CASE" else word for word in words)]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
+        assert subprocess.run(command, stdout=full, stderr=full).returncode == 2
+    assert done.returncode == 2
+    assert done.stderr == "active-surface: what it prints cannot be written: no space left on device\n"
 
 
 def test_a_file_in_place_of_a_folder(tmp_path):

@@ -54,8 +54,17 @@ def refused(tmp_path, text):
     ],
 )
 def test_a_run_has_a_largest_number_of_cycles(tmp_path, drive, count):
-    wrong = f"must hold at most 10000000 cycles of all drives together; got {count} in 0.001 s"
+    wrong = f"must hold at most 100000 cycles of each drive; got {count} in 0.001 s"
     assert refused(tmp_path, PLATE.format(drive=drive)) == [f"run.duration {wrong}"]
+
+
+def test_all_drives_together_have_a_largest_number_of_cycles(tmp_path):
+    lattice = '[lattice]\nrows = {}\ncolumns = 10\npitch = "11 um"\nstroke = "1 um"\nfrequency = "99 MHz"\n\n[part]'
+    text = PLATE.format(drive=STROKE)
+    wrong = "must hold at most 10000000 cycles of all drives together; got 1.09e+07 in 0.001 s"
+    assert refused(tmp_path, text.replace("[part]", lattice.format(11))) == [f"run.duration {wrong}"]
+    (tmp_path / "case.toml").write_text(text.replace("[part]", lattice.format(10)))
+    assert len(read_case(tmp_path / "case.toml").actuators) == 101
 
 
 def test_drives_that_end_in_time_may_be_fast(tmp_path):
