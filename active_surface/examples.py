@@ -48,7 +48,9 @@ def write_example(name: str, folder: Path) -> dict[Path, bool]:
     """
     contents = {folder / file: (examples_folder() / file).read_bytes() for file in example_files(name)}
     written = {path: not _has(path, content) for path, content in contents.items()}
-    if taken := [str(path) for path, new in written.items() if new and path.exists()]:
+    files = [place for path in contents for place in path.parents if place.exists() and not place.is_dir()]
+    files += [path for path, new in written.items() if new and path.exists()]
+    if taken := [str(path) for path in dict.fromkeys(files)]:
         are = "are" if len(taken) > 1 else "is"
         raise ValueError(
             f"Input name of example must be one whose files are free; {', '.join(taken)} {are} something else already"

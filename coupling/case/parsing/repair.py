@@ -13,8 +13,10 @@ MAX_LINES: Final = 200  # that are repaired one by one
 MAX_LINE: Final = 2000  # characters of a line that is repaired
 MAX_READ: Final = 50_000_000  # characters, in all passes over a text
 MAX_DEPTH: Final = 20  # tables and lists inside each other
-TOO_DEEP: Final = "tables or lists are nested too deeply (at end of document)"
-TOO_LONG: Final = "a number has too many digits (at end of document)"
+TOO_DEEP: Final = f"tables or lists are nested more than {MAX_DEPTH} deep"
+TOO_LONG: Final = "a number has too many digits"
+_MARKS: Final = {TOO_DEEP: r"[\[{.]", TOO_LONG: r"\d"}
+"""What is most frequent in the line that an error without a place is about."""
 
 _CURLY: Final = str.maketrans("“”„‟″‘’‚′", '"""""\'\'\'\'')
 _BLANK: Final = str.maketrans("\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{ZERO WIDTH NO-BREAK SPACE}", "   ")
@@ -152,10 +154,14 @@ def _typographic(text: str) -> tuple[str, list[Wrong]]:
 
 
 def _place(error: str, text: str) -> tuple[str, int]:
-    """The reason and the line of an error of tomllib, which ends with its place."""
+    """The reason and the line of an error of tomllib, which ends with its place, or of `loads`, which has none."""
     reason, _, place = error.rpartition(" (at ")
-    match = re.match(r"line (\d+)", place)
-    return reason, int(match[1]) if match else text.rstrip().count("\n") + 1
+    if match := re.match(r"line (\d+)", place):
+        return reason, int(match[1])
+    if mark := _MARKS.get(error):
+        counts = [len(re.findall(mark, line)) for line in text.split("\n")]
+        return error, counts.index(max(counts)) + 1
+    return reason, text.rstrip().count("\n") + 1
 
 
 def _single_brackets(reason: str, line: str, text: str) -> tuple[str, Wrong] | None:

@@ -34,6 +34,7 @@ FUNCTIONS: Final[dict[str, tuple[Callable[..., float], int, int]]] = {
 """Each with the least and the most arguments that it takes."""
 
 LONGEST: Final = 500  # characters
+_TOO_DEEP: Final = "it is nested too deeply; fewer brackets and signs are needed"
 KEYWORDS: Final = ("if", "else", "and", "or", "not")
 OPERATORS: Final[dict[type[ast.AST], Callable[..., Any]]] = {
     ast.Add: operator.add,
@@ -109,11 +110,13 @@ def parse(words: list[str]) -> Expression:
     try:
         mistake = _mistake(_tree(source))
     except (RecursionError, MemoryError):
-        mistake = "it is nested too deeply; fewer brackets and signs are needed"
-    except (SyntaxError, ValueError):
+        mistake = _TOO_DEEP
+    except (SyntaxError, ValueError) as error:
         lacks = "an else is missing, as in 5 if row > 2 else 3"
         other = "a number, name, operator or bracket is missing"
         mistake = f"the expression is not complete; {lacks if words.count('if') > words.count('else') else other}"
+        if "nested" in str(error):  # brackets, which Python counts
+            mistake = _TOO_DEEP
     if mistake:
         raise ValueError(mistake)
     return Expression(source)

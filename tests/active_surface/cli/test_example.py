@@ -49,6 +49,13 @@ def test_what_is_there_is_not_replaced(tmp_path):
     assert Path("studies/moderate.toml").read_text() == "mine" and not Path("studies/frequency_stroke.toml").exists()
 
 
+def test_a_file_in_place_of_a_folder_leaves_nothing_half_written(tmp_path):
+    Path("meshes").touch()
+    done = example("l_with_hole")
+    assert done.exit_code == 2 and "free; meshes is something else already" in done.output
+    assert [file.name for file in tmp_path.iterdir()] == ["meshes"]
+
+
 def test_a_name_that_is_none_leads_to_one():
     done = example("two_actuator")
     assert (

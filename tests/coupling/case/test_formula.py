@@ -50,6 +50,7 @@ def test_a_number_and_a_unit_stay_a_number(text, value):
     [
         ("5 ms if row > 2 else 3 ms", 'the unit must come once, at the end, as in "(5 if row'),
         ("row^2 ms", "a power is written **"),
+        ("(" * 201 + "row" + ")" * 201 + " ms", "it is nested too deeply; fewer brackets and signs are needed"),
         ("(row ms", "the expression is not complete; a number, name, operator or bracket is missing"),
         ("sqrt(row, 2) ms", "sqrt takes 1 number; it has 2"),
         ("log() ms", "log takes 1 or 2 numbers; it has 0"),
