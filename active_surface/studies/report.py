@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from active_surface.studies.axis import counted
 from active_surface.studies.run import Sweep
 
 MICRO = 1e6
@@ -38,8 +39,20 @@ def lines(sweep: Sweep) -> list[tuple[str, str]]:
     if (largest := _largest(sweep)) is not None:
         rows.append(("distance", f"{largest * MICRO:.4f} um at most"))
     if wrong := sweep.first_refused:
-        rows.append(("refused", f"the first for {'; '.join(wrong)}"))
+        rows.append(("refused", f"{_refused(sweep)}: {'; '.join(wrong)}"))
     return rows + [("wrote", str(file)) for file in sweep.files]
+
+
+def _refused(sweep: Sweep) -> str:
+    """How many paths were refused, and which is the first."""
+    points, refused = sweep.study.points, sweep.refused
+    (values,) = points.values(refused[:1])
+    texts = [
+        f"{value:.6g}" if axis.kind is np.float64 else str(value)
+        for axis, value in zip(points.axes, values, strict=True)
+    ]
+    at = [f"{axis.name} = {counted(text, axis.field.unit)}" for axis, text in zip(points.axes, texts, strict=True)]
+    return f"{len(refused)} of {len(points)} paths; the first, at {', '.join(at)}"
 
 
 def _kept(sweep: Sweep) -> str:

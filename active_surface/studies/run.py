@@ -61,10 +61,15 @@ class Sweep:
         return str(self.dataset.attrs["warnings"]).splitlines()
 
     @property
+    def refused(self) -> list[int]:
+        """The numbers of the paths that were refused."""
+        return np.flatnonzero(self.dataset["mistakes"].values.ravel()).tolist()
+
+    @property
     def first_refused(self) -> list[str]:
         """What is wrong with the first refused point; empty: there is none."""
-        refused = np.flatnonzero(self.dataset["mistakes"].values.ravel())
-        return Engine(self.study).faults(int(refused[0])) if len(refused) else []
+        refused = self.refused
+        return Engine(self.study).faults(refused[0]) if refused else []
 
 
 def run_study(

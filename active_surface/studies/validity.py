@@ -11,6 +11,7 @@ import numpy as np
 
 from active_surface.studies.engine import FAILURES
 from active_surface.studies.points import Points
+from active_surface.studies.refusal import refusals
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Variants
 from coupling import PlateSummary, report, run_case
@@ -67,10 +68,8 @@ def _cases(study: Study) -> Iterator[Case]:
     variants, points = Variants(study.case, study.points.axes), study.points
     for point in corners(points):
         path = point * points.repeats
-        try:
+        if not refusals(study, variants, path):
             yield variants.at(points.values([path])[0])[0]
-        except FAILURES:
-            continue
 
 
 def corners(points: Points) -> list[int]:

@@ -1,8 +1,8 @@
 """Export: a saved run in other formats, for programs that cannot read VTKHDF.
 
 Each of NAME.plate and NAME.part becomes NAME.plate.pvd with a folder NAME.plate of VTU files, or NAME.plate.xdmf with
-NAME.plate.h5, or a VTKHDF file anew, which closes what an interrupted run left. All have every step and field. The
-part's path may also become NAME.csv.
+NAME.plate.h5, or a VTKHDF file anew, which closes what an interrupted run left. All have every step and field; of
+such a run the first two are called NAME.partial. The part's path may also become NAME.csv, which is always whole.
 """
 
 from __future__ import annotations
@@ -63,9 +63,10 @@ def export_run(
     if form == "csv":
         return (_csv(saved, folder / f"{saved.name}.csv"),)
     write = write_pvd if form == "pvd" else write_xdmf
+    name = saved.name if saved.complete else f"{saved.name}.partial"  # as nothing in these files says so
     return (
-        write(folder, f"{saved.name}.plate", "triangle", saved.triangles, frames),
-        write(folder, f"{saved.name}.part", "vertex", VERTEX, _part_frames(saved)),
+        write(folder, f"{name}.plate", "triangle", saved.triangles, frames),
+        write(folder, f"{name}.part", "vertex", VERTEX, _part_frames(saved)),
     )
 
 

@@ -38,6 +38,7 @@ def export(result: Path, form: str, output: Path, quiet: bool, as_json: bool) ->
     with nullcontext(silent) if quiet else StageBar(1) as bar, bar("Writing the files") as tell:
         files = refusing(export_run, saved, output, form, tell)
     steps = len(saved.time)
-    partial = f"The run stopped while it was written: these are its first {steps} steps."
+    has = "the path is whole" if form == "csv" else f"these are its first {steps} steps"
+    partial = f"The run stopped while it was written: {has}."
     figures = {"complete": saved.complete, "steps": steps, "files": [str(file) for file in files]}
     options.tell(figures, [] if saved.complete else [("partial", partial)], quiet, as_json, files=files)

@@ -9,9 +9,9 @@ from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, SHAKEN, same, written
 
 from active_surface.cli.program import main
-from active_surface.studies import engine, read_study, run_study
+from active_surface.studies import engine, lines, read_study, run_study, validity
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, new_records
-from coupling import read_case
+from coupling import read_case, run_case
 from coupling.case import CaseError
 from coupling.run import build_friction, build_surface, follow_part
 
@@ -122,16 +122,22 @@ def test_a_point_that_cannot_be_run_is_refused_and_told(tmp_path):
     assert sweep.dataset["mistakes"].values.tolist() == [[1, 0], [1, 0]]
     assert sweep.outcomes["refused"] == 2 and OUTCOMES[int(sweep.dataset["outcome"][0, 0])] == "refused"
     assert np.isnan(sweep.dataset["end_x"].values[:, 0]).all() and (sweep.dataset["evaluations"][:, 0] == 0).all()
-    assert sweep.first_refused == ["friction.static_coefficient must be at least coefficient, 0.2; got 0.1"]
+    wrong = "friction.static_coefficient must be at least coefficient, 0.2; got 0.1"
+    assert sweep.first_refused == [wrong]
+    said = f"2 of 4 paths; the first, at part.squeeze = 0 N, friction.static_coefficient = 0.1: {wrong}"
+    assert ("refused", said) in lines(sweep)
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("case", [PLATE, PLATFORM], ids=["plate", "platform"])
-def test_a_point_with_cycles_without_end_is_refused(tmp_path, case):
+def test_a_point_with_cycles_without_end_is_refused(tmp_path, case, monkeypatch):
+    ran: list[float] = []
+    monkeypatch.setattr(validity, "run_case", lambda case: (ran.append(case.actuators[0].frequency), run_case(case))[1])
     field = "plate.motion.x.frequency" if case is PLATFORM else "actuators.0.frequency"
     axes = f'[[axes]]\nfield = "{field}"\nvalues = ["400 Hz", "1e12 Hz"]\n'
     sweep = run_study(read_study(written(tmp_path, axes, case)))
     assert sweep.dataset["mistakes"].values.tolist() == [0, 1]
+    assert max(ran, default=0.0) < 1e6  # nor is the model checked there
     (said,) = sweep.first_refused
     assert said.startswith("run.duration must hold at most 100000 cycles of each drive; got ")
     axes = axes.replace('"400 Hz"', '"1e11 Hz"')

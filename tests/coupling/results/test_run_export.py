@@ -121,6 +121,15 @@ def test_an_interrupted_run_is_exported_with_the_steps_that_it_has_and_stays_par
     assert (whole.summary, whole.versions, whole.units) == (partial.summary, partial.versions, partial.units)
     said = CliRunner().invoke(main, ["view", str(tmp_path / "out" / "one.plate.vtkhdf")])
     assert said.exit_code == 0 and "The results are partial" in said.output
+    for form, ending in (("pvd", "pvd"), ("xdmf", "xdmf")):
+        assert export_run(partial, tmp_path / form, form)[1].name == f"one.partial.part.{ending}"
+    csv = CliRunner().invoke(main, ["export", str(tmp_path / "one"), "--format", "csv", "-o", str(tmp_path / "csv")])
+    assert "The run stopped while it was written: the path is whole." in csv.output
+    assert (tmp_path / "csv/one.csv").read_text() == _csv(folder, tmp_path / "first").read_text()
+
+
+def _csv(folder: Path, into: Path) -> Path:
+    return export_run(read_run(folder / "one"), into, "csv")[0]
 
 
 def test_a_run_that_lacks_but_the_last_renaming_is_finished_by_its_export(folder, tmp_path):
