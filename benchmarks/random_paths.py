@@ -31,7 +31,7 @@ from particle.surface import rim_gap
 BLOCK = 250  # paths
 AGAIN = 20  # blocks, of which one is followed again
 TOLERANCE = 1e-9
-FINER = 1e-12
+FINER = 1e-13  # the finest there is
 CELLS, FINER_CELLS = 1e-8, 1e-10  # the surface_tolerance, and that which tells whether a gap comes from it
 SEEN = 1e-7  # m; a part that goes less counts as at rest
 BALANCE = 1e-6  # of the energy that went through a path

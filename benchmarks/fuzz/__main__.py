@@ -23,12 +23,12 @@ from pathlib import Path
 from typing import Final
 
 from fuzz import seeds
-from fuzz.trial import WAITING, Finding, ended, trial
+from fuzz.trial import SLOWER, WAITING, Finding, ended, trial
 
 BATCH: Final = 400  # inputs of a process
 MEMORY: Final = 4 * 2**30  # bytes that an input may take
 ADDRESSES: Final = 8 * 2**30  # bytes that may be asked for, more than are used
-SILENT: Final = WAITING + 15  # s until a process that says nothing is ended
+SILENT: Final = WAITING * SLOWER + 15  # s until a process that says nothing is ended
 
 
 def batch(seed: int, first: int, count: int, made: Path, folder: Path, pipe: int) -> None:
@@ -69,7 +69,11 @@ def tried(seed: int, first: int, count: int, made: Path, folder: Path) -> list[t
     text = b""
     hung = False
     while True:
-        ready, _, _ = select.select([receiver], [], [], SILENT)
+        try:
+            ready, _, _ = select.select([receiver], [], [], SILENT)
+        except KeyboardInterrupt:  # which only this process gets
+            os.killpg(child, signal.SIGKILL)
+            raise
         if not ready:
             hung = True
             with suppress(ProcessLookupError):  # with its own children, who hold the pipe, too

@@ -65,6 +65,13 @@ def taken(case: str, path: str) -> tuple[str, int, str]:
     async def work() -> None:
         lanes = Lanes()
         session = Session(lanes, open_case(Path(case)))
+        try:
+            await said(session)
+        finally:  # after a time-out, too
+            session.close()
+            lanes.close()
+
+    async def said(session: Session) -> None:
         session.connect(sent.append)
         for line in Path(path).read_bytes().split(b"\n"):
             try:
@@ -80,7 +87,6 @@ def taken(case: str, path: str) -> tuple[str, int, str]:
         session.close()
         while answers._tasks:  # what nobody waits for any more must end by itself
             await asyncio.sleep(0.01)
-        lanes.close()
 
     asyncio.run(work())
     json.dumps(sent, allow_nan=False)

@@ -19,6 +19,8 @@ from fuzz.page import taken
 
 LONGEST: Final = 20  # s of processors
 WAITING: Final = 60  # s, in which it may also wait
+SLOWER: Final = 3  # times these for messages to the app, which may open examples that take long
+ELSEWHERE: Final = ("/tmp/out.toml",)  # that messages name, in vain
 RAW: Final = re.compile(
     r"recursion depth|[Ss]ingular matrix|Triangulation is invalid|phony_dim|Link iteration|NoneType|has no attribute|"
     r"broadcast|out of bounds for|unhashable|not subscriptable|unexpected keyword|could not convert|invalid literal|"
@@ -61,13 +63,17 @@ def trial(seed: int, number: int, made: Path, folder: Path) -> tuple[str, Findin
 
 
 def _files(folder: Path) -> set[str]:
-    return {path.name for one in (folder, folder.parent) for path in one.iterdir() if path.name != folder.name}
+    beside = [f"../{path.name}" for path in folder.parent.iterdir() if path.name != folder.name]
+    return {*(path.name for path in folder.iterdir()), *beside, *(name for name in ELSEWHERE if Path(name).exists())}
 
 
 def _named(name: str, command: list[str]) -> bool:
     """Whether a command named a file or folder that it made, or it is the usual one."""
-    usual = name in ("results", "out") or any(name.startswith(word) for word in command if word)
-    return usual or name.endswith((".html", ".toml", ".pdf", ".svg", ".png", ".csv", ".vtkhdf", ".pvd", ".xdmf", ".h5"))
+    words = () if command[0] == "messages" else command
+    if name in ("results", "out") or any(name.startswith(word) for word in words if word):
+        return True
+    endings = (".html", ".toml", ".pdf", ".svg", ".png", ".csv", ".vtkhdf", ".pvd", ".xdmf", ".h5")
+    return "/" not in name and name.endswith(endings)
 
 
 def ended(command: list[str]) -> tuple[str, int | None, str]:
@@ -76,7 +82,8 @@ def ended(command: list[str]) -> tuple[str, int | None, str]:
     def alarm(*_: Any) -> None:
         raise _HangError
 
-    _limit(alarm, LONGEST, WAITING)
+    times = SLOWER if command[0] == "messages" else 1
+    _limit(alarm, LONGEST * times, WAITING * times)
     try:
         if command[0] == "reading":
             return _read(command[1])
