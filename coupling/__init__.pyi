@@ -9,7 +9,12 @@ from .surface.motion import surface_motion as surface_motion
 # Not public: for the packages that build on this one.
 from .drives import build_drive as build_drive, build_drives as build_drives
 from .environment import PACKAGES as PACKAGES, versions as versions
-from .files import check_room as check_room, remove_partial_files as remove_partial_files, whole_file as whole_file
+from .files import (
+    check_room as check_room,
+    remove_partial_files as remove_partial_files,
+    whole_file as whole_file,
+    why as why,
+)
 from .new_file import NewFile as NewFile, Sink as Sink
 from .progress import (
     CountBar as CountBar,

@@ -35,6 +35,12 @@ def contents(path: str | os.PathLike[str], most: int) -> bytes:
     return data
 
 
+def why(error: OSError) -> str:
+    """Why something cannot be done with a file, to follow a colon."""
+    reason = error.strerror or str(error)
+    return reason[:1].lower() + reason[1:]
+
+
 def check_room(folder: Path, needed: int, kept: str = "") -> None:
     """Raise OSError unless a folder has room for so many bytes of results: a run shall not begin that cannot end.
 

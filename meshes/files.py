@@ -8,8 +8,29 @@ import warnings
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
+import numpy as np
+from numpy.typing import NDArray
+
+EXPECTED = "Input path of read must be a .msh file of gmsh, a .vtu or a first-order .xdmf file"
+FORMATS = {".msh": "gmsh", ".vtu": "vtu", ".xdmf": "xdmf"}
+"""The files that are read: how meshio calls them, by their endings."""
 DAMAGED = "it is damaged, or its parts do not fit together"
+NO_NUMBER = "string or file could not be read to its end"
+REASONS = {
+    NO_NUMBER: "something in it that should be a number is none",
+    r"Illegal data type '(.*?)'": "it has numbers of the type {}, which VTU does not have",
+    r"Unknown XDMF version (.*?)\.(?!\d)": "it is XDMF {}; versions 2 and 3 are read",
+    r"Unknown XDMF Format '(.*?)'": "its numbers have the format {}; HDF, XML and Binary are read",
+    "Only supports one grid": "it does not have one grid",
+    r"Need mesh format in .*\(got (.*?)\)": "it is of gmsh {}; versions 2 and 4 are read",
+}
+"""What is wrong with a file, by what numpy and meshio say of it."""
+OTHERS = {"c": "complex numbers", **dict.fromkeys("OSU", "text")}
+"""What coordinates are that are no real numbers, by the kinds of numpy."""
+COLUMNS = {"line": 2, "line3": 3, "triangle": 3, "triangle6": 6}
+"""How many points the cells that are used have."""
 MAX_SIZE = 2**28  # bytes of a mesh file
 MAX_COUNT = 10_000_000  # points, cells and their numbers
 SIZES = {
@@ -24,10 +45,13 @@ def load(path: Path) -> Any:
     """The file as a meshio.Mesh; raises ValueError, naming the file, when it cannot be read."""
     import meshio  # here, because it is slow to import
 
+    ending = path.suffix.lower()
+    if ending not in FORMATS:
+        raise ValueError(f"{EXPECTED}; got {path}")
     if not path.is_file():
-        raise ValueError(f"Input path of read must be a mesh file; there is no {path}")
+        raise ValueError(f"{EXPECTED}; there is no file {path}")
     _check_sizes(path)
-    if path.suffix.lower() == ".xdmf":
+    if ending == ".xdmf":
         from meshes.xdmf import wrong_numbers  # here, because h5py is slow to import
 
         if wrong := list(wrong_numbers(path, MAX_SIZE)):
@@ -37,21 +61,48 @@ def load(path: Path) -> Any:
     try:
         with redirect_stdout(printed), redirect_stderr(printed), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of numbers that fit no type, which are checked below
-            return meshio.read(path)
+            warnings.filterwarnings("error", NO_NUMBER)  # which would end the array there
+            mesh = meshio.read(path, FORMATS[ending])
     except (Exception, SystemExit) as error:
-        readable = isinstance(error, (meshio.ReadError, SyntaxError))  # a ParseError of XML is one
-        text = f"{type(error).__name__}: {error}" if readable else DAMAGED
-        text = "" if isinstance(error, SystemExit) else text
-        reason = " ".join(re.sub(r"\x1b\[[\d;]*m", "", f"{printed.getvalue()} {text}").split())[:200]
-        raise ValueError(
-            f"Input path of read must be a .msh, .vtu or first-order .xdmf file; {path} cannot be read as one: {reason}"
-        ) from error
+        raise ValueError(f"{EXPECTED}; {path} cannot be read as one: {_reason(error, printed.getvalue())}") from error
+    _check_arrays(mesh, path)
+    return mesh
+
+
+def _reason(error: BaseException, printed: str) -> str:
+    """Why a file cannot be read, in words of ours."""
+    if isinstance(error, ElementTree.ParseError):
+        return f"its line {error.position[0]} is no XML"
+    found = ((re.search(pattern, f"{printed} {error}"), reason) for pattern, reason in REASONS.items())
+    return next((reason.format(*match.groups()) for match, reason in found if match), DAMAGED)
+
+
+def _check_arrays(mesh: Any, path: Path) -> None:
+    """Raise ValueError unless coordinates are real numbers and cells rows of whole ones: HDF5 can hold anything."""
+    points = mesh.points
+    if points.size and (points.dtype.kind not in "iuf" or points.ndim != 2 or points.shape[1] not in (2, 3)):
+        shape = f"numbers in the shape {points.shape}" if points.dtype.kind in "iuf" else "no numbers"
+        wanted = "Input path of read must be a mesh file whose coordinates are two or three real numbers a point"
+        raise ValueError(f"{wanted}; those of {path} are {OTHERS.get(points.dtype.kind, shape)}")
+    for block in mesh.cells:
+        columns = COLUMNS.get(block.type)
+        if columns and not _are_rows(block.data, columns):
+            wanted = f"must be a mesh file whose {block.type} cells are rows of {columns} whole numbers"
+            raise ValueError(f"Input path of read {wanted}; those of {path} are not")
+
+
+def _are_rows(data: NDArray[Any], columns: int) -> bool:
+    """Whether an array (n, columns) has whole numbers; those of XDMF are floats where it does not say what they are."""
+    whole = data.dtype.kind in "iu" or (data.dtype.kind == "f" and bool((np.floor(data) == data).all()))
+    return whole and data.ndim == 2 and data.shape[1] == columns and bool((np.abs(data) < 2**53).all())
 
 
 def _check_sizes(path: Path) -> None:
     """Raise ValueError where a file says that it holds more than it can, before a reader makes room for that."""
     wrong = "Input path of read must be a mesh file"
     size = path.stat().st_size
+    if not size:
+        raise ValueError(f"{wrong}; {path} is empty")
     if size > MAX_SIZE:
         raise ValueError(f"{wrong} of at most {MAX_SIZE} bytes; {path} has {size}")
     data = path.read_bytes()
@@ -78,8 +129,11 @@ def line_names(mesh: Any) -> list[set[str]]:
         names += own
     key = _number_key(mesh.cell_data)
     if key is not None:
-        curves = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 1}
-        tags = [int(tag) for k in blocks for tag in mesh.cell_data[key][k]]
+        pairs = {
+            name: pair for name, pair in mesh.field_data.items() if np.shape(pair) == (2,)
+        }  # not the time of a VTU
+        curves = {int(tag): name for name, (tag, dimension) in pairs.items() if dimension == 1}
+        tags = [int(tag) for k in blocks for tag in np.ravel(mesh.cell_data[key][k])]
         for own_names, tag in zip(names, tags, strict=True):
             if not own_names and not (tag == 0 and key == "gmsh:physical"):  # gmsh's 0 means no physical curve
                 own_names.add(curves.get(tag, str(tag)))
@@ -88,7 +142,7 @@ def line_names(mesh: Any) -> list[set[str]]:
 
 def _number_key(data: dict[str, Any]) -> str | None:
     """The cell data that number boundaries: gmsh's, those called "boundary", or the only integers."""
-    integers = [name for name, parts in data.items() if all(part.dtype.kind in "iu" for part in parts)]
+    integers = [name for name, parts in data.items() if all(p.dtype.kind in "iu" and p.size == len(p) for p in parts)]
     for name in ("gmsh:physical", "boundary"):
         if name in integers:
             return name

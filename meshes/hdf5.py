@@ -8,7 +8,7 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from itertools import chain
 
@@ -122,6 +122,12 @@ def check_hdf5(path: str | os.PathLike[str], by_steps: str = "") -> None:
                 raise ValueError(f"its {name} has {size} bytes; at most {MAX_BYTES} are read")
             if not _has_right_axes(dataset):
                 raise ValueError(f"its {name} names its axes in another form than netCDF")
+
+
+def lacking(path: str | os.PathLike[str], names: Iterable[str]) -> list[str]:
+    """Those of some names that no dataset of a file has."""
+    with h5py.File(path, "r") as file:
+        return [name for name in names if not isinstance(file.get(name or "/"), h5py.Dataset)]
 
 
 def _has_right_axes(dataset: h5py.Dataset) -> bool:

@@ -25,6 +25,8 @@ MIN_AREA = 1e-12  # of the box
 STRAIGHT = 1e-9  # of the chord: edges whose middle is closer to it are straight
 RIM = "rim"  # the boundary of a mesh that names none
 WANTED = "a plane mesh of triangles with named boundaries"
+GMSH = "give them a Physical Curve name in gmsh"
+NUMBERED = "give them lines, with a whole number each in the cell data boundary"
 BENT = 1e-6  # of the chord: inner edges must not be bent more
 
 
@@ -36,6 +38,7 @@ class Found(NamedTuple):
     middles: IntArray  # (m, 3) of the edges 01, 12, 20; -1 in cells of first order
     lines: IntArray  # (l, 2) rows of points
     names: list[set[str]]  # of each line
+    naming: str  # how boundaries get names there
 
 
 class RimEdges(NamedTuple):
@@ -76,7 +79,8 @@ def read(path: str | Path, unit: float = 1.0) -> PlateMesh:
     corners, middles = _cells(mesh, mistakes)
     lines = [np.asarray(block.data, dtype=np.int64)[:, :2] for block in mesh.cells if block.type in ("line", "line3")]
     pairs = np.concatenate([*lines, np.empty((0, 2), dtype=np.int64)])
-    found = Found(np.asarray(mesh.points, dtype=float), corners, middles, pairs, line_names(mesh))
+    naming = GMSH if Path(path).suffix.lower() == ".msh" else NUMBERED
+    found = Found(np.asarray(mesh.points, dtype=float), corners, middles, pairs, line_names(mesh), naming)
     return _plate_mesh(found, unit, mistakes, f"path of read must be {WANTED}; {path} has")
 
 
@@ -112,13 +116,13 @@ def from_skfem(mesh: MeshTri1 | MeshTri2, unit: float = 1.0) -> PlateMesh:
     boundaries = mesh.boundaries or {RIM: mesh.boundary_facets()}
     pairs = [mesh.facets[:, facets].T.astype(np.int64) for facets in boundaries.values()]
     names = [{name} for name, facets in boundaries.items() for _ in facets]
-    found = Found(mesh.doflocs.T, corners, middles, np.concatenate(pairs), names)
+    found = Found(mesh.doflocs.T, corners, middles, np.concatenate(pairs), names, "give them one by with_boundaries")
     return _plate_mesh(found, unit, [], wrong)
 
 
 def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> PlateMesh:
     """The mesh of what was found; raises ValueError with all mistakes."""
-    points, corners, middles, pairs, line_sets = found
+    points, corners, middles, pairs, line_sets, naming = found
     if not len(corners):
         mistakes.append("no triangles")
         _refuse(mistakes, wrong)
@@ -152,7 +156,7 @@ def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> P
     pieces = _pieces(corners)
     if pieces > 1:
         mistakes.append(f"{pieces} pieces that do not hang together: a plate is one")
-    names = np.array(_names(pairs, line_sets, points, rim.edges, mistakes))
+    names = np.array(_names(pairs, line_sets, points, rim.edges, naming, mistakes))
     _refuse(mistakes, wrong)
     kept, rows = np.unique(corners, return_inverse=True)
     boundaries, curves = {}, {}
@@ -235,7 +239,12 @@ def _walk(pieces: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _names(
-    lines: IntArray, line_sets: Sequence[set[str]], points: FloatArray, edges: IntArray, mistakes: list[str]
+    lines: IntArray,
+    line_sets: Sequence[set[str]],
+    points: FloatArray,
+    edges: IntArray,
+    naming: str,
+    mistakes: list[str],
 ) -> list[str]:
     """The name of each rim edge (k, 2), from lines (l, 2) and the names of each."""
     by_number: dict[int, set[str]] = {}
@@ -247,9 +256,7 @@ def _names(
         count, first = int(unnamed.sum()), points[edges[unnamed][0]]
         ends = " and ".join(_place(end) for end in first)
         between = f"the first between {ends}" if count > 1 else f"between {ends}"
-        mistakes.append(
-            f"an unnamed boundary: {count} edge{'s'[: count > 1]}, {between}; give them a Physical Curve name in gmsh"
-        )
+        mistakes.append(f"an unnamed boundary: {count} edge{'s'[: count > 1]}, {between}; {naming}")
     double = np.array([len(names) > 1 for names in of_edges])
     _note(mistakes, double.sum(), "boundary edges with more than one name", points[edges[double]].mean(axis=1))
     return [min(names, default="") for names in of_edges]

@@ -218,7 +218,9 @@ def refusing(work: Callable[..., Answer], *arguments: object) -> Answer:
         return work(*arguments)
     except (ValueError, OSError, RuntimeError, ArithmeticError, MemoryError) as error:
         context = click.get_current_context()
-        words = {param.name or "": _word(param) for param in context.command.params}
+        words = {"path": _file_argument(context)}  # as readers of files call it
+        for param in context.command.params:
+            words |= dict.fromkeys((param.name or "", param.opts[0].lstrip("-")), _word(param))
         raise refusal_of(error, context.command_path, bool(context.params.get("as_json")), words) from None
 
 

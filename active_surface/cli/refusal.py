@@ -9,6 +9,8 @@ from typing import IO, Any, NamedTuple
 
 import click
 
+from coupling import why
+
 _SIZES = "its numbers are too far apart, too large or too small to compute with"
 _CONTROL = re.compile(r"[\0-\t\v-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 """What names of files and texts in them may hold, and no terminal must get."""
@@ -63,15 +65,15 @@ def refusal_of(error: Exception, command: str, as_json: bool, words: Mapping[str
     if beyond or not isinstance(error, ValueError):  # no mistake, but something in the way
         said = beyond or str(error)
         if isinstance(error, OSError) and error.strerror:
-            said = ": ".join([*([str(error.filename)] if error.filename else []), error.strerror.lower()])
+            said = ": ".join([*([str(error.filename)] if error.filename else []), why(error)])
         return Refusal(f"{command}: {said}", [Mistake(None, None, "", said)], as_json)
     texts = re.split(r"\n|; (?=Inputs? )", str(error))
     return refusal(command, [_in_words(text, command.split()[-1], words) for text in texts], as_json)
 
 
 def _in_words(text: str, caller: str, words: Mapping[str, str]) -> tuple[str, str]:
-    """The input of the command, and what is wrong with it, where a text names an input of its function."""
-    of_caller = re.fullmatch(rf"Input (\S+) of {re.escape(caller)} (.*)", text, re.DOTALL)
+    """The input of the command, and what is wrong with it, where a text names an input of its function, or of none."""
+    of_caller = re.fullmatch(rf"Input (\S+) (?:of {re.escape(caller)} |(?!of ))(.*)", text, re.DOTALL)
     return (words.get(of_caller[1], of_caller[1]), of_caller[2]) if of_caller else ("", text)
 
 

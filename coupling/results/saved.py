@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-KINDS = ("plate", "part")
+KINDS = {"plate": "UnstructuredGrid", "part": "PolyData"}  # and the type of their VTKHDF
 SUFFIX, PARTIAL = ".vtkhdf", ".partial"
 ENDINGS = tuple(f"{part}.{kind}{SUFFIX}" for part in ("", PARTIAL) for kind in KINDS)
 EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
@@ -157,53 +157,63 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
     """
     paths = _pair(Path(path))
     with opened(paths["plate"]) as plate, opened(paths["part"]) as part:
-        with readable(path, paths["part"]):
-            k = min(int(file["VTKHDF/Steps"].attrs["NSteps"]) for file in (plate, part))
-        if k == 0:
-            raise ValueError(f"{EXPECTED}; got {paths['part']}, to which no step was written")
-        with readable(path, paths["part"]):
-            run = _read(plate, part, paths, k)
-            _check(run, k)
+        steps = {}
+        for file, kind in ((plate, "plate"), (part, "part")):
+            with readable(paths[kind], paths["part"]):
+                steps[kind] = int(file["VTKHDF/Steps"].attrs["NSteps"])
+        fewest = min(steps, key=steps.__getitem__)
+        if steps[fewest] == 0:
+            raise ValueError(f"{EXPECTED}; got {paths[fewest]}, to which no step was written")
+        with readable(paths["plate"], paths["part"]):
+            surface = _surface(plate)
+        with readable(paths["part"], paths["part"]):
+            run = _read(part, surface, paths, steps[fewest])
+            _check(run, steps[fewest])
             return replace(run, complete=run.complete and bool(run.time[-1] >= run.summary["end_time"]))
 
 
-def _read(plate: h5py.File, part: h5py.File, paths: dict[str, Path], k: int) -> SavedRun:
+def _surface(plate: h5py.File) -> dict[str, Any]:
+    """What the plate's file holds beside its steps; raises ValueError where that does not fit together."""
+    points, triangles = plate["VTKHDF/Points"][:, :2], plate["VTKHDF/Connectivity"][()].reshape(-1, 3)
+    _check_finite(points=points)
+    if triangles.min() < 0 or triangles.max() >= len(points):
+        raise ValueError(f"a triangle has a corner that is none of the {len(points)} points")
+    return {"points": points, "triangles": triangles, "plate_fields": tuple(plate["VTKHDF/PointData"])}
+
+
+def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: int) -> SavedRun:
     """What both files hold, with their first k steps."""
-    ours = part["active_surface"]
-    points, fields = plate["VTKHDF/Points"][:, :2], part["VTKHDF/PointData"]
+    ours, fields = part["active_surface"], part["VTKHDF/PointData"]
     rows = Samples(**{name: ours["rows"][name][()] for name in Samples._fields})
-    names = [EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE]
-    events = zip(*(ours["events"][name][()].tolist() for name in names), strict=True)
+    columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE))
     return SavedRun(
         name=_split(paths["plate"])[0],
         complete=not any(_split(path)[2] for path in paths.values()),
         **{key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")},
         time=part["VTKHDF/Steps/Values"][:k],
-        points=points,
-        triangles=plate["VTKHDF/Connectivity"][()].reshape(-1, 3),
-        actuators=points[: ours.attrs["actuators"]],
+        **surface,
+        actuators=surface["points"][: ours.attrs["actuators"]],
         position=part["VTKHDF/Points"][:k],
         **{name: fields[name][:k] for name in OF_PART},
         events=[
             Event(EventKind(kind), position=(place[0], place[1]), **dict(zip(EVENT_NUMBERS, numbers, strict=True)))
-            for kind, *numbers, place in events
+            for kind, *numbers, place in zip(*columns, strict=True)
         ],
         rows=rows,
         event_actuators=ours["events"]["actuator"][()],
         margins=MarginCurves(**{name: ours["margins"][name][()] for name in MarginCurves._fields}),
-        plate_fields=tuple(plate["VTKHDF/PointData"]),
         plate_path=paths["plate"],
         part_path=paths["part"],
     )
 
 
 def _check(run: SavedRun, k: int) -> None:
-    """Raises ValueError where what was read of a run of k steps does not fit together."""
+    """Raises ValueError where what was read of a part over k steps does not fit together."""
     summary_of(run.summary)
     for name in OVER_TIME:
         if len(getattr(run, name)) != k:
             raise ValueError(f"{name} has {len(getattr(run, name))} of {k} steps")
-    _check_finite(time=run.time, points=run.points, position=run.position, rows=run.rows.position)
+    _check_finite(time=run.time, position=run.position, rows=run.rows.position)
     _check_shapes("rows", run.rows._asdict(), {"position": 2, "velocity": 2})
     _check_shapes("margins", run.margins._asdict(), {})
     if len(run.event_actuators) != len(run.events):
@@ -216,8 +226,6 @@ def _check(run: SavedRun, k: int) -> None:
             raise ValueError("a state is none of the part's")
     if (np.diff(run.time) <= 0).any() or (np.diff(run.rows.time) < 0).any():
         raise ValueError("a time is earlier than the one before")
-    if run.triangles.min() < 0 or run.triangles.max() >= len(run.points):
-        raise ValueError(f"a triangle has a corner that is none of the {len(run.points)} points")
 
 
 def _check_shapes(group: str, arrays: Mapping[str, NDArray], columns: Mapping[str, int]) -> None:
@@ -249,7 +257,7 @@ def _pair(path: Path) -> dict[str, Path]:
             like = "" if beside else meant(path.with_name(name), ENDINGS)
             raise ValueError(f"{EXPECTED}; got {path}, but there is no {both[0]}{beside}{like}")
     for plate, part in product(*found.values()):
-        if _run(plate) == _run(part):
+        if _run(plate, "plate") == _run(part, "part"):
             return {"plate": plate, "part": part}
     raise ValueError(f"{EXPECTED}; got {path}, but {found['plate'][0]} and {found['part'][0]} are of different runs")
 
@@ -280,9 +288,12 @@ def _split(path: Path) -> tuple[str, str | None, bool]:
     return path.name, None, False
 
 
-def _run(path: Path) -> str:
+def _run(path: Path, kind: str) -> str:
     if not survives(path):
         raise ValueError(f"{EXPECTED}; got {path}, which is damaged: {DEADLY}")
     with opened(path) as file, readable(path, path):
         check_hdf5(path, "VTKHDF/PointData")
-        return str(file["active_surface"].attrs["run"])
+        run, data_type = str(file["active_surface"].attrs["run"]), file["VTKHDF"].attrs["Type"].decode()
+    if data_type != KINDS[kind]:
+        raise ValueError(f"{EXPECTED}; got {path}, which holds no {kind}, though its name ends in .{kind}{SUFFIX}")
+    return run

@@ -247,27 +247,6 @@ def test_many_mistakes_come_at_once_and_many_places_as_three(tmp_path):
     assert lines[1].startswith("  an unnamed boundary: 30 edges, the first between (")
 
 
-@pytest.mark.parametrize(
-    "name, content, message",
-    [
-        ("none.msh", None, "Input path of read must be a mesh file; there is no {path}"),
-        ("mesh.foo", "text", "{path} cannot be read as one: ReadError: Could not deduce file format"),
-        ("mesh.msh", "text", "{path} cannot be read as one: Error: Couldn't read file {path} as either of ansys, gmsh"),
-        ("cut.msh", L_WITH_HOLE.read_text()[:4000], "{path} cannot be read as one: "),
-        ("mesh.vtu", "text", "{path} cannot be read as one: Error: Couldn't read file {path} as vtu"),
-        ("mesh.xdmf", "text", "{path} cannot be read as one: ParseError"),
-    ],
-)
-def test_files_that_cannot_be_read_are_named(tmp_path, capfd, monkeypatch, name, content, message):
-    monkeypatch.setenv("COLUMNS", "400")  # meshio's words are wrapped at the terminal's width
-    path = tmp_path / name
-    if content is not None:
-        path.write_text(content)
-    with pytest.raises(ValueError, match=re.escape(message.format(path=path))):
-        read(path)
-    assert capfd.readouterr() == ("", "")
-
-
 @pytest.mark.parametrize("unit", [0, -1.0, float("nan")])
 def test_a_unit_that_is_no_length_is_refused(unit):
     with pytest.raises(ValueError, match=re.escape(f"Input unit of read must be a positive length in m; got {unit!r}")):

@@ -1,5 +1,7 @@
 """XDMF meshes whose numbers are in files of their own, which may lie, be damaged or have no end."""
 
+import re
+
 import h5py
 import meshio
 import numpy as np
@@ -21,6 +23,13 @@ def mesh(tmp_path):
     return path
 
 
+def changed(path, name, change):
+    with h5py.File(path.with_suffix(".h5"), "r+") as file:
+        values = change(file[name][()])
+        del file[name]
+        file[name] = values
+
+
 def refused(path):
     with pytest.raises(ValueError, match=r"Input path of read must be a mesh file whose numbers can be read") as error:
         read(path)
@@ -36,6 +45,53 @@ def test_numbers_that_are_not_there(mesh):
     mesh.with_suffix(".h5").unlink()
     assert refused(mesh).count("mesh.h5") == 1  # of several arrays
     assert f"{mesh.with_suffix('.h5')} is missing" in refused(mesh)
+
+
+def test_a_dataset_that_is_not_there(mesh):
+    with h5py.File(mesh.with_suffix(".h5"), "r+") as file:
+        del file["data0"], file["data2"]
+        file.create_group("data2")
+    lacking = f"{mesh.with_suffix('.h5')} has no data set"
+    assert refused(mesh).endswith(f"\n  {lacking} data0\n  {lacking} data2")
+    mesh.write_text(mesh.read_text().replace("mesh.h5:/data0", "mesh.h5"))
+    assert "mesh.h5 is named without a data set after a colon" in refused(mesh)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "wrong"),
+    [
+        ("data0", lambda xy: xy + 1j, "those of {} are complex numbers"),
+        ("data0", lambda xy: xy.astype("S8"), "those of {} are text"),
+        ("data0", lambda xy: xy.astype(str).astype(object), "those of {} are text"),
+        ("data0", lambda xy: np.zeros(len(xy), [("x", "f8"), ("y", "f8")]), "those of {} are no numbers"),
+        ("data0", lambda xy: xy[:, 0], "those of {} are numbers in the shape (35,)"),
+        ("data1", lambda rows: rows + 0.5, "are rows of 3 whole numbers; those of {} are not"),
+        ("data1", lambda rows: rows + 1j, "are rows of 3 whole numbers; those of {} are not"),
+        ("data1", lambda rows: rows[:, :2], "are rows of 3 whole numbers; those of {} are not"),
+    ],
+)
+def test_numbers_of_other_kinds(mesh, name, change, wrong):
+    old = meshio.read(mesh)
+    meshio.Mesh(old.points, [("triangle", old.cells_dict["triangle"])]).write(mesh)
+    changed(mesh, name, change)
+    with pytest.raises(ValueError, match=re.escape(wrong.format(mesh))) as error:
+        read(mesh)
+    assert "\n" not in str(error.value)
+
+
+def test_an_unnamed_boundary_is_told_without_gmsh(mesh):
+    changed(mesh, "data2", lambda numbers: numbers.astype(float))
+    with pytest.raises(ValueError, match="give them lines, with a whole number each in the cell data boundary"):
+        read(mesh)
+
+
+def test_numbers_of_boundaries_in_a_column(mesh):
+    names = list(read(mesh).boundaries)
+    changed(mesh, "data2", lambda numbers: numbers[:, None])
+    assert list(read(mesh).boundaries) == names
+    changed(mesh, "data2", lambda numbers: numbers.repeat(2, axis=1))
+    with pytest.raises(ValueError, match="an unnamed boundary"):
+        read(mesh)
 
 
 def test_numbers_that_are_no_hdf5(mesh):

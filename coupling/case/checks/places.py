@@ -39,7 +39,10 @@ def mesh_of(plate: PlateCase) -> tuple[PlateMesh | None, list[Mistake]]:
     except OSError as error:
         wrong = [unreadable(str(error.filename), error)]
     except ValueError as error:
-        wrong = [re.sub(r"^Input \w+ of \w+ ", "", line) for line in str(error).splitlines()]
+        wrong = [
+            re.sub(r"^Input \w+ of \w+ ", "", text).replace("\n  ", " ", 1).replace("\n  ", "; ")
+            for text in re.split(r"\n(?=Input )", str(error))
+        ]
     return None, [(("plate", plate.outlined_by), message) for message in wrong]
 
 

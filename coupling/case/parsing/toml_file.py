@@ -31,7 +31,7 @@ from coupling.case.mistakes import (
 from coupling.case.parsing.other_file import folder_text, what_else
 from coupling.case.parsing.repair import loads, repaired
 from coupling.case.values import UNITS_REQUIRED
-from coupling.files import MAX_TEXT, contents
+from coupling.files import MAX_TEXT, contents, why
 from coupling.suggestion import near, near_file
 
 _TOKEN = re.compile(
@@ -149,13 +149,13 @@ def parse(path: str | os.PathLike[str], lenient: bool = False) -> TomlFile:
     except FileNotFoundError as error:
         meant = near_file(Path(path))
         hint = f"; did you mean {meant}?" if meant else ""
-        raise _unreadable(name, f"cannot be read: {str(error.strerror).lower()}{hint}") from None
+        raise _unreadable(name, f"cannot be read: {why(error)}{hint}") from None
     except IsADirectoryError:
         raise _unreadable(name, folder_text(Path(path))) from None
     except CaseError:
         raise
     except OSError as error:
-        raise _unreadable(name, f"cannot be read: {(error.strerror or str(error)).lower()}") from None
+        raise _unreadable(name, f"cannot be read: {why(error)}") from None
     except UnicodeDecodeError as error:
         line = error.object.count(b"\n", 0, error.start) + 1
         message = f"is not UTF-8 text; got the byte 0x{error.object[error.start]:02x}; save it as UTF-8"

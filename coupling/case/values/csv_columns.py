@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from coupling.case.values.dimensions import DIMENSIONS
 from coupling.case.values.units import Quantity, quoted
-from coupling.files import MAX_NUMBERS, contents
+from coupling.files import MAX_NUMBERS, contents, why
 from coupling.suggestion import near, near_file
 
 MAX_MISTAKES = 10  # of a file that are listed one by one
@@ -112,11 +112,11 @@ def by_line(wrong: Sequence[tuple[int, str]]) -> list[str]:
 
 def unreadable(file: str, error: OSError | ValueError) -> str:
     """That a file cannot be read, and why; ValueError where no file can have such a name."""
-    reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+    reason = why(error) if isinstance(error, OSError) else str(error)
     path = Path(str(error.filename)) if isinstance(error, FileNotFoundError) else None
     meant = near_file(path, path.suffix) if path else None
     hint = f"; did you mean {quoted(os.path.relpath(meant, path.parent))}?" if path and meant else ""
-    return f"must be a file that can be read; got {quoted(file)}: {reason.lower()}{hint}"
+    return f"must be a file that can be read; got {quoted(file)}: {reason}{hint}"
 
 
 def first_of(mistakes: Sequence[str]) -> list[str]:

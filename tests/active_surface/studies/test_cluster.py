@@ -155,7 +155,7 @@ def refused(tmp_path, address):
     assert done.exit_code == 2 and not (tmp_path / "out").exists()
     said, got = done.output.split(f"; got {address!r}: ")
     wanted = "the address of a running dask scheduler such as tcp://127.0.0.1:8786"
-    assert said == f"main sweep: 1 mistake\n  Input scheduler must be {wanted}"
+    assert said == f"main sweep: 1 mistake\n  --scheduler must be {wanted}"
     assert got.count("\n") == 1
     return got.strip()
 

@@ -258,7 +258,7 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
         folder / "cas": f"which is no file; did you mean {folder / 'case'}?",
         folder: f"a folder: name a result in it: {folder / 'case'}",
         tmp_path / "text.nc": "which is another file",
-        tmp_path / "other.vtkhdf": "which is another file",
+        tmp_path / "other.vtkhdf": "whose name must end in .plate.vtkhdf or .part.vtkhdf, as that of a result does",
         folder / "case.png": f"which is beside a result: name {folder / 'case'}",
         folder / "one.toml": "a study file: it is of a sweep, whose result `active-surface view` and "
         "`active-surface plot` show",
@@ -277,7 +277,7 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
         ([folder / "two.nc", "--x", "strok", "--value", "distanc"], "plot: 2 mistakes"),
         ([folder / "two.nc", "--x", "stroke", "--y", "stroke"], "must be another axis than x; got stroke for both"),
         ([folder / "one.nc", "--y", "frequency"], "must not be given where there is but one axis"),
-        ([folder / "case", "--width", "10"], "Input width must be from 50 to 500 mm; got 10"),
+        ([folder / "case", "--width", "10"], "--width must be from 50 to 500 mm; got 10"),
         ([folder / "case", "--format", "gif"], '--format must be pdf, svg or png; got "gif"'),
     ]
     for arguments, said in others:

@@ -151,3 +151,13 @@ def test_a_pipe_or_a_device_is_no_file(tmp_path):
         platform = f'[plate]\nshape = "platform"\nmotion = "{name}"\n'
         text = platform + PLATE.partition("{drive}")[2]
         assert "it is a pipe or a device, not a file" in refused(tmp_path, text)[0]
+
+
+def test_a_file_too_large_is_told_with_its_unit(tmp_path):
+    for name, most in (("case.toml", 16), ("motion.csv", 64)):
+        with (tmp_path / name).open("wb") as file:
+            file.truncate(most * 2**20 + 1)
+    with pytest.raises(CaseError, match="cannot be read: it has more than 16 MiB, the most that is read"):
+        read_case(tmp_path / "case.toml")
+    platform = '[plate]\nshape = "platform"\nmotion = "motion.csv"\n'
+    assert "it has more than 64 MiB" in refused(tmp_path, platform + PLATE.partition("{drive}")[2])[0]

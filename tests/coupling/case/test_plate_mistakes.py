@@ -22,7 +22,11 @@ WRONG = [
         'plate.radius is not known; it goes with shape = "disc" or shape = "polygon" and a radius',
     ),
     ({"shape": "mesh = 3"}, "plate.mesh must be text; got 3"),
-    ({"shape": 'mesh = "nowhere.msh"'}, "plate.mesh "),
+    ({"shape": 'mesh = "nowhere.msh"'}, "plate.mesh must be a .msh file of gmsh, a .vtu or "),
+    (
+        {"shape": 'mesh = "case.toml"'},
+        "plate.mesh must be a .msh file of gmsh, a .vtu or ",
+    ),
     ({"shape": 'shape = "polygon"\ncorners = 3'}, "plate.corners must be three points or more, such as "),
     (
         {"shape": SHAPES["polygon"].replace('["0 um", "200 um"]', '["0 um", 200]')},

@@ -70,6 +70,18 @@ def test_a_mesh_lies_beside_its_case(tmp_path):
     assert case.plate.coarse_mesh is Case(**dict(case)).plate.coarse_mesh
 
 
+def test_all_that_is_wrong_with_a_mesh_is_one_mistake(tmp_path):
+    nodes, cells = "3\n1 0 0 0\n2 400 0 0\n3 0 400 9\n", "1\n1 2 2 0 1 1 2 3\n"
+    (tmp_path / "mesh.msh").write_text(
+        f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n{cells}$EndElements\n"
+    )
+    (problem,) = problems(tmp_path, text('mesh = "mesh.msh"\nmesh_unit = "1 um"', "200 um, 60 um"))
+    wanted = f"plate.mesh must be a plane mesh of triangles with named boundaries; {tmp_path / 'mesh.msh'} has "
+    off, rim = problem.removeprefix(wanted).split("; ", 1)
+    assert off == "1 points off the plane of the others, at (0, 400, 9)"
+    assert rim.startswith("an unnamed boundary: 3 edges, ")
+
+
 @pytest.mark.parametrize("force", [False, True])
 def test_one_side_that_is_held_up_and_an_actuator_off_it_hold_the_plate(tmp_path, force):
     drive = 'force = "1 uN"\nfrequency = "1 Hz"\n' if force else DRIVE

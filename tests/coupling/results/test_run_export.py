@@ -164,6 +164,6 @@ def test_what_is_no_result_is_told(tmp_path, command):
     assert done.exit_code == 2 and not output.exists()
     title, line = done.output.splitlines()
     assert title.endswith(f" {command[0]}: 1 mistake")
-    assert line.startswith("  Input path must be a result of `active-surface run`; got ")
+    assert line.startswith("  RESULT must be a result of `active-surface run`; got ")
     with pytest.raises(ValueError, match="must be one of pvd, xdmf, vtkhdf, csv; got 'txt'"):
         export_run(None, output, "txt")

@@ -150,6 +150,20 @@ def test_files_of_one_run_find_each_other_beside_those_of_another(folder):
         read_run(folder / "run.plate.vtkhdf")
 
 
+def test_exchanged_files_are_told_by_their_names(folder):
+    plate, part = (folder / f"run.{kind}.vtkhdf" for kind in ("plate", "part"))
+    for path in (folder / "run", plate, part):
+        plate.rename(folder / "x")
+        part.rename(plate)
+        (folder / "x").rename(part)
+        assert refused(path).endswith(f"got {plate}, which holds no plate, though its name ends in .plate.vtkhdf")
+        part.rename(folder / "x")
+        plate.rename(part)
+        (folder / "x").rename(plate)
+    shutil.copy(plate, part)
+    assert refused(plate).endswith(f"got {part}, which holds no part, though its name ends in .part.vtkhdf")
+
+
 def refused(path):
     with pytest.raises(ValueError) as error:
         read_run(path)
@@ -171,11 +185,15 @@ def test_what_is_named_in_place_of_a_result_is_described(folder):
     (folder / "empty").mkdir()
     (folder / "x.toml").write_text("[plate]\n")
     (folder / "x.txt").write_text("mine")
+    (folder / "x.msh").write_text("mine")
+    shutil.copy(folder / "run.part.vtkhdf", folder / "x.vtkhdf")
     assert refused(folder / "empty").endswith("empty, a folder, in which there is no result of a run")
     assert refused(folder / "x.toml").endswith(
         "x.toml, a case file: name the result, such as results/x after `active-surface run`"
     )
     assert refused(folder / "x.txt").endswith("x.txt, which is another file")
+    assert refused(folder / "x.msh").endswith("x.msh, which is a mesh: name the result of a case that has it")
+    assert "x.vtkhdf, whose name must end in .plate.vtkhdf or .part.vtkhdf" in refused(folder / "x.vtkhdf")
     for name in "abc":
         for kind in ("plate", "part"):
             shutil.copy(folder / f"run.{kind}.vtkhdf", folder / f"{name}.partial.{kind}.vtkhdf")
@@ -215,7 +233,7 @@ def test_a_truncated_file_is_told(folder, kept):
 def test_a_file_without_a_step_is_told(folder):
     with h5py.File(folder / "run.plate.vtkhdf", "r+") as file:
         file["VTKHDF/Steps"].attrs.modify("NSteps", 0)
-    assert "which no step was written" in refused(folder / "run")
+    assert f"got {folder / 'run.plate.vtkhdf'}, to which no step was written" in refused(folder / "run.part.vtkhdf")
 
 
 @pytest.mark.parametrize(("key", "value"), [("mass", -1.0), ("weight", 1.0)])
