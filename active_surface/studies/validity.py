@@ -13,7 +13,7 @@ from active_surface.studies.engine import FAILURES
 from active_surface.studies.points import Points
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Variants
-from coupling import PlateSummary, report, run_case
+from coupling import PlateSummary, quick_summary, report
 from coupling.case import Case, PlatformCase
 
 CHECKED: Final = 4  # corners, besides the base case
@@ -46,7 +46,7 @@ def model_warnings(study: Study) -> tuple[str, ...]:
     summaries = []
     for case in _cases(study):
         try:
-            summary = run_case(case).summary
+            summary = quick_summary(case)
         except FAILURES:
             continue
         if isinstance(summary, PlateSummary):
@@ -57,9 +57,7 @@ def model_warnings(study: Study) -> tuple[str, ...]:
     worst: dict[str, Any] = {name: max(values, default=None) for name, values in known.items()}
     stretched = [one.stretch_error for one in summaries if one.stretch_error]
     worst["stretch_error"] = max(stretched, key=lambda error: error.largest, default=None)
-    return tuple(
-        report.warnings(replace(summaries[0], path_error=0.0, same_events=True, frames_per_cycle=None, **worst))
-    )
+    return tuple(report.warnings(replace(summaries[0], frames_per_cycle=None, **worst)))
 
 
 def _cases(study: Study) -> Iterator[Case]:
