@@ -8,12 +8,13 @@ from itertools import product
 from typing import Any, Final
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from active_surface.studies.engine import FAILURES
 from active_surface.studies.points import Points
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Variants
-from coupling import PlateSummary, quick_summary, report
+from coupling import PlateSummary, SolvedPlates, quick_summary, report
 from coupling.case import Case, PlatformCase
 
 CHECKED: Final = 4  # corners, besides the base case
@@ -43,14 +44,16 @@ def model_warnings(study: Study) -> tuple[str, ...]:
     """
     if isinstance(study.case.plate, PlatformCase):
         return ()
-    summaries = []
-    for case in _cases(study):
-        try:
-            summary = quick_summary(case)
-        except FAILURES:
-            continue
-        if isinstance(summary, PlateSummary):
-            summaries.append(summary)
+    summaries, plates = [], SolvedPlates(keep=1)
+    # Many small systems: BLAS threads would only wait for each other.
+    with threadpool_limits(limits=1, user_api="blas"):
+        for case in _cases(study):
+            try:
+                summary = quick_summary(case, plates.scene(case))
+            except FAILURES:
+                continue
+            if isinstance(summary, PlateSummary):
+                summaries.append(summary)
     if not summaries:
         return ()
     known = {name: [value for one in summaries if (value := getattr(one, name)) is not None] for name in FIGURES}

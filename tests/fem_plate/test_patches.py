@@ -141,28 +141,28 @@ def test_one_actuator_may_have_a_truncation(section, radius):
 @pytest.mark.slow
 def test_a_boundary_named_cut_is_not_taken_for_one(section):
     """Its own support holds there, and cuts are clamped."""
-    corners = np.array([[-30.5, -2], [30.5, -2], [30.5, 2], [-30.5, 2.2]]) * PITCH
+    corners = np.array([[-15.5, -2], [15.5, -2], [15.5, 2], [-15.5, 2.2]]) * PITCH
     found = []
     for name in ("cut", "other"):
         mesh = polygon(corners, PITCH, names=["wall", "wall", name, "wall"])
         shapes = Plate(mesh, section, {"wall": "clamped", name: "simply-supported"}).influence(
-            lattice(60, 1), truncation=1e-3
+            lattice(30, 1), truncation=1e-3
         )
         found.append(shapes)
-    assert len(found[0].tiles) == 15
+    assert len(found[0].tiles) == 8
     assert found[0].truncation_error == found[1].truncation_error <= 1e-3
-    xy = np.array([[0.4, 0.3], [-12.0, 1.9], [30.2, -1.0]]) * PITCH
+    xy = np.array([[0.4, 0.3], [-12.0, 1.9], [15.2, -1.0]]) * PITCH
     assert (found[0].evaluate(xy)[0] == found[1].evaluate(xy)[0]).all()
 
 
 @pytest.mark.slow
 def test_points_on_the_rim_and_on_cuts_belong_to_the_plate(section):
     """On a free rim a shape does not vanish, wherever rounding puts the point."""
-    plate = Plate(rectangle(61 * PITCH, 4 * PITCH, PITCH), section, {"left": "clamped", "right": "clamped"})
-    points = lattice(60, 2, PITCH, 1.7 * PITCH)
+    plate = Plate(rectangle(31 * PITCH, 4 * PITCH, PITCH), section, {"left": "clamped", "right": "clamped"})
+    points = lattice(30, 2, PITCH, 1.7 * PITCH)
     dense, shapes = plate.influence(points), plate.influence(points, truncation=1e-3)
-    x = np.concatenate([np.linspace(-30.5, 30.5, 123), np.unique([t.cut.box[:, 0] / PITCH for t in shapes.tiles])])
-    x = np.clip(np.concatenate([x, (points[:, 0] / PITCH)[::8] - 0.5]), -30.5, 30.5)
+    x = np.concatenate([np.linspace(-15.5, 15.5, 63), np.unique([t.cut.box[:, 0] / PITCH for t in shapes.tiles])])
+    x = np.clip(np.concatenate([x, (points[:, 0] / PITCH)[::8] - 0.5]), -15.5, 15.5)
     for y in (-2.0, 0.0, 2.0):
         xy = np.stack([x, np.full(len(x), y)], axis=1) * PITCH
         value = dense.evaluate(xy)[0]
