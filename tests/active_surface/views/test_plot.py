@@ -119,8 +119,8 @@ def test_a_saved_run_looks_as_the_run_itself(folder):
     assert np.abs(saved.samples.height - truth.height).max() < 0.02 * truth.height.max()
     frame = saved.relief.frame
     points, triangles, w = saved.relief.within(frame)
-    exact = result.shapes.values(points * (1 - 1e-9), result.scene.lifts and heights(result, saved.moment))
-    assert len(triangles) > 10_000 and np.abs(w - exact[:, 0]).max() < 0.01 * exact.max()
+    exact = result.shapes.values(points[::10] * (1 - 1e-9), result.scene.lifts and heights(result, saved.moment))
+    assert len(triangles) > 10_000 and np.abs(w[::10] - exact[:, 0]).max() < 0.01 * exact.max()
     for one, other in zip(courses(saved), courses(found), strict=True):
         assert one.label == other.label and one.values.keys() == other.values.keys()
 
