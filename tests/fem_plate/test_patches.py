@@ -158,11 +158,11 @@ def test_a_boundary_named_cut_is_not_taken_for_one(section):
 @pytest.mark.slow
 def test_points_on_the_rim_and_on_cuts_belong_to_the_plate(section):
     """On a free rim a shape does not vanish, wherever rounding puts the point."""
-    plate = Plate(rectangle(31 * PITCH, 4 * PITCH, PITCH), section, {"left": "clamped", "right": "clamped"})
-    points = lattice(30, 2, PITCH, 1.7 * PITCH)
+    plate = Plate(rectangle(61 * PITCH, 4 * PITCH, PITCH), section, {"left": "clamped", "right": "clamped"})
+    points = lattice(60, 2, PITCH, 1.7 * PITCH)
     dense, shapes = plate.influence(points), plate.influence(points, truncation=1e-3)
-    x = np.concatenate([np.linspace(-15.5, 15.5, 63), np.unique([t.cut.box[:, 0] / PITCH for t in shapes.tiles])])
-    x = np.clip(np.concatenate([x, (points[:, 0] / PITCH)[::8] - 0.5]), -15.5, 15.5)
+    x = np.concatenate([np.linspace(-30.5, 30.5, 123), np.unique([t.cut.box[:, 0] / PITCH for t in shapes.tiles])])
+    x = np.clip(np.concatenate([x, (points[:, 0] / PITCH)[::8] - 0.5]), -30.5, 30.5)
     for y in (-2.0, 0.0, 2.0):
         xy = np.stack([x, np.full(len(x), y)], axis=1) * PITCH
         value = dense.evaluate(xy)[0]
