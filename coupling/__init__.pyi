@@ -29,7 +29,12 @@ from .limits import limit_warnings as limit_warnings
 from . import report as report
 from .report import warnings as warnings
 from .part import build_friction as build_friction, build_part as build_part, friction_law as friction_law
-from .run import build_scene as build_scene, follow_part as follow_part, run_over as run_over
+from .run import (
+    build_scene as build_scene,
+    follow_part as follow_part,
+    quick_summary as quick_summary,
+    run_over as run_over,
+)
 from .shared_surface import (
     StretchedSurface as StretchedSurface,
     VibratingSurface as VibratingSurface,

@@ -196,6 +196,13 @@ def run_over(
     return Result(case, scene, trajectory, summary, files)
 
 
+def quick_summary(case: Case, scene: Scene) -> Summary:
+    """The summary of a run without what takes long: a second path, whose error counts as zero, and advice."""
+    friction = build_friction(case)
+    trajectory = interruptible(follow_part, case, scene.surface, friction)
+    return summarise(case, scene, trajectory, trajectory, friction, advised=False)
+
+
 def build_scene(case: Case, progress: Progress = silent, shapes: PlateShapes | None = None) -> Scene:
     """What the part moves over: a plate on actuators, or a platform.
 

@@ -91,8 +91,13 @@ def summary_of(figures: Mapping[str, Any]) -> Summary:
     return kind(**{field.name: plain[field.name] for field in fields(kind)})
 
 
-def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory, friction: Contact) -> Summary:
-    """The run's summary; `tighter` is the same run at a hundredth of the tolerance, or with half the time step."""
+def summarise(
+    case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory, friction: Contact, advised: bool = True
+) -> Summary:
+    """The run's summary; `tighter` is the same run at a hundredth of the tolerance, or with half the time step.
+
+    advised: whether to look for advice, which takes trial runs where the part hardly moved or was lost.
+    """
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
     drives = [*scene.lifts, *scene.base]
@@ -133,9 +138,10 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
     )
     if isinstance(scene, PlateScene):
         figures = plate_figures(case, scene, trajectory, friction)
-        advice = advise(case, scene, trajectory, friction, _largest_stroke(figures))
-        return PlateSummary(**vars(summary) | {"advice": advice}, **vars(figures))
-    return replace(summary, advice=advise(case, scene, trajectory, friction))
+        summary, most = PlateSummary(**vars(summary), **vars(figures)), _largest_stroke(figures)
+    else:
+        most = math.inf
+    return replace(summary, advice=advise(case, scene, trajectory, friction, most)) if advised else summary
 
 
 def _largest_stroke(figures: PlateFigures) -> float:

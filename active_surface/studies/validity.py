@@ -8,13 +8,14 @@ from itertools import product
 from typing import Any, Final
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from active_surface.studies.engine import FAILURES
 from active_surface.studies.points import Points
 from active_surface.studies.refusal import refusals
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Variants
-from coupling import PlateSummary, report, run_case
+from coupling import PlateSummary, SolvedPlates, quick_summary, report
 from coupling.case import Case, PlatformCase
 
 CHECKED: Final = 4  # corners, besides the base case
@@ -44,23 +45,23 @@ def model_warnings(study: Study) -> tuple[str, ...]:
     """
     if isinstance(study.case.plate, PlatformCase):
         return ()
-    summaries = []
-    for case in _cases(study):
-        try:
-            summary = run_case(case).summary
-        except FAILURES:
-            continue
-        if isinstance(summary, PlateSummary):
-            summaries.append(summary)
+    summaries, plates = [], SolvedPlates(keep=1)
+    # Many small systems: BLAS threads would only wait for each other.
+    with threadpool_limits(limits=1, user_api="blas"):
+        for case in _cases(study):
+            try:
+                summary = quick_summary(case, plates.scene(case))
+            except FAILURES:
+                continue
+            if isinstance(summary, PlateSummary):
+                summaries.append(summary)
     if not summaries:
         return ()
     known = {name: [value for one in summaries if (value := getattr(one, name)) is not None] for name in FIGURES}
     worst: dict[str, Any] = {name: max(values, default=None) for name, values in known.items()}
     stretched = [one.stretch_error for one in summaries if one.stretch_error]
     worst["stretch_error"] = max(stretched, key=lambda error: error.largest, default=None)
-    return tuple(
-        report.warnings(replace(summaries[0], path_error=0.0, same_events=True, frames_per_cycle=None, **worst))
-    )
+    return tuple(report.warnings(replace(summaries[0], frames_per_cycle=None, **worst)))
 
 
 def _cases(study: Study) -> Iterator[Case]:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from coupling import report, run_case
+from coupling import build_scene, quick_summary, report, run_case
 from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
 from coupling.plate_figures import StretchError, part_sag
 from coupling.summary import summary_of
@@ -61,6 +61,11 @@ def test_the_slowest_and_fastest_drive_and_stroke_are_stated_over_the_first_freq
     )
 
 
+def test_the_quick_summary_is_that_of_the_run_but_for_a_second_path_and_advice(result):
+    slow = replace(result.summary, path_error=0.0, same_events=True, advice=None)
+    assert result.summary.advice and quick_summary(result.case, result.scene) == slow
+
+
 def test_springs_give_and_the_residual_says_how_well_the_rest_is_held(result):
     """Moved by its base, a spring lifts the plate by less than its own stroke; where a force acts nothing is held."""
     heights, wrong = result.shapes.evaluate(result.shapes.points)[0], result.summary.plate_error
@@ -94,7 +99,7 @@ def summary_with(*actuators, duration=1e-3):
         friction=CoulombCase(coefficient=0.3, adhesion=1e-6),
         run=RunCase(duration=duration),
     )
-    return run_case(case).summary
+    return quick_summary(case, build_scene(case))
 
 
 @pytest.mark.parametrize("hold", ["70.2 ms", "55.2 ms"])
@@ -159,7 +164,7 @@ def test_long_runs_say_that_their_files_strobe():
         friction={"model": "constant", "limit": 1e-6},
         run={"duration": 2.0},
     )
-    summary = run_case(case).summary
+    summary = quick_summary(case, build_scene(case))
     assert summary.deflection_over_thickness == pytest.approx(2.0, rel=1e-6)
     assert summary.frames_per_cycle == pytest.approx(999 / 600)
     assert any("1.7 steps per cycle" in warning for warning in report.warnings(summary))
@@ -247,20 +252,19 @@ def test_of_a_plate_that_stretches_the_summary_has_errors_and_strain():
 def test_strain_is_that_off_corners_where_moments_are_infinite(outline):
     """At such a corner it would grow without end as cells shrink there."""
     x, y = (0.0, 0.0) if "sides" in outline else (2e-4, 2e-4)
-    strains = [
-        run_case(
-            Case(
-                plate={key: PLATE[key] for key in ("youngs_modulus", "poisson_ratio", "thickness")}
-                | outline
-                | {"shape": "polygon", "cell_size": size},
-                actuators=[ActuatorCase(position=(x, y), stroke=5e-7, frequency=400)],
-                part=PartCase(mass=2e-9, position=(x - 5e-5, y)),
-                friction=CoulombCase(coefficient=0.3, adhesion=1e-6),
-                run=RunCase(duration=1e-3),
-            )
-        ).summary.largest_strain
+    cases = [
+        Case(
+            plate={key: PLATE[key] for key in ("youngs_modulus", "poisson_ratio", "thickness")}
+            | outline
+            | {"shape": "polygon", "cell_size": size},
+            actuators=[ActuatorCase(position=(x, y), stroke=5e-7, frequency=400)],
+            part=PartCase(mass=2e-9, position=(x - 5e-5, y)),
+            friction=CoulombCase(coefficient=0.3, adhesion=1e-6),
+            run=RunCase(duration=1e-3),
+        )
         for size in (8e-5, 4e-5)
     ]
+    strains = [quick_summary(case, build_scene(case)).largest_strain for case in cases]
     assert strains[0] == pytest.approx(strains[1], rel=0.03) and strains[1] < 0.003
 
 

@@ -141,17 +141,17 @@ def test_one_actuator_may_have_a_truncation(section, radius):
 @pytest.mark.slow
 def test_a_boundary_named_cut_is_not_taken_for_one(section):
     """Its own support holds there, and cuts are clamped."""
-    corners = np.array([[-30.5, -2], [30.5, -2], [30.5, 2], [-30.5, 2.2]]) * PITCH
+    corners = np.array([[-15.5, -2], [15.5, -2], [15.5, 2], [-15.5, 2.2]]) * PITCH
     found = []
     for name in ("cut", "other"):
         mesh = polygon(corners, PITCH, names=["wall", "wall", name, "wall"])
         shapes = Plate(mesh, section, {"wall": "clamped", name: "simply-supported"}).influence(
-            lattice(60, 1), truncation=1e-3
+            lattice(30, 1), truncation=1e-3
         )
         found.append(shapes)
-    assert len(found[0].tiles) == 15
+    assert len(found[0].tiles) == 8
     assert found[0].truncation_error == found[1].truncation_error <= 1e-3
-    xy = np.array([[0.4, 0.3], [-12.0, 1.9], [30.2, -1.0]]) * PITCH
+    xy = np.array([[0.4, 0.3], [-12.0, 1.9], [15.2, -1.0]]) * PITCH
     assert (found[0].evaluate(xy)[0] == found[1].evaluate(xy)[0]).all()
 
 

@@ -21,6 +21,7 @@ ORDER = 3
 MONOMIALS = sorted((m for m in itertools.product(range(ORDER + 1), repeat=3) if sum(m) <= ORDER), key=sum)
 INDEX = {m: k for k, m in enumerate(MONOMIALS)}
 POWERS = np.array(MONOMIALS)
+FLAT = np.ravel_multi_index(POWERS.T, (ORDER + 1,) * 3)
 _TRIPLES = sorted(
     (INDEX[tuple(np.add(a, b))], INDEX[a], INDEX[b])
     for a, b in itertools.product(MONOMIALS, repeat=2)
@@ -30,15 +31,15 @@ _TARGET, LEFT, RIGHT = np.array(_TRIPLES).T
 STARTS = np.searchsorted(_TARGET, np.arange(len(MONOMIALS)))
 X, Y, T, TT, XX, YY = (INDEX[m] for m in [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 2), (2, 0, 0), (0, 2, 0)])
 SECOND = [INDEX[m] for m in MONOMIALS if sum(m) == 2]
-SECOND_POWERS = POWERS[SECOND]
+ONE, OTHER = np.array([np.repeat(range(3), POWERS[k]) for k in SECOND]).T  # the factors of these monomials
 RAISED = np.array([[INDEX.get((i + 1, j, k), 0), INDEX.get((i, j + 1, k), 0)] for i, j, k in MONOMIALS])
-NEXT, AFTER = [1, 2, 0], [2, 0, 1]
+NEXT, AFTER = np.array([1, 2, 0, 2, 0, 1]), np.array([2, 0, 1, 1, 2, 0])  # of a cross product, plus and minus
 FACTORS = np.where(RAISED > 0, POWERS[:, :2] + 1, 0)
 Jets = Callable[[float, float, float], np.ndarray]  # x, y, t -> w (20,)
 
 
 def times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.add.reduceat(a[LEFT] * b[RIGHT], STARTS, axis=0)
+    return np.add.reduceat(a.take(LEFT, 0) * b.take(RIGHT, 0), STARTS, axis=0)
 
 
 def of(derivatives: Sequence[np.ndarray], a: np.ndarray) -> np.ndarray:
@@ -102,9 +103,10 @@ def polynomial(coefficients) -> Jets:
 
     def w(x: float, y: float, time: float) -> np.ndarray:
         # Of each variable, the Taylor coefficients (order, power) of its powers.
-        of_x, of_y, of_t = ((binomial * value**lowered)[:, :n] for value, n in zip((x, y, time), c.shape, strict=True))
+        of = binomial * np.array([x, y, time])[:, None, None] ** lowered
+        of_x, of_y, of_t = (each[:, :n] for each, n in zip(of, c.shape, strict=True))
         by_y_and_t = of_y @ (c @ of_t.T)  # (power of x, order of y, order of t)
-        return np.tensordot(of_x, by_y_and_t, 1)[tuple(POWERS.T)]
+        return (of_x @ by_y_and_t.reshape(len(c), -1)).ravel().take(FLAT)
 
     return w
 
@@ -114,8 +116,8 @@ def driven(shapes: Sequence[np.ndarray], size: float, heights: Sequence[Height])
     fixed = [polynomial(c / size ** np.add.outer(*map(np.arange, c.shape))) for c in shapes]
 
     def u(x: float, y: float, time: float) -> np.ndarray:
-        terms = [times(shape(x, y, time), drive(height, time)) for shape, height in zip(fixed, heights, strict=True)]
-        return np.sum(terms, axis=0)
+        of_place, of_time = [shape(x, y, time) for shape in fixed], [drive(height, time) for height in heights]
+        return times(np.transpose(of_place), np.transpose(of_time)).sum(1)
 
     return u
 
@@ -138,8 +140,9 @@ def top_face(
         place[0, :2] += x, y
         place[X, 0] += 1
         place[Y, 1] += 1
-        along = [FACTORS[:, axis, None] * place[RAISED[:, axis]] for axis in range(2)]
-        across = times(along[0][:, NEXT], along[1][:, AFTER]) - times(along[0][:, AFTER], along[1][:, NEXT])
+        along = [FACTORS[:, axis, None] * place.take(RAISED[:, axis], 0) for axis in range(2)]
+        products = times(along[0].take(NEXT, 1), along[1].take(AFTER, 1))
+        across = products[:, :3] - products[:, 3:]
         normal = times(across, inverse_root(times(across, across).sum(axis=1))[:, None])
         return _Lifted(place + contact * normal, place + centre * normal, normal[0])
 
@@ -154,6 +157,6 @@ class _Lifted:
 
     def frame(self, v: np.ndarray) -> Frame:
         along = np.array([*v, 1.0])  # (x, y, t) by t
-        carried = 2 * np.prod(along**SECOND_POWERS, axis=1) @ self.centre[SECOND]
+        carried = 2 * (along[ONE] * along[OTHER]) @ self.centre[SECOND]
         r = self.centre
         return Frame(r[0], r[T], carried, self.normal, r[[X, Y]].T, self.contact[[X, Y]].T)

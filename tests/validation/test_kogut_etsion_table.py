@@ -19,7 +19,7 @@ PRESETS = {
     "unrounded": KogutEtsion(coefficients="unrounded"),
     "paper": KogutEtsion.paper(),
 }
-FEW, MANY = 1, 40
+FEW, MANY = 1, 20
 
 
 def random_contacts(count):

@@ -1,5 +1,7 @@
 """Paths between two actuators 150 um apart: finite elements against Boggio's surface, our integrator against DOP853."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -13,6 +15,7 @@ from particle import ConstantFriction, Drive, EventKind, KogutEtsion, Micropart,
 MASS, G = 2e-9, 9.80665
 LAYOUT = np.array([[75e-6, 10e-6], [-75e-6, 10e-6]])
 DRIVES = [Drive(150e-6, 300), Drive(90e-6, 450, delay=0.4e-3)]
+CONSTANT, ROUGH = ConstantFriction(20.9 * MASS), KogutEtsion.paper()
 STARTS = [(100e-6, 100e-6), (60e-6, -40e-6), (0.0, 100e-6)]
 
 
@@ -25,22 +28,36 @@ def path(surface, start, friction, duration=20e-3, tolerance=1e-9):
     return simulate(surface, Micropart(MASS, start), friction, duration, gravity=G, tolerance=tolerance)
 
 
+@pytest.fixture(scope="module")
+def finite(section, radius):
+    return surface_motion(Plate(disc(radius, radius / 12), section).influence(LAYOUT), DRIVES)
+
+
+@pytest.fixture(scope="module")
+def whole(boggio):
+    """The path from a start; each is found once."""
+    return cache(lambda start: path(boggio, start, CONSTANT))
+
+
+@pytest.fixture(scope="module")
+def tight(boggio):
+    """The same under a law, from the second start up to 3 ms at a tight tolerance."""
+    return cache(lambda friction: path(boggio, STARTS[1], friction, 3e-3, 1e-11))
+
+
 @pytest.mark.parametrize("start", STARTS)
-def test_finite_elements_and_closed_form_end_within_1e_6_of_the_path(section, radius, boggio, start):
-    shapes = Plate(disc(radius, radius / 12), section).influence(LAYOUT)
-    friction = ConstantFriction(20.9 * MASS)
-    truth, found = (path(s, start, friction) for s in (boggio, surface_motion(shapes, DRIVES)))
+def test_finite_elements_and_closed_form_end_within_1e_6_of_the_path(finite, whole, start):
+    truth, found = whole(start), path(finite, start, CONSTANT)
     assert truth.distance > 50e-6
     assert found.outcome is truth.outcome
     assert np.hypot(*(found.position[-1] - truth.position[-1])) < 1e-6 * truth.distance
 
 
-@pytest.mark.parametrize("friction", [ConstantFriction(20.9 * MASS), KogutEtsion.paper()], ids=["constant", "rough"])
+@pytest.mark.parametrize("friction", [CONSTANT, ROUGH], ids=["constant", "rough"])
 @pytest.mark.parametrize("tolerance, bound", [(1e-6, 5e-5), (1e-9, 2e-8)])
-def test_a_sliding_path_is_that_of_dop853(boggio, friction, tolerance, bound):
+def test_a_sliding_path_is_that_of_dop853(boggio, tight, friction, tolerance, bound):
     """From the first row at 10 mm/s to 3 ms, by scipy on the surface's public fields, breakpoint by breakpoint."""
-    start, end = STARTS[1], 3e-3
-    reference = path(boggio, start, friction, end, 1e-11)
+    start, end, reference = STARTS[1], 3e-3, tight(friction)
     assert [event.kind for event in reference.events] == [EventKind.SLIPS]
     first = np.flatnonzero(np.hypot(*reference.velocity.T) > 10e-3)[0]
 
@@ -68,19 +85,17 @@ def test_a_sliding_path_is_that_of_dop853(boggio, friction, tolerance, bound):
 
 def test_the_error_falls_with_the_tolerance(boggio):
     """Over the first 5 ms, which start with a break-away in two dimensions."""
-    friction = KogutEtsion.paper()
-    truth = path(boggio, STARTS[0], friction, 5e-3, 1e-12).position[-1]
+    truth = path(boggio, STARTS[0], ROUGH, 5e-3, 1e-12).position[-1]
     tolerances = [1e-5, 1e-7, 1e-9]
-    errors = [np.hypot(*(path(boggio, STARTS[0], friction, 5e-3, t).position[-1] - truth)) / 300e-6 for t in tolerances]
+    errors = [np.hypot(*(path(boggio, STARTS[0], ROUGH, 5e-3, t).position[-1] - truth)) / 300e-6 for t in tolerances]
     assert errors[0] > 30 * errors[1] > 900 * errors[2]
     assert errors[2] < 1e-8
 
 
 @pytest.mark.parametrize("start", STARTS)
-def test_each_slip_begins_where_demand_meets_friction_and_each_rest_within_it(boggio, start):
+def test_each_slip_begins_where_demand_meets_friction_and_each_rest_within_it(boggio, whole, start):
     """The events against the definition of sticking, from the surface's public fields."""
-    limit = 20.9
-    trajectory = path(boggio, start, ConstantFriction(limit * MASS))
+    limit, trajectory = 20.9, whole(start)
 
     def demand(event, shift=0.0):
         f = boggio.evaluate(event.position, event.time + shift)

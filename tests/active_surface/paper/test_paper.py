@@ -7,6 +7,7 @@ from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 from active_surface.cli.program import main
+from active_surface.paper import reproduction
 from active_surface.paper.catalogue import MODULES, finder, modules_of
 from active_surface.paper.figure_result import FigureResult
 from active_surface.paper.figures.dead_zones import touched
@@ -41,7 +42,8 @@ def test_figure_runs_and_is_written(module, bench):
     assert found.name in page_of([found], TINY, PARAMETERS, "paper")
 
 
-def test_some_figures_are_written_and_a_page_of_all_only(tmp_path):
+def test_some_figures_are_written_and_a_page_of_all_only(bench, monkeypatch, tmp_path):
+    monkeypatch.setattr(reproduction, "Bench", lambda _: bench)
     done = reproduce(["fig12", "FIG4"], tmp_path, TINY)
     assert [path.name for path in done.files] == ["fig3-4.png", "fig3-4.json", "fig11-12.png", "fig11-12.json"]
     assert all(path.exists() for path in done.files) and not (tmp_path / "paper.md").exists()

@@ -9,7 +9,7 @@ from numpy.random import default_rng
 from active_surface.studies.feasibility.borders import LOST, find_column, find_slip
 from active_surface.studies.feasibility.chart import make_chart
 from active_surface.studies.feasibility.ground import make_ground
-from coupling import build_drives, build_friction, build_part, build_scene, run_case
+from coupling import build_drives, build_friction, build_part, build_scene
 from coupling.case import (
     ActuatorCase,
     Case,
@@ -112,19 +112,11 @@ def outcome_of(case, path):
 
 def runs_of(case):
     """The paths of cases that differ from one in their drives only, as runs have them; all share its plate."""
-    if case.plate.inertia or case.plate.theory == "von-karman":
-        shapes = None
-
-        def run(scaled):
-            nonlocal shapes
-            result = run_case(scaled, shapes=shapes)
-            shapes = result.shapes
-            return result.trajectory
-
-        return run
-    surface, part, friction = build_scene(case).surface, build_part(case), build_friction(case)
+    scene, part, friction = build_scene(case), build_part(case), build_friction(case)
     rest = case.run.duration, case.run.gravity, case.run.tolerance
-    return lambda scaled: simulate(surface.driven_by(build_drives(scaled)), part, friction, *rest)
+    if case.plate.inertia or case.plate.theory == "von-karman":
+        return lambda scaled: simulate(build_scene(scaled, shapes=scene.shapes).surface, part, friction, *rest)
+    return lambda scaled: simulate(scene.surface.driven_by(build_drives(scaled)), part, friction, *rest)
 
 
 def check_points(charts, kind, count, seed):
