@@ -58,5 +58,5 @@ def si_of(unit: str) -> str:
 
 def dimension_of(unit: str) -> str:
     """Return what a quantity in `unit` is called."""
-    si = si_of(unit)
+    si = unit if unit in DIMENSIONS else si_of(unit)  # N/m has the dimension of J/m^2
     return DIMENSIONS[si] if si else f"a quantity in {root_of(unit):~}"

@@ -50,6 +50,7 @@ def test_a_foundation_shifts_the_frequencies_of_the_plate():
         ({"wafer": "100", "c11": 1e9, "c12": 2e9, "c44": 1e9}, [r"c11 .* must be of a stable .* 1e\+09 and 2e\+09 Pa"]),
         (ISOTROPIC | {"theory": "von-karman", "foundation": 1e9}, [r"foundation .* must be 0 with theory"]),
         (ISOTROPIC | {"foundation": "1 GPa"}, ['foundation .* must be a stiffness per area such as "1e10 N/m']),
+        (ISOTROPIC | {"foundation": "3 N/m"}, ['foundation .*; got "3 N/m", a stiffness']),
     ],
 )
 def test_what_does_not_go_together_is_named(plate, messages):
