@@ -26,6 +26,7 @@ from coupling.case.values import (
 
 ENDLESS: Final = "endless"
 MAX_PASSES: Final = 1_000_000_000
+MAX_CYCLES: Final = 1_000_000  # of segments
 """Cycles, or repeats, of a drive."""
 MIN_SPACING: Final = 1e-12  # of points of a table, over its whole time
 
@@ -114,7 +115,7 @@ class SegmentCase(KeyedTable):
     """A stroke takes half of one over this, with "up" all of it. Not with "hold"."""
     cycle: Literal["up-down", "up", "hold"] = "up-down"
     """Up and down again, up to stay, or a wait of one dwell."""
-    cycles: StrictInt = Field(default=1, ge=1, le=1_000_000)
+    cycles: StrictInt = Field(default=1, ge=1, le=MAX_CYCLES)
     """How often; several of "up" climb on."""
     dwell: Time = Field(default=0.0, ge=0)
     """The rest after each stroke; with "hold" how long it waits."""
@@ -199,6 +200,10 @@ class Driven(KeyedTable):
                 yield key, f"must not be given with {_NAMED[driver]}, {why}"
         if driver == "segments" and given["segments"] == ():
             yield "segments", f"must be at least one table, written {cls.segments_table}; got none"
+        if driver == "segments" and isinstance(given["segments"], tuple):
+            count = sum(one.cycles for one in given["segments"] if isinstance(one, SegmentCase))
+            if count > MAX_CYCLES:
+                yield "segments", f"must have at most {MAX_CYCLES} cycles together; got {count}"
         heights = heights_of(given[driver])
         if given.get("repeats", 1) != 1 and heights and abs(heights[-1] - heights[0]) > 1e-12 * max(map(abs, heights)):
             ends = "whose last height is not its first" if driver == "table" else "which do not end at height 0"

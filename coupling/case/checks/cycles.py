@@ -47,7 +47,7 @@ def _too_many(drives: Iterable[Mapping[str, Any]], duration: float) -> str:
         (sum(counts), MAX_TOGETHER, "all drives together"),
     ):
         if count > most:
-            return f"must hold at most {most} cycles of {of}; got {count:.3g} in {duration:g} s"
+            return f"must hold at most {most} cycles, or points, of {of}; got {count:.3g} in {duration:g} s"
     return ""
 
 
@@ -56,19 +56,27 @@ def _is_table(value: Any) -> bool:
 
 
 def _cycles(drive: Mapping[str, Any], duration: float) -> float:
-    """How many cycles, or points and segments, a drive runs through in a time [s]; 0 where it is wrong."""
+    """How many cycles, or points, a drive runs through in a time [s]; 0 where it is wrong."""
     table, segments, frequency = drive["table"], drive["segments"], drive["frequency"]
     if isinstance(table, tuple) and table:
-        return _passes(drive["repeats"], duration, table[-1][0]) * len(table)
+        return _in_passes([(table[-1][0], len(table))], drive["repeats"], duration)
     if isinstance(segments, tuple) and segments:
-        times = [one.cycles * (1 / one.frequency if one.frequency else one.dwell) for one in segments]
-        return _passes(drive["repeats"], duration, sum(times)) * sum(one.cycles for one in segments)
+        pieces = [(one.cycles * (1 / one.frequency if one.frequency else one.dwell), one.cycles) for one in segments]
+        return _in_passes(pieces, drive["repeats"], duration)
     if not isinstance(frequency, float) or drive["cycle"] == "up":
         return 0.0
     cycles = drive["cycles"]
     return min(duration * frequency, cycles if isinstance(cycles, int) else math.inf)
 
 
-def _passes(repeats: Any, duration: float, each: float) -> float:
-    most = 1.0 + (duration / each if each > 0 else 0.0)
-    return most if repeats == ENDLESS else min(most, repeats) if isinstance(repeats, int) else 0.0
+def _in_passes(pieces: list[tuple[float, int]], repeats: Any, duration: float) -> float:
+    """How many cycles there are in a time [s] of pieces, each some time with some cycles, that are repeated."""
+    total = sum(time for time, _ in pieces)
+    most = repeats if isinstance(repeats, int) else math.inf if repeats == ENDLESS else 0
+    passes = min(most, duration / total if total > 0 else 1.0)
+    left = (passes - passes // 1) * total
+    count = passes // 1 * sum(cycles for _, cycles in pieces)
+    for time, cycles in pieces:
+        count += cycles * min(1.0, left / time) if time > 0 else 0.0
+        left = max(0.0, left - time)
+    return count

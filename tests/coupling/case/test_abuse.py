@@ -54,17 +54,39 @@ def refused(tmp_path, text):
     ],
 )
 def test_a_run_has_a_largest_number_of_cycles(tmp_path, drive, count):
-    wrong = f"must hold at most 100000 cycles of each drive; got {count} in 0.001 s"
+    wrong = f"must hold at most 100000 cycles, or points, of each drive; got {count} in 0.001 s"
     assert refused(tmp_path, PLATE.format(drive=drive)) == [f"run.duration {wrong}"]
 
 
 def test_all_drives_together_have_a_largest_number_of_cycles(tmp_path):
     lattice = '[lattice]\nrows = {}\ncolumns = 10\npitch = "11 um"\nstroke = "1 um"\nfrequency = "99 MHz"\n\n[part]'
     text = PLATE.format(drive=STROKE)
-    wrong = "must hold at most 10000000 cycles of all drives together; got 1.09e+07 in 0.001 s"
+    wrong = "must hold at most 10000000 cycles, or points, of all drives together; got 1.09e+07 in 0.001 s"
     assert refused(tmp_path, text.replace("[part]", lattice.format(11))) == [f"run.duration {wrong}"]
     (tmp_path / "case.toml").write_text(text.replace("[part]", lattice.format(10)))
     assert len(read_case(tmp_path / "case.toml").actuators) == 101
+
+
+SCHEDULE = '[[actuators.segments]]\nstroke = "1 um"\nfrequency = "300 Hz"\ncycles = {}\n'
+
+
+@pytest.mark.parametrize(
+    "drive",
+    [
+        SCHEDULE.format(200_000),
+        'repeats = "endless"\n' + SCHEDULE.format(3) + SCHEDULE.format(200_000).replace("300 Hz", "1 GHz"),
+        "table = [" + ", ".join(f'["{k} ms", "{k % 7} um"]' for k in range(110_000)) + "]",
+    ],
+    ids=["segment", "pass", "table"],
+)
+def test_what_comes_after_the_end_of_a_run_does_not_count(tmp_path, drive):
+    (tmp_path / "case.toml").write_text(PLATE.format(drive=drive))
+    assert read_case(tmp_path / "case.toml").run.duration == 1e-3
+
+
+def test_the_cycles_of_all_segments_together_are_bounded(tmp_path):
+    wrong = "actuators[0].segments must have at most 1000000 cycles together; got 1000003"
+    assert refused(tmp_path, PLATE.format(drive=SCHEDULE.format(3) + SCHEDULE.format(1_000_000))) == [wrong]
 
 
 def test_drives_that_end_in_time_may_be_fast(tmp_path):
