@@ -11,6 +11,7 @@ from .drives import build_drive as build_drive, build_drives as build_drives
 from .environment import PACKAGES as PACKAGES, versions as versions
 from .files import (
     check_room as check_room,
+    printable as printable,
     remove_partial_files as remove_partial_files,
     whole_file as whole_file,
     why as why,
@@ -42,6 +43,6 @@ from .shared_surface import (
     shared_surface as shared_surface,
 )
 from .solved_plates import SolvedPlates as SolvedPlates
-from .suggestion import near as near, same_values as same_values
+from .suggestion import alike as alike, near as near, same_values as same_values
 from .margins import Margin as Margin
 from .summary import PlateSummary as PlateSummary, Summary as Summary, summary_of as summary_of

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import shutil
 import stat
 from collections.abc import Callable, Iterator
@@ -13,6 +14,7 @@ from pathlib import Path
 MAX_TEXT = 2**24  # bytes of a case, study or aim
 MAX_NUMBERS = 2**26  # bytes of a table of numbers
 _open: set[Path] = set()
+_CONTROL = re.compile(r"[\0-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
 def contents(path: str | os.PathLike[str], most: int) -> bytes:
@@ -33,6 +35,17 @@ def contents(path: str | os.PathLike[str], most: int) -> bytes:
         if len(data) > most or status.st_size > most:
             raise OSError(errno.EFBIG, f"it has more than {most // 2**20} MiB, the most that is read", name)
     return data
+
+
+def control_in(text: str) -> str:
+    """The first character of a text that would command a terminal or turn its direction; "": there is none."""
+    found = _CONTROL.search(text)
+    return found[0] if found else ""
+
+
+def printable(text: str) -> str:
+    """A text, with lines, for a terminal or as JSON: names of files, and texts in them, may hold what commands it."""
+    return _CONTROL.sub(lambda found: found[0] if found[0] == "\n" else f"\\u{ord(found[0]):04x}", text)
 
 
 def why(error: OSError) -> str:

@@ -197,7 +197,7 @@ def run_over(
 
 
 def quick_summary(case: Case, scene: Scene) -> Summary:
-    """The summary of a run without what takes long: a second path, whose error counts as zero, and advice."""
+    """The summary of a run without its second path, whose error counts as zero, and without advice: these take long."""
     friction = build_friction(case)
     trajectory = interruptible(follow_part, case, scene.surface, friction)
     return summarise(case, scene, trajectory, trajectory, friction, advised=False)

@@ -14,12 +14,18 @@ LIKE: Final = 0.65  # share of letters; less is another word
 
 
 def near(word: str, known: Iterable[str]) -> str | None:
-    """The known word that another stands for, is most like, or is the only one to begin with; None: there is none."""
-    there, given = list(known), word.strip().lower()
+    """The known word that another stands for, is the only one to begin with, or is most like; None: there is none."""
+    there = list(known)
     meant = [synonym.keys[0] for synonym in synonyms(word, there)]
+    return next(iter([*meant, *choices(word, there)]), None) or alike(word, there)
+
+
+def alike(word: str, known: Iterable[str]) -> str | None:
+    """The known word that another is the only one to begin with, or is most like; None: there is none."""
+    there, given = list(known), word.strip().lower()
     begun = [choice for choice in there if len(given) > 2 and choice.lower().startswith(given)]
-    alike = difflib.get_close_matches(given, there, 1, LIKE)
-    return next(iter([*meant, *choices(word, there), *alike, *(begun if len(begun) == 1 else ())]), None)
+    likely = difflib.get_close_matches(given, there, 1, LIKE)
+    return next(iter([*(begun if len(begun) == 1 else ()), *likely]), None)
 
 
 def same_values(word: str, known: Iterable[str]) -> bool:

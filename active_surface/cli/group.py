@@ -18,7 +18,7 @@ import click
 from active_surface.cli import ctrl_c
 from active_surface.cli.refusal import Refusal, refusal, refusal_of
 from active_surface.cli.usage import mistakes_in, unknown
-from coupling import near
+from coupling import near, printable
 
 if TYPE_CHECKING:
     from coupling.case import Case
@@ -119,7 +119,7 @@ class Group(Command, click.Group):
 
 def _told(message: Warning | str, *_: Any, **__: Any) -> None:
     """Print a library's warning as the commands print theirs, without the line of code."""
-    click.echo(f"warning     {message}", err=True)
+    click.echo(printable(f"warning     {message}"), err=True)
 
 
 def leave(end: SystemExit) -> NoReturn:

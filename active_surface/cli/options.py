@@ -10,6 +10,8 @@ from typing import Any, TypeVar
 
 import click
 
+from coupling import printable
+
 WIDTH = 12  # of labels
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -40,10 +42,10 @@ def tell(
         click.echo(json_text(figures))
     elif not quiet:
         for label, text in lines:
-            click.echo(f"{label:<{WIDTH}}{text}")
+            click.echo(printable(f"{label:<{WIDTH}}{text}"))
         warn(warnings)
         for file in files:
-            click.echo(f"{'wrote':<{WIDTH}}{file}")
+            click.echo(printable(f"{'wrote':<{WIDTH}}{file}"))
 
 
 def json_text(figures: Mapping[str, Any]) -> str:
@@ -62,4 +64,4 @@ def _finite(value: Any) -> Any:
 def warn(warnings: Iterable[str]) -> None:
     """Prints warnings in yellow."""
     for warning in warnings:
-        click.secho(f"{'warning':<{WIDTH}}{warning}", fg="yellow")
+        click.secho(printable(f"{'warning':<{WIDTH}}{warning}"), fg="yellow")

@@ -9,11 +9,9 @@ from typing import IO, Any, NamedTuple
 
 import click
 
-from coupling import why
+from coupling import printable, why
 
 _SIZES = "its numbers are too far apart, too large or too small to compute with"
-_CONTROL = re.compile(r"[\0-\t\v-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-"""What names of files and texts in them may hold, and no terminal must get."""
 BEYOND = {
     "MemoryError": "it needs more memory than there is",
     "RecursionError": "something in it is nested too deeply",
@@ -44,9 +42,9 @@ class Refusal(click.ClickException):
         """Tells them on the error stream, or on the output as the JSON that is waited for there."""
         if self.as_json:
             told = {"mistakes": [mistake._asdict() for mistake in self.mistakes]}
-            click.echo(json.dumps(told, indent=2, ensure_ascii=False), file)
+            click.echo(printable(json.dumps(told, indent=2, ensure_ascii=False)), file)
         else:
-            click.echo(_CONTROL.sub(lambda found: ascii(found[0])[1:-1], self.message), file, err=True)
+            click.echo(printable(self.message), file, err=True)
 
 
 def refusal_of(error: Exception, command: str, as_json: bool, words: Mapping[str, str]) -> Refusal:

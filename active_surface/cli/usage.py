@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from coupling import near
+from coupling import alike
 
 PATHS = (" is a file", " is a directory", " does not exist", " is not readable", " is not writable")
 """What click says of a path that cannot be used."""
@@ -44,7 +44,7 @@ def unknown(name: str, known: Iterable[str], owner: str) -> Mistake:
     """That there is no command or option of a name."""
     choices = sorted(known)
     words = {choice.lstrip("-"): choice for choice in choices}
-    meant = words.get(near(name.lstrip("-"), words) or "")
+    meant = words.get(alike(name.lstrip("-"), words) or "")
     return name, "is not known; " + (f"did you mean {meant}?" if meant else f"{owner} has {', '.join(choices)}")
 
 

@@ -52,7 +52,8 @@ def _refused(sweep: Sweep) -> str:
         for axis, value in zip(points.axes, values, strict=True)
     ]
     at = [f"{axis.name} = {counted(text, axis.field.unit)}" for axis, text in zip(points.axes, texts, strict=True)]
-    return f"{len(refused)} of {len(points)} paths; the first, at {', '.join(at)}"
+    first = "at" if len(refused) == 1 else "the first at"
+    return f"{len(refused)} of {len(points)} paths, {first} {', '.join(at)}"
 
 
 def _kept(sweep: Sweep) -> str:

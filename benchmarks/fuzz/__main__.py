@@ -72,7 +72,8 @@ def tried(seed: int, first: int, count: int, made: Path, folder: Path) -> list[t
         try:
             ready, _, _ = select.select([receiver], [], [], SILENT)
         except KeyboardInterrupt:  # which only this process gets
-            os.killpg(child, signal.SIGKILL)
+            with suppress(ProcessLookupError):
+                os.killpg(child, signal.SIGKILL)
             raise
         if not ready:
             hung = True

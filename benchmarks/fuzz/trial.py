@@ -69,8 +69,8 @@ def _files(folder: Path) -> set[str]:
 
 def _named(name: str, command: list[str]) -> bool:
     """Whether a command named a file or folder that it made, or it is the usual one."""
-    words = () if command[0] == "messages" else command
-    if name in ("results", "out") or any(name.startswith(word) for word in words if word):
+    words = () if command[0] == "messages" else [word for word in command if word.strip("./")]
+    if name in ("results", "out") or any(name.startswith(word) for word in words):
         return True
     endings = (".html", ".toml", ".pdf", ".svg", ".png", ".csv", ".vtkhdf", ".pvd", ".xdmf", ".h5")
     return "/" not in name and name.endswith(endings)
@@ -99,7 +99,7 @@ def ended(command: list[str]) -> tuple[str, int | None, str]:
             return f"exit code {done.exit_code}", done.exit_code, done.output
         return "", done.exit_code, done.output
     except _HangError:
-        return f"over {LONGEST} s", None, ""
+        return f"over {times * LONGEST} s", None, ""
     except BaseException:  # whatever it is, it is a finding
         return _place(sys.exc_info()), None, ""
     finally:
@@ -142,8 +142,6 @@ def _read(name: str) -> tuple[str, int, str]:
 
 def _place(info: Any) -> str:
     kind, error, trace = info
-    if isinstance(error, _HangError):
-        return f"over {LONGEST} s"
     frames = [frame for frame in traceback.extract_tb(trace) if "site-packages" not in frame.filename]
     last = frames[-1] if frames else None
     return f"{kind.__name__} in {Path(last.filename).name}:{last.name}" if last else kind.__name__

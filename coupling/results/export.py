@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from coupling.files import whole_file
 from coupling.new_file import NewFile
 from coupling.progress import ProgressCallback, no_progress
-from coupling.results.csv_file import HEADER, check_csv, csv_rows
+from coupling.results.csv_file import HEADER, csv_rows, is_trajectory
 from coupling.results.saved import OF_PART, SavedRun
 from coupling.results.vtkhdf import GZIP, part_file, plate_file
 from particle import Samples
@@ -55,7 +55,7 @@ def export_run(
     if form not in FORMATS:
         raise ValueError(f"Input form of export_run must be one of {', '.join(FORMATS)}; got {form!r}")
     if form == "vtkhdf" and folder.resolve() == saved.part_path.parent.resolve():
-        raise ValueError(f"Input folder of export_run must be another than that of the run's own files; got {folder}")
+        raise ValueError(f"Input output must be another folder than that of the run's own files; got {folder}")
     folder.mkdir(parents=True, exist_ok=True)
     frames = _counted(_plate_frames(saved), tell, len(saved.time))
     if form == "vtkhdf":
@@ -72,7 +72,8 @@ def export_run(
 
 def _csv(saved: SavedRun, path: Path) -> Path:
     """The part's path at all rows of the integrator, each time once, at an event with the values from then on."""
-    check_csv(path)
+    if path.is_file() and not is_trajectory(path):
+        raise ValueError(f"Input output must be a folder in which {path.name} is free or a path; got {path.parent}")
     last = np.append(np.diff(saved.rows.time) > 0, True)
     with whole_file(path) as partial:
         rows = csv_rows(Samples(*(column[last] for column in saved.rows)))

@@ -9,6 +9,7 @@ import click
 
 from active_surface.cli import options
 from active_surface.cli.group import kind_of, main, parse_file, read, refusing
+from coupling import printable
 
 
 @main.command()
@@ -50,7 +51,7 @@ def check(file: Path, quiet: bool, as_json: bool) -> None:
     if as_json:
         click.echo(options.json_text({"file": str(file), "mistakes": [], "warnings": warnings, **figures}))
     elif not quiet:
-        click.echo(f"{file}: fine; {summary}")
+        click.echo(printable(f"{file}: fine; {summary}"))
         options.warn(warnings)
 
 

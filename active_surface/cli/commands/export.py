@@ -37,8 +37,8 @@ def export(result: Path, form: str, output: Path, quiet: bool, as_json: bool) ->
     refusing(check_folder, output)
     with nullcontext(silent) if quiet else StageBar(1) as bar, bar("Writing the files") as tell:
         files = refusing(export_run, saved, output, form, tell)
-    steps = len(saved.time)
-    has = "the path is whole" if form == "csv" else f"these are its first {steps} steps"
-    partial = f"The run stopped while it was written: {has}."
-    figures = {"complete": saved.complete, "steps": steps, "files": [str(file) for file in files]}
-    options.tell(figures, [] if saved.complete else [("partial", partial)], quiet, as_json, files=files)
+    whole = saved.complete or form == "csv"
+    has = "the path is whole" if whole else f"these are its first {len(saved.time)} steps"
+    figures = {"complete": whole, "steps": len(saved.time), "files": [str(file) for file in files]}
+    lines = [] if saved.complete else [("partial", f"The run stopped while it was written: {has}.")]
+    options.tell(figures, lines, quiet, as_json, files=files)

@@ -15,8 +15,6 @@ MAX_READ: Final = 50_000_000  # characters, in all passes over a text
 MAX_DEPTH: Final = 20  # tables and lists inside each other
 TOO_DEEP: Final = f"tables or lists are nested more than {MAX_DEPTH} deep"
 TOO_LONG: Final = "a number has too many digits"
-_MARKS: Final = {TOO_DEEP: r"[\[{.]", TOO_LONG: r"\d"}
-"""What is most frequent in the line that an error without a place is about."""
 
 _CURLY: Final = str.maketrans("“”„‟″‘’‚′", '"""""\'\'\'\'')
 _BLANK: Final = str.maketrans("\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{ZERO WIDTH NO-BREAK SPACE}", "   ")
@@ -158,10 +156,30 @@ def _place(error: str, text: str) -> tuple[str, int]:
     reason, _, place = error.rpartition(" (at ")
     if match := re.match(r"line (\d+)", place):
         return reason, int(match[1])
-    if mark := _MARKS.get(error):
-        counts = [len(re.findall(mark, line)) for line in text.split("\n")]
-        return error, counts.index(max(counts)) + 1
+    if error in _CULPRITS:
+        return error, _CULPRITS[error](text)
     return reason, text.rstrip().count("\n") + 1
+
+
+def _deepest(text: str) -> int:
+    """The line at which brackets are first nested deeper than MAX_DEPTH, or that with the longest dotted key."""
+    depth, line = 0, 1
+    for token in re.finditer(r"\"(?:[^\"\\\n]|\\.)*\"|'[^'\n]*'|#[^\n]*|[\[\]{}\n]", text):
+        line += token[0] == "\n"
+        depth += (token[0] in "[{") - (token[0] in "]}")
+        if depth > MAX_DEPTH:
+            return line
+    keys = [re.match(r"\s*\[*([\w.\s-]*)", one) for one in text.split("\n")]
+    return 1 + max(range(len(keys)), key=lambda n: keys[n][1].count(".") if keys[n] else 0)  # type: ignore[index]
+
+
+def _longest_number(text: str) -> int:
+    """The line that has the most digits in a row."""
+    return text.count("\n", 0, max(re.finditer(r"[\d_]+", text), key=lambda run: len(run[0])).start()) + 1
+
+
+_CULPRITS: Final[dict[str, Callable[[str], int]]] = {TOO_DEEP: _deepest, TOO_LONG: _longest_number}
+"""The line that an error without a place is about."""
 
 
 def _single_brackets(reason: str, line: str, text: str) -> tuple[str, Wrong] | None:

@@ -31,18 +31,16 @@ from coupling.case.mistakes import (
 from coupling.case.parsing.other_file import folder_text, what_else
 from coupling.case.parsing.repair import loads, repaired
 from coupling.case.values import UNITS_REQUIRED
-from coupling.files import MAX_TEXT, contents, why
+from coupling.files import MAX_TEXT, contents, control_in, why
 from coupling.suggestion import near, near_file
 
+MAX_NAME: Final = 200  # bytes, so that there is room for the endings of results
 _TOKEN = re.compile(
     r'"""(?:\\.|[^\\])*?"""\"{0,2}|\'\'\'.*?\'\'\'\'{0,2}'  # texts of several lines
     r'|"(?:\\.|[^"\\])*"|\'[^\']*\'|#[^\n]*'  # texts and comments
     r"|[\[\]{}\n]",
     re.DOTALL,
 )
-
-
-MAX_NAME: Final = 200  # bytes, so that there is room for the endings of results
 
 
 @dataclass(frozen=True)
@@ -177,10 +175,14 @@ def parse(path: str | os.PathLike[str], lenient: bool = False) -> TomlFile:
 
 def _unfit(stem: str) -> str:
     """What is wrong with the name of a file, which its results take over."""
-    if not stem.isprintable():
-        return "must have a name that can be printed, as its results have it too; rename it"
+    if control := control_in(stem):
+        return f"must have a name that can be printed, as its results have it, too; got U+{ord(control):04X} in it"
     size = len(stem.encode())
-    return f"must have a shorter name, of at most {MAX_NAME} bytes; got {size}; rename it" if size > MAX_NAME else ""
+    return (
+        f"must have a name of at most {MAX_NAME} bytes, as its results have it, too; got {size}"
+        if size > MAX_NAME
+        else ""
+    )
 
 
 def _unreadable(file: str, message: str, line: int | None = None) -> CaseError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import sys
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from active_surface.cli.options import tell
 from active_surface.cli.program import main
 from coupling.suggestion import near_file
 
@@ -129,13 +131,29 @@ def test_a_file_without_its_command_or_with_another_is_told_which(folder: Path, 
 def test_a_name_that_cannot_be_printed_is_refused_and_does_not_reach_the_terminal(folder, name):
     Path(os.fsdecode(name)).write_text(GOOD)
     said = refused("check", os.fsdecode(name))
-    assert said.endswith("the file  must have a name that can be printed, as its results have it too; rename it\n")
+    assert "the file  must have a name that can be printed, as its results have it, too; got U+" in said
     assert "\x1b" not in said
     assert "\x1b" not in refused("run", os.fsdecode(name[:-1]))  # which names the file that is meant
 
 
+@pytest.mark.parametrize("stem", ["no\xa0break", "a\u200db", "größe 5 µm"])
+def test_other_names_are_taken(folder, stem):
+    Path(f"{stem}.toml").write_text(GOOD)
+    assert CliRunner().invoke(main, ["check", f"{stem}.toml"]).exit_code == 0
+
+
+def test_a_terminal_gets_no_commands_from_what_was_found(folder, capsys):
+    tell({}, [("label", "a\x1b[31m")], False, False, ["b\x9b\u202e"], [Path("c\x1b[0m")])
+    said = capsys.readouterr().out
+    assert "a\\u001b[31m" in said and "b\\u009b\\u202e" in said and "c\\u001b[0m" in said and "\x1b[31m" not in said
+    broken = GOOD.replace('shape = "disc"', 'shape = "\\u009b\\u202e"')
+    Path("case.toml").write_text(broken)
+    done = CliRunner().invoke(main, ["check", "case.toml", "--json"])
+    assert "\x9b" not in done.stdout and "\x9b\u202e" in json.loads(done.stdout)["mistakes"][0]["message"]
+
+
 def test_a_name_leaves_room_for_those_of_results(folder):
-    said = "must have a shorter name, of at most 200 bytes; got 210; rename it\n"
+    said = "must have a name of at most 200 bytes, as its results have it, too; got 210\n"
     Path("é" * 100 + ".toml").write_text(GOOD)
     assert CliRunner().invoke(main, ["check", "é" * 100 + ".toml"]).exit_code == 0
     Path("é" * 105 + ".toml").write_text(GOOD)

@@ -124,7 +124,7 @@ def test_a_point_that_cannot_be_run_is_refused_and_told(tmp_path):
     assert np.isnan(sweep.dataset["end_x"].values[:, 0]).all() and (sweep.dataset["evaluations"][:, 0] == 0).all()
     wrong = "friction.static_coefficient must be at least coefficient, 0.2; got 0.1"
     assert sweep.first_refused == [wrong]
-    said = f"2 of 4 paths; the first, at part.squeeze = 0 N, friction.static_coefficient = 0.1: {wrong}"
+    said = f"2 of 4 paths, the first at part.squeeze = 0 N, friction.static_coefficient = 0.1: {wrong}"
     assert ("refused", said) in lines(sweep)
 
 

@@ -29,6 +29,8 @@ coefficient = 0.3
 duration = "1 ms"
 """
 STROKE = 'stroke = "1 um"\nfrequency = "300 Hz"'
+PAIRS = ", ".join('["0.0 ms", "0.5 um"]' for _ in range(40))
+BRACKETS = "[" * 60
 POINTS = ", ".join(f'["{k} ms", "{k % 7} um"]' for k in range(3000))
 
 
@@ -148,13 +150,15 @@ def test_sizes_are_those_of_plates(tmp_path, old, new, wrong):
     ids=["lists", "keys", "tables", "digits", "text", "list"],
 )
 def test_texts_that_would_take_without_end(tmp_path, text, wrong):
-    (tmp_path / "case.toml").write_text(f"[plate]\n{text}\n\n# The end")
+    (tmp_path / "case.toml").write_text(
+        f"# {BRACKETS} 12\n[plate]\nb = [{PAIRS}]\n{text}\n\nc = [{PAIRS}] # {BRACKETS}"
+    )
     with pytest.raises(CaseError) as error:
         parse(tmp_path / "case.toml")
     (problem,) = error.value.problems
     assert problem.message.startswith(wrong.partition(": ")[0])
     if "too" in wrong or "more than" in wrong:
-        assert problem.message == wrong and problem.line == 2
+        assert problem.message == wrong and problem.line == 4
 
 
 def test_one_mistake_in_a_long_line_is_told_at_once(tmp_path):

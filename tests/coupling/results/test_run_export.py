@@ -125,7 +125,12 @@ def test_an_interrupted_run_is_exported_with_the_steps_that_it_has_and_stays_par
         assert export_run(partial, tmp_path / form, form)[1].name == f"one.partial.part.{ending}"
     csv = CliRunner().invoke(main, ["export", str(tmp_path / "one"), "--format", "csv", "-o", str(tmp_path / "csv")])
     assert "The run stopped while it was written: the path is whole." in csv.output
-    assert (tmp_path / "csv/one.csv").read_text() == _csv(folder, tmp_path / "first").read_text()
+    (tmp_path / "csv/other.csv").write_text("mine")
+    (tmp_path / "csv/one.csv").rename(tmp_path / "csv/kept.csv")
+    (tmp_path / "csv/other.csv").rename(tmp_path / "csv/one.csv")
+    taken = CliRunner().invoke(main, ["export", str(tmp_path / "one"), "--format", "csv", "-o", str(tmp_path / "csv")])
+    assert taken.exit_code == 2 and "--output must be a folder in which one.csv is free or a path" in taken.output
+    assert (tmp_path / "csv/kept.csv").read_text() == _csv(folder, tmp_path / "first").read_text()
 
 
 def _csv(folder: Path, into: Path) -> Path:
@@ -152,7 +157,7 @@ def test_a_run_is_not_written_over_itself(folder):
     before = {file: file.read_bytes() for file in folder.iterdir()}
     command = ["export", str(folder / "one"), "--format", "vtkhdf", "--output", f"{folder}/../{folder.name}"]
     done = CliRunner().invoke(main, command)
-    assert done.exit_code == 2 and "must be another than that of the run's own files" in done.output
+    assert done.exit_code == 2 and "--output must be another folder than that of the run's own files" in done.output
     assert {file: file.read_bytes() for file in folder.iterdir()} == before
 
 
