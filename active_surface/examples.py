@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from collections.abc import Iterator
@@ -48,8 +49,8 @@ def write_example(name: str, folder: Path) -> dict[Path, bool]:
     """
     contents = {folder / file: (examples_folder() / file).read_bytes() for file in example_files(name)}
     written = {path: not _has(path, content) for path, content in contents.items()}
-    files = [place for path in contents for place in path.parents if place.exists() and not place.is_dir()]
-    files += [path for path, new in written.items() if new and path.exists()]
+    files = [place for path in contents for place in path.parents if os.path.lexists(place) and not place.is_dir()]
+    files += [path for path, new in written.items() if new and os.path.lexists(path)]
     if taken := [str(path) for path in dict.fromkeys(files)]:
         are = "are" if len(taken) > 1 else "is"
         raise ValueError(

@@ -9,13 +9,14 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
+from xml.parsers.expat import errors
 
 import numpy as np
 from numpy.typing import NDArray
 
 EXPECTED = "Input path of read must be a .msh file of gmsh, a .vtu or a first-order .xdmf file"
 FORMATS = {".msh": "gmsh", ".vtu": "vtu", ".xdmf": "xdmf"}
-"""The files that are read: how meshio calls them, by their endings."""
+"""The files that are read: what meshio calls them, by their endings."""
 DAMAGED = "it is damaged, or its parts do not fit together"
 NO_NUMBER = "string or file could not be read to its end"
 REASONS = {
@@ -23,11 +24,14 @@ REASONS = {
     r"Illegal data type '(.*?)'": "it has numbers of the type {}, which VTU does not have",
     r"Unknown XDMF version (.*?)\.(?!\d)": "it is XDMF {}; versions 2 and 3 are read",
     r"Unknown XDMF Format '(.*?)'": "its numbers have the format {}; HDF, XML and Binary are read",
+    r"^ '(Version|Format|TopologyType|Name|Center)'$": "something in it lacks the attribute {}",
     "Only supports one grid": "it does not have one grid",
     r"Need mesh format in .*\(got (.*?)\)": "it is of gmsh {}; versions 2 and 4 are read",
 }
 """What is wrong with a file, by what numpy and meshio say of it."""
-OTHERS = {"c": "complex numbers", **dict.fromkeys("OSU", "text")}
+CUT = [errors.codes[code] for code in (errors.XML_ERROR_NO_ELEMENTS, errors.XML_ERROR_UNCLOSED_TOKEN)]
+"""What expat finds where a file ends too soon."""
+OTHERS = {"c": "complex numbers", **dict.fromkeys("SU", "text"), "O": "text or lists"}
 """What coordinates are that are no real numbers, by the kinds of numpy."""
 COLUMNS = {"line": 2, "line3": 3, "triangle": 3, "triangle6": 6}
 """How many points the cells that are used have."""
@@ -49,7 +53,7 @@ def load(path: Path) -> Any:
     if ending not in FORMATS:
         raise ValueError(f"{EXPECTED}; got {path}")
     if not path.is_file():
-        raise ValueError(f"{EXPECTED}; there is no file {path}")
+        raise ValueError(f"{EXPECTED}; {path} is a folder" if path.is_dir() else f"{EXPECTED}; there is no file {path}")
     _check_sizes(path)
     if ending == ".xdmf":
         from meshes.xdmf import wrong_numbers  # here, because h5py is slow to import
@@ -65,6 +69,8 @@ def load(path: Path) -> Any:
             mesh = meshio.read(path, FORMATS[ending])
     except (Exception, SystemExit) as error:
         raise ValueError(f"{EXPECTED}; {path} cannot be read as one: {_reason(error, printed.getvalue())}") from error
+    if ending == ".vtu":
+        mesh.field_data = {}  # such as the time; only gmsh has names of boundaries there
     _check_arrays(mesh, path)
     return mesh
 
@@ -72,7 +78,8 @@ def load(path: Path) -> Any:
 def _reason(error: BaseException, printed: str) -> str:
     """Why a file cannot be read, in words of ours."""
     if isinstance(error, ElementTree.ParseError):
-        return f"its line {error.position[0]} is no XML"
+        line = error.position[0]
+        return f"it ends too soon, in line {line}" if error.code in CUT else f"its line {line} is no XML"
     found = ((re.search(pattern, f"{printed} {error}"), reason) for pattern, reason in REASONS.items())
     return next((reason.format(*match.groups()) for match, reason in found if match), DAMAGED)
 
@@ -129,10 +136,7 @@ def line_names(mesh: Any) -> list[set[str]]:
         names += own
     key = _number_key(mesh.cell_data)
     if key is not None:
-        pairs = {
-            name: pair for name, pair in mesh.field_data.items() if np.shape(pair) == (2,)
-        }  # not the time of a VTU
-        curves = {int(tag): name for name, (tag, dimension) in pairs.items() if dimension == 1}
+        curves = {int(tag): name for name, (tag, dimension) in mesh.field_data.items() if dimension == 1}
         tags = [int(tag) for k in blocks for tag in np.ravel(mesh.cell_data[key][k])]
         for own_names, tag in zip(names, tags, strict=True):
             if not own_names and not (tag == 0 and key == "gmsh:physical"):  # gmsh's 0 means no physical curve

@@ -115,6 +115,8 @@ def check_hdf5(path: str | os.PathLike[str], by_steps: str = "") -> None:
         for name, dataset in _datasets(file):
             if dataset.is_virtual or dataset.external:
                 raise ValueError(f"its {name} is in another file")
+            if dataset.shape is None:
+                raise ValueError(f"its {name} is empty")
             size, stored = dataset.size * dataset.dtype.itemsize, dataset.id.get_storage_size()
             if size > PACKED * stored + UNSTORED:
                 raise ValueError(f"its {name} says that it has {size} bytes, of which {stored} are there")

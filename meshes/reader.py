@@ -116,7 +116,7 @@ def from_skfem(mesh: MeshTri1 | MeshTri2, unit: float = 1.0) -> PlateMesh:
     boundaries = mesh.boundaries or {RIM: mesh.boundary_facets()}
     pairs = [mesh.facets[:, facets].T.astype(np.int64) for facets in boundaries.values()]
     names = [{name} for name, facets in boundaries.items() for _ in facets]
-    found = Found(mesh.doflocs.T, corners, middles, np.concatenate(pairs), names, "give them one by with_boundaries")
+    found = Found(mesh.doflocs.T, corners, middles, np.concatenate(pairs), names, "name them with `with_boundaries`")
     return _plate_mesh(found, unit, [], wrong)
 
 
@@ -126,29 +126,31 @@ def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> P
     if not len(corners):
         mistakes.append("no triangles")
         _refuse(mistakes, wrong)
-    for numbers, what in ((corners, "triangles"), (middles, "curved triangles"), (pairs, "lines")):
+    for numbers, what in ((corners, "triangle"), (middles, "curved triangle"), (pairs, "line")):
         lowest = -1 if numbers is middles else 0
         wild = ((numbers < lowest) | (numbers >= len(points))).any(axis=1)
         if wild.any():
             first = f"the first with points {numbers[wild][0].tolist()}, counted from 0"
-            mistakes.append(f"{wild.sum()} {what} between points that are not there, of {len(points)}: {first}")
+            mistakes.append(
+                f"{_counted(wild.sum(), what)} between points that are not there, of {len(points)}: {first}"
+            )
     if mistakes:
         _refuse(mistakes, wrong)
     used = np.unique(np.concatenate([corners.ravel(), middles[middles >= 0]]))
     lost = used[~np.isfinite(points[used]).all(axis=1)]
     if len(lost):
-        _note(mistakes, len(lost), "points that are not finite", points[lost])
+        _note(mistakes, len(lost), "point", "with coordinates that are not finite", points[lost])
         _refuse(mistakes, wrong)
     far = used[(np.abs(points[used]) * unit > FARTHEST).any(axis=1)]
     if len(far):
-        _note(mistakes, len(far), f"points more than {FARTHEST:g} m from the origin", points[far])
+        _note(mistakes, len(far), "point", f"more than {FARTHEST:g} m from the origin", points[far])
         _refuse(mistakes, wrong)
     box = np.ptp(points[used, :2], axis=0)
     if box.max() * unit < SMALLEST:
         _refuse([f"all its points within {box.max() * unit:g} m"], wrong)
     if points.shape[1] == 3:
         off = used[np.abs(points[used, 2] - np.median(points[used, 2])) > PLANE * box.max()]
-        _note(mistakes, len(off), "points off the plane of the others", points[off])
+        _note(mistakes, len(off), "point", "off the plane of the others", points[off])
     points = points[:, :2]
     corners, middles = _turned_over(points, corners, middles)
     _check_cells(points, corners, box.prod(), mistakes)
@@ -177,7 +179,9 @@ def _cells(mesh: Any, mistakes: list[str]) -> tuple[IntArray, IntArray]:
             corners.append(data[:, :3])
             middles.append(data[:, 3:] if block.type == "triangle6" else np.full((len(data), 3), -1))
         elif block.type not in ("vertex", "line", "line3"):
-            mistakes.append(f"{len(data)} cells of kind {block.type}: only triangle and triangle6 can be used")
+            mistakes.append(
+                f"{_counted(len(data), 'cell')} of kind {block.type}: only triangle and triangle6 can be used"
+            )
     return np.concatenate(corners), np.concatenate(middles)
 
 
@@ -200,10 +204,10 @@ def _pieces(corners: IntArray) -> int:
 def _check_cells(points: FloatArray, corners: IntArray, box: float, mistakes: list[str]) -> None:
     area, centre = areas(points, corners), points[corners].mean(axis=1)
     flat = np.abs(area) <= MIN_AREA * box
-    _note(mistakes, flat.sum(), "cells without an area", centre[flat])
+    _note(mistakes, flat.sum(), "cell", "without an area", centre[flat])
     turned = (area < 0) if 2 * (area < 0).sum() <= len(area) else (area > 0)
     turned &= ~flat
-    _note(mistakes, turned.sum(), "cells that run the other way round than the rest", centre[turned])
+    _note(mistakes, turned.sum(), "cell", "turned the other way round than the rest", centre[turned])
 
 
 def _edges(points: FloatArray, corners: IntArray, middles: IntArray, mistakes: list[str]) -> RimEdges:
@@ -213,7 +217,7 @@ def _edges(points: FloatArray, corners: IntArray, middles: IntArray, mistakes: l
     _, edge, count = np.unique(edge_numbers(pairs, len(points)), return_inverse=True, return_counts=True)
     halfway = points[pairs].mean(axis=1)
     many = np.unique(edge[count[edge] > 2], return_index=True)[1]
-    _note(mistakes, len(many), "edges shared by more than two cells", halfway[np.flatnonzero(count[edge] > 2)[many]])
+    _note(mistakes, len(many), "edge", "shared by more than two cells", halfway[np.flatnonzero(count[edge] > 2)[many]])
     start, end = np.moveaxis(points[pairs], 1, 0)
     pieces = np.stack([start, np.where(middle[:, None] < 0, halfway, points[middle]), end], axis=1)
     chord, rise = end - start, pieces[:, 1] - start
@@ -221,14 +225,16 @@ def _edges(points: FloatArray, corners: IntArray, middles: IntArray, mistakes: l
     square = np.maximum((chord**2).sum(axis=1), np.finfo(float).tiny)
     on_rim = count[edge] == 1
     curved = (sag > BENT * square) & ~on_rim
-    _note(mistakes, len(np.unique(edge[curved])), "curved edges inside the plate: only the rim may be", halfway[curved])
+    _note(
+        mistakes, len(np.unique(edge[curved])), "curved edge", "inside the plate: only the rim may be", halfway[curved]
+    )
     bent = sag > STRAIGHT * square
     pieces[~bent, 1] = halfway[~bent]
     suspects = np.flatnonzero(bent & on_rim)
     along, out = _walk(pieces[suspects], np.linspace(0, 1, 5))
     out = out - apex[suspects, None]
     folded = suspects[cross(out, along).min(axis=1) <= 0]
-    _note(mistakes, len(folded), "cells that their curved edge folds", halfway[folded])
+    _note(mistakes, len(folded), "cell", "folded by a curved edge", halfway[folded])
     return RimEdges(pairs[on_rim], pieces[on_rim], bent[on_rim])
 
 
@@ -256,17 +262,23 @@ def _names(
         count, first = int(unnamed.sum()), points[edges[unnamed][0]]
         ends = " and ".join(_place(end) for end in first)
         between = f"the first between {ends}" if count > 1 else f"between {ends}"
-        mistakes.append(f"an unnamed boundary: {count} edge{'s'[: count > 1]}, {between}; {naming}")
+        mistakes.append(f"an unnamed boundary: {_counted(count, 'edge')}, {between}; {naming}")
     double = np.array([len(names) > 1 for names in of_edges])
-    _note(mistakes, double.sum(), "boundary edges with more than one name", points[edges[double]].mean(axis=1))
+    _note(mistakes, double.sum(), "boundary edge", "with more than one name", points[edges[double]].mean(axis=1))
     return [min(names, default="") for names in of_edges]
 
 
-def _note(mistakes: list[str], count: int, what: str, places: FloatArray) -> None:
+def _note(mistakes: list[str], count: int, noun: str, what: str, places: FloatArray) -> None:
     """Add a mistake with its count and its first places (n, 2 or 3), if there are any."""
     if count:
         more = ", ..." if count > 3 else ""
-        mistakes.append(f"{count} {what}, at {', '.join(map(_place, places[: min(3, int(count))]))}{more}")
+        mistakes.append(
+            f"{_counted(count, noun)} {what}, at {', '.join(map(_place, places[: min(3, int(count))]))}{more}"
+        )
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}{'s' * bool(count != 1)}"
 
 
 def _place(xy: Sequence[float]) -> str:

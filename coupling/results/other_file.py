@@ -13,7 +13,7 @@ KINDS = {
     ".toml": "a case file: name the result, such as results/{name} after `active-surface run`",
     "study": f"a study file: it is of a sweep, whose result {SHOWN}",
     "aim": "an aim file: name the result of the case file that `active-surface aim` writes",
-    ".vtkhdf": "whose name must end in .plate.vtkhdf or .part.vtkhdf, as that of a result does",
+    ".vtkhdf": "whose name is no result's: those end in .plate.vtkhdf and .part.vtkhdf",
     **dict.fromkeys((".msh", ".vtu", ".xdmf"), "which is a mesh: name the result of a case that has it"),
     ".nc": f"which is of a sweep: {SHOWN} it",
 }

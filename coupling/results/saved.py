@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coupling.case import Case
 from coupling.margins import MarginCurves
 from coupling.results.case_record import CaseRecord, case_of
+from coupling.results.numbers import check_finite, check_shapes, checked_cells, checked_count
 from coupling.results.opening import EXPECTED, opened, readable
 from coupling.results.other_file import described, meant
 from coupling.summary import summary_of
@@ -133,7 +134,7 @@ class SavedRun:
             values = np.empty((rows.size, n, *data.shape[1:]), data.dtype)
             for row, step in zip(values, np.atleast_1d(rows).tolist(), strict=True):
                 row[...] = data[step * n : (step + 1) * n]
-            _check_finite(**{name: values})
+            check_finite(**{name: values})
         return values.reshape(*rows.shape, *values.shape[1:])
 
 
@@ -160,7 +161,7 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
         steps = {}
         for file, kind in ((plate, "plate"), (part, "part")):
             with readable(paths[kind], paths["part"]):
-                steps[kind] = int(file["VTKHDF/Steps"].attrs["NSteps"])
+                steps[kind] = checked_count("NSteps", file["VTKHDF/Steps"].attrs["NSteps"])
         fewest = min(steps, key=steps.__getitem__)
         if steps[fewest] == 0:
             raise ValueError(f"{EXPECTED}; got {paths[fewest]}, to which no step was written")
@@ -174,16 +175,14 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
 
 def _surface(plate: h5py.File) -> dict[str, Any]:
     """What the plate's file holds beside its steps; raises ValueError where that does not fit together."""
-    points, triangles = plate["VTKHDF/Points"][:, :2], plate["VTKHDF/Connectivity"][()].reshape(-1, 3)
-    _check_finite(points=points)
-    if triangles.min() < 0 or triangles.max() >= len(points):
-        raise ValueError(f"a triangle has a corner that is none of the {len(points)} points")
-    return {"points": points, "triangles": triangles, "plate_fields": tuple(plate["VTKHDF/PointData"])}
+    points, corners = (np.asarray(plate[f"VTKHDF/{name}"][()]) for name in ("Points", "Connectivity"))
+    triangles = checked_cells(points, corners)
+    return {"points": points[:, :2], "triangles": triangles, "plate_fields": tuple(plate["VTKHDF/PointData"])}
 
 
 def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: int) -> SavedRun:
     """What both files hold, with their first k steps."""
-    ours, fields = part["active_surface"], part["VTKHDF/PointData"]
+    ours, fields, points = part["active_surface"], part["VTKHDF/PointData"], surface["points"]
     rows = Samples(**{name: ours["rows"][name][()] for name in Samples._fields})
     columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE))
     return SavedRun(
@@ -192,7 +191,7 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
         **{key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")},
         time=part["VTKHDF/Steps/Values"][:k],
         **surface,
-        actuators=surface["points"][: ours.attrs["actuators"]],
+        actuators=points[: checked_count("actuators", ours.attrs["actuators"], len(points))],
         position=part["VTKHDF/Points"][:k],
         **{name: fields[name][:k] for name in OF_PART},
         events=[
@@ -213,9 +212,9 @@ def _check(run: SavedRun, k: int) -> None:
     for name in OVER_TIME:
         if len(getattr(run, name)) != k:
             raise ValueError(f"{name} has {len(getattr(run, name))} of {k} steps")
-    _check_finite(time=run.time, position=run.position, rows=run.rows.position)
-    _check_shapes("rows", run.rows._asdict(), {"position": 2, "velocity": 2})
-    _check_shapes("margins", run.margins._asdict(), {})
+    check_finite(time=run.time, position=run.position, rows=run.rows.position)
+    check_shapes("rows", run.rows._asdict(), {"position": 2, "velocity": 2})
+    check_shapes("margins", run.margins._asdict(), {})
     if len(run.event_actuators) != len(run.events):
         raise ValueError(f"events has {len(run.event_actuators)} actuators of {len(run.events)}")
     for name, columns in (("position", 3), ("velocity", 3)):
@@ -226,21 +225,6 @@ def _check(run: SavedRun, k: int) -> None:
             raise ValueError("a state is none of the part's")
     if (np.diff(run.time) <= 0).any() or (np.diff(run.rows.time) < 0).any():
         raise ValueError("a time is earlier than the one before")
-
-
-def _check_shapes(group: str, arrays: Mapping[str, NDArray], columns: Mapping[str, int]) -> None:
-    """Raises ValueError unless all arrays of a group are as long, and have one number a row, or so many as stated."""
-    length = len(next(iter(arrays.values())))
-    for name, array in arrays.items():
-        shape = (length, columns[name]) if name in columns else (length,)
-        if np.shape(array) != shape:
-            raise ValueError(f"{group} has {name} of the shape {np.shape(array)}, not {shape}")
-
-
-def _check_finite(**arrays: NDArray) -> None:
-    for name, array in arrays.items():
-        if not np.isfinite(array).all():
-            raise ValueError(f"{name} has a number that is not finite")
 
 
 def _pair(path: Path) -> dict[str, Path]:

@@ -168,19 +168,19 @@ def test_lines_inside_the_plate_are_no_boundary(tmp_path):
 MISTAKES = {
     "off the plane": (
         {"points": np.column_stack([POINTS, [0, 0, 0, 0.1, 0]])},
-        "1 points off the plane of the others, at (0, 2, 0.1)",
+        "1 point off the plane of the others, at (0, 2, 0.1)",
     ),
     "flipped": (
         {"triangles": [(0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 3, 4)]},
-        "1 cells that run the other way round than the rest, at (0.333333, 1)",
+        "1 cell turned the other way round than the rest, at (0.333333, 1)",
     ),
     "flat": (
         {"points": np.concatenate([POINTS, [(1, 0)]]), "triangles": [*TRIANGLES, (0, 5, 1)]},
-        "1 cells without an area, at (1, 0)",
+        "1 cell without an area, at (1, 0)",
     ),
     "shared": (
         {"points": np.concatenate([POINTS, [(3, 1)]]), "triangles": [*TRIANGLES, (4, 1, 5)]},
-        "1 edges shared by more than two cells, at (1.5, 0.5)",
+        "1 edge shared by more than two cells, at (1.5, 0.5)",
     ),
     "unnamed": (
         {"lines": LINES[:2], "tags": TAGS[:2]},
@@ -192,16 +192,16 @@ MISTAKES = {
     ),
     "two names": (
         {"lines": [*LINES, (0, 1)], "tags": [*TAGS, 8]},
-        "1 boundary edges with more than one name, at (1, 0)",
+        "1 boundary edge with more than one name, at (1, 0)",
     ),
     "not finite": (
         {"points": np.concatenate([POINTS[:4], [(np.nan, 1)]])},
-        "1 points that are not finite, at (nan, 1, 0)",
+        "1 point with coordinates that are not finite, at (nan, 1, 0)",
     ),
     "no triangles": ({"kind": "quad", "triangles": [(0, 1, 2, 3)]}, "no triangles"),
     "other cells": (
         {"kind": "quad", "triangles": [(0, 1, 2, 3)]},
-        "1 cells of kind quad: only triangle and triangle6 can be used",
+        "1 cell of kind quad: only triangle and triangle6 can be used",
     ),
 }
 
@@ -223,14 +223,14 @@ def second_order(inner=(0.5, 0.5), rim=(1, 0)):
 
 
 def test_curved_edges_inside_are_refused(tmp_path):
-    message = "1 curved edges inside the plate: only the rim may be, at (0.5, 0.5)"
+    message = "1 curved edge inside the plate: only the rim may be, at (0.5, 0.5)"
     with pytest.raises(ValueError, match=re.escape(message)):
         read(write(tmp_path / "mesh.msh", **second_order(inner=(0.5, 0.5 + 1e-5))))
     assert read(write(tmp_path / "mesh.msh", **second_order(inner=(0.5, 0.5 + 1e-7)))).curves == {}
 
 
 def test_edges_bent_beyond_their_cell_are_refused(tmp_path):
-    with pytest.raises(ValueError, match=re.escape("1 cells that their curved edge folds, at (1, 0)")):
+    with pytest.raises(ValueError, match=re.escape("1 cell folded by a curved edge, at (1, 0)")):
         read(write(tmp_path / "mesh.msh", **second_order(rim=(1, 1.1))))
     assert list(read(write(tmp_path / "mesh.msh", **second_order(rim=(1, 0.4)))).curves) == ["foot"]
 
@@ -243,7 +243,7 @@ def test_many_mistakes_come_at_once_and_many_places_as_three(tmp_path):
         read(write(tmp_path / "mesh.msh", mesh.points, triangles, mesh.boundaries["left"], [7] * 10))
     lines = str(error.value).splitlines()[1:]
     assert len(lines) == 2
-    assert re.fullmatch(r"  5 cells that run .*, at (\([-\d., ]+\), ){3}\.\.\.", lines[0])
+    assert re.fullmatch(r"  5 cells turned .*, at (\([-\d., ]+\), ){3}\.\.\.", lines[0])
     assert lines[1].startswith("  an unnamed boundary: 30 edges, the first between (")
 
 
@@ -293,7 +293,7 @@ def test_a_cell_on_a_point_that_is_not_there_is_refused(tmp_path):
     text.write(tmp_path / "mesh.vtu", binary=False)
     path = tmp_path / "mesh.vtu"
     path.write_text(re.sub(r"0\s+1\s+2", "0 1 7", path.read_text(), count=1))
-    with pytest.raises(ValueError, match=r"1 triangles between points that are not there, of 3: .* \[0, 1, 7\]"):
+    with pytest.raises(ValueError, match=r"1 triangle between points that are not there, of 3: .* \[0, 1, 7\]"):
         read(path)
 
 

@@ -57,6 +57,6 @@ def test_what_is_no_plate_is_named():
     ):
         from_skfem(MeshQuad())
     part = MeshTri1.init_sqsymmetric().with_boundaries({"left": lambda x: x[0] == 0})
-    with pytest.raises(ValueError, match=r"an unnamed boundary: 6 edges, .*; give them one by with_boundaries"):
+    with pytest.raises(ValueError, match=r"an unnamed boundary: 6 edges, .*; name them with `with_boundaries`"):
         from_skfem(part)
     assert isinstance(from_skfem(disc(1.0, 0.5).to_skfem()), PlateMesh)

@@ -22,6 +22,9 @@ VTU = """<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian
 <CellData><DataArray type="Int64" Name="boundary" format="ascii">0 7 7 8</DataArray></CellData>
 </Piece></UnstructuredGrid></VTKFile>
 """
+XDMF = """<Xdmf Version="3.0"><Domain><Grid><Geometry GeometryType="XY">
+<DataItem Format="XML" Dimensions="3 2">0 0 1 0 0 1</DataItem></Geometry></Grid></Domain></Xdmf>
+"""
 
 
 def test_an_empty_file_is_told(tmp_path):
@@ -30,8 +33,15 @@ def test_an_empty_file_is_told(tmp_path):
         read(tmp_path / "mesh.xdmf")
 
 
-def test_a_file_with_the_time_in_it_is_read(tmp_path):
-    (tmp_path / "mesh.vtu").write_text(VTU)
+def test_a_folder_is_told(tmp_path):
+    (tmp_path / "d.msh").mkdir()
+    with pytest.raises(ValueError, match=r"\.xdmf file; \S+d\.msh is a folder$"):
+        read(tmp_path / "d.msh")
+
+
+@pytest.mark.parametrize(("kind", "values"), [("Float64", "0.5"), ("Int64", "7 1")])
+def test_a_file_with_fields_such_as_the_time_is_read(tmp_path, kind, values):
+    (tmp_path / "mesh.vtu").write_text(VTU.replace("Float64", kind, 1).replace("0.5", values))
     assert {name: len(edges) for name, edges in read(tmp_path / "mesh.vtu").boundaries.items()} == {"7": 2, "8": 1}
 
 
@@ -50,8 +60,12 @@ def test_a_file_with_the_time_in_it_is_read(tmp_path):
         ("complex.vtu", VTU.replace("0 0 0", "0 1+2j 0", 1), UNREAD + NO_NUMBER),
         ("type.vtu", VTU.replace("Float64", "String"), UNREAD + "it has numbers of the type String, "),
         ("mesh.xdmf", "text", UNREAD + "its line 1 is no XML"),
-        ("cut.xdmf", "<Xdmf>\n<Domain>\n</Xdmf>", UNREAD + "its line 3 is no XML"),
+        ("tags.xdmf", "<Xdmf>\n<Domain>\n</Xdmf>", UNREAD + "its line 3 is no XML"),
+        ("cut.xdmf", "<Xdmf>\n<Domain>\n", UNREAD + "it ends too soon, in line 3"),
+        ("short.xdmf", "<Xdmf>\n<Dom", UNREAD + "it ends too soon, in line 2"),
         ("other.xdmf", "<html/>", UNREAD + DAMAGED),
+        ("plain.xdmf", "<Xdmf/>", UNREAD + "something in it lacks the attribute Version"),
+        ("form.xdmf", XDMF.replace('Format="XML" ', ""), UNREAD + "something in it lacks the attribute Format"),
         ("old.xdmf", '<Xdmf Version="1.0"/>', UNREAD + "it is XDMF 1.0; versions 2 and 3 are read"),
         ("none.xdmf", '<Xdmf Version="3.0"><Domain/></Xdmf>', UNREAD + "it does not have one grid"),
     ],

@@ -57,12 +57,19 @@ def test_a_dataset_that_is_not_there(mesh):
     assert "mesh.h5 is named without a data set after a colon" in refused(mesh)
 
 
+def lists_of_numbers(xy):
+    rows = np.empty(len(xy), h5py.vlen_dtype(float))
+    rows[:] = list(xy)
+    return rows
+
+
 @pytest.mark.parametrize(
     ("name", "change", "wrong"),
     [
         ("data0", lambda xy: xy + 1j, "those of {} are complex numbers"),
         ("data0", lambda xy: xy.astype("S8"), "those of {} are text"),
-        ("data0", lambda xy: xy.astype(str).astype(object), "those of {} are text"),
+        ("data0", lambda xy: xy.astype(str).astype(object), "those of {} are text or lists"),
+        ("data0", lists_of_numbers, "those of {} are text or lists"),
         ("data0", lambda xy: np.zeros(len(xy), [("x", "f8"), ("y", "f8")]), "those of {} are no numbers"),
         ("data0", lambda xy: xy[:, 0], "those of {} are numbers in the shape (35,)"),
         ("data1", lambda rows: rows + 0.5, "are rows of 3 whole numbers; those of {} are not"),
@@ -104,6 +111,11 @@ def test_numbers_of_which_few_are_stored(mesh):
         del file["data0"]
         file.create_dataset("data0", (10**11, 3), "f8", chunks=(1000, 3))
     assert "its data0 says that it has 2400000000000 bytes" in refused(mesh)
+
+
+def test_numbers_of_which_none_are_stored(mesh):
+    changed(mesh, "data0", lambda _: h5py.Empty("f8"))
+    assert refused(mesh).endswith("mesh.h5 is refused: its data0 is empty")
 
 
 def test_numbers_elsewhere(mesh):

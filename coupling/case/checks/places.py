@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coupling.case.actuators import (
@@ -37,7 +38,7 @@ def mesh_of(plate: PlateCase) -> tuple[PlateMesh | None, list[Mistake]]:
     try:
         return plate.coarse_mesh, []
     except OSError as error:
-        wrong = [unreadable(str(error.filename), error)]
+        wrong = [unreadable(Path(str(error.filename)).name, error)]
     except ValueError as error:
         wrong = [
             re.sub(r"^Input \w+ of \w+ ", "", text).replace("\n  ", " ", 1).replace("\n  ", "; ")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import math
+import os
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -226,6 +228,8 @@ class MeshCase(PlateCase):
     def coarse_mesh(self) -> PlateMesh:
         import meshes
 
+        if not os.path.exists(self.mesh):  # told as for other files, with what may be meant
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self.mesh)
         return meshes.read(self.mesh, self.mesh_unit)
 
     def build_mesh(self) -> PlateMesh:

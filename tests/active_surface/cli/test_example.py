@@ -49,11 +49,19 @@ def test_what_is_there_is_not_replaced(tmp_path):
     assert Path("studies/moderate.toml").read_text() == "mine" and not Path("studies/frequency_stroke.toml").exists()
 
 
-def test_a_file_in_place_of_a_folder_leaves_nothing_half_written(tmp_path):
-    Path("meshes").touch()
+@pytest.mark.parametrize("place", [Path.touch, lambda path: path.symlink_to("nowhere")], ids=["file", "dangling"])
+def test_a_file_in_place_of_a_folder_leaves_nothing_half_written(tmp_path, place):
+    place(Path("meshes"))
     done = example("l_with_hole")
     assert done.exit_code == 2 and "free; meshes is something else already" in done.output
     assert [file.name for file in tmp_path.iterdir()] == ["meshes"]
+
+
+def test_a_link_to_nowhere_in_place_of_a_file_is_not_followed(tmp_path):
+    Path("one_actuator.toml").symlink_to("nowhere")
+    done = example("one_actuator")
+    assert done.exit_code == 2 and "free; one_actuator.toml is something else already" in done.output
+    assert not Path("nowhere").exists()
 
 
 def test_a_name_that_is_none_leads_to_one():

@@ -266,7 +266,7 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
         folder / "cas": f"which is no file; did you mean {folder / 'case'}?",
         folder: f"a folder: name a result in it: {folder / 'case'}",
         tmp_path / "text.nc": "which is another file",
-        tmp_path / "other.vtkhdf": "whose name must end in .plate.vtkhdf or .part.vtkhdf, as that of a result does",
+        tmp_path / "other.vtkhdf": "whose name is no result's: those end in .plate.vtkhdf and .part.vtkhdf",
         folder / "case.png": f"which is beside a result: name {folder / 'case'}",
         folder / "one.toml": "a study file: it is of a sweep, whose result `active-surface view` and "
         "`active-surface plot` show",

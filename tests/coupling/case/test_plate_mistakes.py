@@ -1,5 +1,7 @@
 """Mistakes in plates, their supports and the places on them, each named."""
 
+from pathlib import Path
+
 import pytest
 from plate_cases import DRIVE, SHAPES, problems, read, text
 
@@ -22,9 +24,9 @@ WRONG = [
         'plate.radius is not known; it goes with shape = "disc" or shape = "polygon" and a radius',
     ),
     ({"shape": "mesh = 3"}, "plate.mesh must be text; got 3"),
-    ({"shape": 'mesh = "nowhere.msh"'}, "plate.mesh must be a .msh file of gmsh, a .vtu or "),
+    ({"shape": 'mesh = "nowhere.msh"'}, 'plate.mesh must be a file that can be read; got "nowhere.msh": no such file'),
     (
-        {"shape": 'mesh = "case.toml"'},
+        {"shape": f'mesh = "{Path(__file__).as_posix()}"'},
         "plate.mesh must be a .msh file of gmsh, a .vtu or ",
     ),
     ({"shape": 'shape = "polygon"\ncorners = 3'}, "plate.corners must be three points or more, such as "),

@@ -78,8 +78,18 @@ def test_all_that_is_wrong_with_a_mesh_is_one_mistake(tmp_path):
     (problem,) = problems(tmp_path, text('mesh = "mesh.msh"\nmesh_unit = "1 um"', "200 um, 60 um"))
     wanted = f"plate.mesh must be a plane mesh of triangles with named boundaries; {tmp_path / 'mesh.msh'} has "
     off, rim = problem.removeprefix(wanted).split("; ", 1)
-    assert off == "1 points off the plane of the others, at (0, 400, 9)"
+    assert off == "1 point off the plane of the others, at (0, 400, 9)"
     assert rim.startswith("an unnamed boundary: 3 edges, ")
+
+
+def test_a_misspelt_mesh_leads_to_the_one_that_is_meant(tmp_path):
+    (tmp_path / "l.msh").write_bytes(MESH.read_bytes())
+    (tmp_path / "d.msh").mkdir()
+    wanted = 'plate.mesh must be a file that can be read; got "{}": no such file or directory'
+    for name, hint in (("ll.msh", '; did you mean "l.msh"?'), ("other.msh", ""), ("none\\u0000.msh", "")):
+        (problem,) = problems(tmp_path, text(f'mesh = "{name}"', "200 um, 60 um"))
+        assert problem == wanted.format(name) + hint
+    assert problems(tmp_path, text('mesh = "d.msh"', "200 um, 60 um"))[0].endswith("d.msh is a folder")
 
 
 @pytest.mark.parametrize("force", [False, True])

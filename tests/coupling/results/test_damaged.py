@@ -78,6 +78,18 @@ def chunk_that_cannot_be_read(file):
     data.id.write_direct_chunk((8,), b"no gzip")
 
 
+def with_steps(count):
+    return lambda file: file["VTKHDF/Steps"].attrs.__setitem__("NSteps", count)
+
+
+def with_actuators(count):
+    return lambda file: file["active_surface"].attrs.__setitem__("actuators", count)
+
+
+def cells(values):
+    return lambda file: put(file, "VTKHDF/Connectivity", values)
+
+
 def rows_that_are_not_there(file):
     del file["active_surface/rows/time"]
     file.create_dataset("active_surface/rows/time", (10**12,), "f8", chunks=(1000,))
@@ -100,7 +112,19 @@ DAMAGES = [
     ("part", lambda file: put(file, "VTKHDF/PointData/velocity", np.zeros(11)), "velocity has the shape"),
     ("part", rows_that_are_not_there, "rows/time says that it has 8000000000000 bytes, of which 0 are there"),
     ("part", lambda file: put(file, "active_surface/rows", h5py.ExternalLink("/etc/passwd", "/")), "rows is a link"),
-    ("plate", lambda file: put(file, "VTKHDF/Connectivity", [0, 1, 99]), "a corner that is none of the 4 points"),
+    ("plate", cells([0, 1, 99]), "a corner that is none of the 4 points"),
+]
+NUMBERS = [
+    *(("part", with_actuators(n), f"actuators must be a whole number, from 0 to 4; got {n}") for n in (-1, 10**9)),
+    *((kind, with_steps(-1), "NSteps must be a whole number, not negative; got -1") for kind in ("plate", "part")),
+    ("plate", with_steps(np.nan), "NSteps must be a whole number, not negative; got nan"),
+    ("plate", with_steps([3, 4]), "NSteps must be a whole number, not negative"),
+    *(
+        ("plate", cells(values), "Connectivity must be whole numbers, three a triangle")
+        for values in (np.zeros(0, int), [0, 1, 2, 3], [[0, 1, 2]], [0.0, 1.0, 2.0], [0j, 1j, 2j])
+    ),
+    ("plate", lambda file: put(file, "VTKHDF/Points", np.zeros(12)), "Points must be three numbers a point"),
+    ("plate", lambda file: put(file, "VTKHDF/Points", np.zeros((4, 3), complex)), "Points must be real numbers"),
 ]
 DAMAGES_BESIDE = [
     ("part", lambda file: file.__delitem__("active_surface/case"), ("view", "plot", "rerun"), "whose case is damaged"),
@@ -133,6 +157,13 @@ def test_damage_is_told_before_anything_else(folder, kind, change, said):
         read_run(folder / "run")
     for command in READERS:
         assert said in refused(command, folder)
+
+
+@pytest.mark.parametrize(("kind", "change", "said"), NUMBERS, ids=[said for *_, said in NUMBERS])
+def test_numbers_that_no_run_writes_are_told_with_their_file(folder, kind, change, said):
+    damaged(folder, kind, change)
+    with pytest.raises(ValueError, match=rf"got \S+run\.{kind}\.vtkhdf, which is damaged: {said}"):
+        read_run(folder / "run")
 
 
 def test_a_result_of_another_version_is_told_with_both(folder):

@@ -193,7 +193,9 @@ def test_what_is_named_in_place_of_a_result_is_described(folder):
     )
     assert refused(folder / "x.txt").endswith("x.txt, which is another file")
     assert refused(folder / "x.msh").endswith("x.msh, which is a mesh: name the result of a case that has it")
-    assert "x.vtkhdf, whose name must end in .plate.vtkhdf or .part.vtkhdf" in refused(folder / "x.vtkhdf")
+    assert "x.vtkhdf, whose name is no result's: those end in .plate.vtkhdf and .part.vtkhdf" in refused(
+        folder / "x.vtkhdf"
+    )
     for name in "abc":
         for kind in ("plate", "part"):
             shutil.copy(folder / f"run.{kind}.vtkhdf", folder / f"{name}.partial.{kind}.vtkhdf")
