@@ -23,6 +23,8 @@ def contents(path: str | os.PathLike[str], most: int) -> bytes:
     Raises OSError when it cannot be read, has more than `most` bytes, or is a pipe or device, which need not end.
     """
     name = os.fspath(path)
+    if "\0" in os.fsdecode(name):
+        raise OSError(errno.EINVAL, "its name has a null character in it", name)
     # Without waiting for who might write to a pipe.
     descriptor = os.open(name, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as file:

@@ -235,4 +235,4 @@ def test_case_error_survives_pickling(tmp_path: Path) -> None:
 )
 def test_a_null_byte_in_the_name_of_a_file_is_told_where_it_is(tmp_path: Path, where: str, text: str) -> None:
     (told,) = problems(tmp_path, text)
-    assert f" {where} must be a file that can be read" in told and told.endswith("embedded null byte")
+    assert f" {where} must be a file that can be read" in told and told.endswith("null character in it")
