@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from coupling import alike
+from coupling import alike, near
 
 PATHS = (" is a file", " is a directory", " does not exist", " is not readable", " is not writable")
 """What click says of a path that cannot be used."""
@@ -43,8 +43,11 @@ def mistakes_in(
 def unknown(name: str, known: Iterable[str], owner: str) -> Mistake:
     """That there is no command or option of a name."""
     choices = sorted(known)
-    words = {choice.lstrip("-"): choice for choice in choices}
-    meant = words.get(alike(name.lstrip("-"), words) or "")
+    if name.startswith("-"):  # synonyms are of keys and commands
+        words = {choice.lstrip("-"): choice for choice in choices}
+        meant = words.get(alike(name.lstrip("-"), words) or "")
+    else:
+        meant = near(name, choices)
     return name, "is not known; " + (f"did you mean {meant}?" if meant else f"{owner} has {', '.join(choices)}")
 
 

@@ -32,6 +32,8 @@ MISUSES = [
     ),
     (["run", "x", "y"], "  y is one argument too many; the command is active-surface run [OPTIONS] CASE"),
     (["run", "x", "--ouput", "y"], "active-surface run: 1 mistake\n  --ouput is not known; did you mean --output?"),
+    (["aim", "x", "--out", "y"], "  --out is not known; did you mean --output?"),
+    (["plot", "x", "--length", "y"], "  --length is not known; active-surface plot has "),
     (["run", "x", "--bogus"], "  --bogus is not known; active-surface run has --advised"),
     (
         ["run", "x", "--frob"],
