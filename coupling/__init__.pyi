@@ -36,7 +36,7 @@ from .run import (
     quick_summary as quick_summary,
     run_over as run_over,
 )
-from .shared_surface import (
+from .shared import (
     StretchedSurface as StretchedSurface,
     VibratingSurface as VibratingSurface,
     answers_drives as answers_drives,

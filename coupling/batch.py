@@ -12,7 +12,7 @@ from coupling.case import Case, RunCase
 from coupling.progress import Progress, silent
 from coupling.run import Result, build_friction, build_part, follow_part, tighter_tolerance
 from coupling.scene import PlateScene, Scene
-from coupling.shared_surface import answers_drives
+from coupling.shared import answers_drives
 from coupling.solved_plates import SolvedPlates
 from coupling.summary import summarise
 from particle import AnyDrive, Micropart, SurfaceMotion, Trajectory, interruptible, simulate_many

@@ -10,7 +10,7 @@ from coupling.case import Case
 from coupling.progress import Progress, silent
 from coupling.run import build_scene
 from coupling.scene import PlateScene, Scene, actuator_stiffness, lifts_of
-from coupling.shared_surface import answers_drives
+from coupling.shared import answers_drives
 from fem_plate import PlateShapes
 
 Kept = TypeVar("Kept")
