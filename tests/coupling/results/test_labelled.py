@@ -91,4 +91,4 @@ def test_export_writes_the_path_as_csv_with_the_bytes_of_write_csv(run, tmp_path
     assert (tmp_path / "out" / "shaken.csv").read_bytes() == (tmp_path / "expected.csv").read_bytes()
     (tmp_path / "out" / "shaken.csv").write_text("time, x\n")
     again = CliRunner().invoke(main, ["export", str(folder / "shaken"), "--format", "csv", "-o", str(tmp_path / "out")])
-    assert again.exit_code == 2 and "must be free or a trajectory" in again.output
+    assert again.exit_code == 2 and "is free or a trajectory" in again.output

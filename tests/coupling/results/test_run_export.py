@@ -129,7 +129,7 @@ def test_an_interrupted_run_is_exported_with_the_steps_that_it_has_and_stays_par
     (tmp_path / "csv/one.csv").rename(tmp_path / "csv/kept.csv")
     (tmp_path / "csv/other.csv").rename(tmp_path / "csv/one.csv")
     taken = CliRunner().invoke(main, ["export", str(tmp_path / "one"), "--format", "csv", "-o", str(tmp_path / "csv")])
-    assert taken.exit_code == 2 and "--output must be a folder in which one.csv is free or a path" in taken.output
+    assert taken.exit_code == 2 and "--output must be a folder in which one.csv is free or a trajectory" in taken.output
     assert (tmp_path / "csv/kept.csv").read_text() == _csv(folder, tmp_path / "first").read_text()
 
 
