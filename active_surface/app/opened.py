@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from active_surface.examples import examples_folder
-from coupling.case import Case, read_case, write_edited
+from coupling.case import Case, read_case, unfit_name, write_edited
 
 MAX_STEPS: Final = 200  # that can be taken back
 
@@ -49,6 +49,8 @@ class Opened:
         path = self.folder_to_save / name
         if Path(name).name != name or not name.endswith(".toml") or name.startswith("."):
             raise ValueError(f'the name must be that of a file in this folder, such as "my_case.toml"; got "{name}"')
+        if unfit := unfit_name(path.stem):
+            raise ValueError(f"the file {unfit}")
         if path.exists() and not replace:
             raise ValueError(f"{name} exists; replace it, or choose another name")
         write_edited(self.case, self.saved, self.folder, path)

@@ -25,7 +25,7 @@ from coupling.case.friction import (
     has_known_law,
 )
 from coupling.case.mistakes import InputError, Location, Mistake, in_file, location_text, message_of, mistakes_in
-from coupling.case.parsing import CaseError, Problem, parse
+from coupling.case.parsing import CaseError, Problem, parse, unfit_name
 from coupling.case.plates import (
     INERTIA,
     RATES,

@@ -73,7 +73,8 @@ def export_run(
 def _csv(saved: SavedRun, path: Path) -> Path:
     """The part's path at all rows of the integrator, each time once, at an event with the values from then on."""
     if path.is_file() and not is_trajectory(path):
-        raise ValueError(f"Input output must be a folder in which {path.name} is free or a trajectory; got {path.parent}")
+        free = f"a folder in which {path.name} is free or a trajectory"
+        raise ValueError(f"Input output must be {free}; got {path.parent}")
     last = np.append(np.diff(saved.rows.time) > 0, True)
     with whole_file(path) as partial:
         rows = csv_rows(Samples(*(column[last] for column in saved.rows)))

@@ -213,6 +213,9 @@ def _check(run: SavedRun, k: int) -> None:
         if len(getattr(run, name)) != k:
             raise ValueError(f"{name} has {len(getattr(run, name))} of {k} steps")
     check_finite(time=run.time, position=run.position, rows=run.rows.position)
+    for times, of in ((run.time, "steps"), (run.rows.time, "rows")):
+        if not (np.diff(times) >= 0).all():
+            raise ValueError(f"the times of its {of} do not ascend")
     check_shapes("rows", run.rows._asdict(), {"position": 2, "velocity": 2})
     check_shapes("margins", run.margins._asdict(), {})
     if len(run.event_actuators) != len(run.events):

@@ -34,7 +34,6 @@ def view(result: Path, output: Path | None, paths: int | None, opened: bool, qui
     found = refusing(result_of, result, DEFAULT_OUTPUT)
     page = output or found.page
     refusing(check_folder, page.parent)
-    page.parent.mkdir(parents=True, exist_ok=True)
     warnings: list[str] = []
     if found.is_sweep:
         from active_surface.studies import read_study, read_sweep
@@ -44,6 +43,7 @@ def view(result: Path, output: Path | None, paths: int | None, opened: bool, qui
         given = None if found.study is None else refusing(read_study, found.study)
         study, dataset = refusing(read_sweep, found.path, given)
         with dataset, nullcontext(no_progress) if quiet else CountBar("paths") as tell:
+            page.parent.mkdir(parents=True, exist_ok=True)
             refusing(write_study_page, study, dataset, page, paths, tell)
     else:
         if paths is not None:
@@ -57,6 +57,7 @@ def view(result: Path, output: Path | None, paths: int | None, opened: bool, qui
             warnings.append(f"{found.path} is of another case than {result} is now: `active-surface run {result}`")
         if not run.complete:
             warnings.append(PARTIAL)
+        page.parent.mkdir(parents=True, exist_ok=True)
         refusing(write_run_page, run, page)
     size = page.stat().st_size
     figures = {"warnings": warnings, "files": [str(page)], "bytes": size}

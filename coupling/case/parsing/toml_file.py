@@ -161,7 +161,7 @@ def parse(path: str | os.PathLike[str], lenient: bool = False) -> TomlFile:
     except ValueError as error:  # also where no file can have such a name
         message = str(error)
         raise _unreadable(name, message if message.startswith("is ") else f"cannot be read: {message}") from None
-    unfit = [Problem(None, "", message)] if (message := _unfit(Path(path).stem)) else []
+    unfit = [Problem(None, "", message)] if (message := unfit_name(Path(path).stem)) else []
     try:
         return TomlFile(name, text, loads(text), tuple(unfit))
     except tomllib.TOMLDecodeError:
@@ -173,8 +173,8 @@ def parse(path: str | os.PathLike[str], lenient: bool = False) -> TomlFile:
     raise CaseError(name, problems)
 
 
-def _unfit(stem: str) -> str:
-    """What is wrong with the name of a file, which its results take over."""
+def unfit_name(stem: str) -> str:
+    """What is wrong with the name of a file, without its ending, which its results take over; "": nothing."""
     if control := control_in(stem):
         return f"must have a name that can be printed, as its results have it, too; got U+{ord(control):04X} in it"
     size = len(stem.encode())

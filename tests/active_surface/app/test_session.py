@@ -154,6 +154,11 @@ def test_a_file_is_replaced_only_where_that_is_asked_for(path):
             await page.set("run", part__mass="3e-9 kg")
             refused = await page.do("refused", do="save", name="mine.toml", replace=False)
             assert "exists; replace it" in refused["mistakes"][0]["message"]
+            for name, wrong in (("x" * 300, "must have a name of at most 200 bytes"), ("a\x1b", "got U+001B in it")):
+                refused = await page.do("refused", do="save", name=name, replace=False)
+                assert refused["mistakes"][0]["message"].startswith("the file must have a name") and wrong in str(
+                    refused
+                )
             assert path.read_text() == CASE
             await page.do("note", do="save", name="mine.toml", replace=True)
 

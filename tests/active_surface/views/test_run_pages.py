@@ -330,6 +330,8 @@ def test_what_is_no_result_is_refused(tmp_path, name, text, said):
     if text is not None:
         (tmp_path / name).write_text(text)
     answer = CliRunner().invoke(main, ["view", str(tmp_path / name)])
+    assert CliRunner().invoke(main, ["view", str(tmp_path / "no" / name)]).exit_code == 2
+    assert not (tmp_path / "no").exists()
     assert answer.exit_code == 2 and said in answer.output and "Traceback" not in answer.output
     assert not list(tmp_path.glob("*.html"))
 

@@ -82,6 +82,13 @@ def with_steps(count):
     return lambda file: file["VTKHDF/Steps"].attrs.__setitem__("NSteps", count)
 
 
+def with_time(name, value):
+    def change(file):
+        file[f"active_surface/{name}"][1] = value
+
+    return change
+
+
 def with_actuators(count):
     return lambda file: file["active_surface"].attrs.__setitem__("actuators", count)
 
@@ -107,6 +114,8 @@ DAMAGES = [
     ("part", lambda file: put(file, "VTKHDF/Points", np.zeros((3, 3))), "position has 3 of 11 steps"),
     ("part", lambda file: put(file, "VTKHDF/Points", np.full((11, 3), np.nan)), "position has a number that is not"),
     ("part", lambda file: put(file, "active_surface/rows/height", [0.0]), "rows has height of the shape"),
+    ("part", with_time("rows/time", np.nan), "the times of its rows do not ascend"),
+    ("part", with_time("rows/time", -1.0), "the times of its rows do not ascend"),
     ("part", lambda file: put(file, "active_surface/margins/slip", [0.0]), "margins has slip of the shape"),
     ("part", lambda file: put(file, "VTKHDF/PointData/state", np.full(11, 9)), "a state is none of the part's"),
     ("part", lambda file: put(file, "VTKHDF/PointData/velocity", np.zeros(11)), "velocity has the shape"),
