@@ -144,4 +144,4 @@ def _values(own: Sequence[float], factor: float, unit: str | None) -> str:
     if unit is None:
         return ""
     texts = list(dict.fromkeys(quantity(factor * value, unit, 6) for value in own))
-    return f" ({joined(texts)})" if len(texts) <= 3 else ""
+    return f" ({joined(texts)})" if 0 < len(texts) <= 3 else ""  # a measured motion has none

@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
+from xml.etree import ElementTree
 
 from coupling.case import Case, MeshCase, PlatformCase
 
@@ -40,15 +41,29 @@ def case_of(record: CaseRecord, name: str, source: str | None = None) -> Case:
 
     Raises ValueError when the record holds no case.
     """
-    tables = json.loads(record.text)
-    if record.files:
-        folder = Path(_kept_folder())
-        for file, content in record.files.items():
-            (folder / Path(file).name).write_bytes(content)
-        for key in PATHS:
-            if isinstance(tables["plate"].get(key), str):
-                tables["plate"][key] = str(folder / Path(tables["plate"][key]).name)
-    return Case.model_validate(tables | {"name": name, "source": source})
+    tables, folder = json.loads(record.text), Path(_kept_folder())
+    for file, content in record.files.items():
+        if Path(file).name != file or (file.endswith(".xdmf") and _leads_elsewhere(content, record.files)):
+            raise ValueError(f"its file {file} leads elsewhere")
+        (folder / file).write_bytes(content)
+    for key in PATHS:
+        if isinstance(tables["plate"].get(key), str):
+            if tables["plate"][key] not in record.files:
+                raise ValueError(f"it lacks the file that plate.{key} names, {tables['plate'][key]}")
+            tables["plate"][key] = str(folder / tables["plate"][key])
+    if "file" in tables["friction"]:
+        raise ValueError("its friction names a file, in place of the points in it")
+    return Case(**tables, name=name, source=source)
+
+
+def _leads_elsewhere(xdmf: bytes, files: Mapping[str, bytes]) -> bool:
+    """Whether an XDMF file names numbers that are in none of these files."""
+    try:
+        items = list(ElementTree.fromstring(xdmf).iter("DataItem"))
+    except (ElementTree.ParseError, LookupError, ValueError):
+        return False  # which nobody reads
+    named = [(item.get("Format"), (item.text or "").strip().partition(":")[0]) for item in items]
+    return any(form == "Binary" or (form == "HDF" and name not in files) for form, name in named)
 
 
 def files_of(case: Case) -> dict[str, bytes]:

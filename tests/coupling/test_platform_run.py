@@ -1,6 +1,7 @@
 """Runs on a platform from case to files, and what the summary says of them."""
 
 import json
+import math
 from pathlib import Path
 
 import h5py
@@ -136,6 +137,14 @@ def test_a_measured_motion_from_the_command_line(tmp_path):
     assert sorted(Path(file).name for file in found["files"]) == names
     assert ",slip," in (tmp_path / "shaker.csv").read_text()
     assert CliRunner().invoke(main, command).exit_code == 0  # its own file is replaced
+
+
+@pytest.mark.compiled
+def test_advice_on_a_measured_motion_names_no_strokes(tmp_path):
+    file = tmp_path / "motion.csv"
+    file.write_text("time [ms], x [um]\n" + "".join(f"{k}, {0.1 * math.sin(k)}\n" for k in range(60)))
+    text = said(run_case(case(str(file), {"duration": 5e-2})))
+    assert "times the stroke" in text and "A trial run with " in text
 
 
 def test_a_measured_motion_is_not_written_over(tmp_path):

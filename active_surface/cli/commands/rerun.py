@@ -34,7 +34,8 @@ def rerun(result: Path, output: Path, quiet: bool, as_json: bool) -> None:
 
     saved = refusing(read_run, result)
     refusing(check_folder, output)
-    with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(saved.case)) as bar:
+    case = refusing(lambda: saved.case)
+    with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(case)) as bar:
         done = refusing(rerun, saved, output, bar)
     figures = {"same_end": done.same_end, "moved": done.moved, "versions": done.changed, "complete": saved.complete}
     files = [str(file) for file in done.result.files]

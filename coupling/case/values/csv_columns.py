@@ -48,11 +48,14 @@ def read_rows(path: Path, example: str) -> Rows | str:
         text = contents(path, MAX_NUMBERS).decode("utf-8-sig")
     except UnicodeDecodeError:
         return "is not UTF-8 text"
-    rows = [
-        (number, [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))])
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
+    try:
+        rows = [
+            (number, [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))])
+            for number, line in enumerate(text.splitlines(), 1)
+            if line.strip() and not line.lstrip().startswith("#")
+        ]
+    except csv.Error:
+        return f"has a cell of more than {csv.field_size_limit()} characters, the most that is read"
     if not rows:
         return f'is empty; it must begin with a header such as "{example}"'
     (header_line, header), *rows = rows

@@ -160,6 +160,7 @@ def test_wrong_options_of_the_run(tmp_path, text, expected):
 
 
 WRONG_FILES = [
+    (f"time [ms], x [um]\n0, {'5' * 200_000}\n", ["has a cell of more than 131072 characters, the most that is read"]),
     ("", ['is empty; it must begin with a header such as "time [ms], x [um], z [um]"']),
     (ROWS, ['line 1 must be a header such as "time [ms], x [um], z [um]"; got "0.0, 0, 0"']),
     (

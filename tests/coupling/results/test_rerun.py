@@ -142,6 +142,46 @@ def test_a_moved_result_with_a_mesh_reruns_to_the_same_bits(moved, tmp_path):
     np.testing.assert_array_equal(before.plate_field("curvature"), after.plate_field("curvature"))
 
 
+def with_text(change):
+    def alter(ours):
+        text = ours["case/json"][()].tobytes().decode()
+        del ours["case/json"]
+        ours["case/json"] = np.frombuffer(change(text).encode(), np.uint8)
+
+    return alter
+
+
+def with_file(name, content):
+    return lambda ours: ours["files"].create_dataset(name, data=np.frombuffer(content, np.uint8))
+
+
+XDMF = b'<Xdmf Version="3.0"><DataItem Format="%s" Dimensions="3">%s</DataItem></Xdmf>'
+
+
+@pytest.mark.parametrize(
+    ("alter", "wrong"),
+    [
+        (with_text(lambda text: text.replace('"motion.csv"', '"/etc/passwd"')), "it lacks the file that plate.motion"),
+        (
+            with_text(lambda text: text.replace('"model": "table"', '"model": "table", "file": "/x.csv"')),
+            "names a file",
+        ),
+        (with_text(lambda text: text.replace('"duration"', '"duratoin"')), "run.duratoin of Case is not known"),
+        (with_file("..", b"x"), "it cannot be read to its end"),
+        (with_file("a.xdmf", XDMF % (b"HDF", b"/etc/a.h5:/x")), "its file a.xdmf leads elsewhere"),
+        (with_file("a.xdmf", XDMF % (b"Binary", b"motion.csv")), "its file a.xdmf leads elsewhere"),
+    ],
+    ids=["motion", "friction", "field", "folder", "numbers", "raw numbers"],
+)
+def test_a_result_leads_to_no_other_file(moved, tmp_path, alter, wrong):
+    result = moved(PLATFORM, motion_csv=MOTION.encode(), friction_csv=POINTS.encode())
+    with h5py.File(f"{result}.part.vtkhdf", "r+") as file:
+        alter(file["active_surface"])
+    done = rerun(result, "--output", str(tmp_path / "again"))
+    assert done.exit_code == 2 and wrong in done.output and "Traceback" not in done.output, done.output
+    assert "Value error" not in done.output and not (tmp_path / "again").exists()
+
+
 def test_another_end_and_other_versions_are_told(moved, tmp_path, monkeypatch):
     result = moved(PLATFORM, motion_csv=MOTION.encode(), friction_csv=POINTS.encode())
     with h5py.File(f"{result}.part.vtkhdf", "r+") as file:
