@@ -246,7 +246,7 @@ def test_a_record_that_is_no_case_is_told(folder, key, value):
         tables["part"][key] = value
         del ours["json"]
         ours["json"] = np.frombuffer(json.dumps(tables).encode(), np.uint8)
-    with pytest.raises(ValueError, match=r"got \S+run.part.vtkhdf, whose case is damaged: part") as error:
+    with pytest.raises(ValueError, match=r"got \S+run.part.vtkhdf, whose case is damaged: Input part") as error:
         read_run(folder / "run").case  # noqa: B018
     assert "pydantic" not in str(error.value) and "\n" not in str(error.value)
 
