@@ -34,7 +34,7 @@ def vibrating(frequency, stroke, inertia=True, start="steady", friction=0.1, **d
         actuators=[ActuatorCase(position=(0.0, 0.0), stroke=stroke, frequency=frequency, **drive)],
         part=PartCase(mass=MASS, position=(90e-6, 0.0)),
         friction=CoulombCase(coefficient=friction, adhesion=ADHESION),
-        run=RunCase(duration=1.0, **run),
+        run=RunCase(duration=0.1, **run),
         name="disc",
     )
 
@@ -108,4 +108,4 @@ def test_a_plate_without_inertia_has_no_steady_state(tmp_path, plate):
     assert "run.start must not be given without inertia = true in [plate]" in done.output
     still = dict(vibrating(FIRST, 1e-6, inertia=False))
     with pytest.raises(ValueError, match=r"run\.start.* must not be given without inertia = true"):
-        Case(**still | {"run": RunCase(duration=1.0, start="steady")})
+        Case(**still | {"run": RunCase(duration=0.1, start="steady")})
