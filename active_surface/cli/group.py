@@ -90,9 +90,10 @@ class Group(Command, click.Group):
         gc.set_threshold(GARBAGE)
         try:
             return super().main(args, *more, **extra)
-        except OSError as error:  # of the output or the error stream, as on a full disk
+        except OSError as error:  # without a file's name of the output or the error stream, as on a full disk
+            what = "active-surface" + ("" if error.filename else ": what it prints cannot be written")
             with suppress(OSError):
-                refusal_of(error, "active-surface: what it prints cannot be written", False, {}).show()
+                refusal_of(error, what, False, {}).show()
             leave(SystemExit(Refusal.exit_code))
         except SystemExit as end:
             leave(end)

@@ -43,7 +43,7 @@ def case_of(record: CaseRecord, name: str, source: str | None = None) -> Case:
     """
     tables, folder = json.loads(record.text), Path(_kept_folder())
     for file, content in record.files.items():
-        if Path(file).name != file or (file.endswith(".xdmf") and _leads_elsewhere(content, record.files)):
+        if Path(file).name != file or (file.lower().endswith(".xdmf") and _leads_elsewhere(content, record.files)):
             raise ValueError(f"its file {file} leads elsewhere")
         (folder / file).write_bytes(content)
     for key in PATHS:

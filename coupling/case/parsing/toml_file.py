@@ -177,12 +177,9 @@ def unfit_name(stem: str) -> str:
     """What is wrong with the name of a file, without its ending, which its results take over; "": nothing."""
     if control := control_in(stem):
         return f"must have a name that can be printed, as its results have it, too; got U+{ord(control):04X} in it"
-    size = len(stem.encode())
-    return (
-        f"must have a name of at most {MAX_NAME} bytes, as its results have it, too; got {size}"
-        if size > MAX_NAME
-        else ""
-    )
+    if (size := len(stem.encode())) > MAX_NAME:
+        return f"must have a name of at most {MAX_NAME} bytes, as its results have it, too; got {size}"
+    return ""
 
 
 def _unreadable(file: str, message: str, line: int | None = None) -> CaseError:

@@ -169,9 +169,10 @@ XDMF = b'<Xdmf Version="3.0"><DataItem Format="%s" Dimensions="3">%s</DataItem><
         (with_text(lambda text: text.replace('"duration"', '"duratoin"')), "run.duratoin of Case is not known"),
         (with_file("..", b"x"), "it cannot be read to its end"),
         (with_file("a.xdmf", XDMF % (b"HDF", b"/etc/a.h5:/x")), "its file a.xdmf leads elsewhere"),
+        (with_file("a.XDMF", XDMF % (b"HDF", b"/etc/a.h5:/x")), "its file a.XDMF leads elsewhere"),
         (with_file("a.xdmf", XDMF % (b"Binary", b"motion.csv")), "its file a.xdmf leads elsewhere"),
     ],
-    ids=["motion", "friction", "field", "folder", "numbers", "raw numbers"],
+    ids=["motion", "friction", "field", "folder", "numbers", "NUMBERS", "raw numbers"],
 )
 def test_a_result_leads_to_no_other_file(moved, tmp_path, alter, wrong):
     result = moved(PLATFORM, motion_csv=MOTION.encode(), friction_csv=POINTS.encode())
