@@ -12,7 +12,6 @@ class Mode(enum.IntEnum):
     SLIDING = 1
     FLYING = 2
     MANIFOLD = 3  # it slides, in its first moments (`events.breakaway`)
-    TURNED = 4  # it came to rest on a slope that pulls it back at once
 
 
 class Verdict(enum.IntEnum):

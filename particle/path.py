@@ -19,18 +19,18 @@ from particle.events import (
     Request,
     clear_memory,
     contact_states,
+    horizon,
     march,
     new_memory,
     new_record,
     pairs_for,
     resume,
-    stays,
 )
 from particle.fixed import between, march_fixed, new_fixed_memory
-from particle.modes import EventKind, Verdict
+from particle.modes import EventKind, Mode, Verdict
 from particle.outcome import Outcome, State
 from particle.samples import Event, samples_of
-from particle.surface import Surface, SurfaceMotion, missing_place, new_local
+from particle.surface import Surface, SurfaceMotion, missing_place
 from particle.trajectory import Trajectory
 
 FloatArray = NDArray[np.float64]
@@ -97,7 +97,7 @@ def find_path(
     trajectory = _trajectory(surface, request, computed, sampler)
     if trajectory.outcome is Outcome.STUCK:
         x, y = trajectory.position[-1].tolist()
-        future = partial(stays, surface, request.part, x, y, request.duration)
+        future = partial(_stays, surface, request, pairs, x, y)
         trajectory = replace(trajectory, future=future)
     return trajectory
 
@@ -126,6 +126,23 @@ def _computed(record: PathRecord, memory: Any) -> Computed:
     )
 
 
+def _stays(surface: SurfaceMotion, request: Request, pairs: Pairs, x: float, y: float) -> bool | None:
+    """Whether a part that rests at (x, y) [m] at the end of the path does so for ever.
+
+    None where that is not known: as for `horizon`, or where a drive's velocity jumps.
+    """
+    after = None if (surface.drives.jump[:, 0] > 0).any() else horizon(surface.drives, request.duration)
+    if after is None:
+        return None
+    still = 0.0 if np.isinf(surface.drives.repeats).any() else 1.0  # s, to look at the surface at rest
+    rest = request._replace(
+        start=np.array([x, y, 0.0, 0.0]), begin=request.duration, duration=after + still, only_rests=True
+    )
+    memory = _memory(surface.record, pairs, np.zeros(1, dtype=np.int64))
+    march(surface.record, rest, pairs, memory, new_record())
+    return bool(memory.now[0].mode == Mode.RESTING and memory.now[0].verdict == Verdict.GOES_ON)
+
+
 def _by_events(surface: SurfaceMotion, request: Request, pairs: Pairs, rows: Rows, times: FloatArray) -> Rows:
     """The rows at ascending times [s]."""
     record = surface.record
@@ -148,8 +165,9 @@ def _by_steps(surface: SurfaceMotion, request: Request, kind: int, rows: Rows, t
 
 def _contact_states(surface: SurfaceMotion, request: Request, rows: Rows) -> Rows:
     """Where contact and centre of mass are at rows of the path, and what acts there."""
-    record, contact = surface.record, surface.half_thickness
-    return contact_states(record, new_local(record), request.part, contact, contact + request.centre_height, rows)
+    contact = surface.half_thickness
+    points = surface.samples(np.column_stack([rows["x"], rows["y"]]), np.ascontiguousarray(rows["time"]))
+    return contact_states(points, request.part, contact, contact + request.centre_height, rows)
 
 
 def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> Computed:

@@ -11,16 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import next_breakpoint
-from particle.events import Part, rest_over_time
+from particle.events import Part, rest_loads
 from particle.friction import Contact, friction_limits
 from particle.micropart import Micropart
 from particle.simulation import part_record
-from particle.surface import SurfaceMotion, missing_place, new_local
+from particle.surface import SurfaceMotion
 
 FloatArray = NDArray[np.float64]
 
 PER_STROKE: Final = 48  # moments in the shortest stroke
 MAX_BREAKPOINTS, MAX_MOMENTS = 20_000, 400_000
+BLOCK: Final = 4096  # moments at a time
 CANDIDATES, POINTS, ROUNDS = 8, 17, 7  # a bracket shrinks by 8 in a round
 ROUNDING: Final = 1e-9  # of the largest value: as large, but for rounding
 
@@ -47,13 +48,13 @@ class PartAtRest:
 
     def loads_and_demands(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The net load (n,) on the part and the force (n,) that would hold it, N, at ascending times (n,) [s]."""
-        while True:
-            surface = self.surface.record
-            local = new_local(surface)
-            loads, pulls = rest_over_time(surface, local, self.part, *self.place, times)
-            if not np.isnan(loads).any():
-                return loads, self.part.mass * pulls
-            self.surface.store.build(missing_place(local))
+        place = np.asarray(self.place, dtype=float)
+        loads, pulls = np.empty(len(times)), np.empty(len(times))
+        for k in range(0, len(times), BLOCK):
+            own = times[k : k + BLOCK]
+            points = self.surface.samples(np.broadcast_to(place, (len(own), 2)).copy(), own)
+            loads[k : k + BLOCK], pulls[k : k + BLOCK] = rest_loads(points, self.part)
+        return loads, self.part.mass * pulls
 
     def slip(self) -> Extreme:
         """The largest force that holds the part over the largest that friction gives: from 1 on it slips."""

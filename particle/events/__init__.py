@@ -25,6 +25,6 @@ from particle.events.mechanics import (
 from particle.events.memory import Memory, clear_memory, new_memory
 from particle.events.record import ROW, EventRow, PathRecord, Row, fill_row, new_record, note, write
 from particle.events.request import Request
-from particle.events.rest import ROUNDING, horizon, load_and_demand, rest_over_time, stays
+from particle.events.rest import ROUNDING, horizon, rest_loads
 from particle.events.sliding import end_reason
 from particle.events.tableau import Pairs, Tableau, pairs_for, tableau

@@ -12,7 +12,9 @@ from particle.events.record import Row
 from particle.jit import jit
 from particle.modes import Mode
 from particle.records import Record, record_type
-from particle.surface import LocalSurface, Surface, enter, surface_at
+from particle.surface import point_of
+
+FloatArray = NDArray[np.float64]
 
 
 class ContactState(Record):
@@ -40,24 +42,17 @@ CONTACT_STATE = record_type(ContactState)
 
 @jit
 def contact_states(
-    surface: Surface, local: LocalSurface, part: Part, contact: float, centre: float, rows: NDArray[Row]
+    points: FloatArray, part: Part, contact: float, centre: float, rows: NDArray[Row]
 ) -> NDArray[ContactState]:
-    """The states (k,) at the rows (k,) of a path; nan where the surface has no cell.
+    """The states (k,) at the rows (k,) of a path, over points of the surface (k, 49); nan where these are.
 
     contact, centre: m, the heights over the mid-plane, also of a part on a surface that stays level.
     """
     out = np.zeros(len(rows), CONTACT_STATE)
     point = Part(part.mass, part.gravity, part.tilt_x, part.tilt_y, part.squeeze, part.law, 0.0, 0.0)
     for k in range(len(rows)):
-        row, state = rows[k], out[k]
+        row, state, f = rows[k], out[k], point_of(points[k])
         x, y, v_x, v_y = row.x, row.y, row.v_x, row.v_y
-        if enter(surface, local, x, y, row.time, math.inf) < 0:
-            state.x = state.y = state.z = state.centre_x = state.centre_y = state.centre_z = math.nan
-            state.normal_x = state.normal_y = state.normal_z = math.nan
-            state.friction_x = state.friction_y = state.friction_z = math.nan
-            state.pull = state.point_pull = state.added_pull = math.nan
-            continue
-        f = surface_at(local, x, y, row.time)
         s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
         n_x, n_y, n_z = -f.w_x / s, -f.w_y / s, 1 / s
         x, y = x + f.base_px, y + f.base_py

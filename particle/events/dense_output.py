@@ -74,4 +74,3 @@ def _go_to(surface: Surface, request: Request, pairs: Pairs, memory: Memory, end
             fly(surface, request, memory)
         else:
             slide(surface, request, pairs, memory)
-            now.mode = Mode.MANIFOLD if now.mode == Mode.TURNED else now.mode

@@ -44,12 +44,14 @@ def march(surface: Surface, request: Request, pairs: Pairs, memory: Memory, reco
             break
         before = now.mode
         if before == Mode.RESTING:
-            _rest(request, memory)
+            event = _rest(request, memory)
         elif before == Mode.FLYING:
-            _fly(surface, request, memory)
+            event = _fly(surface, request, memory)
         else:
-            _slide(surface, request, pairs, memory)
-        record = _note(request, memory, record, before)
+            event = slide(surface, request, pairs, memory)
+        record = _note(request, memory, record, before, event)
+        if request.only_rests and now.mode != Mode.RESTING:
+            break
     return _note_end(memory, record)
 
 
@@ -59,6 +61,7 @@ def _begin(request: Request, memory: Memory) -> None:
     now: Now = memory.now[0]
     motion: Motion = memory.motion[0]
     motion.x, motion.y, motion.v_x, motion.v_y = request.start[0], request.start[1], request.start[2], request.start[3]
+    now.time = now.span_end = request.begin
     now.mode = Mode.RESTING if motion.v_x == 0.0 and motion.v_y == 0.0 else Mode.SLIDING
     now.h, now.verdict = FIRST_STEP * request.stroke_time, Verdict.GOES_ON
 
@@ -75,8 +78,6 @@ def _enter(surface: Surface, request: Request, memory: Memory, record: PathRecor
         return record
     if now.time >= now.span_end:
         now.h = max(now.h, MIN_SPAN_STEP * request.stroke_time)
-        if request.bends or request.jumps:
-            memory.step.seen[0].time = math.nan
         if request.jumps and counts.spans > 0:
             record = _cross_breakpoint(surface, request, memory, record)
             if now.verdict != Verdict.GOES_ON:
@@ -131,60 +132,47 @@ def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record
 
 
 @jit
-def _rest(request: Request, memory: Memory) -> None:
-    """The part stays until it leaves or the span ends."""
+def _rest(request: Request, memory: Memory) -> int:
+    """The part stays until it leaves or the span ends; SLIPS or NO_EVENT."""
     now: Now = memory.now[0]
     counts: Counts = memory.counts[0]
     motion: Motion = memory.motion[0]
     local, part, law = memory.local, request.part, request.part.law
     energy = energy_at_rest(local, part, now.time, motion)
     leaves = leaves_rest(local, part, memory.rest, motion.x, motion.y, now.time, now.span_end)
-    now.time, now.event = min(leaves, now.span_end), NO_EVENT
+    now.time = min(leaves, now.span_end)
     # A part at rest dissipates nothing: all that its energy gains is the surface's work.
     motion.work += energy_at_rest(local, part, now.time, motion) - energy
     counts.evaluations += 3
     if leaves == math.inf:
-        return
+        return NO_EVENT
     a = rest_pull(surface_at(local, motion.x, motion.y, now.time), part)
     above, below = a.load + law.pull_off, law.largest_load - a.load
     # Rounding must not make a slip of what is the end of contact.
     ends = min(above, below) < ROUNDING * request.force
     if margin(local, part, a.load, 0.0) < 0.0 or (ends and a.demand <= law.static_ratio * a.limit):
         now.verdict = Verdict.DETACHED if above < below else Verdict.OVERLOADED
-    else:
-        now.mode, now.h = first_mode(part, a.load), FIRST_STEP * request.stroke_time
-        now.event = EventKind.SLIPS
+        return NO_EVENT
+    now.mode, now.h = first_mode(part, a.load), FIRST_STEP * request.stroke_time
+    return EventKind.SLIPS.value
 
 
 @jit
-def _fly(surface: Surface, request: Request, memory: Memory) -> None:
-    """The part flies one step, at most to where it lands."""
+def _fly(surface: Surface, request: Request, memory: Memory) -> int:
+    """The part flies one step, at most to where it lands; LANDS or NO_EVENT."""
     now: Now = memory.now[0]
     motion: Motion = memory.motion[0]
-    now.event = NO_EVENT
-    fly(surface, request, memory)
-    if now.mode != Mode.FLYING:
+    event = fly(surface, request, memory)
+    if event != NO_EVENT:
         f = surface_at(memory.local, motion.x, motion.y, now.time)
         # A surface that falls away as it is met is not held on to.
         if pull(f, motion.v_x, motion.v_y, request.part).normal < -request.part.law.pull_off:
             now.mode = Mode.FLYING
-        now.event = EventKind.LANDS
+    return event
 
 
 @jit
-def _slide(surface: Surface, request: Request, pairs: Pairs, memory: Memory) -> None:
-    """The part slides one step, at most to where it stops."""
-    now: Now = memory.now[0]
-    now.event = NO_EVENT
-    slide(surface, request, pairs, memory)
-    if now.mode == Mode.RESTING:
-        now.event = EventKind.STOPS
-    elif now.mode == Mode.TURNED:
-        now.mode, now.event = Mode.MANIFOLD, EventKind.REVERSES
-
-
-@jit
-def _note(request: Request, memory: Memory, record: PathRecord, before: int) -> PathRecord:
+def _note(request: Request, memory: Memory, record: PathRecord, before: int, event: int) -> PathRecord:
     """Records what has happened, and where the part is; `before`: the mode that it was in."""
     now: Now = memory.now[0]
     counts: Counts = memory.counts[0]
@@ -192,13 +180,13 @@ def _note(request: Request, memory: Memory, record: PathRecord, before: int) -> 
     row: Row = memory.row[0]
     fill_row(memory.local, request.part, now.mode, now.time, motion, row)
     if now.verdict == Verdict.DETACHED and request.flies:
-        now.verdict, now.event = Verdict.GOES_ON, EventKind.DETACHES
+        now.verdict, event = Verdict.GOES_ON, EventKind.DETACHES.value
         motion.v_x, motion.v_y = row.v_x, row.v_y
         take_off(memory.local, now.time, motion)
         now.mode, now.h = Mode.FLYING, FIRST_STEP * request.stroke_time
-    if now.event != NO_EVENT:
-        record = note(record, now.event, row)
-    if now.event == EventKind.LANDS and now.mode == Mode.FLYING:
+    if event != NO_EVENT:
+        record = note(record, event, row)
+    if event == EventKind.LANDS and now.mode == Mode.FLYING:
         record = note(record, EventKind.DETACHES, row)
     if now.mode != before:
         fill_row(memory.local, request.part, now.mode, now.time, motion, row)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -52,6 +51,5 @@ def new_memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memor
 def clear_memory(surface: Surface, memory: Memory) -> None:
     """Make the scratch memory of another path, over a surface of the same measures, as good as new."""
     prepare(surface, memory.local)
-    memory.step.seen[0].time = math.nan
     for array in (memory.motion, memory.now, memory.counts):
         array[:] = np.zeros_like(array)

@@ -1,4 +1,4 @@
-"""Polynomials in powers of time: sums, products, derivatives, and parts of an interval."""
+"""Polynomials in powers of time: sums, derivatives, and parts of an interval."""
 
 from __future__ import annotations
 
@@ -26,22 +26,6 @@ def second_derivative(c: FloatArray, unit: float) -> FloatArray:
     for k in range(len(out)):
         out[k] = (k + 2) * (k + 1) * c[k + 2] / (unit * unit)
     return out
-
-
-@jit
-def product(a: FloatArray, b: FloatArray) -> FloatArray:
-    """The product of two polynomials."""
-    out = np.zeros(len(a) + len(b) - 1)
-    for i in range(len(a)):
-        for j in range(len(b)):
-            out[i + j] += a[i] * b[j]
-    return out
-
-
-@jit
-def dot(a_x: FloatArray, a_y: FloatArray, b_x: FloatArray, b_y: FloatArray) -> FloatArray:
-    """The scalar product of two vectors."""
-    return total(product(a_x, b_x), product(a_y, b_y))
 
 
 @jit

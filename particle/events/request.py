@@ -17,7 +17,7 @@ class Request(NamedTuple):
 
     part: Part
     start: FloatArray  # (4,) m, m, m/s, m/s
-    duration: float  # s
+    duration: float  # s, the time at its end
     tolerance: float  # m, error of one step
     stroke_time: float  # s, the shortest stroke
     force: float  # N, that of gravity and of crossing the surface in a stroke
@@ -26,3 +26,5 @@ class Request(NamedTuple):
     bends: bool  # whether its acceleration does
     centre_height: float  # m, of the part's centre of mass over its contact
     bridged: tuple[float, float]  # m/s, m/s^2, how far the surface may be off over bridged breakpoints
+    begin: float = 0.0  # s
+    only_rests: bool = False  # whether the path ends where the part leaves rest

@@ -140,7 +140,7 @@ def march_fixed(
             now.time = begin
             record = _write(memory, part, scheme, record, EventKind.SLIPS)
             now.time = begin + ahead
-        _find_event(part, memory, f, before)
+        event = _find_event(part, memory, f, before)
         motion.v_x, motion.v_y, motion.v_z = after.v_x, after.v_y, after.v_z
         motion.work, motion.dissipated = after.work, after.dissipated
         gap, share = move(surface, gap, motion, way_x, way_y)
@@ -148,8 +148,8 @@ def march_fixed(
             now.time += share * (until - now.time)
             break
         now.time = until
-        if now.event != NO_EVENT or (n + 1) % every == 0 or n + 1 == steps:
-            record = _write(memory, part, scheme, record, now.event)
+        if event != NO_EVENT or (n + 1) % every == 0 or n + 1 == steps:
+            record = _write(memory, part, scheme, record, event)
     if now.verdict != Verdict.GOES_ON and now.verdict != Verdict.LACKS_CELL:
         enter(surface, local, motion.x, motion.y, now.time, math.inf)
         record = _write(memory, part, scheme, record, END_EVENTS + now.verdict)
@@ -185,20 +185,21 @@ def _enter(surface: Surface, memory: FixedMemory, time: float, share: float) -> 
 
 
 @jit
-def _find_event(part: Part, memory: FixedMemory, f: SurfacePoint, before: int) -> None:
-    """What has happened to a part that slid before the step."""
+def _find_event(part: Part, memory: FixedMemory, f: SurfacePoint, before: int) -> int:
+    """What has happened to a part that slid before the step: STOPS, REVERSES or NO_EVENT."""
     now: Now = memory.now[0]
     motion: Motion = memory.motion[0]
     after: Motion = memory.after[0]
-    now.event = NO_EVENT
     if before == Mode.SLIDING and now.mode == Mode.RESTING:
         a = rest_pull(f, part)
-        now.event = EventKind.STOPS
-        if a.demand > part.law.static_ratio * a.limit:
-            now.mode, now.event = Mode.SLIDING, EventKind.REVERSES
-    # A path that turns by more than a right angle within one step is not told from one that turns back.
-    elif before == Mode.SLIDING and after.v_x * motion.v_x + after.v_y * motion.v_y < 0.0:
-        now.event = EventKind.REVERSES
+        if a.demand <= part.law.static_ratio * a.limit:
+            return EventKind.STOPS.value
+        now.mode = Mode.SLIDING
+        return EventKind.REVERSES.value
+    # A path that turns by more than a right angle within one step looks like one that turns back.
+    if before == Mode.SLIDING and after.v_x * motion.v_x + after.v_y * motion.v_y < 0.0:
+        return EventKind.REVERSES.value
+    return NO_EVENT
 
 
 @jit

@@ -1,11 +1,10 @@
 """The moving surface: its cells, and the polynomial that a part sees of it."""
 
-from particle.surface.at_point import SurfacePoint, motion_at, surface_at
+from particle.surface.at_point import SurfacePoint, motion_at, point_of, surface_at
 from particle.surface.bridge import allow_bridges
 from particle.surface.cells import NO_PLANE, NOWHERE, UNBUILT, WHOLE, BuiltCells, CellFit, CellPool, Cells
 from particle.surface.local import Frame, LocalSurface, gap_at, missing_place, new_local, prepare, within_cell
 from particle.surface.moving_surface import SurfaceMotion
-from particle.surface.planar import planar_motion_at
 from particle.surface.record import Surface
 from particle.surface.rim import ROUNDING, first_beyond, rim_gap
 from particle.surface.span import advance, enter

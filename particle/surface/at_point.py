@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from particle.drives import ORDER, evaluate_piece
 from particle.jit import jit, jit_no_arrays
 from particle.surface.cells import UNBUILT
+from particle.surface.jet import Jet, at_time, fill_quintics, jet
 from particle.surface.local import Frame, LocalSurface
-from particle.surface.planar import planar_at
 from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
 from particle.surface.span import enter
@@ -69,83 +69,37 @@ class SurfacePoint(NamedTuple):
     y_yy: float
 
 
-@jit_no_arrays
-def at_time(local: LocalSurface, time: float) -> None:
-    """The cell's polynomial and logarithms at `time` [s], with two derivatives, into `at`."""
-    frame: Frame = local.frame[0]
-    unit = frame.unit
-    s = (time - frame.time) / unit
-    c, at = local.smooth, local.at
-    for m in range(frame.monomials + frame.logarithms):
-        at[0, m] = ((((c[5, m] * s + c[4, m]) * s + c[3, m]) * s + c[2, m]) * s + c[1, m]) * s + c[0, m]
-        at[1, m] = ((((5 * c[5, m] * s + 4 * c[4, m]) * s + 3 * c[3, m]) * s + 2 * c[2, m]) * s + c[1, m]) / unit
-        at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
+POINT_SIZE = len(SurfacePoint._fields)
 
 
 @jit_no_arrays
 def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfacePoint:
-    """The surface at a point [m] of the prepared cell and a time [s] of the prepared span."""
-    at_time(local, time)
+    """The surface at a point [m] of the prepared cell and a time [s] of the prepared span.
+
+    w = sum c_ij u^i v^j + sum f_k |X - X_k|^2 ln |X - X_k|, lengths in the logarithms over the surface's size.
+    """
     frame: Frame = local.frame[0]
-    at, size = local.at, frame.surface_size
-    half_x, half_y = frame.half_x, frame.half_y
-    u, v = (x - frame.x) / half_x, (y - frame.y) / half_y
-    w = w_u = w_uu = w_uuu = w_v = w_uv = w_uuv = w_vv = w_uvv = w_vvv = 0.0
-    w_t = w_ut = w_uut = w_vt = w_uvt = w_vvt = w_tt = w_utt = w_vtt = 0.0
-    monomials, degree = frame.monomials, frame.degree
-    m = monomials
-    # Horner in v inside Horner in u; n times u or v in a name stands for the n-th derivative over n!.
-    for i in range(degree, -1, -1):
-        a = a_v = a_vv = a_vvv = b = b_v = b_vv = c = c_v = 0.0
-        for _ in range(degree + 1 - i):
-            m -= 1
-            a_vvv = a_vvv * v + a_vv
-            a_vv = a_vv * v + a_v
-            a_v = a_v * v + a
-            a = a * v + at[0, m]
-            b_vv = b_vv * v + b_v
-            b_v = b_v * v + b
-            b = b * v + at[1, m]
-            c_v = c_v * v + c
-            c = c * v + at[2, m]
-        w_uuu = w_uuu * u + w_uu
-        w_uu = w_uu * u + w_u
-        w_u = w_u * u + w
-        w = w * u + a
-        w_uuv = w_uuv * u + w_uv
-        w_uv = w_uv * u + w_v
-        w_v = w_v * u + a_v
-        w_uvv = w_uvv * u + w_vv
-        w_vv = w_vv * u + a_vv
-        w_vvv = w_vvv * u + a_vvv
-        w_uut = w_uut * u + w_ut
-        w_ut = w_ut * u + w_t
-        w_t = w_t * u + b
-        w_uvt = w_uvt * u + w_vt
-        w_vt = w_vt * u + b_v
-        w_vvt = w_vvt * u + b_vv
-        w_utt = w_utt * u + w_tt
-        w_tt = w_tt * u + c
-        w_vtt = w_vtt * u + c_v
-    g_x, g_y, g_xt, g_yt = w_u / half_x, w_v / half_y, w_ut / half_x, w_vt / half_y
-    g_xtt, g_ytt = w_utt / half_x, w_vtt / half_y
-    h_xx, h_xy, h_yy = 2 * w_uu / half_x**2, w_uv / (half_x * half_y), 2 * w_vv / half_y**2
-    h_xxt, h_xyt, h_yyt = 2 * w_uut / half_x**2, w_uvt / (half_x * half_y), 2 * w_vvt / half_y**2
-    t_xxx, t_xxy = 6 * w_uuu / half_x**3, 2 * w_uuv / (half_x**2 * half_y)
-    t_xyy, t_yyy = 2 * w_uvv / (half_x * half_y**2), 6 * w_vvv / half_y**3
+    size = frame.surface_size
+    u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
+    s, unit = (time - frame.time) / frame.unit, frame.unit
+    at_time(local.smooth, local.at, 0, frame.monomials + frame.logarithms, s, unit)
+    f = jet(local.at, frame.monomials, frame.degree, u, v, frame.half_x, frame.half_y)
+    w, w_t, w_tt, g_x, g_y, g_xt, g_yt, g_xtt, g_ytt = f.f, f.t, f.tt, f.x, f.y, f.xt, f.yt, f.xtt, f.ytt
+    h_xx, h_xy, h_yy, h_xxt, h_xyt, h_yyt = f.xx, f.xy, f.yy, f.xxt, f.xyt, f.yyt
+    t_xxx, t_xxy, t_xyy, t_yyy = f.xxx, f.xxy, f.xyy, f.yyy
     for j in range(frame.logarithms):
         d_x, d_y = (x - local.sources[j, 0]) / size, (y - local.sources[j, 1]) / size
         square = d_x * d_x + d_y * d_y
         bounded, inner, logarithm = _logarithm(frame.floor, square)
-        m = monomials + j
-        f, f_t, f_tt = at[0, m], at[1, m], at[2, m]
+        m = frame.monomials + j
+        f_k, f_t, f_tt = local.at[0, m], local.at[1, m], local.at[2, m]
         value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
         slope = (logarithm + 1 + inner) / size
-        w += f * value
+        w += f_k * value
         w_t += f_t * value
         w_tt += f_tt * value
-        g_x += f * slope * d_x
-        g_y += f * slope * d_y
+        g_x += f_k * slope * d_x
+        g_y += f_k * slope * d_y
         g_xt += f_t * slope * d_x
         g_yt += f_t * slope * d_y
         g_xtt += f_tt * slope * d_x
@@ -155,30 +109,29 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
         h_xyt += bend_t * 2 * d_x * d_y / bounded
         h_yyt += bend_t * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
         # Within the floor the third derivatives are those of the parabola in r^2.
-        twist, once = f / (size * size * size), 2 / bounded
+        twist, once = f_k / (size * size * size), 2 / bounded
         cubed = -4 / (bounded * bounded) if inner == 0.0 else 0.0
         t_xxx += twist * d_x * (3 * once + cubed * d_x * d_x)
         t_xxy += twist * d_y * (once + cubed * d_x * d_x)
         t_xyy += twist * d_x * (once + cubed * d_y * d_y)
         t_yyy += twist * d_y * (3 * once + cubed * d_y * d_y)
-        bend = f / (size * size)
+        bend = f_k / (size * size)
         h_xx += bend * (logarithm + 1 + inner + 2 * d_x * d_x / bounded)
         h_xy += bend * 2 * d_x * d_y / bounded
         h_yy += bend * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
     base_px = base_py = base_vx = base_vy = base_ax = base_ay = 0.0
     if frame.base_drives > 0:
-        s, unit = (time - frame.time) / frame.unit, frame.unit
         base_px, base_vx, base_ax = evaluate_piece(local.base[:, 0], s, unit)
         base_py, base_vy, base_ay = evaluate_piece(local.base[:, 1], s, unit)
     x_x, x_y, y_x, y_y = 1.0, 0.0, 0.0, 1.0
     x_xt = x_yt = y_xt = y_yt = x_xx = x_xy = x_yy = y_xx = y_xy = y_yy = 0.0
     if frame.in_plane > 0:
-        along_x, along_y = planar_at(local, 0, x, y, time), planar_at(local, frame.plane_monomials, x, y, time)
+        along_x, along_y = plane_jet(local, 0, x, y, time), plane_jet(local, 1, x, y, time)
         x_x, x_y, y_x, y_y = 1 + along_x.x, along_x.y, along_y.x, 1 + along_y.y
         x_xt, x_yt, y_xt, y_yt = along_x.xt, along_x.yt, along_y.xt, along_y.yt
         x_xx, x_xy, x_yy, y_xx, y_xy, y_yy = along_x.xx, along_x.xy, along_x.yy, along_y.xx, along_y.xy, along_y.yy
-        base_px, base_vx, base_ax = base_px + along_x.u, base_vx + along_x.t, base_ax + along_x.tt
-        base_py, base_vy, base_ay = base_py + along_y.u, base_vy + along_y.t, base_ay + along_y.tt
+        base_px, base_vx, base_ax = base_px + along_x.f, base_vx + along_x.t, base_ax + along_x.tt
+        base_py, base_vy, base_ay = base_py + along_y.f, base_vy + along_y.t, base_ay + along_y.tt
         # The slope seen in space: grad w = (I + grad u)^T g.
         det = x_x * y_y - x_y * y_x
         g_x, g_y = (y_y * g_x - y_x * g_y) / det, (x_x * g_y - x_y * g_x) / det
@@ -197,6 +150,16 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
 
 
 @jit_no_arrays
+def plane_jet(local: LocalSurface, along: int, x: float, y: float, time: float) -> Jet:
+    """The motion u [m] of the mid-plane in its plane along x (0) or y (1), the base's excluded."""
+    frame: Frame = local.frame[0]
+    u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
+    first, end = along * frame.plane_monomials, (along + 1) * frame.plane_monomials
+    at_time(local.plane, local.plane_at, first, end, (time - frame.time) / frame.unit, frame.unit)
+    return jet(local.plane_at, end, frame.plane_degree, u, v, frame.half_x, frame.half_y)
+
+
+@jit_no_arrays
 def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     """What r^2 ln r is made of: r^2 outside the floor, how far r is inside it, and 2 ln r there; lengths over the size.
 
@@ -207,63 +170,72 @@ def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
 
 
 @jit_no_arrays
-def motion_at(local: LocalSurface, x: float, y: float, out: FloatArray) -> None:
-    """The surface at a fixed point [m] as polynomials in time: w, w_x, w_y into `out` (3, 6)."""
+def motion_at(local: LocalSurface, x: float, y: float, motion: FloatArray, plane: FloatArray) -> None:
+    """The surface at a fixed point [m] as polynomials in (t - time) / unit.
+
+    motion (3, 6): w, w_x, w_y.  plane (6, 6): the place along x, base included, its derivatives by x and y; the same
+    along y.
+    """
     frame: Frame = local.frame[0]
-    size, c = frame.surface_size, local.smooth
+    size = frame.surface_size
     u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
-    monomials, degree = frame.monomials, frame.degree
-    for k in range(ORDER):
-        w = w_u = w_v = 0.0
-        m = monomials
-        for i in range(degree, -1, -1):
-            a = a_v = 0.0
-            for _ in range(degree + 1 - i):
-                m -= 1
-                a_v = a_v * v + a
-                a = a * v + c[k, m]
-            w_u = w_u * u + w
-            w = w * u + a
-            w_v = w_v * u + a_v
-        out[0, k], out[1, k], out[2, k] = w, w_u / frame.half_x, w_v / frame.half_y
+    half_x, half_y = frame.half_x, frame.half_y
+    fill_quintics(local.smooth, frame.monomials, frame.degree, u, v, half_x, half_y, motion, 0)
     for j in range(frame.logarithms):
         d_x, d_y = (x - local.sources[j, 0]) / size, (y - local.sources[j, 1]) / size
         bounded, inner, logarithm = _logarithm(frame.floor, d_x * d_x + d_y * d_y)
         value = 0.5 * bounded * (logarithm + inner * (logarithm + 1 + 0.5 * inner))
         slope = (logarithm + 1 + inner) / size
         for k in range(ORDER):
-            f = c[k, monomials + j]
-            out[0, k] += f * value
-            out[1, k] += f * slope * d_x
-            out[2, k] += f * slope * d_y
+            f = local.smooth[k, frame.monomials + j]
+            motion[0, k] += f * value
+            motion[1, k] += f * slope * d_x
+            motion[2, k] += f * slope * d_y
+    plane[:] = 0.0
+    if frame.in_plane > 0:
+        count, degree = frame.plane_monomials, frame.plane_degree
+        for along in range(2):
+            fill_quintics(local.plane, (along + 1) * count, degree, u, v, half_x, half_y, plane, 3 * along)
+    for k in range(ORDER):
+        plane[0, k] += local.base[k, 0]
+        plane[3, k] += local.base[k, 1]
 
 
 @jit
-def evaluate_points(
-    surface: Surface, local: LocalSurface, xy: FloatArray, time: float
+def sample_surface(
+    surface: Surface, local: LocalSurface, xy: FloatArray, times: FloatArray
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Height and slopes at points (n, 2) [m] and one time [s], nan beyond the rim: (n, 18).
+    """The surface at points (n, 2) [m] and times (n,) [s], nan beyond the rim: (n, 49); (n,) which lack a cell yet.
 
-    The first twelve of `SurfacePoint`, derivatives of w itself; then u, u_t and u_tt. Also (n,) which of the points
-    have no cell yet.
+    A row is a `SurfacePoint`; then u, u_t, u_tt, u_xtt and u_ytt along x and along y, the base's motion excluded.
     """
-    out, missing = np.full((len(xy), 18), math.nan), np.zeros(len(xy), dtype=np.bool_)
+    out, missing = np.full((len(xy), POINT_SIZE + 10), math.nan), np.zeros(len(xy), dtype=np.bool_)
     for n in range(len(xy)):
-        x, y = xy[n]
+        x, y = xy[n, 0], xy[n, 1]
         if rim_gap(surface, x, y) < -1e-9 * surface.size:
             continue
-        cell = enter(surface, local, x, y, time, math.inf)
+        cell = enter(surface, local, x, y, times[n], math.inf)
         missing[n] = cell == UNBUILT
-        if cell >= 0:
-            f = surface_at(local, x, y, time)
-            out[n, :10] = np.array([f.w, f.w_t, f.w_tt, f.w_x, f.w_y, f.w_xt, f.w_yt, f.w_xx, f.w_xy, f.w_yy])
-            out[n, 10:12] = np.array([f.w_xtt, f.w_ytt])
-            out[n, 12:] = 0.0
-            if local.frame[0].in_plane > 0:
-                a = planar_at(local, 0, x, y, time)
-                b = planar_at(local, local.frame[0].plane_monomials, x, y, time)
-                out[n, 3:5] = np.array([f.x_x * f.w_x + f.y_x * f.w_y, f.x_y * f.w_x + f.y_y * f.w_y])
-                out[n, 5:12] += f.w_x * np.array([a.xt, a.yt, a.xx, a.xy, a.yy, a.xtt, a.ytt])
-                out[n, 5:12] += f.w_y * np.array([b.xt, b.yt, b.xx, b.xy, b.yy, b.xtt, b.ytt])
-                out[n, 12:] = np.array([a.u, b.u, a.t, b.t, a.tt, b.tt])
+        if cell < 0:
+            continue
+        f = surface_at(local, x, y, times[n])
+        for k in range(POINT_SIZE):
+            out[n, k] = f[k]
+        for k in range(POINT_SIZE, out.shape[1]):
+            out[n, k] = 0.0
+        if local.frame[0].in_plane > 0:
+            for along in range(2):
+                u, k = plane_jet(local, along, x, y, times[n]), POINT_SIZE + 5 * along
+                out[n, k], out[n, k + 1], out[n, k + 2], out[n, k + 3], out[n, k + 4] = u.f, u.t, u.tt, u.xtt, u.ytt
     return out, missing
+
+
+@jit_no_arrays
+def point_of(row: FloatArray) -> SurfacePoint:
+    """The `SurfacePoint` of a row of `sample_surface`."""
+    return SurfacePoint(
+        *(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11], row[12]),
+        *(row[13], row[14], row[15], row[16], row[17], row[18], row[19], row[20], row[21], row[22], row[23], row[24]),
+        *(row[25], row[26], row[27], row[28], row[29], row[30], row[31], row[32], row[33], row[34], row[35], row[36]),
+        *(row[37], row[38]),
+    )

@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from particle.drives import AnyDrive, DriveTable, accelerations, drive_table, scaled_table
-from particle.surface.at_point import evaluate_points
+from particle.surface.at_point import POINT_SIZE, SurfacePoint, sample_surface
 from particle.surface.cells import NOWHERE, CellStore
 from particle.surface.local import new_local
 from particle.surface.record import Surface
@@ -185,22 +185,33 @@ class SurfaceMotion:
         if not math.isfinite(time):
             raise ValueError(f"Input time of evaluate must be a finite number of seconds; got {time}")
         xy = np.atleast_2d(np.asarray(xy, dtype=float))
-        rows, missing = self._points(xy, time)
-        if missing.any():
-            self.store.build(xy[missing])
-            rows, _ = self._points(xy, time)
+        rows = self.samples(xy, np.full(len(xy), float(time)))
         if np.isnan(rows).any():
             beyond = xy[np.isnan(rows).any(axis=1)][0].tolist()
             raise ValueError(f"Input xy of evaluate must lie on the surface; got {beyond} m")
-        w, w_t, w_tt, x, y, xt, yt, xx, xy_, yy, xtt, ytt = rows.T[:12]
-        hessian = np.stack([np.stack([xx, xy_], axis=-1), np.stack([xy_, yy], axis=-1)], axis=-2)
-        gradient, gradient_t, gradient_tt = (np.stack(pair, axis=-1) for pair in ((x, y), (xt, yt), (xtt, ytt)))
-        u, u_t, u_tt = rows[:, 12:14], rows[:, 14:16], rows[:, 16:]
-        return SurfaceState(w, w_t, w_tt, gradient, gradient_t, hessian, gradient_tt, u, u_t, u_tt)
+        f: Any = SurfacePoint(*rows.T[:POINT_SIZE])  # of arrays (n,)
+        u, v = rows.T[POINT_SIZE:].reshape(2, 5, -1)
 
-    def _points(self, xy: FloatArray, time: float) -> tuple[FloatArray, NDArray[np.bool_]]:
-        surface = self.record
-        return evaluate_points(surface, new_local(surface), xy, float(time))
+        def pair(x: FloatArray, y: FloatArray) -> FloatArray:
+            return np.stack([x, y], axis=-1)
+
+        # The derivatives of w itself, from those that hold (-g, 1).P: grad w = F^T g, w_pq = f.w_pq + g.u_pq.
+        gradient = pair(f.x_x * f.w_x + f.y_x * f.w_y, f.x_y * f.w_x + f.y_y * f.w_y)
+        gradient_t = pair(f.w_xt + f.w_x * f.x_xt + f.w_y * f.y_xt, f.w_yt + f.w_x * f.x_yt + f.w_y * f.y_yt)
+        gradient_tt = pair(f.w_xtt + f.w_x * u[3] + f.w_y * v[3], f.w_ytt + f.w_x * u[4] + f.w_y * v[4])
+        w_xx, w_xy = f.w_xx + f.w_x * f.x_xx + f.w_y * f.y_xx, f.w_xy + f.w_x * f.x_xy + f.w_y * f.y_xy
+        w_yy = f.w_yy + f.w_x * f.x_yy + f.w_y * f.y_yy
+        hessian = np.stack([pair(w_xx, w_xy), pair(w_xy, w_yy)], axis=-2)
+        moved = pair(u[0], v[0]), pair(u[1], v[1]), pair(u[2], v[2])
+        return SurfaceState(f.w, f.w_t, f.w_tt, gradient, gradient_t, hessian, gradient_tt, *moved)
+
+    def samples(self, xy: FloatArray, times: FloatArray) -> FloatArray:
+        """The rows (n, 49) of `sample_surface` at points (n, 2) [m] and times (n,) [s]; cells are built as needed."""
+        rows, missing = sample_surface(self.record, new_local(self.record), xy, times)
+        if missing.any():
+            self.store.build(xy[missing])
+            rows, _ = sample_surface(self.record, new_local(self.record), xy, times)
+        return rows
 
     def base_acceleration(self, time: float) -> FloatArray:
         """The acceleration (2,) [m/s^2] of its base along x and y at a time [s]; zero where it does not move."""

@@ -31,7 +31,7 @@ from particle.events.memory import Memory
 from particle.events.request import Request
 from particle.events.sliding import MIN_STEP
 from particle.jit import jit
-from particle.modes import Verdict
+from particle.modes import NO_EVENT, EventKind, Verdict
 from particle.surface import LocalSurface, Surface, SurfacePoint, first_beyond, rim_gap, surface_at, within_cell
 
 FloatArray = NDArray[np.float64]
@@ -47,8 +47,11 @@ def take_off(local: LocalSurface, time: float, motion: Motion) -> None:
 
 
 @jit
-def fly(surface: Surface, request: Request, memory: Memory) -> None:
-    """Moves the part on by one step of about now.h [s], at most to now.span_end, to the landing or to the rim."""
+def fly(surface: Surface, request: Request, memory: Memory) -> int:
+    """Moves the part on by one step of about now.h [s], at most to now.span_end, to the landing or to the rim.
+
+    Returns LANDS or NO_EVENT.
+    """
     now: Now = memory.now[0]
     motion: Motion = memory.motion[0]
     end: Motion = memory.step.end[0]
@@ -56,7 +59,7 @@ def fly(surface: Surface, request: Request, memory: Memory) -> None:
     here = surface_at(local, motion.x, motion.y, time)
     heights = _heights(request, memory, here, GRAZE * surface.size)
     if now.verdict != Verdict.GOES_ON:
-        return
+        return NO_EVENT
     h = now.h
     lands = first_negative(heights + GRAZE * surface.size)
     start_gap = rim_gap(surface, motion.x, motion.y)
@@ -76,10 +79,12 @@ def fly(surface: Surface, request: Request, memory: Memory) -> None:
             motion.z = f.w  # on its way up: cells that differ by their error are no landing
         else:
             now.mode = land(f, part, MIN_JUMP * surface.size / request.stroke_time, motion)
+            return EventKind.LANDS.value
     else:
         memory.motion[0] = memory.step.end[0]
         now.time = now.span_end if h == remaining else time + h
         now.h = 2 * h
+    return NO_EVENT
 
 
 @jit

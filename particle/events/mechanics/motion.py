@@ -34,7 +34,7 @@ class Now(Record):
     h: float  # s, the next step
     span_end: float  # s, until which the surface is prepared
     verdict: int  # Verdict
-    event: int  # EventKind or NO_EVENT
+    gap: float  # m, from the rim, where a step starts
 
 
 class Counts(Record):

@@ -1,4 +1,4 @@
-"""Whether a part that rests at the end of a run stays for good: whatever the drives still do."""
+"""When the drives have done all that they will ever do."""
 
 from __future__ import annotations
 
@@ -8,32 +8,17 @@ from fractions import Fraction
 import numpy as np
 
 from particle.drives import DriveTable
-from particle.events.mechanics import Part
-from particle.events.rest.stick import Rest, leaves_rest, new_rest
-from particle.jit import jit
-from particle.surface import LocalSurface, Surface, SurfaceMotion, enter, new_local
 
 MAX_PASSES = 1000  # of any endless drive in the period that all have in common
 ROUNDING = 1e-12
 
 
-def stays(surface: SurfaceMotion, part: Part, x: float, y: float, time: float) -> bool | None:
-    """Whether a part that rests at (x, y) [m] at a time [s] does so for ever.
-
-    None: not known, as the endless drives have no common period of up to a thousand passes of each, a drive is
-    a polynomial without end, or a drive's velocity jumps.
-    """
-    if (surface.drives.jump[:, 0] > 0).any():
-        return None
-    after = horizon(surface.drives, time)
-    if after is None:
-        return None
-    record = surface.record
-    return bool(_rests(record, new_local(record), new_rest(), part, x, y, time, after))
-
-
 def horizon(table: DriveTable, time: float) -> float | None:
-    """When [s] the drives have done all that they will ever do, seen from `time`; None as in `stays`."""
+    """When [s] the drives have done all that they will ever do, seen from `time` [s].
+
+    None where that is not known: the endless drives have no common period of up to a thousand passes of each, or a
+    drive is a polynomial without end.
+    """
     bounded, endless = np.isfinite(table.span), ~np.isfinite(table.repeats)
     for i in np.flatnonzero(~bounded):
         if table.coefficients[table.first[i] : table.first[i + 1], 1:].any():
@@ -54,21 +39,3 @@ def horizon(table: DriveTable, time: float) -> float | None:
     if common * spans[0] / spans.min() > MAX_PASSES:
         return None
     return last + float(common * spans[0])
-
-
-@jit
-def _rests(
-    surface: Surface, local: LocalSurface, rest: Rest, part: Part, x: float, y: float, time: float, end: float
-) -> bool:
-    """Whether a part at rest stays from `time` to `end` [s], and at the end of it all."""
-    while True:
-        if enter(surface, local, x, y, time, math.inf) < 0:
-            return False
-        span_end = local.frame[0].end
-        over = not math.isfinite(span_end)
-        span_end = time + 1.0 if over else span_end
-        if math.isfinite(leaves_rest(local, part, rest, x, y, time, span_end)):
-            return False
-        if over or span_end >= end:
-            return True
-        time = span_end

@@ -22,7 +22,7 @@ def stays_in_contact(surface: Surface, request: Request, pair: Tableau, memory: 
     end, start_rate, end_rate = step.end[0], step.rates[0], step.rates[last]
     on_plate = first_beyond(
         surface,
-        step.seen[0].gap,
+        now.gap,
         (motion.x, motion.y),
         (end.x, end.y),
         (start_rate.x, start_rate.y),
@@ -56,7 +56,7 @@ def _locate_end(surface: Surface, part: Part, pair: Tableau, memory: Memory) -> 
     counts: Counts = memory.counts[0]
     step, time, h, last = memory.step, now.time, now.h, len(pair.c) - 1
     low, high = 0.0, h
-    below, above = step.margins[last], margin(memory.local, part, step.loads[0], step.seen[0].gap)
+    below, above = step.margins[last], margin(memory.local, part, step.loads[0], now.gap)
     secant = True
     while high - low > 1e-15 * (time + high) and high - low > 1e-14 * h:
         middle = 0.5 * (low + high)

@@ -27,6 +27,7 @@ from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 MIN_PULL = 0.75  # of the friction limit: the slow manifold draws parts to it down to a pull of half of it
 MAX_TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was only a touch
+GOOD, AGAIN, AT_REST = range(3)
 
 
 @jit_no_arrays
@@ -67,10 +68,9 @@ def to_plane(local: LocalSurface, part: Part, time: float, motion: Motion, f: Su
 
 
 @jit_no_arrays
-def stays_on_manifold(request: Request, memory: Memory, f: SurfacePoint, a: RestPull) -> bool:
-    """Whether the step that was tried is good enough on the manifold.
-
-    If not, it is to be tried again, shorter or off the manifold, or the part has come to rest.
+def check_manifold(request: Request, memory: Memory, f: SurfacePoint, a: RestPull) -> int:
+    """What becomes of a step tried on the manifold: it is good (GOOD), to be tried again, shorter or off the manifold
+    (AGAIN), or brings the part to rest (AT_REST).
     """
     now: Now = memory.now[0]
     motion: Motion = memory.motion[0]
@@ -79,24 +79,24 @@ def stays_on_manifold(request: Request, memory: Memory, f: SurfacePoint, a: Rest
     if step.end[0].v_x <= 0.0:
         if not touch:
             now.h = 0.5 * h
-            return False
+            return AGAIN
         motion.v_x = motion.v_y = 0.0
         motion.work += energy_at_rest(local, part, time + h, motion)
         motion.work -= energy_at_rest(local, part, time, motion)
         now.mode, now.time = Mode.RESTING, time + h
-        return False
+        return AT_REST
     error = manifold_error(local, part, time + h, step.end[0]) / request.tolerance
     if error > 1.0 and not touch:
         # It grows with the speed's third power, and that with the time.
         now.h = h * max(0.05, 0.9 * error ** (-1 / 3))
-        return False
+        return AGAIN
     if error > 1.0:
         # Friction is about to vanish, and the manifold with it.
         to_plane(local, part, time, motion, f, a)
         now.mode = Mode.SLIDING
         step.loads[0] = motion_rate(f, now.mode, local, part, time, motion, step.rates[0])
-        return False
-    return True
+        return AGAIN
+    return GOOD
 
 
 @jit_no_arrays

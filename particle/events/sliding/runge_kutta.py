@@ -6,7 +6,7 @@ import math
 
 from particle.events.mechanics import INTEGRATED, Motion, Part, manifold_rate, margin, slide_rate
 from particle.events.memory import Memory
-from particle.events.step import Step, keep_surface
+from particle.events.step import Step
 from particle.events.tableau import Tableau
 from particle.friction import friction_limit
 from particle.jit import jit_no_arrays
@@ -58,11 +58,9 @@ def attempt(surface: Surface, part: Part, pair: Tableau, memory: Memory, h: floa
             return False
         moment = time + pair.c[k] * h
         f = surface_at(local, stage.x, stage.y, moment)
-        if k == stages - 1:
-            keep_surface(local, step, moment, f)
         load = motion_rate(f, mode, local, part, moment, stage, step.rates[k])
         # As far from the rim as the start is, less the way from there: where that does not settle it, look.
-        gap = step.seen[0].gap - math.hypot(stage.x - motion.x, stage.y - motion.y)
+        gap = memory.now[0].gap - math.hypot(stage.x - motion.x, stage.y - motion.y)
         gap = gap if gap > 0.0 else gap_at(surface, local, stage.x, stage.y)
         step.loads[k], step.margins[k] = load, margin(local, part, load, gap)
     step.end[0] = stage

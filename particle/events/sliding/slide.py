@@ -8,13 +8,19 @@ from particle.events.mechanics import Counts, Motion, Now, RestPull, rest_pull, 
 from particle.events.memory import Memory
 from particle.events.request import Request
 from particle.events.sliding.contact_end import stays_in_contact
-from particle.events.sliding.manifold import joins_manifold, leave_manifold, stays_on_manifold, to_plane
+from particle.events.sliding.manifold import (
+    AT_REST,
+    GOOD,
+    check_manifold,
+    joins_manifold,
+    leave_manifold,
+    to_plane,
+)
 from particle.events.sliding.runge_kutta import attempt, motion_rate, step_error
 from particle.events.sliding.stop import Stop, come_to_rest, frozen_stop, stop_ahead
-from particle.events.step import Step, surface_at_start
 from particle.events.tableau import Pairs
 from particle.jit import jit_no_arrays
-from particle.modes import Mode, Verdict
+from particle.modes import NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import (
     NOWHERE,
     ROUNDING,
@@ -49,27 +55,33 @@ def bridge(local: LocalSurface, request: Request, mode: int) -> None:
 
 
 @jit_no_arrays
-def slide(surface: Surface, request: Request, pairs: Pairs, memory: Memory) -> None:
-    """Moves the part on by one step of about now.h [s], not beyond now.span_end, or to its stop."""
+def slide(surface: Surface, request: Request, pairs: Pairs, memory: Memory) -> int:
+    """Moves the part on by one step of about now.h [s], not beyond now.span_end, or to its stop.
+
+    Returns STOPS, REVERSES where its slope pulls it on at once, or NO_EVENT.
+    """
     now: Now = memory.now[0]
+    counts: Counts = memory.counts[0]
     motion: Motion = memory.motion[0]
     local, step, part = memory.local, memory.step, request.part
-    f = surface_at_start(local, step, memory.counts[0], now.time, motion)
+    f = surface_at(local, motion.x, motion.y, now.time)
+    counts.evaluations += 1
     a = rest_pull(f, part)
     step.loads[0] = motion_rate(f, now.mode, local, part, now.time, motion, step.rates[0])
-    step.seen[0].gap = gap_at(surface, local, motion.x, motion.y)
-    slows = now.mode == Mode.SLIDING or (a.demand < a.limit and motion.v_x > 0.0)
-    if slows and _stops(surface, request, memory, f, a):
-        return
+    now.gap = gap_at(surface, local, motion.x, motion.y)
+    if now.mode == Mode.SLIDING or (a.demand < a.limit and motion.v_x > 0.0):
+        event = _stop(surface, request, memory, f, a)
+        if event != NO_EVENT:
+            return event
     if now.mode == Mode.SLIDING and joins_manifold(local, request, now.time, motion, f, a):
         motion.v_x, motion.v_y = slip_speed(f, part, motion.v_x, motion.v_y), 0.0
         now.mode = Mode.MANIFOLD
         step.loads[0] = motion_rate(f, now.mode, local, part, now.time, motion, step.rates[0])
-    _step(surface, request, pairs, memory, f, a)
+    return _step(surface, request, pairs, memory, f, a)
 
 
 @jit_no_arrays
-def _stops(surface: Surface, request: Request, memory: Memory, f: SurfacePoint, a: RestPull) -> bool:
+def _stop(surface: Surface, request: Request, memory: Memory, f: SurfacePoint, a: RestPull) -> int:
     """Moves the part to its stop if that is close; else shortens the step so that it ends before."""
     now: Now = memory.now[0]
     counts: Counts = memory.counts[0]
@@ -85,31 +97,34 @@ def _stops(surface: Surface, request: Request, memory: Memory, f: SurfacePoint, 
         stop, error = stop_ahead(stop, local, part, time, motion, small, pace, request.force)
         counts.evaluations += 1
     close = time + stop.time <= now.span_end and error < 0.1 * request.tolerance
-    close = close and _stops_on_plate(surface, step, motion, stop)
+    close = close and _stops_on_plate(surface, now.gap, motion, stop)
     counts.evaluations += 5 * close
     if close and come_to_rest(local, part, time, motion, stop):
         memory.motion[0] = step.plane[0]
         a = rest_pull(surface_at(local, motion.x, motion.y, time + stop.time), part)
-        back = stop.reverses and a.demand > part.law.static_ratio * a.limit
-        now.mode, now.time = (Mode.TURNED if back else Mode.RESTING), time + stop.time
-        return True
+        now.time = time + stop.time
+        if stop.reverses and a.demand > part.law.static_ratio * a.limit:
+            now.mode = Mode.MANIFOLD
+            return EventKind.REVERSES.value
+        now.mode = Mode.RESTING
+        return EventKind.STOPS.value
     # A step ends short of the stop, where the friction turns.
     now.h = min(now.h, BEFORE_STOP * stop.time)
-    return False
+    return NO_EVENT
 
 
 @jit_no_arrays
-def _stops_on_plate(surface: Surface, step: Step, motion: Motion, stop: Stop) -> bool:
-    """Whether the way to a stop lies on the plate."""
+def _stops_on_plate(surface: Surface, gap: float, motion: Motion, stop: Stop) -> bool:
+    """Whether the way to a stop lies on the plate; gap: m, from the rim at its start."""
     x, y = motion.x + stop.x, motion.y + stop.y
     velocity = (motion.v_x, motion.v_y)
-    way = first_beyond(surface, step.seen[0].gap, (motion.x, motion.y), (x, y), velocity, (0.0, 0.0), stop.time)
+    way = first_beyond(surface, gap, (motion.x, motion.y), (x, y), velocity, (0.0, 0.0), stop.time)
     return way == 1.0 and rim_gap(surface, x, y) >= -ROUNDING * surface.size
 
 
 @jit_no_arrays
-def _step(surface: Surface, request: Request, pairs: Pairs, memory: Memory, f: SurfacePoint, a: RestPull) -> None:
-    """Moves the part on by the first step tried that is good enough, to the end of contact, or to rest."""
+def _step(surface: Surface, request: Request, pairs: Pairs, memory: Memory, f: SurfacePoint, a: RestPull) -> int:
+    """Moves the part on by the first step tried that is good enough, to the end of contact, or to rest (STOPS)."""
     now: Now = memory.now[0]
     counts: Counts = memory.counts[0]
     remaining = now.span_end - now.time
@@ -123,7 +138,7 @@ def _step(surface: Surface, request: Request, pairs: Pairs, memory: Memory, f: S
             now.h = _to_passage(memory.local, memory.motion[0], now.h)
         if now.h < MIN_STEP * request.stroke_time and now.h < remaining:
             now.verdict = Verdict.WORK_LIMIT
-            return
+            return NO_EVENT
         counts.evaluations += len(pair.c) - 1
         if not attempt(surface, request.part, pair, memory, now.h):
             now.h *= 0.5
@@ -133,15 +148,17 @@ def _step(surface: Surface, request: Request, pairs: Pairs, memory: Memory, f: S
             pair, reach = pairs.long, 1.0
         elif not error <= 1.0:
             now.h *= max(0.2, SAFETY * error ** (-1 / pair.order)) if error > 1.0 else 0.2
-        elif now.mode == Mode.MANIFOLD and not stays_on_manifold(request, memory, f, a):
-            if now.mode == Mode.RESTING:
-                return
-        elif stays_in_contact(surface, request, pair, memory):
-            break
-        elif now.verdict != Verdict.GOES_ON:
-            return
+        else:
+            found = check_manifold(request, memory, f, a) if now.mode == Mode.MANIFOLD else GOOD
+            if found == AT_REST:
+                return EventKind.STOPS.value
+            if found == GOOD and stays_in_contact(surface, request, pair, memory):
+                break
+            if now.verdict != Verdict.GOES_ON:
+                return NO_EVENT
     growth = min(MAX_GROWTH, SAFETY * max(error, 1e-12) ** (-1 / pair.order))
     _accept(request, memory, remaining, reach, growth)
+    return NO_EVENT
 
 
 @jit_no_arrays
@@ -151,7 +168,6 @@ def _accept(request: Request, memory: Memory, remaining: float, reach: float, gr
     h = now.h
     memory.motion[0] = memory.step.end[0]
     now.time = now.span_end if h == remaining else now.time + h
-    memory.step.seen[0].time = now.time
     now.h = h / reach * growth
     if now.mode == Mode.MANIFOLD:
         leave_manifold(request, memory)

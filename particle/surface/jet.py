@@ -1,0 +1,117 @@
+"""Polynomials of a cell with their derivatives, at one place and time or at one place over time."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particle.drives import ORDER
+from particle.jit import jit_no_arrays
+
+FloatArray = NDArray[np.float64]
+
+
+class Jet(NamedTuple):
+    """A function f of (x, y, t) with its derivatives, in SI units."""
+
+    f: float
+    t: float
+    tt: float
+    x: float
+    y: float
+    xt: float
+    yt: float
+    xx: float
+    xy: float
+    yy: float
+    xtt: float
+    ytt: float
+    xxt: float
+    xyt: float
+    yyt: float
+    xxx: float
+    xxy: float
+    xyy: float
+    yyy: float
+
+
+@jit_no_arrays
+def at_time(c: FloatArray, at: FloatArray, first: int, end: int, s: float, unit: float) -> None:
+    """sum_k c[k, m] s^k and its two derivatives in t = unit s [s] into at[:3, m], first <= m < end."""
+    for m in range(first, end):
+        at[0, m] = ((((c[5, m] * s + c[4, m]) * s + c[3, m]) * s + c[2, m]) * s + c[1, m]) * s + c[0, m]
+        at[1, m] = ((((5 * c[5, m] * s + 4 * c[4, m]) * s + 3 * c[3, m]) * s + 2 * c[2, m]) * s + c[1, m]) / unit
+        at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
+
+
+@jit_no_arrays
+def jet(at: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float) -> Jet:
+    """f = sum c_ij u^i v^j, i + j <= degree, and its derivatives, with the monomials at[:, m] that end before `end`.
+
+    at (3, ...): their values and two derivatives in time.  half_x, half_y: dx/du and dy/dv [m].
+    """
+    w = w_u = w_uu = w_uuu = w_v = w_uv = w_uuv = w_vv = w_uvv = w_vvv = 0.0
+    w_t = w_ut = w_uut = w_vt = w_uvt = w_vvt = w_tt = w_utt = w_vtt = 0.0
+    m = end
+    # Horner in v inside Horner in u; n times u or v in a name stands for the n-th derivative over n!.
+    for i in range(degree, -1, -1):
+        a = a_v = a_vv = a_vvv = b = b_v = b_vv = c = c_v = 0.0
+        for _ in range(degree + 1 - i):
+            m -= 1
+            a_vvv = a_vvv * v + a_vv
+            a_vv = a_vv * v + a_v
+            a_v = a_v * v + a
+            a = a * v + at[0, m]
+            b_vv = b_vv * v + b_v
+            b_v = b_v * v + b
+            b = b * v + at[1, m]
+            c_v = c_v * v + c
+            c = c * v + at[2, m]
+        w_uuu = w_uuu * u + w_uu
+        w_uu = w_uu * u + w_u
+        w_u = w_u * u + w
+        w = w * u + a
+        w_uuv = w_uuv * u + w_uv
+        w_uv = w_uv * u + w_v
+        w_v = w_v * u + a_v
+        w_uvv = w_uvv * u + w_vv
+        w_vv = w_vv * u + a_vv
+        w_vvv = w_vvv * u + a_vvv
+        w_uut = w_uut * u + w_ut
+        w_ut = w_ut * u + w_t
+        w_t = w_t * u + b
+        w_uvt = w_uvt * u + w_vt
+        w_vt = w_vt * u + b_v
+        w_vvt = w_vvt * u + b_vv
+        w_utt = w_utt * u + w_tt
+        w_tt = w_tt * u + c
+        w_vtt = w_vtt * u + c_v
+    return Jet(
+        *(w, w_t, w_tt, w_u / half_x, w_v / half_y, w_ut / half_x, w_vt / half_y),
+        *(2 * w_uu / half_x**2, w_uv / (half_x * half_y), 2 * w_vv / half_y**2, w_utt / half_x, w_vtt / half_y),
+        *(2 * w_uut / half_x**2, w_uvt / (half_x * half_y), 2 * w_vvt / half_y**2),
+        *(6 * w_uuu / half_x**3, 2 * w_uuv / (half_x**2 * half_y)),
+        *(2 * w_uvv / (half_x * half_y**2), 6 * w_vvv / half_y**3),
+    )
+
+
+@jit_no_arrays
+def fill_quintics(
+    c: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float, out: FloatArray, row: int
+) -> None:
+    """f, f_x and f_y at one place as polynomials of s into three rows (6,) of `out`; c (6, ...) as in `at_time`."""
+    for k in range(ORDER):
+        w = w_u = w_v = 0.0
+        m = end
+        for i in range(degree, -1, -1):
+            a = a_v = 0.0
+            for _ in range(degree + 1 - i):
+                m -= 1
+                a_v = a_v * v + a
+                a = a * v + c[k, m]
+            w_u = w_u * u + w
+            w = w * u + a
+            w_v = w_v * u + a_v
+        out[row, k], out[row + 1, k], out[row + 2, k] = w, w_u / half_x, w_v / half_y
