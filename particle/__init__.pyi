@@ -33,7 +33,7 @@ from .interrupt import (
     unbroken as unbroken,
     wait as wait,
 )
-from .jit import kernel as kernel, kernel_no_arrays as kernel_no_arrays
+from .jit import kernel as kernel, kernel_inlined as kernel_inlined, kernel_no_arrays as kernel_no_arrays
 from .labelled import dataset_of as dataset_of, table_of as table_of
 from .kernel_cache import source_digest as source_digest
 from .rest import (

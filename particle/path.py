@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from particle.energy import energy_of
 from particle.events import (
     Memory,
+    Motion,
     Pairs,
     PathRecord,
     Request,
@@ -24,7 +25,6 @@ from particle.events import (
     new_memory,
     new_record,
     pairs_for,
-    resume,
 )
 from particle.fixed import between, march_fixed, new_fixed_memory
 from particle.modes import EventKind, Mode, Verdict
@@ -135,18 +135,30 @@ def _stays(surface: SurfaceMotion, request: Request, pairs: Pairs, x: float, y: 
     if after is None:
         return None
     still = 0.0 if np.isinf(surface.drives.repeats).any() else 1.0  # s, to look at the surface at rest
-    rest = request._replace(
-        start=np.array([x, y, 0.0, 0.0]), begin=request.duration, duration=after + still, only_rests=True
-    )
+    start, end = np.array([x, y, *np.zeros(6)]), after + still
+    rest = request._replace(start=start, mode=Mode.RESTING, begin=request.duration, until=end, duration=end)
     memory = _memory(surface.record, pairs, np.zeros(1, dtype=np.int64))
-    march(surface.record, rest, pairs, memory, new_record())
+    march(surface.record, rest._replace(only_rests=True), pairs, memory, new_record())
     return bool(memory.now[0].mode == Mode.RESTING and memory.now[0].verdict == Verdict.GOES_ON)
 
 
 def _by_events(surface: SurfaceMotion, request: Request, pairs: Pairs, rows: Rows, times: FloatArray) -> Rows:
-    """The rows at ascending times [s]."""
-    record = surface.record
-    return resume(record, request, pairs, _memory(record, pairs, np.zeros(1, dtype=np.int64)), rows, times)
+    """The rows at ascending times [s]: pieces of the path, each from the row before."""
+    places = np.searchsorted(rows["time"], times, side="right") - 1
+    found, record, stop = rows[places], surface.record, np.zeros(1, dtype=np.int64)
+    between = (times > found["time"]) & (places + 1 < len(rows))
+    for k in np.flatnonzero(between):
+        row, time = found[k], float(times[k])
+        piece = request._replace(
+            start=np.array([row[name] for name in Motion.__annotations__]),
+            mode=int(row["mode"]),
+            begin=float(row["time"]),
+            until=time,
+            first_step=time - float(row["time"]),
+        )
+        done = march(record, piece, pairs, _memory(record, pairs, stop), new_record())
+        found[k] = done.rows[done.lengths[0]["rows"] - 1]
+    return found
 
 
 def _by_steps(surface: SurfaceMotion, request: Request, kind: int, rows: Rows, times: FloatArray) -> Rows:

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from particle.events import Part, Request
+from particle.events import FIRST_STEP, Part, Request
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
 from particle.friction import Contact
 from particle.interrupt import Stopped, stop_flag
 from particle.micropart import Micropart
+from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps
 from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
@@ -137,14 +138,17 @@ def new_request(
     jumps, bends = (bool((surface.drives.jump[:, k] > 0).any()) for k in (0, 1))
     return Request(
         part=part_record(surface, part, friction, gravity),
-        start=np.array([*part.position, *part.velocity], dtype=float),
+        start=np.array([*part.position, *part.velocity, *np.zeros(4)], dtype=float),
+        mode=Mode.SLIDING if np.any(part.velocity) else Mode.RESTING,
+        begin=0.0,
+        until=float(duration),
+        first_step=FIRST_STEP * stroke_time,
         duration=float(duration),
         tolerance=tolerance * surface.size,
         stroke_time=stroke_time,
         force=force,
         flies=flies,
         jumps=jumps,
-        bends=bends,
         centre_height=float(part.centre_height),
         bridged=(0.0, 0.0)
         if bends or jumps

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle import kernel
+from particle import kernel, kernel_inlined
 
 FloatArray = NDArray[np.float64]
 
@@ -125,7 +125,7 @@ def _transition(d: float, roughness: float, f_shape: FloatArray, q_shape: FloatA
             q_shape[i, j] = factor / (a + b + 1)
 
 
-@kernel
+@kernel_inlined
 def _advance(f: FloatArray, q: FloatArray, state: FloatArray, p: FloatArray, work: FloatArray) -> None:
     """State and covariance after a transition, in place."""
     m = len(state)
@@ -144,7 +144,7 @@ def _advance(f: FloatArray, q: FloatArray, state: FloatArray, p: FloatArray, wor
             p[i, j] = p[j, i] = total
 
 
-@kernel
+@kernel_inlined
 def _undo(
     v: float, f: float, gain: FloatArray, k: int, j: int, r: FloatArray, info: FloatArray, across: FloatArray
 ) -> float:
@@ -165,7 +165,7 @@ def _undo(
     return 1.0 / f + both
 
 
-@kernel
+@kernel_inlined
 def _return(f: FloatArray, r: FloatArray, info: FloatArray, work: FloatArray) -> None:
     """Score and information of a shock before a transition, in place."""
     m = len(r)

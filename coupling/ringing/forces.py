@@ -28,7 +28,7 @@ from coupling.stretch import (
     new_state,
 )
 from fem_plate.large_deflection import Forms
-from particle import kernel, kernel_no_arrays
+from particle import kernel, kernel_inlined, kernel_no_arrays
 from particle.drives import ORDER, DriveTable, drive_piece, evaluate_piece
 
 FloatArray = NDArray[np.float64]
@@ -82,7 +82,7 @@ def enter_pieces(table: DriveTable, begin: float, end: float, bench: Bench) -> N
         drive_piece(table, i, begin + half, half, bench.pieces[i])
 
 
-@kernel_no_arrays
+@kernel_inlined
 def _enter_heights(bench: Bench, s: float, half: float) -> None:
     """The drives with two derivatives in time [s]."""
     heights = bench.heights

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from coupling.stretch.vectors import add_rows, clear
 from fem_plate.large_deflection import Forms
-from particle import kernel, kernel_no_arrays
+from particle import kernel, kernel_inlined, kernel_no_arrays
 from particle.drives import ORDER, DriveTable, drive_piece
 
 FloatArray = NDArray[np.float64]
@@ -39,7 +39,7 @@ class Moment(NamedTuple):
     mixed_flat: FloatArray  # (3, S * n), the same array
 
 
-@kernel
+@kernel_inlined
 def new_interval(forms: Forms) -> Interval:
     """Room for the polynomials."""
     s, count, n = forms.mixed.shape
@@ -54,7 +54,7 @@ def new_moment(forms: Forms) -> Moment:
     return Moment(np.zeros((3, DEGREES)), np.zeros((3, s)), mixed, mixed.reshape(3, s * n))
 
 
-@kernel
+@kernel_inlined
 def enter_interval(forms: Forms, table: DriveTable, begin: float, end: float, interval: Interval) -> None:
     """Find the polynomials between two breakpoints [s]."""
     enter_drives(table, begin, end, interval)
@@ -83,7 +83,7 @@ def enter_drives(table: DriveTable, begin: float, end: float, interval: Interval
         drive_piece(table, i, middle, half, interval.drives[i])
 
 
-@kernel_no_arrays
+@kernel_inlined
 def enter_moment(interval: Interval, s: float, moment: Moment) -> None:
     """Evaluate the polynomials at s."""
     powers, own, mixed = moment.powers, moment.own, moment.mixed_flat

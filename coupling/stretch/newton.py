@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from coupling.stretch.interval import Moment
 from coupling.stretch.vectors import add_rows, clear, copy, dot
 from fem_plate.large_deflection import Forms
-from particle import kernel, kernel_no_arrays
+from particle import kernel, kernel_inlined, kernel_no_arrays
 
 FloatArray = NDArray[np.float64]
 
@@ -111,7 +111,7 @@ def find_equilibrium(forms: Forms, moment: Moment, state: State, c: FloatArray, 
     return NOT_CONVERGED
 
 
-@kernel_no_arrays
+@kernel_inlined
 def follow_equilibrium(forms: Forms, moment: Moment, state: State, c: FloatArray) -> int:
     """As `find_equilibrium`, near the last one that it found: the factor of that one's Hessian serves all steps."""
     n, last = len(c), math.inf
@@ -183,7 +183,7 @@ def _second(moment: Moment, state: State, c: FloatArray, c_t: FloatArray, r: int
     return float(moment.own[2, r] + dot(mixed_tt, c) + (dot(mixed_t, c_t) + dot(state.rows_t[r], c_t)))
 
 
-@kernel_no_arrays
+@kernel_inlined
 def _enter_rates(forms: Forms, moment: Moment, state: State, c: FloatArray, c_t: FloatArray) -> None:
     """f' and v' of all forms."""
     n = len(c)
@@ -222,7 +222,7 @@ def _enter(forms: Forms, moment: Moment, state: State, c: FloatArray) -> float:
     return float(energy)
 
 
-@kernel_no_arrays
+@kernel_inlined
 def _size(forms: Forms, state: State, c: FloatArray) -> float:
     """The size of the energy's terms, which rounding is measured by."""
     size = 0.0

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives.record import MERGED, ORDER, ROUNDING, DriveTable
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 
 FloatArray = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def find_alike(table: DriveTable) -> None:
         table.alike[i] = i > 0 and _is_alike(table, i, i - 1)
 
 
-@jit_no_arrays
+@inlined
 def _is_alike(table: DriveTable, i: int, other: int) -> bool:
     first, first_other, count = table.first[i], table.first[other], table.first[i + 1] - table.first[i]
     if (

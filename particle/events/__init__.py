@@ -1,8 +1,7 @@
 """The event-located integrator: rest, sliding, flight, and what lies between them."""
 
 from particle.events.contact_state import ContactState, contact_states
-from particle.events.dense_output import resume
-from particle.events.integrator import march
+from particle.events.integrator import FIRST_STEP, march
 from particle.events.mechanics import (
     Counts,
     Motion,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.jit import jit, jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 
 FloatArray = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ def halve(right: FloatArray, left: FloatArray) -> None:
             right[i] = 0.5 * (right[i] + right[i + 1])
 
 
-@jit
+@inlined
 def first_negative(b: FloatArray) -> float:
     """The first place in [0, 1] where a polynomial of Bernstein coefficients b becomes negative; inf: nowhere."""
     n = len(b)
@@ -76,7 +76,7 @@ def first_negative(b: FloatArray) -> float:
     return math.inf
 
 
-@jit
+@inlined
 def quintic_value(b: FloatArray, s: float) -> float:
     """A quintic of Bernstein coefficients b at s."""
     r = 1.0 - s
@@ -84,7 +84,7 @@ def quintic_value(b: FloatArray, s: float) -> float:
     return float(outer + 10 * r * r * s * s * (b[2] * r + b[3] * s))
 
 
-@jit
+@inlined
 def quintic_between(start: tuple[float, float, float], end: tuple[float, float, float], h: float) -> FloatArray:
     """Bernstein coefficients (6,) of the quintic over h [s] with these values and derivatives at its ends."""
     return np.array(

@@ -11,16 +11,16 @@ from __future__ import annotations
 import math
 
 from particle.events.flight import MIN_JUMP, cross_jump, fly, take_off, velocity_jump
-from particle.events.mechanics import Counts, Motion, Now, energy_at_rest, margin, pull, rest_pull
+from particle.events.mechanics import Counts, Motion, Now, energy_at_rest, margin, pull, rest_pull, slip_speed
 from particle.events.memory import Memory
 from particle.events.record import PathRecord, Row, fill_row, last_row, note, write
 from particle.events.request import Request
 from particle.events.rest import leaves_rest
 from particle.events.sliding import bridge, first_mode, slide
 from particle.events.tableau import Pairs
-from particle.jit import jit
+from particle.jit import inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
-from particle.surface import UNBUILT, Surface, advance, enter, gap_at, surface_at
+from particle.surface import UNBUILT, Surface, enter, gap_at, surface_at
 
 FIRST_STEP = 0.02  # of a stroke
 MIN_SPAN_STEP = 1e-4  # of a stroke: the first step of a span
@@ -38,7 +38,7 @@ def march(surface: Surface, request: Request, pairs: Pairs, memory: Memory, reco
     """
     now: Now = memory.now[0]
     _begin(request, memory)
-    while now.verdict == Verdict.GOES_ON and (now.time < now.span_end or now.time < request.duration):
+    while now.verdict == Verdict.GOES_ON and now.time < request.until:
         record = _enter(surface, request, memory, record)
         if now.verdict != Verdict.GOES_ON:
             break
@@ -55,18 +55,17 @@ def march(surface: Surface, request: Request, pairs: Pairs, memory: Memory, reco
     return _note_end(memory, record)
 
 
-@jit
+@inlined
 def _begin(request: Request, memory: Memory) -> None:
     """The part at its start."""
     now: Now = memory.now[0]
-    motion: Motion = memory.motion[0]
-    motion.x, motion.y, motion.v_x, motion.v_y = request.start[0], request.start[1], request.start[2], request.start[3]
+    for k in range(len(request.start)):
+        memory.motion_numbers[0, k] = request.start[k]
     now.time = now.span_end = request.begin
-    now.mode = Mode.RESTING if motion.v_x == 0.0 and motion.v_y == 0.0 else Mode.SLIDING
-    now.h, now.verdict = FIRST_STEP * request.stroke_time, Verdict.GOES_ON
+    now.mode, now.h, now.verdict = request.mode, request.first_step, Verdict.GOES_ON
 
 
-@jit
+@inlined
 def _enter(surface: Surface, request: Request, memory: Memory, record: PathRecord) -> PathRecord:
     """Prepares the surface around the part, in the next span where one has ended."""
     now: Now = memory.now[0]
@@ -90,20 +89,24 @@ def _enter(surface: Surface, request: Request, memory: Memory, record: PathRecor
     elif cell < 0 or gap_at(surface, local, motion.x, motion.y) < 0.0:
         now.verdict = Verdict.LEFT_PLATE
     else:
-        now.span_end = local.frame[0].end
+        now.span_end = min(local.frame[0].end, request.until)
         if now.span_end <= now.time:
             now.verdict = Verdict.WORK_LIMIT
         elif record.lengths[0].rows == 0:
+            if now.mode == Mode.MANIFOLD:
+                f = surface_at(local, motion.x, motion.y, now.time)
+                motion.v_x, motion.v_y = slip_speed(f, request.part, motion.v_x, motion.v_y), 0.0
             fill_row(local, request.part, now.mode, now.time, motion, row)
             record = write(record, row)
     return record
 
 
-@jit
+@inlined
 def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record: PathRecord) -> PathRecord:
     """Goes on to the next span, where the surface's velocity may jump.
 
-    It stays in its cell for that: from one cell to the next the velocity differs by the error of the fits.
+    It stays in its cell for that, entered by its centre: from one cell to the next the velocity differs by the error of
+    the fits.
     """
     now: Now = memory.now[0]
     motion: Motion = memory.motion[0]
@@ -111,7 +114,7 @@ def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record
     local, before = memory.local, now.mode
     fill_row(local, request.part, before, now.time, motion, row)
     old = surface_at(local, motion.x, motion.y, now.time)
-    advance(surface, local, now.time, request.duration)
+    enter(surface, local, local.frame[0].x, local.frame[0].y, now.time, request.duration)
     new = surface_at(local, motion.x, motion.y, now.time)
     slack = MIN_JUMP * surface.size / request.stroke_time
     if velocity_jump(old, new, request.part) <= slack:
@@ -131,7 +134,7 @@ def _cross_breakpoint(surface: Surface, request: Request, memory: Memory, record
     return write(record, row)
 
 
-@jit
+@inlined
 def _rest(request: Request, memory: Memory) -> int:
     """The part stays until it leaves or the span ends; SLIPS or NO_EVENT."""
     now: Now = memory.now[0]
@@ -157,7 +160,7 @@ def _rest(request: Request, memory: Memory) -> int:
     return EventKind.SLIPS.value
 
 
-@jit
+@inlined
 def _fly(surface: Surface, request: Request, memory: Memory) -> int:
     """The part flies one step, at most to where it lands; LANDS or NO_EVENT."""
     now: Now = memory.now[0]
@@ -171,7 +174,7 @@ def _fly(surface: Surface, request: Request, memory: Memory) -> int:
     return event
 
 
-@jit
+@inlined
 def _note(request: Request, memory: Memory, record: PathRecord, before: int, event: int) -> PathRecord:
     """Records what has happened, and where the part is; `before`: the mode that it was in."""
     now: Now = memory.now[0]
@@ -198,7 +201,7 @@ def _note(request: Request, memory: Memory, record: PathRecord, before: int, eve
     return record
 
 
-@jit
+@inlined
 def _note_end(memory: Memory, record: PathRecord) -> PathRecord:
     """Records why the path ended, where that is an event."""
     verdict = memory.now[0].verdict

@@ -13,18 +13,20 @@ FloatArray = NDArray[np.float64]
 
 
 class Request(NamedTuple):
-    """One path to compute."""
+    """One path to compute, or a piece of it."""
 
     part: Part
-    start: FloatArray  # (4,) m, m, m/s, m/s
-    duration: float  # s, the time at its end
+    start: FloatArray  # (8,) the numbers of a `Motion`; those of the slow manifold as the plane's velocity
+    mode: int  # Mode at the start
+    begin: float  # s, when it starts
+    until: float  # s, when it ends
+    first_step: float  # s, what its first step is tried with
+    duration: float  # s, the end of the whole path
     tolerance: float  # m, error of one step
     stroke_time: float  # s, the shortest stroke
     force: float  # N, that of gravity and of crossing the surface in a stroke
     flies: bool  # whether a part that comes off is followed to where it lands
     jumps: bool  # whether the surface's velocity jumps at breakpoints
-    bends: bool  # whether its acceleration does
     centre_height: float  # m, of the part's centre of mass over its contact
     bridged: tuple[float, float]  # m/s, m/s^2, how far the surface may be off over bridged breakpoints
-    begin: float = 0.0  # s
     only_rests: bool = False  # whether the path ends where the part leaves rest

@@ -31,12 +31,12 @@ from particle.events import (
     push,
 )
 from particle.friction import friction_limit
-from particle.jit import jit
+from particle.jit import inlined
 from particle.modes import Mode
 from particle.surface import SurfacePoint
 
 
-@jit
+@inlined
 def moreau_step(
     f: SurfacePoint, part: Part, h: float, mode: int, motion: Motion, after: Motion
 ) -> tuple[int, float, float, float]:

@@ -22,14 +22,14 @@ from numpy.typing import NDArray
 
 from particle.events import Motion, Part, drag, normal_bend, push
 from particle.friction import friction_limit
-from particle.jit import jit
+from particle.jit import inlined
 from particle.modes import Mode
 from particle.surface import SurfacePoint
 
 FloatArray = NDArray[np.float64]
 
 
-@jit
+@inlined
 def rotation(f: SurfacePoint) -> FloatArray:
     """The matrix (3, 3) of equation (8), from global to local components; beta = 0 where the surface is level."""
     slope = math.sqrt(f.w_x * f.w_x + f.w_y * f.w_y)
@@ -39,7 +39,7 @@ def rotation(f: SurfacePoint) -> FloatArray:
     return np.array([[c_t * c_b, c_t * s_b, s_t], [-s_b, c_b, 0.0], [-s_t * c_b, -s_t * s_b, c_t]])
 
 
-@jit
+@inlined
 def across(f: SurfacePoint, turn: FloatArray, way: float) -> tuple[float, float]:
     """Equations (10b) and (10c): the local Y and Z [m] reached by a way [m] along the arc across the gradient."""
     e_x, e_y = turn[1, 0], turn[1, 1]
@@ -51,7 +51,7 @@ def across(f: SurfacePoint, turn: FloatArray, way: float) -> tuple[float, float]
     return math.sin(angle) / curvature, 2 * math.sin(0.5 * angle) ** 2 / curvature
 
 
-@jit
+@inlined
 def paper_step(
     f: SurfacePoint, part: Part, h: float, mode: int, motion: Motion, after: Motion
 ) -> tuple[int, float, float, float]:

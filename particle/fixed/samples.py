@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from particle.events import ROW, Motion, Part, Row
 from particle.fixed.steps import FixedMemory, fill_fixed_row
-from particle.jit import jit
+from particle.jit import inlined, jit
 from particle.modes import Mode
 from particle.surface import UNBUILT, Surface, enter
 
@@ -49,7 +49,7 @@ def between(
     return out, missing
 
 
-@jit
+@inlined
 def _hermite(one: Row, other: Row, time: float, motion: Motion) -> None:
     """The motion at a time [s] between two rows into `motion`."""
     h = other.time - one.time

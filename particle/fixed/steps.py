@@ -28,7 +28,7 @@ from particle.events import (
 )
 from particle.fixed.moreau import moreau_step
 from particle.fixed.paper_scheme import paper_step
-from particle.jit import jit
+from particle.jit import inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.records import new_records
 from particle.surface import (
@@ -156,7 +156,7 @@ def march_fixed(
     return record
 
 
-@jit
+@inlined
 def _begin(surface: Surface, request: Request, memory: FixedMemory) -> None:
     """The part at its start."""
     now: Now = memory.now[0]
@@ -184,7 +184,7 @@ def _enter(surface: Surface, memory: FixedMemory, time: float, share: float) -> 
     return now.verdict == Verdict.GOES_ON
 
 
-@jit
+@inlined
 def _find_event(part: Part, memory: FixedMemory, f: SurfacePoint, before: int) -> int:
     """What has happened to a part that slid before the step: STOPS, REVERSES or NO_EVENT."""
     now: Now = memory.now[0]

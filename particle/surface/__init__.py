@@ -7,4 +7,4 @@ from particle.surface.local import Frame, LocalSurface, gap_at, missing_place, n
 from particle.surface.moving_surface import SurfaceMotion
 from particle.surface.record import Surface
 from particle.surface.rim import ROUNDING, first_beyond, rim_gap
-from particle.surface.span import advance, enter
+from particle.surface.span import enter

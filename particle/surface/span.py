@@ -20,7 +20,7 @@ from particle.drives import (
     expand_piece,
     find_piece,
 )
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_bridged, shapes_in_cell
 from particle.surface.cells import UNBUILT
 from particle.surface.local import Clock, Frame, LocalSurface, cell_at, monomial_count
@@ -46,21 +46,12 @@ def enter(surface: Surface, local: LocalSurface, x: float, y: float, time: float
     same = cell == frame.cell and time >= frame.time
     if same and time < frame.end:
         return cell
-    if same:
-        advance(surface, local, time, end)
-    else:
+    if not (same and _move_on(surface, local, time, end)):
         _begin(surface, local, cell, time, end)
     return cell
 
 
-@jit_no_arrays
-def advance(surface: Surface, local: LocalSurface, time: float, end: float) -> None:
-    """Prepare for later times in the same cell."""
-    if not _move_on(surface, local, time, end):
-        _begin(surface, local, local.frame[0].cell, time, end)
-
-
-@jit_no_arrays
+@inlined
 def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: float) -> None:
     """Prepare for a cell from nothing."""
     frame: Frame = local.frame[0]
@@ -94,7 +85,7 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
         _add(surface, local, i, 1.0)
 
 
-@jit_no_arrays
+@inlined
 def _move_on(surface: Surface, local: LocalSurface, time: float, end: float) -> bool:
     """Move what is prepared on to a later time; False where that is not worth it."""
     frame: Frame = local.frame[0]

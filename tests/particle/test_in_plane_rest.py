@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from particle.events.rest.stick_stretched import NARROW, fill_stretched, is_safe_stretched, largest_force
 from scipy.optimize import brentq
 from scipy.special import comb
 from steep_surface import LAWS, PLACE, G, local_at, steep_surface
@@ -14,7 +15,6 @@ from particle import (
 )
 from particle.events.mechanics.equations import Part, length, pull
 from particle.events.rest.stick import leaves_rest, new_rest
-from particle.events.rest.stick_stretched import NARROW, fill_stretched, is_safe_stretched, largest_force
 from particle.surface.at_point import surface_at
 
 

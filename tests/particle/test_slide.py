@@ -28,7 +28,10 @@ def test_a_step_that_is_cut_a_little_does_not_become_as_long_as_the_span_again(m
     monkeypatch.setattr(contact_end, "first_excursion", excursion)
     surface, pairs = polynomial_surface([[0.0]]).record, pairs_for(1e-9)
     part = Part(1.0, 9.81, 0.0, 0.0, 0.0, ConstantFriction(1.0).law)
-    request = Request(part, np.array([0.0, 0.0, 5.0, 0.0]), 1.0, 1e-9, 1.0, 1.0, False, False, False, 0.0, (0.0, 0.0))
+    start = np.array([0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    times = {"begin": 0.0, "until": 1.0, "first_step": 0.02, "duration": 1.0, "stroke_time": 1.0}
+    flags = {"flies": False, "jumps": False, "centre_height": 0.0, "bridged": (0.0, 0.0)}
+    request = Request(part, start, Mode.SLIDING, tolerance=1e-9, force=1.0, **times, **flags)
     memory = new_memory(surface, pairs, np.zeros(1, dtype=np.int64))
     motion, now = memory.motion[0], memory.now[0]
     enter(surface, memory.local, 0.0, 0.0, 0.0, 1.0)

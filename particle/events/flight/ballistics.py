@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from particle.events.mechanics import Motion, Part, by_centre, normal_rate, stretched, unstretched
-from particle.jit import jit
+from particle.jit import inlined, jit
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 MAX_NEWTON, PLACED = 20, 1e-15  # of the place and of the height of the centre of mass
@@ -48,7 +48,7 @@ def fly_ahead(
         out.v_x, out.v_y, out.v_z = u_x, u_y, u_z
 
 
-@jit
+@inlined
 def _put_place(
     local: LocalSurface,
     part: Part,

@@ -30,7 +30,7 @@ from particle.events.mechanics import (
 from particle.events.memory import Memory
 from particle.events.request import Request
 from particle.events.sliding import MIN_STEP
-from particle.jit import jit
+from particle.jit import inlined, jit
 from particle.modes import NO_EVENT, EventKind, Verdict
 from particle.surface import LocalSurface, Surface, SurfacePoint, first_beyond, rim_gap, surface_at, within_cell
 
@@ -39,14 +39,14 @@ FloatArray = NDArray[np.float64]
 GRAZE = 1e-13  # of the surface's size: rounding of a height
 
 
-@jit
+@inlined
 def take_off(local: LocalSurface, time: float, motion: Motion) -> None:
     """Completes `motion` by the height and the vertical velocity with which a part comes off."""
     f = surface_at(local, motion.x, motion.y, time)
     motion.z, motion.v_z = f.w, rising(f, motion.v_x, motion.v_y)
 
 
-@jit
+@inlined
 def fly(surface: Surface, request: Request, memory: Memory) -> int:
     """Moves the part on by one step of about now.h [s], at most to now.span_end, to the landing or to the rim.
 
@@ -123,7 +123,7 @@ def _heights(request: Request, memory: Memory, here: SurfacePoint, graze: float)
         now.h = 0.5 * h
 
 
-@jit
+@inlined
 def _exit_share(surface: Surface, memory: Memory, part: Part, here: SurfacePoint, beyond: float) -> float:
     """The share of the step at which the part crosses the rim, located by halving; its motion there to step.end."""
     now: Now = memory.now[0]

@@ -10,7 +10,7 @@ import math
 
 from particle.events.flight.ballistics import centre_velocity, from_centre_velocity
 from particle.events.mechanics import Motion, Part, by_centre, normal_rate, of_centre, rising, stretched
-from particle.jit import jit
+from particle.jit import inlined, jit
 from particle.modes import Mode
 from particle.surface import SurfacePoint
 
@@ -48,7 +48,7 @@ def land(f: SurfacePoint, part: Part, slack: float, motion: Motion) -> int:
     return Mode.SLIDING if kept > 0.0 else Mode.RESTING
 
 
-@jit
+@inlined
 def velocity_jump(before: SurfacePoint, after: SurfacePoint, part: Part) -> float:
     """By how much the velocity [m/s] of a part at rest on the surface jumps."""
     x, y, z = after.base_vx - before.base_vx, after.base_vy - before.base_vy, after.w_t - before.w_t
@@ -56,7 +56,7 @@ def velocity_jump(before: SurfacePoint, after: SurfacePoint, part: Part) -> floa
     return math.sqrt(x * x + y * y + z * z) + part.centre * turn
 
 
-@jit
+@inlined
 def cross_jump(before: SurfacePoint, after: SurfacePoint, part: Part, mode: int, slack: float, motion: Motion) -> int:
     """What a part does when the surface's velocity jumps, which moves on `motion`.
 

@@ -30,7 +30,7 @@ from particle.events.mechanics.parallel import (
     to_height,
 )
 from particle.friction import friction_limit
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 TURNS, SETTLED = 50, 1e-15
@@ -134,7 +134,7 @@ def heading(
     return Heading(a.d_x, a.d_y, a.n_x, a.n_y, _lag(local, part, time, x, y, u, f, a))
 
 
-@jit_no_arrays
+@inlined
 def _lag(
     local: LocalSurface, part: Part, time: float, x: float, y: float, u: float, f: SurfacePoint, a: RestPull
 ) -> float:
@@ -164,7 +164,7 @@ def _lag(
     return across / a.demand / (2 * a.demand - a.limit)
 
 
-@jit_no_arrays
+@inlined
 def _raised_heading(
     local: LocalSurface, part: Part, time: float, x: float, y: float, u: float, f: SurfacePoint, a: RestPull
 ) -> Heading:
@@ -194,7 +194,7 @@ def _raised_heading(
     return Heading(e_x, e_y, n_x, n_y, turning_rate / damping if damping > 0.0 else 0.0)
 
 
-@jit_no_arrays
+@inlined
 def _contact_acceleration(
     f: SurfacePoint, part: Part, k: Mobility, p: Pull, v_x: float, v_y: float, q_x: float, q_y: float
 ) -> tuple[float, float]:
@@ -221,7 +221,7 @@ def _direction(u: float, h: Heading) -> tuple[float, float]:
     return along * h.e_x - back * h.n_x, along * h.e_y - back * h.n_y
 
 
-@jit_no_arrays
+@inlined
 def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float, motion: Motion, rate: Motion) -> float:
     """The rate of a motion on the manifold, v_x of which is u, into `rate`; returns the normal force [N].
 

@@ -38,7 +38,7 @@ from particle.events.mechanics.parallel import (
     unstretched,
 )
 from particle.friction import FrictionLaw, friction_limit
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 
@@ -135,7 +135,7 @@ def length(f: SurfacePoint, x: float, y: float) -> float:
     return math.sqrt(x * x + y * y + climb * climb)
 
 
-@jit_no_arrays
+@inlined
 def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> float:
     """The rate of a sliding part's motion into `rate`, with f at (x, y); returns the normal force [N]."""
     v_x, v_y = motion.v_x, motion.v_y

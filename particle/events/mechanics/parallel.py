@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.surface import SurfacePoint
 
 
@@ -110,7 +110,7 @@ def slope_rate(f: SurfacePoint, v_x: float, v_y: float) -> tuple[float, float]:
     return seen_in_space(f, f.w_xt + f.w_xx * v_x + f.w_xy * v_y, f.w_yt + f.w_xy * v_x + f.w_yy * v_y)
 
 
-@jit_no_arrays
+@inlined
 def _slope_bend(f: SurfacePoint, v_x: float, v_y: float, p_x: float, p_y: float) -> tuple[float, float]:
     """The second derivative [1/s^2] in time of the slope as seen by a point that moves steadily.
 

@@ -20,7 +20,7 @@ from particle.events.polynomials import narrow
 from particle.events.rest.stick_bound import DEGREE as BOUND_DEGREE
 from particle.events.rest.stick_bound import is_safe_by_bound, largest_force
 from particle.events.rest.stick_margin import DEGREE, NARROW, fill_margin, holds_at_end, is_safe_by_margin
-from particle.jit import jit, jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.surface import LocalSurface, motion_at
 
 FloatArray = NDArray[np.float64]
@@ -56,7 +56,7 @@ def new_rest() -> Rest:
     )
 
 
-@jit
+@inlined
 def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float, begin: float, end: float) -> float:
     """When [s] a part at rest at (x, y) [m] first slips, comes off or is overloaded; inf when it does not.
 

@@ -24,7 +24,7 @@ from particle.events.bernstein import to_bernstein
 from particle.events.mechanics import Part
 from particle.events.polynomials import derivative, second_derivative, total
 from particle.friction import friction_limit
-from particle.jit import jit, jit_no_arrays
+from particle.jit import inlined, jit, jit_no_arrays
 
 FloatArray = NDArray[np.float64]
 Vector = tuple[FloatArray, FloatArray, FloatArray]
@@ -47,7 +47,7 @@ def _short(a: FloatArray, b: FloatArray) -> FloatArray:
     return out
 
 
-@jit
+@inlined
 def _normal(motion: FloatArray, plane: FloatArray) -> Vector:
     """N = P_x x P_y."""
     x_x, x_y, y_x, y_y = plane[1].copy(), plane[2], plane[4], plane[5].copy()
@@ -76,7 +76,7 @@ def _across(a: Vector, b: Vector) -> FloatArray:
     return _dot((x, y, z), (x, y, z))
 
 
-@jit
+@inlined
 def fill_margin(part: Part, motion: FloatArray, plane: FloatArray, lasting: float, out: FloatArray) -> None:
     """C, F, s^2, E, X and Y in Bernstein form into `out` (6, 15), over a short share of a span.
 
@@ -117,7 +117,7 @@ def _over(value: float, low: float, high: float) -> tuple[float, float]:
     return (value / high, value / low) if value > 0.0 else (value / low, value / high)
 
 
-@jit
+@inlined
 def is_safe_by_margin(part: Part, margin: FloatArray, slack: float) -> bool:
     """Whether the Bernstein coefficients (6, n) of a subinterval prove that the part stays throughout it.
 

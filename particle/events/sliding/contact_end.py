@@ -8,12 +8,12 @@ from particle.events.request import Request
 from particle.events.sliding.manifold import MAX_TOUCH
 from particle.events.sliding.runge_kutta import attempt, first_excursion
 from particle.events.tableau import Tableau
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.modes import Verdict
 from particle.surface import Surface, first_beyond, rim_gap
 
 
-@jit_no_arrays
+@inlined
 def stays_in_contact(surface: Surface, request: Request, pair: Tableau, memory: Memory) -> bool:
     """Whether contact lasts over the step that was tried; if not, it is to be tried shorter, or the path has ended."""
     now: Now = memory.now[0]
@@ -49,7 +49,7 @@ def stays_in_contact(surface: Surface, request: Request, pair: Tableau, memory: 
     return True
 
 
-@jit_no_arrays
+@inlined
 def _locate_end(surface: Surface, part: Part, pair: Tableau, memory: Memory) -> float:
     """The step that ends where contact does, just beyond it: a bracket that secants (Illinois) and halving close."""
     now: Now = memory.now[0]

@@ -21,7 +21,7 @@ from particle.events.memory import Memory
 from particle.events.request import Request
 from particle.events.sliding.runge_kutta import motion_rate
 from particle.friction import friction_limit
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.modes import Mode
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
@@ -45,7 +45,7 @@ def manifold_error(local: LocalSurface, part: Part, time: float, motion: Motion)
     return 3 * abs(kappa) * motion.v_x**3 / a.limit if a.limit > 0.0 else math.inf
 
 
-@jit_no_arrays
+@inlined
 def joins_manifold(
     local: LocalSurface, request: Request, time: float, motion: Motion, f: SurfacePoint, a: RestPull
 ) -> bool:
@@ -67,7 +67,7 @@ def to_plane(local: LocalSurface, part: Part, time: float, motion: Motion, f: Su
     motion.v_x, motion.v_y = velocity(f, part, motion.v_x, h)
 
 
-@jit_no_arrays
+@inlined
 def check_manifold(request: Request, memory: Memory, f: SurfacePoint, a: RestPull) -> int:
     """What becomes of a step tried on the manifold: it is good (GOOD), to be tried again, shorter or off the manifold
     (AGAIN), or brings the part to rest (AT_REST).
@@ -99,7 +99,7 @@ def check_manifold(request: Request, memory: Memory, f: SurfacePoint, a: RestPul
     return GOOD
 
 
-@jit_no_arrays
+@inlined
 def leave_manifold(request: Request, memory: Memory) -> None:
     """Go over to plain steps once the part is fast enough for them, or slows down again."""
     now: Now = memory.now[0]

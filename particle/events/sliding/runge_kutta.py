@@ -9,7 +9,7 @@ from particle.events.memory import Memory
 from particle.events.step import Step
 from particle.events.tableau import Tableau
 from particle.friction import friction_limit
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.modes import Mode
 from particle.surface import LocalSurface, Surface, SurfacePoint, gap_at, surface_at, within_cell
 
@@ -67,7 +67,7 @@ def attempt(surface: Surface, part: Part, pair: Tableau, memory: Memory, h: floa
     return True
 
 
-@jit_no_arrays
+@inlined
 def step_error(pair: Tableau, step: Step, h: float, lasting: float, force: float) -> float:
     """The step's error as a distance [m].
 
@@ -89,7 +89,7 @@ def step_error(pair: Tableau, step: Step, h: float, lasting: float, force: float
     return fifth / math.sqrt(fifth + 0.01 * third)
 
 
-@jit_no_arrays
+@inlined
 def first_excursion(part: Part, pair: Tableau, step: Step) -> float:
     """The share of a step at which the load leaves the contact's range between two stages; 1: nowhere.
 

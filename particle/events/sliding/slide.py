@@ -19,7 +19,7 @@ from particle.events.sliding.manifold import (
 from particle.events.sliding.runge_kutta import attempt, motion_rate, step_error
 from particle.events.sliding.stop import Stop, come_to_rest, frozen_stop, stop_ahead
 from particle.events.tableau import Pairs
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.modes import NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import (
     NOWHERE,
@@ -80,7 +80,7 @@ def slide(surface: Surface, request: Request, pairs: Pairs, memory: Memory) -> i
     return _step(surface, request, pairs, memory, f, a)
 
 
-@jit_no_arrays
+@inlined
 def _stop(surface: Surface, request: Request, memory: Memory, f: SurfacePoint, a: RestPull) -> int:
     """Moves the part to its stop if that is close; else shortens the step so that it ends before."""
     now: Now = memory.now[0]
@@ -113,7 +113,7 @@ def _stop(surface: Surface, request: Request, memory: Memory, f: SurfacePoint, a
     return NO_EVENT
 
 
-@jit_no_arrays
+@inlined
 def _stops_on_plate(surface: Surface, gap: float, motion: Motion, stop: Stop) -> bool:
     """Whether the way to a stop lies on the plate; gap: m, from the rim at its start."""
     x, y = motion.x + stop.x, motion.y + stop.y
@@ -122,7 +122,7 @@ def _stops_on_plate(surface: Surface, gap: float, motion: Motion, stop: Stop) ->
     return way == 1.0 and rim_gap(surface, x, y) >= -ROUNDING * surface.size
 
 
-@jit_no_arrays
+@inlined
 def _step(surface: Surface, request: Request, pairs: Pairs, memory: Memory, f: SurfacePoint, a: RestPull) -> int:
     """Moves the part on by the first step tried that is good enough, to the end of contact, or to rest (STOPS)."""
     now: Now = memory.now[0]
@@ -161,7 +161,7 @@ def _step(surface: Surface, request: Request, pairs: Pairs, memory: Memory, f: S
     return NO_EVENT
 
 
-@jit_no_arrays
+@inlined
 def _accept(request: Request, memory: Memory, remaining: float, reach: float, growth: float) -> None:
     """Goes on to the end of the step; reach: its share of one of the long pair."""
     now: Now = memory.now[0]
@@ -175,7 +175,7 @@ def _accept(request: Request, memory: Memory, remaining: float, reach: float, gr
             now.h = OFF_MANIFOLD * h
 
 
-@jit_no_arrays
+@inlined
 def _to_passage(local: LocalSurface, motion: Motion, h: float) -> float:
     """The step [s], cut where the part passes closely over an actuator: at a step's end its logarithm does no harm."""
     x, y, v_x, v_y = motion.x, motion.y, motion.v_x, motion.v_y

@@ -36,7 +36,7 @@ from particle.events.mechanics import (
     rest_pull,
     slip,
 )
-from particle.jit import jit_no_arrays
+from particle.jit import inlined, jit_no_arrays
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 # Gauss's rule on [0, 1], and its end, at which only the load is of interest.
@@ -92,7 +92,7 @@ def frozen_stop(f: SurfacePoint, part: Part, a: RestPull, v_x: float, v_y: float
     return Stop(time, x, y, reverses, c_x, c_y, loss, loss * (1.0 - 1.0 / straight), miss)
 
 
-@jit_no_arrays
+@inlined
 def stop_ahead(
     now: Stop, local: LocalSurface, part: Part, time: float, motion: Motion, small: float, pace: float, force: float
 ) -> tuple[Stop, float]:
@@ -113,7 +113,7 @@ def stop_ahead(
     return later, max(miss, part.mass / force * abs(later.loss - now.loss))
 
 
-@jit_no_arrays
+@inlined
 def come_to_rest(local: LocalSurface, part: Part, time: float, motion: Motion, stop: Stop) -> bool:
     """Moves `motion` (x, y, v_x, v_y, work, dissipation) to a stop; False, and no move, if contact ends on the way.
 
