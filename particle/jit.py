@@ -1,7 +1,7 @@
 """The one place where kernels are compiled: cached on disk, IEEE arithmetic, other threads running on.
 
-numba makes machine code of each kernel with all that it calls, so a chain of kernels is compiled as often as it is
-deep. A kernel with a single caller is therefore compiled as part of it (`inlined`).
+Only kernels that Python calls are compiled by themselves. What else they call is part of what they compile: numba makes
+machine code of a kernel with all that it calls, and a way in from Python costs as much as most small functions do.
 """
 
 from __future__ import annotations
@@ -11,34 +11,46 @@ from typing import Any, TypeVar
 
 import numba
 from numba.core import config
+from numba.extending import register_jitable
 
 from particle.kernel_cache import KernelCache, place_of
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
+OPTIONS = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 
 
 def jit(kernel: Kernel) -> Kernel:
-    """Compile a kernel at its first call (nothing when NUMBA_DISABLE_JIT=1)."""
+    """Compile a kernel that Python calls, at its first call (nothing when NUMBA_DISABLE_JIT=1)."""
     return _compiled(kernel)
 
 
 def jit_no_arrays(kernel: Kernel) -> Kernel:
     """As `jit`, for kernels that make no arrays: without counting references to those that they get.
 
-    They call only each other, `inlined` ones that make no arrays either, and functions of numbers. Some of numpy's
-    functions, such as an array's `min`, make arrays inside; these compile here only if a kernel that makes arrays has
-    been compiled before in the same process.
+    They call only each other, such device functions, and functions of numbers. Some of numpy's functions, such as an
+    array's `min`, make arrays inside; these compile here only if a kernel that makes arrays has been compiled before in
+    the same process.
     """
     return _compiled(kernel, _nrt=False)
 
 
-def inlined(kernel: Kernel) -> Kernel:
-    """Compile a kernel as part of the one kernel that calls it."""
-    return _compiled(kernel, inline="always")
+def device(function: Kernel) -> Kernel:
+    """Compile a function with the kernels that call it; Python that calls it runs it as Python."""
+    return register_jitable(**OPTIONS)(function)  # type: ignore[no-any-return]
+
+
+def device_no_arrays(function: Kernel) -> Kernel:
+    """As `device`, for functions that make no arrays, as in `jit_no_arrays`."""
+    return register_jitable(**OPTIONS, _nrt=False)(function)  # type: ignore[no-any-return]
+
+
+def inlined(function: Kernel) -> Kernel:
+    """Compile a function into the one kernel or function that calls it."""
+    return _compiled(function, inline="always")
 
 
 def _compiled(kernel: Kernel, **options: Any) -> Kernel:
-    dispatcher = numba.njit(error_model="numpy", nogil=True, no_cfunc_wrapper=True, **options)(kernel)
+    dispatcher = numba.njit(**OPTIONS, **options)(kernel)
     if not config.DISABLE_JIT and place_of(kernel).folder:
         dispatcher._cache = KernelCache(dispatcher)
     return dispatcher  # type: ignore[no-any-return]
@@ -46,3 +58,4 @@ def _compiled(kernel: Kernel, **options: Any) -> Kernel:
 
 # For other packages: at the door of this one, `jit` is the module.
 kernel, kernel_no_arrays, kernel_inlined = jit, jit_no_arrays, inlined
+kernel_device, kernel_device_no_arrays = device, device_no_arrays
