@@ -1,6 +1,6 @@
 # make demo: set up and run the main job.   make test: set up, lint and test, in minutes.
 # make test-all: the long tests as well.    make coverage: what they cover.    make site: the documentation site.
-# make fuzz, paths, kills: abuse.
+# make abuse: fuzz, paths and kills, hours of them.
 PYTHON ?= python3
 # For pip; .ci/versions has others, and leaves out lint, which depends on its own versions.
 CONSTRAINTS ?= constraints.txt
@@ -20,7 +20,7 @@ MARCHES := tests/physics tests/regression tests/active_surface/studies/test_feas
 MARCHES += $(addprefix tests/validation/test_, single_stroke.py two_actuators.py)
 CHOSEN := -m "not slow"
 
-.PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark fuzz paths kills clean
+.PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark abuse fuzz paths kills clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/transport.toml
@@ -74,19 +74,22 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many
 
-# Abuse: mutated and generated inputs for so many seconds, random paths, killed commands. docs/trust.md has what they show.
+# Abuse: mutated and generated inputs, random paths, killed commands. docs/trust.md has what they show.
 SECONDS ?= 600
 SEED ?= 1
 COUNT ?= 1000000
 
+abuse: fuzz paths kills
+
 fuzz: .venv/developer
-	cd benchmarks && ../$(BIN)/python -m fuzz --seconds $(SECONDS) --count $(COUNT) --seed $(SEED)
+	cd tests/abuse && ../../$(BIN)/python -m fuzz --seconds $(SECONDS) --count $(COUNT) --seed $(SEED)
 
 paths: .venv/developer
-	$(BIN)/python benchmarks/random_paths.py --seconds $(SECONDS) --count $(COUNT) --seed $(SEED) --oracle 1000
+	$(BIN)/python tests/abuse/random_paths.py --seconds $(SECONDS) --count $(COUNT) --seed $(SEED) --oracle 1000
 
 kills: .venv/developer
-	$(BIN)/python benchmarks/kill_anywhere.py --seed $(SEED)
+	$(BIN)/python tests/abuse/kill_anywhere.py --seed $(SEED)
+	$(BIN)/python tests/abuse/kills.py
 
 docs: .venv/developer
 	$(BIN)/python docs/pictures.py

@@ -1,4 +1,4 @@
-"""Fuzzes for so many seconds or inputs: in benchmarks, python -m fuzz [--seconds S] [--count N] [--seed SEED].
+"""Fuzzes for so many seconds or inputs: in tests/abuse, python -m fuzz [--seconds S] [--count N] [--seed SEED].
 
 Inputs follow from the seed and their number, so that the same command tries the same inputs, and `--first N --count 1`
 tries one again. Processes of their own try them, with bounds on time and memory. The exit code is 1 if any was wrong.

@@ -12,7 +12,7 @@ import meshio
 import numpy as np
 from click.testing import CliRunner
 
-ROOT: Final = Path(__file__).parents[2]
+ROOT: Final = Path(__file__).parents[3]
 QUICK: Final = """\
 [plate]
 shape = "disc"

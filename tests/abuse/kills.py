@@ -1,6 +1,6 @@
 """Kills runs while they write their results: every partial file opens in VTK and holds the steps that were flushed.
 
-    python benchmarks/kills.py [--count 10]
+    python tests/abuse/kills.py [--count 10]
 
 Runs the command itself in a process of its own, which reports each flush, and kills it (SIGKILL) at a random moment
 between the first flush and the end of writing.
@@ -28,7 +28,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 
 from coupling import SavedRun, read_run
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 KINDS = ("plate", "part")
 LONGEST = 0.5  # s of steps that a kill may lose
 # What the command runs, with a line for each write and flush: the kind of file, its steps, what it was, and when.

@@ -1,6 +1,6 @@
 """A million random paths: does any hang, give no number, work without bound, lose energy, or depend on how it is run?
 
-`python benchmarks/random_paths.py --count 1000000` follows paths in blocks over one surface each: random plates (discs
+`python tests/abuse/random_paths.py --count 1000000` follows paths in blocks over one surface each: random plates (discs
 in closed form, and rectangles, annuli, ellipses and polygons of finite elements), drives, parts, laws, tilts. Each
 20th block is followed again by another number of threads and in other chunks, and must have the same bits. A block
 follows from its number alone: `--first BLOCK --count 250` follows it again. `--oracle N` compares paths with the
@@ -20,7 +20,7 @@ from time import perf_counter
 from typing import Any, NamedTuple
 
 import numpy as np
-from random_cases import CONTACTS, MASS, RADIUS, _friction, _start, _velocity, layouts
+from random_cases import CONTACTS, MASS, RADIUS, friction, is_finite, layouts, start, velocity
 
 from coupling import build_scene
 from coupling.case import Case
@@ -96,13 +96,13 @@ def block(number: int, seed: int) -> Block:
     tilt = rng.normal(0, 1, 2) * rng.choice([0.0, 0.5, 3.0])
     parts, laws, drives, contacts = [], [], [], []
     while len(parts) < BLOCK:
-        place = _start(rng, surface.sources)
+        place = start(rng, surface.sources)
         if not rim_gap(surface.record, *place) > 0:
             continue
         contacts.append(str(rng.choice(CONTACTS)))
-        laws.append(_friction(rng, contacts[-1]))
+        laws.append(friction(rng, contacts[-1]))
         squeeze = float(rng.choice([0.0, MASS * 10 ** rng.uniform(0, 3)], p=[0.8, 0.2]))
-        parts.append(Micropart(MASS, place, _velocity(rng), squeeze=squeeze))
+        parts.append(Micropart(MASS, place, velocity(rng), squeeze=squeeze))
         drives.append([_drive(rng) for _ in surface.sources])
     after = str(rng.choice(["stop", "fly"]))
     gravity = (*map(float, tilt), -9.80665)
@@ -134,8 +134,7 @@ def wrong(one: Block, paths: list[Trajectory], closed: list[float]) -> list[tupl
     """
     found = []
     for k, path in enumerate(paths):
-        rows = (path.time, path.position, path.velocity, path.height, path.normal_force, path.friction_force)
-        if not all(np.isfinite(values).all() for values in rows):
+        if not is_finite(path):
             found.append((k, "not finite"))
         elif not path.energy.balance <= BALANCE:
             gaps = [path.energy.balance]
@@ -158,7 +157,7 @@ def wrong(one: Block, paths: list[Trajectory], closed: list[float]) -> list[tupl
 
 def against_oracle(count: int, seed: int) -> list[str]:
     """What paths on discs differ in from the reference integrator; lengths over the way of each."""
-    sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "reference"))
+    sys.path.insert(0, str(Path(__file__).parents[1] / "reference"))
     from motion_cases import breakpoints, limit_of, path_length
     from motion_oracle import trace
     from motion_problem import Problem
@@ -175,8 +174,8 @@ def against_oracle(count: int, seed: int) -> list[str]:
             (float(10 ** rng.uniform(-5, -3.9)), float(10 ** rng.uniform(2.3, 3)), float(rng.choice([0.0, 4e-4])))
             for _ in points
         ]
-        part = Micropart(MASS, _start(rng, np.array(points)), _velocity(rng))
-        law = _friction(rng, str(rng.choice(["constant", "coulomb", "adhesive"])))
+        part = Micropart(MASS, start(rng, np.array(points)), velocity(rng))
+        law = friction(rng, str(rng.choice(["constant", "coulomb", "adhesive"])))
         duration = float(rng.uniform(5e-4, 2e-3))
         problem = Problem(
             boggio(points, RADIUS, [up_down(*stroke) for stroke in strokes]), MASS, limit_of(law),
@@ -227,9 +226,9 @@ def main() -> None:
     for number in range(asked.first, asked.first + -(-asked.count // BLOCK)):
         if perf_counter() - begun > asked.seconds:
             break
-        one, start = block(number, asked.seed), perf_counter()
+        one, began = block(number, asked.seed), perf_counter()
         paths = one.follow(2)
-        longest = max(longest, perf_counter() - start)
+        longest = max(longest, perf_counter() - began)
         done += len(paths)
         outcomes.update(path.outcome.value for path in paths)
         most = max(most, *(path.evaluations for path in paths))

@@ -1,6 +1,6 @@
 """Kills commands (SIGKILL) at random moments: nothing unfinished passes as finished, and the next run works.
 
-    python benchmarks/kill_anywhere.py [--count 29] [--seed 1]
+    python tests/abuse/kill_anywhere.py [--count 29] [--seed 1]
 
 So many kills of each of run, sweep, aim, export, animate, view and app, at moments spread over all that each does.
 Then a disk that is full, a folder that vanishes, and two processes in one folder. `kills.py` looks at what was flushed.
@@ -148,15 +148,21 @@ def finished() -> dict[str, object]:
     return there
 
 
-def kill(name: str, count: int, seed: int, folder: Path, made: Path) -> list[str]:
-    """What was wrong after kills of one command."""
-    chance = random.Random(f"{seed}/{name}")
+def whole_run(name: str, folder: Path, made: Path) -> tuple[dict[str, object], float]:
+    """The results of a command that nothing disturbs, and how long it takes [s]."""
     prepare(folder, made)
     begun = time.monotonic()
     assert ended(started(COMMANDS[name])) in (0, 1), name
     duration, expected = time.monotonic() - begun, finished()
     assert expected, name
-    wrong, whole, early = [], 0, 0
+    return expected, duration
+
+
+def kill(
+    name: str, expected: dict[str, object], duration: float, count: int, seed: int, folder: Path, made: Path
+) -> list[str]:
+    """What was wrong after kills of one command, which takes a duration [s]."""
+    chance, wrong, late = random.Random(f"{seed}/{name}"), [], 0
     for k in range(count):
         prepare(folder, made)
         delay = chance.uniform(0, 1.05 * duration)
@@ -164,26 +170,26 @@ def kill(name: str, count: int, seed: int, folder: Path, made: Path) -> list[str
         time.sleep(delay)
         os.kill(child, signal.SIGKILL)
         if ended(child) != -signal.SIGKILL:
-            whole += 1
+            late += 1
         try:
-            there = finished()
-            early += bool(there)
-            other = [one for one in there if there[one] != expected.get(one)]
-            if other:
+            if other := differing(expected):
                 wrong.append(f"{name} {k}: after {delay:.2f} s {other} differ from those of a whole run")
             if (code := ended(started(COMMANDS[name]))) not in (0, 1) or finished() != expected:
                 wrong.append(f"{name} {k}: the next run ends with {code}, or has other results")
         except Exception as error:  # whatever it is, a file is not whole
             wrong.append(f"{name} {k}: after {delay:.2f} s {type(error).__name__}: {error}")
-    print(f"{name:8} {count} kills within {duration:.2f} s, {whole} of them too late; {len(wrong)} wrong", flush=True)
+    print(f"{name:8} {count} kills within {duration:.2f} s, {late} of them too late; {len(wrong)} wrong", flush=True)
     return wrong
 
 
-def full_disk(name: str, folder: Path, made: Path) -> list[str]:
+def differing(expected: dict[str, object]) -> list[str]:
+    """The finished results that differ from those of a whole run."""
+    return [name for name, what in finished().items() if what != expected.get(name)]
+
+
+def full_disk(name: str, expected: dict[str, object], folder: Path, made: Path) -> list[str]:
     """What is wrong where files may have so many bytes only."""
-    prepare(folder, made)
-    assert ended(started(COMMANDS[name])) in (0, 1)
-    expected, wrong, codes = finished(), [], []
+    wrong, codes = [], []
     for most in (0, 512, 4096, 30_000, 100_000):
 
         def limit(most: int = most) -> None:
@@ -195,7 +201,7 @@ def full_disk(name: str, folder: Path, made: Path) -> list[str]:
         if codes[-1] not in (0, 1, 2):
             wrong.append(f"{name}: with {most} bytes a file it ends with {codes[-1]}")
         try:
-            other = [one for one, what in finished().items() if what != expected.get(one)]
+            other = differing(expected)
         except Exception as error:
             other = [f"{type(error).__name__}: {error}"]
         if other:
@@ -221,11 +227,8 @@ def vanished(name: str, folder: Path, made: Path, seed: int) -> list[str]:
     return wrong
 
 
-def together(name: str, folder: Path, made: Path) -> list[str]:
+def together(name: str, expected: dict[str, object], folder: Path, made: Path) -> list[str]:
     """What is wrong where two processes make the same results at a time."""
-    prepare(folder, made)
-    assert ended(started(COMMANDS[name])) in (0, 1)
-    expected = finished()
     prepare(folder, made)
     children = [started(COMMANDS[name]) for _ in range(2)]
     codes = [ended(child) for child in children]
@@ -250,10 +253,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="kills-") as folder:
         at = Path(folder, "at")
         for name in names:
-            wrong += kill(name, asked.count, asked.seed, at, made)
-            wrong += full_disk(name, at, made)
+            expected, duration = whole_run(name, at, made)
+            wrong += kill(name, expected, duration, asked.count, asked.seed, at, made)
+            wrong += full_disk(name, expected, at, made)
             wrong += vanished(name, at, made, asked.seed)
-            wrong += together(name, at, made)
+            wrong += together(name, expected, at, made)
         os.chdir(made)
     print("\n".join(wrong))
     sys.exit(1 if wrong else 0)

@@ -19,51 +19,15 @@ UNITS: Final = (
 WORDS: Final = (
     *("", " ", "true", "false", "endless", "paper", "disc", "rectangle", "annulus", "polygon", "platform", "coulomb"),
     *("von-karman", "steady", "free", "clamped", "fly", "fixed", "sine", "up", "hold", "linear", "table", "111"),
-    *(
-        "../secret",
-        "/dev/zero",
-        "/dev/null",
-        "pipe",
-        "loop",
-        ".",
-        "/",
-        "nothing.csv",
-        "\\u0000",
-        "é",
-        "<script>",
-        "x" * 5000,
-    ),
-    *(
-        "__import__('os')",
-        "row",
-        "9**9**9",
-        "((((((((((x))))))))))",
-        "row if row else",
-        "1 if 1 else 2 um",
-        "x.y",
-        "[]",
-    ),
+    *("../secret", "/dev/zero", "/dev/null", "pipe", "loop", ".", "/", "nothing.csv", "\\u0000", "é", "<script>"),
+    *("x" * 5000, "__import__('os')", "row", "9**9**9", "((((((((((x))))))))))", "row if row else", "1 if 1 else 2 um"),
+    *("x.y", "[]"),
 )
 VALUES: Final = (
-    "[]",
-    "{}",
-    "[[]]",
-    "[[1, 2]]",
-    '["1 um"]',
-    '["1 um", "2 um"]',
-    "{ x = 1 }",
-    "1979-05-27",
-    "[" * 40 + "]" * 40,
+    *("[]", "{}", "[[]]", "[[1, 2]]", '["1 um"]', '["1 um", "2 um"]', "{ x = 1 }", "1979-05-27", "[" * 40 + "]" * 40),
 )
 BYTES: Final = (
-    b"\x00",
-    b"\xff",
-    b"\x7f",
-    b"\x80",
-    b"\xff" * 4,
-    b"\xff" * 8,
-    b"\x00" * 8,
-    b"\x00" * 64,
+    *(b"\x00", b"\xff", b"\x7f", b"\x80", b"\xff" * 4, b"\xff" * 8, b"\x00" * 8, b"\x00" * 64),
     b"\x7f" + b"\xff" * 7,
 )
 _NUMBER: Final = re.compile(r"-?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?")
@@ -135,10 +99,8 @@ def _key(text: str, chance: random.Random, _: Sequence[str]) -> str:
     keys = re.findall(r"^(\w+) = ", text, re.MULTILINE)
     if not keys:
         return text
-    old, new = (
-        chance.choice(keys),
-        chance.choice([*keys, "E", "diameter", "mesh", "x", "sides", "force", "phase", "table"]),
-    )
+    old = chance.choice(keys)
+    new = chance.choice([*keys, "E", "diameter", "mesh", "x", "sides", "force", "phase", "table"])
     return text.replace(f"{old} = ", f"{new} = ", 1)
 
 

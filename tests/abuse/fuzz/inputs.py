@@ -103,9 +103,8 @@ def formula(chance: random.Random, _: Path) -> Command:
     if chance.random() < 0.2:
         text = mutated_text(text, chance)
     quoted = text.replace("\\", "").replace('"', "").replace("\n", " ")
-    _write(
-        "input.toml", seeds.lattice_case(**{key: quoted + ("" if key == "where" else f" {unit}")}).replace("\x00", "")
-    )
+    text = quoted if key == "where" else f"{quoted} {unit}"
+    _write("input.toml", seeds.lattice_case(**{key: text}).replace("\x00", ""))
     return ["check", "input.toml"]
 
 
@@ -151,65 +150,17 @@ def command(chance: random.Random, made: Path) -> Command:
     for name in ("quick.plate.vtkhdf", "quick.part.vtkhdf", "study.nc"):
         _write(name, (made / name).read_bytes())
     names = (
-        "check",
-        "view",
-        "plot",
-        "export",
-        "animate",
-        "response",
-        "influence",
-        "identify",
-        "fit",
-        "aim",
-        "plan",
-        "rerun",
-    )
-    names += (
-        "schema",
-        "example",
-        "completion",
-        "feasibility",
-        "reproduce",
-        "verify",
-        "run",
-        "sweep",
-        "chekc",
+        *("check", "view", "plot", "export", "animate", "response", "influence", "identify", "fit", "aim", "plan"),
+        *("rerun", "schema", "example", "completion", "feasibility", "reproduce", "verify", "run", "sweep", "chekc"),
         "--version",
     )
     options = (
-        "--json",
-        "--quiet",
-        "-o",
-        "--output",
-        "--format",
-        "--threads",
-        "--target",
-        "--through",
-        "--x",
-        "--width",
-    )
-    options += (
-        "--help",
-        "--camera",
-        "--size",
-        "--fps",
-        "--free",
-        "--measured",
-        "--pixels",
-        "--dead",
-        "--frequency",
+        *("--json", "--quiet", "-o", "--output", "--format", "--threads", "--target", "--through", "--x", "--width"),
+        *("--help", "--camera", "--size", "--fps", "--free", "--measured", "--pixels", "--dead", "--frequency"),
         "--robust",
     )
     files = (
-        "quick.toml",
-        "quick",
-        "study.nc",
-        "study.toml",
-        "missing.toml",
-        ".",
-        "/dev/zero",
-        "pipe",
-        "loop",
+        *("quick.toml", "quick", "study.nc", "study.toml", "missing.toml", ".", "/dev/zero", "pipe", "loop"),
         "quick.part.vtkhdf",
     )
     words = [chance.choice(names)]
@@ -220,26 +171,12 @@ def command(chance: random.Random, made: Path) -> Command:
         words.append(chance.choice(kind).replace("\x00", ""))
     # Right command lines of these take long; others of them are refused at once.
     slow = (
-        "reproduce",
-        "verify",
-        "animate",
-        "sweep",
-        "feasibility",
-        "aim",
-        "plan",
-        "identify",
-        "response",
-        "influence",
-        "rerun",
+        *("reproduce", "verify", "animate", "sweep", "feasibility", "aim", "plan", "identify", "response"),
+        *("influence", "rerun"),
     )
     if words[0] in slow:
-        words = [
-            words[0],
-            *(word.replace("quick", "missing").replace("study", "missing") for word in words[1:]),
-            "--wrong",
-            "--wrong",
-            "--wrong",
-        ]
+        others = (word.replace("quick", "missing").replace("study", "missing") for word in words[1:])
+        words = [words[0], *others, *("--wrong",) * 3]
     return words
 
 
