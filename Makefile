@@ -14,11 +14,13 @@ unexport PYTHONDONTWRITEBYTECODE
 # Tests run on all processors, those of a file on one, as they share what is made for them. tests/conftest.py puts files
 # that take long first.
 PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-reorder
-# Only kernels are compiled: `tests/particle` runs in plain Python, too. In test-all so does what else marches.
-PLAIN := tests/particle
-MARCHES := tests/physics tests/regression tests/active_surface/studies/test_feasible.py
-MARCHES += $(addprefix tests/validation/test_, single_stroke.py two_actuators.py)
-CHOSEN := -m "not slow"
+# In plain Python a bad index raises: a few kernels in `make test`, and in test-all what else marches.
+PLAIN := $(addprefix tests/particle/test_, bernstein.py drive.py in_plane_motion.py runge_kutta.py slide.py stick.py)
+MARCHES := tests/particle tests/physics tests/regression $(addprefix tests/validation/test_, single_stroke.py two_actuators.py)
+# Only in test-all: tests marked slow, and files that take long as a whole. What is left keeps to its budget.
+LONG := *_in_browser.py test_aim_examples.py test_cluster.py test_kills.py test_large_arrays.py test_paper_figures.py
+LONG += test_rivals.py test_study_examples.py test_wheel.py
+CHOSEN := -m "not slow" --budget $(LONG:%=--ignore-glob='*/%')
 
 .PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark abuse fuzz paths kills clean
 
@@ -27,16 +29,15 @@ demo: .venv/installed
 
 test: .venv/developer
 	@$(MAKE) --no-print-directory -j2 kernels plain PLAIN="$(PLAIN)" COVERAGE="$(COVERAGE)"
-	@echo "== all tests, with compiled kernels (2 of 2)"
+	@echo "== tests with compiled kernels (2 of 2)"
 	$(PYTEST) $(COVERAGE) $(CHOSEN)
 
 plain: $(LINT)
-	@echo "== the part, in plain Python (1 of 2)"
+	@echo "== kernels in plain Python (1 of 2)"
 	NUMBA_DISABLE_JIT=1 $(PYTEST) $(COVERAGE) -m "not slow and not compiled" $(PLAIN)
 
-# Rivals, browsers, clusters, killed runs, long validation as well: in one pass with the others, as tests of a file share
-# what is made for them.
-test-all coverage: PLAIN += $(MARCHES)
+# In one pass with the others, as tests of a file share what is made for them.
+test-all coverage: PLAIN := $(MARCHES)
 test-all coverage: CHOSEN :=
 test-all: test
 

@@ -25,7 +25,9 @@ def entries(table: str, texts: dict[str, str]) -> Iterator[tuple[str, str]]:
         yield text, said
 
 
-def answered_otherwise(table: str, problems: Callable[[str], list[str]], /, **texts: str) -> list[tuple[str, list[str]]]:
+def answered_otherwise(
+    table: str, problems: Callable[[str], list[str]], /, **texts: str
+) -> list[tuple[str, list[str]]]:
     """What is not said of the mistakes of a table, and what is said in its place."""
     answers = [(said, problems(text)) for text, said in entries(table, texts)]
     return [(said, found) for said, found in answers if not any(said in line for line in found)]
