@@ -63,14 +63,9 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/plate.py
 	$(BIN)/python benchmarks/contact.py
 	$(BIN)/python benchmarks/schemes.py
-	$(BIN)/python benchmarks/evaluation.py
-	$(BIN)/python benchmarks/cycles.py
 	$(BIN)/python benchmarks/top_face.py
 	$(BIN)/python benchmarks/with_ngsolve_large_deflection.py
-	$(BIN)/python benchmarks/in_plane.py
-	$(BIN)/python benchmarks/corrections.py
 	$(BIN)/python benchmarks/stretching_sweeps.py
-	$(BIN)/python benchmarks/stretched_paths.py
 	$(BIN)/python benchmarks/inertia.py
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many

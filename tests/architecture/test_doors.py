@@ -12,13 +12,8 @@ INSIDE = {  # scripts that measure or describe parts of rooms, which are not pub
     "benchmarks/aims.py",
     "benchmarks/assembly.py",
     "benchmarks/contact.py",
-    "benchmarks/evolution.py",
-    "benchmarks/full_solutions.py",
     "benchmarks/measured_motion.py",
     "benchmarks/results.py",
-    "benchmarks/rivals/ours.py",
-    "benchmarks/stretched_nodes.py",
-    "benchmarks/stretched_paths.py",
     "docs/extensions/fields.py",
     "docs/theory_pictures.py",
 }
