@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from common import draw, notebook_html
 from fem_plate import vibration
 from fem_plate.arrays import PatchedShapes, ProgressCallback, patched_shapes
 from fem_plate.buckling import buckling_compression, check_tension, is_stable, softest_foundation
@@ -36,10 +37,9 @@ from fem_plate.vibration import HeldPlate, Modes
 from meshes import PlateMesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from skfem import BilinearForm
 
+    from common import Axes, Figure
     from fem_plate.large_deflection import DeflectedPlate, LargeDeflection
 
 FloatArray = NDArray[np.float64]
@@ -429,12 +429,6 @@ class Plate:
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rim by its supports and the mesh, into axes in m or new ones."""
-        from fem_plate.pictures import draw_cells  # here, because only pictures need matplotlib
-        from meshes import plotted
+        return draw(self, axes)
 
-        return plotted(lambda axes: draw_cells(self, axes), axes)
-
-    def _repr_html_(self) -> str:
-        from meshes import notebook_html
-
-        return notebook_html(self)
+    _repr_html_ = notebook_html

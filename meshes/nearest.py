@@ -1,4 +1,8 @@
-"""Nearest points of an ellipse and of straight or parabolic edges, for many points at once."""
+"""Nearest points of an ellipse and of straight or parabolic edges, for many points at once.
+
+`particle/surface/rim.py` has the same formulas for one point, compiled: `particle` knows no meshes, and meshes are made
+without numba.
+"""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from common import draw, notebook_html
 from particle.energy import Energy
 from particle.labelled import dataset_of, table_of
 from particle.outcome import Outcome, State
@@ -18,8 +19,8 @@ from particle.samples import ContactSamples, Event, RoughContact, Samples, conta
 if TYPE_CHECKING:
     import pandas
     import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+
+    from common import Axes, Figure
 
 FloatArray = NDArray[np.float64]
 
@@ -199,12 +200,6 @@ class Trajectory:
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the path and the speed over time; with axes only the path, into these. Axes are in SI units."""
-        from meshes import plotted
-        from particle.pictures import plot, plot_path  # here, because matplotlib is loaded for pictures only
+        return draw(self, axes)
 
-        return plot(self) if axes is None else plotted(lambda axes: plot_path(self, axes), axes)
-
-    def _repr_html_(self) -> str:
-        from meshes import notebook_html
-
-        return notebook_html(self)
+    _repr_html_ = notebook_html

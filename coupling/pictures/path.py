@@ -7,8 +7,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from common import NOTHING, Unit, quantity_text
 from fem_plate import extent
-from meshes import NOTHING, Unit, quantity_text
 from particle import PLACE, RING, Rows, draw_line
 
 FloatArray = NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-from meshes import STEPS, Unit
+from common import STEPS, Unit
 
 MAX_TICKS = 6
 

@@ -2,6 +2,9 @@
 
 A point is on the plate when the rim encloses it an odd number of times (even-odd rule): each ellipse around it counts
 once, and so does each crossing of the edges with a ray towards positive x.
+
+`meshes/nearest.py` has the same formulas for many points at once, in numpy: `particle` knows no meshes, and meshes are
+made without numba.
 """
 
 from __future__ import annotations

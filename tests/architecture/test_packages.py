@@ -10,7 +10,7 @@ PHYSICS = ["meshes", "fem_plate", "particle", "coupling", "coupling.scene", "cou
 
 
 def test_packages_are_those_in_this_repository():
-    for name in ("meshes", "fem_plate", "particle", "coupling", "active_surface"):
+    for name in ("common", "meshes", "fem_plate", "particle", "coupling", "active_surface"):
         assert Path(importlib.import_module(name).__file__).resolve() == ROOT / name / "__init__.py"
 
 

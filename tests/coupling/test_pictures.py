@@ -8,6 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from common import Unit, quantity_text, range_text, unit_for
 from coupling.case import ActuatorCase, Case, ConstantCase, CoulombCase, PartCase, RunCase
 from coupling.display.mesh import display_mesh
 from coupling.display.surface import DisplaySurface, deflections, display_surface, most_deflected
@@ -24,7 +25,7 @@ from coupling.run import run_case
 from fem_plate import Plate, PlateSection
 from fem_plate import pictures as plate_pictures
 from fem_plate.pictures import FEW, marker_size
-from meshes import Unit, disc, quantity_text, range_text, unit_for
+from meshes import disc
 from particle import Samples
 
 BOX = np.array([[-50.0, -50.0], [50.0, 50.0]])

@@ -7,7 +7,8 @@ import meshio
 import numpy as np
 import pytest
 
-from meshes import hdf5, read, rectangle, xdmf
+from common import hdf5
+from meshes import read, rectangle, xdmf
 
 
 @pytest.fixture

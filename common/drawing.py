@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Callable, Iterable
-from html import escape
+from collections.abc import Iterable
 from io import BytesIO
 from typing import Any, cast
 
+import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -16,9 +16,11 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.transforms import ScaledTranslation
+from numpy.typing import NDArray
 
-from meshes.nearest import FloatArray
-from meshes.prefixes import unit_for
+from common.prefixes import unit_for
+
+FloatArray = NDArray[np.float64]
 
 SIZE = 4.2, 3.6  # inches, of one pair of axes
 DPI = 80  # in a notebook
@@ -43,17 +45,14 @@ class Drawing(Figure):
         return f'<img style="max-width: 100%" src="data:image/png;base64,{data}"/>'
 
 
-def plotted(draw: Callable[[Axes], object], axes: Axes | None) -> Figure:
-    """Draw into axes, or into new ones; return their figure."""
-    if axes is None:
-        axes = Drawing().add_subplot()
-    draw(axes)
+def axes_or_new(axes: Axes | None) -> Axes:
+    """Axes that are given, or new ones in a figure of their own."""
+    return Drawing().add_subplot() if axes is None else axes
+
+
+def figure_of(axes: Axes) -> Figure:
+    """The figure of axes."""
     return cast(Figure, axes.figure)
-
-
-def notebook_html(thing: Any) -> str:
-    """What a notebook shows of something that can be plotted: its repr above its picture."""
-    return f"<div><div>{escape(repr(thing))}</div>{thing.plot()._repr_html_()}</div>"
 
 
 def label_places(axes: Axes) -> None:

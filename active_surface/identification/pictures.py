@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -11,8 +10,8 @@ from matplotlib.figure import Figure
 
 from active_surface.identification.fit import TrackFit
 from active_surface.identification.result import Identified
-from coupling.pictures import map_axes, save_picture
-from meshes import Drawing, plotted, unit_for
+from common import Drawing, draw, figure_of, unit_for
+from coupling.pictures import map_axes
 
 SAMPLES: Final = 2000  # of the path
 MEASURED: Final[dict[str, Any]] = {
@@ -27,25 +26,14 @@ ROW: Final = 2.6  # in, of one of several tracks
 WORDS: Final[dict[str, Any]] = {"fontsize": 9, "parse_math": False}
 
 
-def draw_identified(result: Identified, path: Path) -> Path:
-    """Draw a result into a PNG file; return its path."""
-    return save_picture(_drawing(result), path)
-
-
-def plot_identified(result: Identified, axes: Axes | None) -> Figure:
+@draw.register(Identified)
+def draw_identified(result: Identified, axes: Axes | None = None) -> Figure:
     """Draw a result into a figure of its own, or paths and tracks over the plane into axes in m."""
-    if axes is None:
-        return _drawing(result)
-
-    def planes(given: Axes) -> None:
+    if axes is not None:
         for fit in result.fits:
-            _draw_plane(given, fit, 1.0)
-        given.legend(frameon=False)
-
-    return plotted(planes, axes)
-
-
-def _drawing(result: Identified) -> Figure:
+            _draw_plane(axes, fit, 1.0)
+        axes.legend(frameon=False)
+        return figure_of(axes)
     alone = len(result.fits) == 1
     figure = _of_one(result.fits[0]) if alone else _of_several(result)
     lines = [f"{one.field} = {one.text}" for one in result.estimates if alone or one.case is None]

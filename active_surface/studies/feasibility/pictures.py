@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -16,20 +15,20 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from active_surface.arrays import FloatArray
 from active_surface.studies.feasibility.area import Feasible
 from active_surface.studies.feasibility.chart_picture import draw_chart
-from coupling.pictures import map_axes, save_picture
+from active_surface.studies.feasibility.result import Feasibility
+from common import Drawing, draw, draw_rim, quantity_text, unit_for
+from coupling.pictures import map_axes
 from fem_plate import frame_around, mark_actuators
-from meshes import Drawing, draw_rim, quantity_text, rim_curves, unit_for
-
-if TYPE_CHECKING:
-    from active_surface.studies.feasibility.result import Feasibility
+from meshes import rim_curves
 
 LOST, LINE, PALE = "#c8371b", "#40719c", "#8a8a8a"
 CURVES: Final = 2.0  # times the largest useful area: the end of the axis, at most
 SMALLEST: Final = 1e-6  # m: areas are in the square of this at least
 
 
-def draw_feasibility(feasibility: Feasibility, path: Path, picked: tuple[float, float] | None = None) -> Path:
-    """Draw a feasibility into a PNG file, with a picked frequency [Hz] and stroke [m or N]; return its path."""
+@draw.register(Feasibility)
+def draw_feasibility(feasibility: Feasibility, picked: tuple[float, float] | None = None) -> Figure:
+    """Draw a feasibility, with a picked frequency [Hz] and stroke [m or N]."""
     figure = Drawing(figsize=(13.0, 9.4))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.9, 1), width_ratios=(1, 1))
@@ -41,7 +40,7 @@ def draw_feasibility(feasibility: Feasibility, path: Path, picked: tuple[float, 
         f"{quantity_text(feasibility.stroke, feasibility.stroke_unit, 4)}",
         parse_math=False,
     )
-    return save_picture(figure, path)
+    return figure
 
 
 def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:

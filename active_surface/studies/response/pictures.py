@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from active_surface.arrays import FloatArray
 from active_surface.studies.response.functions import ComplexArray
-from coupling.pictures import map_axes, save_picture
+from active_surface.studies.response.response import FrequencyResponse
+from common import Drawing, draw, draw_rim, unit_for
+from coupling.pictures import map_axes
 from fem_plate import frame_around, mark_actuators
-from meshes import Drawing, draw_rim, rim_curves, unit_for
-
-if TYPE_CHECKING:
-    from active_surface.studies.response.response import FrequencyResponse
+from meshes import rim_curves
 
 MAX_CURVES: Final = 10
 MARK: Final[dict[str, Any]] = {"color": "#404040", "linewidth": 1.1, "linestyle": (0, (1, 1.5))}  # of a resonance
 
 
-def draw_response(response: FrequencyResponse, path: Path) -> Path:
-    """Draw a response into a PNG file; return its path. Of many curves it shows those with the largest amplitudes."""
+@draw.register(FrequencyResponse)
+def draw_response(response: FrequencyResponse) -> Figure:
+    """Draw a response; of many curves those with the largest amplitudes."""
     figure = Drawing(figsize=(12.0, 6.0))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
     grid = figure.add_gridspec(2, 2, width_ratios=(2.2, 1), height_ratios=(1.5, 1))
@@ -34,7 +34,7 @@ def draw_response(response: FrequencyResponse, path: Path) -> Path:
     _draw_curves(amplitude, phase, response, curves)
     _draw_places(figure.add_subplot(grid[:, 1]), response)
     figure.suptitle(f"{response.case.name}: response of the plate to its actuators", parse_math=False)
-    return save_picture(figure, path)
+    return figure
 
 
 def _curves(response: FrequencyResponse) -> list[tuple[int, int]]:

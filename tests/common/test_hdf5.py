@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
-from meshes import check_hdf5, hdf5, survives
+from common import check_hdf5, hdf5, survives
 
 
 def huge(file):
