@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.energy import energy_of
 from particle.events import (
     Memory,
     Pairs,
@@ -27,11 +26,10 @@ from particle.events import (
     stays,
 )
 from particle.fixed import between, march_fixed, new_fixed_memory
-from particle.modes import EventKind, Verdict
-from particle.outcome import Outcome, State
+from particle.modes import EventKind, Outcome, State, Verdict
 from particle.samples import Event, samples_of
 from particle.surface import Surface, SurfaceMotion, missing_place, new_local
-from particle.trajectory import Trajectory
+from particle.trajectory import Energy, Trajectory
 
 FloatArray = NDArray[np.float64]
 Rows = NDArray[Any]  # of `Row`
@@ -164,7 +162,8 @@ def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> 
 def _trajectory(
     surface: SurfaceMotion, request: Request, computed: Computed, sampler: Callable[[FloatArray], Rows]
 ) -> Trajectory:
-    samples = samples_of(computed.rows)
+    rows = computed.rows
+    samples = samples_of(rows)
     if computed.verdict == Verdict.GOES_ON:
         outcome = Outcome.STUCK if samples.state[-1] == State.STICK else Outcome.MOVING
     else:
@@ -177,7 +176,9 @@ def _trajectory(
         ],
         outcome=outcome,
         evaluations=computed.evaluations,
-        energy=energy_of(computed.rows, request.force * surface.size),
+        energy=Energy(
+            rows["kinetic"], rows["potential"], rows["work"], rows["dissipated"], request.force * surface.size
+        ),
         sampler=sampler,
         contact=partial(_contact_states, surface, request),
     )

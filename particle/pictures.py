@@ -14,7 +14,7 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from common import SIZE, Drawing, draw, figure_of, label_axis, label_places
-from particle.outcome import State
+from particle.modes import State
 from particle.trajectory import Trajectory
 
 FloatArray = NDArray[np.float64]

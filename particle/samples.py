@@ -8,8 +8,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.modes import EventKind, Mode
-from particle.outcome import State
+from particle.modes import EventKind, Mode, State
 
 FloatArray = NDArray[np.float64]
 

@@ -1,9 +1,9 @@
-"""Trajectory: what the integrator found, for people."""
+"""Trajectory: what the integrator found, with its ledger of energy, for people."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from common import draw, notebook_html
-from particle.energy import Energy
 from particle.labelled import dataset_of, table_of
-from particle.outcome import Outcome, State
+from particle.modes import Outcome, State
 from particle.samples import ContactSamples, Event, RoughContact, Samples, contact_samples_of, samples_of
 
 if TYPE_CHECKING:
@@ -24,9 +23,30 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+MIN_ENERGY = 1e-6
 _FOR_GOOD = "The part is at rest, and the drives do not move it again."
 _IN_FLIGHT = "The part is in flight at the end of the run."
 _FOR_NOW = "The part rests between slips at the end of the run."
+
+
+@dataclass(frozen=True, eq=False)
+class Energy:
+    """The energy ledger at the rows of a trajectory: kinetic + potential grow by work - dissipated."""
+
+    kinetic: FloatArray = field(repr=False)  # (n,) J, seen by one at rest
+    potential: FloatArray = field(repr=False)  # (n,) J, of gravity
+    work: FloatArray = field(repr=False)  # (n,) J, of the moving surface and what squeezes on the part since the start
+    dissipated: FloatArray = field(repr=False)  # (n,) J, by friction and impacts since the start
+    scale: float  # J, that of a part thrown across the surface in a stroke; a millionth of it counts as nothing
+
+    @property
+    def balance(self) -> float:
+        """The largest gap in the ledger, relative to the largest of its entries: the path's own check."""
+        total = self.kinetic + self.potential
+        gap = total - total[0] - (self.work - self.dissipated)
+        entries = (self.kinetic, self.potential - self.potential[0], self.work, self.dissipated)
+        largest = max(float(np.abs(entry).max()) for entry in entries)
+        return float(np.abs(gap).max()) / max(largest, MIN_ENERGY * self.scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

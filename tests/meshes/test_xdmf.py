@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from common import hdf5
-from meshes import read, rectangle, xdmf
+from meshes import read, rectangle
 
 
 @pytest.fixture
@@ -127,7 +127,7 @@ def test_numbers_elsewhere(mesh):
 
 
 def test_numbers_on_which_the_library_would_die(mesh, monkeypatch):
-    monkeypatch.setattr(xdmf, "survives", lambda path: False)
+    monkeypatch.setattr(hdf5, "survives", lambda path: False)
     assert f"mesh.h5 is damaged: {hdf5.DEADLY}" in refused(mesh)
 
 
