@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lattice_cases import DRIVE, FIRST, FRAME, PLACES, problems, python_case, read
+from lattice_cases import DRIVE, FRAME, PLACES, problems, python_case, read
 from mistakes import answered_otherwise
 
 from coupling.case import ActuatorCase, Case, CaseError, InputError, LatticeCase, read_case

@@ -14,7 +14,6 @@ from case_files import STROKE, changed, problems
 from coupling.case import Quantity
 from coupling.case.values import RANGES, units
 
-
 LENGTHS = """
 "150 Hz" => , a frequency
 "20 degC" => , a temperature
