@@ -18,7 +18,7 @@ PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-r
 PLAIN := $(addprefix tests/particle/test_, bernstein.py drive.py in_plane_motion.py runge_kutta.py slide.py stick.py)
 MARCHES := tests/particle tests/physics tests/regression $(addprefix tests/validation/test_, single_stroke.py two_actuators.py)
 # Only in test-all: tests marked slow, and files that take long as a whole. What is left keeps to its budget.
-LONG := *_in_browser.py test_aim_examples.py test_cluster.py test_kills.py test_large_arrays.py test_paper_figures.py
+LONG := *_in_browser.py test_aim_examples.py test_cluster.py test_large_arrays.py test_paper_figures.py
 LONG += test_rivals.py test_study_examples.py test_wheel.py
 CHOSEN := -m "not slow" --budget $(LONG:%=--ignore-glob='*/%')
 

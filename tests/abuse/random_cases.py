@@ -60,18 +60,21 @@ class RandomCase:
 
 
 @cache
-def layouts() -> tuple[SurfaceMotion, ...]:
-    """Surfaces of 1 to 4 actuators on the clamped disc in closed form; the drives are yet to come."""
-    found = []
-    for seed in range(SURFACES):
-        rng, count = np.random.default_rng([7, seed]), 1 + seed % 4
-        points: list[FloatArray] = []
-        while len(points) < count:
-            at = RADIUS * rng.uniform(-0.75, 0.75, 2)
-            if np.hypot(*at) < 0.75 * RADIUS and all(np.hypot(*(at - p)) > 0.2 * RADIUS for p in points):
-                points.append(at)
-        found.append(surface_motion(DiscShapes(points, RADIUS), [Drive(0.0, 300.0)] * count, 1e-10))
-    return tuple(found)
+def layout(number: int) -> SurfaceMotion:
+    """A surface of 1 to 4 actuators on the clamped disc in closed form; the drives are yet to come."""
+    rng, count = np.random.default_rng([7, number]), 1 + number % 4
+    points: list[FloatArray] = []
+    while len(points) < count:
+        at = RADIUS * rng.uniform(-0.75, 0.75, 2)
+        if np.hypot(*at) < 0.75 * RADIUS and all(np.hypot(*(at - p)) > 0.2 * RADIUS for p in points):
+            points.append(at)
+    return surface_motion(DiscShapes(points, RADIUS), [Drive(0.0, 300.0)] * count, 1e-10)
+
+
+def chance(seed: int) -> tuple[np.random.Generator, int]:
+    """What a case is drawn from, and the number of its layout."""
+    rng = np.random.default_rng([11, seed])
+    return rng, int(rng.integers(SURFACES))
 
 
 @cache
@@ -81,8 +84,8 @@ def rough() -> KogutEtsion:
 
 def random_case(seed: int) -> RandomCase:
     """The case of a seed: near an actuator, near the rim or anywhere; from without friction to glued."""
-    rng = np.random.default_rng([11, seed])
-    plain = layouts()[rng.integers(SURFACES)]
+    rng, number = chance(seed)
+    plain = layout(number)
     drives = []
     for _ in plain.sources:
         cycle = "up" if rng.random() < 0.2 else "up-down"

@@ -20,7 +20,7 @@ from time import perf_counter
 from typing import Any, NamedTuple
 
 import numpy as np
-from random_cases import CONTACTS, MASS, RADIUS, friction, is_finite, layouts, start, velocity
+from random_cases import CONTACTS, MASS, RADIUS, SURFACES, friction, is_finite, layout, start, velocity
 
 from coupling import build_scene
 from coupling.case import Case
@@ -84,7 +84,7 @@ def surfaces(tolerance: float) -> tuple[SurfaceMotion, ...]:
             run={"duration": 1e-3, "surface_tolerance": tolerance},
         )
         made.append(build_scene(case).surface)
-    return (*layouts(), *made)
+    return (*map(layout, range(SURFACES)), *made)
 
 
 def block(number: int, seed: int) -> Block:

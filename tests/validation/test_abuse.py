@@ -5,11 +5,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from random_cases import is_finite, random_case
+from random_cases import chance, is_finite, random_case
 
 from particle import Outcome
 
-HERE = Path(__file__).parent
+ABUSE = Path(__file__).parents[1] / "abuse"
 
 
 @pytest.mark.slow
@@ -17,14 +17,14 @@ HERE = Path(__file__).parent
 @pytest.mark.skipif(sys.platform != "linux", reason="the fuzzer needs fork and limits of memory")
 def test_a_hundred_inputs_and_more_are_refused_or_accepted():
     command = [sys.executable, "-m", "fuzz", "--seed", "7", "--count", "150"]
-    done = subprocess.run(command, cwd=HERE, capture_output=True, text=True)
+    done = subprocess.run(command, cwd=ABUSE, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "seed 7: 150 inputs" in done.stdout and "0 wrong" in done.stdout
 
 
 @pytest.mark.compiled
 def test_random_cases_end_within_their_work_and_account_for_their_energy():
-    for seed in range(300):
+    for seed in (seed for seed in range(600) if chance(seed)[1] < 5):  # on five of the surfaces
         path = random_case(seed).run()
         assert is_finite(path), seed
         assert path.outcome is not Outcome.WORK_LIMIT, seed
