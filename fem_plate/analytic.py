@@ -13,9 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from fem_plate.elements import Derivatives, point_load, point_value
 from fem_plate.inputs import check_points
 from fem_plate.shapes import Shapes
+from fem_plate.types import FloatArray
 from meshes import Outline
-
-FloatArray = NDArray[np.float64]
 
 
 def central_load(r: ArrayLike, radius: float, rigidity: float, force: float) -> FloatArray:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
 from fem_plate.estimated import Estimated
 from fem_plate.inputs import check_on_plate
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 BALANCE = 1e-9  # of the loads: a larger resultant moves a plate that is not held
 

@@ -16,13 +16,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from fem_plate.elements import PlateFunctions, PlateModel
+from fem_plate.types import BoolArray, FloatArray
 from fem_plate.vibration import HeldPlate
-
-FloatArray = NDArray[np.float64]
 
 MAX_MODES = 400  # so many responses are enough
 ROUNDING = 1e-10  # of a response: less of it that is new counts as nothing
@@ -53,7 +51,7 @@ class ExcitedModes:
         """Natural frequencies (n,) [Hz]."""
         return self.omega / (2 * np.pi)
 
-    def chosen(self, rows: NDArray[np.bool_]) -> ExcitedModes:
+    def chosen(self, rows: BoolArray) -> ExcitedModes:
         """Some of the modes (n,)."""
         functions = self.functions.weighted(np.eye(len(rows))[:, rows])
         return ExcitedModes(self.omega[rows], functions, self.participation[rows])

@@ -12,8 +12,7 @@ from scipy.spatial import cKDTree
 from fem_plate.arrays import PatchedShapes
 from fem_plate.influence import InfluenceShapes
 from fem_plate.optics import LAYOUTS, Layout, save_fits
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 CHUNK = 64  # shapes evaluated at a time, to bound memory
 ONE_OF_LAYOUTS = ", ".join(LAYOUTS[:-1]) + f" or {LAYOUTS[-1]}"

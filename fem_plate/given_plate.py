@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fem_plate.elements import Fineness, SingularCorner
+from fem_plate.types import FloatArray
 from fem_plate.varying import Field, Section
 from meshes import PlateMesh
-
-FloatArray = NDArray[np.float64]
 
 
 class GivenPlate(Protocol):

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import diags
 
 from fem_plate.elements import PlateFunctions, PlateModel, SourceBasis
 from fem_plate.inputs import check_held
+from fem_plate.types import FloatArray, IntArray
 from fem_plate.vibration import HeldPlate
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 CHUNK = 4096  # unknowns combined at a time
 RANK = 1e-9  # of rigid motions: smaller deflections are none

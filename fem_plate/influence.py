@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
 from fem_plate.estimated import Estimated
 from fem_plate.held import held_shapes, held_under_pressure, unheld_shapes
 from fem_plate.shapes import Shapes
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import FloatArray, IntArray
 
 MAX_DENSE = 2000  # actuators whose compliance and stiffness are worth a dense matrix
 

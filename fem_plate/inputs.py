@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
+from fem_plate.types import BoolArray, FloatArray
 from meshes import Outline, PlateMesh
-
-FloatArray = NDArray[np.float64]
 
 SAME_PLACE = 1e-9  # of the plate's size: points closer than this coincide
 
@@ -65,7 +64,7 @@ def places_on(mesh: PlateMesh, points: ArrayLike, caller: str) -> FloatArray:
     return places
 
 
-def check_held(caller: str, motions: FloatArray, held: NDArray[np.bool_]) -> None:
+def check_held(caller: str, motions: FloatArray, held: BoolArray) -> None:
     """Raise ValueError when the held actuators do not stop the rigid motions (N, r, at all of them) of the supports."""
     r = motions.shape[1]
     if r and (held.sum() < r or np.linalg.matrix_rank(motions[held], tol=1e-9) < r):

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_plate.elements import Derivatives, PlateFunctions
 from fem_plate.influence import InfluenceShapes
 from fem_plate.shapes import Shapes
+from fem_plate.types import FloatArray, IntArray
 from meshes import Outline
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class MovingShapes(Shapes):

@@ -12,15 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from common import axes_or_new, draw, draw_rim, figure_of, label_axis, label_places, legend_below
 from fem_plate.plate import Plate
 from fem_plate.shapes import Shapes
+from fem_plate.types import FloatArray
 from meshes import Outline, PlateMesh, delaunay, rim_curves
-
-FloatArray = NDArray[np.float64]
 
 ALONG_EDGE = np.linspace(0, 1, 9)
 SUPPORTS: dict[str, tuple[str, float]] = {  # colour and width in points; they differ in grey, too

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from common import draw, notebook_html
 from fem_plate import vibration
@@ -32,6 +32,7 @@ from fem_plate.general import GeneralModel, plate_energy
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.inputs import as_points, check_points, one_per_point, places_on, stiffness_per_point
 from fem_plate.section import PlateSection
+from fem_plate.types import FloatArray
 from fem_plate.varying import Field, Section, VaryingSection
 from fem_plate.vibration import HeldPlate, Modes
 from meshes import PlateMesh
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from common import Axes, Figure
     from fem_plate.large_deflection import DeflectedPlate, LargeDeflection
 
-FloatArray = NDArray[np.float64]
 
 TRUNCATION = 1e-6  # of unit shapes on patches, by default
 

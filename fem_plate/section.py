@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 
 def bending_law(poisson_ratio: float) -> FloatArray:

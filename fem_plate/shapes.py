@@ -6,19 +6,17 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from common import draw, notebook_html
 from fem_plate.elements import Derivatives
 from fem_plate.inputs import check_on_plate
+from fem_plate.types import FloatArray, IntArray
 from meshes import Outline
 
 if TYPE_CHECKING:
     from common import Axes, Figure
     from fem_plate.plate import Plate
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class Shapes(ABC):

@@ -6,12 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.anisotropic import AnisotropicSection
 from fem_plate.section import PlateSection
+from fem_plate.types import FloatArray
 
-FloatArray = NDArray[np.float64]
 Field = Callable[[FloatArray, FloatArray], FloatArray]  # of x and y (n,) [m]
 
 

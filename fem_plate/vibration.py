@@ -14,14 +14,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fem_plate.elements import Derivatives, PlateFunctions, PlateModel
 from fem_plate.inputs import check_on_plate
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 CHUNK = 20_000  # quadrature points evaluated at a time, to bound memory
 RIGID_SHIFT = 1e12  # the dimensionless squared frequency that rigid motions are moved to, out of the way

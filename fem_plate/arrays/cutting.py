@@ -8,13 +8,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem_plate.elements import CLAMPED, Fineness, SingularCorner, corner_rows, graded
+from fem_plate.types import FloatArray
 from meshes import Outline, PlateMesh, rectangle
-
-FloatArray = NDArray[np.float64]
 
 CELL = 1.0  # pitches, the largest cell: the estimated error of shapes is then 4e-6
 FINER_CELL = 0.8  # pitches: 5e-7, in twice the time

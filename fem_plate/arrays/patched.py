@@ -7,7 +7,7 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import coo_matrix, csr_matrix
 
 from fem_plate.arrays.cutting import CELL, FINER_CELL, Cutter
@@ -16,11 +16,10 @@ from fem_plate.elements import Derivatives, PlateFunctions, source_basis
 from fem_plate.given_plate import GivenPlate
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.shapes import Shapes
+from fem_plate.types import FloatArray, IntArray
 from fem_plate.vibration import HeldPlate, modes
 from meshes import Outline
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 PatchFunction = Callable[[Patch, FloatArray], FloatArray]  # values (n, c) of a patch's shapes at points (n, 2)
 
 PLACE_DIGITS = 9  # of a patch's size, to which points lie alike

@@ -18,14 +18,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements.infinite import InfinitePlate, Radial
 from fem_plate.elements.rim import unit_gauss
 from fem_plate.elements.singular import UNIT_STRENGTH
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from fem_plate.types import ComplexArray, FloatArray
 
 CLOSE = 0.25  # of the smaller imaginary part: roots closer than this take the integral
 NODES = 12  # of that integral

@@ -11,14 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from scipy.spatial import cKDTree
 
 from fem_plate.elements.infinite import InfinitePlate
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import BoolArray, FloatArray, IntArray
 
 CLOSE = 1e-3  # of the plate's size: sources nearer than that are taken as differences
 EPSILON = float(np.finfo(float).eps)
@@ -75,7 +72,7 @@ class SourceBasis:
         return values
 
 
-def source_basis(x: FloatArray, held: NDArray[np.bool_]) -> SourceBasis:
+def source_basis(x: FloatArray, held: BoolArray) -> SourceBasis:
     """The basis for sources at x (N, 2): those of held actuators that have an earlier one close by are dipoles."""
     rows = np.flatnonzero(held)
     nearest: dict[int, tuple[float, int]] = {}

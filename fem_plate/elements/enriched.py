@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import block_diag, bmat, csc_matrix, hstack
 
 from fem_plate.elements import forms
@@ -14,11 +13,8 @@ from fem_plate.elements.corner_functions import CornerFunctions
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.remainders import Remainders
 from fem_plate.elements.space import CHUNK, PlateSpace
+from fem_plate.types import FloatArray, IntArray
 from meshes import PlateMesh
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 
 # Of s - X, dimensionless: with less it counts for nothing, and rounding of X would be a large part of it.
 LEAST_ENERGY = 1e-8

@@ -30,13 +30,10 @@ The rim is its true curve: only there does a curved clamped plate have no slope.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements.argyris import DERIVATIVES, FUNCTIONS, REFERENCE, Triangles, chain_rule, monomials
 from fem_plate.elements.rim import RimQuadrature, unit_gauss
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import FloatArray
 
 # Anything within (20..2e4, 100..2000, 5000..4e5) gives the same digits; far less loses definiteness.
 GAMMA_0 = 200.0

@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem_plate.elements.corners import MAX_EXPONENT, exponent
+from fem_plate.types import FloatArray
 from meshes import PlateMesh, areas
-
-FloatArray = NDArray[np.float64]
 
 FAR = 0.7  # of the plate's half width: an actuator that far from the rim needs no smaller cells there
 CORNER_GROWTH = 4.0  # of cells with the distance from a corner, times the plate's cells over its size

@@ -19,12 +19,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import NDArray
 from scipy.special import k0, k1, y0, y1
 
 from fem_plate.elements import singular
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 SERIES = 2.0  # |t| up to which the series is used
 WEAK = 1.0  # |beta^2| below which nothing else is used: on a plate r^2 <= 8

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
 from fem_plate.elements.anisotropic import AnisotropicPlate, is_isotropic
@@ -18,9 +17,8 @@ from fem_plate.elements.infinite import infinite_plate
 from fem_plate.elements.rim import rigid_motions
 from fem_plate.elements.space import PlateSpace
 from fem_plate.elements.wedges import Wedge, corner_functions
+from fem_plate.types import BoolArray, FloatArray
 from meshes import PlateMesh
-
-FloatArray = NDArray[np.float64]
 
 CHUNK = 128  # forces solved for at a time, to bound memory
 
@@ -76,11 +74,11 @@ class PlateModel:
         """Points (n, 2) and weights (n,) of integrals over the plate's mass, as of `mass`."""
         return self.space.quadrature
 
-    def basis(self, x: FloatArray, held: NDArray[np.bool_]) -> SourceBasis:
+    def basis(self, x: FloatArray, held: BoolArray) -> SourceBasis:
         """What to combine forces at x (N, 2) of, where actuators hold the plate."""
         return source_basis(x, held)
 
-    def rounding(self, x: FloatArray, held: NDArray[np.bool_]) -> float:
+    def rounding(self, x: FloatArray, held: BoolArray) -> float:
         """The error of shapes of actuators at x (N, 2), relative to their largest value, that finer cells have too."""
         return self.basis(x, held).rounding
 

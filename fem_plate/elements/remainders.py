@@ -9,15 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements import forms
 from fem_plate.elements.corner_functions import CornerFunctions, singular_weights
 from fem_plate.elements.rim import RIM_POINTS, unit_gauss
 from fem_plate.elements.space import CHUNK, QUADRATURE, PlateSpace
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import FloatArray, IntArray
 
 ACROSS = 16  # quadrature points of a triangle at a corner, across the rays from there
 SAME = 1e-9  # of the plate's size: points closer than this coincide

@@ -6,13 +6,10 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements.supports import prescribed
+from fem_plate.types import FloatArray, IntArray
 from meshes import PlateMesh, areas, cross, edge_numbers, sides
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # A rim triangle's integrands are polynomials along a curve: this many points a side leave rounding errors only.
 RIM_POINTS = 8

@@ -7,9 +7,8 @@ unit pressure by r^4 / 64 (laplace^2 F = delta, laplace^2 r^4 / 64 = 1).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 UNIT_STRENGTH = 1 / (8 * np.pi)
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csc_matrix
 from scipy.spatial import cKDTree
 
@@ -16,10 +15,8 @@ from fem_plate.elements.assembly import number_entities, sum_up
 from fem_plate.elements.corners import Copies, continuity, split
 from fem_plate.elements.relative import Relative, relative
 from fem_plate.elements.rim import rim_quadrature
+from fem_plate.types import BoolArray, FloatArray, IntArray
 from meshes import PlateMesh
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 CHUNK = 100_000  # points times functions evaluated at a time, to bound memory
 QUADRATURE = 6  # points along each side of a triangle, for integrands that are not polynomials
@@ -243,7 +240,7 @@ class PlateSpace:
     def _tree(self) -> cKDTree:
         return cKDTree(self.triangles.centre)
 
-    def holds(self, xy: FloatArray) -> NDArray[np.bool_]:
+    def holds(self, xy: FloatArray) -> BoolArray:
         """Whether points (n, 2) lie in the mesh or just beyond it, (n,)."""
         return self._find(xy)[1] > -BEYOND
 

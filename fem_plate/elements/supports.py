@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 CLAMPED, SIMPLY_SUPPORTED, FREE = "clamped", "simply-supported", "free"
 KINDS = (CLAMPED, SIMPLY_SUPPORTED, FREE)

@@ -11,19 +11,18 @@ from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate import elements
 from fem_plate.anisotropic import AnisotropicSection
 from fem_plate.general.reading import JET, form_coefficients
 from fem_plate.section import PlateSection
+from fem_plate.types import FloatArray
 from fem_plate.varying import Field, Section, VaryingSection, values_at
 from meshes import PlateMesh
 
 if TYPE_CHECKING:
     from skfem import BilinearForm
 
-FloatArray = NDArray[np.float64]
 
 VALUE, GRADIENT, HESSIAN = 0, slice(1, 3), slice(3, 6)  # of the channels (w, w_x, w_y, w_xx, w_xy, w_yy)
 ORDERS = np.array([0, 1, 1, 2, 2, 2])

@@ -6,11 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements import AnisotropicPlate, InfinitePlate, Radial, is_isotropic
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

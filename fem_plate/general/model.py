@@ -17,7 +17,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
 from fem_plate.anisotropic import MEAN
@@ -33,10 +32,8 @@ from fem_plate.elements import (
 )
 from fem_plate.general.energy import GRADIENT, HESSIAN, PlateEnergy
 from fem_plate.general.local import LocalPlate
+from fem_plate.types import BoolArray, FloatArray, IntArray
 from meshes import PlateMesh
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 CHUNK, SOURCES = 400, 50  # triangles and forces at a time, to bound memory
 FREE = 1e-10  # of the largest energy of a rigid motion: those with less are free
@@ -106,11 +103,11 @@ class GeneralModel(PlateModel):
     def under_pressure(self) -> FloatArray:
         return self.solve(self.space.mass() @ self.space.linear()[:, :1])
 
-    def basis(self, x: FloatArray, held: NDArray[np.bool_]) -> SourceBasis:
+    def basis(self, x: FloatArray, held: BoolArray) -> SourceBasis:
         """Without dipoles: forces at different places have different laws."""
         return source_basis(x, np.zeros_like(held))
 
-    def rounding(self, x: FloatArray, held: NDArray[np.bool_]) -> float:
+    def rounding(self, x: FloatArray, held: BoolArray) -> float:
         """Second differences of Green's functions lose digits with the square of the distance between actuators."""
         apart = np.linalg.norm(x[held][:, None] - x[held], axis=-1) + np.where(np.eye(int(held.sum())), np.inf, 0.0)
         return float(EPSILON / apart.min(initial=1.0) ** 2)

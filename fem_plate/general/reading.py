@@ -12,12 +12,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fem_plate.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     from skfem import BilinearForm, DiscreteField
 
-FloatArray = NDArray[np.float64]
 
 JET = 6  # w and its derivatives to the second
 ROUNDING = 1e-9  # of the largest entry at a point
@@ -57,7 +57,7 @@ def form_coefficients(form: BilinearForm, xy: FloatArray, name: str) -> FloatArr
     return np.asarray((entries + entries.swapaxes(1, 2)) / 2)
 
 
-def _refuse(faulty: NDArray[np.bool_], xy: FloatArray, name: str, what: str) -> None:
+def _refuse(faulty: BoolArray, xy: FloatArray, name: str, what: str) -> None:
     if faulty.any():
         x, y = xy[int(np.argmax(faulty))].tolist()
         raise ValueError(f"Input {name} must be {what} on the plate; it is not at ({x:.6g}, {y:.6g}) m")

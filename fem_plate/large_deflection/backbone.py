@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_plate.given_plate import GivenPlate
 from fem_plate.inputs import as_points, check_points
@@ -13,9 +13,8 @@ from fem_plate.large_deflection.large_deflection import airy_applies
 from fem_plate.large_deflection.membranes import AIRY, PLANE_STRESS
 from fem_plate.large_deflection.solution import DiscretePlate
 from fem_plate.large_deflection.supports import check_stretches, movable_by_boundary
+from fem_plate.types import FloatArray
 from fem_plate.vibration import HeldPlate, modes
-
-FloatArray = NDArray[np.float64]
 
 
 def backbone(

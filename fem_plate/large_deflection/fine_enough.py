@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.estimated import MAX_UNKNOWNS
 from fem_plate.large_deflection.large_deflection import LargeDeflection
 from fem_plate.large_deflection.solution import DiscretePlate, level_of
 from fem_plate.large_deflection.state import DeflectedPlate
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 
 def fine_enough(large: LargeDeflection, heights: FloatArray) -> tuple[DiscretePlate, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_plate.elements import CLAMPED, rigid_motions, rim_quadrature
 from fem_plate.estimated import refined
@@ -14,9 +14,8 @@ from fem_plate.inputs import check_held, one_per_point
 from fem_plate.large_deflection.membranes import AIRY, PLANE_STRESS
 from fem_plate.large_deflection.solution import DiscretePlate, level_of
 from fem_plate.large_deflection.state import DeflectedPlate
+from fem_plate.types import FloatArray
 from meshes import edge_numbers, sides
-
-FloatArray = NDArray[np.float64]
 
 
 class LargeDeflection:

@@ -7,16 +7,15 @@ from functools import cached_property
 from typing import cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_plate.elements import Derivatives
 from fem_plate.estimated import Estimated
 from fem_plate.inputs import SAME_PLACE, check_on_plate
 from fem_plate.large_deflection.solution import Coefficients, DiscretePlate
 from fem_plate.large_deflection.vibration import modes_about
+from fem_plate.types import FloatArray
 from fem_plate.vibration import Modes
-
-FloatArray = NDArray[np.float64]
 
 
 class DeflectedPlate(Estimated):

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fem_plate.elements import PlateFunctions
 from fem_plate.large_deflection.solution import BorderedSolver, Coefficients, DiscretePlate, Trial
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 CHUNK = 20_000  # quadrature points evaluated at a time, to bound memory
 

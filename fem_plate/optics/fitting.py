@@ -17,8 +17,7 @@ from fem_plate.influence import InfluenceShapes
 from fem_plate.inputs import places_on
 from fem_plate.optics.measured import MeasuredInfluence
 from fem_plate.plate import Plate
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 STIFFNESS, TENSION = "stiffness", "tension"
 UNKNOWNS = STIFFNESS, TENSION

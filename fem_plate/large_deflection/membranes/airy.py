@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
@@ -18,10 +17,8 @@ from fem_plate.elements import CLAMPED, FREE, PlateModel, PlateSpace, SingularCo
 from fem_plate.large_deflection.membranes.membrane import AIRY, Membrane
 from fem_plate.large_deflection.membranes.samples import Samples
 from fem_plate.section import bending_law
+from fem_plate.types import FloatArray, IntArray
 from meshes import PlateMesh
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 DEGREE = 12  # of the quadrature: forces have degree 3, slopes 4 each
 

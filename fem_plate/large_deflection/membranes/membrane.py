@@ -15,14 +15,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
 from fem_plate.large_deflection.membranes.samples import Samples, halves, squares, thirds
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
+from fem_plate.types import FloatArray, IntArray
 
 AIRY, PLANE_STRESS = "airy", "plane-stress"
 

@@ -11,17 +11,14 @@ from collections.abc import Mapping
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import Basis, BilinearForm, ElementTriP4, ElementVector, MeshTri2
 from skfem.helpers import ddot, sym_grad
 
 from fem_plate.elements import PlateSpace, factorised
 from fem_plate.large_deflection.membranes.membrane import PLANE_STRESS, Membrane
 from fem_plate.large_deflection.membranes.samples import Samples
+from fem_plate.types import FloatArray, IntArray
 from meshes import PlateMesh, facets_of, skfem_mesh
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 DEGREE = 14  # of the quadrature
 NEWTON = 4  # steps to reference coordinates; cells at the rim are curved a little

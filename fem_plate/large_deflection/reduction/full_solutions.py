@@ -6,13 +6,11 @@ from collections import deque
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.large_deflection.membranes import Membrane
 from fem_plate.large_deflection.reduction.snapshots import Columns, linear_shapes, slopes, stacked, tangents
 from fem_plate.large_deflection.solution import BorderedSolver, Coefficients, DiscretePlate, Loads, Solution
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 TANGENT = 0.3  # of each stroke's largest height: how much of a change counts beside a full solution
 MATRICES = 8  # factorised ones of the last solutions that are kept; with 25 actuators each takes 0.2 GB

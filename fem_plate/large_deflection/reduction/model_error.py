@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.large_deflection.reduction.full_solutions import FullSolutions
 from fem_plate.large_deflection.reduction.projection import Projection
 from fem_plate.large_deflection.reduction.reduced_solver import reduced_equilibrium
 from fem_plate.large_deflection.solution import Coefficients
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 
 def deflected(known: FullSolutions, model: Projection, strokes: FloatArray) -> Coefficients:

@@ -11,15 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.large_deflection.membranes import Membrane, Samples, halves, thirds
 from fem_plate.large_deflection.reduction.full_solutions import FullSolutions
 from fem_plate.large_deflection.reduction.reduced import ReducedPlate
 from fem_plate.large_deflection.reduction.snapshots import Columns, bending_products, stacked, unstacked
 from fem_plate.large_deflection.solution import DiscretePlate
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 ROUNDING = 1e-15  # of the largest square: directions below it are rounding
 CHUNK = 400_000  # numbers in the products of two slopes that are held at a time

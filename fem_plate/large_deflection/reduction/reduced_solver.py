@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_plate.large_deflection.reduction.reduced import ReducedPlate
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 MAX_STEPS, CONVERGED = 60, 1e-12  # of Newton; a step over the largest correction
 SUFFICIENT, MIN_STEP = 1e-4, 1e-10  # the share of the slope by which the energy must fall; of a step

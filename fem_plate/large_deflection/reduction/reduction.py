@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.large_deflection.reduction.full_solutions import FullSolutions
 from fem_plate.large_deflection.reduction.model_error import deflected, estimated_error, measured_error
@@ -15,8 +14,7 @@ from fem_plate.large_deflection.reduction.reduced import ReducedPlate
 from fem_plate.large_deflection.reduction.reduced_solver import reduced_equilibrium
 from fem_plate.large_deflection.reduction.snapshots import Columns
 from fem_plate.large_deflection.solution import DiscretePlate, NotConverged
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 FINE = 0.01  # of the tolerance: directions that matter less are left out
 CANDIDATES = 40  # places for a further full solution

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.large_deflection.reduction.reduction import Reduction
 from fem_plate.moving_shapes import MovingShapes
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 
 class StretchedShapes(MovingShapes):

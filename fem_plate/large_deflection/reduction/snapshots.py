@@ -6,12 +6,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.large_deflection.membranes import Samples
 from fem_plate.large_deflection.solution import DiscretePlate, Loads, Solution
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 
 class Columns(NamedTuple):

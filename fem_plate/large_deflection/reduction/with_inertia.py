@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.excitation import ExcitedModes
 from fem_plate.large_deflection.membranes import Membrane, halves
@@ -23,9 +22,7 @@ from fem_plate.large_deflection.reduction.reduction import Reduction
 from fem_plate.large_deflection.reduction.snapshots import Columns, bending_products, slopes, stacked
 from fem_plate.large_deflection.solution import DiscretePlate
 from fem_plate.moving_shapes import MovingShapes
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import FloatArray, IntArray
 
 BATCH = 64  # pairs of shapes that are solved together
 NEGLIGIBLE = 0.1  # times `least`, of the largest product of two slopes: such pairs are left out

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
 from fem_plate.elements import factorised
 from fem_plate.large_deflection.solution.trial import Trial
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import BoolArray, FloatArray
 
 
 class BorderedSolver:
@@ -25,7 +23,7 @@ class BorderedSolver:
         block: csc_matrix,
         border: FloatArray,
         inner: FloatArray,
-        held: NDArray[np.bool_],
+        held: BoolArray,
         compliance: FloatArray,
     ) -> None:
         self._n, self._count = trial.model.unknowns, trial.count

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from fem_plate.types import FloatArray
 from meshes import PlateMesh
-
-FloatArray = NDArray[np.float64]
 
 # Around an actuator the plate also bends as r^4 ln r, which halved cells take up: how often, and how near (in cells).
 AROUND, NEAR = 2, 2.0

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements import PlateModel, corner_rows
 from fem_plate.given_plate import GivenPlate
@@ -14,8 +13,7 @@ from fem_plate.large_deflection.membranes import AIRY, Membrane, PlaneStress, ai
 from fem_plate.large_deflection.solution.cells import refined_for
 from fem_plate.large_deflection.solution.equilibrium import Coefficients, Equilibrium, Loads
 from fem_plate.large_deflection.solution.trial import Trial
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 FIRMER = 5.0  # of edges' lengths; their cube divides the error
 

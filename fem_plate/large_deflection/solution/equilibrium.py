@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import bmat, coo_matrix, csc_matrix
 
 from fem_plate.large_deflection.membranes import Membrane, Samples, strains, times
 from fem_plate.large_deflection.solution.bordered import BorderedSolver
 from fem_plate.large_deflection.solution.trial import Trial
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 MAX_STEPS = 40
 CONVERGED = 1e-8  # of the largest deflection: what the last step may change; Newton's next would change its square

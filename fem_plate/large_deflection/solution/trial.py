@@ -13,12 +13,10 @@ under it, and what these bear is taken off again.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements import PlateFunctions, PlateModel
 from fem_plate.large_deflection.membranes import Samples
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 CHUNK = 20_000  # points evaluated at a time, to bound memory
 
