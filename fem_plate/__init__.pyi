@@ -4,11 +4,7 @@ from .arrays.patched import PatchedShapes as PatchedShapes, PlateShapes as Plate
 from .deflection import Deflection as Deflection
 from .export import neighbour_coupling as neighbour_coupling, save_influence as save_influence
 from .large_deflection.backbone import backbone as backbone
-from .large_deflection import (
-    DeflectedPlate as DeflectedPlate,
-    LargeDeflection as LargeDeflection,
-    StretchedShapes as StretchedShapes,
-)
+from .large_deflection import DeflectedPlate as DeflectedPlate, LargeDeflection as LargeDeflection
 from .influence import InfluenceShapes as InfluenceShapes
 from .optics import (
     InfluenceFit as InfluenceFit,
@@ -34,7 +30,11 @@ from .pictures import (
     pitch as pitch,
 )
 from .excitation import MAX_MODES as MAX_MODES, ExcitedModes as ExcitedModes, Excitation as Excitation
-from .moving_shapes import MovingShapes as MovingShapes
+from .moving_shapes import (
+    HeldShapes as HeldShapes,
+    MovingShapes as MovingShapes,
+    StretchedShapes as StretchedShapes,
+)
 from .plate import TRUNCATION as TRUNCATION
 from . import verification as verification
 from .verification import Check as Check

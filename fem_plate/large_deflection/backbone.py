@@ -9,10 +9,9 @@ from numpy.typing import ArrayLike
 
 from fem_plate.given_plate import GivenPlate
 from fem_plate.inputs import as_points, check_points
-from fem_plate.large_deflection.large_deflection import airy_applies
-from fem_plate.large_deflection.membranes import AIRY, PLANE_STRESS
-from fem_plate.large_deflection.solution import DiscretePlate
-from fem_plate.large_deflection.supports import check_stretches, movable_by_boundary
+from fem_plate.large_deflection.discrete import DiscretePlate
+from fem_plate.large_deflection.large_deflection import airy_applies, check_stretches, movable_by_boundary
+from fem_plate.large_deflection.membrane import AIRY, PLANE_STRESS
 from fem_plate.types import FloatArray
 from fem_plate.vibration import HeldPlate, modes
 

@@ -1,4 +1,4 @@
-"""LargeDeflection: a plate with actuators that bends and stretches (von Karman)."""
+"""LargeDeflection: a plate with actuators that bends and stretches (von Karman), and the cells that it needs."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fem_plate.elements import CLAMPED, rigid_motions, rim_quadrature
-from fem_plate.estimated import refined
+from fem_plate.elements import CLAMPED, FREE, rigid_motions, rim_quadrature
+from fem_plate.estimated import MAX_UNKNOWNS, refined
 from fem_plate.given_plate import GivenPlate
 from fem_plate.inputs import check_held, one_per_point
-from fem_plate.large_deflection.membranes import AIRY, PLANE_STRESS
-from fem_plate.large_deflection.solution import DiscretePlate, level_of
+from fem_plate.large_deflection.discrete import DiscretePlate, level_of
+from fem_plate.large_deflection.membrane import AIRY, PLANE_STRESS
 from fem_plate.large_deflection.state import DeflectedPlate
+from fem_plate.section import PlateSection
 from fem_plate.types import FloatArray
 from meshes import edge_numbers, sides
 
@@ -128,3 +129,78 @@ def _has_holes(plate: GivenPlate) -> bool:
     mesh = plate.mesh
     edges = len(np.unique(edge_numbers(sides(mesh.triangles), len(mesh.points))))
     return len(np.unique(mesh.triangles)) - edges + len(mesh.triangles) != 1
+
+
+IMMOVABLE, MOVABLE = "immovable", "movable"
+KINDS = (IMMOVABLE, MOVABLE)
+
+
+def check_stretches(plate: GivenPlate, caller: str) -> None:
+    """ValueError, for `caller`, unless a plate is uniform, isotropic and without a tension."""
+    wrong = []
+    if plate.tension:
+        wrong.append(f"Input tension of Plate must be 0 for {caller}; got {plate.tension!r} N/m")
+    if not isinstance(plate.section, PlateSection):
+        kind = type(plate.section).__name__
+        wrong.append(f"Input section of Plate must be a PlateSection for {caller}; got a {kind}")
+    if callable(plate.foundation) or plate.foundation:
+        wrong.append(f"Input foundation of Plate must be 0 for {caller}; got {plate.foundation!r}")
+    if plate.forms:
+        wrong.append(f"Input forms of Plate must be empty for {caller}; got {len(plate.forms)}")
+    if wrong:
+        raise ValueError("; ".join(wrong))
+
+
+def movable_by_boundary(in_plane_supports: str | Mapping[str, str], supports: Mapping[str, str]) -> dict[str, bool]:
+    """Whether each boundary is free to move in the plane.
+
+    One name counts for all boundaries that `supports` hold, and free ones can move. Those that a mapping leaves out can
+    move, too. Raises ValueError, naming every unknown support and boundary.
+    """
+    if isinstance(in_plane_supports, str):
+        given = {name: in_plane_supports if held != FREE else MOVABLE for name, held in supports.items()}
+        kinds = {"the rim": in_plane_supports}
+    elif isinstance(in_plane_supports, Mapping):
+        given = kinds = dict(in_plane_supports)
+    else:
+        raise ValueError(
+            "Input in_plane_supports of large_deflection must be one name or a mapping from boundaries; got "
+            f"{in_plane_supports!r}"
+        )
+    names = ", ".join(map(repr, supports))
+    mistakes = [f"boundary {name!r} is not one of the mesh's, {names}" for name in given if name not in supports]
+    mistakes += [
+        f"the support of {name!r} must be {IMMOVABLE!r} or {MOVABLE!r}; got {kind!r}"
+        for name, kind in kinds.items()
+        if kind not in KINDS
+    ]
+    if mistakes:
+        raise ValueError("Input in_plane_supports of large_deflection: " + "; ".join(mistakes))
+    return {name: given.get(name, MOVABLE) == MOVABLE for name in supports}
+
+
+def fine_enough(large: LargeDeflection, heights: FloatArray) -> tuple[DiscretePlate, float]:
+    """The plate on the largest cells that meet its tolerance at heights (N,) [m, or N], and the error that they leave.
+
+    The error is that of w, over the largest: the difference from cells of half the size. Without a tolerance cells stay
+    as they are, but those around actuators and at the rim.
+    """
+    coarse, tolerance = _on_own_cells(large, heights), large.plate.tolerance
+    while True:
+        fine = large.solved(heights, 0.0, coarse.discrete.level, coarse.discrete.halvings + 1)
+        error = fine.difference(coarse)
+        if tolerance is None or error <= tolerance or 4 * fine.unknowns > MAX_UNKNOWNS:
+            return coarse.discrete, error
+        coarse = fine
+
+
+def _on_own_cells(large: LargeDeflection, heights: FloatArray) -> DeflectedPlate:
+    """The plate at some heights on its own cells, but those around actuators and at the rim."""
+    thickness = large.plate.section.thickness
+    level = level_of(float(np.abs(heights[np.isinf(large.stiffness)]).max(initial=0.0)) / thickness)
+    while True:
+        state = large.solved(heights, 0.0, level, 0)
+        needed = level_of(state.largest / thickness)
+        if needed <= level:
+            return state
+        level = needed

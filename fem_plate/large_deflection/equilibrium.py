@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import bmat, coo_matrix, csc_matrix
 
-from fem_plate.large_deflection.membranes import Membrane, Samples, strains, times
-from fem_plate.large_deflection.solution.bordered import BorderedSolver
-from fem_plate.large_deflection.solution.trial import Trial
+from fem_plate.large_deflection.membrane import Membrane, Samples, strains, times
+from fem_plate.large_deflection.trial import BorderedSolver, Trial
 from fem_plate.types import FloatArray
 
 MAX_STEPS = 40

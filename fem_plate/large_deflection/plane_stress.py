@@ -15,8 +15,7 @@ from skfem import Basis, BilinearForm, ElementTriP4, ElementVector, MeshTri2
 from skfem.helpers import ddot, sym_grad
 
 from fem_plate.elements import PlateSpace, factorised
-from fem_plate.large_deflection.membranes.membrane import PLANE_STRESS, Membrane
-from fem_plate.large_deflection.membranes.samples import Samples
+from fem_plate.large_deflection.membrane import PLANE_STRESS, Membrane, Samples
 from fem_plate.types import FloatArray, IntArray
 from meshes import PlateMesh, facets_of, skfem_mesh
 

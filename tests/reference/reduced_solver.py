@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from fem_plate.large_deflection.reduction.reduced import ReducedPlate
-from fem_plate.types import FloatArray
+from fem_plate.large_deflection import ReducedPlate
+
+FloatArray = NDArray[np.float64]
 
 MAX_STEPS, CONVERGED = 60, 1e-12  # of Newton; a step over the largest correction
 SUFFICIENT, MIN_STEP = 1e-4, 1e-10  # the share of the slope by which the energy must fall; of a step

@@ -1,4 +1,4 @@
-"""The stretching plate on one mesh, and its units."""
+"""The stretching plate on one mesh: its cells, which are small around actuators and where it bends in a layer."""
 
 from __future__ import annotations
 
@@ -6,16 +6,24 @@ from collections.abc import Mapping
 from functools import cached_property
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from fem_plate.elements import PlateModel, corner_rows
 from fem_plate.given_plate import GivenPlate
-from fem_plate.large_deflection.membranes import AIRY, Membrane, PlaneStress, airy, airy_corners
-from fem_plate.large_deflection.solution.cells import refined_for
-from fem_plate.large_deflection.solution.equilibrium import Coefficients, Equilibrium, Loads
-from fem_plate.large_deflection.solution.trial import Trial
+from fem_plate.large_deflection.equilibrium import Coefficients, Equilibrium, Loads
+from fem_plate.large_deflection.membrane import AIRY, Membrane, airy, airy_corners
+from fem_plate.large_deflection.plane_stress import PlaneStress
+from fem_plate.large_deflection.trial import Trial
 from fem_plate.types import FloatArray
+from meshes import PlateMesh
 
 FIRMER = 5.0  # of edges' lengths; their cube divides the error
+# Around an actuator the plate also bends as r^4 ln r, which halved cells take up: how often, and how near (in cells).
+AROUND, NEAR = 2, 2.0
+# From so many thicknesses on: the bands at the rim whose cells are halved, over the half width, and the halvings added
+# around actuators.
+ROUNDING = 1e-6  # of that many
+LEVELS = ((0.0, (), 0), (5.0, (0.16,), 1), (15.0, (0.2, 0.08), 2))
 
 
 class DiscretePlate:
@@ -121,3 +129,24 @@ def hold_firmly(model: PlateModel) -> None:
     rim = model.space.rim
     simply = (rim.c[:, 0] > 0) & (np.trace(rim.T[:, 0], axis1=1, axis2=2) < 1.5)
     model.space.rim = rim._replace(h=np.where(simply, rim.h / FIRMER, rim.h))
+
+
+def level_of(thicknesses: float) -> int:
+    """The level of fineness for a largest deflection over the thickness."""
+    return sum(thicknesses > least * (1 + ROUNDING) for least, _, _ in LEVELS[1:])
+
+
+def refined_for(mesh: PlateMesh, points: FloatArray, half_width: float, level: int) -> PlateMesh:
+    """The mesh with halved cells around actuators at points (N, 2) [m] and at the rim."""
+    _, bands, more = LEVELS[level]
+    for band in bands:
+        mesh = mesh.refined(mesh.outline.gap(_centres(mesh)) < band * half_width)
+    if len(points):
+        tree = cKDTree(points)
+        for _ in range(AROUND + more):
+            mesh = mesh.refined(tree.query(_centres(mesh))[0] < NEAR * mesh.cell_sizes)
+    return mesh
+
+
+def _centres(mesh: PlateMesh) -> FloatArray:
+    return np.asarray(mesh.points[mesh.triangles].mean(axis=1))

@@ -15,13 +15,11 @@ from dataclasses import replace
 import numpy as np
 
 from fem_plate.excitation import ExcitedModes
-from fem_plate.large_deflection.membranes import Membrane, halves
-from fem_plate.large_deflection.reduction.projection import force_products, forms_of
-from fem_plate.large_deflection.reduction.reduced import ReducedPlate
-from fem_plate.large_deflection.reduction.reduction import Reduction
-from fem_plate.large_deflection.reduction.snapshots import Columns, bending_products, slopes, stacked
-from fem_plate.large_deflection.solution import DiscretePlate
-from fem_plate.moving_shapes import MovingShapes
+from fem_plate.large_deflection.discrete import DiscretePlate
+from fem_plate.large_deflection.full_solutions import Columns, bending_products, slopes, stacked
+from fem_plate.large_deflection.membrane import Membrane, halves
+from fem_plate.large_deflection.reduced import ReducedPlate
+from fem_plate.large_deflection.reduction import Reduction, force_products, forms_of
 from fem_plate.types import FloatArray, IntArray
 
 BATCH = 64  # pairs of shapes that are solved together
@@ -29,18 +27,6 @@ NEGLIGIBLE = 0.1  # times `least`, of the largest product of two slopes: such pa
 IN_PLANE = 1000.0  # times `least`: in-plane motions, which carry a part less than slopes do
 DEPENDENT = 1e-10  # of the largest energy: corrections with less that is new are left out
 ROUNDING = 1e-15  # of the largest square
-
-
-class HeldShapes(MovingShapes):
-    """The shapes of N actuators of a plate on one mesh, with what its modes are found from."""
-
-    def __init__(self, reduction: Reduction, points: FloatArray, springs: FloatArray) -> None:
-        discrete = reduction.discrete
-        units = np.where(springs > 0, 1.0, discrete.thickness / discrete.force_unit)
-        linear = reduction.linear.weighted(np.diag(units))
-        functions = discrete.trial.functions(linear.v, linear.extra)
-        super().__init__(functions, points, springs, discrete.size, discrete.mesh.outline, np.ones(len(points)))
-        self.model = discrete.model
 
 
 def with_modes(
@@ -68,10 +54,10 @@ def with_modes(
     return replace(reduction, plate=plate, corrections=corrections, motions=motions)
 
 
-def mode_columns(discrete: DiscretePlate, shapes: HeldShapes, excited: ExcitedModes) -> Columns:
-    """Modes by the coefficients of the plate's trial functions."""
+def mode_columns(discrete: DiscretePlate, springs: FloatArray, excited: ExcitedModes) -> Columns:
+    """Modes by the coefficients of the plate's trial functions; springs: (N,) N/m of the actuators."""
     trial, functions = discrete.trial, excited.functions
-    held = np.flatnonzero(shapes.springs > 0)
+    held = np.flatnonzero(springs > 0)
     extra = np.zeros((trial.count, len(excited.omega)))
     extra[held] = functions.forces
     return Columns(functions.unknowns - trial.extra.unknowns[:, held] @ functions.forces, extra)
