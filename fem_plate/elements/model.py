@@ -8,12 +8,11 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csc_matrix
 
-from fem_plate.elements.anisotropic import AnisotropicPlate, is_isotropic
+from fem_plate.elements.anisotropic import infinite_plate
 from fem_plate.elements.close import SourceBasis, source_basis
 from fem_plate.elements.enriched import EnrichedSpace
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.forms import rim_traces
-from fem_plate.elements.infinite import infinite_plate
 from fem_plate.elements.rim import rigid_motions
 from fem_plate.elements.space import PlateSpace
 from fem_plate.elements.wedges import Wedge, corner_functions
@@ -44,7 +43,7 @@ class PlateModel:
         self.law = law
         self.tension = tension * mesh.size**2  # dimensionless
         # What is known of it in closed form.
-        self.infinite = infinite_plate(self.tension) if is_isotropic(law) else AnisotropicPlate(law)
+        self.infinite = infinite_plate(law, self.tension)
         if wedges:
             functions, rows = corner_functions(wedges, mesh.size), list(free_corners)
             self.space: PlateSpace = EnrichedSpace(mesh, supports, rows, functions, law, self.tension)

@@ -22,6 +22,7 @@ from scipy.sparse import csc_matrix
 from fem_plate.anisotropic import MEAN
 from fem_plate.elements import (
     QUADRATURE,
+    AnisotropicPlate,
     PlateModel,
     PlateSpace,
     SourceBasis,
@@ -31,7 +32,6 @@ from fem_plate.elements import (
     source_basis,
 )
 from fem_plate.general.energy import GRADIENT, HESSIAN, PlateEnergy
-from fem_plate.general.local import LocalPlate
 from fem_plate.types import BoolArray, FloatArray, IntArray
 from meshes import PlateMesh
 
@@ -47,7 +47,7 @@ class GeneralModel(PlateModel):
         self, mesh: PlateMesh, supports: Mapping[str, str], energy: PlateEnergy, free_corners: Sequence[int] = ()
     ) -> None:
         self.mesh, self.energy = mesh, energy
-        self.infinite = LocalPlate(energy.laws)
+        self.infinite = AnisotropicPlate(energy.laws)
         self.space = PlateSpace(mesh, supports, free_corners)
         self.rigid = self._orthonormal(self._free(rigid_motions(self.space.rim)))
 
