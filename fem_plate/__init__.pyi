@@ -13,10 +13,10 @@ from .optics import (
     read_influence as read_influence,
 )
 from .plate import Plate as Plate
-from .section import PlateSection as PlateSection
+from .sections import PlateSection as PlateSection
 from .shapes import Shapes as Shapes
-from .varying import VaryingSection as VaryingSection
-from .vibration import Modes as Modes
+from .sections import VaryingSection as VaryingSection
+from .modes import Modes as Modes
 
 # Not public: for the packages that build on this one.
 from .analytic import DiscShapes as DiscShapes
@@ -29,7 +29,7 @@ from .pictures import (
     marker_size as marker_size,
     pitch as pitch,
 )
-from .excitation import MAX_MODES as MAX_MODES, ExcitedModes as ExcitedModes, Excitation as Excitation
+from .modes import MAX_MODES as MAX_MODES, ExcitedModes as ExcitedModes, Excitation as Excitation
 from .moving_shapes import (
     HeldShapes as HeldShapes,
     MovingShapes as MovingShapes,

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_plate.section import not_positive
+from fem_plate.inputs import not_positive
 from fem_plate.types import FloatArray
 
 # The primary flat of a wafer, x, and its normal, z, in the crystal's axes.

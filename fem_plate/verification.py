@@ -10,7 +10,7 @@ import numpy as np
 from fem_plate import analytic
 from fem_plate.elements import Derivatives
 from fem_plate.plate import Plate
-from fem_plate.section import PlateSection
+from fem_plate.sections import PlateSection
 from fem_plate.types import FloatArray
 from meshes import disc
 

@@ -13,11 +13,11 @@ from scipy.sparse import coo_matrix, csr_matrix
 from fem_plate.arrays.cutting import CELL, FINER_CELL, Cutter
 from fem_plate.arrays.patches import ActuatorArray, Patch, ProgressCallback, Tile, spacing
 from fem_plate.elements import Derivatives, PlateFunctions, source_basis
-from fem_plate.given_plate import GivenPlate
+from fem_plate.graded import GradedPlate
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
+from fem_plate.modes import HeldPlate, modes
 from fem_plate.shapes import Shapes
 from fem_plate.types import FloatArray, IntArray
-from fem_plate.vibration import HeldPlate, modes
 from meshes import Outline
 
 PatchFunction = Callable[[Patch, FloatArray], FloatArray]  # values (n, c) of a patch's shapes at points (n, 2)
@@ -260,7 +260,7 @@ def _entries(
 
 
 def patched_shapes(
-    plate: GivenPlate, points: FloatArray, actuator_stiffness: FloatArray, truncation: float, tell: ProgressCallback
+    plate: GradedPlate, points: FloatArray, actuator_stiffness: FloatArray, truncation: float, tell: ProgressCallback
 ) -> PatchedShapes:
     """The influence shapes of actuators at points (N, 2) [m], each cut off where it is below the truncation."""
     mesh, section = plate.mesh, plate.section

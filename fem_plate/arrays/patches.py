@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from fem_plate.arrays.cutting import Cut, Cutter
 from fem_plate.elements import PlateFunctions, PlateModel
-from fem_plate.held import held_shapes
+from fem_plate.influence import held_shapes
 from fem_plate.types import BoolArray, FloatArray, IntArray
 
 ProgressCallback = Callable[[int, int], object]  # takes the number of tiles done, and their total

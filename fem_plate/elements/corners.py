@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix
 
-from fem_plate.elements.supports import CLAMPED, FREE
+from fem_plate.elements.rim import CLAMPED, FREE
 from fem_plate.types import ComplexArray, FloatArray, IntArray
 
 Copies = list[tuple[int, int, int, int]]

@@ -115,6 +115,11 @@ def mass_at(value: FloatArray, weights: FloatArray) -> FloatArray:
     return np.einsum("kn,knj,knl->kjl", weights, value, value, optimize=True)
 
 
+def products(one: FloatArray, other: FloatArray) -> FloatArray:
+    """The sums (t, i, j) over d and n of tables (d, t, n, i) and (d, t, n, j)."""
+    return np.asarray(sum(a.transpose(0, 2, 1) @ b for a, b in zip(one, other, strict=True)))
+
+
 def rim_traces(derivatives: list[FloatArray], normal: FloatArray, law: FloatArray) -> FloatArray:
     """The six channels of functions on the rim: value, gradient, M n, div M.n; (6, k, n, ...).
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -136,7 +136,10 @@ class PlateSpace:
 
     def load(self, law: FloatArray, tension: float = 0.0) -> csc_matrix:
         """The matrix (unknowns, 6 points) of the right side of `forms` for the traces (6, points) of g."""
-        traces, (_, coupling) = self.traces(law), self.couplings(tension)
+        return self.rim_load(self.traces(law), self.couplings(tension)[1])
+
+    def rim_load(self, traces: FloatArray, coupling: FloatArray) -> csc_matrix:
+        """The same for traces (6, k, n, 21) of the triangles' functions, coupled by (k, n, 6, 6) with those of g."""
         data = np.einsum("ckni,kncd->dkni", traces, coupling, optimize=True)  # (6, k, n, 21)
         columns = np.arange(data[..., 0].size).reshape(data.shape[:3])
         rows = np.broadcast_to(self.dofs[self.rim.triangle][:, None], data.shape)
@@ -215,6 +218,18 @@ class PlateSpace:
         independent = np.concatenate([points, edges, jumps])
         independent[self._relative.planes] = 0.0
         return independent
+
+    def cells(self, step: int, chosen: IntArray | None = None) -> Iterator[tuple[IntArray, FloatArray, FloatArray]]:
+        """Triangles (t,), quadrature points (t, n, 2) and weights (t, n), `step` at a time, and then the slivers."""
+        triangles = self.triangles
+        xy, weights = forms.triangle_quadrature(QUADRATURE)
+        rows = np.arange(len(triangles.centre)) if chosen is None else chosen
+        for start in range(0, len(rows), step):
+            triangle = rows[start : start + step]
+            points = np.einsum("mij,nj->mni", triangles.jacobian[triangle], xy) + triangles.centre[triangle, None]
+            yield triangle, points, triangles.determinant[triangle, None] * weights
+        if len(self.slivers.triangle):
+            yield self.slivers
 
     @cached_property
     def quadrature(self) -> tuple[FloatArray, FloatArray]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from fem_plate.elements.corner_functions import CornerFunction, CornerFunctions
 from fem_plate.elements.grading import SingularCorner
-from fem_plate.elements.supports import SIMPLY_SUPPORTED
+from fem_plate.elements.rim import SIMPLY_SUPPORTED
 from fem_plate.types import BoolArray, FloatArray
 from meshes import Corner, PlateMesh, cross
 

@@ -7,17 +7,17 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fem_plate.given_plate import GivenPlate
+from fem_plate.graded import GradedPlate
 from fem_plate.inputs import as_points, check_points
 from fem_plate.large_deflection.discrete import DiscretePlate
 from fem_plate.large_deflection.large_deflection import airy_applies, check_stretches, movable_by_boundary
 from fem_plate.large_deflection.membrane import AIRY, PLANE_STRESS
+from fem_plate.modes import HeldPlate, modes
 from fem_plate.types import FloatArray
-from fem_plate.vibration import HeldPlate, modes
 
 
 def backbone(
-    plate: GivenPlate,
+    plate: GradedPlate,
     count: int,
     held: ArrayLike | None = None,
     in_plane_supports: str | Mapping[str, str] = "immovable",

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fem_plate.elements import PlateModel, corner_rows
-from fem_plate.given_plate import GivenPlate
+from fem_plate.graded import GradedPlate
 from fem_plate.large_deflection.equilibrium import Coefficients, Equilibrium, Loads
 from fem_plate.large_deflection.membrane import AIRY, Membrane, airy, airy_corners
 from fem_plate.large_deflection.plane_stress import PlaneStress
@@ -35,7 +35,7 @@ class DiscretePlate:
 
     def __init__(
         self,
-        plate: GivenPlate,
+        plate: GradedPlate,
         points: FloatArray,
         stiffness: FloatArray,
         movable: Mapping[str, bool],

@@ -7,14 +7,14 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fem_plate.deflection import MAX_UNKNOWNS, refined
 from fem_plate.elements import CLAMPED, FREE, rigid_motions, rim_quadrature
-from fem_plate.estimated import MAX_UNKNOWNS, refined
-from fem_plate.given_plate import GivenPlate
+from fem_plate.graded import GradedPlate
 from fem_plate.inputs import check_held, one_per_point
 from fem_plate.large_deflection.discrete import DiscretePlate, level_of
 from fem_plate.large_deflection.membrane import AIRY, PLANE_STRESS
 from fem_plate.large_deflection.state import DeflectedPlate
-from fem_plate.section import PlateSection
+from fem_plate.sections import PlateSection
 from fem_plate.types import FloatArray
 from meshes import edge_numbers, sides
 
@@ -36,7 +36,7 @@ class LargeDeflection:
 
     def __init__(
         self,
-        plate: GivenPlate,
+        plate: GradedPlate,
         points: FloatArray,
         stiffness: FloatArray,
         movable: Mapping[str, bool],
@@ -109,13 +109,13 @@ class LargeDeflection:
         return self._discrete[key]
 
 
-def _motions(plate: GivenPlate, points: FloatArray) -> FloatArray:
+def _motions(plate: GradedPlate, points: FloatArray) -> FloatArray:
     """The rigid motions that the supports allow, at points (N, 2) [m]: (N, r)."""
     rigid = rigid_motions(rim_quadrature(plate.mesh, plate.supports)[0])
     return np.column_stack([np.ones(len(points)), points / plate.mesh.size]) @ rigid
 
 
-def airy_applies(plate: GivenPlate, movable: Mapping[str, bool]) -> bool:
+def airy_applies(plate: GradedPlate, movable: Mapping[str, bool]) -> bool:
     """Whether there are no holes and the whole rim is held alike; also clamped, if it is movable.
 
     Where a rim both slopes and moves, the stress function's test functions do not vanish there as they should.
@@ -124,7 +124,7 @@ def airy_applies(plate: GivenPlate, movable: Mapping[str, bool]) -> bool:
     return len(kinds) == 1 and (kinds == {False} or supports == {CLAMPED}) and not _has_holes(plate)
 
 
-def _has_holes(plate: GivenPlate) -> bool:
+def _has_holes(plate: GradedPlate) -> bool:
     """By Euler's formula: a plate without holes has one point and one triangle more than edges."""
     mesh = plate.mesh
     edges = len(np.unique(edge_numbers(sides(mesh.triangles), len(mesh.points))))
@@ -135,7 +135,7 @@ IMMOVABLE, MOVABLE = "immovable", "movable"
 KINDS = (IMMOVABLE, MOVABLE)
 
 
-def check_stretches(plate: GivenPlate, caller: str) -> None:
+def check_stretches(plate: GradedPlate, caller: str) -> None:
     """ValueError, for `caller`, unless a plate is uniform, isotropic and without a tension."""
     wrong = []
     if plate.tension:

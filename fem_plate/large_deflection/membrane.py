@@ -20,7 +20,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fem_plate.elements import CLAMPED, FREE, PlateModel, PlateSpace, SingularCorner, factorised, singular_corners
-from fem_plate.section import bending_law
+from fem_plate.sections import bending_law
 from fem_plate.types import FloatArray, IntArray
 from meshes import PlateMesh
 

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse.linalg import LinearOperator, eigsh
 
+from fem_plate.deflection import Estimated
 from fem_plate.elements import Derivatives, PlateFunctions
-from fem_plate.estimated import Estimated
 from fem_plate.inputs import SAME_PLACE, check_on_plate
 from fem_plate.large_deflection.discrete import DiscretePlate
 from fem_plate.large_deflection.equilibrium import Coefficients
 from fem_plate.large_deflection.trial import BorderedSolver, Trial
+from fem_plate.modes import Modes
 from fem_plate.types import FloatArray
-from fem_plate.vibration import Modes
 
 
 class DeflectedPlate(Estimated):

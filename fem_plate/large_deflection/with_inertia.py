@@ -14,12 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fem_plate.excitation import ExcitedModes
 from fem_plate.large_deflection.discrete import DiscretePlate
 from fem_plate.large_deflection.full_solutions import Columns, bending_products, slopes, stacked
 from fem_plate.large_deflection.membrane import Membrane, halves
 from fem_plate.large_deflection.reduced import ReducedPlate
 from fem_plate.large_deflection.reduction import Reduction, force_products, forms_of
+from fem_plate.modes import ExcitedModes
 from fem_plate.types import FloatArray, IntArray
 
 BATCH = 64  # pairs of shapes that are solved together

@@ -13,9 +13,8 @@ from scipy.spatial import cKDTree
 from fem_plate.arrays import PatchedShapes
 from fem_plate.influence import InfluenceShapes
 from fem_plate.optics.package import fits_package
-from fem_plate.section import PlateSection
+from fem_plate.sections import PlateSection, VaryingSection
 from fem_plate.types import BoolArray, FloatArray, IntArray
-from fem_plate.varying import VaryingSection
 
 PlateShapes = InfluenceShapes | PatchedShapes
 

@@ -12,7 +12,7 @@ import pytest
 from fem_plate.elements.corners import MAX_EXPONENT, exponent
 from fem_plate.elements.grading import corner_rows, singular_corners
 from fem_plate.elements.space import PlateSpace
-from fem_plate.section import bending_law
+from fem_plate.sections import bending_law
 from meshes import polygon, rectangle
 
 C, S, F = "clamped", "simply-supported", "free"
