@@ -6,20 +6,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fem_plate.elements import (
     MAX_EXPONENT,
-    Fineness,
+    MeshGrading,
     PlateModel,
     SingularCorner,
     by_boundary,
     corner_rows,
-    graded,
+    grade_mesh,
     plate_energy,
     singular_corners,
     wedges,
 )
 from fem_plate.inputs import check_tension
-from fem_plate.sections import Field, PlateSection, Section
+from fem_plate.sections import Field, PlateSection, Section, VaryingSection
 from fem_plate.types import FloatArray
 from meshes import PlateMesh
 
@@ -30,8 +32,8 @@ if TYPE_CHECKING:
 class GradedPlate:
     """A plate and its models; parameters as of `Plate`.
 
-    corners: all at which cells are graded.  wedges: those with functions of their own.  left_out: how many of those a
-    plate has that leaves these functions out.  energy: None of a uniform plate.
+    corners: where cells are small.  enriched_corners: those with functions of their own.  left_out: how many corners
+    have such functions that this plate leaves out.  energy: None of a uniform plate.
     """
 
     def __init__(
@@ -52,12 +54,12 @@ class GradedPlate:
         self.tension = float(tension)
         self.foundation = foundation
         self.forms = tuple(forms) if isinstance(forms, Sequence) else (forms,)
-        self.fineness = Fineness.of(mesh, self.relative_tension)
+        self.grading = MeshGrading.of(mesh, self.relative_tension)
         self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
         self.energy = plate_energy(mesh, section, foundation, self.tension, self.forms)
         obtuse = wedges(mesh, self.supports, self.tension)
         isotropic = isinstance(section, PlateSection) and self.energy is None  # as corner functions are
-        self.wedges, self.left_out = (obtuse, 0) if isotropic else ([], len(obtuse))
+        self.enriched_corners, self.left_out = (obtuse, 0) if isotropic else ([], len(obtuse))
         self._last: tuple[bytes, PlateModel] | None = None
 
     def cells(
@@ -70,11 +72,11 @@ class GradedPlate:
         mesh = self.mesh
         for _ in range(halvings):
             mesh = mesh.refined()
-        return graded(mesh, self.fineness.halved(halvings), corners, points)
+        return grade_mesh(mesh, self.grading.halved(halvings), corners, points)
 
     def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
         """The plate on cells for actuators at points (N, 2) [m], with the corner functions of its wedges."""
-        corners = [*self._other_corners, *(wedge.corner for wedge in self.wedges)]
+        corners = self.graded_corners
         if self.energy is not None and points is not None and self.energy.exponent < MAX_EXPONENT:
             corners += [SingularCorner(point, self.energy.exponent) for point in points]
         mesh = self._graded(corners, points, halvings)
@@ -89,27 +91,37 @@ class GradedPlate:
         if self.energy is not None:
             return PlateModel(mesh, self.supports, replace(self.energy, tension=tension), rows)
         section = self.section
-        return PlateModel(mesh, self.supports, section.law, rows, tension / section.rigidity, self.wedges)
-
-    def untensioned_cells(self) -> PlateMesh:
-        """The cells without actuators and tension."""
-        corners = [*self._other_corners, *(wedge.corner for wedge in self.wedges)]
-        return graded(self.mesh, Fineness.of(self.mesh), corners)
+        return PlateModel(mesh, self.supports, section.law, rows, tension / section.rigidity, self.enriched_corners)
 
     @property
-    def singular(self) -> list[SingularCorner]:
+    def graded_corners(self) -> list[SingularCorner]:
+        """The corners that a model's cells are small at."""
+        return [*self._other_corners, *(wedge.corner for wedge in self.enriched_corners)]
+
+    @property
+    def singular_corners(self) -> list[SingularCorner]:
         """All corners where the deflection is not smooth, those of small turns too."""
         known = {corner.point.tobytes() for corner in self.corners}
-        small = (SingularCorner(w.point, w.exponent) for w in self.wedges if w.point.tobytes() not in known)
+        small = (SingularCorner(w.point, w.exponent) for w in self.enriched_corners if w.point.tobytes() not in known)
         return [*self.corners, *small]
 
     @property
     def _other_corners(self) -> list[SingularCorner]:
         """The singular corners that are no wedges."""
-        known = {wedge.point.tobytes() for wedge in self.wedges}
+        known = {wedge.point.tobytes() for wedge in self.enriched_corners}
         return [corner for corner in self.corners if corner.point.tobytes() not in known]
 
     @property
     def relative_tension(self) -> float:
         """The tension over the plate's rigidity [1/m^2]."""
         return self.tension / self.section.rigidity
+
+    def __repr__(self) -> str:
+        width, height = np.ptp(self.mesh.outline.box, axis=0)
+        rims = ", ".join(f"{name} {support}" for name, support in self.supports.items())
+        tension = f"; tension {self.tension:.4g} N/m" if self.tension else ""
+        about = "about " if isinstance(self.section, VaryingSection) else ""
+        more = "; on a foundation" if callable(self.foundation) or self.foundation else ""
+        more += f"; with {len(self.forms)} forms" if self.forms else ""
+        thick = f"{about}{self.section.thickness:.4g} m thick"
+        return f"Plate of {width:.4g} m x {height:.4g} m, {thick}; {rims}{tension}{more}"

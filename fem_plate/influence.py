@@ -41,11 +41,11 @@ def held_shapes(
     Raises ValueError when they do and may not.
     """
     held = stiffness > 0
-    basis, responses, felt, motions, matrix = _held_system(model, x, stiffness, stiffness_unit, may_move)
+    basis, responses, compliance, motions, matrix = _held_system(model, x, stiffness, stiffness_unit, may_move)
     to_forces, to_basis = basis.matrix, basis.matrix.T.tocsr()
     columns = np.arange(len(x)) if chosen is None else chosen
     drives = np.eye(len(x))[:, columns] * np.where(held[columns], 1.0, 1 / stiffness_unit)
-    strokes = (to_basis[:, held] @ drives[held])[held] - felt[np.ix_(held, ~held)] @ drives[~held]
+    strokes = (to_basis[:, held] @ drives[held])[held] - compliance[np.ix_(held, ~held)] @ drives[~held]
     given = np.concatenate([strokes, -motions[~held].T @ drives[~held]])
     solution = np.linalg.lstsq(matrix, given)[0] if may_move else np.linalg.solve(matrix, given)
     coefficients = drives.copy()
@@ -58,7 +58,8 @@ def held_shapes(
     else:
         responses = responses @ coefficients
     no_pressure = np.zeros(forces.shape[1])
-    return PlateFunctions(model.space, responses, x, forces, rigid, no_pressure, model.infinite), basis.green(felt)
+    functions = PlateFunctions(model.space, responses, x, forces, rigid, no_pressure, model.infinite)
+    return functions, basis.green(compliance)
 
 
 def held_under_pressure(
@@ -94,16 +95,16 @@ def _held_system(
     basis = model.basis(x, held)
     to_forces, to_basis = basis.matrix, basis.matrix.T.tocsr()  # P from coefficients; and what they feel from heights
     responses = model.under_forces(x, basis)
-    felt = basis.point_values(model.infinite) + np.asarray((to_basis @ model.space.point_values(x)) @ responses)
-    felt = (felt + felt.T) / 2
+    compliance = basis.point_values(model.infinite) + np.asarray((to_basis @ model.space.point_values(x)) @ responses)
+    compliance = (compliance + compliance.T) / 2
     motions = np.asarray(to_basis @ model.motions(x))
     r = motions.shape[1]
     if not may_move:
         check_held("influence", model.motions(x), held)
     springs = (to_basis[:, held] @ diags(stiffness_unit / stiffness[held]) @ to_forces[held])[held][:, held]
-    yielding = felt[np.ix_(held, held)] + springs.toarray()
+    yielding = compliance[np.ix_(held, held)] + springs.toarray()
     matrix = np.block([[yielding, motions[held]], [motions[held].T, np.zeros((r, r))]])
-    return basis, responses, felt, motions, matrix
+    return basis, responses, compliance, motions, matrix
 
 
 def unheld_shapes(

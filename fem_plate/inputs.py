@@ -59,9 +59,13 @@ def check_points(caller: str, points: FloatArray, gap: FloatArray, size: float) 
         raise ValueError(f"Input points of {caller}: " + "; ".join(mistakes))
 
 
-def places_on(mesh: PlateMesh, points: ArrayLike, caller: str) -> FloatArray:
+def places_on(
+    mesh: PlateMesh, points: ArrayLike, caller: str, name: str = "points", most: float = math.inf
+) -> FloatArray:
     """Points of `caller` as an array (N, 2) [m], of which there may be none; ValueError as of the checks above."""
-    places = as_points(points, f"points of {caller}")
+    places = as_points(points, f"{name} of {caller}")
+    if len(places) > most:
+        raise ValueError(f"Input {name} of {caller} must be at most {most} points; got {len(places)}")
     if places.size:
         check_points(caller, places, mesh.outline.gap(places), mesh.size)
     return places

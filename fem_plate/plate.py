@@ -14,10 +14,10 @@ from fem_plate.arrays import PatchedShapes, ProgressCallback, patched_shapes
 from fem_plate.deflection import Deflection, refined
 from fem_plate.graded import GradedPlate
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
-from fem_plate.inputs import as_points, check_points, check_tension, one_per_point, places_on, stiffness_per_point
+from fem_plate.inputs import as_points, check_points, one_per_point, places_on, stiffness_per_point
 from fem_plate.modes import HeldPlate, Modes
-from fem_plate.sections import Field, Section, VaryingSection
-from fem_plate.stability import buckling_compression, check_stability, warn_of_polygon, warn_of_wedges
+from fem_plate.sections import Field, Section
+from fem_plate.stability import buckling_load, check_stability, warn_of_polygon, warn_of_wedges
 from fem_plate.types import FloatArray
 from meshes import PlateMesh
 
@@ -108,10 +108,7 @@ class Plate(GradedPlate):
         ValueError
             A boundary is free, or foundation and forms make the plate buckle by themselves.
         """
-        check_tension(1.0, self.supports)
-        if self.energy is not None and self.energy.may_soften:
-            check_stability(self, 0.0)
-        return buckling_compression(self.model_on(self.untensioned_cells(), 0.0)) * self.section.rigidity
+        return buckling_load(self)
 
     def influence(
         self,
@@ -156,7 +153,7 @@ class Plate(GradedPlate):
                     f"Input points of influence must be at most {MAX_DENSE}, without a truncation, on a plate with a "
                     f"foundation, forms, a varying thickness, or a tension on an anisotropic section; got {len(points)}"
                 )
-            warn_of_wedges("on patches", len(self.wedges))
+            warn_of_wedges("on patches", len(self.enriched_corners))
             shapes = patched_shapes(self, points, actuator_stiffness, cut, tell)
         else:
             rigidity = self.section.rigidity
@@ -165,7 +162,7 @@ class Plate(GradedPlate):
                     self.model(points, halvings), points, rigidity, actuator_stiffness, free_motions
                 ),
                 self.tolerance,
-                self.fineness.gain,
+                self.grading.gain,
             )
         shapes.plate = self
         return shapes
@@ -210,7 +207,7 @@ class Plate(GradedPlate):
         points = places_on(self.mesh, points, "large_deflection")
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "large_deflection", may_float=True)
         movable = movable_by_boundary(in_plane_supports, self.supports)
-        warn_of_wedges("that stretches", len(self.wedges))
+        warn_of_wedges("that stretches", len(self.enriched_corners))
         return LargeDeflection(self, points, actuator_stiffness, movable, membrane)
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
@@ -241,7 +238,7 @@ class Plate(GradedPlate):
         return refined(
             lambda halvings: Deflection(self.model(points, halvings), points, loads, float(pressure), rigidity),
             self.tolerance,
-            self.fineness.gain,
+            self.grading.gain,
         )
 
     def pressure(self, load: float) -> Deflection:
@@ -283,11 +280,7 @@ class Plate(GradedPlate):
         density = self.section.density
         if density is None:
             raise ValueError("Input density of PlateSection must be given for frequencies; got None")
-        points = as_points([] if held is None else held, "held of modes")
-        if len(points) > MAX_DENSE:
-            raise ValueError(f"Input held of modes must be at most {MAX_DENSE} points; got {len(points)}")
-        if points.size:
-            check_points("modes", points, self.mesh.outline.gap(points), self.mesh.size)
+        points = places_on(self.mesh, [] if held is None else held, "modes", "held", MAX_DENSE)
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "modes", may_float=False)
         model = self.model(points) if deflected is None else deflected.discrete.model
         max_count = model.unknowns // 2 - 1
@@ -304,16 +297,6 @@ class Plate(GradedPlate):
             return modes.modes(held_plate, count, rigidity / inertia, lambda: solve(halvings + 1))
 
         return solve(0)
-
-    def __repr__(self) -> str:
-        width, height = np.ptp(self.mesh.outline.box, axis=0)
-        rims = ", ".join(f"{name} {support}" for name, support in self.supports.items())
-        tension = f"; tension {self.tension:.4g} N/m" if self.tension else ""
-        about = "about " if isinstance(self.section, VaryingSection) else ""
-        more = "; on a foundation" if callable(self.foundation) or self.foundation else ""
-        more += f"; with {len(self.forms)} forms" if self.forms else ""
-        thick = f"{about}{self.section.thickness:.4g} m thick"
-        return f"Plate of {width:.4g} m x {height:.4g} m, {thick}; {rims}{tension}{more}"
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rim by its supports and the mesh, into axes in m or new ones."""

@@ -8,18 +8,21 @@ import numpy as np
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
-from fem_plate.elements import PlateModel, rounded_corners
+from fem_plate.elements import MeshGrading, PlateModel, grade_mesh, rounded_corners
 from fem_plate.graded import GradedPlate
+from fem_plate.inputs import check_tension
 
 
-def buckling_compression(model: PlateModel) -> float:
-    """The smallest compression at which a plate without actuators buckles, over its rigidity [1/m^2].
+def buckling_load(plate: GradedPlate) -> float:
+    """The compression at which a plate buckles without actuators and tension [N/m]; raises as `Plate.buckling_load`.
 
-    It is the lowest mu of int M(v):H(q) = mu int grad v.grad q.
-
-    model: of the plate without a tension, which its supports hold.
+    It is the rigidity times the lowest mu of int M(v):H(q) = mu int grad v.grad q.
     """
-    return 1 / _largest(model, model.space.stretching()) / model.mesh.size**2
+    check_tension(1.0, plate.supports)
+    if plate.energy is not None and plate.energy.may_soften:
+        check_stability(plate, 0.0)
+    model = plate.model_on(grade_mesh(plate.mesh, MeshGrading.of(plate.mesh), plate.graded_corners), 0.0)
+    return 1 / _largest(model, model.space.stretching()) / model.mesh.size**2 * plate.section.rigidity
 
 
 def softest_foundation(model: PlateModel) -> float:

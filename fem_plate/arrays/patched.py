@@ -264,10 +264,10 @@ def patched_shapes(
 ) -> PatchedShapes:
     """The influence shapes of actuators at points (N, 2) [m], each cut off where it is below the truncation."""
     mesh, section = plate.mesh, plate.section
-    cell = min(plate.fineness.cell, PATCH_FINENESS * plate.fineness.half_width)
+    cell = min(plate.grading.cell, PATCH_FINENESS * plate.grading.half_width)
     pitch = spacing(points)
-    fineness = plate.fineness.on_patches(cell, PATCH_RIM * min(float(pitch.max()), mesh.size))
+    grading = plate.grading.on_patches(cell, PATCH_RIM * min(float(pitch.max()), mesh.size))
     pitches = CELL if plate.tolerance is None else FINER_CELL
-    cutter = Cutter(mesh, plate.supports, fineness, plate.corners, points, pitch, pitches)
+    cutter = Cutter(mesh, plate.supports, grading, plate.corners, points, pitch, pitches)
     array = ActuatorArray(cutter, points, actuator_stiffness, section.rigidity, section.law, plate.relative_tension)
     return PatchedShapes(array, truncation, mesh.size, mesh.outline, tell)

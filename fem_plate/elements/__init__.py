@@ -3,12 +3,12 @@
 from fem_plate.elements import forms
 from fem_plate.elements.anisotropic import AnisotropicPlate
 from fem_plate.elements.argyris import monomials
-from fem_plate.elements.close import SourceBasis, source_basis
 from fem_plate.elements.corners import MAX_EXPONENT
+from fem_plate.elements.dipoles import SourceBasis, source_basis
 from fem_plate.elements.energy import PlateEnergy, plate_energy
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.functions import Derivatives, PlateFunctions
-from fem_plate.elements.grading import GAIN, Fineness, SingularCorner, corner_rows, graded, singular_corners
+from fem_plate.elements.grading import GAIN, MeshGrading, SingularCorner, corner_rows, grade_mesh, singular_corners
 from fem_plate.elements.infinite import UNIT_STRENGTH, point_load, point_value
 from fem_plate.elements.model import PlateModel
 from fem_plate.elements.rim import CLAMPED, FREE, SIMPLY_SUPPORTED, by_boundary, rigid_motions, rim_quadrature

@@ -80,7 +80,7 @@ class PlateEnergy:
         return bool(np.any(self._at_points[:, rows, columns]))
 
     @property
-    def bends_alike(self) -> bool:
+    def uniform_law(self) -> bool:
         """Whether the law of bending is the same everywhere."""
         laws = self._at_points[:, HESSIAN, HESSIAN]
         return bool(np.ptp(laws, axis=0).max() <= VARIES * np.abs(laws).max())
@@ -91,7 +91,7 @@ class PlateEnergy:
 
         inf where it is as smooth as matters.
         """
-        if not self.bends_alike or self._has(GRADIENT, HESSIAN):
+        if not self.uniform_law or self._has(GRADIENT, HESSIAN):
             return 2.0
         return 3.0 if self._has(GRADIENT, GRADIENT) or self._has(VALUE, HESSIAN) else math.inf
 

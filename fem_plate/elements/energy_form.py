@@ -82,7 +82,7 @@ class EnergyForm:
                 density = _times(own, jets)
                 density[HESSIAN] -= np.einsum("Nab,btnN->atnN", laws, curvature)
             density = np.where(np.isfinite(density), density * weights[..., None], 0.0)
-            loads -= self.space.summed(forms.products(table, density), triangle)
+            loads -= self.space.assemble_load(forms.products(table, density), triangle)
         at_rim = [infinite.point_derivatives(self.space.rim.points, source) for source in sources]
         own = np.stack([self._traces_of([order[..., None] for order in one]).ravel() for one in at_rim], axis=1)
         pairs = zip(at_rim, laws, strict=True)

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 
 from fem_plate.elements.anisotropic import AnisotropicPlate, infinite_plate
-from fem_plate.elements.close import SourceBasis, source_basis
+from fem_plate.elements.dipoles import SourceBasis, source_basis
 from fem_plate.elements.energy import PlateEnergy
 from fem_plate.elements.energy_form import EnergyForm
 from fem_plate.elements.enriched import EnrichedSpace

@@ -99,7 +99,7 @@ class PlateSpace:
         bent = sum_up(at_corners, self._entities, self._first)
         return (self._bent.T @ bent @ self._bent + self.assembled(matrices)).tocsc()
 
-    def summed(self, loads: FloatArray, triangle: IntArray) -> FloatArray:
+    def assemble_load(self, loads: FloatArray, triangle: IntArray) -> FloatArray:
         """The sum of loads (t, 21, k) on functions of triangles (t,), in the independent unknowns, (unknowns, k)."""
         total = np.zeros((self.all_count, loads.shape[-1]))
         np.add.at(total, self.dofs[triangle], loads)
@@ -125,7 +125,7 @@ class PlateSpace:
         """How many unknowns the triangles have together, the dependent ones included."""
         return int(self._first[-1])
 
-    def all_unknowns(self, unknowns: FloatArray) -> FloatArray:
+    def element_dofs(self, unknowns: FloatArray) -> FloatArray:
         """The unknowns of every triangle's own points from the independent ones (unknowns, ...)."""
         return unknowns if self._relative is None else np.asarray(self._absolute @ unknowns)
 
@@ -176,7 +176,7 @@ class PlateSpace:
         polynomial continues beyond its chord, as in the integrals.
         """
         n, k = len(xy), unknowns.shape[1]
-        unknowns = self.all_unknowns(unknowns)
+        unknowns = self.element_dofs(unknowns)
         results = [np.empty((n, k, *[2] * order)) for order in range(orders)]
         step = max(1, CHUNK // k)
         for start in range(0, n, step):
@@ -193,7 +193,7 @@ class PlateSpace:
     def laplacians(self, xy: FloatArray, unknowns: FloatArray) -> FloatArray:
         """The Laplacians (n, k) of functions given by their unknowns (unknowns, k) at points (n, 2), as `evaluate`."""
         result = np.empty((len(xy), unknowns.shape[1]))
-        unknowns = self.all_unknowns(unknowns)
+        unknowns = self.element_dofs(unknowns)
         step = max(1, CHUNK // result.shape[1])
         for start in range(0, len(xy), step):
             part = slice(start, start + step)

@@ -48,7 +48,7 @@ class DiscretePlate:
         every_rim_moves = all(movable.values())
         corners = airy_corners(plate.mesh, every_rim_moves, section.poisson_ratio) if by_airy else []
         mesh = plate.cells(points, halvings, corners)
-        self.mesh = refined_for(mesh, points, plate.fineness.half_width, level)
+        self.mesh = refined_for(mesh, points, plate.grading.half_width, level)
         rows = corner_rows(self.mesh, [*plate.corners, *corners])
         self.size, self.thickness, self.rigidity = self.mesh.size, section.thickness, section.rigidity
         self.model = PlateModel(self.mesh, plate.supports, section.law, rows, plate.relative_tension)

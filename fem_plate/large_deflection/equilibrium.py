@@ -175,7 +175,7 @@ class Equilibrium:
         extra: FloatArray,
         pressure: float,
     ) -> list[FloatArray]:
-        everything, weights = self.space.all_unknowns(v), np.append(extra, pressure)
+        everything, weights = self.space.element_dofs(v), np.append(extra, pressure)
         return [
             (samples.gradient @ everything[self.space.dofs[samples.triangle]][..., None])[..., 0] + slopes @ weights
             for samples, slopes in zip(sets, known, strict=True)

@@ -168,7 +168,7 @@ def slopes(
     discrete: DiscretePlate, sets: Sequence[Samples], known: Sequence[FloatArray], columns: Columns
 ) -> list[FloatArray]:
     """The slopes (k, 2 n, functions) at sets of samples; known: those of the extra functions there."""
-    space, everything = discrete.model.space, discrete.model.space.all_unknowns(columns.v)
+    space, everything = discrete.model.space, discrete.model.space.element_dofs(columns.v)
     extra = np.concatenate([columns.extra, np.zeros((1, columns.extra.shape[1]))])
     return [
         samples.gradient @ everything[space.dofs[samples.triangle]] + at @ extra

@@ -90,7 +90,7 @@ class LargeDeflection:
     def _refined(self, strokes: FloatArray, pressure: float, level: int) -> DeflectedPlate:
         plate = self.plate
         return refined(
-            lambda halvings: self.solved(strokes, pressure, level, halvings), plate.tolerance, plate.fineness.gain
+            lambda halvings: self.solved(strokes, pressure, level, halvings), plate.tolerance, plate.grading.gain
         )
 
     def solved(self, strokes: FloatArray, pressure: float, level: int, halvings: int) -> DeflectedPlate:

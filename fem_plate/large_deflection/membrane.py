@@ -174,7 +174,7 @@ def airy(mesh: PlateMesh, movable: bool, poisson_ratio: float, corners: Sequence
         solve=factorised(stiffness),
         sign=-1.0,
         law=None,
-        expand=space.all_unknowns,
+        expand=space.element_dofs,
         reduce=space.to_independent,
     )
 

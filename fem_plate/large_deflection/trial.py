@@ -73,7 +73,7 @@ class Trial:
     def slopes(self, samples: Samples) -> FloatArray:
         """Slopes (k, 2 n, extra + 1) of the extra functions, and of that of pressure."""
         k, n, _ = samples.points.shape
-        everything = self.model.space.all_unknowns(self.extra.unknowns)
+        everything = self.model.space.element_dofs(self.extra.unknowns)
         slopes = samples.gradient @ everything[self.model.space.dofs[samples.triangle]]
         step = max(1, CHUNK // n)
         for start in range(0, k, step):

@@ -137,7 +137,7 @@ def both_sides(space, u, order):
     corners = space.triangles.points[triangle]
     start, end = corners[at, side], corners[at, (side + 1) % 3]
     points = start[:, None] + np.linspace(0, 1, 9)[:, None] * (end - start)[:, None]
-    local = space.all_unknowns(u)[space.dofs]
+    local = space.element_dofs(u)[space.dofs]
     found = []
     for t in (triangle, order_of[pair + 1] // 3):
         found.append(np.einsum("dtnk,tk->dtn", space.triangles.derivatives(points, t, order), local[t]))

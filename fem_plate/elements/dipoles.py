@@ -63,9 +63,9 @@ class SourceBasis:
         values[self.dipoles[i], self.dipoles[j]] = mean
         return values
 
-    def green(self, felt: FloatArray) -> FloatArray:
+    def green(self, compliance: FloatArray) -> FloatArray:
         """The compliance (N, N) between sources from that in this basis."""
-        values = felt.copy()
+        values = compliance.copy()
         for row, parent, length in self.within(range(len(self.x))):  # a parent comes before its dipoles
             values[row] = length * values[row] + values[parent]
             values[:, row] = length * values[:, row] + values[:, parent]
