@@ -5,12 +5,17 @@ from .drives.table import AnyDrive as AnyDrive
 from .friction.contact import ConstantFriction as ConstantFriction, CoulombAdhesion as CoulombAdhesion
 from .friction.kogut_etsion import KogutEtsion as KogutEtsion
 from .friction.table import FrictionTable as FrictionTable
-from .micropart import Micropart as Micropart
-from .simulation import part_record as part_record, simulate as simulate
+from .simulation import Micropart as Micropart, part_record as part_record, simulate as simulate
 from .modes import EventKind as EventKind, Outcome as Outcome, State as State
 from .surface.moving_surface import SurfaceMotion as SurfaceMotion, SurfaceState as SurfaceState
 from .surface.simple_surfaces import platform_surface as platform_surface, polynomial_surface as polynomial_surface
-from .samples import ContactSamples as ContactSamples, Event as Event, Samples as Samples
+from .samples import (
+    ContactSamples as ContactSamples,
+    Event as Event,
+    Samples as Samples,
+    dataset_of as dataset_of,
+    table_of as table_of,
+)
 from .trajectory import Energy as Energy, Trajectory as Trajectory
 
 # Not public: for the packages that build on this one.
@@ -29,7 +34,6 @@ from .interrupt import (
     wait as wait,
 )
 from .jit import kernel as kernel, kernel_no_arrays as kernel_no_arrays
-from .labelled import dataset_of as dataset_of, table_of as table_of
 from .kernel_cache import compilation_heard as compilation_heard, source_digest as source_digest
 from .rest import (
     Extreme as Extreme,

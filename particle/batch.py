@@ -15,9 +15,8 @@ import numpy as np
 from particle.drives import AnyDrive
 from particle.friction import Contact, FrictionLaw
 from particle.interrupt import wait
-from particle.micropart import Micropart
 from particle.path import find_path
-from particle.simulation import faults, new_request
+from particle.simulation import Micropart, faults, new_request
 from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
 

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from particle.drives import next_breakpoint
 from particle.events import Part, rest_over_time
 from particle.friction import Contact, friction_limits
-from particle.micropart import Micropart
-from particle.simulation import part_record
+from particle.simulation import Micropart, part_record
 from particle.surface import SurfaceMotion, missing_place, new_local
 
 FloatArray = NDArray[np.float64]

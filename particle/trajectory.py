@@ -11,9 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from common import draw, notebook_html
-from particle.labelled import dataset_of, table_of
 from particle.modes import Outcome, State
-from particle.samples import ContactSamples, Event, RoughContact, Samples, contact_samples_of, samples_of
+from particle.samples import (
+    ContactSamples,
+    Event,
+    RoughContact,
+    Samples,
+    contact_samples_of,
+    dataset_of,
+    samples_of,
+    table_of,
+)
 
 if TYPE_CHECKING:
     import pandas

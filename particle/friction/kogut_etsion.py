@@ -134,23 +134,7 @@ class KogutEtsion(KogutEtsionInput):
         return float(self.net_load(self.branch[0]))
 
     def separation(self, net_load: ArrayLike) -> FloatArray:
-        """The stable separation d / sigma.
-
-        Parameters
-        ----------
-        net_load : float or array
-            Net loads, N, of any shape.
-
-        Returns
-        -------
-        separation : array
-            Of the same shape.
-
-        Raises
-        ------
-        ValueError
-            A load is below -pull_off or above the peak of the friction limit.
-        """
+        """The stable separation d / sigma under net loads [N] of any shape; ValueError for one outside the law."""
         from scipy.optimize import brentq  # here, because no run needs it
 
         loads = np.asarray(net_load, dtype=float)
@@ -166,23 +150,7 @@ class KogutEtsion(KogutEtsionInput):
         return np.reshape([solve(load) for load in loads.ravel().tolist()], loads.shape)
 
     def friction_limit(self, net_load: ArrayLike) -> FloatArray:
-        """The friction limit Q, from the table that the integrator uses.
-
-        Parameters
-        ----------
-        net_load : float or array
-            Net loads, N, of any shape.
-
-        Returns
-        -------
-        limit : array
-            Q, N, of the same shape.
-
-        Raises
-        ------
-        ValueError
-            As for `separation`.
-        """
+        """Q [N] under net loads [N] of any shape, from the integrator's table; ValueError for one outside the law."""
         return friction_limits(self.law, net_load)
 
     @property
