@@ -2,9 +2,8 @@
 
 from coupling.pictures.case import draw_case
 from coupling.pictures.events import APART, MARKS, draw_events
-from coupling.pictures.file import save_picture
-from coupling.pictures.keys import put_keys
-from coupling.pictures.path import draw_path
+from coupling.pictures.figure import map_axes, plain_ticks, put_keys, save_picture
+from coupling.pictures.path import PITCHES, draw_path, is_visible, path_window
 from coupling.pictures.plate import (
     Piece,
     Relief,
@@ -21,7 +20,6 @@ from coupling.pictures.portrait import (
     decisive_moment,
 )
 from coupling.pictures.run import draw_run, draw_surface
-from coupling.pictures.ticks import map_axes, plain_ticks
 from coupling.pictures.time import (
     Curves,
     draw_over_time,
@@ -29,4 +27,3 @@ from coupling.pictures.time import (
     strokes_of,
     velocities_of,
 )
-from coupling.pictures.window import PITCHES, is_visible, path_window

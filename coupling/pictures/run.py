@@ -21,14 +21,11 @@ from coupling.drives import frame_times
 from coupling.margins import MarginCurves, Margins, margin_curves, margins_of
 from coupling.part import build_friction
 from coupling.pictures.events import MARKS, draw_events
-from coupling.pictures.file import save_picture
-from coupling.pictures.keys import put_keys
-from coupling.pictures.path import draw_path
+from coupling.pictures.figure import map_axes, put_keys, save_picture
+from coupling.pictures.path import draw_path, is_visible, path_window
 from coupling.pictures.plate import AXES_WIDTH, draw_plate, draw_window, join
 from coupling.pictures.portrait import LOSSES, Portrait, deflected_most, portrait_of
-from coupling.pictures.ticks import map_axes
 from coupling.pictures.time import Curves, Span, curves_of, draw_over_time
-from coupling.pictures.window import is_visible, path_window
 from coupling.result import Result
 from coupling.scene import Scene
 from particle import HALO, Trajectory, shade_keys

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from common import NOTHING, Unit, unit_for
+from coupling.pictures.figure import plain_ticks
 from coupling.pictures.portrait import Portrait
-from coupling.pictures.ticks import plain_ticks
 from particle import PATH_COLOUR, Rows, shade
 
 FloatArray = NDArray[np.float64]

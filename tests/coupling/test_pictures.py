@@ -15,12 +15,12 @@ from coupling.display.surface import DisplaySurface, deflections, display_surfac
 from coupling.drives import build_drives
 from coupling.margins import Margin, Margins, margin_curves
 from coupling.part import build_friction
-from coupling.pictures.keys import put_keys
+from coupling.pictures.figure import put_keys
+from coupling.pictures.path import MAX_LENGTHS, MIN_LENGTHS, path_window
 from coupling.pictures.plate import BOTH_WAYS, UPWARDS, Scale, draw_plate, fine_piece, relief_of
 from coupling.pictures.portrait import chosen_drives, decisive_moment, portrait_of
 from coupling.pictures.run import compose
 from coupling.pictures.time import Curves, draw_over_time, limits, margins_over_time, strokes_of
-from coupling.pictures.window import MAX_LENGTHS, MIN_LENGTHS, path_window
 from coupling.run import run_case
 from fem_plate import Plate, PlateSection
 from fem_plate import pictures as plate_pictures
