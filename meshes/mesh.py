@@ -8,12 +8,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from meshes.curves import Curve
-from meshes.nearest import FloatArray, IntArray
 from meshes.outline import Outline, outline_of
 from meshes.triangles import edge_numbers, refine, sides
+from meshes.types import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from skfem import MeshTri1, MeshTri2
@@ -172,7 +172,7 @@ class PlateMesh:
             and all(_same(curve, other.curves[name]) for name, curve in self.curves.items())
         )
 
-    def part(self, keep: NDArray[np.bool_]) -> PlateMesh:
+    def part(self, keep: BoolArray) -> PlateMesh:
         """The mesh of the triangles to keep (m,); new boundary edges are straight and named "cut".
 
         The outline stays that of the whole plate.
@@ -197,7 +197,7 @@ class PlateMesh:
             self.outline,
         )
 
-    def refined(self, marked: NDArray[np.bool_] | None = None) -> PlateMesh:
+    def refined(self, marked: BoolArray | None = None) -> PlateMesh:
         """The mesh with marked triangles cut in four and their neighbours cut to fit.
 
         Cells cut in four keep their angles; their neighbours are cut through their longest edge. New boundary points

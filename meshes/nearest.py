@@ -7,10 +7,8 @@ without numba.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from meshes.types import FloatArray, IntArray
 
 CHUNK = 200_000  # pairs of point and edge compared at a time: about 50 MB
 

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshes.curves import Circle, Curve, Ellipse, Parabolas
-from meshes.nearest import CHUNK, FloatArray, IntArray, nearest_on_edges, nearest_parameter, on_edges, powers
-
-BoolArray = NDArray[np.bool_]
+from meshes.nearest import CHUNK, nearest_on_edges, nearest_parameter, on_edges, powers
+from meshes.types import BoolArray, FloatArray, IntArray
 
 MAX_MIRRORS = 64  # with more edges than this, points are reflected at the NEAREST ones only
 NEAREST = 16

@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from meshes.fill import RimEdges, fill
 from meshes.mesh import PlateMesh
-from meshes.nearest import FloatArray, IntArray
 from meshes.outline import Outline, straight
 from meshes.shapes import check_lengths
 from meshes.triangles import cross
+from meshes.types import FloatArray, IntArray
 
 SHARP = np.deg2rad(60)  # towards sharper corners cells shrink with the plate's width
 GROWTH = 0.5  # of cells away from a short side, per length

@@ -11,10 +11,10 @@ import numpy as np
 from meshes.curves import Parabolas
 from meshes.files import line_names, load
 from meshes.mesh import PlateMesh
-from meshes.nearest import FloatArray, IntArray, on_edges, powers
-from meshes.outline import BoolArray
+from meshes.nearest import on_edges, powers
 from meshes.shapes import check_lengths
 from meshes.triangles import areas, cross, edge_numbers, sides
+from meshes.types import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from skfem import MeshTri1, MeshTri2

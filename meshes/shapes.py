@@ -9,8 +9,9 @@ import numpy as np
 from meshes.curves import Circle, Ellipse
 from meshes.fill import RimEdges, check_count, fill
 from meshes.mesh import PlateMesh
-from meshes.nearest import FloatArray, nearest_on_ellipse
+from meshes.nearest import nearest_on_ellipse
 from meshes.outline import Outline, straight
+from meshes.types import FloatArray
 
 LONGEST_ARC = 2 / 3  # rim edges of an ellipse are at most this long in radii of curvature
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshes.curves import Curve
-from meshes.nearest import FloatArray, IntArray
+from meshes.types import BoolArray, FloatArray, IntArray
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -44,7 +43,7 @@ def refine(
     triangles: IntArray,
     boundaries: Mapping[str, IntArray],
     curves: Mapping[str, Curve],
-    marked: NDArray[np.bool_] | None,
+    marked: BoolArray | None,
 ) -> tuple[FloatArray, IntArray, dict[str, IntArray]]:
     """Points, triangles and boundaries after cutting marked triangles (m,), all by default, in four.
 

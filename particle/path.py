@@ -30,8 +30,8 @@ from particle.modes import EventKind, Outcome, State, Verdict
 from particle.samples import Event, samples_of
 from particle.surface import Surface, SurfaceMotion, missing_place, new_local
 from particle.trajectory import Energy, Trajectory
+from particle.types import BoolArray, FloatArray, IntArray
 
-FloatArray = NDArray[np.float64]
 Rows = NDArray[Any]  # of `Row`
 
 
@@ -63,7 +63,7 @@ class _Scratch(threading.local):
 _scratch = _Scratch()
 
 
-def _memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
+def _memory(surface: Surface, pairs: Pairs, stop: IntArray) -> Memory:
     """Scratch memory for a path over the surface."""
     cells = surface.cells
     planar = cells.plane_highest, surface.in_plane_count
@@ -76,7 +76,7 @@ def _memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
 
 
 def find_path(
-    surface: SurfaceMotion, request: Request, tolerance: float, stop: NDArray[np.int64] | None = None
+    surface: SurfaceMotion, request: Request, tolerance: float, stop: IntArray | None = None
 ) -> Trajectory | None:
     """The path by located events; None when it was interrupted by `stop` (1,), which another thread may set to 1.
 
@@ -133,7 +133,7 @@ def _by_events(surface: SurfaceMotion, request: Request, pairs: Pairs, rows: Row
 def _by_steps(surface: SurfaceMotion, request: Request, kind: int, rows: Rows, times: FloatArray) -> Rows:
     """The rows at ascending times [s]."""
 
-    def sample() -> tuple[Rows, NDArray[np.bool_]]:
+    def sample() -> tuple[Rows, BoolArray]:
         record = surface.record
         return between(record, request.part, new_fixed_memory(record), kind, rows, times)
 

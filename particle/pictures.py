@@ -11,13 +11,11 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
-from numpy.typing import NDArray
 
 from common import SIZE, Drawing, draw, figure_of, label_axis, label_places
 from particle.modes import State
 from particle.trajectory import Trajectory
-
-FloatArray = NDArray[np.float64]
+from particle.types import BoolArray, FloatArray, IntArray
 
 PATH_COLOUR, STICK_COLOUR = "#c8371b", "#1b4f9c"
 HALO = [withStroke(linewidth=2.6, foreground="white")]
@@ -43,7 +41,7 @@ class Rows(Protocol):
         """(n, 2) m."""
 
     @property
-    def state(self) -> NDArray[np.int64]:
+    def state(self) -> IntArray:
         """(n,) State."""
 
 
@@ -85,7 +83,7 @@ def _look(state: State) -> dict[str, Any]:
     return {"facecolor": "none", "edgecolor": colour, "hatch": "////", "linewidth": 0}  # differs in grey, too
 
 
-def stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
+def stretches(holds: BoolArray) -> list[tuple[int, int]]:
     """The first and last row of each stretch of time during which a condition (n,) holds."""
     change = np.diff(np.concatenate([[0], holds[:-1].astype(int), [0]]))
     return list(zip(np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist(), strict=True))

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from particle.modes import EventKind, Mode, State
+from particle.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-FloatArray = NDArray[np.float64]
 
 COLUMNS: Final = {
     "x": ("m", "x of the part"),
@@ -54,7 +54,7 @@ class Samples(NamedTuple):
     height: FloatArray  # (k,) m, that of the surface under it unless it flies
     normal_force: FloatArray  # (k,) N, net, of the contact
     friction_force: FloatArray  # (k,) N, its magnitude
-    state: NDArray[np.int64]  # (k,) State
+    state: IntArray  # (k,) State
 
 
 class RoughContact(Protocol):
@@ -86,7 +86,7 @@ class ContactSamples(NamedTuple):
     separation: FloatArray  # (k,) over the roughness, of a rough contact; nan in flight and without its law
     contact_load: FloatArray  # (k,) N, pressing its asperities; nan likewise
     adhesion: FloatArray  # (k,) N, holding against it; contact_load - adhesion is the normal force; nan likewise
-    state: NDArray[np.int64]  # (k,) State
+    state: IntArray  # (k,) State
 
 
 def samples_of(rows: NDArray[Any]) -> Samples:
@@ -103,7 +103,7 @@ def samples_of(rows: NDArray[Any]) -> Samples:
     )
 
 
-def _states(rows: NDArray[Any]) -> NDArray[np.int64]:
+def _states(rows: NDArray[Any]) -> IntArray:
     return np.where(rows["mode"] == Mode.MANIFOLD, State.SLIP, rows["mode"])
 
 

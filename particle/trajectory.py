@@ -22,6 +22,7 @@ from particle.samples import (
     samples_of,
     table_of,
 )
+from particle.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
     import pandas
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 
     from common import Axes, Figure
 
-FloatArray = NDArray[np.float64]
 
 MIN_ENERGY = 1e-6
 _FOR_GOOD = "The part is at rest, and the drives do not move it again."
@@ -71,7 +71,7 @@ class Trajectory:
     height: FloatArray  # (n,) m, that of the surface under it unless it flies
     normal_force: FloatArray  # (n,) N, net, of the contact
     friction_force: FloatArray  # (n,) N, its magnitude
-    state: NDArray[np.int64]  # (n,) State
+    state: IntArray  # (n,) State
     events: list[Event]
     outcome: Outcome
     evaluations: int  # of the surface

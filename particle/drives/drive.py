@@ -11,7 +11,8 @@ import numpy as np
 from particle.checks import finite, not_negative, positive, refuse, whole
 from particle.drives.pieces import ORDER
 from particle.drives.quintics import QUINTIC, RAMPS, SINE_ERROR, WAVES, begun_at, up_down, wave
-from particle.drives.table import Evaluated, FloatArray, Segments
+from particle.drives.table import Evaluated, Segments
+from particle.types import FloatArray
 
 CYCLES = ("up-down", "up", *WAVES)
 MAX_STROKES = 1_000_000

@@ -6,11 +6,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.jit import jit_no_arrays
-
-FloatArray = NDArray[np.float64]
+from particle.types import BoolArray, FloatArray, IntArray
 
 ORDER = 6  # coefficients of a quintic
 MERGED = 1e-12  # of a stroke: breakpoints closer than that are taken as one
@@ -26,8 +24,8 @@ class DriveTable(NamedTuple):
     lasting span[i]; those before, its lead, and those after, its tail, once.
     """
 
-    first: NDArray[np.int64]  # (N+1,)
-    loop: NDArray[np.int64]  # (N, 2)
+    first: IntArray  # (N+1,)
+    loop: IntArray  # (N, 2)
     start: FloatArray  # (S,) s, after the start of the pass; of the lead negative, of the tail after the last pass
     scale: FloatArray  # (S,) s, what its polynomial's variable is divided by
     coefficients: FloatArray  # (S, 6) m, in (t - start) / scale
@@ -37,7 +35,7 @@ class DriveTable(NamedTuple):
     stroke_time: FloatArray  # (N,) s, the shortest stroke of each; inf: it has none
     jump: FloatArray  # (N, 2) m/s, m/s^2, by how much its velocity and acceleration jump at breakpoints at most
     rough: FloatArray  # (N,) m/s^3, by how much its third derivative does, with the share of those above
-    alike: NDArray[np.bool_]  # (N,) whether all its pieces begin and end when those of the drive before it do
+    alike: BoolArray  # (N,) whether all its pieces begin and end when those of the drive before it do
 
 
 def hermite_end(rise: Any, v_0: Any, v_1: Any, a_0: Any, a_1: Any) -> tuple[Any, Any, Any]:

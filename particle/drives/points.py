@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from particle.checks import as_row, not_negative, positive, refuse, times_fault, whole
 from particle.drives.pieces import ORDER
 from particle.drives.quintics import hermite, through
-from particle.drives.table import Evaluated, FloatArray, Segments
+from particle.drives.table import Evaluated, Segments
+from particle.types import FloatArray
 
 RESTS = 1e-12  # of the motions, over a piece: slower ones rest
 TIMES = "two or more times in s that increase from 0"

@@ -10,7 +10,8 @@ import math
 import numpy as np
 
 from particle.drives.pieces import MERGED, ORDER, hermite_end
-from particle.drives.table import FloatArray, Segments, joined
+from particle.drives.table import Segments, joined
+from particle.types import FloatArray
 
 QUINTIC = np.array([0.0, 0.0, 0.0, 10.0, -15.0, 6.0])  # from 0 to 1 with no velocity and acceleration at either end
 WAVES = ("sine", "cosine")

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particle.drives.pieces import ORDER, ROUNDING, DriveTable, drive_piece, find_alike
 from particle.jit import jit
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class Segments(NamedTuple):

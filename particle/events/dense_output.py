@@ -17,8 +17,7 @@ from particle.events.tableau import Pairs
 from particle.jit import jit
 from particle.modes import Mode, Verdict
 from particle.surface import LocalSurface, Surface, enter, surface_at
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 @jit

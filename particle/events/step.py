@@ -13,8 +13,7 @@ from particle.events.tableau import Pairs
 from particle.jit import jit_no_arrays
 from particle.records import Record, new_records
 from particle.surface import LocalSurface, SurfacePoint, surface_at
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class Seen(Record):

@@ -8,12 +8,11 @@ from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particle.checks import finite, not_negative, positive, refuse
 from particle.jit import jit, jit_no_arrays
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 CONSTANT, COULOMB, TABLE, POINTS = 0, 1, 2, 3
 

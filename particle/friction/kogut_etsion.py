@@ -17,13 +17,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particle.friction.contact import TABLE, FrictionLaw, check_loads, friction_limits, new_law
 from particle.friction.quadrature import from_power, on_panels
 from particle.friction_input import PAPER_PLASTICITY_INDEX, KogutEtsionInput
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 SAMPLES = 1025  # separations from which the inverse is first found
 INTERVALS = (1024, 2048, 4096, 8192)  # of the table: the first that meets MAX_ERROR

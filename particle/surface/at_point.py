@@ -6,7 +6,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.drives import ORDER, evaluate_piece
 from particle.jit import jit, jit_no_arrays
@@ -16,8 +15,7 @@ from particle.surface.planar import planar_at
 from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
 from particle.surface.span import enter
-
-FloatArray = NDArray[np.float64]
+from particle.types import BoolArray, FloatArray
 
 
 class SurfacePoint(NamedTuple):
@@ -239,9 +237,7 @@ def motion_at(local: LocalSurface, x: float, y: float, out: FloatArray) -> None:
 
 
 @jit
-def evaluate_points(
-    surface: Surface, local: LocalSurface, xy: FloatArray, time: float
-) -> tuple[FloatArray, NDArray[np.bool_]]:
+def evaluate_points(surface: Surface, local: LocalSurface, xy: FloatArray, time: float) -> tuple[FloatArray, BoolArray]:
     """Height and slopes at points (n, 2) [m] and one time [s], nan beyond the rim: (n, 18).
 
     The first twelve of `SurfacePoint`, derivatives of w itself; then u, u_t and u_tt. Also (n,) which of the points

@@ -14,15 +14,14 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particle.drives import AnyDrive, DriveTable, accelerations, drive_table, scaled_table
 from particle.surface.at_point import evaluate_points
 from particle.surface.cells import NOWHERE, CellStore
 from particle.surface.local import new_local
 from particle.surface.record import Surface
-
-FloatArray = NDArray[np.float64]
+from particle.types import BoolArray, FloatArray
 
 
 class SurfaceState(NamedTuple):
@@ -198,7 +197,7 @@ class SurfaceMotion:
         u, u_t, u_tt = rows[:, 12:14], rows[:, 14:16], rows[:, 16:]
         return SurfaceState(w, w_t, w_tt, gradient, gradient_t, hessian, gradient_tt, u, u_t, u_tt)
 
-    def _points(self, xy: FloatArray, time: float) -> tuple[FloatArray, NDArray[np.bool_]]:
+    def _points(self, xy: FloatArray, time: float) -> tuple[FloatArray, BoolArray]:
         surface = self.record
         return evaluate_points(surface, new_local(surface), xy, float(time))
 

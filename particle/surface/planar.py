@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from particle.drives import ORDER
 from particle.jit import jit_no_arrays
 from particle.surface.local import Frame, LocalSurface
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class Planar(NamedTuple):

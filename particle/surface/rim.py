@@ -11,13 +11,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from particle.jit import jit_no_arrays
 from particle.surface.record import Surface
+from particle.types import FloatArray
 
-FloatArray = NDArray[np.float64]
 Vector = tuple[float, float]
 
 HALVINGS = 54  # of a parameter in [0, 1]

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.events.mechanics import Part, length, pull
 from particle.jit import jit, jit_no_arrays
 from particle.surface import LocalSurface, Surface, SurfacePoint, enter, surface_at
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 @jit_no_arrays

@@ -16,7 +16,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.drives import ORDER
 from particle.events.bernstein import MAX_HALVINGS, halve, to_bernstein
@@ -30,8 +29,7 @@ from particle.events.rest.stick_stretched import DEGREE as STRETCHED_DEGREE
 from particle.friction import friction_limit
 from particle.jit import jit, jit_no_arrays
 from particle.surface import Frame, LocalSurface, motion_at, planar_motion_at
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 SLACK = 1e-15  # of the largest squared force in the span
 LEVEL, RAISED, STRETCHED = range(3)  # a point on the mid-plane; off it; on or off one that moves in its plane

@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.drives import ORDER
 from particle.events.bernstein import to_bernstein
@@ -23,8 +22,7 @@ from particle.events.rest.stick_raised import fill_raised
 from particle.friction import friction_limit
 from particle.jit import jit, jit_no_arrays
 from particle.surface import LocalSurface
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 DEGREE = 16  # of the squared force along the surface; everything else is raised to it
 # A part sticks up to the limit itself, as on a slope at the angle of friction: rounding must not decide.

@@ -16,16 +16,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from particle.events.bernstein import to_bernstein
 from particle.events.mechanics import Part
 from particle.events.polynomials import derivative, dot, product, second_derivative, total
 from particle.friction import friction_limit
 from particle.jit import jit, jit_no_arrays
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 DEGREE = 36  # of Y; everything else is raised to it
 C, F, SQUARE, E, X, Y = range(6)

@@ -27,7 +27,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.drives import ORDER
 from particle.events.bernstein import quintic_to_bernstein, to_bernstein
@@ -36,8 +35,8 @@ from particle.events.polynomials import derivative, second_derivative, total
 from particle.events.rest.stick_raised import SQUARE, C, E, F, X, Y
 from particle.friction import friction_limit
 from particle.jit import jit, jit_no_arrays
+from particle.types import FloatArray
 
-FloatArray = NDArray[np.float64]
 Vector = tuple[FloatArray, FloatArray, FloatArray]
 
 # Over a share 2^-7 of a span the 15th power is 2^-105 of its coefficient, and that of a product of fifteen quintics
