@@ -1,6 +1,6 @@
 # make demo: set up and run the main job.   make test: set up, lint and test, in minutes.
 # make test-all: the long tests as well.    make coverage: what they cover.    make site: the documentation site.
-# make fuzz, paths, kills: abuse.
+# make abuse: fuzz, paths and kills, hours of them.
 PYTHON ?= python3
 # For pip; .ci/versions has others, and leaves out lint, which depends on its own versions.
 CONSTRAINTS ?= constraints.txt
@@ -14,29 +14,30 @@ unexport PYTHONDONTWRITEBYTECODE
 # Tests run on all processors, those of a file on one, as they share what is made for them. tests/conftest.py puts files
 # that take long first.
 PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-reorder
-# Only kernels are compiled: `tests/particle` runs in plain Python, too. In test-all so does what else marches.
-PLAIN := tests/particle
-MARCHES := tests/physics tests/regression tests/active_surface/studies/test_feasible.py
-MARCHES += $(addprefix tests/validation/test_, single_stroke.py two_actuators.py)
-CHOSEN := -m "not slow"
+# In plain Python a bad index raises: a few kernels in `make test`, and in test-all what else marches.
+PLAIN := $(addprefix tests/particle/test_, bernstein.py drive.py in_plane_motion.py runge_kutta.py slide.py stick.py)
+MARCHES := tests/particle tests/physics tests/regression $(addprefix tests/validation/test_, single_stroke.py two_actuators.py)
+# Only in test-all: tests marked slow, and files that take long as a whole. What is left keeps to its budget.
+LONG := *_in_browser.py test_aim_examples.py test_cluster.py test_large_arrays.py test_paper_figures.py
+LONG += test_rivals.py test_study_examples.py test_wheel.py
+CHOSEN := -m "not slow" --budget $(LONG:%=--ignore-glob='*/%')
 
-.PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark fuzz paths kills clean
+.PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark abuse fuzz paths kills clean
 
 demo: .venv/installed
 	$(BIN)/active-surface run examples/transport.toml
 
 test: .venv/developer
 	@$(MAKE) --no-print-directory -j2 kernels plain PLAIN="$(PLAIN)" COVERAGE="$(COVERAGE)"
-	@echo "== all tests, with compiled kernels (2 of 2)"
+	@echo "== tests with compiled kernels (2 of 2)"
 	$(PYTEST) $(COVERAGE) $(CHOSEN)
 
 plain: $(LINT)
-	@echo "== the part, in plain Python (1 of 2)"
+	@echo "== kernels in plain Python (1 of 2)"
 	NUMBA_DISABLE_JIT=1 $(PYTEST) $(COVERAGE) -m "not slow and not compiled" $(PLAIN)
 
-# Rivals, browsers, clusters, killed runs, long validation as well: in one pass with the others, as tests of a file share
-# what is made for them.
-test-all coverage: PLAIN += $(MARCHES)
+# In one pass with the others, as tests of a file share what is made for them.
+test-all coverage: PLAIN := $(MARCHES)
 test-all coverage: CHOSEN :=
 test-all: test
 
@@ -62,31 +63,29 @@ benchmark: .venv/benchmarks
 	$(BIN)/python benchmarks/plate.py
 	$(BIN)/python benchmarks/contact.py
 	$(BIN)/python benchmarks/schemes.py
-	$(BIN)/python benchmarks/evaluation.py
-	$(BIN)/python benchmarks/cycles.py
 	$(BIN)/python benchmarks/top_face.py
 	$(BIN)/python benchmarks/with_ngsolve_large_deflection.py
-	$(BIN)/python benchmarks/in_plane.py
-	$(BIN)/python benchmarks/corrections.py
 	$(BIN)/python benchmarks/stretching_sweeps.py
-	$(BIN)/python benchmarks/stretched_paths.py
 	$(BIN)/python benchmarks/inertia.py
 	$(BIN)/python benchmarks/paths.py
 	$(BIN)/python benchmarks/paths.py --many
 
-# Abuse: mutated and generated inputs for so many seconds, random paths, killed commands. docs/trust.md has what they show.
+# Abuse: mutated and generated inputs, random paths, killed commands. docs/trust.md has what they show.
 SECONDS ?= 600
 SEED ?= 1
 COUNT ?= 1000000
 
+abuse: fuzz paths kills
+
 fuzz: .venv/developer
-	cd benchmarks && ../$(BIN)/python -m fuzz --seconds $(SECONDS) --count $(COUNT) --seed $(SEED)
+	cd tests/abuse && ../../$(BIN)/python -m fuzz --seconds $(SECONDS) --count $(COUNT) --seed $(SEED)
 
 paths: .venv/developer
-	$(BIN)/python benchmarks/random_paths.py --seconds $(SECONDS) --count $(COUNT) --seed $(SEED) --oracle 1000
+	$(BIN)/python tests/abuse/random_paths.py --seconds $(SECONDS) --count $(COUNT) --seed $(SEED) --oracle 1000
 
 kills: .venv/developer
-	$(BIN)/python benchmarks/kill_anywhere.py --seed $(SEED)
+	$(BIN)/python tests/abuse/kill_anywhere.py --seed $(SEED)
+	$(BIN)/python tests/abuse/kills.py
 
 docs: .venv/developer
 	$(BIN)/python docs/pictures.py

@@ -20,7 +20,7 @@ def _refuse_shadows() -> None:
     shadow = util.module_from_spec(spec)
     spec.loader.exec_module(shadow)
     try:
-        shadow.refuse_shadows("coupling", "meshes", "fem_plate", "particle")
+        shadow.refuse_shadows("coupling", "common", "meshes", "fem_plate", "particle")
     except ImportError as error:
         if os.path.basename(sys.argv[0]) not in _COMMANDS:
             raise

@@ -2,7 +2,6 @@
 
 .venv/bin/python benchmarks/aims.py            prints a table for one actuator and one for nine
 .venv/bin/python benchmarks/aims.py --robust   for nine, aimed as usual and at the 90 % quantile of disturbed runs
-.venv/bin/python benchmarks/aims.py --cma      sixty tasks, by CMA-ES and by differential evolution
 """
 
 from __future__ import annotations
@@ -12,18 +11,16 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-import evolution
 import numpy as np
 
-from active_surface.steering import Aimed, Settings, Task, approach, search
+from active_surface.steering import Aimed, Settings, Task
 from active_surface.steering.aiming import aim_over
-from coupling import Case, build_surface, no_progress, read_case
+from coupling import Case, build_surface, read_case
 from particle import SurfaceMotion
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 HORIZON = 50e-3  # s
 COUNT, SEED = 10, 1
-COMPARED = (7, 8, 9)  # seeds of tasks; no choice of differential evolution was made on them, one of CMA-ES on 7
 FARTHEST = 200e-6  # m, of a start from the one actuator
 STARTS, TARGETS = 120e-6, 100e-6  # m, of both along x and y from the middle of nine, at most
 ROBUST_COUNT = 4
@@ -33,12 +30,8 @@ HEADER = "| start | target | distance | paths | time | half within | 90 % within
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--robust", action="store_true", help="robust aims instead")
-    parser.add_argument("--cma", action="store_true", help="compare CMA-ES with differential evolution instead")
     parser.add_argument("--seed", type=int, default=SEED, help=f"of the starts and targets [{SEED}]")
     asked = parser.parse_args()
-    if asked.cma:
-        compare()
-        return
     if asked.robust:
         case, surface = _prepared("array_3x3")
         tasks = list(_of_nine(asked.seed))[:ROBUST_COUNT]
@@ -47,32 +40,6 @@ def main() -> None:
         return
     for name, tasks in (("one_actuator", list(_of_one(asked.seed))), ("array_3x3", list(_of_nine(asked.seed)))):
         _table(name, *_prepared(name), tasks, Settings())
-
-
-def compare() -> None:
-    """Print how many of sixty tasks each search reaches, and by how many paths."""
-    print("| target | search | reached | paths, mean | median | at most | in one leg |\n|---|---|---|---|---|---|---|")
-    for name, tasks in (("one_actuator", _of_one), ("array_3x3", _of_nine)):
-        case, surface = _prepared(name)
-        for label, rival in (("CMA-ES", search.search), ("differential evolution", evolution.search)):
-            approach.search = rival
-            found = [_approached(case, surface, *task) for seed in COMPARED for task in tasks(seed)]
-            reached, paths, legs = np.array(found).T
-            counts = f"{paths.mean():.0f} | {np.median(paths):.0f} | {paths.max()} | {(legs == 1).sum()}"
-            print(f"| {name} | {label} | {reached.sum()} of {len(found)} | {counts} |", flush=True)
-
-
-def _approached(
-    case: Case, surface: SurfaceMotion, start: tuple[float, float], target: tuple[float, float]
-) -> tuple[int, int, int]:
-    """Whether a target is reached, by how many paths and in how many legs."""
-    part = case.part.model_copy(update={"position": start})
-    work = approach.Approach(
-        surface, Task(case.model_copy(update={"part": part}), target, Settings()), None, no_progress
-    )
-    work.run()
-    way = work.close()
-    return way.cost <= Settings().tolerance, work.paths, len(way.legs)
 
 
 def _prepared(name: str) -> tuple[Case, SurfaceMotion]:

@@ -1,21 +1,19 @@
 """The integrator and its moving surface against other ways to find the same path, at equal error of the end point.
 
-    .venv/bin/python benchmarks/paths.py                    writes tables and a picture for docs/benchmarks.md
+    .venv/bin/python benchmarks/paths.py                    writes tables for docs/benchmarks.md
     .venv/bin/python benchmarks/paths.py --counts 1 25      other numbers of actuators, up to 10 000; writes nothing
     .venv/bin/python benchmarks/paths.py --many             1 000 paths of 20 ms over 25 actuators
 
 All methods must first agree on the path; then they are timed in turns, at errors of 1e-3, 1e-6 and 1e-9 of its length.
-Where JAX is not installed it compares without, and leaves the page as it is.
 """
 
 from __future__ import annotations
 
 import argparse
-from importlib.util import find_spec
 
 import report
-from rivals import many, neighbours, tables
-from rivals.compare import Comparison
+from rivals import many
+from rivals.compare import Comparison, ratios_table, work_table
 from rivals.problem import COUNTS, MOST, problems
 from threadpoolctl import threadpool_limits
 
@@ -29,7 +27,6 @@ def main() -> None:
     if wrong:
         parser.error(f"--counts must be from 1 to {MOST}, up to which all forces fit in memory; got {wrong}")
     blocks: dict[str, list[str]] = {}
-    writes = asked.counts is None
     with threadpool_limits(1):  # of BLAS
         if asked.many:
             blocks["many paths"] = many.table()
@@ -38,16 +35,10 @@ def main() -> None:
             for problem in problems(asked.counts or COUNTS):
                 rows += Comparison(problem).rows()
                 print(f"{problem.name} done", flush=True)
-            blocks["paths"], blocks["paths work"] = tables.ratios_table(rows), tables.work_table(rows)
-            blocks["paths neighbours"] = neighbours.table([n for n in asked.counts or COUNTS if n >= neighbours.FEWEST])
-            if find_spec("jax") is None:
-                print("JAX is not installed: compared without it, and docs/benchmarks.md left as it is.\n")
-                writes = False
-            if writes:
-                tables.draw(rows)
+            blocks["paths"], blocks["paths work"] = ratios_table(rows), work_table(rows)
     for name, lines in blocks.items():
         print("\n".join(lines), end="\n\n")
-        if writes:
+        if asked.counts is None:
             report.write(name, lines)
 
 

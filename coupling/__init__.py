@@ -4,7 +4,7 @@ import lazy_loader
 
 from coupling.shadow import refuse_shadows
 
-refuse_shadows("meshes", "fem_plate", "particle")
+refuse_shadows("common", "meshes", "fem_plate", "particle")
 
 __getattr__, __dir__, _ = lazy_loader.attach_stub(__name__, __file__)
 

@@ -2,7 +2,8 @@ from .case import Case as Case, CaseError as CaseError, InputError as InputError
 from .results.csv_file import write_csv as write_csv
 from .results.saved import SavedRun as SavedRun, read_run as read_run
 from .batch import run_cases as run_cases
-from .run import Result as Result, build_surface as build_surface, run_case as run_case
+from .result import Result as Result
+from .run import build_surface as build_surface, run_case as run_case
 from .surface.file import read_surface as read_surface, write_surface as write_surface
 from .surface.motion import surface_motion as surface_motion
 

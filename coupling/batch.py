@@ -10,7 +10,8 @@ from threadpoolctl import threadpool_limits
 
 from coupling.case import Case, RunCase
 from coupling.progress import Progress, silent
-from coupling.run import Result, build_friction, build_part, follow_part, tighter_tolerance
+from coupling.result import Result
+from coupling.run import build_friction, build_part, follow_part, tighter_tolerance
 from coupling.scene import PlateScene, Scene
 from coupling.shared import answers_drives
 from coupling.solved_plates import SolvedPlates

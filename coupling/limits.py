@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from common import quantity_text
 from coupling.case import Case, PlateCase
 from coupling.drives import build_drives, moments, stroke_heights
 from coupling.scene import actuator_stiffness, build_plate
 from fem_plate import InfluenceShapes, PlateShapes
-from meshes import quantity_text
 
 FloatArray = NDArray[np.float64]
 SLACK = 1 + 1e-6  # of a limit that is met exactly

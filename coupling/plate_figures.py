@@ -96,7 +96,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     stretch = scene.stretch
     if stretch is None:
         moving = scene.moving_shapes, scene.moving_drives
-        sharp = sharp_points(plate.singular, shapes.points)
+        sharp = sharp_points(plate.singular_corners, shapes.points)
         slope, deflection, curvature = _extremes(*moving, case.run.duration, sharp, plate.section.thickness / 2)
         strain = None if curvature is None else plate.section.thickness / 2 * curvature
     else:

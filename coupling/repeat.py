@@ -8,8 +8,9 @@ from pathlib import Path
 
 from coupling.environment import versions
 from coupling.progress import Progress, silent
+from coupling.result import Result
 from coupling.results import SavedRun
-from coupling.run import Result, run_case
+from coupling.run import run_case
 
 
 @dataclass(frozen=True, eq=False)

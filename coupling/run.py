@@ -6,18 +6,17 @@ case -> scene (mesh -> plate influence shapes, or a platform's drives -> surface
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from threadpoolctl import threadpool_limits
 
 import particle
-from coupling.advice import advised_case, moves
 from coupling.case import Case, PlatformCase, RunCase
 from coupling.drives import build_drives as build_drives
 from coupling.part import build_friction, build_part
 from coupling.progress import Progress, silent
+from coupling.result import Result
 from coupling.results import CaseRecord, check_csv, record_of, write_results
 from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
@@ -26,75 +25,6 @@ from fem_plate import PlateShapes
 from particle import SurfaceMotion, Trajectory, interruptible
 from particle.fixed import default_step
 from particle.friction import Contact
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Result:
-    """The result of a run.
-
-    Parameters
-    ----------
-    case : Case
-        What was run.
-    scene : PlateScene or PlatformScene
-        What the part moved over.
-    trajectory : Trajectory
-        The part's path.
-    summary : Summary
-        Its figures, and how exact they are.
-    files : tuple of path
-        Files that were written.
-    """
-
-    case: Case
-    scene: Scene
-    trajectory: Trajectory
-    summary: Summary
-    files: tuple[Path, ...] = ()
-
-    @property
-    def surface(self) -> SurfaceMotion:
-        """The moving surface."""
-        return self.scene.surface
-
-    @property
-    def shapes(self) -> PlateShapes | None:
-        """The influence shapes of a plate; None: there is a platform."""
-        return self.scene.shapes
-
-    def __repr__(self) -> str:
-        text = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."
-        return f"Result of {self.case!r}. {text}"
-
-    @property
-    def advised(self) -> Case | None:
-        """The case of the trial run that the advice tells of; None: there is none, or the motion is measured."""
-        advice = self.summary.advice
-        trial = None if advice is None or advice.measured else advice.trial
-        return None if trial is None else advised_case(self.case, trial)
-
-    @property
-    def moves(self) -> bool:
-        """Whether the drives carried the part far and kept it, so that there is nothing to advise."""
-        return moves(self.scene, self.trajectory)
-
-    def plot(self, axes: Axes | None = None) -> Figure:
-        """Draw the path over the surface as it is when it is deflected most, and the motion over time.
-
-        With axes, only the path over the surface, into these, in m.
-        """
-        from coupling.pictures import plot_run  # here, because matplotlib is loaded for pictures only
-
-        return plot_run(self.case, self.scene, self.trajectory, axes)
-
-    def _repr_html_(self) -> str:
-        from meshes import notebook_html
-
-        return notebook_html(self)
 
 
 def run_case(

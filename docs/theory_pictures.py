@@ -12,13 +12,13 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from common import unit_for
 from coupling import PlateSummary, Result, read_case, report, run_case
 from coupling.case import Case
 from coupling.display import display_surface
 from coupling.drives import frame_times
 from coupling.pictures import Portrait, draw_path, draw_plate, draw_window, is_visible, map_axes, path_window
 from coupling.pictures.portrait import deflected_most, portrait_of
-from meshes import unit_for
 
 DOCS = Path(__file__).parent
 CASES = ("transport", "two_actuators")

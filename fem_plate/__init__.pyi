@@ -4,11 +4,7 @@ from .arrays.patched import PatchedShapes as PatchedShapes, PlateShapes as Plate
 from .deflection import Deflection as Deflection
 from .export import neighbour_coupling as neighbour_coupling, save_influence as save_influence
 from .large_deflection.backbone import backbone as backbone
-from .large_deflection import (
-    DeflectedPlate as DeflectedPlate,
-    LargeDeflection as LargeDeflection,
-    StretchedShapes as StretchedShapes,
-)
+from .large_deflection import DeflectedPlate as DeflectedPlate, LargeDeflection as LargeDeflection
 from .influence import InfluenceShapes as InfluenceShapes
 from .optics import (
     InfluenceFit as InfluenceFit,
@@ -17,10 +13,10 @@ from .optics import (
     read_influence as read_influence,
 )
 from .plate import Plate as Plate
-from .section import PlateSection as PlateSection
+from .sections import PlateSection as PlateSection
 from .shapes import Shapes as Shapes
-from .varying import VaryingSection as VaryingSection
-from .vibration import Modes as Modes
+from .sections import VaryingSection as VaryingSection
+from .modes import Modes as Modes
 
 # Not public: for the packages that build on this one.
 from .analytic import DiscShapes as DiscShapes
@@ -33,8 +29,12 @@ from .pictures import (
     marker_size as marker_size,
     pitch as pitch,
 )
-from .excitation import MAX_MODES as MAX_MODES, ExcitedModes as ExcitedModes, Excitation as Excitation
-from .moving_shapes import MovingShapes as MovingShapes
+from .modes import MAX_MODES as MAX_MODES, ExcitedModes as ExcitedModes, Excitation as Excitation
+from .moving_shapes import (
+    HeldShapes as HeldShapes,
+    MovingShapes as MovingShapes,
+    StretchedShapes as StretchedShapes,
+)
 from .plate import TRUNCATION as TRUNCATION
 from . import verification as verification
 from .verification import Check as Check

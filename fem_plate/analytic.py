@@ -8,14 +8,13 @@ Any load: Boggio's function (Boggio, 1905), on the unit disc with rigidity 1
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_plate.elements import Derivatives, point_load, point_value
 from fem_plate.inputs import check_points
 from fem_plate.shapes import Shapes
+from fem_plate.types import FloatArray, IntArray
 from meshes import Outline
-
-FloatArray = NDArray[np.float64]
 
 
 def central_load(r: ArrayLike, radius: float, rigidity: float, force: float) -> FloatArray:
@@ -145,7 +144,7 @@ class DiscShapes(Shapes):
             np.einsum("njde,jk->nkde", hessian, forces),
         )
 
-    def nonzero_values(self, xy: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+    def nonzero_values(self, xy: FloatArray) -> tuple[IntArray, FloatArray]:
         return np.arange(len(self.points)), self._values(xy / self.size)
 
     def own_heights(self) -> FloatArray:

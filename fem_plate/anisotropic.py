@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_plate.section import not_positive
-
-FloatArray = NDArray[np.float64]
+from fem_plate.inputs import not_positive
+from fem_plate.types import FloatArray
 
 # The primary flat of a wafer, x, and its normal, z, in the crystal's axes.
 WAFERS = {"100": ((1, 1, 0), (0, 0, 1)), "110": ((1, -1, 0), (1, 1, 0)), "111": ((1, -1, 0), (1, 1, 1))}

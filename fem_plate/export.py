@@ -6,14 +6,12 @@ from collections.abc import Iterator, Sequence
 from os import PathLike
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem_plate.arrays import PatchedShapes
 from fem_plate.influence import InfluenceShapes
 from fem_plate.optics import LAYOUTS, Layout, save_fits
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray, IntArray
 
 CHUNK = 64  # shapes evaluated at a time, to bound memory
 ONE_OF_LAYOUTS = ", ".join(LAYOUTS[:-1]) + f" or {LAYOUTS[-1]}"
@@ -168,12 +166,12 @@ def _mistakes(
         )
 
 
-def _values(shapes: InfluenceShapes | PatchedShapes, xy: FloatArray, rows: NDArray[np.int64]) -> FloatArray:
+def _values(shapes: InfluenceShapes | PatchedShapes, xy: FloatArray, rows: IntArray) -> FloatArray:
     """The shapes of some actuators at points (n, 2) [m]: (n, rows)."""
     weights = np.zeros((len(shapes.points), len(rows)))
     weights[rows, np.arange(len(rows))] = 1.0
     return shapes.derivatives(xy / shapes.size, weights)[0]
 
 
-def _chunks(count: int) -> list[NDArray[np.int64]]:
+def _chunks(count: int) -> list[IntArray]:
     return [np.arange(start, min(start + CHUNK, count)) for start in range(0, count, CHUNK)]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
+from fem_plate.types import BoolArray, FloatArray
 from meshes import Outline, PlateMesh
-
-FloatArray = NDArray[np.float64]
 
 SAME_PLACE = 1e-9  # of the plate's size: points closer than this coincide
 
@@ -57,15 +59,19 @@ def check_points(caller: str, points: FloatArray, gap: FloatArray, size: float) 
         raise ValueError(f"Input points of {caller}: " + "; ".join(mistakes))
 
 
-def places_on(mesh: PlateMesh, points: ArrayLike, caller: str) -> FloatArray:
+def places_on(
+    mesh: PlateMesh, points: ArrayLike, caller: str, name: str = "points", most: float = math.inf
+) -> FloatArray:
     """Points of `caller` as an array (N, 2) [m], of which there may be none; ValueError as of the checks above."""
-    places = as_points(points, f"points of {caller}")
+    places = as_points(points, f"{name} of {caller}")
+    if len(places) > most:
+        raise ValueError(f"Input {name} of {caller} must be at most {most} points; got {len(places)}")
     if places.size:
         check_points(caller, places, mesh.outline.gap(places), mesh.size)
     return places
 
 
-def check_held(caller: str, motions: FloatArray, held: NDArray[np.bool_]) -> None:
+def check_held(caller: str, motions: FloatArray, held: BoolArray) -> None:
     """Raise ValueError when the held actuators do not stop the rigid motions (N, r, at all of them) of the supports."""
     r = motions.shape[1]
     if r and (held.sum() < r or np.linalg.matrix_rank(motions[held], tol=1e-9) < r):
@@ -80,3 +86,25 @@ def check_on_plate(outline: Outline, xy: FloatArray, size: float) -> None:
     beyond = outline.gap(xy) < -SAME_PLACE * size
     if np.any(beyond):
         raise ValueError(f"Input xy of evaluate must lie on the plate; got {xy[beyond][0].tolist()} m")
+
+
+def check_tension(tension: float, supports: Mapping[str, str]) -> None:
+    """ValueError unless a uniform tension [N/m] is in balance at every boundary; a free rim pulls on nothing."""
+    if not math.isfinite(tension):
+        raise ValueError(f"Input tension of Plate must be finite; got {tension!r}")
+    free = [name for name, support in supports.items() if support == "free"]
+    if tension and free:
+        names = ", ".join(map(repr, free))
+        raise ValueError(
+            "Input tension of Plate must be 0 where a boundary is free, as a free rim carries none; "
+            f"got {tension!r} N/m, and free {names}"
+        )
+
+
+def not_positive(section: str, **values: float | None) -> list[str]:
+    """A message for each value that is given and not a positive number."""
+    return [
+        f"Input {name} of {section} must be positive; got {value!r}"
+        for name, value in values.items()
+        if value is not None and not (math.isfinite(value) and value > 0)
+    ]

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from meshes import Outline, PlateMesh, delaunay, draw_rim, label_axis, label_places, legend_below, rim_curves
-
-if TYPE_CHECKING:
-    from fem_plate.plate import Plate
-    from fem_plate.shapes import Shapes
-
-FloatArray = NDArray[np.float64]
+from common import axes_or_new, draw, draw_rim, figure_of, label_axis, label_places, legend_below
+from fem_plate.plate import Plate
+from fem_plate.shapes import Shapes
+from fem_plate.types import FloatArray
+from meshes import Outline, PlateMesh, delaunay, rim_curves
 
 ALONG_EDGE = np.linspace(0, 1, 9)
 SUPPORTS: dict[str, tuple[str, float]] = {  # colour and width in points; they differ in grey, too
@@ -41,11 +39,14 @@ MIN_DISTANCE = 4.0  # points: closer markers would merge
 MARKER_SIZES = (1.5, 6.0)  # points, the smallest and the largest
 
 
-def draw_cells(plate: Plate, axes: Axes) -> None:
+@draw.register(Plate)
+def draw_cells(plate: Plate, axes: Axes | None = None) -> Figure:
     """Draw the rim of a plate by its supports, and its mesh."""
+    axes = axes_or_new(axes)
     axes.triplot(*plate.mesh.points.T, plate.mesh.triangles, color="#b0b0b0", linewidth=0.4)
     legend_below(axes, handles=draw_supports(axes, plate.mesh, plate.supports), ncols=len(SUPPORTS))
     label_places(axes)
+    return figure_of(axes)
 
 
 def draw_supports(axes: Axes, mesh: PlateMesh, supports: Mapping[str, str]) -> list[Artist]:
@@ -120,8 +121,10 @@ def extent(points: FloatArray) -> float:
     return float(np.ptp(points, axis=0).max())
 
 
-def draw_shapes(shapes: Shapes, weights: FloatArray | None, axes: Axes) -> None:
+@draw.register(Shapes)
+def draw_shapes(shapes: Shapes, axes: Axes | None = None, weights: FloatArray | None = None) -> Figure:
     """Draw the sum of shapes with weights (N,); None: the shape of the actuator in the middle."""
+    axes = axes_or_new(axes)
     if weights is None:
         middle = int(np.argmin(np.hypot(*(shapes.points - shapes.points.mean(axis=0)).T)))
         weights = np.eye(1, len(shapes.points), middle)[0]
@@ -142,6 +145,7 @@ def draw_shapes(shapes: Shapes, weights: FloatArray | None, axes: Axes) -> None:
     leave_room(axes)
     mark_actuators(axes, shapes.points, frame_around(shapes.outline.box))
     label_places(axes)
+    return figure_of(axes)
 
 
 def leave_room(axes: Axes) -> None:

@@ -2,52 +2,36 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fem_plate import vibration
+from common import draw, notebook_html
+from fem_plate import modes
 from fem_plate.arrays import PatchedShapes, ProgressCallback, patched_shapes
-from fem_plate.buckling import buckling_compression, check_tension, is_stable, softest_foundation
-from fem_plate.deflection import Deflection
-from fem_plate.elements import (
-    MAX_EXPONENT,
-    Fineness,
-    PlateModel,
-    SingularCorner,
-    by_boundary,
-    corner_rows,
-    graded,
-    rounded_corners,
-    singular_corners,
-    wedges,
-)
-from fem_plate.estimated import refined
-from fem_plate.general import GeneralModel, plate_energy
+from fem_plate.deflection import Deflection, refined
+from fem_plate.graded import GradedPlate
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
 from fem_plate.inputs import as_points, check_points, one_per_point, places_on, stiffness_per_point
-from fem_plate.section import PlateSection
-from fem_plate.varying import Field, Section, VaryingSection
-from fem_plate.vibration import HeldPlate, Modes
+from fem_plate.modes import HeldPlate, Modes
+from fem_plate.sections import Field, Section
+from fem_plate.stability import buckling_load, check_stability, warn_of_polygon, warn_of_wedges
+from fem_plate.types import FloatArray
 from meshes import PlateMesh
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from skfem import BilinearForm
 
+    from common import Axes, Figure
     from fem_plate.large_deflection import DeflectedPlate, LargeDeflection
 
-FloatArray = NDArray[np.float64]
 
 TRUNCATION = 1e-6  # of unit shapes on patches, by default
 
 
-class Plate:
+class Plate(GradedPlate):
     """A Kirchhoff-Love plate.
 
     Parameters
@@ -98,109 +82,15 @@ class Plate:
     ) -> None:
         if tolerance is not None and not tolerance > 0:
             raise ValueError(f"Input tolerance of Plate must be greater than 0; got {tolerance!r}")
-        self.supports = by_boundary(supports, mesh.boundaries)
-        self.mesh = mesh
-        self.section = section
-        self.tolerance = tolerance
-        check_tension(tension, self.supports)
-        self.tension = float(tension)
-        self.foundation = foundation
-        self.forms = tuple(forms) if isinstance(forms, Sequence) else (forms,)
-        self.fineness = Fineness.of(mesh, self.relative_tension)
-        self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
-        self.energy = plate_energy(mesh, section, foundation, self.tension, self.forms)
-        self._isotropic = isinstance(section, PlateSection) and self.energy is None
-        obtuse = wedges(mesh, self.supports, self.tension)
-        # Corner functions are those of isotropic plates.
-        self.wedges, self._left_out = (obtuse, 0) if self._isotropic else ([], len(obtuse))
-        if many := rounded_corners(mesh, self.supports):
-            nu = section.poisson_ratio
-            warnings.warn(
-                f"The simply supported rim of Plate has {many} corners of 15 degrees or less, as a round one's polygon."
-                f" With more of them its deflection under a pressure tends to {1 - 3 * (1 + nu) / (5 + nu):.0%} less "
-                "than the round plate's (Babuska's paradox). If the rim is round, give its true curve: meshes.disc, "
-                "meshes.ellipse, or a mesh file of second order",
-                stacklevel=2,
-            )
-        self._last: tuple[bytes, PlateModel] | None = None
-        self._warn_of_wedges("on a foundation, with forms, or that is not isotropic and uniform", self._left_out)
+        super().__init__(mesh, section, supports, tolerance, tension, foundation, forms)
+        warn_of_polygon(self)
+        warn_of_wedges("on a foundation, with forms, or that is not isotropic and uniform", self.left_out)
         if self.energy is not None and self.energy.may_soften:
-            self._check_stability(max(self.tension, 0.0))
+            check_stability(self, max(self.tension, 0.0))
         if tension < 0 and -tension >= (load := self.buckling_load()):
             raise ValueError(
                 f"Input tension of Plate must exceed {-load:.6g} N/m, at which it buckles; got {self.tension!r}"
             )
-
-    def _warn_of_wedges(self, where: str, count: int) -> None:
-        """Warn of obtuse corners, whose functions the plate leaves out there."""
-        if count:
-            warnings.warn(
-                f"Plate has {count} simply supported corners over 90 degrees. A plate {where} leaves out "
-                "what is singular there: its shapes are off by more than their error estimate says, the more the wider "
-                "the corners are",
-                stacklevel=3,
-            )
-
-    def cells(
-        self, points: FloatArray | None = None, halvings: int = 0, corners: Sequence[SingularCorner] = ()
-    ) -> PlateMesh:
-        """Halved cells, graded towards the plate's corners, further ones, and for actuators at points (N, 2) [m]."""
-        return self._graded([*self.corners, *corners], points, halvings)
-
-    def _graded(self, corners: list[SingularCorner], points: FloatArray | None, halvings: int) -> PlateMesh:
-        mesh = self.mesh
-        for _ in range(halvings):
-            mesh = mesh.refined()
-        return graded(mesh, self.fineness.halved(halvings), corners, points)
-
-    def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
-        """The plate on cells for actuators at points (N, 2) [m], with the corner functions of its wedges."""
-        corners = [*self._other_corners, *(wedge.corner for wedge in self.wedges)]
-        if self.energy is not None and points is not None and self.energy.exponent < MAX_EXPONENT:
-            corners += [SingularCorner(point, self.energy.exponent) for point in points]
-        mesh = self._graded(corners, points, halvings)
-        key = mesh.points.tobytes()
-        if self._last is None or self._last[0] != key:
-            self._last = key, self._model_on(mesh, self.tension)
-        return self._last[1]
-
-    def _model_on(self, mesh: PlateMesh, tension: float) -> PlateModel:
-        rows = corner_rows(mesh, self._other_corners)
-        if self.energy is not None:
-            return GeneralModel(mesh, self.supports, replace(self.energy, tension=tension), rows)
-        section = self.section
-        return PlateModel(mesh, self.supports, section.law, rows, tension / section.rigidity, self.wedges)
-
-    @property
-    def singular(self) -> list[SingularCorner]:
-        """All corners where the deflection is not smooth, those of small turns too."""
-        known = {corner.point.tobytes() for corner in self.corners}
-        small = (SingularCorner(w.point, w.exponent) for w in self.wedges if w.point.tobytes() not in known)
-        return [*self.corners, *small]
-
-    @property
-    def _other_corners(self) -> list[SingularCorner]:
-        """The singular corners that are no wedges."""
-        known = {wedge.point.tobytes() for wedge in self.wedges}
-        return [corner for corner in self.corners if corner.point.tobytes() not in known]
-
-    @property
-    def relative_tension(self) -> float:
-        """The tension over the plate's rigidity [1/m^2]."""
-        return self.tension / self.section.rigidity
-
-    def _check_stability(self, tension: float) -> None:
-        """ValueError if the plate buckles without actuators, under another tension [N/m]."""
-        if is_stable(self._model_on(self.cells(), tension)):
-            return
-        if callable(self.foundation) or self.forms:
-            raise ValueError("Input foundation and forms of Plate must leave it stable without actuators; it buckles")
-        alone = Plate(self.mesh, self.section, self.supports, tension=tension).model()
-        critical = 0.0 if alone.rigid.size else -softest_foundation(alone) * self.section.rigidity
-        raise ValueError(
-            f"Input foundation of Plate must exceed {critical:.6g} N/m^3, at which it buckles without actuators; "
-            f"got {self.foundation!r}"
-        )
 
     def as_meshed(self, tension: float | None = None) -> Plate:
         """The plate on the mesh as it is, without a tolerance; tension: another one [N/m]."""
@@ -218,12 +108,7 @@ class Plate:
         ValueError
             A boundary is free, or foundation and forms make the plate buckle by themselves.
         """
-        check_tension(1.0, self.supports)
-        if self.energy is not None and self.energy.may_soften:
-            self._check_stability(0.0)
-        corners = [*self._other_corners, *(wedge.corner for wedge in self.wedges)]
-        mesh = graded(self.mesh, Fineness.of(self.mesh), corners)
-        return buckling_compression(self._model_on(mesh, 0.0)) * self.section.rigidity
+        return buckling_load(self)
 
     def influence(
         self,
@@ -268,7 +153,7 @@ class Plate:
                     f"Input points of influence must be at most {MAX_DENSE}, without a truncation, on a plate with a "
                     f"foundation, forms, a varying thickness, or a tension on an anisotropic section; got {len(points)}"
                 )
-            self._warn_of_wedges("on patches", len(self.wedges))
+            warn_of_wedges("on patches", len(self.enriched_corners))
             shapes = patched_shapes(self, points, actuator_stiffness, cut, tell)
         else:
             rigidity = self.section.rigidity
@@ -277,7 +162,7 @@ class Plate:
                     self.model(points, halvings), points, rigidity, actuator_stiffness, free_motions
                 ),
                 self.tolerance,
-                self.fineness.gain,
+                self.grading.gain,
             )
         shapes.plate = self
         return shapes
@@ -322,7 +207,7 @@ class Plate:
         points = places_on(self.mesh, points, "large_deflection")
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "large_deflection", may_float=True)
         movable = movable_by_boundary(in_plane_supports, self.supports)
-        self._warn_of_wedges("that stretches", len(self.wedges))
+        warn_of_wedges("that stretches", len(self.enriched_corners))
         return LargeDeflection(self, points, actuator_stiffness, movable, membrane)
 
     def deflection(self, points: ArrayLike, forces: ArrayLike, pressure: float = 0.0) -> Deflection:
@@ -353,7 +238,7 @@ class Plate:
         return refined(
             lambda halvings: Deflection(self.model(points, halvings), points, loads, float(pressure), rigidity),
             self.tolerance,
-            self.fineness.gain,
+            self.grading.gain,
         )
 
     def pressure(self, load: float) -> Deflection:
@@ -395,11 +280,7 @@ class Plate:
         density = self.section.density
         if density is None:
             raise ValueError("Input density of PlateSection must be given for frequencies; got None")
-        points = as_points([] if held is None else held, "held of modes")
-        if len(points) > MAX_DENSE:
-            raise ValueError(f"Input held of modes must be at most {MAX_DENSE} points; got {len(points)}")
-        if points.size:
-            check_points("modes", points, self.mesh.outline.gap(points), self.mesh.size)
+        points = places_on(self.mesh, [] if held is None else held, "modes", "held", MAX_DENSE)
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "modes", may_float=False)
         model = self.model(points) if deflected is None else deflected.discrete.model
         max_count = model.unknowns // 2 - 1
@@ -413,28 +294,12 @@ class Plate:
 
         def solve(halvings: int) -> Modes:
             held_plate = HeldPlate(self.model(points, halvings), points, compliance)
-            return vibration.modes(held_plate, count, rigidity / inertia, lambda: solve(halvings + 1))
+            return modes.modes(held_plate, count, rigidity / inertia, lambda: solve(halvings + 1))
 
         return solve(0)
 
-    def __repr__(self) -> str:
-        width, height = np.ptp(self.mesh.outline.box, axis=0)
-        rims = ", ".join(f"{name} {support}" for name, support in self.supports.items())
-        tension = f"; tension {self.tension:.4g} N/m" if self.tension else ""
-        about = "about " if isinstance(self.section, VaryingSection) else ""
-        more = "; on a foundation" if callable(self.foundation) or self.foundation else ""
-        more += f"; with {len(self.forms)} forms" if self.forms else ""
-        thick = f"{about}{self.section.thickness:.4g} m thick"
-        return f"Plate of {width:.4g} m x {height:.4g} m, {thick}; {rims}{tension}{more}"
-
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rim by its supports and the mesh, into axes in m or new ones."""
-        from fem_plate.pictures import draw_cells  # here, because only pictures need matplotlib
-        from meshes import plotted
+        return draw(self, axes)
 
-        return plotted(lambda axes: draw_cells(self, axes), axes)
-
-    def _repr_html_(self) -> str:
-        from meshes import notebook_html
-
-        return notebook_html(self)
+    _repr_html_ = notebook_html

@@ -6,20 +6,17 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from common import draw, notebook_html
 from fem_plate.elements import Derivatives
 from fem_plate.inputs import check_on_plate
+from fem_plate.types import FloatArray, IntArray
 from meshes import Outline
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
+    from common import Axes, Figure
     from fem_plate.plate import Plate
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class Shapes(ABC):
@@ -145,16 +142,9 @@ class Shapes(ABC):
         -------
         matplotlib.figure.Figure
         """
-        from fem_plate.pictures import draw_shapes  # here, because only pictures need matplotlib
-        from meshes import plotted
+        return draw(self, axes, weights=None if weights is None else self._checked(weights, "plot"))
 
-        checked = None if weights is None else self._checked(weights, "plot")
-        return plotted(lambda axes: draw_shapes(self, checked, axes), axes)
-
-    def _repr_html_(self) -> str:
-        from meshes import notebook_html
-
-        return notebook_html(self)
+    _repr_html_ = notebook_html
 
     def _checked(self, weights: ArrayLike, caller: str) -> FloatArray:
         array = np.asarray(weights, dtype=float)

@@ -6,15 +6,13 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate import analytic
 from fem_plate.elements import Derivatives
 from fem_plate.plate import Plate
-from fem_plate.section import PlateSection
+from fem_plate.sections import PlateSection
+from fem_plate.types import FloatArray
 from meshes import disc
-
-FloatArray = NDArray[np.float64]
 
 RADIUS = 300e-6  # m
 SECTION = PlateSection(youngs_modulus=169e9, poisson_ratio=0.3, thickness=5e-6, density=2330.0)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshes.nearest import FloatArray, nearest_on_edges, nearest_on_ellipse, nearest_parameter, on_edges, powers
+from meshes.nearest import nearest_on_edges, nearest_on_ellipse, nearest_parameter, on_edges, powers
+from meshes.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import warnings
+from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
@@ -55,12 +56,9 @@ def load(path: Path) -> Any:
     if not path.is_file():
         raise ValueError(f"{EXPECTED}; {path} is a folder" if path.is_dir() else f"{EXPECTED}; there is no file {path}")
     _check_sizes(path)
-    if ending == ".xdmf":
-        from meshes.xdmf import wrong_numbers  # here, because h5py is slow to import
-
-        if wrong := list(wrong_numbers(path, MAX_SIZE)):
-            text = f"Input path of read must be a mesh file whose numbers can be read; of those that {path} names,"
-            raise ValueError("\n  ".join([text, *wrong]))
+    if ending == ".xdmf" and (wrong := list(_wrong_numbers(path))):
+        text = f"Input path of read must be a mesh file whose numbers can be read; of those that {path} names,"
+        raise ValueError("\n  ".join([text, *wrong]))
     printed = io.StringIO()  # meshio prints its complaint and calls sys.exit
     try:
         with redirect_stdout(printed), redirect_stderr(printed), warnings.catch_warnings():
@@ -122,6 +120,49 @@ def _check_sizes(path: Path) -> None:
                     raise ValueError(
                         f"{wrong} with counts that fit its size; {path} states {count}, more than its {size} bytes hold"
                     )
+
+
+def _wrong_numbers(path: Path) -> Iterator[str]:
+    """Yield what is wrong with each file of numbers that an XDMF file names.
+
+    A file that is not XML names none; meshio reports it.
+    """
+    try:
+        items = list(ElementTree.parse(path).iter("DataItem"))
+    except (ElementTree.ParseError, LookupError, ValueError, OSError):
+        return
+    named = {(item.get("Format"), (item.text or "").strip()) for item in items if "Reference" not in item.attrib}
+    # As meshio finds them: HDF5 beside the mesh, raw numbers from the folder in which the program runs.
+    datasets: dict[Path, set[str]] = {}
+    for form, text in named:
+        if form == "HDF":
+            file, _, name = text.partition(":")
+            datasets.setdefault(path.resolve().parent / file, set()).add(name.removeprefix("/"))
+    for hdf5, names in sorted(datasets.items()):
+        yield from _wrong_file(hdf5, sorted(names))
+    for raw in sorted({Path(text) for form, text in named if form == "Binary"}):
+        yield from _wrong_file(raw, None)
+
+
+def _wrong_file(path: Path, datasets: list[str] | None) -> Iterator[str]:
+    """Yield what is wrong with a file of raw numbers, or one of HDF5 that shall have some datasets."""
+    from common import DEADLY, UNREADABLE, check_hdf5, lacking, survives  # here, because h5py is slow to import
+
+    try:
+        if not path.is_file():
+            yield f"{path} is a folder, a pipe or a device, not a file" if path.exists() else f"{path} is missing"
+        elif (size := path.stat().st_size) > MAX_SIZE:
+            yield f"{path} has {size} bytes; at most {MAX_SIZE} are read"
+        elif datasets is not None and not survives(path):
+            yield f"{path} is damaged: {DEADLY}"
+        elif datasets is not None:
+            check_hdf5(path)
+            for name in lacking(path, datasets):
+                yield f"{path} has no data set {name}" if name else f"{path} is named without a data set after a colon"
+    except ValueError as error:
+        yield f"{path} is refused: {error}"
+    except UNREADABLE:
+        yield f"{path} is no HDF5 file, or is damaged"
 
 
 def line_names(mesh: Any) -> list[set[str]]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.nearest import FloatArray, IntArray
-from meshes.outline import BoolArray, Outline
+from meshes.outline import Outline
 from meshes.triangles import angles, areas, cross, edge_numbers, sides
+from meshes.types import BoolArray, FloatArray, IntArray
 
 MIN_ANGLE = np.deg2rad(27)  # cells with a smaller angle get a new point, where the corners of the rim allow it
 MAX_CELLS = 1_000_000

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from meshes.curves import Circle, Curve, Ellipse, Parabolas
-from meshes.nearest import FloatArray, IntArray
-from meshes.outline import Outline, straight
-from meshes.refine import refine
-from meshes.scikit_fem import skfem_mesh
-from meshes.triangles import edge_numbers, sides
+from meshes.curves import Curve
+from meshes.outline import Outline, outline_of
+from meshes.triangles import edge_numbers, refine, sides
+from meshes.types import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from skfem import MeshTri1, MeshTri2
@@ -78,7 +76,7 @@ class PlateMesh:
     def __post_init__(self) -> None:
         object.__setattr__(self, "boundaries", _turned(self.triangles, self.boundaries, len(self.points)))
         if self.outline is None:
-            object.__setattr__(self, "outline", _outline(self.points, self.boundaries, self.curves))
+            object.__setattr__(self, "outline", outline_of(self.points, self.boundaries, self.curves))
 
     @cached_property
     def size(self) -> float:
@@ -174,7 +172,7 @@ class PlateMesh:
             and all(_same(curve, other.curves[name]) for name, curve in self.curves.items())
         )
 
-    def part(self, keep: NDArray[np.bool_]) -> PlateMesh:
+    def part(self, keep: BoolArray) -> PlateMesh:
         """The mesh of the triangles to keep (m,); new boundary edges are straight and named "cut".
 
         The outline stays that of the whole plate.
@@ -199,7 +197,7 @@ class PlateMesh:
             self.outline,
         )
 
-    def refined(self, marked: NDArray[np.bool_] | None = None) -> PlateMesh:
+    def refined(self, marked: BoolArray | None = None) -> PlateMesh:
         """The mesh with marked triangles cut in four and their neighbours cut to fit.
 
         Cells cut in four keep their angles; their neighbours are cut through their longest edge. New boundary points
@@ -229,30 +227,34 @@ def _turned(triangles: IntArray, boundaries: Mapping[str, IntArray], points: int
     }
 
 
-def _outline(points: FloatArray, boundaries: Mapping[str, IntArray], curves: Mapping[str, Curve]) -> Outline:
-    edges = [np.empty((0, 3, 2))]
-    swept: dict[tuple[float, ...], float] = {}
+def skfem_mesh(
+    points: FloatArray,
+    triangles: IntArray,
+    boundaries: Mapping[str, IntArray],
+    middles: Mapping[str, FloatArray] | None = None,
+) -> MeshTri1 | MeshTri2:
+    """The mesh with named boundaries, whose order of points is kept.
 
-    def sweep(conic: tuple[float, ...], pairs: IntArray) -> None:
-        centre, axes = np.array(conic).reshape(2, 2)
-        angle = np.arctan2(*np.moveaxis((points[pairs] - centre) / axes, 2, 0)[::-1])
-        turns = (np.diff(angle, axis=1) + np.pi) % (2 * np.pi) - np.pi
-        swept[conic] = swept.get(conic, 0.0) + abs(float(turns.sum()))
+    points: (n, 2).  triangles: (m, 3).  boundaries: (k, 2) rows of points.
+    middles: of a boundary's edges, (k, 2), on its true curve; None: cells of first order.
+    """
+    from skfem import MeshTri1, MeshTri2  # here, because it takes a while
 
-    for name, pairs in boundaries.items():
-        match curves.get(name):
-            case Circle(radius, centre):
-                sweep((*centre, radius, radius), pairs)
-            case Ellipse(semi_axis_x, semi_axis_y):
-                sweep((0.0, 0.0, semi_axis_x, semi_axis_y), pairs)
-            case Parabolas() as curve:
-                edges.append(curve.pieces)
-            case None:
-                edges.append(straight(*points[pairs.T]))
-    for conic, angle in swept.items():
-        if abs(angle - 2 * np.pi) > 1e-6:
-            raise ValueError(
-                "Input curves of PlateMesh must have circles and ellipses that are whole rims; boundaries cover "
-                f"{np.rad2deg(angle):.4g} degrees of the one around {list(conic[:2])} m"
-            )
-    return Outline(np.array(list(swept), dtype=float).reshape(-1, 4), np.concatenate(edges))
+    # Contiguous, or scikit-fem prints that it makes them so.
+    mesh = MeshTri1(np.ascontiguousarray(points.T), np.ascontiguousarray(np.sort(triangles, axis=1).T))
+    facets = {name: facets_of(mesh, pairs) for name, pairs in boundaries.items()}
+    if middles is not None:
+        mesh = MeshTri2.from_mesh(mesh)
+        places = mesh.doflocs.copy()
+        for name, xy in middles.items():
+            places[:, mesh.dofs.facet_dofs[0, facets[name]]] = xy.T
+        mesh = replace(mesh, doflocs=places)
+    return mesh.with_boundaries(facets)
+
+
+def facets_of(mesh: MeshTri1, pairs: IntArray) -> IntArray:
+    """The facets between pairs of points (k, 2)."""
+    count = mesh.p.shape[1]
+    number = edge_numbers(mesh.facets.T.astype(np.int64), count)
+    order = np.argsort(number)
+    return np.asarray(order[np.searchsorted(number[order], edge_numbers(pairs, count))])

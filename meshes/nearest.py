@@ -1,12 +1,14 @@
-"""Nearest points of an ellipse and of straight or parabolic edges, for many points at once."""
+"""Nearest points of an ellipse and of straight or parabolic edges, for many points at once.
+
+`particle/surface/rim.py` has the same formulas for one point, compiled: `particle` knows no meshes, and meshes are made
+without numba.
+"""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from meshes.types import FloatArray, IntArray
 
 CHUNK = 200_000  # pairs of point and edge compared at a time: about 50 MB
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshes.curves import Circle, Ellipse
-from meshes.nearest import CHUNK, FloatArray, IntArray, nearest_on_edges, nearest_parameter, on_edges, powers
-
-BoolArray = NDArray[np.bool_]
+from meshes.curves import Circle, Curve, Ellipse, Parabolas
+from meshes.nearest import CHUNK, nearest_on_edges, nearest_parameter, on_edges, powers
+from meshes.types import BoolArray, FloatArray, IntArray
 
 MAX_MIRRORS = 64  # with more edges than this, points are reflected at the NEAREST ones only
 NEAREST = 16
@@ -166,6 +165,36 @@ class Outline:
 def straight(start: FloatArray, end: FloatArray) -> FloatArray:
     """Straight edges (k, 3, 2) between points (k, 2)."""
     return np.stack([start, (start + end) / 2, end], axis=1)
+
+
+def outline_of(points: FloatArray, boundaries: Mapping[str, IntArray], curves: Mapping[str, Curve]) -> Outline:
+    """The outline of a mesh, by the edges (k, 2) of its boundaries, rows of points, and their curves."""
+    edges = [np.empty((0, 3, 2))]
+    swept: dict[tuple[float, ...], float] = {}
+
+    def sweep(conic: tuple[float, ...], pairs: IntArray) -> None:
+        centre, axes = np.array(conic).reshape(2, 2)
+        angle = np.arctan2(*np.moveaxis((points[pairs] - centre) / axes, 2, 0)[::-1])
+        turns = (np.diff(angle, axis=1) + np.pi) % (2 * np.pi) - np.pi
+        swept[conic] = swept.get(conic, 0.0) + abs(float(turns.sum()))
+
+    for name, pairs in boundaries.items():
+        match curves.get(name):
+            case Circle(radius, centre):
+                sweep((*centre, radius, radius), pairs)
+            case Ellipse(semi_axis_x, semi_axis_y):
+                sweep((0.0, 0.0, semi_axis_x, semi_axis_y), pairs)
+            case Parabolas() as curve:
+                edges.append(curve.pieces)
+            case None:
+                edges.append(straight(*points[pairs.T]))
+    for conic, angle in swept.items():
+        if abs(angle - 2 * np.pi) > 1e-6:
+            raise ValueError(
+                "Input curves of PlateMesh must have circles and ellipses that are whole rims; boundaries cover "
+                f"{np.rad2deg(angle):.4g} degrees of the one around {list(conic[:2])} m"
+            )
+    return Outline(np.array(list(swept), dtype=float).reshape(-1, 4), np.concatenate(edges))
 
 
 def rim_curves(outline: Outline, spacing: float | None = None) -> list[FloatArray]:

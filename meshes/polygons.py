@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from meshes.fill import RimEdges, fill
 from meshes.mesh import PlateMesh
-from meshes.nearest import FloatArray, IntArray
 from meshes.outline import Outline, straight
-from meshes.shapes import check_lengths, refuse
+from meshes.shapes import check_lengths
 from meshes.triangles import cross
+from meshes.types import FloatArray, IntArray
 
 SHARP = np.deg2rad(60)  # towards sharper corners cells shrink with the plate's width
 GROWTH = 0.5  # of cells away from a short side, per length
@@ -44,7 +44,7 @@ def polygon(corners: ArrayLike, cell_size: float, names: Sequence[str] | None = 
         xy = np.asarray(corners, dtype=float)
     except (TypeError, ValueError):
         xy = np.empty(0)
-    refuse(_mistakes(xy, corners, cell_size, names))
+    check_lengths("polygon", *_mistakes(xy, corners, names), cell_size=cell_size)
     side_names = ["rim"] * len(xy) if names is None else list(names)
     if _area(xy) < 0:
         xy, side_names = xy[::-1], side_names[-2::-1] + side_names[-1:]
@@ -90,12 +90,12 @@ def regular_polygon(sides: int, radius: float, cell_size: float, rotation: float
     ValueError
         Names everything that is wrong.
     """
-    mistakes = check_lengths("regular_polygon", radius=radius, cell_size=cell_size)
+    mistakes = []
     if isinstance(sides, bool) or not isinstance(sides, (int, np.integer)) or sides < 3:
         mistakes.append(f"Input sides of regular_polygon must be a whole number of at least 3; got {sides!r}")
     if not np.isfinite(rotation):
         mistakes.append(f"Input rotation of regular_polygon must be a finite angle in rad; got {rotation!r}")
-    refuse(mistakes)
+    check_lengths("regular_polygon", *mistakes, radius=radius, cell_size=cell_size)
     angle = rotation + 2 * np.pi * np.arange(sides) / sides
     return polygon(radius * np.stack([np.cos(angle), np.sin(angle)], axis=1), cell_size)
 
@@ -144,11 +144,10 @@ class _Sizes:
         return 0.7 * longest
 
 
-def _mistakes(xy: FloatArray, corners: ArrayLike, cell_size: float, names: Sequence[str] | None) -> list[str]:
-    mistakes = check_lengths("polygon", cell_size=cell_size)
+def _mistakes(xy: FloatArray, corners: ArrayLike, names: Sequence[str] | None) -> list[str]:
     if xy.ndim != 2 or xy.shape[1] != 2 or len(xy) < 3 or not np.isfinite(xy).all():
-        mistakes.append(f"Input corners of polygon must be at least three points (x, y) in m; got {corners!r}")
-        return mistakes
+        return [f"Input corners of polygon must be at least three points (x, y) in m; got {corners!r}"]
+    mistakes = []
     if names is not None and (isinstance(names, str) or len(names) != len(xy)):
         mistakes.append(f"Input names of polygon must be one for each of its {len(xy)} sides; got {names!r}")
     repeated = [(i, j) for i in range(len(xy)) for j in range(i) if (xy[i] == xy[j]).all()]

@@ -11,10 +11,10 @@ import numpy as np
 from meshes.curves import Parabolas
 from meshes.files import line_names, load
 from meshes.mesh import PlateMesh
-from meshes.nearest import FloatArray, IntArray, on_edges, powers
-from meshes.outline import BoolArray
-from meshes.shapes import check_lengths, refuse
+from meshes.nearest import on_edges, powers
+from meshes.shapes import check_lengths
 from meshes.triangles import areas, cross, edge_numbers, sides
+from meshes.types import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from skfem import MeshTri1, MeshTri2
@@ -73,7 +73,7 @@ def read(path: str | Path, unit: float = 1.0) -> PlateMesh:
         The file cannot be read; or names, with counts and the first places in the file's unit, everything in it that is
         not a plane conforming mesh with named boundaries.
     """
-    refuse(check_lengths("read", unit=unit))
+    check_lengths("read", unit=unit)
     mesh = load(Path(path))
     mistakes: list[str] = []
     corners, middles = _cells(mesh, mistakes)
@@ -103,7 +103,7 @@ def from_skfem(mesh: MeshTri1 | MeshTri2, unit: float = 1.0) -> PlateMesh:
     ValueError
         Names everything that is not a plane conforming mesh of triangles with named boundaries.
     """
-    refuse(check_lengths("from_skfem", unit=unit))
+    check_lengths("from_skfem", unit=unit)
     wrong = f"mesh of from_skfem must be {WANTED}; it has"
     if type(mesh).__name__ not in ("MeshTri1", "MeshTri2"):
         _refuse([f"the type {type(mesh).__name__}, not MeshTri1 or MeshTri2"], wrong)

@@ -9,25 +9,22 @@ import numpy as np
 from meshes.curves import Circle, Ellipse
 from meshes.fill import RimEdges, check_count, fill
 from meshes.mesh import PlateMesh
-from meshes.nearest import FloatArray, nearest_on_ellipse
+from meshes.nearest import nearest_on_ellipse
 from meshes.outline import Outline, straight
+from meshes.types import FloatArray
 
 LONGEST_ARC = 2 / 3  # rim edges of an ellipse are at most this long in radii of curvature
 
 
-def check_lengths(shape: str, **lengths: float) -> list[str]:
-    """One message for each length that is not positive and finite."""
-    return [
-        f"Input {name} of {shape} must be a positive length in m; got {value!r}"
+def check_lengths(caller: str, *mistakes: str, **lengths: float) -> None:
+    """Raise ValueError, naming every length that is not positive and finite, and other mistakes if there are any."""
+    wrong = [
+        f"Input {name} of {caller} must be a positive length in m; got {value!r}"
         for name, value in lengths.items()
         if not (math.isfinite(value) and value > 0)
     ]
-
-
-def refuse(mistakes: list[str]) -> None:
-    """Raise ValueError with all mistakes, if there are any."""
-    if mistakes:
-        raise ValueError("\n".join(mistakes))
+    if wrong or mistakes:
+        raise ValueError("\n".join([*wrong, *mistakes]))
 
 
 def disc(radius: float, cell_size: float) -> PlateMesh:
@@ -51,7 +48,7 @@ def disc(radius: float, cell_size: float) -> PlateMesh:
     ValueError
         A length is not positive and finite; or there are more than a million cells.
     """
-    refuse(check_lengths("disc", radius=radius, cell_size=cell_size))
+    check_lengths("disc", radius=radius, cell_size=cell_size)
     check_count("disc", 6 * (radius / cell_size) ** 2, cell_size)
     rings = max(2, math.ceil(radius / cell_size * (1 - 1e-12)))
     points = np.concatenate([np.zeros((1, 2)), *(_ring(k, radius * k / rings) for k in range(1, rings + 1))])
@@ -89,7 +86,7 @@ def rectangle(width: float, height: float, cell_size: float) -> PlateMesh:
     ValueError
         Names every length that is not positive and finite; or there are more than a million cells.
     """
-    refuse(check_lengths("rectangle", width=width, height=height, cell_size=cell_size))
+    check_lengths("rectangle", width=width, height=height, cell_size=cell_size)
     lengths = np.array([width, height])
     count = 2 * np.ceil(lengths / (2 * cell_size) * (1 - 1e-12))
     count = np.maximum(count, 2 * np.round(lengths / (2 * (lengths / count).min())))
@@ -132,13 +129,11 @@ def annulus(inner_radius: float, outer_radius: float, cell_size: float) -> Plate
         Names every length that is not positive and finite; or the inner radius is not smaller than the outer one; or
         there are more than a million cells.
     """
-    lengths = {"inner_radius": inner_radius, "outer_radius": outer_radius, "cell_size": cell_size}
-    mistakes = check_lengths("annulus", **lengths)
-    if not mistakes and inner_radius >= outer_radius:
-        mistakes.append(
+    check_lengths("annulus", inner_radius=inner_radius, outer_radius=outer_radius, cell_size=cell_size)
+    if inner_radius >= outer_radius:
+        raise ValueError(
             f"Input inner_radius of annulus must be less than its outer_radius, {outer_radius!r}; got {inner_radius!r}"
         )
-    refuse(mistakes)
     growth = math.log1p((outer_radius - inner_radius) / inner_radius)
     around = max(12.0, math.sqrt(3) * math.pi * outer_radius / cell_size * (1 - 1e-12))
     per_ring = math.sqrt(3) * math.pi  # log of a ring's radii times the cells around, for equilateral cells
@@ -182,8 +177,7 @@ def ellipse(semi_axis_x: float, semi_axis_y: float, cell_size: float) -> PlateMe
     ValueError
         Names every length that is not positive and finite; or there are more than a million cells.
     """
-    lengths = {"semi_axis_x": semi_axis_x, "semi_axis_y": semi_axis_y, "cell_size": cell_size}
-    refuse(check_lengths("ellipse", **lengths))
+    check_lengths("ellipse", semi_axis_x=semi_axis_x, semi_axis_y=semi_axis_y, cell_size=cell_size)
     axes = np.array([semi_axis_x, semi_axis_y])
     size = min(cell_size, axes.min() / 2)
     # Divide a quarter into edges of the length due at each place, and mirror it.

@@ -1,24 +1,24 @@
-from .batch import Interrupted as Interrupted, simulate_many as simulate_many
-from .drives.drive import Drive as Drive
+from .batch import Interrupted as Interrupted, processors as processors, simulate_many as simulate_many
+from .drives.drive import Drive as Drive, Segment as Segment, SegmentDrive as SegmentDrive
 from .drives.points import HermiteDrive as HermiteDrive, TableDrive as TableDrive
-from .drives.schedule import Segment as Segment, SegmentDrive as SegmentDrive
 from .drives.table import AnyDrive as AnyDrive
 from .friction.contact import ConstantFriction as ConstantFriction, CoulombAdhesion as CoulombAdhesion
 from .friction.kogut_etsion import KogutEtsion as KogutEtsion
 from .friction.table import FrictionTable as FrictionTable
-from .micropart import Micropart as Micropart
-from .simulation import part_record as part_record, simulate as simulate
-from .modes import EventKind as EventKind
+from .simulation import Micropart as Micropart, part_record as part_record, simulate as simulate
+from .modes import EventKind as EventKind, Outcome as Outcome, State as State
 from .surface.moving_surface import SurfaceMotion as SurfaceMotion, SurfaceState as SurfaceState
 from .surface.simple_surfaces import platform_surface as platform_surface, polynomial_surface as polynomial_surface
-from .energy import Energy as Energy
-from .outcome import Outcome as Outcome, State as State
-from .samples import ContactSamples as ContactSamples, Event as Event, Samples as Samples
-from .trajectory import Trajectory as Trajectory
+from .samples import (
+    ContactSamples as ContactSamples,
+    Event as Event,
+    Samples as Samples,
+    dataset_of as dataset_of,
+    table_of as table_of,
+)
+from .trajectory import Energy as Energy, Trajectory as Trajectory
 
 # Not public: for the packages that build on this one.
-from .compilation import compilation_heard as compilation_heard
-from .cores import processors as processors
 from .friction_input import (
     KogutEtsionInput as KogutEtsionInput,
     MIN_POINTS as MIN_POINTS,
@@ -33,9 +33,14 @@ from .interrupt import (
     unbroken as unbroken,
     wait as wait,
 )
-from .jit import kernel as kernel, kernel_inlined as kernel_inlined, kernel_no_arrays as kernel_no_arrays
-from .labelled import dataset_of as dataset_of, table_of as table_of
-from .kernel_cache import source_digest as source_digest
+from .jit import (
+    kernel as kernel,
+    kernel_device as kernel_device,
+    kernel_device_no_arrays as kernel_device_no_arrays,
+    kernel_inlined as kernel_inlined,
+    kernel_no_arrays as kernel_no_arrays,
+)
+from .kernel_cache import compilation_heard as compilation_heard, source_digest as source_digest
 from .rest import (
     Extreme as Extreme,
     PartAtRest as PartAtRest,

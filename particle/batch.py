@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent import futures
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -11,13 +12,11 @@ from typing import TypeGuard
 
 import numpy as np
 
-from particle.cores import processors
 from particle.drives import AnyDrive
 from particle.friction import Contact, FrictionLaw
 from particle.interrupt import wait
-from particle.micropart import Micropart
 from particle.path import find_path
-from particle.simulation import faults, new_request
+from particle.simulation import Micropart, faults, new_request
 from particle.surface import SurfaceMotion, rim_gap
 from particle.trajectory import Trajectory
 
@@ -150,3 +149,10 @@ def _laws(friction: Contact | Iterable[Contact], count: int) -> tuple[list[Conta
 
 def _is_law(friction: object) -> TypeGuard[Contact]:
     return isinstance(getattr(friction, "law", None), FrictionLaw)
+
+
+def processors() -> int:
+    """How many processors this process may use; all where the system does not tell, as macOS."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -8,9 +8,10 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
+
 CLOSEST = 1e-12  # of the whole time: points in time must be further apart
 
 

@@ -13,15 +13,15 @@ import pickle
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 from uuid import uuid4
 
 import numba
-from numba.core import config
+from numba.core import config, event
 from numba.core.caching import Cache, CompileResultCacheImpl, _CacheLocator, _SourceFileBackedLocatorMixin
 from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
@@ -243,3 +243,22 @@ class KernelCache(Cache):  # type: ignore[misc]
     def _end(self) -> None:
         KernelCache._compiling = None
         self._lock.release()
+
+
+@contextmanager
+def compilation_heard(tell: Callable[[], object]) -> Iterator[None]:
+    """Calls `tell` when the first kernel is compiled, on whatever thread; never where all of them are on disk."""
+
+    class Once(event.Listener):
+        heard = False
+
+        def on_start(self, started: object) -> None:
+            if not self.heard:
+                self.heard = True
+                tell()
+
+        def on_end(self, ended: object) -> None:
+            pass
+
+    with event.install_listener("numba:compile", Once()):
+        yield

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.energy import energy_of
 from particle.events import (
     Memory,
     Motion,
@@ -27,13 +26,12 @@ from particle.events import (
     pairs_for,
 )
 from particle.fixed import between, march_fixed, new_fixed_memory
-from particle.modes import EventKind, Mode, Verdict
-from particle.outcome import Outcome, State
+from particle.modes import EventKind, Mode, Outcome, State, Verdict
 from particle.samples import Event, samples_of
 from particle.surface import Surface, SurfaceMotion, missing_place
-from particle.trajectory import Trajectory
+from particle.trajectory import Energy, Trajectory
+from particle.types import BoolArray, FloatArray, IntArray
 
-FloatArray = NDArray[np.float64]
 Rows = NDArray[Any]  # of `Row`
 
 
@@ -65,7 +63,7 @@ class _Scratch(threading.local):
 _scratch = _Scratch()
 
 
-def _memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
+def _memory(surface: Surface, pairs: Pairs, stop: IntArray) -> Memory:
     """Scratch memory for a path over the surface."""
     cells = surface.cells
     planar = cells.plane_highest, surface.in_plane_count
@@ -78,7 +76,7 @@ def _memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
 
 
 def find_path(
-    surface: SurfaceMotion, request: Request, tolerance: float, stop: NDArray[np.int64] | None = None
+    surface: SurfaceMotion, request: Request, tolerance: float, stop: IntArray | None = None
 ) -> Trajectory | None:
     """The path by located events; None when it was interrupted by `stop` (1,), which another thread may set to 1.
 
@@ -164,7 +162,7 @@ def _by_events(surface: SurfaceMotion, request: Request, pairs: Pairs, rows: Row
 def _by_steps(surface: SurfaceMotion, request: Request, kind: int, rows: Rows, times: FloatArray) -> Rows:
     """The rows at ascending times [s]."""
 
-    def sample() -> tuple[Rows, NDArray[np.bool_]]:
+    def sample() -> tuple[Rows, BoolArray]:
         record = surface.record
         return between(record, request.part, new_fixed_memory(record), kind, rows, times)
 
@@ -194,7 +192,8 @@ def _with_cells(surface: SurfaceMotion, path: Callable[[Surface], Computed]) -> 
 def _trajectory(
     surface: SurfaceMotion, request: Request, computed: Computed, sampler: Callable[[FloatArray], Rows]
 ) -> Trajectory:
-    samples = samples_of(computed.rows)
+    rows = computed.rows
+    samples = samples_of(rows)
     if computed.verdict == Verdict.GOES_ON:
         outcome = Outcome.STUCK if samples.state[-1] == State.STICK else Outcome.MOVING
     else:
@@ -207,7 +206,9 @@ def _trajectory(
         ],
         outcome=outcome,
         evaluations=computed.evaluations,
-        energy=energy_of(computed.rows, request.force * surface.size),
+        energy=Energy(
+            rows["kinetic"], rows["potential"], rows["work"], rows["dissipated"], request.force * surface.size
+        ),
         sampler=sampler,
         contact=partial(_contact_states, surface, request),
     )

@@ -8,15 +8,14 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
-from numpy.typing import NDArray
 
-from meshes import SIZE, Drawing, label_axis, label_places
-from particle.outcome import State
+from common import SIZE, Drawing, draw, figure_of, label_axis, label_places
+from particle.modes import State
 from particle.trajectory import Trajectory
-
-FloatArray = NDArray[np.float64]
+from particle.types import BoolArray, FloatArray, IntArray
 
 PATH_COLOUR, STICK_COLOUR = "#c8371b", "#1b4f9c"
 HALO = [withStroke(linewidth=2.6, foreground="white")]
@@ -42,7 +41,7 @@ class Rows(Protocol):
         """(n, 2) m."""
 
     @property
-    def state(self) -> NDArray[np.int64]:
+    def state(self) -> IntArray:
         """(n,) State."""
 
 
@@ -84,17 +83,21 @@ def _look(state: State) -> dict[str, Any]:
     return {"facecolor": "none", "edgecolor": colour, "hatch": "////", "linewidth": 0}  # differs in grey, too
 
 
-def stretches(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
+def stretches(holds: BoolArray) -> list[tuple[int, int]]:
     """The first and last row of each stretch of time during which a condition (n,) holds."""
     change = np.diff(np.concatenate([[0], holds[:-1].astype(int), [0]]))
     return list(zip(np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist(), strict=True))
 
 
-def plot(trajectory: Trajectory) -> Drawing:
-    """The path, and beside it the speed over time, in SI units."""
+@draw.register(Trajectory)
+def draw_trajectory(trajectory: Trajectory, axes: Axes | None = None) -> Figure:
+    """Draw the path, and beside it the speed over time, in SI units; with axes in m only the path, into these."""
+    if axes is not None:
+        _draw_path(axes, trajectory)
+        return figure_of(axes)
     figure = Drawing(figsize=(2 * SIZE[0], SIZE[1]))
     places, speeds = figure.subplots(1, 2)
-    keys = plot_path(trajectory, places) + shade_keys(trajectory)
+    keys = _draw_path(places, trajectory) + shade_keys(trajectory)
     samples = trajectory.at(np.linspace(trajectory.time[0], trajectory.time[-1], SAMPLES))
     speeds.plot(samples.time, np.hypot(*samples.velocity.T), color="black", linewidth=1.0)
     shade(speeds, trajectory)
@@ -105,7 +108,7 @@ def plot(trajectory: Trajectory) -> Drawing:
     return figure
 
 
-def plot_path(trajectory: Trajectory, axes: Axes) -> list[Artist]:
+def _draw_path(axes: Axes, trajectory: Trajectory) -> list[Artist]:
     """Draw the path into axes in m; return keys."""
     samples = trajectory.at(np.linspace(trajectory.time[0], trajectory.time[-1], SAMPLES))
     keys = draw_line(axes, trajectory, samples.position)

@@ -8,16 +8,13 @@ from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.drives import next_breakpoint
 from particle.events import Part, rest_loads
 from particle.friction import Contact, friction_limits
-from particle.micropart import Micropart
-from particle.simulation import part_record
+from particle.simulation import Micropart, part_record
 from particle.surface import SurfaceMotion
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 PER_STROKE: Final = 48  # moments in the shortest stroke
 MAX_BREAKPOINTS, MAX_MOMENTS = 20_000, 400_000

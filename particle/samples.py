@@ -1,17 +1,36 @@
-"""Samples: a part at moments of its path, for people."""
+"""Samples: a part at moments of its path, for people, also as a dataset of xarray or a table of pandas."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.modes import EventKind, Mode
-from particle.outcome import State
+from particle.modes import EventKind, Mode, State
+from particle.types import FloatArray, IntArray
 
-FloatArray = NDArray[np.float64]
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+
+COLUMNS: Final = {
+    "x": ("m", "x of the part"),
+    "y": ("m", "y of the part"),
+    "z": ("m", "height of the surface under the part; in flight that of the part"),
+    "vx": ("m/s", "velocity along x"),
+    "vy": ("m/s", "velocity along y"),
+    "vz": ("m/s", "velocity along z"),
+    "normal_force": ("N", "net normal force of the contact"),
+    "friction_force": ("N", "size of the friction"),
+}
+"""The columns of a path, but its state, with their units and meanings."""
+EVENTS: Final = {"event_time": "s", "event_x": "m", "event_y": "m", "event_speed": "m/s", "event_load": "N"}
+STATES: Final = ("stick", "slip", "flight")
+"""The states by their number."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +54,7 @@ class Samples(NamedTuple):
     height: FloatArray  # (k,) m, that of the surface under it unless it flies
     normal_force: FloatArray  # (k,) N, net, of the contact
     friction_force: FloatArray  # (k,) N, its magnitude
-    state: NDArray[np.int64]  # (k,) State
+    state: IntArray  # (k,) State
 
 
 class RoughContact(Protocol):
@@ -67,7 +86,7 @@ class ContactSamples(NamedTuple):
     separation: FloatArray  # (k,) over the roughness, of a rough contact; nan in flight and without its law
     contact_load: FloatArray  # (k,) N, pressing its asperities; nan likewise
     adhesion: FloatArray  # (k,) N, holding against it; contact_load - adhesion is the normal force; nan likewise
-    state: NDArray[np.int64]  # (k,) State
+    state: IntArray  # (k,) State
 
 
 def samples_of(rows: NDArray[Any]) -> Samples:
@@ -84,7 +103,7 @@ def samples_of(rows: NDArray[Any]) -> Samples:
     )
 
 
-def _states(rows: NDArray[Any]) -> NDArray[np.int64]:
+def _states(rows: NDArray[Any]) -> IntArray:
     return np.where(rows["mode"] == Mode.MANIFOLD, State.SLIP, rows["mode"])
 
 
@@ -107,3 +126,34 @@ def contact_samples_of(rows: NDArray[Any], states: NDArray[Any], friction: Rough
         *(rows["time"], place, centre, normal, load, force, pull, of_point, added),
         *(separations, contact_loads, adhesions, _states(rows)),
     )
+
+
+def dataset_of(samples: Samples, events: Sequence[Event], **attributes: Any) -> xarray.Dataset:
+    """The dataset of samples at ascending times, the last of those at a time, and of events."""
+    import xarray
+
+    last = np.append(np.diff(samples.time) > 0, True)
+    columns = (*samples.position.T, samples.height, *samples.velocity.T, samples.vertical_velocity)
+    columns += (samples.normal_force, samples.friction_force)
+    variables: dict[str, Any] = {
+        name: ("time", column[last], {"units": unit, "long_name": meaning})
+        for (name, (unit, meaning)), column in zip(COLUMNS.items(), columns, strict=True)
+    }
+    flags = {"flag_values": list(range(len(STATES))), "flag_meanings": " ".join(STATES)}
+    variables["state"] = ("time", samples.state[last].astype(np.int8), {"long_name": "contact from then on", **flags})
+    rows = [(event.time, *event.position, event.speed, event.load) for event in events]
+    for (name, unit), values in zip(EVENTS.items(), np.array(rows, float).reshape(-1, len(EVENTS)).T, strict=True):
+        variables[name] = ("event", values, {"units": unit})
+    kinds = [event.kind.name.lower() for event in events]
+    variables["event_kind"] = ("event", np.array(kinds, str), {"long_name": "what happened"})
+    time = ("time", samples.time[last], {"units": "s", "long_name": "time"})
+    return xarray.Dataset(variables, {"time": time}, attributes)
+
+
+def table_of(samples: Samples, **attributes: Any) -> pandas.DataFrame:
+    """The table of samples at ascending times, the last of those at a time; units are in its `attrs`."""
+    dataset = dataset_of(samples, ())
+    table = dataset[[*COLUMNS, "state"]].to_dataframe()
+    table["state"] = [STATES[state] for state in table["state"]]
+    table.attrs = {"units": {"time": "s"} | {name: unit for name, (unit, _) in COLUMNS.items()}, **attributes}
+    return table

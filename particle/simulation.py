@@ -1,17 +1,19 @@
-"""simulate: from a surface, a part and a friction law to a trajectory."""
+"""Micropart, and simulate: from a surface, a part and a friction law to a trajectory."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from particle.checks import finite, not_negative, positive, refuse
 from particle.events import FIRST_STEP, Part, Request
 from particle.fixed import MAX_ROWS, MOREAU, PAPER, default_step, shortest_stroke, step_count
 from particle.friction import Contact
 from particle.interrupt import Stopped, stop_flag
-from particle.micropart import Micropart
 from particle.modes import Mode
 from particle.path import find_path, find_path_by_steps
 from particle.surface import SurfaceMotion, rim_gap
@@ -20,6 +22,35 @@ from particle.trajectory import Trajectory
 BRIDGED = 100.0  # tolerances, relative: how far off the surface's acceleration may be where breakpoints are bridged
 
 _FIXED_STEPS = {"fixed": MOREAU, "paper": PAPER}
+
+
+@dataclass(frozen=True)
+class Micropart:
+    """A part that lies on the surface; (x, y) is the point of the plate's mid-plane under it.
+
+    Raises
+    ------
+    ValueError
+        A field is wrong; names each.
+    """
+
+    mass: float  # kg
+    position: tuple[float, float]  # m
+    velocity: tuple[float, float] = (0.0, 0.0)  # m/s
+    squeeze: float = 0.0  # N, a constant force that presses it onto the surface, along the normal
+    centre_height: float = 0.0  # m, of its centre of mass over the surface that it lies on
+
+    def __post_init__(self) -> None:
+        pairs = {name: getattr(self, name) for name in ("position", "velocity")}
+        refuse(
+            "Micropart",
+            [
+                (positive(self.mass), "mass", "positive, in kg", self.mass),
+                (not_negative(self.squeeze), "squeeze", "0 or a positive force in N", self.squeeze),
+                (not_negative(self.centre_height), "centre_height", "0 or a positive length in m", self.centre_height),
+                *((_is_pair(value), name, "two finite numbers", value) for name, value in pairs.items()),
+            ],
+        )
 
 
 def simulate(
@@ -165,3 +196,7 @@ def part_record(surface: SurfaceMotion, part: Micropart, friction: Contact, grav
         contact, centre = surface.half_thickness, surface.half_thickness + part.centre_height
     forces = float(part.mass), -float(z), float(x), float(y), float(part.squeeze)
     return Part(*forces, friction.law, float(contact), float(centre))
+
+
+def _is_pair(value: Any) -> bool:
+    return np.shape(value) == (2,) and all(finite(part) for part in value)

@@ -1,31 +1,60 @@
-"""Trajectory: what the integrator found, for people."""
+"""Trajectory: what the integrator found, with its ledger of energy, for people."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particle.energy import Energy
-from particle.labelled import dataset_of, table_of
-from particle.outcome import Outcome, State
-from particle.samples import ContactSamples, Event, RoughContact, Samples, contact_samples_of, samples_of
+from common import draw, notebook_html
+from particle.modes import Outcome, State
+from particle.samples import (
+    ContactSamples,
+    Event,
+    RoughContact,
+    Samples,
+    contact_samples_of,
+    dataset_of,
+    samples_of,
+    table_of,
+)
+from particle.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
     import pandas
     import xarray
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-FloatArray = NDArray[np.float64]
+    from common import Axes, Figure
 
+
+MIN_ENERGY = 1e-6
 _FOR_GOOD = "The part is at rest, and the drives do not move it again."
 _IN_FLIGHT = "The part is in flight at the end of the run."
 _FOR_NOW = "The part rests between slips at the end of the run."
+
+
+@dataclass(frozen=True, eq=False)
+class Energy:
+    """The energy ledger at the rows of a trajectory: kinetic + potential grow by work - dissipated."""
+
+    kinetic: FloatArray = field(repr=False)  # (n,) J, seen by one at rest
+    potential: FloatArray = field(repr=False)  # (n,) J, of gravity
+    work: FloatArray = field(repr=False)  # (n,) J, of the moving surface and what squeezes on the part since the start
+    dissipated: FloatArray = field(repr=False)  # (n,) J, by friction and impacts since the start
+    scale: float  # J, that of a part thrown across the surface in a stroke; a millionth of it counts as nothing
+
+    @property
+    def balance(self) -> float:
+        """The largest gap in the ledger, relative to the largest of its entries: the path's own check."""
+        total = self.kinetic + self.potential
+        gap = total - total[0] - (self.work - self.dissipated)
+        entries = (self.kinetic, self.potential - self.potential[0], self.work, self.dissipated)
+        largest = max(float(np.abs(entry).max()) for entry in entries)
+        return float(np.abs(gap).max()) / max(largest, MIN_ENERGY * self.scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -42,7 +71,7 @@ class Trajectory:
     height: FloatArray  # (n,) m, that of the surface under it unless it flies
     normal_force: FloatArray  # (n,) N, net, of the contact
     friction_force: FloatArray  # (n,) N, its magnitude
-    state: NDArray[np.int64]  # (n,) State
+    state: IntArray  # (n,) State
     events: list[Event]
     outcome: Outcome
     evaluations: int  # of the surface
@@ -199,12 +228,6 @@ class Trajectory:
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the path and the speed over time; with axes only the path, into these. Axes are in SI units."""
-        from meshes import plotted
-        from particle.pictures import plot, plot_path  # here, because matplotlib is loaded for pictures only
+        return draw(self, axes)
 
-        return plot(self) if axes is None else plotted(lambda axes: plot_path(self, axes), axes)
-
-    def _repr_html_(self) -> str:
-        from meshes import notebook_html
-
-        return notebook_html(self)
+    _repr_html_ = notebook_html

@@ -1,19 +1,23 @@
-"""What all tests share: the paper's plate, an off-centre layout of two actuators, and the `compiled` marker."""
+"""What all tests share: the paper's plate, two actuators off its centre, a run of each kind, the `compiled` marker."""
 
 from __future__ import annotations
 
 import ctypes
 import gc
 import signal
+from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 import numba
 import numpy as np
 import pytest
+import shared_runs
 import slowest
 from hypothesis import settings
 
+from coupling import Result
 from fem_plate import PlateSection
 from fem_plate.analytic import DiscShapes
 
@@ -33,7 +37,7 @@ pytest_addoption = slowest.pytest_addoption
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    if config.getoption("slowest"):
+    if config.getoption("slowest") or config.getoption("budget"):
         config.pluginmanager.register(slowest.Stopwatch(config))
 
 
@@ -88,3 +92,15 @@ def spots(layout: np.ndarray) -> np.ndarray:
     r, angle = RADIUS * np.sqrt(rng.uniform(0, 1, 2000)), rng.uniform(0, 2 * np.pi, 2000)
     xy = np.stack([r * np.cos(angle), r * np.sin(angle)], axis=1)
     return xy[np.linalg.norm(xy[:, None] - layout, axis=-1).min(axis=1) > 0.02 * RADIUS]
+
+
+@pytest.fixture(scope="session")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Result]:
+    """The result of a run of each kind in `shared_runs`, made when first asked for, with files not to be changed."""
+
+    @cache
+    def run(kind: str) -> Result:
+        with slowest.aside:
+            return shared_runs.run(kind, tmp_path_factory.mktemp(kind))
+
+    return run

@@ -8,10 +8,11 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from active_surface.views import packed
+from common import Unit, quantity_text, unit_for
 from coupling import report
 from coupling.case import Case, PlateCase
 from fem_plate import extent
-from meshes import Unit, quantity_text, rim_curves, unit_for
+from meshes import rim_curves
 from particle import Trajectory
 
 PIECES: Final = 3  # of a path between two rows

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, Final, Literal
 
+from common import unit_for
 from coupling.case import Case, Field, PlateCase, find_field, lattice_of
-from meshes import unit_for
 
 Scale = Literal["linear", "log", "choice"]
 

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from meshes import quantity_text
+from common import quantity_text
 
 MOST_DIGITS: Final = 9
 

@@ -13,14 +13,14 @@ from active_surface.arrays import FloatArray
 from active_surface.identification.estimate import Estimate
 from active_surface.identification.fit import TrackFit
 from active_surface.identification.track import Track
+from common import draw, notebook_html, quantity_text
 from coupling.case import Case, write_case
-from meshes import quantity_text
 from particle import Trajectory
 
 if TYPE_CHECKING:
     import pandas
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+
+    from common import Axes, Figure
 
 ALIKE: Final = 0.95  # a correlation that tells of two fields which hardly differ in what they do
 
@@ -150,7 +150,7 @@ class Identified:
 
         Raises ValueError where they exist and are not to be replaced.
         """
-        from active_surface.identification.picture import draw_identified
+        from coupling.pictures import save_picture  # here, because it loads matplotlib
 
         cases = {fit.case.name: fit for fit in self.fits}
         *files, picture = check_free(folder, list(cases), overwrite)
@@ -158,23 +158,18 @@ class Identified:
             of = [one for one in self.estimates if one.case in (None, fit.name)]
             said = "\n".join(f"{one.field} = {one.text}" for one in of)
             write_case(fit.case, file, f"Fitted to a track:\n{said}")
-        return replace(self, files=(*files, draw_identified(self, picture)))
+        return replace(self, files=(*files, save_picture(draw(self), picture)))
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw tracks beside paths, over the plane and over time; with axes only over the plane, into these."""
-        from active_surface.identification.picture import plot_identified  # here, as matplotlib is for pictures only
-
-        return plot_identified(self, axes)
+        return draw(self, axes)
 
     def __repr__(self) -> str:
         found = "; ".join(f"{one.label} = {one.text}" for one in self.estimates)
         names = ", ".join(repr(fit.case.name) for fit in self.fits)
         return f"Identified {names}: {found}. Residuals of {quantity_text(self.residual, 'm')}"
 
-    def _repr_html_(self) -> str:
-        from meshes import notebook_html
-
-        return notebook_html(self)
+    _repr_html_ = notebook_html
 
 
 def names_of(names: Sequence[str], count: int) -> list[str]:

@@ -15,10 +15,11 @@ from matplotlib.patches import Circle
 from active_surface.arrays import FloatArray
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.scatter import Scatter
+from common import Drawing, Unit, draw_rim, quantity_text, unit_for
 from coupling.case import Case, PlateCase
 from coupling.pictures import draw_path, draw_window, is_visible, join, map_axes, path_window, save_picture
 from fem_plate import frame_around, mark_actuators, marker_size
-from meshes import Drawing, Unit, draw_rim, quantity_text, rim_curves, unit_for
+from meshes import rim_curves
 from particle import HALO, Trajectory
 
 Place = tuple[float, float]

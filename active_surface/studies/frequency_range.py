@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from meshes import quantity_text
+from common import quantity_text
 
 
 def range_fault(

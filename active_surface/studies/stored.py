@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, Records
 from active_surface.studies.study import Study
-from meshes import UNREADABLE, check_hdf5, survives
+from common import UNREADABLE, check_hdf5, survives
 
 KIND_ATTRIBUTE: Final = "active-surface sweep"
 AT_ONCE: Final = 65536  # points whose coordinates or records are read or written together

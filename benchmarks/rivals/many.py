@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from report import short
 
-from rivals import ours, with_numba, with_scipy
+from rivals import with_numba, with_scipy
 from rivals.compare import COMPILED, OURS, REPEATS, SCIPY, processor_seconds
-from rivals.problem import RADIUS, STARTS, problem
+from rivals.problem import RADIUS, STARTS, ends, problem, surface_of
 
 FloatArray = NDArray[np.float64]
 
@@ -27,19 +27,19 @@ AGREEMENT = 1e-3  # of the radius, median over the sample
 def table() -> list[str]:
     """Lines of a table; paths a second are printed only."""
     base = problem(25, STARTS[25], DURATION)
-    surface = ours.surface_of(base)
+    surface = surface_of(base)
     rng = np.random.default_rng(1)
     r, angle = 0.7 * RADIUS * np.sqrt(rng.uniform(0, 1, PATHS)), rng.uniform(0, 2 * math.pi, PATHS)
     starts = np.column_stack([r * np.cos(angle), r * np.sin(angle)])
     problems = [replace(base, start=(x, y)) for x, y in starts[:SAMPLE].tolist()]
-    rate, data = with_scipy.rate_in_numba(base), (base.points, base.breakpoints, base.forces, base.friction.law)
+    rate, data = with_scipy.rate_of(base), (base.points, base.breakpoints, base.forces, base.friction.law)
     step = DURATION / STEPS
     methods = {
-        OURS: lambda which: ours.ends(base, surface, np.array([which.start]), TOLERANCE)[0],
+        OURS: lambda which: ends(base, surface, np.array([which.start]), TOLERANCE)[0],
         SCIPY: lambda which: with_scipy.trace(which, rate, SCIPY_TOLERANCE).place,
         COMPILED: lambda which: np.array(with_numba.fixed_steps(*which.start, *data, step, STEPS)),
     }
-    truth = ours.ends(base, surface, starts[:SAMPLE], TRUTH)
+    truth = ends(base, surface, starts[:SAMPLE], TRUTH)
     lines = ["| method | median error over the radius | time of a path over ours |", "|---|---:|---:|"]
     times: dict[str, list[float]] = {name: [] for name in methods}
     for _ in range(REPEATS):
@@ -53,13 +53,13 @@ def table() -> list[str]:
         middle, least, most = map(short, (median(ratios), min(ratios), max(ratios)))
         lines.append(f"| {name} | {error:.0e} | {middle} ({least} - {most}) |")
     seconds: dict[int, list[float]] = {1: [], 2: []}
-    ends = {}
+    places = {}
     for _ in range(ROUNDS):
         for threads, spent in seconds.items():
             start = perf_counter()
-            ends[threads] = ours.ends(base, surface, starts, TOLERANCE, threads)
+            places[threads] = ends(base, surface, starts, TOLERANCE, threads)
             spent.append(perf_counter() - start)
-    assert np.array_equal(ends[1], ends[2]), "threads change the paths"
+    assert np.array_equal(places[1], places[2]), "threads change the paths"
     for threads, spent in seconds.items():
         print(f"{PATHS} paths of {DURATION * 1e3:g} ms, {threads} threads: {PATHS / median(spent):.0f} paths a second")
     gains = [one / two for one, two in zip(seconds[1], seconds[2], strict=True)]

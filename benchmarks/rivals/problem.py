@@ -1,17 +1,27 @@
-"""The problem: a clamped disc over actuators at the places of a sunflower's seeds, each with a drive of its own."""
+"""The problem, and this project's answer: a clamped disc over actuators at the places of a sunflower's seeds."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coupling import surface_motion
 from fem_plate import DiscShapes
-from particle import ConstantFriction, KogutEtsion
+from particle import (
+    ConstantFriction,
+    Drive,
+    KogutEtsion,
+    Micropart,
+    SurfaceMotion,
+    Trajectory,
+    simulate,
+    simulate_many,
+)
 from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
@@ -21,6 +31,7 @@ OUT_TO = 0.8  # of the radius, the outermost actuator
 COUNTS, MOST = (1, 2, 9, 25, 100), 10_000  # actuators by default, and at most
 FEWEST_IN_WAVES = 5000  # actuators: the forces of that many drives, each with its breakpoints, would not fit in memory
 DELAYS, WAVE = 100, 0.06  # delays that differ in a wave; its stroke, over the radius
+SURFACE_TOLERANCE = 1e-11  # of a unit stroke
 QUINTIC = np.array([0.0, 0.0, 0.0, 10.0, -15.0, 6.0])  # a stroke from 0 to 1
 CONSTANT = ConstantFriction(20.9 * MASS)
 
@@ -123,3 +134,27 @@ def problems(counts: Sequence[int]) -> list[PathProblem]:
     """With constant friction for each count of actuators, and with rough contact where 25 are among them."""
     found = [problem(count, STARTS.get(count, STARTS[100])) for count in counts]
     return found + [problem(25, ROUGH_START, rough=True)] * (25 in counts)
+
+
+def surface_of(problem: PathProblem) -> SurfaceMotion:
+    drives = [
+        Drive(problem.stroke, frequency, delay=delay)
+        for frequency, delay in zip(problem.frequencies.tolist(), problem.delays.tolist(), strict=True)
+    ]
+    return surface_motion(problem.shapes, drives, SURFACE_TOLERANCE)
+
+
+def path_of(problem: PathProblem, surface: SurfaceMotion) -> partial[Trajectory]:
+    """What runs the problem: call it with `tolerance=...` or `scheme="fixed", time_step=...`."""
+    part = Micropart(MASS, problem.start)
+    return partial(simulate, surface, part, problem.friction, problem.duration, GRAVITY)
+
+
+def ends(
+    problem: PathProblem, surface: SurfaceMotion, starts: FloatArray, tolerance: float, threads: int = 1
+) -> FloatArray:
+    """The ends (n, 2) [m] of parts that begin at `starts` (n, 2) [m]."""
+    parts = [Micropart(MASS, (x, y)) for x, y in starts.tolist()]
+    run = {"gravity": GRAVITY, "tolerance": tolerance, "threads": threads}
+    paths = simulate_many(surface, parts, problem.friction, problem.duration, **run)
+    return np.array([path.position[-1] for path in paths])

@@ -9,7 +9,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from rivals.ours import friction_limit
+from particle.friction import friction_limit
 from rivals.problem import GRAVITY, MASS, RADIUS
 
 FloatArray = NDArray[np.float64]

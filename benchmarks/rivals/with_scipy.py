@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from rivals import with_numba, with_numpy
-from rivals.problem import MASS, PathProblem
+from rivals import with_numba
+from rivals.problem import GRAVITY, MASS, RADIUS, PathProblem
 
 FloatArray = NDArray[np.float64]
 Rate = Callable[[float, FloatArray], FloatArray]
@@ -36,21 +36,8 @@ class Traced:
     evaluations: int
 
 
-def rate_in_numpy(problem: PathProblem) -> Rate:
-    """d/dt of (x, y, v_x, v_y) while the part slides."""
-
-    def rate(time: float, state: FloatArray) -> FloatArray:
-        v = state[None, 2:]
-        f = with_numpy.plate(state[None, :2], time, problem)
-        acceleration, load = with_numpy.pull(f, v)
-        slow = problem.friction.friction_limit(load) / MASS / with_numpy.length(f, v)
-        return np.concatenate([state[2:], (acceleration - slow[:, None] * v)[0]])
-
-    return rate
-
-
-def rate_in_numba(problem: PathProblem) -> Rate:
-    """The same, compiled."""
+def rate_of(problem: PathProblem) -> Rate:
+    """d/dt of (x, y, v_x, v_y) while the part slides, compiled."""
     points, breakpoints, forces, law = problem.points, problem.breakpoints, problem.forces, problem.friction.law
     scratch = np.empty((len(points), 3))
     return lambda time, state: with_numba.right_side(time, state, points, breakpoints, forces, law, scratch)
@@ -66,7 +53,6 @@ def trace(problem: PathProblem, rate: Rate, tolerance: float) -> Traced:
         return rate(t, y)
 
     atol = tolerance * np.array([LENGTH, LENGTH, SPEED, SPEED])
-    friction = float(problem.friction.friction_limit(0.0)) / MASS
     friction = float(problem.friction.friction_limit(0.0)) / MASS
     fast = FAST * friction * 0.5 / float(problem.frequencies.max())
     # Taken as rest: it would go on by a small part of atol.
@@ -114,16 +100,28 @@ def _falling(event: Callable[[float, FloatArray], float]) -> Callable[[float, Fl
 
 
 def _load(problem: PathProblem, time: float, state: FloatArray) -> float:
-    _, load = with_numpy.pull(with_numpy.plate(state[None, :2], time, problem), state[None, 2:])
-    return float(load[0])
+    """The net load [N] of a part that slides."""
+    span, at = np.searchsorted(problem.breakpoints[1:-1], time, side="right"), np.empty((len(problem.points), 3))
+    with_numba.quintics(problem.forces[span], time - problem.breakpoints[span], at)
+    return float(with_numba.pull(with_numba.plate(*state[:2], problem.points, at), *state[2:])[2])
+
+
+def _shapes(problem: PathProblem, place: FloatArray) -> FloatArray:
+    """Boggio's function, 16 pi G = R ln(R/S) + S - R, of each actuator and its gradient [1/m] at a place: (3, N)."""
+    x, sources = place / RADIUS, problem.points / RADIUS
+    square = (sources**2).sum(axis=1)
+    offset, image = x - sources, x * square[:, None] - sources
+    big_r, big_s = (offset**2).sum(axis=1), x @ x * square - 2 * sources @ x + 1
+    by_r, by_s = np.log(big_r / big_s), 1 - big_r / big_s
+    gradient = 2 / RADIUS * (by_r[:, None] * offset + by_s[:, None] * image)
+    return with_numba.SCALE * np.stack([big_r * by_r + big_s - big_r, *gradient.T])
 
 
 def slip(problem: PathProblem, time: float, place: FloatArray) -> tuple[float, FloatArray]:
     """When [s] a part at rest slips (the duration: it does not), and which way (2,), of length 1 along the surface."""
     # At a fixed place height and gradient are quintics over each span.
     spans = np.arange(np.searchsorted(problem.breakpoints[1:-1], time, side="right"), len(problem.forces))
-    shapes = with_numpy.shapes(place[None], problem)
-    quintics = np.stack([shapes.value[0], *shapes.gradient[0].T]) @ problem.forces[spans]  # (S, 3, 6)
+    quintics = _shapes(problem, place) @ problem.forces[spans]  # (S, 3, 6)
 
     def margin(since: FloatArray, rows: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Friction's limit less the pull [m/s^2], the pull and the gradient."""
@@ -131,10 +129,10 @@ def slip(problem: PathProblem, time: float, place: FloatArray) -> tuple[float, F
         gradient = (rows[..., 1:, :] * s).sum(axis=-1)
         k = np.arange(2, 6)
         w_tt = (rows[..., 0, 2:] * k * (k - 1) * s[..., 0, :4]).sum(axis=-1)
-        f = with_numpy.Plate(w_tt, gradient, np.zeros_like(gradient), np.zeros((*w_tt.shape, 2, 2)))
-        pull, load = with_numpy.pull(f, np.zeros_like(gradient))
-        limit = problem.friction.friction_limit(load) / MASS
-        return limit - with_numpy.length(f, pull), pull, gradient
+        b, square = GRAVITY + w_tt, 1 + (gradient**2).sum(axis=-1)
+        pull = -(b / square)[:, None] * gradient
+        limit = problem.friction.friction_limit(MASS * b / np.sqrt(square)) / MASS
+        return limit - np.sqrt((pull**2).sum(axis=-1) + (pull * gradient).sum(axis=-1) ** 2), pull, gradient
 
     begins, ends = problem.breakpoints[spans], problem.breakpoints[spans + 1]
     low = np.maximum(begins, time)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import ValidationError, model_validator
 
+from common import draw, notebook_html
 from coupling.case.checks import MAY_MOVE, Checked, check
 from coupling.case.field import locations_of
 from coupling.case.friction import KogutEtsionCase, TableCase
@@ -27,8 +28,7 @@ from coupling.case.values import UNITS_REQUIRED
 from coupling.case.variation import lattice_of, plain_case, put_value
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from common import Axes, Figure
 
 
 class Case(CaseTables):
@@ -116,15 +116,9 @@ class Case(CaseTables):
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the plate from above with its actuators, and where the part starts, into axes in m or new ones."""
-        from coupling.pictures import draw_case  # here, because reading a case is to be quick
-        from meshes import plotted
+        return draw(self, axes)
 
-        return plotted(lambda axes: draw_case(self, axes), axes)
-
-    def _repr_html_(self) -> str:
-        from meshes import notebook_html
-
-        return notebook_html(self)
+    _repr_html_ = notebook_html
 
 
 def read_case(path: str | os.PathLike[str], may_move: bool = False) -> Case:

@@ -1,5 +1,29 @@
-"""Pictures of cases and runs."""
+"""Pictures of cases and runs, which register here how they are drawn."""
 
-import lazy_loader
-
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+from coupling.pictures.case import draw_case
+from coupling.pictures.events import APART, MARKS, draw_events
+from coupling.pictures.figure import map_axes, plain_ticks, put_keys, save_picture
+from coupling.pictures.path import PITCHES, draw_path, is_visible, path_window
+from coupling.pictures.plate import (
+    Piece,
+    Relief,
+    Scale,
+    cut_out,
+    draw_plate,
+    draw_window,
+    join,
+    refined,
+)
+from coupling.pictures.portrait import (
+    Portrait,
+    chosen_drives,
+    decisive_moment,
+)
+from coupling.pictures.run import draw_run, draw_surface
+from coupling.pictures.time import (
+    Curves,
+    draw_over_time,
+    margins_over_time,
+    strokes_of,
+    velocities_of,
+)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from common import axes_or_new, draw, figure_of, label_axis, label_places, legend_below
 from coupling.case import AXES, Case, PlateCase, PlatformCase
 from coupling.progress import silent
 from coupling.scene import platform_scene
 from fem_plate import draw_supports, frame_around, mark_actuators
-from meshes import label_axis, label_places, legend_below
 from particle import PLACE, RING
 
 ARROW = 0.15  # of the frame's side: the length of the arrow of the initial velocity
@@ -17,12 +18,15 @@ SAMPLES = 1000
 STYLES = "-", "--", ":"
 
 
-def draw_case(case: Case, axes: Axes) -> None:
+@draw.register(Case)
+def draw_case(case: Case, axes: Axes | None = None) -> Figure:
     """Draw a case into axes in m, or of a platform in s and m."""
+    axes = axes_or_new(axes)
     if isinstance(case.plate, PlateCase):
         _draw_plate(case, case.plate, axes)
     else:
         _draw_motion(case.plate, case.run.duration, axes)
+    return figure_of(axes)
 
 
 def _draw_plate(case: Case, plate: PlateCase, axes: Axes) -> None:

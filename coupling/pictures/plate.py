@@ -16,9 +16,10 @@ from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 from matplotlib.tri import Triangulation, UniformTriRefiner
 from numpy.typing import NDArray
 
+from common import STEPS, Unit, draw_rim, unit_for
 from coupling.display import onto_plate
 from fem_plate import Shapes, distance_drawn, extent, frame_around, mark_actuators
-from meshes import STEPS, Unit, draw_rim, rim_curves, unit_for
+from meshes import rim_curves
 
 if TYPE_CHECKING:
     from coupling.display import DisplaySurface

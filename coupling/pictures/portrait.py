@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from common import unit_for
 from coupling.case import Case
 from coupling.display import most_deflected, moving_heights
 from coupling.drives import travel
 from coupling.margins import MarginCurves, Margins
 from coupling.pictures.plate import Relief, relief_of
-from meshes import unit_for
 from particle import AnyDrive, Event, EventKind, Rows, Samples, Trajectory
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ The plate is drawn at one moment: the time step of the result files at which it 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -14,22 +14,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
+from common import Drawing, Unit, draw, figure_of, label_places, unit_for
 from coupling.case import Case
 from coupling.display import DisplaySurface, display_surface
 from coupling.drives import frame_times
 from coupling.margins import MarginCurves, Margins, margin_curves, margins_of
 from coupling.part import build_friction
 from coupling.pictures.events import MARKS, draw_events
-from coupling.pictures.file import save_picture
-from coupling.pictures.keys import put_keys
-from coupling.pictures.path import draw_path
+from coupling.pictures.figure import map_axes, put_keys, save_picture
+from coupling.pictures.path import draw_path, is_visible, path_window
 from coupling.pictures.plate import AXES_WIDTH, draw_plate, draw_window, join
 from coupling.pictures.portrait import LOSSES, Portrait, deflected_most, portrait_of
-from coupling.pictures.ticks import map_axes
 from coupling.pictures.time import Curves, Span, curves_of, draw_over_time
-from coupling.pictures.window import is_visible, path_window
+from coupling.result import Result
 from coupling.scene import Scene
-from meshes import Drawing, Unit, label_places, unit_for
 from particle import HALO, Trajectory, shade_keys
 
 PANEL = 5.0  # inches, about: the side of a map
@@ -55,8 +53,10 @@ def draw_run(
     save_picture(figure, path)
 
 
-def plot_run(case: Case, scene: Scene, trajectory: Trajectory, axes: Axes | None = None) -> Figure:
-    """The picture of a run; with axes in m, only the path over its surface, drawn into these."""
+@draw.register(Result)
+def draw_result(result: Result, axes: Axes | None = None) -> Figure:
+    """Draw a run; with axes in m, only the path over its surface, into these."""
+    case, scene, trajectory = result.case, result.scene, result.trajectory
     surface = display_surface(scene, trajectory)
     times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
     moment = deflected_most(scene, surface, times)
@@ -68,7 +68,7 @@ def plot_run(case: Case, scene: Scene, trajectory: Trajectory, axes: Axes | None
         drawing = Drawing()
         compose(drawing, portrait)
         return drawing
-    figure, unit = cast(Figure, axes.figure), Unit("m", 1.0)
+    figure, unit = figure_of(axes), Unit("m", 1.0)
     draw_surface(figure, axes, portrait, unit)
     line = portrait.samples.position
     draw_path(axes, trajectory, line, unit, is_visible(line, portrait.box))

@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from common import NOTHING, Unit, unit_for
+from coupling.pictures.figure import plain_ticks
 from coupling.pictures.portrait import Portrait
-from coupling.pictures.ticks import plain_ticks
-from meshes import NOTHING, Unit, unit_for
 from particle import PATH_COLOUR, Rows, shade
 
 FloatArray = NDArray[np.float64]

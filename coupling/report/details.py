@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from common import quantity_text
 from coupling.measured import MotionFit
 from coupling.plate_figures import StretchError, VibrationFigures
 from coupling.report.wording import MICRO, MILLI, count, in_percent, quantity
 from coupling.summary import PlateSummary, Summary
-from meshes import quantity_text
 
 MAX_LISTED = 8  # jumps of a measured motion
 

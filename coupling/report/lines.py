@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from common import quantity_text
 from coupling.case import INERTIA
 from coupling.report.details import details
 from coupling.report.margins import margin_lines
 from coupling.report.warnings import MAX_QUASI_STATIC_SHARE
 from coupling.report.wording import MICRO, MILLI, bending, count, in_percent, percent, quantity, unit_of
 from coupling.summary import PlateSummary, Summary
-from meshes import quantity_text
 from particle import Outcome
 
 

@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
+from common import quantity_text
 from coupling.summary import PlateSummary, Summary
-from meshes import quantity_text
 
 MICRO, MILLI = 1e6, 1e3
 MICRO_UNITS: Final = re.compile(r"(?<=[\d)] )u(?=(?:m|N|s|g|Pa|J)\b)|\bu(?=m\b)")

@@ -12,8 +12,8 @@ from pathlib import Path
 import h5py
 from pydantic import ValidationError
 
+from common import UNREADABLE
 from coupling.environment import versions
-from meshes import UNREADABLE
 
 EXPECTED = "Input path must be a result of `active-surface run`"
 LACKS = re.compile(r"\bobject '([^']+)' doesn't exist|attribute: '([^']+)'")

@@ -15,6 +15,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from common import DEADLY, check_hdf5, survives
 from coupling.case import Case
 from coupling.margins import MarginCurves
 from coupling.results.case_record import CaseRecord, case_of
@@ -22,7 +23,6 @@ from coupling.results.numbers import check_finite, check_shapes, checked_cells, 
 from coupling.results.opening import EXPECTED, opened, readable
 from coupling.results.other_file import described, meant
 from coupling.summary import summary_of
-from meshes import DEADLY, check_hdf5, survives
 from particle import Event, EventKind, Outcome, Samples, State, dataset_of, table_of
 
 if TYPE_CHECKING:

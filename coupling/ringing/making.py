@@ -12,8 +12,8 @@ from coupling.progress import doing
 from coupling.ringing.model import RingingModel
 from coupling.stretch import StretchModel, keep_model, key_of, read_model
 from coupling.vibration import ChosenModes, Damping, choose_modes, motion_of
-from fem_plate import Excitation
-from fem_plate.large_deflection import HeldShapes, mode_columns, with_modes
+from fem_plate import Excitation, HeldShapes
+from fem_plate.large_deflection import mode_columns, with_modes
 from particle import AnyDrive
 
 FloatArray = NDArray[np.float64]
@@ -56,7 +56,7 @@ def make_ringing_model(
     swings = np.maximum(amplitudes[:count], MIN_SWING * largest) / section.thickness
     swings = np.array([float(f"{swing:.1e}") for swing in swings])  # cases that are much alike share a model
     strokes = np.abs(model.heights).max(axis=0) / reduction.discrete.units
-    modes = mode_columns(reduction.discrete, shapes, chosen.modes)
+    modes = mode_columns(reduction.discrete, shapes.springs, chosen.modes)
     lowest = modes.weighted(np.eye(len(shares) - 1)[:, :count])
     above = modes.weighted(np.eye(len(shares) - 1)[:, count:])
     key = key_of(large, model.heights, MIN_COUPLING, lowest.v, lowest.extra, swings)

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from coupling.drives import fastest_acceleration
 from coupling.ringing.forces import Ringing
 from coupling.ringing.motion import ringing_corrections
-from coupling.stretch import Corrections, Response, StretchModel
+from coupling.stretch import Corrections, Response, StretchModel, equilibrium_at
 from coupling.vibration import PIECES, ChosenModes, Damping, motion_of
 from fem_plate import LargeDeflection, StretchedShapes
-from fem_plate.large_deflection import Columns, ReducedPlate, Reduction, reduced_equilibrium
+from fem_plate.large_deflection import Columns, ReducedPlate, Reduction
 from particle import AnyDrive
 
 FloatArray = NDArray[np.float64]
@@ -91,8 +91,8 @@ class RingingModel(StretchModel):
         # At resonance a plate that does not stretch swings far higher than one that does.
         swings = float(self.chosen.modes.omega[0] ** 2 * self._amplitudes[0])
         allowed = PIECES / 2 * max(lifted, min(linear.largest_acceleration(), swings))
-        at_rest = reduced_equilibrium(self.plate, np.array([float(drive.evaluate(0.0)[0]) for drive in drives]))
-        start = at_rest.corrections[0][: self.count], np.zeros(self.count)
+        at_rest, _ = equilibrium_at(self.plate, np.array([float(drive.evaluate(0.0)[0]) for drive in drives]))
+        start = at_rest[: self.count], np.zeros(self.count)
         found, largest = ringing_corrections(self.ringing, drives, end, start, self.limits(allowed), self.steady)
         above = linear.chosen(np.arange(len(self.chosen.modes.omega)) >= self.count)
         own = [*found.drives, *(above.modal_drives(allowed) if len(above.oscillators.omega) else [])]

@@ -3,7 +3,7 @@
 from coupling.stretch.corrections import Corrections, correction_drives
 from coupling.stretch.interval import Moment, new_moment
 from coupling.stretch.making import make_model
-from coupling.stretch.model import StretchModel
+from coupling.stretch.model import StretchModel, equilibrium_at
 from coupling.stretch.newton import FINE, NOT_STABLE, State, find_equilibrium, find_rates, follow_equilibrium, new_state
 from coupling.stretch.pieces import lay_piece
 from coupling.stretch.response import Response, room_beyond

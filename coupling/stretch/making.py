@@ -12,7 +12,7 @@ from scipy.stats import qmc
 from coupling.case import MAX_STRETCHING
 from coupling.drives import reach, stroke_heights
 from coupling.progress import doing
-from coupling.stretch.model import TOLERANCE, StretchModel
+from coupling.stretch.model import TOLERANCE, StretchModel, equilibrium_at
 from coupling.stretch.store import keep_model, key_of, read_model
 from fem_plate import LargeDeflection
 from fem_plate.large_deflection import fine_enough, reduce
@@ -61,7 +61,9 @@ def make_model(large: LargeDeflection, sets: Sequence[Sequence[AnyDrive]], end: 
     report = _Report(tell)
     report.begun()
     discrete, mesh_error = fine_enough(large, largest)
-    reduction = reduce(discrete, heights / discrete.units, TOLERANCE, report.solved)
+    reduction = reduce(
+        discrete, heights / discrete.units, TOLERANCE, lambda plate, d: equilibrium_at(plate, d)[0], report.solved
+    )
     tell(PARTS, PARTS)
     keep_model(key, reduction, mesh_error)
     return StretchModel(large, reduction, heights, mesh_error)

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.stretch.corrections import Corrections, correction_drives
+from coupling.stretch.interval import new_moment
+from coupling.stretch.newton import FINE, NOT_STABLE, fill_motions, find_equilibrium, new_state
 from coupling.stretch.response import Response, find_response
 from fem_plate import LargeDeflection, StretchedShapes
-from fem_plate.large_deflection import ReducedPlate, Reduction, reduced_equilibrium
+from fem_plate.large_deflection import ReducedPlate, Reduction
 from particle import AnyDrive
 
 FloatArray = NDArray[np.float64]
@@ -52,11 +54,8 @@ class StretchModel:
         return self._at_heights()
 
     def _at_heights(self) -> tuple[FloatArray, FloatArray]:
-        states = [reduced_equilibrium(self.plate, row) for row in self.heights]
-        return (
-            np.max([np.abs(state.corrections[0]) for state in states], axis=0),
-            np.max([np.abs(state.in_plane[0]) for state in states], axis=0),
-        )
+        corrections, motions = zip(*(equilibrium_at(self.plate, row) for row in self.heights), strict=True)
+        return np.max(np.abs(corrections), axis=0), np.max(np.abs(motions), axis=0)
 
     @cached_property
     def shapes(self) -> StretchedShapes:
@@ -95,3 +94,22 @@ class StretchModel:
         """The largest weighted correction and in-plane motion at the heights."""
         (heights, in_plane), (corrections, motions) = self._weights, self.largest
         return float((heights * corrections).max()), float((in_plane * motions).max())
+
+
+def equilibrium_at(plate: ReducedPlate, drives: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The corrections (n,) and in-plane motions (M,) of a reduced plate under drives (N,) that stand still.
+
+    Raises ValueError where Newton's method does not converge, or the energy is not least.
+    """
+    forms = plate.forms
+    moment, state = new_moment(forms), new_state(forms)
+    moment.own[0] = 0.5 * np.einsum("i,rij,j->r", drives, forms.drives, drives)
+    moment.mixed[0] = np.einsum("i,rij->rj", drives, forms.mixed)
+    corrections, motions = np.zeros(len(forms.load)), np.zeros(len(plate.in_plane))
+    outcome = find_equilibrium(forms, moment, state, corrections, 0.0)
+    if outcome == NOT_STABLE:
+        raise ValueError("The plate is not stable there: its energy is not least")
+    if outcome != FINE:
+        raise ValueError("The corrections of the plate do not converge; reduce the strokes")
+    fill_motions(forms, moment, state, corrections, motions)
+    return corrections, motions

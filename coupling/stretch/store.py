@@ -36,8 +36,8 @@ def key_of(large: LargeDeflection, heights: FloatArray, tolerance: float, *more:
     """A hash of plate, actuators, the heights and what more the model is for, and the sources that make it."""
     plate, mesh = large.plate, large.plate.mesh
     digest = hashlib.sha256()
-    for package in (fem_plate, meshes):
-        digest.update(source_digest(Path(package.__path__[0])).encode())
+    for folder in (Path(fem_plate.__path__[0]), Path(meshes.__path__[0]), Path(__file__).parent):
+        digest.update(source_digest(folder).encode())
     text = (
         *(plate.section, plate.tension, sorted(plate.supports.items()), plate.tolerance),
         *(sorted(large.movable.items()), large.membrane, tolerance),

@@ -9,9 +9,9 @@ from typing import Any
 import h5py
 import numpy as np
 
+from common import UNREADABLE, check_hdf5, survives
 from coupling.files import whole_file
 from coupling.new_file import NewFile
-from meshes import UNREADABLE, check_hdf5, survives
 from particle import SurfaceMotion
 from particle.drives import DriveTable
 from particle.surface import BuiltCells, Cells

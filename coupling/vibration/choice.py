@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from coupling.drives import stroke_heights
 from coupling.vibration.motion import ModalMotion, modal_motion
 from coupling.vibration.oscillators import Oscillators
-from fem_plate import MAX_MODES, Excitation, ExcitedModes, InfluenceShapes
-from fem_plate.large_deflection import HeldShapes
+from fem_plate import MAX_MODES, Excitation, ExcitedModes, HeldShapes, InfluenceShapes
 from particle import AnyDrive
 
 FloatArray = NDArray[np.float64]

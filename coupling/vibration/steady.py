@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from common import quantity_text
 from coupling.stretch import schedule_of
 from coupling.vibration.oscillators import Course, Oscillators, follow
-from meshes import quantity_text
 from particle import AnyDrive
 from particle.drives import QuinticDrive, begun_at, drive_table
 

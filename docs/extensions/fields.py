@@ -15,7 +15,7 @@ from pydantic import BaseModel
 from coupling.case.values import quantities
 
 HIDDEN = "_"
-PACKAGES = {"meshes", "fem_plate", "particle", "coupling", "active_surface"}
+PACKAGES = {"common", "meshes", "fem_plate", "particle", "coupling", "active_surface"}
 PLAIN = {
     "StrictInt": "int",
     "StrictFloat": "float",

@@ -8,13 +8,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from fem_plate.elements import CLAMPED, Fineness, SingularCorner, corner_rows, graded
+from fem_plate.elements import CLAMPED, MeshGrading, SingularCorner, corner_rows, grade_mesh
+from fem_plate.types import FloatArray
 from meshes import Outline, PlateMesh, rectangle
-
-FloatArray = NDArray[np.float64]
 
 CELL = 1.0  # pitches, the largest cell: the estimated error of shapes is then 4e-6
 FINER_CELL = 0.8  # pitches: 5e-7, in twice the time
@@ -36,14 +34,14 @@ class Cut:
 class Cutter:
     """Cuts patches out of a plate for an array of actuators.
 
-    fine, corners: as in `graded`.  points: (N, 2) m.  pitch: (2,) m.  cell: pitches, the largest cell.
+    fine, corners: as in `grade_mesh`.  points: (N, 2) m.  pitch: (2,) m.  cell: pitches, the largest cell.
     """
 
     def __init__(
         self,
         mesh: PlateMesh,
         supports: Mapping[str, str],
-        fine: Fineness,
+        fine: MeshGrading,
         corners: list[SingularCorner],
         points: FloatArray,
         pitch: FloatArray,
@@ -107,7 +105,7 @@ class Cutter:
         )
         corners = [replace(c, point=c.point - shift) for c in self._corners_in(cut.box + shift)]
         touches = set(cut.sides.values()) != {CUT}
-        mesh = graded(mesh, self.fine, corners, actuators if touches else None)
+        mesh = grade_mesh(mesh, self.fine, corners, actuators if touches else None)
         return mesh, self._supports(mesh), corner_rows(mesh, corners)
 
     def _supports(self, mesh: PlateMesh) -> dict[str, str]:
@@ -150,7 +148,7 @@ class Cutter:
             if not large.any():
                 break
             mesh = mesh.refined(large)
-        return graded(mesh, self.fine, self.corners, self.points)
+        return grade_mesh(mesh, self.fine, self.corners, self.points)
 
 
 def _without_cuts(mesh: PlateMesh, supports: Mapping[str, str]) -> tuple[PlateMesh, dict[str, str]]:

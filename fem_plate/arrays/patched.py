@@ -7,20 +7,19 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import coo_matrix, csr_matrix
 
 from fem_plate.arrays.cutting import CELL, FINER_CELL, Cutter
 from fem_plate.arrays.patches import ActuatorArray, Patch, ProgressCallback, Tile, spacing
 from fem_plate.elements import Derivatives, PlateFunctions, source_basis
-from fem_plate.given_plate import GivenPlate
+from fem_plate.graded import GradedPlate
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
+from fem_plate.modes import HeldPlate, modes
 from fem_plate.shapes import Shapes
-from fem_plate.vibration import HeldPlate, modes
+from fem_plate.types import FloatArray, IntArray
 from meshes import Outline
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 PatchFunction = Callable[[Patch, FloatArray], FloatArray]  # values (n, c) of a patch's shapes at points (n, 2)
 
 PLACE_DIGITS = 9  # of a patch's size, to which points lie alike
@@ -261,14 +260,14 @@ def _entries(
 
 
 def patched_shapes(
-    plate: GivenPlate, points: FloatArray, actuator_stiffness: FloatArray, truncation: float, tell: ProgressCallback
+    plate: GradedPlate, points: FloatArray, actuator_stiffness: FloatArray, truncation: float, tell: ProgressCallback
 ) -> PatchedShapes:
     """The influence shapes of actuators at points (N, 2) [m], each cut off where it is below the truncation."""
     mesh, section = plate.mesh, plate.section
-    cell = min(plate.fineness.cell, PATCH_FINENESS * plate.fineness.half_width)
+    cell = min(plate.grading.cell, PATCH_FINENESS * plate.grading.half_width)
     pitch = spacing(points)
-    fineness = plate.fineness.on_patches(cell, PATCH_RIM * min(float(pitch.max()), mesh.size))
+    grading = plate.grading.on_patches(cell, PATCH_RIM * min(float(pitch.max()), mesh.size))
     pitches = CELL if plate.tolerance is None else FINER_CELL
-    cutter = Cutter(mesh, plate.supports, fineness, plate.corners, points, pitch, pitches)
+    cutter = Cutter(mesh, plate.supports, grading, plate.corners, points, pitch, pitches)
     array = ActuatorArray(cutter, points, actuator_stiffness, section.rigidity, section.law, plate.relative_tension)
     return PatchedShapes(array, truncation, mesh.size, mesh.outline, tell)

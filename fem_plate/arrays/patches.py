@@ -12,15 +12,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem_plate.arrays.cutting import Cut, Cutter
 from fem_plate.elements import PlateFunctions, PlateModel
-from fem_plate.held import held_shapes
+from fem_plate.influence import held_shapes
+from fem_plate.types import BoolArray, FloatArray, IntArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 ProgressCallback = Callable[[int, int], object]  # takes the number of tiles done, and their total
 
 TILE = 10  # pitches across a tile
@@ -205,7 +203,7 @@ class ActuatorArray:
             truncation = float((np.abs(functions.values(at_cut / mesh.size)) / largest).max())
         return Patch(cut.box, actuators, core, mesh.size, functions, truncation)
 
-    def _feel_cut(self, xy: FloatArray, cut: Cut, actuators: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_]:
+    def _feel_cut(self, xy: FloatArray, cut: Cut, actuators: FloatArray, stiffness: FloatArray) -> BoolArray:
         """Which of the points (n, 2) [m] feel that the plate is clamped along the cut.
 
         They are within 1.5 pitches of it, or closer to it than to what holds the plate: an actuator or, where that

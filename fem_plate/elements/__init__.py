@@ -1,17 +1,16 @@
 """The discrete plate: the Argyris element, its matrices up to the true rim, corners, and responses in closed form."""
 
 from fem_plate.elements import forms
-from fem_plate.elements.anisotropic import AnisotropicPlate, is_isotropic
+from fem_plate.elements.anisotropic import AnisotropicPlate
 from fem_plate.elements.argyris import monomials
-from fem_plate.elements.close import SourceBasis, source_basis
 from fem_plate.elements.corners import MAX_EXPONENT
+from fem_plate.elements.dipoles import SourceBasis, source_basis
+from fem_plate.elements.energy import PlateEnergy, plate_energy
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.functions import Derivatives, PlateFunctions
-from fem_plate.elements.grading import GAIN, Fineness, SingularCorner, corner_rows, graded, singular_corners
-from fem_plate.elements.infinite import InfinitePlate, Radial, infinite_plate
+from fem_plate.elements.grading import GAIN, MeshGrading, SingularCorner, corner_rows, grade_mesh, singular_corners
+from fem_plate.elements.infinite import UNIT_STRENGTH, point_load, point_value
 from fem_plate.elements.model import PlateModel
-from fem_plate.elements.rim import rigid_motions, rim_quadrature
-from fem_plate.elements.singular import UNIT_STRENGTH, point_load, point_value
+from fem_plate.elements.rim import CLAMPED, FREE, SIMPLY_SUPPORTED, by_boundary, rigid_motions, rim_quadrature
 from fem_plate.elements.space import QUADRATURE, PlateSpace
-from fem_plate.elements.supports import CLAMPED, FREE, SIMPLY_SUPPORTED, by_boundary
 from fem_plate.elements.wedges import rounded_corners, wedges

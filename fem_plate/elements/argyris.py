@@ -10,10 +10,8 @@ quintic's unknowns at the edge's ends determine.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import FloatArray, IntArray
 
 DEGREE = 5
 FUNCTIONS = 21

@@ -6,13 +6,10 @@ Sorting pairs of entities rather than pairs of unknowns makes this several times
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
+from fem_plate.types import FloatArray, IntArray
 from meshes import edge_numbers, sides
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 CHUNK = 20_000  # triangles scattered at a time, to bound memory
 LOCAL_ENTITY = np.array([0] * 6 + [1] * 6 + [2] * 6 + [3, 4, 5])  # of a triangle's 21 unknowns

@@ -16,12 +16,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements.rim import RIM_POINTS, RimQuadrature, unit_gauss
-
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from fem_plate.types import ComplexArray, FloatArray
 
 ON_SIDE = 1e-9  # of the plate's size: how far off the line of a side a point of it may lie
 FLOOR = 1e-12  # of the plate's size: closer to a corner than that second derivatives grow no more

@@ -9,13 +9,11 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csc_matrix
 
-from fem_plate.elements.supports import CLAMPED, FREE
+from fem_plate.elements.rim import CLAMPED, FREE
+from fem_plate.types import ComplexArray, FloatArray, IntArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 Copies = list[tuple[int, int, int, int]]
 
 MAX_EXPONENT = 4.0  # to polynomials of degree five, larger exponents are smooth
@@ -52,7 +50,7 @@ def exponent(angle: float, before: str, after: str, poisson_ratio: float) -> flo
     return MAX_EXPONENT
 
 
-def _singular_value(exponents: NDArray, angle: float, before: str, after: str, poisson_ratio: float) -> FloatArray:
+def _singular_value(exponents: FloatArray, angle: float, before: str, after: str, poisson_ratio: float) -> FloatArray:
     """The smallest singular value of the four conditions on f, which vanishes at the admissible exponents."""
     rows = [*_conditions(exponents, 0.0, before, poisson_ratio), *_conditions(exponents, angle, after, poisson_ratio)]
     matrix = np.moveaxis(np.array(rows), (0, 1), (-2, -1))
@@ -60,7 +58,7 @@ def _singular_value(exponents: NDArray, angle: float, before: str, after: str, p
     return np.asarray(np.linalg.svd(matrix, compute_uv=False)[..., -1])
 
 
-def _conditions(exponents: NDArray, angle: float, support: str, poisson_ratio: float) -> list[list[NDArray]]:
+def _conditions(exponents: FloatArray, angle: float, support: str, poisson_ratio: float) -> list[list[ComplexArray]]:
     """Two rows of four coefficients: of cos and sin of (lambda + 1) theta and of (lambda - 1) theta."""
     s, nu = exponents.astype(complex), poisson_ratio  # s is lambda
     a, b = (s + 1) * angle, (s - 1) * angle

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import block_diag, bmat, csc_matrix, hstack
 
 from fem_plate.elements import forms
@@ -14,11 +13,8 @@ from fem_plate.elements.corner_functions import CornerFunctions
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.remainders import Remainders
 from fem_plate.elements.space import CHUNK, PlateSpace
+from fem_plate.types import FloatArray, IntArray
 from meshes import PlateMesh
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
 
 # Of s - X, dimensionless: with less it counts for nothing, and rounding of X would be a large part of it.
 LEAST_ENERGY = 1e-8
@@ -71,7 +67,7 @@ class EnrichedSpace(PlateSpace):
 
     @cached_property
     def _remainders(self) -> Remainders:
-        lifts = super().all_unknowns(self._lifts)[self.dofs]
+        lifts = super().element_dofs(self._lifts)[self.dofs]
         return Remainders(self, self.functions, lifts, self._at_rim[1], self._law)
 
     @cached_property
@@ -114,7 +110,7 @@ class EnrichedSpace(PlateSpace):
         elements = self._solve_elements(self.load(self._law, self._tension) @ traces)
         left, right = self.couplings(self._tension)
         tables = self.traces(self._law)
-        local = super().all_unknowns(elements)[self.dofs][self.rim.triangle]  # (k, 21, functions)
+        local = super().element_dofs(elements)[self.dofs][self.rim.triangle]  # (k, 21, functions)
         given = traces.reshape(*tables.shape[:3], -1)
         loads = np.einsum("kncd,dknf->cknf", left, given - tables @ local)
         loads += np.einsum("kncd,dknf->cknf", right - left, given)
@@ -148,9 +144,9 @@ class EnrichedSpace(PlateSpace):
         of_corners = self.functions.derivatives(xy, 1)[0][0] - of_elements @ self._lifts
         return hstack([of_elements, csc_matrix(of_corners)], format="csc")
 
-    def all_unknowns(self, unknowns: FloatArray) -> FloatArray:
+    def element_dofs(self, unknowns: FloatArray) -> FloatArray:
         """Those of the triangles' polynomials, which leave s out."""
-        return super().all_unknowns(unknowns[: self.plain] - self._lifts @ unknowns[self.plain :])
+        return super().element_dofs(unknowns[: self.plain] - self._lifts @ unknowns[self.plain :])
 
     def evaluate(self, xy: FloatArray, unknowns: FloatArray, orders: int) -> list[FloatArray]:
         results, shares = super().evaluate(xy, unknowns, orders), unknowns[self.plain :]

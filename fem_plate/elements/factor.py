@@ -13,11 +13,10 @@ from queue import SimpleQueue
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import splu
 
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray
 
 
 def factorised(matrix: csc_matrix) -> Callable[[FloatArray], FloatArray]:

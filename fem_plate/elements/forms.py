@@ -30,13 +30,10 @@ The rim is its true curve: only there does a curved clamped plate have no slope.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements.argyris import DERIVATIVES, FUNCTIONS, REFERENCE, Triangles, chain_rule, monomials
 from fem_plate.elements.rim import RimQuadrature, unit_gauss
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import FloatArray
 
 # Anything within (20..2e4, 100..2000, 5000..4e5) gives the same digits; far less loses definiteness.
 GAMMA_0 = 200.0
@@ -116,6 +113,11 @@ def stretching_at(gradient: FloatArray, weights: FloatArray) -> FloatArray:
 def mass_at(value: FloatArray, weights: FloatArray) -> FloatArray:
     """int v q by quadrature: values (k, n, 21) and weights (k, n) give (k, 21, 21)."""
     return np.einsum("kn,knj,knl->kjl", weights, value, value, optimize=True)
+
+
+def products(one: FloatArray, other: FloatArray) -> FloatArray:
+    """The sums (t, i, j) over d and n of tables (d, t, n, i) and (d, t, n, j)."""
+    return np.asarray(sum(a.transpose(0, 2, 1) @ b for a, b in zip(one, other, strict=True)))
 
 
 def rim_traces(derivatives: list[FloatArray], normal: FloatArray, law: FloatArray) -> FloatArray:

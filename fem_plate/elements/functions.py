@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_plate.elements.infinite import InfinitePlate
+from fem_plate.elements.infinite import PLAIN, InfinitePlate
 from fem_plate.elements.space import PlateSpace
+from fem_plate.types import FloatArray
 
-FloatArray = NDArray[np.float64]
 Derivatives = tuple[FloatArray, FloatArray, FloatArray]  # value, gradient, Hessian
 
 
@@ -27,7 +26,7 @@ class PlateFunctions:
     forces: FloatArray  # (N, k)
     rigid: FloatArray  # (3, k)
     pressure: FloatArray  # (k,)
-    infinite: InfinitePlate = InfinitePlate()
+    infinite: InfinitePlate = PLAIN
 
     def weighted(self, weights: FloatArray) -> PlateFunctions:
         """The sum of the functions times weights (k,) or (k, m)."""

@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem_plate.elements.corners import MAX_EXPONENT, exponent
+from fem_plate.types import FloatArray
 from meshes import PlateMesh, areas
-
-FloatArray = NDArray[np.float64]
 
 FAR = 0.7  # of the plate's half width: an actuator that far from the rim needs no smaller cells there
 CORNER_GROWTH = 4.0  # of cells with the distance from a corner, times the plate's cells over its size
@@ -48,7 +46,7 @@ def singular_corners(mesh: PlateMesh, supports: Mapping[str, str], poisson_ratio
 
 
 @dataclass(frozen=True)
-class Fineness:
+class MeshGrading:
     """How fine a plate's cells are before any grading."""
 
     cell: float  # m, mean size over the area
@@ -58,7 +56,7 @@ class Fineness:
     at_layer: float = np.inf  # m, of the cells there
 
     @staticmethod
-    def of(mesh: PlateMesh, tension: float = 0.0) -> Fineness:
+    def of(mesh: PlateMesh, tension: float = 0.0) -> MeshGrading:
         """The fineness of a mesh's cells; tension: 1/m^2, over the plate's rigidity."""
         area = np.abs(areas(mesh.points, mesh.triangles))
         a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
@@ -66,13 +64,13 @@ class Fineness:
         size = min(mesh.size, 3 * half_width)
         cell = float(np.average(mesh.cell_sizes, weights=area))
         if tension <= 0:
-            return Fineness(cell, float(half_width), float(size))
+            return MeshGrading(cell, float(half_width), float(size))
         ends = mesh.points[np.concatenate(list(mesh.boundaries.values()))]
         rim = float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum())
         layer = tension**-0.5
-        return Fineness(cell, float(half_width), float(size), layer, _at_layer(cell / float(half_width), layer, rim))
+        return MeshGrading(cell, float(half_width), float(size), layer, _at_layer(cell / float(half_width), layer, rim))
 
-    def on_patches(self, cell: float, rim: float) -> Fineness:
+    def on_patches(self, cell: float, rim: float) -> MeshGrading:
         """The same with another size of cell, for patches that extend `rim` along the plate's rim; all in m."""
         return replace(self, cell=cell, at_layer=_at_layer(cell / self.half_width, self.layer, rim))
 
@@ -83,7 +81,7 @@ class Fineness:
             return GAIN
         return LAYER_GAIN if self.at_layer <= COARSE_LAYER * self.layer else COARSE_GAIN
 
-    def halved(self, times: int = 1) -> Fineness:
+    def halved(self, times: int = 1) -> MeshGrading:
         """The fineness of cells halved so many times."""
         return replace(self, cell=self.cell / 2**times, at_layer=self.at_layer / 2**times)
 
@@ -100,8 +98,8 @@ def _at_layer(share: float, layer: float, rim: float) -> float:
     return max(LAYER_CELLS * share * layer, half + float(np.sqrt(half**2 + 2 * half * layer)))
 
 
-def graded(
-    mesh: PlateMesh, fine: Fineness, corners: list[SingularCorner], points: FloatArray | None = None
+def grade_mesh(
+    mesh: PlateMesh, fine: MeshGrading, corners: list[SingularCorner], points: FloatArray | None = None
 ) -> PlateMesh:
     """The mesh with smaller cells at corners, at a stretched rim, and where actuators at points (N, 2) [m] are close.
 

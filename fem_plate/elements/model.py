@@ -1,4 +1,8 @@
-"""The discrete plate: a graded mesh, its factorised stiffness, and its responses to unit loads; all dimensionless."""
+"""The discrete plate: a graded mesh, its factorised stiffness, and its responses to unit loads; all dimensionless.
+
+Where the energy is a field, the stiffness and the loads are those of `EnergyForm`; where one law holds everywhere, the
+element matrices are exact and nothing inside the cells loads the smooth part.
+"""
 
 from __future__ import annotations
 
@@ -6,30 +10,33 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
-from fem_plate.elements.anisotropic import AnisotropicPlate, is_isotropic
-from fem_plate.elements.close import SourceBasis, source_basis
+from fem_plate.elements.anisotropic import AnisotropicPlate, infinite_plate
+from fem_plate.elements.dipoles import SourceBasis, source_basis
+from fem_plate.elements.energy import PlateEnergy
+from fem_plate.elements.energy_form import EnergyForm
 from fem_plate.elements.enriched import EnrichedSpace
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.forms import rim_traces
-from fem_plate.elements.infinite import infinite_plate
+from fem_plate.elements.infinite import InfinitePlate
 from fem_plate.elements.rim import rigid_motions
 from fem_plate.elements.space import PlateSpace
 from fem_plate.elements.wedges import Wedge, corner_functions
+from fem_plate.types import BoolArray, FloatArray
 from meshes import PlateMesh
 
-FloatArray = NDArray[np.float64]
-
 CHUNK = 128  # forces solved for at a time, to bound memory
+FREE = 1e-10  # of the largest energy of a rigid motion: those with less are free
+EPSILON = float(np.finfo(float).eps)
 
 
 class PlateModel:
     """A plate on one mesh.
 
     supports: of every boundary.  free_corners: rows of mesh points where second derivatives may jump.
-    law: (3, 3), of M(v):H(q) over the plate's rigidity.  tension: 1/m^2, over it too; 0 where a boundary is free.
+    law: (3, 3), of M(v):H(q) over the plate's rigidity; or the energy, where that is a field or more than bending.
+    tension: 1/m^2, over the rigidity too, of a plate of one law; 0 where a boundary is free.
     wedges: corners with functions of their own, of an isotropic plate.
     """
 
@@ -37,22 +44,29 @@ class PlateModel:
         self,
         mesh: PlateMesh,
         supports: Mapping[str, str],
-        law: FloatArray,
+        law: FloatArray | PlateEnergy,
         free_corners: Iterable[int] = (),
         tension: float = 0.0,
         wedges: Sequence[Wedge] = (),
     ) -> None:
         self.mesh = mesh
-        self.law = law
         self.tension = tension * mesh.size**2  # dimensionless
-        # What is known of it in closed form.
-        self.infinite = infinite_plate(self.tension) if is_isotropic(law) else AnisotropicPlate(law)
+        self.form: EnergyForm | None = None
+        rows = list(free_corners)
+        if isinstance(law, PlateEnergy):
+            self.space: PlateSpace = PlateSpace(mesh, supports, rows)
+            self.form = EnergyForm(self.space, law)
+            self.infinite: InfinitePlate = AnisotropicPlate(law.laws)
+            self.rigid = self._orthonormal(self._free(rigid_motions(self.space.rim)))  # (3, r), of 1, x, y
+            return
+        self.law = law
+        self.infinite = infinite_plate(law, self.tension)
         if wedges:
-            functions, rows = corner_functions(wedges, mesh.size), list(free_corners)
-            self.space: PlateSpace = EnrichedSpace(mesh, supports, rows, functions, law, self.tension)
+            functions = corner_functions(wedges, mesh.size)
+            self.space = EnrichedSpace(mesh, supports, rows, functions, law, self.tension)
         else:
-            self.space = PlateSpace(mesh, supports, list(free_corners))
-        self.rigid = self._orthonormal(rigid_motions(self.space.rim))  # (3, r), coefficients of 1, x, y
+            self.space = PlateSpace(mesh, supports, rows)
+        self.rigid = self._orthonormal(rigid_motions(self.space.rim))
 
     @property
     def unknowns(self) -> int:
@@ -66,23 +80,40 @@ class PlateModel:
         motions = np.column_stack([np.ones(len(points)), points]) @ rigid
         return np.asarray(rigid @ np.linalg.inv(np.linalg.cholesky(motions.T @ (weights[:, None] * motions))).T)
 
+    def _free(self, rigid: FloatArray) -> FloatArray:
+        """The rigid motions (3, r) among those that the supports allow which cost no energy."""
+        if not rigid.size or self.form is None:
+            return rigid
+        even = self._orthonormal(rigid)
+        motions = self.space.linear() @ even
+        energies, turned = np.linalg.eigh(motions.T @ (self.form.parts[1] @ motions))
+        return np.asarray(even @ turned[:, np.abs(energies) <= FREE * np.abs(energies).max()])
+
     @cached_property
     def mass(self) -> csc_matrix:
         """The matrix of int v q, by the mass per area over that of the section for reference."""
-        return self.space.mass()
+        return self.space.mass() if self.form is None else self.form.mass()
 
     @property
     def masses(self) -> tuple[FloatArray, FloatArray]:
         """Points (n, 2) and weights (n,) of integrals over the plate's mass, as of `mass`."""
-        return self.space.quadrature
+        points, weights = self.space.quadrature
+        return points, weights if self.form is None else weights * self.form.energy.relative_thickness(points)
 
-    def basis(self, x: FloatArray, held: NDArray[np.bool_]) -> SourceBasis:
-        """What to combine forces at x (N, 2) of, where actuators hold the plate."""
-        return source_basis(x, held)
+    def basis(self, x: FloatArray, held: BoolArray) -> SourceBasis:
+        """What to combine forces at x (N, 2) of, where actuators hold the plate.
 
-    def rounding(self, x: FloatArray, held: NDArray[np.bool_]) -> float:
+        There are no dipoles where the energy is a field: forces at different places have different laws.
+        """
+        return source_basis(x, held if self.form is None else np.zeros_like(held))
+
+    def rounding(self, x: FloatArray, held: BoolArray) -> float:
         """The error of shapes of actuators at x (N, 2), relative to their largest value, that finer cells have too."""
-        return self.basis(x, held).rounding
+        if self.form is None:
+            return self.basis(x, held).rounding
+        # Second differences of Green's functions lose digits with the square of the distance between actuators.
+        apart = np.linalg.norm(x[held][:, None] - x[held], axis=-1) + np.where(np.eye(int(held.sum())), np.inf, 0.0)
+        return float(EPSILON / apart.min(initial=1.0) ** 2)
 
     @cached_property
     def mean(self) -> FloatArray:
@@ -107,7 +138,8 @@ class PlateModel:
     @cached_property
     def pinned_stiffness(self) -> csc_matrix:
         """The stiffness, with the rigid motions held by springs at a few points."""
-        return (self.space.stiffness(self.law, self.tension) + self.pins.T @ self.pins).tocsc()
+        own = self.space.stiffness(self.law, self.tension) if self.form is None else self.form.stiffness
+        return (own + self.pins.T @ self.pins).tocsc()
 
     @cached_property
     def solve(self) -> Callable[[FloatArray], FloatArray]:
@@ -152,7 +184,9 @@ class PlateModel:
         return responses - self.space.linear() @ (self.rigid @ (means if basis is None else means @ basis.matrix))
 
     def _smooth_under(self, sources: FloatArray, basis: SourceBasis | None) -> FloatArray:
-        """The same, but for what springs under a plate that can move rigidly add."""
+        """The same without what springs under a plate that can move rigidly add."""
+        if self.form is not None:
+            return self.solve(self.form.loads(sources, self.infinite))
         responses = np.empty((self.unknowns, len(sources)), order="F")
         rim = self.space.rim.points
         for start in range(0, len(sources), CHUNK):
@@ -183,6 +217,8 @@ class PlateModel:
 
     def under_pressure(self) -> FloatArray:
         """The smooth part (unknowns, 1) of the response to a unit pressure."""
+        if self.form is not None:
+            return self.solve(self.space.mass() @ self.space.linear()[:, :1])
         return self._smooth_parts([self.infinite.pressure_derivatives(self.space.rim.points - self.space.middle)])
 
     def motions(self, xy: FloatArray) -> FloatArray:

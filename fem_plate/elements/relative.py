@@ -10,13 +10,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix, diags, identity
 
 from fem_plate.elements.argyris import Triangles
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import BoolArray, FloatArray, IntArray
 
 REACH = 0.2  # of the plate's size: how far from a corner unknowns count from it,
 NEXT = 0.45  # or of the distance to the next corner, if that is less
@@ -25,7 +22,7 @@ NEXT = 0.45  # or of the distance to the next corner, if that is less
 class Relative(NamedTuple):
     """Unknowns counted from the planes of nearby corners."""
 
-    inside: NDArray[np.bool_]  # (m,), the triangles all of whose unknowns count from one corner
+    inside: BoolArray  # (m,), the triangles all of whose unknowns count from one corner
     absolute: csr_matrix  # (n, n), gives the mesh's unknowns from relative ones
     bent: csr_matrix  # (n, n), the same without the planes
     planes: IntArray  # the unknowns of the mesh that count from a plane

@@ -6,18 +6,13 @@ those of s and X would be one of large numbers, the penalties where other sides 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements import forms
 from fem_plate.elements.corner_functions import CornerFunctions, singular_weights
 from fem_plate.elements.rim import RIM_POINTS, unit_gauss
 from fem_plate.elements.space import CHUNK, QUADRATURE, PlateSpace
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import FloatArray, IntArray
 
 ACROSS = 16  # quadrature points of a triangle at a corner, across the rays from there
 SAME = 1e-9  # of the plate's size: points closer than this coincide
@@ -42,6 +37,11 @@ class Remainders:
         self.traces = forms.rim_traces(to_integrate, space.rim.normal, law)  # (6, k, n, E)
         self.traces -= of_elements @ lifts[space.rim.triangle]
 
+    @property
+    def _step(self) -> int:
+        """Triangles evaluated at a time, to bound memory."""
+        return max(1, CHUNK // (QUADRATURE**2 * len(self.functions)))
+
     def bending(self) -> tuple[FloatArray, FloatArray]:
         """int M(v):H(s - X) of the triangles' functions v, (all unknowns, E), and of s - X itself, (E, E)."""
         triangles, count = self.space.triangles, len(self.functions)
@@ -54,10 +54,10 @@ class Remainders:
                 of_triangle, energy = self._at_corner(place, row, first)
                 with_elements[self.space.dofs[row]] += of_triangle
                 own += energy
-        for triangle, points, weights in self._cells(np.flatnonzero(~touching)):
+        for triangle, points, weights in self.space.cells(self._step, np.flatnonzero(~touching)):
             rest, table = self._derivatives(points, triangle, 2), triangles.derivatives(points, triangle, 2)
             moments = np.tensordot(self.law, rest * weights[..., None], axes=1)
-            np.add.at(with_elements, self.space.dofs[triangle], _products(table, moments))
+            np.add.at(with_elements, self.space.dofs[triangle], forms.products(table, moments))
             own += np.tensordot(rest, moments, axes=([0, 1, 2], [0, 1, 2]))
         return with_elements, own
 
@@ -96,10 +96,10 @@ class Remainders:
         """int grad v.grad(s - X) of the triangles' functions v, (all unknowns, E), and of s - X itself, (E, E)."""
         triangles, count = self.space.triangles, len(self.functions)
         with_elements, own = np.zeros((self.space.all_count, count)), np.zeros((count, count))
-        for triangle, points, weights in self._cells(np.arange(len(triangles.points))):
+        for triangle, points, weights in self.space.cells(self._step):
             rest, table = self._derivatives(points, triangle, 1), triangles.derivatives(points, triangle, 1)
             weighted = weights[..., None] * rest
-            np.add.at(with_elements, self.space.dofs[triangle], _products(table, weighted))
+            np.add.at(with_elements, self.space.dofs[triangle], forms.products(table, weighted))
             own += np.tensordot(rest, weighted, axes=([0, 1, 2], [0, 1, 2]))
         return with_elements, own
 
@@ -114,24 +114,7 @@ class Remainders:
         np.add.at(with_elements, self.space.dofs[self.space.rim.triangle], local)
         return with_elements, np.einsum("ckne,cknf->ef", self.traces, coupled, optimize=True)
 
-    def _cells(self, chosen: IntArray) -> Iterator[tuple[IntArray, FloatArray, FloatArray]]:
-        """Triangles (t,), quadrature points (t, n, 2) and weights (t, n), some at a time, and then the slivers."""
-        triangles = self.space.triangles
-        xy, weights = forms.triangle_quadrature(QUADRATURE)
-        step = max(1, CHUNK // (len(weights) * len(self.functions)))
-        for start in range(0, len(chosen), step):
-            triangle = chosen[start : start + step]
-            points = np.einsum("mij,nj->mni", triangles.jacobian[triangle], xy) + triangles.centre[triangle, None]
-            yield triangle, points, triangles.determinant[triangle, None] * weights
-        if len(self.space.slivers.triangle):
-            yield self.space.slivers
-
     def _derivatives(self, points: FloatArray, triangle: IntArray, order: int) -> FloatArray:
         """Derivatives (d, t, n, E) of one order of s - X at points (t, n, 2) of triangles (t,)."""
         table = self.space.triangles.derivatives(points, triangle, order)
         return np.asarray(self.functions.derivatives(points, order + 1)[order] - table @ self.lifts[triangle])
-
-
-def _products(table: FloatArray, moments: FloatArray) -> FloatArray:
-    """The sums (t, j, e) of products of (d, t, n, j) with (d, t, n, e) over d and n."""
-    return np.asarray(sum(one.transpose(0, 2, 1) @ other for one, other in zip(table, moments, strict=True)))

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csc_matrix
 from scipy.spatial import cKDTree
 
@@ -16,10 +15,8 @@ from fem_plate.elements.assembly import number_entities, sum_up
 from fem_plate.elements.corners import Copies, continuity, split
 from fem_plate.elements.relative import Relative, relative
 from fem_plate.elements.rim import rim_quadrature
+from fem_plate.types import BoolArray, FloatArray, IntArray
 from meshes import PlateMesh
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 CHUNK = 100_000  # points times functions evaluated at a time, to bound memory
 QUADRATURE = 6  # points along each side of a triangle, for integrands that are not polynomials
@@ -102,7 +99,7 @@ class PlateSpace:
         bent = sum_up(at_corners, self._entities, self._first)
         return (self._bent.T @ bent @ self._bent + self.assembled(matrices)).tocsc()
 
-    def summed(self, loads: FloatArray, triangle: IntArray) -> FloatArray:
+    def assemble_load(self, loads: FloatArray, triangle: IntArray) -> FloatArray:
         """The sum of loads (t, 21, k) on functions of triangles (t,), in the independent unknowns, (unknowns, k)."""
         total = np.zeros((self.all_count, loads.shape[-1]))
         np.add.at(total, self.dofs[triangle], loads)
@@ -128,7 +125,7 @@ class PlateSpace:
         """How many unknowns the triangles have together, the dependent ones included."""
         return int(self._first[-1])
 
-    def all_unknowns(self, unknowns: FloatArray) -> FloatArray:
+    def element_dofs(self, unknowns: FloatArray) -> FloatArray:
         """The unknowns of every triangle's own points from the independent ones (unknowns, ...)."""
         return unknowns if self._relative is None else np.asarray(self._absolute @ unknowns)
 
@@ -139,7 +136,10 @@ class PlateSpace:
 
     def load(self, law: FloatArray, tension: float = 0.0) -> csc_matrix:
         """The matrix (unknowns, 6 points) of the right side of `forms` for the traces (6, points) of g."""
-        traces, (_, coupling) = self.traces(law), self.couplings(tension)
+        return self.rim_load(self.traces(law), self.couplings(tension)[1])
+
+    def rim_load(self, traces: FloatArray, coupling: FloatArray) -> csc_matrix:
+        """The same for traces (6, k, n, 21) of the triangles' functions, coupled by (k, n, 6, 6) with those of g."""
         data = np.einsum("ckni,kncd->dkni", traces, coupling, optimize=True)  # (6, k, n, 21)
         columns = np.arange(data[..., 0].size).reshape(data.shape[:3])
         rows = np.broadcast_to(self.dofs[self.rim.triangle][:, None], data.shape)
@@ -176,7 +176,7 @@ class PlateSpace:
         polynomial continues beyond its chord, as in the integrals.
         """
         n, k = len(xy), unknowns.shape[1]
-        unknowns = self.all_unknowns(unknowns)
+        unknowns = self.element_dofs(unknowns)
         results = [np.empty((n, k, *[2] * order)) for order in range(orders)]
         step = max(1, CHUNK // k)
         for start in range(0, n, step):
@@ -193,7 +193,7 @@ class PlateSpace:
     def laplacians(self, xy: FloatArray, unknowns: FloatArray) -> FloatArray:
         """The Laplacians (n, k) of functions given by their unknowns (unknowns, k) at points (n, 2), as `evaluate`."""
         result = np.empty((len(xy), unknowns.shape[1]))
-        unknowns = self.all_unknowns(unknowns)
+        unknowns = self.element_dofs(unknowns)
         step = max(1, CHUNK // result.shape[1])
         for start in range(0, len(xy), step):
             part = slice(start, start + step)
@@ -219,6 +219,18 @@ class PlateSpace:
         independent[self._relative.planes] = 0.0
         return independent
 
+    def cells(self, step: int, chosen: IntArray | None = None) -> Iterator[tuple[IntArray, FloatArray, FloatArray]]:
+        """Triangles (t,), quadrature points (t, n, 2) and weights (t, n), `step` at a time, and then the slivers."""
+        triangles = self.triangles
+        xy, weights = forms.triangle_quadrature(QUADRATURE)
+        rows = np.arange(len(triangles.centre)) if chosen is None else chosen
+        for start in range(0, len(rows), step):
+            triangle = rows[start : start + step]
+            points = np.einsum("mij,nj->mni", triangles.jacobian[triangle], xy) + triangles.centre[triangle, None]
+            yield triangle, points, triangles.determinant[triangle, None] * weights
+        if len(self.slivers.triangle):
+            yield self.slivers
+
     @cached_property
     def quadrature(self) -> tuple[FloatArray, FloatArray]:
         """Points (n, 2) and weights (n,) over the plate, up to its true rim."""
@@ -243,7 +255,7 @@ class PlateSpace:
     def _tree(self) -> cKDTree:
         return cKDTree(self.triangles.centre)
 
-    def holds(self, xy: FloatArray) -> NDArray[np.bool_]:
+    def holds(self, xy: FloatArray) -> BoolArray:
         """Whether points (n, 2) lie in the mesh or just beyond it, (n,)."""
         return self._find(xy)[1] > -BEYOND
 

@@ -6,14 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.elements.corner_functions import CornerFunction, CornerFunctions
 from fem_plate.elements.grading import SingularCorner
-from fem_plate.elements.supports import SIMPLY_SUPPORTED
+from fem_plate.elements.rim import SIMPLY_SUPPORTED
+from fem_plate.types import BoolArray, FloatArray
 from meshes import Corner, PlateMesh, cross
-
-FloatArray = NDArray[np.float64]
 
 LEAST_TURN = np.deg2rad(0.1)  # of the rim at a wedge; less is a straight side
 OBTUSE = np.pi / 2 + 1e-6  # elsewhere second derivatives are bounded
@@ -101,7 +99,7 @@ def rounded_corners(mesh: PlateMesh, supports: Mapping[str, str]) -> int:
     return len(small) if len(small) >= MANY else 0
 
 
-def _straight_corners(mesh: PlateMesh, supports: Mapping[str, str]) -> Iterator[tuple[Corner, NDArray[np.bool_]]]:
+def _straight_corners(mesh: PlateMesh, supports: Mapping[str, str]) -> Iterator[tuple[Corner, BoolArray]]:
     """Corners between straight simply supported edges, and which edges (k,) these are."""
     edges = np.concatenate(list(mesh.boundaries.values()))
     bent = np.concatenate([_bent(mesh, name) for name in mesh.boundaries])
@@ -120,7 +118,7 @@ def _apart(found: list[Wedge]) -> list[Wedge]:
     return [Wedge(w.point, w.along, w.angle, w.middle, next) for w, next in zip(found, nearest, strict=True)]
 
 
-def _bent(mesh: PlateMesh, name: str) -> NDArray[np.bool_]:
+def _bent(mesh: PlateMesh, name: str) -> BoolArray:
     """Which edges of a boundary are not straight."""
     points, _ = mesh.arcs(name, np.array([0.0, 0.5, 1.0]))
     chord = points[:, 2] - points[:, 0]

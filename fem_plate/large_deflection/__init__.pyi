@@ -1,19 +1,13 @@
-from .fine_enough import fine_enough as fine_enough
-from .large_deflection import LargeDeflection as LargeDeflection
-from .reduction import (
-    Columns as Columns,
-    Forms as Forms,
-    HeldShapes as HeldShapes,
-    ReducedEquilibrium as ReducedEquilibrium,
-    ReducedPlate as ReducedPlate,
-    Reduction as Reduction,
-    StretchedShapes as StretchedShapes,
-    energy as energy,
-    mode_columns as mode_columns,
-    reduce as reduce,
-    reduced_equilibrium as reduced_equilibrium,
-    with_modes as with_modes,
+from .discrete import DiscretePlate as DiscretePlate, level_of as level_of
+from .equilibrium import NotConverged as NotConverged
+from .full_solutions import Columns as Columns
+from .large_deflection import (
+    LargeDeflection as LargeDeflection,
+    check_stretches as check_stretches,
+    fine_enough as fine_enough,
+    movable_by_boundary as movable_by_boundary,
 )
-from .solution import DiscretePlate as DiscretePlate, NotConverged as NotConverged, level_of as level_of
+from .reduced import Forms as Forms, ReducedPlate as ReducedPlate
+from .reduction import Reduction as Reduction, reduce as reduce
 from .state import DeflectedPlate as DeflectedPlate
-from .supports import check_stretches as check_stretches, movable_by_boundary as movable_by_boundary
+from .with_inertia import mode_columns as mode_columns, with_modes as with_modes

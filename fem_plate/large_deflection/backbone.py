@@ -5,21 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fem_plate.given_plate import GivenPlate
-from fem_plate.inputs import as_points, check_points
-from fem_plate.large_deflection.large_deflection import airy_applies
-from fem_plate.large_deflection.membranes import AIRY, PLANE_STRESS
-from fem_plate.large_deflection.solution import DiscretePlate
-from fem_plate.large_deflection.supports import check_stretches, movable_by_boundary
-from fem_plate.vibration import HeldPlate, modes
-
-FloatArray = NDArray[np.float64]
+from fem_plate.graded import GradedPlate
+from fem_plate.inputs import places_on
+from fem_plate.large_deflection.discrete import DiscretePlate
+from fem_plate.large_deflection.large_deflection import airy_applies, check_stretches, movable_by_boundary
+from fem_plate.large_deflection.membrane import AIRY, PLANE_STRESS
+from fem_plate.modes import HeldPlate, modes
+from fem_plate.types import FloatArray
 
 
 def backbone(
-    plate: GivenPlate,
+    plate: GradedPlate,
     count: int,
     held: ArrayLike | None = None,
     in_plane_supports: str | Mapping[str, str] = "immovable",
@@ -52,9 +50,7 @@ def backbone(
         inside the rim.
     """
     check_stretches(plate, "backbone")
-    points = as_points([] if held is None else held, "held of backbone")
-    if points.size:
-        check_points("backbone", points, plate.mesh.outline.gap(points), plate.mesh.size)
+    points = places_on(plate.mesh, [] if held is None else held, "backbone", "held")
     movable = movable_by_boundary(in_plane_supports, plate.supports)
     membrane = AIRY if airy_applies(plate, movable) else PLANE_STRESS
     discrete = DiscretePlate(plate, points, np.full(len(points), np.inf), movable, membrane, 0, 0)

@@ -11,14 +11,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fem_plate.influence import InfluenceShapes
 from fem_plate.inputs import places_on
 from fem_plate.optics.measured import MeasuredInfluence
 from fem_plate.plate import Plate
-
-FloatArray = NDArray[np.float64]
+from fem_plate.types import FloatArray, IntArray
 
 STIFFNESS, TENSION = "stiffness", "tension"
 UNKNOWNS = STIFFNESS, TENSION
@@ -189,7 +188,7 @@ def _errors(jacobian: FloatArray, left: FloatArray, free_gain: bool) -> tuple[li
 
 def _on_plate(
     measured: MeasuredInfluence, plate: Plate, points: FloatArray, actuator: int | None
-) -> tuple[FloatArray, NDArray[np.int64], FloatArray]:
+) -> tuple[FloatArray, IntArray, FloatArray]:
     """Pixels on the plate (P, 2) [m], whose functions (M,) they are of, and the values (M, P)."""
     outline = plate.mesh.outline
     middle = outline.box.mean(axis=0)

@@ -8,17 +8,14 @@ from pathlib import Path
 from typing import Any, Final, Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fem_plate.arrays import PatchedShapes
 from fem_plate.influence import InfluenceShapes
 from fem_plate.optics.package import fits_package
-from fem_plate.section import PlateSection
-from fem_plate.varying import VaryingSection
+from fem_plate.sections import PlateSection, VaryingSection
+from fem_plate.types import BoolArray, FloatArray, IntArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 PlateShapes = InfluenceShapes | PatchedShapes
 
 Layout = Literal["proper", "compass", "specula"]
@@ -80,7 +77,7 @@ def pixels(shapes: PlateShapes, across: int) -> tuple[FloatArray, float]:
     return np.stack(np.meshgrid(x, y), axis=-1), step
 
 
-def sampled(shapes: PlateShapes, xy: FloatArray, rows: IntArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+def sampled(shapes: PlateShapes, xy: FloatArray, rows: IntArray) -> tuple[FloatArray, BoolArray]:
     """Some shapes at points (..., 2) [m], (rows, ...), 0 off the plate; and which points are on it."""
     on = shapes.outline.gap(xy.reshape(-1, 2)).reshape(xy.shape[:-1]) >= 0
     values = np.zeros((len(rows), *on.shape))
@@ -120,7 +117,7 @@ def _header(shapes: PlateShapes, layout: str) -> Any:
     return header
 
 
-def _mask(on: NDArray[np.bool_]) -> Any:
+def _mask(on: BoolArray) -> Any:
     fits = fits_package()
 
     return fits.ImageHDU(on.astype(np.uint8), name="MASK")
@@ -149,7 +146,7 @@ def _proper(shapes: PlateShapes, actuator: int, header: Any) -> list[Any]:
     return [fits.PrimaryHDU(values / peak, header), _mask(on)]
 
 
-def _compass(shapes: PlateShapes, across: int, alive: NDArray[np.bool_], header: Any) -> list[Any]:
+def _compass(shapes: PlateShapes, across: int, alive: BoolArray, header: Any) -> list[Any]:
     """Version 1.2: a cube of square stamps [x, y, actuator], the pixels where they begin, and the actuators' places."""
     fits = fits_package()
 
@@ -185,7 +182,7 @@ def _compass(shapes: PlateShapes, across: int, alive: NDArray[np.bool_], header:
     ]
 
 
-def _specula(shapes: PlateShapes, across: int, alive: NDArray[np.bool_], header: Any) -> list[Any]:
+def _specula(shapes: PlateShapes, across: int, alive: BoolArray, header: Any) -> list[Any]:
     """IFunc, version 1: the functions at the mask's pixels (pixels, N), row by row, and the mask, y before x."""
     fits = fits_package()
 

@@ -9,12 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_plate.optics.package import fits_package
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem_plate.types import FloatArray, IntArray
 
 OURS = "active-surface"
 

@@ -2,6 +2,8 @@
 
 from particle.drives.pieces import (
     NO_SEGMENT,
+    ORDER,
+    DriveTable,
     breakpoint_slack,
     drive_breakpoint,
     drive_piece,
@@ -9,8 +11,8 @@ from particle.drives.pieces import (
     expand_piece,
     find_piece,
     next_breakpoint,
+    quintic_end,
 )
-from particle.drives.quintics import QuinticDrive, quintic_drives
-from particle.drives.record import ORDER, DriveTable
-from particle.drives.strokes import begun_at
+from particle.drives.points import QuinticDrive, quintic_drives
+from particle.drives.quintics import begun_at
 from particle.drives.table import AnyDrive, Segments, accelerations, drive_table, monomial_table, scaled_table

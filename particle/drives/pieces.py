@@ -1,18 +1,57 @@
-"""Kernels of drives: the piece around a time, and the breakpoint after it."""
+"""The drives of all actuators as kernels read them: quintics, the piece around a time, and the breakpoint after it."""
 
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from particle.drives.record import MERGED, ORDER, ROUNDING, DriveTable
 from particle.jit import inlined, jit_no_arrays
+from particle.types import BoolArray, FloatArray, IntArray
 
-FloatArray = NDArray[np.float64]
-
+ORDER = 6  # coefficients of a quintic
+MERGED = 1e-12  # of a stroke: breakpoints closer than that are taken as one
+ROUNDING = 4 * np.finfo(float).eps  # of the time: the same holds for breakpoints closer than that
 NO_SEGMENT = -1  # of a drive that has not begun, or has ended
+
+
+class DriveTable(NamedTuple):
+    """The drives of all actuators, as kernels read them.
+
+    Drive i holds its first value until delay[i], then runs through its segments first[i] .. first[i+1]-1 and holds its
+    last value. Those from loop[i, 0] to before loop[i, 1] are passed repeats[i] times (inf: without end), each pass
+    lasting span[i]; those before, its lead, and those after, its tail, once.
+    """
+
+    first: IntArray  # (N+1,)
+    loop: IntArray  # (N, 2)
+    start: FloatArray  # (S,) s, after the start of the pass; of the lead negative, of the tail after the last pass
+    scale: FloatArray  # (S,) s, what its polynomial's variable is divided by
+    coefficients: FloatArray  # (S, 6) m, in (t - start) / scale
+    delay: FloatArray  # (N,) s
+    span: FloatArray  # (N,) s
+    repeats: FloatArray  # (N,)
+    stroke_time: FloatArray  # (N,) s, the shortest stroke of each; inf: it has none
+    jump: FloatArray  # (N, 2) m/s, m/s^2, by how much its velocity and acceleration jump at breakpoints at most
+    rough: FloatArray  # (N,) m/s^3, by how much its third derivative does, with the share of those above
+    alike: BoolArray  # (N,) whether all its pieces begin and end when those of the drive before it do
+
+
+def hermite_end(rise: Any, v_0: Any, v_1: Any, a_0: Any, a_1: Any) -> tuple[Any, Any, Any]:
+    """The coefficients of s^3, s^4 and s^5 of a quintic on [0, 1] by its rise and its derivatives at both ends.
+
+    c_3 = 10 r - 6 v_0 - 4 v_1 - 3/2 a_0 + 1/2 a_1, c_4 = -15 r + 8 v_0 + 7 v_1 + 3/2 a_0 - a_1,
+    c_5 = 6 r - 3 v_0 - 3 v_1 - 1/2 a_0 + 1/2 a_1; c_0, c_1 and c_2 are the height, v_0 and a_0 / 2 at the start.
+    """
+    return (
+        10 * rise - 6 * v_0 - 4 * v_1 - 1.5 * a_0 + 0.5 * a_1,
+        -15 * rise + 8 * v_0 + 7 * v_1 + 1.5 * a_0 - a_1,
+        6 * rise - 3 * v_0 - 3 * v_1 - 0.5 * a_0 + 0.5 * a_1,
+    )
+
+
+quintic_end = jit_no_arrays(hermite_end)  # for kernels, of numbers
 
 
 @jit_no_arrays

@@ -1,4 +1,4 @@
-"""The drives of all actuators as kernels read them: pieces of degree five, and the breakpoints between them."""
+"""What all drives have, their pieces of degree five, and the table of them that kernels read."""
 
 from __future__ import annotations
 
@@ -7,13 +7,11 @@ from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from particle.drives.pieces import drive_piece, find_alike
-from particle.drives.record import ORDER, ROUNDING, DriveTable
+from particle.drives.pieces import ORDER, ROUNDING, DriveTable, drive_piece, find_alike
 from particle.jit import jit
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class Segments(NamedTuple):

@@ -13,8 +13,7 @@ from particle.jit import jit
 from particle.modes import Mode
 from particle.records import Record, record_type
 from particle.surface import point_of
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class ContactState(Record):

@@ -14,8 +14,7 @@ from particle.events.step import Step, new_step
 from particle.events.tableau import Pairs
 from particle.records import new_records
 from particle.surface import LocalSurface, Surface, new_local, prepare
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray, IntArray
 
 
 class Memory(NamedTuple):
@@ -29,10 +28,10 @@ class Memory(NamedTuple):
     now: NDArray[Now]  # (1,)
     counts: NDArray[Counts]  # (1,)
     row: NDArray[Row]  # (1,) what is about to be recorded
-    stop: NDArray[np.int64]  # (1,) another thread sets it to 1 when nobody waits for the path any more
+    stop: IntArray  # (1,) another thread sets it to 1 when nobody waits for the path any more
 
 
-def new_memory(surface: Surface, pairs: Pairs, stop: NDArray[np.int64]) -> Memory:
+def new_memory(surface: Surface, pairs: Pairs, stop: IntArray) -> Memory:
     """Scratch memory that fits the surface as far as its cells are built."""
     motion = new_records(Motion)
     return Memory(

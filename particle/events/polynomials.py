@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.jit import jit, jit_no_arrays
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 @jit

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from particle.events.mechanics import Part
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class Request(NamedTuple):

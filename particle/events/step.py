@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from particle.events.mechanics import Motion, as_numbers
 from particle.events.tableau import Pairs
 from particle.records import new_records
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class Step(NamedTuple):

@@ -6,9 +6,8 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 LOOSE_TOLERANCE = 1e-6  # tolerances from here on are met most cheaply by the pair of order 5
 

@@ -18,15 +18,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.events import Motion, Part, drag, normal_bend, push
 from particle.friction import friction_limit
 from particle.jit import inlined
 from particle.modes import Mode
 from particle.surface import SurfacePoint
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 @inlined

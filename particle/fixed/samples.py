@@ -12,14 +12,13 @@ from particle.fixed.steps import FixedMemory, fill_fixed_row
 from particle.jit import inlined, jit
 from particle.modes import Mode
 from particle.surface import UNBUILT, Surface, enter
-
-FloatArray = NDArray[np.float64]
+from particle.types import BoolArray, FloatArray
 
 
 @jit
 def between(
     surface: Surface, part: Part, memory: FixedMemory, scheme: int, rows: NDArray[Row], times: FloatArray
-) -> tuple[NDArray[Row], NDArray[np.bool_]]:
+) -> tuple[NDArray[Row], BoolArray]:
     """The rows (k,) at ascending times (k,) [s], and (k,) which of them are where a cell is lacking.
 
     Place and velocity are those of the cubic Hermite polynomial between two rows, work and dissipation are linear

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from particle.checks import finite, not_negative, refuse
+from particle.checks import finite, not_negative, positive, refuse
 from particle.jit import jit, jit_no_arrays
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 CONSTANT, COULOMB, TABLE, POINTS = 0, 1, 2, 3
 
@@ -209,4 +209,47 @@ class CoulombAdhesion:
 
     def friction_limit(self, net_load: ArrayLike) -> FloatArray:
         """Q [N] while sliding under net loads [N] of any shape; ValueError for one below -pull_off."""
+        return friction_limits(self.law, net_load)
+
+
+@dataclass(frozen=True)
+class ScaledFriction:
+    """A law all of whose limits are `factor` times as high, and whose pull-off force is the same.
+
+    Raises ValueError when the factor is not positive.
+    """
+
+    contact: Contact
+    factor: float
+
+    def __post_init__(self) -> None:
+        refuse("ScaledFriction", [(positive(self.factor), "factor", "positive", self.factor)])
+
+    @property
+    def pull_off(self) -> float:
+        return self.contact.pull_off
+
+    @property
+    def largest_load(self) -> float:
+        return self.contact.largest_load
+
+    @property
+    def table_error(self) -> float:
+        return self.contact.table_error
+
+    @cached_property
+    def law(self) -> FrictionLaw:
+        law, factor = self.contact.law, self.factor
+        pieces = law.pieces * factor
+        if law.kind == TABLE:
+            pieces = law.pieces + math.log(factor) * np.eye(len(law.pieces))[:, -1:]
+        return law._replace(
+            limit=law.limit * factor,
+            coefficient=law.coefficient * factor,
+            impact_coefficient=law.impact_coefficient * factor,
+            pieces=pieces,
+        )
+
+    def friction_limit(self, net_load: ArrayLike) -> FloatArray:
+        """Q [N] under net loads [N] of any shape; ValueError for one outside the law."""
         return friction_limits(self.law, net_load)

@@ -17,13 +17,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particle.friction.contact import TABLE, FrictionLaw, check_loads, friction_limits, new_law
 from particle.friction.quadrature import from_power, on_panels
 from particle.friction_input import PAPER_PLASTICITY_INDEX, KogutEtsionInput
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 SAMPLES = 1025  # separations from which the inverse is first found
 INTERVALS = (1024, 2048, 4096, 8192)  # of the table: the first that meets MAX_ERROR
@@ -134,23 +133,7 @@ class KogutEtsion(KogutEtsionInput):
         return float(self.net_load(self.branch[0]))
 
     def separation(self, net_load: ArrayLike) -> FloatArray:
-        """The stable separation d / sigma.
-
-        Parameters
-        ----------
-        net_load : float or array
-            Net loads, N, of any shape.
-
-        Returns
-        -------
-        separation : array
-            Of the same shape.
-
-        Raises
-        ------
-        ValueError
-            A load is below -pull_off or above the peak of the friction limit.
-        """
+        """The stable separation d / sigma under net loads [N] of any shape; ValueError for one outside the law."""
         from scipy.optimize import brentq  # here, because no run needs it
 
         loads = np.asarray(net_load, dtype=float)
@@ -166,23 +149,7 @@ class KogutEtsion(KogutEtsionInput):
         return np.reshape([solve(load) for load in loads.ravel().tolist()], loads.shape)
 
     def friction_limit(self, net_load: ArrayLike) -> FloatArray:
-        """The friction limit Q, from the table that the integrator uses.
-
-        Parameters
-        ----------
-        net_load : float or array
-            Net loads, N, of any shape.
-
-        Returns
-        -------
-        limit : array
-            Q, N, of the same shape.
-
-        Raises
-        ------
-        ValueError
-            As for `separation`.
-        """
+        """Q [N] under net loads [N] of any shape, from the integrator's table; ValueError for one outside the law."""
         return friction_limits(self.law, net_load)
 
     @property

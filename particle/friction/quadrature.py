@@ -6,10 +6,9 @@ import math
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import eval_jacobi, roots_jacobi
 
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 POINTS = 40
 REACH = 12.0  # widths beyond which a Gaussian adds nothing, also to what is left at pull-off: exp(-12^2/2) = 5e-32

@@ -14,12 +14,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particle.friction.contact import POINTS, FrictionLaw, friction_limits, new_law
 from particle.friction_input import point_mistakes
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 FLAT = 1e-14  # of the largest limit: rounding is no fall
 

@@ -16,8 +16,7 @@ from particle.surface.local import Frame, LocalSurface
 from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
 from particle.surface.span import enter
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class SurfacePoint(NamedTuple):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from particle.drives import DriveTable, drive_piece
+from particle.drives import DriveTable, drive_piece, quintic_end
 from particle.jit import inlined, jit_no_arrays
 from particle.surface.local import Frame, LocalSurface
 from particle.surface.record import Surface
@@ -126,7 +126,6 @@ def bridge(surface: Surface, local: LocalSurface, i: int) -> None:
     height = ahead[0] - (piece[0] + s * (piece[1] + s * piece[2]))
     velocity = s * (ahead[1] - (piece[1] + 2 * s * piece[2]))
     acceleration = s * s * (ahead[2] - piece[2])
-    piece[3] = (10 * height - 4 * velocity + acceleration) / s**3
-    piece[4] = (7 * velocity - 15 * height - 2 * acceleration) / s**4
-    piece[5] = (6 * height - 3 * velocity + acceleration) / s**5
+    third, fourth, fifth = quintic_end(height, 0.0, velocity, 0.0, 2 * acceleration)
+    piece[3], piece[4], piece[5] = third / s**3, fourth / s**4, fifth / s**5
     local.clock[i].until = frame.end

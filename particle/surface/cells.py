@@ -13,8 +13,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from particle.types import FloatArray, IntArray
 
 NOWHERE, UNBUILT = -1, -2  # the cell of points where there is no plate, and of those that nobody has asked for yet
 WHOLE = -1  # what a cell that is not divided has in place of its quarters

@@ -17,8 +17,7 @@ from particle.records import Record, new_records
 from particle.surface.cells import NOWHERE, WHOLE, Cells
 from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class Frame(Record):

@@ -14,15 +14,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particle.drives import AnyDrive, DriveTable, accelerations, drive_table, scaled_table
 from particle.surface.at_point import POINT_SIZE, SurfacePoint, sample_surface
 from particle.surface.cells import NOWHERE, CellStore
 from particle.surface.local import new_local
 from particle.surface.record import Surface
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class SurfaceState(NamedTuple):

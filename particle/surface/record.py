@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from particle.drives import DriveTable
 from particle.surface.cells import Cells
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 class Surface(NamedTuple):

@@ -2,19 +2,19 @@
 
 A point is on the plate when the rim encloses it an odd number of times (even-odd rule): each ellipse around it counts
 once, and so does each crossing of the edges with a ray towards positive x.
+
+`meshes/nearest.py` has the same formulas for many points at once, in numpy: `particle` knows no meshes, and meshes are
+made without numba.
 """
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from particle.jit import inlined, jit_no_arrays
 from particle.surface.record import Surface
+from particle.types import FloatArray
 
-FloatArray = NDArray[np.float64]
 Vector = tuple[float, float]
 
 HALVINGS = 54  # of a parameter in [0, 1]

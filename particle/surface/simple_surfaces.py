@@ -8,11 +8,12 @@ from dataclasses import replace
 from functools import reduce
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particle.drives import ORDER, AnyDrive, DriveTable, drive_table, monomial_table
 from particle.surface.cells import OneCell
 from particle.surface.moving_surface import SurfaceMotion
+from particle.types import FloatArray
 
 
 def polynomial_surface(
@@ -69,7 +70,7 @@ def polynomial_surface(
     )
 
 
-def _rows(c: NDArray[np.float64], size: float) -> tuple[NDArray[np.float64], int]:
+def _rows(c: FloatArray, size: float) -> tuple[FloatArray, int]:
     """Monomials (K, M) in x/size and y/size of coefficients (I, J, K), and their degree."""
     degree = c.shape[0] + c.shape[1] - 2
     square = np.zeros((degree + 1, degree + 1, c.shape[2]))

@@ -9,9 +9,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from particle.drives import (
     NO_SEGMENT,
     ORDER,
@@ -25,8 +22,7 @@ from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_br
 from particle.surface.cells import UNBUILT
 from particle.surface.local import Clock, Frame, LocalSurface, cell_at, monomial_count
 from particle.surface.record import Surface
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 MAX_SHIFT = 2.0  # units of time over which a polynomial is moved on; rounding grows with the fifth power of that
 

@@ -1,4 +1,4 @@
-"""The wheel, installed in a clean environment: five names, all data, and a program that runs from any folder."""
+"""The wheel, installed in a clean environment: six names, all data, and a program that runs from any folder."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ import pytest
 from particle.kernel_cache import PACKAGE, cache_folder, source_digest
 
 ROOT = Path(__file__).resolve().parents[2]
-NAMES = {"meshes", "fem_plate", "particle", "coupling", "active_surface"}
+NAMES = {"common", "meshes", "fem_plate", "particle", "coupling", "active_surface"}
 SHORT = (ROOT / "examples" / "two_actuators.toml").read_text().replace('duration = "50 ms"', 'duration = "1 ms"')
 
 

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from sweeps import LATTICE, PLATE, PLATFORM
 
+from common.drawing import Drawing, label_axis
 from coupling import read_case, run_case
 from fem_plate import Plate, PlateSection
 from meshes import annulus, disc, rectangle
-from meshes.drawing import Drawing, label_axis
 
 SECTION = PlateSection(169e9, 0.3, 5e-6, 2330.0)
 

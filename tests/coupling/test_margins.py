@@ -32,7 +32,7 @@ from coupling.run import build_friction, follow_part
 from coupling.summary import summary_of
 from particle import Drive, EventKind, Outcome, State
 
-pytestmark = pytest.mark.compiled
+pytestmark = [pytest.mark.compiled, pytest.mark.advice]
 
 PLATE = {
     "shape": "disc",

@@ -8,23 +8,24 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from common import Unit, quantity_text, range_text, unit_for
 from coupling.case import ActuatorCase, Case, ConstantCase, CoulombCase, PartCase, RunCase
 from coupling.display.mesh import display_mesh
 from coupling.display.surface import DisplaySurface, deflections, display_surface, most_deflected
 from coupling.drives import build_drives
 from coupling.margins import Margin, Margins, margin_curves
 from coupling.part import build_friction
-from coupling.pictures.keys import put_keys
+from coupling.pictures.figure import put_keys
+from coupling.pictures.path import MAX_LENGTHS, MIN_LENGTHS, path_window
 from coupling.pictures.plate import BOTH_WAYS, UPWARDS, Scale, draw_plate, fine_piece, relief_of
 from coupling.pictures.portrait import chosen_drives, decisive_moment, portrait_of
 from coupling.pictures.run import compose
 from coupling.pictures.time import Curves, draw_over_time, limits, margins_over_time, strokes_of
-from coupling.pictures.window import MAX_LENGTHS, MIN_LENGTHS, path_window
 from coupling.run import run_case
 from fem_plate import Plate, PlateSection
 from fem_plate import pictures as plate_pictures
 from fem_plate.pictures import FEW, marker_size
-from meshes import Unit, disc, quantity_text, range_text, unit_for
+from meshes import disc
 from particle import Samples
 
 BOX = np.array([[-50.0, -50.0], [50.0, 50.0]])

@@ -140,6 +140,7 @@ def test_a_measured_motion_from_the_command_line(tmp_path):
 
 
 @pytest.mark.compiled
+@pytest.mark.advice
 def test_advice_on_a_measured_motion_names_no_strokes(tmp_path):
     file = tmp_path / "motion.csv"
     file.write_text("time [ms], x [um]\n" + "".join(f"{k}, {0.1 * math.sin(k)}\n" for k in range(60)))

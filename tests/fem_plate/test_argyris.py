@@ -49,7 +49,7 @@ def every(triangles):
 
 
 def on_triangles(space, u, points, triangle, order):
-    local = space.all_unknowns(u)[space.dofs[triangle]]
+    local = space.element_dofs(u)[space.dofs[triangle]]
     return np.einsum("dtnk,tk->dtn", space.triangles.derivatives(points, triangle, order), local)
 
 

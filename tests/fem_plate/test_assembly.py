@@ -9,7 +9,7 @@ from skfem.helpers import dd, ddot, trace
 from fem_plate.elements.argyris import DERIVATIVES, EDGES
 from fem_plate.elements.assembly import LOCAL_ENTITY, WITHIN_ENTITY, sum_up
 from fem_plate.elements.space import PlateSpace
-from fem_plate.section import bending_law
+from fem_plate.sections import bending_law
 from meshes import PlateMesh, annulus, disc, ellipse, polygon, rectangle
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from fem_plate import Plate
 from fem_plate.elements import source_basis
-from fem_plate.elements.infinite import infinite_plate
+from fem_plate.elements.infinite import IsotropicPlate
 from meshes import disc
 
 FAR = [-0.5, 0.2]
@@ -74,4 +74,4 @@ def test_actuators_that_are_not_close_are_taken_as_they_are():
     x = np.array([PLACES[0], FAR, [0.301, 0.2]])
     basis = source_basis(x, np.array([True, True, True]))
     assert (basis.matrix.toarray() == np.eye(3)).all() and basis.rounding == 0
-    assert (basis.point_values(infinite_plate(0.0)) == infinite_plate(0.0).point_value(x, x)).all()
+    assert (basis.point_values(IsotropicPlate()) == IsotropicPlate().point_value(x, x)).all()

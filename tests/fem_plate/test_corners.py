@@ -12,7 +12,7 @@ import pytest
 from fem_plate.elements.corners import MAX_EXPONENT, exponent
 from fem_plate.elements.grading import corner_rows, singular_corners
 from fem_plate.elements.space import PlateSpace
-from fem_plate.section import bending_law
+from fem_plate.sections import bending_law
 from meshes import polygon, rectangle
 
 C, S, F = "clamped", "simply-supported", "free"
@@ -137,7 +137,7 @@ def both_sides(space, u, order):
     corners = space.triangles.points[triangle]
     start, end = corners[at, side], corners[at, (side + 1) % 3]
     points = start[:, None] + np.linspace(0, 1, 9)[:, None] * (end - start)[:, None]
-    local = space.all_unknowns(u)[space.dofs]
+    local = space.element_dofs(u)[space.dofs]
     found = []
     for t in (triangle, order_of[pair + 1] // 3):
         found.append(np.einsum("dtnk,tk->dtn", space.triangles.derivatives(points, t, order), local[t]))

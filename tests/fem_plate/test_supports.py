@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from fem_plate import Plate
-from fem_plate.elements.rim import rigid_motions, rim_quadrature
-from fem_plate.elements.supports import by_boundary, prescribed
+from fem_plate.elements.rim import by_boundary, prescribed, rigid_motions, rim_quadrature
 from meshes import annulus, disc, rectangle
 
 BOUNDARIES = {"left": None, "right": None, "top": None}

@@ -7,7 +7,8 @@ import meshio
 import numpy as np
 import pytest
 
-from meshes import hdf5, read, rectangle, xdmf
+import common
+from meshes import read, rectangle
 
 
 @pytest.fixture
@@ -126,8 +127,8 @@ def test_numbers_elsewhere(mesh):
 
 
 def test_numbers_on_which_the_library_would_die(mesh, monkeypatch):
-    monkeypatch.setattr(xdmf, "survives", lambda path: False)
-    assert f"mesh.h5 is damaged: {hdf5.DEADLY}" in refused(mesh)
+    monkeypatch.setattr(common, "survives", lambda path: False)
+    assert f"mesh.h5 is damaged: {common.DEADLY}" in refused(mesh)
 
 
 def test_large_numbers(mesh, monkeypatch):

@@ -170,7 +170,7 @@ def test_a_kernel_of_another_room_is_compiled_anew_when_its_room_or_the_package_
     time.sleep(1.1)  # Python itself looks at the second of an edit and at its size
     (room / "one.py").write_text(ROOM["one.py"].replace("2.0", "3.0"))
     assert result(start(package, cache, USE_ROOM)) == (3.0 + 1e-12, 1)
-    record = package / "drives" / "record.py"
+    record = package / "drives" / "pieces.py"
     text = record.read_text()
     assert text.count("MERGED = 1e-12") == 1
     record.write_text(text.replace("MERGED = 1e-12", "MERGED = 1e-11"))

@@ -9,7 +9,7 @@ import pytest
 
 from fem_plate.elements.forms import rim_traces
 from fem_plate.elements.model import PlateModel
-from fem_plate.section import bending_law
+from fem_plate.sections import bending_law
 from meshes import annulus, disc, ellipse, polygon, rectangle
 
 LAW = bending_law(0.3)

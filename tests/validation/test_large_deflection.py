@@ -11,7 +11,7 @@ import pytest
 from stretching_square import pressed_square
 
 from fem_plate import Plate, PlateSection, backbone
-from fem_plate.large_deflection.solution.cells import level_of
+from fem_plate.large_deflection.discrete import level_of
 from meshes import annulus, disc, ellipse, rectangle
 
 UNIT = PlateSection(youngs_modulus=12 * (1 - 0.3**2), poisson_ratio=0.3, thickness=1.0, density=1.0)

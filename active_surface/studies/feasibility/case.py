@@ -22,11 +22,11 @@ from active_surface.studies.feasibility.remedy import remedy_of
 from active_surface.studies.feasibility.result import Feasibility
 from active_surface.studies.feasibility.validity import valid_strokes
 from active_surface.studies.frequency_range import range_fault
+from common import quantity_text
 from coupling import Progress, build_drives, build_part, silent
 from coupling.case import Case, PlateCase, largest_stroke
 from coupling.ringing import RingingModel
 from coupling.vibration import VibrationModel, always_running
-from meshes import quantity_text
 from particle import AnyDrive, interruptible
 from particle.drives import drive_table
 from particle.events import horizon

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from active_surface.arrays import FloatArray
-from meshes import quantity_text, unit_for
+from common import quantity_text, unit_for
 
 if TYPE_CHECKING:
     from active_surface.studies.feasibility.result import Feasibility

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from active_surface.studies.feasibility.area import TOLERANCE
-from meshes import quantity_text, range_text
+from common import quantity_text, range_text
 
 STATES = {
     "rest": "stays at rest",

@@ -14,6 +14,7 @@ from active_surface.studies.feasibility.area import Curves, Feasible
 from active_surface.studies.feasibility.chart import Chart, State
 from active_surface.studies.feasibility.ground import Ground
 from active_surface.studies.feasibility.remedy import Remedy
+from common import draw
 from coupling import whole_file
 from coupling.case import Case, scaled_case
 from meshes import Outline
@@ -176,13 +177,13 @@ class Feasibility:
 
         picked: a frequency [Hz] and a stroke [m or N] to mark.
         """
-        from active_surface.studies.feasibility.picture import draw_feasibility
+        from coupling.pictures import save_picture  # here, because it loads matplotlib
 
         folder.mkdir(parents=True, exist_ok=True)
         data = folder / f"{self.case.name}.feasibility.nc"
         with whole_file(data) as partial:
             partial.write_bytes(self.dataset().to_netcdf(engine="h5netcdf"))
-        return data, draw_feasibility(self, folder / f"{self.case.name}.feasibility.png", picked)
+        return data, save_picture(draw(self, picked), folder / f"{self.case.name}.feasibility.png")
 
 
 def _finite(value: float) -> float | None:

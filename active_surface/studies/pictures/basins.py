@@ -13,8 +13,8 @@ from matplotlib.patheffects import withStroke
 from active_surface.studies.pictures.heat import COLOURS, draw_classes, draw_field, draw_outline
 from active_surface.studies.pictures.selection import Scale, Selection, mean
 from active_surface.studies.record import OUTCOMES
+from common import draw_rim, quantity_text, unit_for
 from fem_plate import mark_actuators
-from meshes import draw_rim, quantity_text, unit_for
 from particle import Outcome
 
 STARTS = ("part.position.0", "part.position.1")

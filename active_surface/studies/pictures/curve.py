@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from active_surface.studies.pictures.heat import COLOURS, add_key, edges, frame
 from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.record import OUTCOMES
-from meshes import legend_below
+from common import legend_below
 
 PERCENTILES = (10, 90)
 

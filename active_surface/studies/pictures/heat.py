@@ -17,8 +17,8 @@ from matplotlib.ticker import ScalarFormatter
 from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies.pictures.selection import Scale, Selection, labelled
 from active_surface.studies.record import OUTCOMES
+from common import Unit, legend_below
 from coupling.pictures import plain_ticks
-from meshes import Unit, legend_below
 
 COLOURS = ("#40719c", "#e0c368", "#b8862d", "#7d1f0e", "#7a4b94", "#a8a8a8", "#dedede")
 """Of the outcomes, by their number; they differ in grey, too."""

@@ -17,8 +17,8 @@ from active_surface.studies.pictures.scatter import draw_ends, draw_outcomes, dr
 from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.pictures.threshold_curve import draw_threshold
 from active_surface.studies.study import Study
+from common import Drawing
 from coupling.pictures import save_picture
-from meshes import Drawing
 
 if TYPE_CHECKING:
     import xarray

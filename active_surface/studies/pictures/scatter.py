@@ -15,8 +15,8 @@ from active_surface.arrays import FloatArray, IntArray
 from active_surface.studies.pictures.heat import COLOURS, add_key, frame
 from active_surface.studies.pictures.selection import Scale, Selection
 from active_surface.studies.record import OUTCOMES
+from common import draw_rim
 from fem_plate import mark_actuators
-from meshes import draw_rim
 
 LARGEST, SMALLEST = 40.0, 3.0  # square points, of a marker
 FEW_POINTS = 20  # more have the colours of the nearest around them

@@ -12,8 +12,8 @@ from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies.axis import Axis, counted
 from active_surface.studies.pictures.findings import Findings
 from active_surface.studies.record import COLUMNS, OUTCOMES
+from common import Unit, unit_for
 from coupling import near
-from meshes import Unit, unit_for
 
 DISTANCE = "distance"
 NUMBER = "number of the path"  # with spaces, which no axis has in its name

@@ -12,7 +12,7 @@ from active_surface.arrays import BoolArray
 from active_surface.studies.pictures.heat import edges, frame
 from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.threshold import lowest
-from meshes import legend_below
+from common import legend_below
 
 COLOUR, BAND = "#c8371b", "#f3c9bd"
 

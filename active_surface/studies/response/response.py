@@ -14,11 +14,12 @@ from threadpoolctl import threadpool_limits
 from active_surface.arrays import FloatArray
 from active_surface.studies.frequency_range import range_fault
 from active_surface.studies.response.functions import STILL, ComplexArray, frequency_response
+from common import draw, quantity_text, range_text
 from coupling import Progress, silent, whole_file
 from coupling.case import SAME_PLACE, Case, PlateCase
 from coupling.scene import actuator_stiffness, build_plate, damping_of
 from fem_plate import MAX_MODES, Excitation, InfluenceShapes
-from meshes import Outline, quantity_text, range_text
+from meshes import Outline
 from particle import interruptible
 
 if TYPE_CHECKING:
@@ -112,13 +113,13 @@ class FrequencyResponse:
 
     def write(self, folder: Path) -> tuple[Path, ...]:
         """Writes NAME.response.nc, without the complex values, and NAME.response.png into a folder; returns them."""
-        from active_surface.studies.response.picture import draw_response
+        from coupling.pictures import save_picture  # here, because it loads matplotlib
 
         folder.mkdir(parents=True, exist_ok=True)
         data = folder / f"{self.case.name}.response.nc"
         with whole_file(data) as partial:
             partial.write_bytes(self.dataset().drop_vars("response").to_netcdf(engine="h5netcdf"))
-        return data, draw_response(self, folder / f"{self.case.name}.response.png")
+        return data, save_picture(draw(self), folder / f"{self.case.name}.response.png")
 
 
 def response(

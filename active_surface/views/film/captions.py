@@ -21,9 +21,9 @@ from active_surface.views.film.layout import BOTTOM, Layout
 from active_surface.views.film.pace import Pace
 from active_surface.views.film.stage import Stage
 from active_surface.views.rounding import round_below
+from common import STEPS, draw_rim, quantity_text, unit_for
 from coupling.case import PlatformCase
 from coupling.pictures import MARKS
-from meshes import STEPS, draw_rim, quantity_text, unit_for
 from particle import HALO, PATH_COLOUR, SHADES, STICK_COLOUR, State, stretches
 
 DPI = 100

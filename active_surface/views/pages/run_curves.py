@@ -9,12 +9,12 @@ import numpy as np
 from active_surface.arrays import FloatArray, IntArray
 from active_surface.views.lines import cut_in
 from active_surface.views.pages.packed import packed
+from common import Unit, unit_for
 from coupling import Margin, Summary, report, silent, summary_of
 from coupling.case import PlatformCase
 from coupling.pictures import chosen_drives
 from coupling.results import SavedRun
 from coupling.scene import lifts_of, platform_scene
-from meshes import Unit, unit_for
 from particle import EventKind, State
 
 MAX_POINTS: Final = 20_000  # of a curve

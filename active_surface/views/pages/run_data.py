@@ -15,11 +15,11 @@ from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.run_curves import counted, curves_of
 from active_surface.views.rounding import exaggeration
 from active_surface.views.triangles import Spots, coarse, inside, outer_edges, spots_of
+from common import Unit, unit_for
 from coupling import report
 from coupling.pictures import MARKS, Scale, path_window
 from coupling.results import SavedRun
 from fem_plate import extent
-from meshes import Unit, unit_for
 from particle import EventKind, State, stretches
 
 MAX_POINTS: Final = 6000  # of its surface; of more, those around the path, or fewer of these

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from active_surface.views.pages.page_file import part, rows_of, trust_of, write_page
 from active_surface.views.pages.run_data import run_data
+from common import unit_for
 from coupling import report, summary_of
 from coupling.results import SavedRun
-from meshes import unit_for
 from particle import EventKind
 
 PROGRAMS = "surface.js", "curves.js", "run.js"

@@ -13,9 +13,10 @@ from active_surface.studies import OUTCOMES, SENTENCES, Study
 from active_surface.studies.pictures import COLOURS, Scale, Selection, edges, outline
 from active_surface.views.pages.packed import packed, packed_rows
 from active_surface.views.pages.sweep_paths import Paths
+from common import Unit, unit_for
 from coupling.case import Case, PlateCase
 from coupling.report import with_micro_signs
-from meshes import Unit, rim_curves, unit_for
+from meshes import rim_curves
 
 MAX_ENDS = 100_000  # of all starts; of more only the first of each point
 MAX_ACTUATORS = 400  # that are drawn

@@ -8,6 +8,7 @@ from matplotlib.patches import Patch
 
 from active_surface.arrays import FloatArray
 from active_surface.views.prints.sheet import MM, Picture
+from common import NOTHING, unit_for
 from coupling.pictures import (
     Curves,
     Portrait,
@@ -25,7 +26,6 @@ from coupling.pictures import (
     strokes_of,
     velocities_of,
 )
-from meshes import NOTHING, unit_for
 from particle import State, shade_keys, stretches
 
 SHARE = 0.75  # of the width is a map's, about

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.events.bernstein import first_negative, quintic_between, quintic_value
 from particle.events.flight.ballistics import fly_ahead
@@ -33,8 +32,7 @@ from particle.events.sliding import MIN_STEP
 from particle.jit import inlined, jit
 from particle.modes import NO_EVENT, EventKind, Verdict
 from particle.surface import LocalSurface, Surface, SurfacePoint, first_beyond, rim_gap, surface_at, within_cell
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 GRAZE = 1e-13  # of the surface's size: rounding of a height
 

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.records import Record
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 INTEGRATED = 6  # numbers of a motion that a Runge-Kutta step integrates, the first ones
 SIZE = 8  # numbers of a motion

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.events.mechanics import Part, length, pull
 from particle.jit import jit
 from particle.surface import point_of
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 
 @jit

@@ -11,7 +11,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.drives import ORDER
 from particle.events.bernstein import MAX_HALVINGS, halve
@@ -22,8 +21,7 @@ from particle.events.rest.stick_bound import is_safe_by_bound, largest_force
 from particle.events.rest.stick_margin import DEGREE, NARROW, fill_margin, holds_at_end, is_safe_by_margin
 from particle.jit import inlined, jit_no_arrays
 from particle.surface import LocalSurface, motion_at
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 SLACK = 1e-15  # of the largest squared force in the span
 

@@ -15,15 +15,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.drives import ORDER
 from particle.events.bernstein import quintic_to_bernstein
 from particle.events.mechanics import Part
 from particle.friction import friction_limit
 from particle.jit import jit_no_arrays
-
-FloatArray = NDArray[np.float64]
+from particle.types import FloatArray
 
 DEGREE = 8  # of the bound's polynomials
 _TO_BERNSTEIN = np.array(

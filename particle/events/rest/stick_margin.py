@@ -18,15 +18,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from particle.events.bernstein import to_bernstein
 from particle.events.mechanics import Part
 from particle.events.polynomials import derivative, second_derivative, total
 from particle.friction import friction_limit
 from particle.jit import inlined, jit, jit_no_arrays
+from particle.types import FloatArray
 
-FloatArray = NDArray[np.float64]
 Vector = tuple[FloatArray, FloatArray, FloatArray]
 
 # Over a share 2^-7 of a span the 15th power is 2^-105 of its coefficient, and that of a product of fifteen quintics

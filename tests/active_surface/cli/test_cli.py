@@ -217,6 +217,7 @@ duration = "25 ms"
 
 
 @pytest.mark.compiled
+@pytest.mark.advice
 def test_run_writes_the_advised_case_which_moves(tmp_path):
     file = tmp_path / "still.toml"
     mends = {"0.6": "0.3", "thicknes ": "thickness ", "400 um": "0 um", "150": '"5 um"', "50 ms": "3 ms"}
@@ -235,6 +236,7 @@ def test_run_writes_the_advised_case_which_moves(tmp_path):
 
 
 @pytest.mark.compiled
+@pytest.mark.advice
 def test_nothing_is_advised_where_the_part_moves_already(tmp_path):
     file, new = tmp_path / "moves.toml", tmp_path / "new.toml"
     file.write_text(SHAKEN)

@@ -14,9 +14,9 @@ from active_surface.studies.feasibility.case import feasibility
 from active_surface.studies.feasibility.pick import pick
 from active_surface.studies.feasibility.report import lines, warnings
 from active_surface.studies.feasibility.squares import squares_within
+from common import quantity_text
 from coupling import read_case, run_case, surface_motion
 from fem_plate.analytic import DiscShapes
-from meshes import quantity_text
 from particle import (
     ConstantFriction,
     CoulombAdhesion,

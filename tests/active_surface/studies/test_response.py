@@ -12,7 +12,7 @@ from sweeps import DISC_PLATE
 from active_surface.cli.program import main
 from active_surface.cli.values import place_of
 from active_surface.studies.response import response
-from active_surface.studies.response.picture import _wrapped
+from active_surface.studies.response.pictures import _wrapped
 from coupling import read_case
 
 CASE = (

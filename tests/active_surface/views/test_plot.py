@@ -47,14 +47,6 @@ def ran(folder, text=PLATE, duration="5 ms"):
     return run_case(read_case(folder / "case.toml"), folder)
 
 
-@pytest.fixture(scope="module", autouse=True)
-def no_advice():
-    """Trial runs take long, and no picture shows them."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("coupling.summary.advise", lambda *_: None)
-        yield
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """The results of a run, and of sweeps over one axis, two, three, random points and starts."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -13,41 +14,42 @@ from case_files import STROKE, changed, problems
 from coupling.case import Quantity
 from coupling.case.values import RANGES, units
 
+LENGTHS = """
+"150 Hz" => , a frequency
+"20 degC" => , a temperature
+"5 K*m" => , a quantity in K * m
+"50 %" => , a plain number
+"150 umm" => , but there is no unit "umm"; did you mean "150 um" or "150 mm"?
+"150 UM" => , but there is no unit "UM"; did you mean "150 um"?
+"5 frobs/umm" => , but there is no unit "frobs"
+"150" => , which has no unit
+150 => , which has no unit
+0 => , which has no unit; write "0 um"
+nan => , which has no unit
+"nan um" => , which is not finite
+"-inf um" => , which is not finite
+"1e999 um" => , which is not finite
+"1e308 km" => , which is not finite
+"1,5 mm" => ; write decimals with a point: "1.5 mm"
+"" => , which is not a number and a unit
+"um" => , which is not a number and a unit
+"far away" => , which is not a number and a unit
+"−5 um" => ; did you mean "-5 um"?
+"5 um; 3" => , which is not a number and a unit
+"5 (um" => , which is not a number and a unit
+"1/300 um" => , which is not a number and a unit
+true =>
+["1 um"] =>
+1979-05-27 =>
+"""
 
-@pytest.mark.parametrize(
-    ("value", "reason"),
-    [
-        ('"150 Hz"', ", a frequency"),
-        ('"20 degC"', ", a temperature"),
-        ('"5 K*m"', ", a quantity in K * m"),
-        ('"50 %"', ", a plain number"),
-        ('"150 umm"', ', but there is no unit "umm"; did you mean "150 um" or "150 mm"?'),
-        ('"150 UM"', ', but there is no unit "UM"; did you mean "150 um"?'),
-        ('"5 frobs/umm"', ', but there is no unit "frobs"'),
-        ('"150"', ", which has no unit"),
-        ("150", ", which has no unit"),
-        ("0", ', which has no unit; write "0 um"'),
-        ("nan", ", which has no unit"),
-        ('"nan um"', ", which is not finite"),
-        ('"-inf um"', ", which is not finite"),
-        ('"1e999 um"', ", which is not finite"),
-        ('"1e308 km"', ", which is not finite"),
-        ('"1,5 mm"', '; write decimals with a point: "1.5 mm"'),
-        ('""', ", which is not a number and a unit"),
-        ('"um"', ", which is not a number and a unit"),
-        ('"far away"', ", which is not a number and a unit"),
-        ('"\N{MINUS SIGN}5 um"', '; did you mean "-5 um"?'),
-        ('"5 um; 3"', ", which is not a number and a unit"),
-        ('"5 (um"', ", which is not a number and a unit"),
-        ('"1/300 um"', ", which is not a number and a unit"),
-        ("true", ""),
-        ('["1 um"]', ""),
-        ("1979-05-27", ""),
-    ],
-)
-def test_wrong_lengths(tmp_path: Path, value: str, reason: str) -> None:
-    found = problems(tmp_path, changed((STROKE, f"stroke = {value}")))
-    assert found == [f'line 10  actuators[0].stroke must be a length such as "150 um"; got {value}{reason}']
+
+def test_wrong_lengths(tmp_path: Path) -> None:
+    for line in LENGTHS.strip().splitlines():
+        value, _, reason = line.partition(" =>")
+        found = problems(tmp_path, changed((STROKE, f"stroke = {value}")))
+        reason = reason.removeprefix(" ")
+        assert found == [f'line 10  actuators[0].stroke must be a length such as "150 um"; got {value}{reason}']
 
 
 def test_an_angular_velocity_is_not_a_frequency(tmp_path: Path) -> None:
@@ -55,47 +57,44 @@ def test_an_angular_velocity_is_not_a_frequency(tmp_path: Path) -> None:
     assert found.endswith('got "60 rpm", an angular velocity; in cycles that is "1 Hz"')
 
 
-@pytest.mark.parametrize(
-    ("unit", "text", "value"),
-    [
-        ("m", "150um", 150e-6),
-        ("m", " .5 µm ", 0.5e-6),
-        ("m", "1_000 nm", 1e-6),
-        ("m", "+1 in", 0.0254),
-        ("m^2", "1e4 um²", 1e-8),
-        ("Hz", "300 1/s", 300),
-        ("m/s", "5 m·s⁻¹", 5),
-        ("J/m^2", "50 mN/m", 0.05),
-        ("kg/m^3", "2.33 g / cm**3", 2330),
-    ],
-)
-def test_units(unit: str, text: str, value: float) -> None:
-    assert Quantity(unit, "").parse(text) == pytest.approx(value, rel=1e-15)
+def test_units() -> None:
+    values = {
+        "m": {"150um": 150e-6, " .5 µm ": 0.5e-6, "1_000 nm": 1e-6, "+1 in": 0.0254},
+        "m^2": {"1e4 um²": 1e-8},
+        "Hz": {"300 1/s": 300},
+        "m/s": {"5 m·s⁻¹": 5},
+        "J/m^2": {"50 mN/m": 0.05},
+        "kg/m^3": {"2.33 g / cm**3": 2330},
+    }
+    for unit, texts in values.items():
+        assert {text: Quantity(unit, "").parse(text) for text in texts} == pytest.approx(texts, rel=1e-15)
 
 
-@pytest.mark.parametrize("prefix", units._PREFIXES)
-@pytest.mark.parametrize("base", units._PREFIXED_BASES)
-def test_prefixed_units_are_those_of_pint(prefix: str, base: str) -> None:
-    si, power = units.prefixed(prefix + base)
-    assert si == units._PREFIXED_BASES[base]
-    quantity = Quantity(si, "")
-    assert quantity._fits(prefix + base)
-    for number in ("1", "0.3", "123456.789e-3"):
-        assert quantity.value_of("", number, prefix + base) == quantity._convert_by_pint("", number, prefix + base)
+def test_prefixed_units_and_those_of_si_are_those_of_pint() -> None:
+    wrong = []
+    for prefix, (base, its) in product(units._PREFIXES, units._PREFIXED_BASES.items()):
+        si, unit = units.prefixed(prefix + base)[0], prefix + base
+        quantity = Quantity(si, "")
+        pairs = [
+            (quantity.value_of("", number, unit), quantity._convert_by_pint("", number, unit))
+            for number in ("1", "0.3", "123456.789e-3")
+        ]
+        wrong += [unit] * (si != its or not quantity._fits(unit) or any(one != other for one, other in pairs))
+    for unit in units.DIMENSIONS:
+        quantity = Quantity(unit, "")
+        wrong += [unit] * (not quantity.parse(f"0.1 {unit}") == quantity._convert_by_pint("", "0.1", unit) == 0.1)
+    assert wrong == []
 
 
-@pytest.mark.parametrize("unit", RANGES)
-def test_no_quantity_is_larger_or_smaller_than_anything_here(unit: str) -> None:
-    quantity, (least, most) = Quantity(unit, "1", positive=True), RANGES[unit]
-    assert quantity.parse(f"{least!r} {unit}") == least and quantity.parse(f"-{most!r} {unit}") == -most
-    for value, wrong in (
-        (2 * most, f"above {most:g} {unit}"),
-        (-1e300, "above"),
-        (least / 2, f"below {least:g} {unit}"),
-    ):
-        with pytest.raises(ValueError, match=f"but no .* may be {re.escape(wrong)}"):
-            quantity.parse(f"{value!r} {unit}")
-    assert Quantity(unit, "1").parse(f"{least / 2!r} {unit}") == least / 2  # as a place that rounding leaves near 0
+def test_no_quantity_is_larger_or_smaller_than_anything_here() -> None:
+    for unit, (least, most) in RANGES.items():
+        quantity = Quantity(unit, "1", positive=True)
+        assert quantity.parse(f"{least!r} {unit}") == least and quantity.parse(f"-{most!r} {unit}") == -most
+        above, below = f"above {most:g} {unit}", f"below {least:g} {unit}"
+        for value, wrong in ((2 * most, above), (-1e300, "above"), (least / 2, below)):
+            with pytest.raises(ValueError, match=f"but no .* may be {re.escape(wrong)}"):
+                quantity.parse(f"{value!r} {unit}")
+        assert Quantity(unit, "1").parse(f"{least / 2!r} {unit}") == least / 2  # as a place that rounding leaves near 0
 
 
 @pytest.mark.parametrize("text", ["1 " + "m" * 100_000, "1" * 100_000 + " m", "1 " + "kg*" * 40_000 + "m"], ids=len)
@@ -104,15 +103,9 @@ def test_long_texts_are_refused_at_once(text: str) -> None:
         Quantity("m", "150 um").parse(text)
 
 
-@pytest.mark.parametrize("unit", units.DIMENSIONS)
-def test_si_units_are_those_of_pint(unit: str) -> None:
-    quantity = Quantity(unit, "")
-    assert quantity.parse(f"0.1 {unit}") == quantity._convert_by_pint("", "0.1", unit) == 0.1
-
-
-@pytest.mark.parametrize("unit", ["s^2", "Hz^2", "parsec", "ft", "min", "degC", "", "um2", "cmm"])
-def test_other_units_are_left_to_pint(unit: str) -> None:
-    assert units.prefixed(unit)[0] == ""
+def test_other_units_are_left_to_pint() -> None:
+    others = ["s^2", "Hz^2", "parsec", "ft", "min", "degC", "", "um2", "cmm"]
+    assert {units.prefixed(unit)[0] for unit in others} == {""}
 
 
 def test_import_does_not_load_pint() -> None:

@@ -5,9 +5,10 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 from reduced_plates import one_correction, one_in_plane, one_plate, random_plate
+from reduced_solver import reduced_equilibrium
 
-from coupling.stretch import correction_drives
-from fem_plate.large_deflection import ReducedPlate, reduced_equilibrium
+from coupling.stretch import correction_drives, equilibrium_at
+from fem_plate.large_deflection import ReducedPlate
 from particle import Drive, Segment, SegmentDrive
 from particle.drives import drive_table
 
@@ -190,6 +191,21 @@ def test_the_same_bits_on_any_thread(two):
     for other in others:
         for one, same in zip(found.drives, other.drives, strict=True):
             assert np.array_equal(one.segments().coefficients, same.segments().coefficients)
+
+
+@pytest.mark.parametrize("size", [0.3, 1.0, 5.0])
+def test_the_equilibrium_under_drives_that_stand_still_is_the_oracles(size):
+    plate, d = random_plate(3, 6, 5, 4, size=size), np.array([1.0, -2.0, 1.5])
+    corrections, motions = equilibrium_at(plate, d)
+    truth = reduced_equilibrium(plate, d)
+    assert corrections == pytest.approx(truth.corrections[0], rel=1e-11)
+    assert motions == pytest.approx(truth.in_plane[0], rel=1e-11)
+
+
+def test_an_equilibrium_that_is_not_stable_is_refused():
+    plate = ReducedPlate([[1.0]], [[[0.0, 0.0], [0.0, 1.0]]], prestress=[-1.5])
+    with pytest.raises(ValueError, match="not stable there: its energy is not least"):
+        equilibrium_at(plate, np.zeros(1))
 
 
 def test_a_plate_that_buckles_is_refused_with_the_time():

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from reduced_plates import one_correction, one_in_plane, one_plate, random_plate
+from reduced_solver import reduced_equilibrium
 
 from coupling.stretch import correction_drives
 from coupling.stretch.response import POINTS, evaluate_response, find_response
-from fem_plate.large_deflection import ReducedPlate, reduced_equilibrium
+from fem_plate.large_deflection import ReducedPlate
 from particle import Drive
 
 

@@ -7,7 +7,7 @@ from skfem.helpers import dd, ddot, div, dot, grad, trace
 
 import meshes
 from fem_plate import AnisotropicSection, Plate, PlateSection
-from fem_plate.general.reading import form_coefficients
+from fem_plate.elements.energy import form_coefficients
 
 UNIT = PlateSection(12 * (1 - 0.3**2), 0.3, 1.0, density=1.0)  # rigidity 1 N m
 POINTS = np.array([[0.3, 0.1], [-0.2, 0.4]])

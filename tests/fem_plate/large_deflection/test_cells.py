@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fem_plate import Plate, PlateSection
-from fem_plate.large_deflection.solution.cells import level_of, refined_for
+from fem_plate.large_deflection.discrete import level_of, refined_for
 from meshes import disc
 
 UNIT = PlateSection(youngs_modulus=12 * (1 - 0.3**2), poisson_ratio=0.3, thickness=1.0)

@@ -2,19 +2,23 @@
 
 import numpy as np
 import pytest
+from reduced_solver import energy, reduced_equilibrium
 
-from fem_plate import Excitation, Plate, PlateSection
-from fem_plate.large_deflection import HeldShapes, energy, mode_columns, reduce, reduced_equilibrium, with_modes
-from fem_plate.large_deflection.reduction.full_solutions import FullSolutions
-from fem_plate.large_deflection.reduction.model_error import deflected, estimated_error, measured_error
-from fem_plate.large_deflection.reduction.projection import project
-from fem_plate.large_deflection.solution.equilibrium import Loads
+from fem_plate import Excitation, HeldShapes, Plate, PlateSection
+from fem_plate.large_deflection import Columns, mode_columns, reduce, with_modes
+from fem_plate.large_deflection.equilibrium import Loads
+from fem_plate.large_deflection.full_solutions import FullSolutions
+from fem_plate.large_deflection.reduction import deflected, estimated_error, measured_error, project
 from meshes import disc
 
 UNIT = PlateSection(youngs_modulus=12 * (1 - 0.3**2), poisson_ratio=0.3, thickness=1.0)
 POINTS = [[0.3, 0.1], [-0.25, -0.35]]
 STROKES = np.array([[1.0, 0.6], [1.0, 0.0], [0.0, 0.6], [0.5, 0.3], [0.3, 0.6], [0.8, 0.5]])
 ELSEWHERE = np.array([0.7, 0.2])
+
+
+def corrections_of(plate, strokes):
+    return reduced_equilibrium(plate, strokes).corrections[0]
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +28,7 @@ def discrete():
 
 @pytest.fixture(scope="module")
 def known(discrete):
-    known = FullSolutions(discrete, np.array([1.0, 0.6]))
+    known = FullSolutions(discrete, np.array([1.0, 0.6]), corrections_of)
     known.add(STROKES[0], None)
     known.add(STROKES[1], None)
     return known
@@ -33,7 +37,7 @@ def known(discrete):
 def test_the_energy_is_that_of_the_whole_plate(discrete, known):
     """Of two states with the same strokes: a full solution, and the plate without corrections, a little from below."""
     model, equilibrium, loads = project(known, 1e-9), discrete.equilibrium, Loads(STROKES[0], 0.0)
-    c = reduced_equilibrium(model.plate, STROKES[0]).corrections[0]
+    c = corrections_of(model.plate, STROKES[0])
     reduced = [energy(model.plate, each, STROKES[0]) for each in (c, 0 * c)]
     whole = [
         equilibrium.energy(state, loads) for state in (deflected(known, model, STROKES[0]), equilibrium.linear(loads))
@@ -54,9 +58,10 @@ def test_a_model_of_few_solutions_is_off_elsewhere_by_about_its_estimate(known):
 
 def test_a_reduction_meets_its_tolerance_where_it_was_not_made(discrete):
     told = []
-    reduction = reduce(discrete, STROKES, 1e-4, lambda solutions, error: told.append((solutions, error)))
+    reduction = reduce(discrete, STROKES, 1e-4, corrections_of, lambda *progress: told.append(progress))
     full = discrete.equilibrium.solve(Loads(ELSEWHERE, 0.0)).state
-    few = reduction.coefficients(ELSEWHERE)
+    c = corrections_of(reduction.plate, ELSEWHERE)
+    few = Columns.joined([reduction.linear, reduction.corrections]).weighted(np.append(ELSEWHERE, c)[:, None])
     off = discrete.equilibrium.change(few.v[:, 0] - full.v, few.extra[:, 0] - full.extra)
     assert off < 1e-4 * discrete.equilibrium.change(full.v, full.extra)
     assert reduction.error < 1e-4 and reduction.solutions > told[-1][0] >= 2
@@ -73,9 +78,9 @@ def test_a_start_does_not_change_a_solution(discrete):
 
 def test_with_modes_the_plate_stretches_as_the_whole_plate_in_the_same_shape(discrete):
     """Not only in equilibrium: for any strokes, swings of modes and corrections up to the amplitudes it is made for."""
-    reduction = reduce(discrete, STROKES, 1e-3)
+    reduction = reduce(discrete, STROKES, 1e-3, corrections_of)
     shapes = HeldShapes(reduction, np.array(POINTS), np.full(len(POINTS), np.inf))
-    modes = mode_columns(discrete, shapes, Excitation(shapes, 1.0, UNIT.rigidity).modes())
+    modes = mode_columns(discrete, shapes.springs, Excitation(shapes, 1.0, UNIT.rigidity).modes())
     modes = modes.weighted(np.eye(modes.v.shape[1])[:, :2])
     amplitudes = STROKES.max(axis=0), np.array([0.5, 0.2]), np.full(reduction.corrections.v.shape[1], 0.05)
     off = []

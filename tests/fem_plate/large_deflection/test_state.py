@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from fem_plate import Plate, PlateSection
-from fem_plate.large_deflection.solution.equilibrium import NotConverged
+from fem_plate.large_deflection.equilibrium import NotConverged
 from meshes import disc, rectangle
 
 UNIT = PlateSection(youngs_modulus=12 * (1 - 0.3**2), poisson_ratio=0.3, thickness=1.0, density=1.0)
@@ -130,6 +130,6 @@ def test_a_tolerance_is_met():
 
 
 def test_no_equilibrium_is_an_error(monkeypatch):
-    monkeypatch.setattr("fem_plate.large_deflection.solution.equilibrium.MAX_STEPS", 2)
+    monkeypatch.setattr("fem_plate.large_deflection.equilibrium.MAX_STEPS", 2)
     with pytest.raises(NotConverged, match="no equilibrium after 2 steps; the last one changed w by"):
         Plate(disc(1.0, 0.4), UNIT).large_deflection([(0, 0)]).solve([10.0])

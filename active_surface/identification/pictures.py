@@ -1,0 +1,112 @@
+"""The picture of an identification: tracks beside paths, over the plane and over time, and what is left."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from active_surface.identification.fit import TrackFit
+from active_surface.identification.result import Identified
+from common import Drawing, draw, figure_of, unit_for
+from coupling.pictures import map_axes
+
+SAMPLES: Final = 2000  # of the path
+MEASURED: Final[dict[str, Any]] = {
+    "linestyle": "",
+    "marker": "o",
+    "markersize": 3.5,
+    "markeredgewidth": 0,
+    "alpha": 0.7,
+}
+COLOURS: Final = ("#1b4f9c", "#c8371b")  # of x and y
+ROW: Final = 2.6  # in, of one of several tracks
+WORDS: Final[dict[str, Any]] = {"fontsize": 9, "parse_math": False}
+
+
+@draw.register(Identified)
+def draw_identified(result: Identified, axes: Axes | None = None) -> Figure:
+    """Draw a result into a figure of its own, or paths and tracks over the plane into axes in m."""
+    if axes is not None:
+        for fit in result.fits:
+            _draw_plane(axes, fit, 1.0)
+        axes.legend(frameon=False)
+        return figure_of(axes)
+    alone = len(result.fits) == 1
+    figure = _of_one(result.fits[0]) if alone else _of_several(result)
+    lines = [f"{one.field} = {one.text}" for one in result.estimates if alone or one.case is None]
+    name = result.fits[0].case.name if alone else ", ".join(fit.name for fit in result.fits)
+    figure.suptitle("\n".join([name, *lines]), parse_math=False, fontsize=10)
+    return figure
+
+
+def _of_one(fit: TrackFit) -> Figure:
+    figure = Drawing(figsize=(12.0, 5.6))
+    grid = figure.add_gridspec(2, 2, width_ratios=(1, 1.3), height_ratios=(2, 1))
+    _draw_map(figure.add_subplot(grid[:, 0]), fit)
+    over_time = figure.add_subplot(grid[0, 1])
+    _draw_times(over_time, figure.add_subplot(grid[1, 1], sharex=over_time), fit)
+    return figure
+
+
+def _of_several(result: Identified) -> Figure:
+    """A row for each track, with its own fields above its places over time."""
+    count = len(result.fits)
+    figure = Drawing(figsize=(13.0, 0.8 + ROW * count))
+    grid = figure.add_gridspec(count, 3, width_ratios=(1, 1.6, 1.2))
+    for row, fit in enumerate(result.fits):
+        plane, places, rest = (figure.add_subplot(grid[row, column]) for column in range(3))
+        _draw_map(plane, fit, legend=not row)
+        _draw_times(places, rest, fit, legend=not row)
+        places.set_xlabel(rest.get_xlabel())
+        plane.set_title(fit.name, **WORDS)
+        own = [f"{one.field} = {one.text}" for one in result.estimates if one.case == fit.name]
+        places.set_title("\n".join(own), **WORDS)
+    return figure
+
+
+def _draw_map(axes: Axes, fit: TrackFit, legend: bool = True) -> None:
+    unit = unit_for(fit.track.position[np.isfinite(fit.track.position)], "m")
+    _draw_plane(axes, fit, unit.per_si)
+    if legend:
+        axes.legend(frameon=False)
+    map_axes(axes, unit)
+    axes.set_aspect("equal", adjustable="datalim")
+
+
+def _draw_plane(axes: Axes, fit: TrackFit, per_si: float) -> None:
+    """Draw the path and the places over the plane; those whose x or y is not measured are left out."""
+    times = np.linspace(0, fit.track.time[-1], SAMPLES)
+    axes.plot(*(fit.trajectory.at(times).position * per_si).T, color="black", linewidth=1.2, label="path")
+    axes.plot(*(fit.track.position * per_si).T, color=COLOURS[0], **MEASURED, label="track")
+
+
+def _draw_times(places: Axes, rest: Axes, fit: TrackFit, legend: bool = True) -> None:
+    """Draw x and y over time, and path minus track."""
+    track, path = fit.track, fit.trajectory
+    times = np.linspace(0, track.time[-1], SAMPLES)
+    clock, unit = unit_for(times, "s"), unit_for(track.position[np.isfinite(track.position)], "m")
+    left = unit_for(fit.residuals, "m")
+    line, away = path.at(times).position, fit.away
+    for axis, name in enumerate(("x", "y")):
+        if np.isnan(track.position[:, axis]).all():
+            continue
+        colour = COLOURS[axis]
+        places.plot(
+            times * clock.per_si, line[:, axis] * unit.per_si, color=colour, linewidth=1.2, label=f"{name} of the path"
+        )
+        measured = track.time * clock.per_si
+        places.plot(
+            measured, track.position[:, axis] * unit.per_si, color=colour, **MEASURED, label=f"{name} of the track"
+        )
+        rest.plot(measured, away[:, axis] * left.per_si, color=colour, **MEASURED)
+    rest.axhline(0, color="black", linewidth=0.8)
+    places.set_ylabel(f"place [{unit.name}]")
+    rest.set_ylabel(f"path - track [{left.name}]")
+    rest.set_xlabel(f"time [{clock.name}]")
+    if legend:
+        places.legend(frameon=False, fontsize=8)
+    for axes in (places, rest):
+        axes.grid(alpha=0.3)

@@ -1,0 +1,78 @@
+"""Result: what a run has found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from common import draw, notebook_html
+from coupling.advice import advised_case, moves
+from coupling.case import Case
+from coupling.scene import Scene
+from coupling.summary import Summary
+from fem_plate import PlateShapes
+from particle import SurfaceMotion, Trajectory
+
+if TYPE_CHECKING:
+    from common import Axes, Figure
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result:
+    """The result of a run.
+
+    Parameters
+    ----------
+    case : Case
+        What was run.
+    scene : PlateScene or PlatformScene
+        What the part moved over.
+    trajectory : Trajectory
+        The part's path.
+    summary : Summary
+        Its figures, and how exact they are.
+    files : tuple of path
+        Files that were written.
+    """
+
+    case: Case
+    scene: Scene
+    trajectory: Trajectory
+    summary: Summary
+    files: tuple[Path, ...] = ()
+
+    @property
+    def surface(self) -> SurfaceMotion:
+        """The moving surface."""
+        return self.scene.surface
+
+    @property
+    def shapes(self) -> PlateShapes | None:
+        """The influence shapes of a plate; None: there is a platform."""
+        return self.scene.shapes
+
+    def __repr__(self) -> str:
+        text = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."
+        return f"Result of {self.case!r}. {text}"
+
+    @property
+    def advised(self) -> Case | None:
+        """The case of the trial run that the advice tells of; None: there is none, or the motion is measured."""
+        advice = self.summary.advice
+        trial = None if advice is None or advice.measured else advice.trial
+        return None if trial is None else advised_case(self.case, trial)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the drives carried the part far and kept it, so that there is nothing to advise."""
+        return moves(self.scene, self.trajectory)
+
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Draw the path over the surface as it is when it is deflected most, and the motion over time.
+
+        With axes, only the path over the surface, into these, in m.
+        """
+        return draw(self, axes)
+
+    _repr_html_ = notebook_html

@@ -1,0 +1,127 @@
+"""GradedPlate: a mesh, a section and supports, on cells that are small where a question needs it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_plate.elements import (
+    MAX_EXPONENT,
+    MeshGrading,
+    PlateModel,
+    SingularCorner,
+    by_boundary,
+    corner_rows,
+    grade_mesh,
+    plate_energy,
+    singular_corners,
+    wedges,
+)
+from fem_plate.inputs import check_tension
+from fem_plate.sections import Field, PlateSection, Section, VaryingSection
+from fem_plate.types import FloatArray
+from meshes import PlateMesh
+
+if TYPE_CHECKING:
+    from skfem import BilinearForm
+
+
+class GradedPlate:
+    """A plate and its models; parameters as of `Plate`.
+
+    corners: where cells are small.  enriched_corners: those with functions of their own.  left_out: how many corners
+    have such functions that this plate leaves out.  energy: None of a uniform plate.
+    """
+
+    def __init__(
+        self,
+        mesh: PlateMesh,
+        section: Section,
+        supports: str | Mapping[str, str] = "clamped",
+        tolerance: float | None = None,
+        tension: float = 0.0,
+        foundation: float | Field = 0.0,
+        forms: Sequence[BilinearForm] = (),
+    ) -> None:
+        self.supports = by_boundary(supports, mesh.boundaries)
+        self.mesh = mesh
+        self.section = section
+        self.tolerance = tolerance
+        check_tension(tension, self.supports)
+        self.tension = float(tension)
+        self.foundation = foundation
+        self.forms = tuple(forms) if isinstance(forms, Sequence) else (forms,)
+        self.grading = MeshGrading.of(mesh, self.relative_tension)
+        self.corners = singular_corners(mesh, self.supports, section.poisson_ratio)
+        self.energy = plate_energy(mesh, section, foundation, self.tension, self.forms)
+        obtuse = wedges(mesh, self.supports, self.tension)
+        isotropic = isinstance(section, PlateSection) and self.energy is None  # as corner functions are
+        self.enriched_corners, self.left_out = (obtuse, 0) if isotropic else ([], len(obtuse))
+        self._last: tuple[bytes, PlateModel] | None = None
+
+    def cells(
+        self, points: FloatArray | None = None, halvings: int = 0, corners: Sequence[SingularCorner] = ()
+    ) -> PlateMesh:
+        """Halved cells, graded towards the plate's corners, further ones, and for actuators at points (N, 2) [m]."""
+        return self._graded([*self.corners, *corners], points, halvings)
+
+    def _graded(self, corners: list[SingularCorner], points: FloatArray | None, halvings: int) -> PlateMesh:
+        mesh = self.mesh
+        for _ in range(halvings):
+            mesh = mesh.refined()
+        return grade_mesh(mesh, self.grading.halved(halvings), corners, points)
+
+    def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
+        """The plate on cells for actuators at points (N, 2) [m], with the corner functions of its wedges."""
+        corners = self.graded_corners
+        if self.energy is not None and points is not None and self.energy.exponent < MAX_EXPONENT:
+            corners += [SingularCorner(point, self.energy.exponent) for point in points]
+        mesh = self._graded(corners, points, halvings)
+        key = mesh.points.tobytes()
+        if self._last is None or self._last[0] != key:
+            self._last = key, self.model_on(mesh, self.tension)
+        return self._last[1]
+
+    def model_on(self, mesh: PlateMesh, tension: float) -> PlateModel:
+        """The plate on cells as they are, under another tension [N/m]."""
+        rows = corner_rows(mesh, self._other_corners)
+        if self.energy is not None:
+            return PlateModel(mesh, self.supports, replace(self.energy, tension=tension), rows)
+        section = self.section
+        return PlateModel(mesh, self.supports, section.law, rows, tension / section.rigidity, self.enriched_corners)
+
+    @property
+    def graded_corners(self) -> list[SingularCorner]:
+        """The corners that a model's cells are small at."""
+        return [*self._other_corners, *(wedge.corner for wedge in self.enriched_corners)]
+
+    @property
+    def singular_corners(self) -> list[SingularCorner]:
+        """All corners where the deflection is not smooth, those of small turns too."""
+        known = {corner.point.tobytes() for corner in self.corners}
+        small = (SingularCorner(w.point, w.exponent) for w in self.enriched_corners if w.point.tobytes() not in known)
+        return [*self.corners, *small]
+
+    @property
+    def _other_corners(self) -> list[SingularCorner]:
+        """The singular corners that are no wedges."""
+        known = {wedge.point.tobytes() for wedge in self.enriched_corners}
+        return [corner for corner in self.corners if corner.point.tobytes() not in known]
+
+    @property
+    def relative_tension(self) -> float:
+        """The tension over the plate's rigidity [1/m^2]."""
+        return self.tension / self.section.rigidity
+
+    def __repr__(self) -> str:
+        width, height = np.ptp(self.mesh.outline.box, axis=0)
+        rims = ", ".join(f"{name} {support}" for name, support in self.supports.items())
+        tension = f"; tension {self.tension:.4g} N/m" if self.tension else ""
+        about = "about " if isinstance(self.section, VaryingSection) else ""
+        more = "; on a foundation" if callable(self.foundation) or self.foundation else ""
+        more += f"; with {len(self.forms)} forms" if self.forms else ""
+        thick = f"{about}{self.section.thickness:.4g} m thick"
+        return f"Plate of {width:.4g} m x {height:.4g} m, {thick}; {rims}{tension}{more}"

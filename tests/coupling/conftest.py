@@ -1,0 +1,3 @@
+"""Tests of this folder run without advice."""
+
+from without_advice import pytest_runtest_setup as pytest_runtest_setup
