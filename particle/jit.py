@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 import numba
 from numba.core import config
-from numba.extending import register_jitable
+from numba.core.registry import CPUDispatcher
 
 from particle.kernel_cache import KernelCache, place_of
 
@@ -35,13 +35,13 @@ def jit_no_arrays(kernel: Kernel) -> Kernel:
 
 
 def device(function: Kernel) -> Kernel:
-    """Compile a function with the kernels that call it; Python that calls it runs it as Python."""
-    return register_jitable(**OPTIONS)(function)  # type: ignore[no-any-return]
+    """Compile a function that only kernels call, with these; Python that calls it runs it as Python."""
+    return _device(function)
 
 
 def device_no_arrays(function: Kernel) -> Kernel:
     """As `device`, for functions that make no arrays, as in `jit_no_arrays`."""
-    return register_jitable(**OPTIONS, _nrt=False)(function)  # type: ignore[no-any-return]
+    return _device(function, _nrt=False)
 
 
 def inlined(function: Kernel) -> Kernel:
@@ -54,6 +54,20 @@ def _compiled(kernel: Kernel, **options: Any) -> Kernel:
     if not config.DISABLE_JIT and place_of(kernel).folder:
         dispatcher._cache = KernelCache(dispatcher)
     return dispatcher  # type: ignore[no-any-return]
+
+
+def _device(function: Kernel, **options: Any) -> Kernel:
+    dispatcher = numba.njit(**OPTIONS, no_cpython_wrapper=True, **options)(function)
+    if not config.DISABLE_JIT:
+        dispatcher.__class__ = _Device
+    return dispatcher  # type: ignore[no-any-return]
+
+
+class _Device(CPUDispatcher):  # type: ignore[misc]
+    """A compiled function without a way in from Python."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.py_func(*arguments)
 
 
 # For other packages: at the door of this one, `jit` is the module.

@@ -134,7 +134,7 @@ def _stays(surface: SurfaceMotion, request: Request, pairs: Pairs, x: float, y: 
         return None
     still = 0.0 if np.isinf(surface.drives.repeats).any() else 1.0  # s, to look at the surface at rest
     start, end = np.array([x, y, *np.zeros(6)]), after + still
-    rest = request._replace(start=start, mode=Mode.RESTING, begin=request.duration, until=end, duration=end)
+    rest = request._replace(start=start, mode=int(Mode.RESTING), begin=request.duration, until=end, duration=end)
     memory = _memory(surface.record, pairs, np.zeros(1, dtype=np.int64))
     march(surface.record, rest._replace(only_rests=True), pairs, memory, new_record())
     return bool(memory.now[0].mode == Mode.RESTING and memory.now[0].verdict == Verdict.GOES_ON)

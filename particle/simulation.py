@@ -170,7 +170,7 @@ def new_request(
     return Request(
         part=part_record(surface, part, friction, gravity),
         start=np.array([*part.position, *part.velocity, *np.zeros(4)], dtype=float),
-        mode=Mode.SLIDING if np.any(part.velocity) else Mode.RESTING,
+        mode=int(Mode.SLIDING if np.any(part.velocity) else Mode.RESTING),
         begin=0.0,
         until=float(duration),
         first_step=FIRST_STEP * stroke_time,

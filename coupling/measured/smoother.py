@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle import kernel, kernel_inlined
+from particle import kernel, kernel_device, kernel_inlined
 
 FloatArray = NDArray[np.float64]
 
@@ -105,7 +105,7 @@ def smooth(nodes: Nodes, roughness: float, start: FloatArray, out: Smoothed) -> 
     return squares, logarithms
 
 
-@kernel
+@kernel_device
 def _transition(d: float, roughness: float, f_shape: FloatArray, q_shape: FloatArray) -> None:
     """What the state becomes after a time d, and what the unknown highest derivative adds to its covariance."""
     m = len(f_shape)

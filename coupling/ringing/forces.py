@@ -28,7 +28,7 @@ from coupling.stretch import (
     new_state,
 )
 from fem_plate.large_deflection import Forms
-from particle import kernel, kernel_inlined, kernel_no_arrays
+from particle import kernel, kernel_device_no_arrays, kernel_inlined
 from particle.drives import ORDER, DriveTable, drive_piece, evaluate_piece
 
 FloatArray = NDArray[np.float64]
@@ -74,7 +74,7 @@ def new_bench(ringing: Ringing) -> Bench:
     )
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def enter_pieces(table: DriveTable, begin: float, end: float, bench: Bench) -> None:
     """The drives' pieces between two breakpoints [s]."""
     half = 0.5 * (end - begin)
@@ -90,7 +90,7 @@ def _enter_heights(bench: Bench, s: float, half: float) -> None:
         heights[0, i], heights[1, i], heights[2, i] = evaluate_piece(bench.pieces[i], s, half)
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _enter_lifts(ringing: Ringing, bench: Bench, count: int, orders: int) -> None:
     """What drives and modes do to the first `count` forms, with derivatives up to an order below `orders`."""
     forms, moment, lifts, row = ringing.forms, bench.moment, bench.lifts, bench.row
@@ -111,7 +111,7 @@ def _enter_lifts(ringing: Ringing, bench: Bench, count: int, orders: int) -> Non
             add_rows(mixed, 0, len(mixed), forms.mixed[r], lifts[order], both)
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def accelerate(
     ringing: Ringing,
     bench: Bench,
@@ -150,7 +150,7 @@ def accelerate(
     return outcome
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def fill_node(
     ringing: Ringing, bench: Bench, q: FloatArray, q_t: FloatArray, q_tt: FloatArray, out: FloatArray
 ) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from coupling.ringing.forces import Bench, Ringing, accelerate, enter_pieces, fill_node
 from coupling.stretch import FINE
-from particle import kernel, kernel_no_arrays
+from particle import kernel, kernel_device_no_arrays
 from particle.drives import DriveTable
 from particle.events import Tableau
 
@@ -63,14 +63,14 @@ def march(
     return outcome, worst
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _guess(node: FloatArray, time: float, out: FloatArray) -> None:
     """The corrections a time [s] after a node."""
     for j in range(len(out)):
         out[j] = node[0, j] + time * (node[1, j] + 0.5 * time * node[2, j])
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _error(pair: Tableau, rates: FloatArray, speeds: FloatArray, h: float, fastest: float) -> float:
     """The error of a step [m], as Hairer, Norsett and Wanner join their estimates of orders 5 and 3."""
     fine = coarse = 0.0

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.stretch import lay_piece
-from particle import kernel, kernel_no_arrays
+from particle import kernel, kernel_device_no_arrays
 
 FloatArray = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def lay_steps(
     return laid, worst
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _over(left: FloatArray, middle: FloatArray, right: FloatArray, length: float, limits: FloatArray) -> float:
     """The errors of quintics' accelerations in their middle, where they are largest, over their limits, in all."""
     over = 0.0

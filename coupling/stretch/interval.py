@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from coupling.stretch.vectors import add_rows, clear
 from fem_plate.large_deflection import Forms
-from particle import kernel, kernel_inlined, kernel_no_arrays
+from particle import kernel, kernel_device_no_arrays, kernel_inlined
 from particle.drives import ORDER, DriveTable, drive_piece
 
 FloatArray = NDArray[np.float64]
@@ -74,7 +74,7 @@ def enter_interval(forms: Forms, table: DriveTable, begin: float, end: float, in
                         interval.mixed[k, r * n + j] += share * forms.mixed[r, i, j]
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def enter_drives(table: DriveTable, begin: float, end: float, interval: Interval) -> None:
     """Find those of the drives alone."""
     half = 0.5 * (end - begin)

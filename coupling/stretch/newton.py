@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from coupling.stretch.interval import Moment
 from coupling.stretch.vectors import add_rows, clear, copy, dot
 from fem_plate.large_deflection import Forms
-from particle import kernel, kernel_inlined, kernel_no_arrays
+from particle import kernel, kernel_device_no_arrays, kernel_inlined, kernel_no_arrays
 
 FloatArray = NDArray[np.float64]
 
@@ -132,7 +132,7 @@ def follow_equilibrium(forms: Forms, moment: Moment, state: State, c: FloatArray
         last = length
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def find_rates(forms: Forms, moment: Moment, state: State, node: FloatArray) -> None:
     """Fill a node (3, n+M) with c', c'' and with g, g', g'', at the equilibrium c that its first row begins with."""
     n, count, membranes = len(forms.load), len(forms.constant), forms.membranes
@@ -159,7 +159,7 @@ def fill_motions(forms: Forms, moment: Moment, state: State, c: FloatArray, out:
         out[r] = state.values[forms.membranes + r]
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _answer(forms: Forms, moment: Moment, state: State, order: int, out: FloatArray) -> None:
     """The corrections' derivative of that order, which keeps the gradient 0; weights (R,): what f has without it."""
     n, membranes = len(out), forms.membranes
@@ -176,7 +176,7 @@ def _answer(forms: Forms, moment: Moment, state: State, order: int, out: FloatAr
         out[j] = -rate[j]
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _second(moment: Moment, state: State, c: FloatArray, c_t: FloatArray, r: int) -> float:
     """f'' of a form, without what c'' adds."""
     mixed_t, mixed_tt = moment.mixed[1, r], moment.mixed[2, r]
@@ -194,7 +194,7 @@ def _enter_rates(forms: Forms, moment: Moment, state: State, c: FloatArray, c_t:
         state.values_t[r] = moment.own[1, r] + dot(mixed_t, c) + dot(state.rows[r], c_t)
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _enter_forms(forms: Forms, moment: Moment, state: State, c: FloatArray, first: int, last: int) -> None:
     """Values and rows of the forms from `first` to before `last`."""
     n = len(c)
@@ -206,7 +206,7 @@ def _enter_forms(forms: Forms, moment: Moment, state: State, c: FloatArray, firs
         state.values[r] = forms.constant[r] + moment.own[0, r] + 0.5 * twice
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _enter(forms: Forms, moment: Moment, state: State, c: FloatArray) -> float:
     """Values and rows of the membrane at c, the gradient and the energy, which is returned."""
     n, gradient, values = len(c), state.gradient, state.values
@@ -233,7 +233,7 @@ def _size(forms: Forms, state: State, c: FloatArray) -> float:
     return size
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _factorise(forms: Forms, state: State, whole: bool) -> bool:
     """Build the Hessian, or what is positive definite of it, and its Cholesky factor; whether there is one."""
     n, weights = len(forms.load), state.weights
@@ -258,7 +258,7 @@ def _factorise(forms: Forms, state: State, whole: bool) -> bool:
     return True
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _solve(factor: FloatArray, x: FloatArray) -> None:
     """Solve U'U x = b for the upper factor U (n, n), in place."""
     n = len(x)

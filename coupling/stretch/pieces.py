@@ -23,7 +23,7 @@ from coupling.stretch.interval import (
 from coupling.stretch.newton import FINE, State, find_equilibrium, find_rates, new_state
 from coupling.stretch.response import Blend, Response, blend_node, enter_drive, new_blend
 from fem_plate.large_deflection import Forms
-from particle import kernel, kernel_no_arrays
+from particle import kernel, kernel_device, kernel_device_no_arrays
 from particle.drives import ORDER, DriveTable, evaluate_piece
 
 FloatArray = NDArray[np.float64]
@@ -57,13 +57,13 @@ class Tools(NamedTuple):
     blend: Blend
 
 
-@kernel
+@kernel_device
 def new_tools(forms: Forms, response: Response) -> Tools:
     """Room for it."""
     return Tools(new_interval(forms), new_moment(forms), new_state(forms), response, new_blend(response))
 
 
-@kernel
+@kernel_device
 def _enter(forms: Forms, tools: Tools, table: DriveTable, begin: float, end: float) -> None:
     """Enter an interval between two breakpoints [s]."""
     if len(tools.response.rows) > 0:
@@ -72,7 +72,7 @@ def _enter(forms: Forms, tools: Tools, table: DriveTable, begin: float, end: flo
         enter_interval(forms, table, begin, end, tools.interval)
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def find_node(forms: Forms, tools: Tools, s: float, node: FloatArray, largest: float) -> int:
     """The node at s of the interval, from c as the node has it unless there is a response."""
     if len(tools.response.rows) > 0:
@@ -137,7 +137,7 @@ def find_nodes(
     return FINE, 0.0, solved
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _shared(table: DriveTable, before: FloatArray, after: FloatArray, half: float, half_after: float) -> int:
     """How many of c, c' and c'' are the same on both sides of a breakpoint between two intervals' drives."""
     shared = 3
@@ -154,7 +154,7 @@ def _shared(table: DriveTable, before: FloatArray, after: FloatArray, half: floa
     return shared
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _rescale(node: FloatArray, ratio: float, out: FloatArray, orders: int) -> None:
     """The node in another interval's s: ratio: the latter's length over its own."""
     factor = 1.0
@@ -230,7 +230,7 @@ def lay_pieces(
     return k, laid, -1.0, solved
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _between(left: FloatArray, right: FloatArray, share: float, out: FloatArray, length: float = 2.0) -> None:
     """The first row of a node as the quintic between two others has it at a share of their distance in s."""
     for j in range(left.shape[1]):
@@ -244,7 +244,7 @@ def _between(left: FloatArray, right: FloatArray, share: float, out: FloatArray,
         out[0, j] = value * share + left[0, j]
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _error(left: FloatArray, middle: FloatArray, right: FloatArray, length: float, j: int) -> float:
     """What a quintic between two nodes is off by, by the node in its middle."""
     v_0, v_1 = length * left[1, j], length * right[1, j]
@@ -254,7 +254,7 @@ def _error(left: FloatArray, middle: FloatArray, right: FloatArray, length: floa
     return abs(middle[0, j] - value) + BESIDE * abs(length * middle[1, j] - rate)
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _measure(left: FloatArray, middle: FloatArray, right: FloatArray, length: float, limits: FloatArray) -> float:
     """The largest error of a quintic between two nodes over its limit."""
     over = 0.0
@@ -265,7 +265,7 @@ def _measure(left: FloatArray, middle: FloatArray, right: FloatArray, length: fl
     return over
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _keep(left: FloatArray, middle: FloatArray, right: FloatArray, length: float, half: float, walk: Walk) -> None:
     """Keep what a quintic that is laid is off by."""
     for j in range(left.shape[1]):
@@ -278,7 +278,7 @@ def _keep(left: FloatArray, middle: FloatArray, right: FloatArray, length: float
         walk.largest_acceleration[j] = max(walk.largest_acceleration[j], acceleration)
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def lay_piece(left: FloatArray, right: FloatArray, length: float, out: FloatArray) -> None:
     """The quintics (n+M, 6) between two nodes."""
     for j in range(left.shape[1]):

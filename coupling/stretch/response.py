@@ -17,7 +17,7 @@ from coupling.stretch.interval import Moment, new_moment
 from coupling.stretch.newton import FINE, fill_motions, find_equilibrium, new_state
 from coupling.stretch.vectors import add_rows, clear
 from fem_plate.large_deflection import Forms, ReducedPlate
-from particle import kernel, kernel_no_arrays
+from particle import kernel, kernel_device, kernel_device_no_arrays
 from particle.drives import ORDER, evaluate_piece
 
 FloatArray = NDArray[np.float64]
@@ -121,7 +121,7 @@ def find_equilibria(forms: Forms, heights: FloatArray, out: FloatArray) -> int:
     return FINE
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _enter_heights(forms: Forms, d: FloatArray, moment: Moment) -> None:
     """What drives that stay at d (N,) do to each form."""
     own, mixed, count = moment.own[0], moment.mixed[0], len(d)
@@ -134,7 +134,7 @@ def _enter_heights(forms: Forms, d: FloatArray, moment: Moment) -> None:
                 own[r] += 0.5 * forms.drives[r, i, k] * d[i] * d[k]
 
 
-@kernel
+@kernel_device
 def new_blend(response: Response) -> Blend:
     """Room for an evaluation."""
     count = len(response.low)
@@ -155,7 +155,7 @@ def evaluate_response(response: Response, heights: FloatArray) -> FloatArray:
     return out
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def enter_drive(response: Response, i: int, blend: Blend) -> None:
     """The splines of drive i at blend.height, with their derivatives in time."""
     height, cells = blend.height, len(response.basis)
@@ -171,7 +171,7 @@ def enter_drive(response: Response, i: int, blend: Blend) -> None:
         blend.splines[i, 2, a] = curvature * rate * rate + slope * bend
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def blend_node(response: Response, blend: Blend, node: FloatArray) -> None:
     """Corrections and in-plane motions with two derivatives in time, (3, n + M), from the splines of all drives."""
     count, width, points = len(response.low), node.shape[1], len(response.basis) + 1

@@ -5,12 +5,12 @@ from __future__ import annotations
 from numpy import float64
 from numpy.typing import NDArray
 
-from particle import kernel_no_arrays
+from particle import kernel_device_no_arrays
 
 FloatArray = NDArray[float64]
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def add_rows(out: FloatArray, first: int, last: int, rows: FloatArray, weights: FloatArray, count: int) -> None:
     """Add the first `count` rows (k, m) times their weights to `out`, from entry `first` to before `last`.
 
@@ -32,21 +32,21 @@ def add_rows(out: FloatArray, first: int, last: int, rows: FloatArray, weights: 
         r += 1
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def copy(values: FloatArray, out: FloatArray) -> None:
     """Copy as many values as `out` holds."""
     for j in range(len(out)):
         out[j] = values[j]
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def clear(out: FloatArray) -> None:
     """Set to 0."""
     for j in range(len(out)):
         out[j] = 0.0
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def dot(one: FloatArray, other: FloatArray) -> float:
     """The sum of products."""
     a = b = c = d = 0.0

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle import kernel, kernel_no_arrays
+from particle import kernel, kernel_device_no_arrays, kernel_no_arrays
 from particle.drives import ORDER, DriveTable, drive_piece
 
 FloatArray = NDArray[np.float64]
@@ -88,7 +88,7 @@ def enter_jump(piece: FloatArray, half: float, before: FloatArray, jump: FloatAr
     before[0], before[1] = end, end_rate / half
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _follow_one(
     oscillators: Oscillators,
     j: int,
@@ -122,7 +122,7 @@ def _follow_one(
     state[1] = velocity + (forced[1] + 2.0 * forced[2] + 3.0 * forced[3]) / half
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _rung(omega: float, damping: float, ringing: FloatArray, time: float) -> tuple[float, float]:
     """Free ringing [m] and its velocity [m/s] after a time [s]."""
     decay, turn = damping * omega, omega * math.sqrt(1.0 - damping**2)
@@ -134,7 +134,7 @@ def _rung(omega: float, damping: float, ringing: FloatArray, time: float) -> tup
     )
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _at(oscillators: Oscillators, course: Course, k: int, j: int, since: float, out: FloatArray) -> None:
     """One oscillator's value [m], velocity and acceleration, into out (3,), a time [s] after an interval's begin."""
     half = 0.5 * (course.edges[k + 1] - course.edges[k])
@@ -158,7 +158,7 @@ def at_times(oscillators: Oscillators, course: Course, intervals: NDArray[np.int
     return values
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _step(oscillators: Oscillators, course: Course, k: int, since: float, allowed: float) -> float:
     """How long [s] pieces may be from a time [s] after an interval's begin on; allowed: m/s^2, their error.
 
@@ -218,7 +218,7 @@ def lay_pieces(
     return rows
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def _quintic(a: FloatArray, b: FloatArray, scale: float, out: FloatArray) -> None:
     """The quintic between two values (3,) with their derivatives, a time `scale` [s] apart."""
     rise, v_0, v_1 = b[0] - a[0], scale * a[1], scale * b[1]

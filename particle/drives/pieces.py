@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined, jit_no_arrays
 from particle.types import BoolArray, FloatArray, IntArray
 
 ORDER = 6  # coefficients of a quintic
@@ -51,10 +51,10 @@ def hermite_end(rise: Any, v_0: Any, v_1: Any, a_0: Any, a_1: Any) -> tuple[Any,
     )
 
 
-quintic_end = jit_no_arrays(hermite_end)  # for kernels, of numbers
+quintic_end = device_no_arrays(hermite_end)  # for kernels, of numbers
 
 
-@jit_no_arrays
+@device_no_arrays
 def evaluate_piece(c: FloatArray, s: float, unit: float) -> tuple[float, float, float]:
     """A quintic c (6,) in s = t / unit, with its first and second derivative in t."""
     value = ((((c[5] * s + c[4]) * s + c[3]) * s + c[2]) * s + c[1]) * s + c[0]
@@ -72,7 +72,7 @@ def drive_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatA
     find_piece(table, i, time, unit, out)
 
 
-@jit_no_arrays
+@device_no_arrays
 def find_piece(table: DriveTable, i: int, time: float, unit: float, out: FloatArray) -> tuple[float, int]:
     """The same; also returns the passes that drive i has behind it, and its segment, NO_SEGMENT: it holds."""
     for k in range(ORDER):
@@ -117,7 +117,7 @@ def _is_alike(table: DriveTable, i: int, other: int) -> bool:
     return True
 
 
-@jit_no_arrays
+@device_no_arrays
 def expand_piece(
     table: DriveTable, i: int, passes: float, segment: int, time: float, unit: float, out: FloatArray
 ) -> None:
@@ -138,13 +138,13 @@ def expand_piece(
         factor *= unit / table.scale[segment]
 
 
-@jit_no_arrays
+@device_no_arrays
 def breakpoint_slack(table: DriveTable, i: int, time: float) -> float:
     """How close [s] to `time` a breakpoint of drive i must be to count as one there: rounding, or 1e-12 of a stroke."""
     return MERGED * table.stroke_time[i] + ROUNDING * abs(time) if math.isfinite(table.span[i]) else 0.0
 
 
-@jit_no_arrays
+@device_no_arrays
 def drive_breakpoint(table: DriveTable, i: int, time: float) -> float:
     """The first time [s] after `time` at which drive i has a breakpoint; inf when there is none."""
     if not math.isfinite(table.span[i]):
@@ -174,7 +174,7 @@ def next_breakpoint(table: DriveTable, time: float) -> float:
     return nearest
 
 
-@jit_no_arrays
+@device_no_arrays
 def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
     """When [s] a segment of drive i begins after so many passes: the one expression that decides about pieces."""
     if not math.isfinite(table.span[i]):
@@ -182,13 +182,13 @@ def _edge(table: DriveTable, i: int, passes: float, segment: int) -> float:
     return float(_origin(table, i) + (table.span[i] * passes + table.start[segment]))
 
 
-@jit_no_arrays
+@device_no_arrays
 def _origin(table: DriveTable, i: int) -> float:
     """When [s] the first pass of drive i begins, after its lead."""
     return float(table.delay[i] - table.start[table.first[i]])
 
 
-@jit_no_arrays
+@device_no_arrays
 def _end(table: DriveTable, i: int) -> float:
     """When [s] drive i has ended."""
     last = table.first[i + 1] - 1
@@ -198,7 +198,7 @@ def _end(table: DriveTable, i: int) -> float:
     return float(_origin(table, i) + (table.span[i] * table.repeats[i] + length))
 
 
-@jit_no_arrays
+@device_no_arrays
 def _place(table: DriveTable, i: int, time: float) -> tuple[float, int]:
     """The passes that drive i has behind it at `time` [s], from its delay to before its end, and its segment then."""
     low, high = table.loop[i, 0], table.loop[i, 1]

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.types import FloatArray
 
 MAX_HALVINGS = 44  # halvings: a root is located to 2^-44 of the interval
 
 
-@jit_no_arrays
+@device_no_arrays
 def to_bernstein(c: FloatArray, out: FloatArray) -> None:
     """Bernstein coefficients (n+1,) of a polynomial c_0 + c_1 s + ...: b_i = sum_k C(i, k) / C(n, k) c_k."""
     n = len(out) - 1
@@ -27,7 +27,7 @@ def to_bernstein(c: FloatArray, out: FloatArray) -> None:
         total *= (n - k) / (k + 1)
 
 
-@jit_no_arrays
+@device_no_arrays
 def quintic_to_bernstein(c: FloatArray, b: FloatArray) -> None:
     """The same of a quintic (6,), without divisions."""
     third, tenth = c[3] * 0.1, c[2] * 0.1
@@ -40,7 +40,7 @@ def quintic_to_bernstein(c: FloatArray, b: FloatArray) -> None:
     b[5] = c[0] + c[1] + c[2] + c[3] + c[4] + c[5]
 
 
-@jit_no_arrays
+@device_no_arrays
 def halve(right: FloatArray, left: FloatArray) -> None:
     """de Casteljau at 1/2: `right` holds the whole polynomial before and its right half after."""
     n = len(right) - 1

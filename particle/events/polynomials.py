@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from particle.jit import jit, jit_no_arrays
+from particle.jit import device, device_no_arrays
 from particle.types import FloatArray
 
 
-@jit
+@device
 def derivative(c: FloatArray, unit: float) -> FloatArray:
     """The derivative in time of a polynomial of s = t / unit."""
     out = np.zeros(len(c) - 1)
@@ -17,7 +17,7 @@ def derivative(c: FloatArray, unit: float) -> FloatArray:
     return out
 
 
-@jit
+@device
 def second_derivative(c: FloatArray, unit: float) -> FloatArray:
     """The second derivative in time of a polynomial of s = t / unit."""
     out = np.zeros(len(c) - 2)
@@ -26,7 +26,7 @@ def second_derivative(c: FloatArray, unit: float) -> FloatArray:
     return out
 
 
-@jit
+@device
 def total(a: FloatArray, b: FloatArray) -> FloatArray:
     """The sum of two polynomials."""
     out = np.zeros(max(len(a), len(b)))
@@ -35,7 +35,7 @@ def total(a: FloatArray, b: FloatArray) -> FloatArray:
     return out
 
 
-@jit_no_arrays
+@device_no_arrays
 def narrow(c: FloatArray, low: float, width: float) -> None:
     """A polynomial of s on [low, low + width] as one of r on [0, 1], in place."""
     n = len(c) - 1

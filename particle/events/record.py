@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from particle.events.mechanics import Motion, Part, energy, heading, pull, rest_pull, rising, velocity
 from particle.friction import friction_limit
-from particle.jit import jit
+from particle.jit import device
 from particle.modes import Mode
 from particle.records import Record, new_records, record_type
 from particle.surface import LocalSurface, surface_at
@@ -68,7 +68,7 @@ def new_record() -> PathRecord:
     return PathRecord(new_records(Row, 1024), new_records(EventRow, 256), new_records(Lengths))
 
 
-@jit
+@device
 def fill_row(local: LocalSurface, part: Part, mode: int, time: float, motion: Motion, row: Row) -> None:
     """The row of a part's motion into `row`."""
     x, y, v_x, v_y = motion.x, motion.y, motion.v_x, motion.v_y
@@ -90,7 +90,7 @@ def fill_row(local: LocalSurface, part: Part, mode: int, time: float, motion: Mo
     row.kinetic, row.potential = energy(f, x, y, v_x, v_y, row.z, row.v_z, part)
 
 
-@jit
+@device
 def write(record: PathRecord, row: Row) -> PathRecord:
     """The record with one more row, or with its last row replaced when no time has passed."""
     rows, lengths = record.rows, record.lengths[0]
@@ -106,7 +106,7 @@ def write(record: PathRecord, row: Row) -> PathRecord:
     return PathRecord(rows, record.events, record.lengths)
 
 
-@jit
+@device
 def note(record: PathRecord, kind: int, row: Row) -> PathRecord:
     """The record with one more event, at the place, time and speed of a row."""
     events, lengths = record.events, record.lengths[0]
@@ -122,6 +122,6 @@ def note(record: PathRecord, kind: int, row: Row) -> PathRecord:
     return PathRecord(record.rows, events, record.lengths)
 
 
-@jit
+@device
 def last_row(record: PathRecord) -> Row:
     return record.rows[record.lengths[0].rows - 1]

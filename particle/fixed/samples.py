@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from particle.events import ROW, Motion, Part, Row
 from particle.fixed.steps import FixedMemory, fill_fixed_row
-from particle.jit import inlined, jit
+from particle.jit import device, inlined, jit
 from particle.modes import Mode
 from particle.surface import UNBUILT, Surface, enter
 from particle.types import BoolArray, FloatArray
@@ -61,7 +61,7 @@ def _hermite(one: Row, other: Row, time: float, motion: Motion) -> None:
         motion.y, motion.v_y = _cubic(one.y, one.v_y, other.y, other.v_y, s, h)
 
 
-@jit
+@device
 def _cubic(x_0: float, v_0: float, x_1: float, v_1: float, s: float, h: float) -> tuple[float, float]:
     """Place and velocity at the share s of a time h [s] between two places and velocities."""
     rise = x_1 - x_0

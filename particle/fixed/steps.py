@@ -28,7 +28,7 @@ from particle.events import (
 )
 from particle.fixed.moreau import moreau_step
 from particle.fixed.paper_scheme import paper_step
-from particle.jit import inlined, jit
+from particle.jit import device, inlined, jit
 from particle.modes import END_EVENTS, NO_EVENT, EventKind, Mode, Verdict
 from particle.records import new_records
 from particle.surface import (
@@ -171,7 +171,7 @@ def _begin(surface: Surface, request: Request, memory: FixedMemory) -> None:
         motion.v_z = motion.v_x * f.w_x + motion.v_y * f.w_y
 
 
-@jit
+@device
 def _enter(surface: Surface, memory: FixedMemory, time: float, share: float) -> bool:
     """Prepares the surface around the part; False where the path ends, as it has gone a `share` of its way only."""
     now: Now = memory.now[0]
@@ -202,7 +202,7 @@ def _find_event(part: Part, memory: FixedMemory, f: SurfacePoint, before: int) -
     return NO_EVENT
 
 
-@jit
+@device
 def _write(memory: FixedMemory, part: Part, scheme: int, record: PathRecord, event: int) -> PathRecord:
     """The record with the part's row, and with an event there."""
     now: Now = memory.now[0]
@@ -212,7 +212,7 @@ def _write(memory: FixedMemory, part: Part, scheme: int, record: PathRecord, eve
     return note(record, event, row) if event != NO_EVENT else record
 
 
-@jit
+@device
 def fill_fixed_row(
     local: LocalSurface, part: Part, scheme: int, mode: int, time: float, motion: Motion, row: Row
 ) -> None:
@@ -223,7 +223,7 @@ def fill_fixed_row(
         row.load, row.friction = a.load, part.mass * (a.demand if row.mode == Mode.RESTING else a.limit)
 
 
-@jit
+@device
 def move(surface: Surface, gap: float, motion: Motion, way_x: float, way_y: float) -> tuple[float, float]:
     """Moves `motion` by a straight way [m], at most to the rim; `gap` [m], at most the distance from it, saves looking.
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from particle.checks import finite, not_negative, positive, refuse
-from particle.jit import jit, jit_no_arrays
+from particle.jit import device_no_arrays, jit
 from particle.types import FloatArray
 
 CONSTANT, COULOMB, TABLE, POINTS = 0, 1, 2, 3
@@ -57,7 +57,7 @@ class Contact(Protocol):
         """Q [N] under net loads [N] of any shape; ValueError for one below -pull_off or above largest_load."""
 
 
-@jit_no_arrays
+@device_no_arrays
 def friction_limit(law: FrictionLaw, load: float) -> float:
     """Q [N] while sliding under the net normal force `load` [N]; outside the law it goes on, never negative."""
     if law.kind == CONSTANT:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER, evaluate_piece
-from particle.jit import jit, jit_no_arrays
+from particle.jit import device_no_arrays, jit
 from particle.surface.cells import UNBUILT
 from particle.surface.jet import Jet, at_time, fill_quintics, jet
 from particle.surface.local import Frame, LocalSurface
@@ -71,7 +71,7 @@ class SurfacePoint(NamedTuple):
 POINT_SIZE = len(SurfacePoint._fields)
 
 
-@jit_no_arrays
+@device_no_arrays
 def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfacePoint:
     """The surface at a point [m] of the prepared cell and a time [s] of the prepared span.
 
@@ -148,7 +148,7 @@ def surface_at(local: LocalSurface, x: float, y: float, time: float) -> SurfaceP
     )
 
 
-@jit_no_arrays
+@device_no_arrays
 def plane_jet(local: LocalSurface, along: int, x: float, y: float, time: float) -> Jet:
     """The motion u [m] of the mid-plane in its plane along x (0) or y (1), the base's excluded."""
     frame: Frame = local.frame[0]
@@ -158,7 +158,7 @@ def plane_jet(local: LocalSurface, along: int, x: float, y: float, time: float) 
     return jet(local.plane_at, end, frame.plane_degree, u, v, frame.half_x, frame.half_y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     """What r^2 ln r is made of: r^2 outside the floor, how far r is inside it, and 2 ln r there; lengths over the size.
 
@@ -168,7 +168,7 @@ def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
     return bounded, (square - bounded) / bounded, math.log(bounded)
 
 
-@jit_no_arrays
+@device_no_arrays
 def motion_at(local: LocalSurface, x: float, y: float, motion: FloatArray, plane: FloatArray) -> None:
     """The surface at a fixed point [m] as polynomials in (t - time) / unit.
 
@@ -229,7 +229,7 @@ def sample_surface(
     return out, missing
 
 
-@jit_no_arrays
+@device_no_arrays
 def point_of(row: FloatArray) -> SurfacePoint:
     """The `SurfacePoint` of a row of `sample_surface`."""
     return SurfacePoint(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from particle.drives import ORDER
-from particle.jit import jit_no_arrays
+from particle.jit import device_no_arrays
 from particle.types import FloatArray
 
 
@@ -33,7 +33,7 @@ class Jet(NamedTuple):
     yyy: float
 
 
-@jit_no_arrays
+@device_no_arrays
 def at_time(c: FloatArray, at: FloatArray, first: int, end: int, s: float, unit: float) -> None:
     """sum_k c[k, m] s^k and its two derivatives in t = unit s [s] into at[:3, m], first <= m < end."""
     for m in range(first, end):
@@ -42,7 +42,7 @@ def at_time(c: FloatArray, at: FloatArray, first: int, end: int, s: float, unit:
         at[2, m] = (((20 * c[5, m] * s + 12 * c[4, m]) * s + 6 * c[3, m]) * s + 2 * c[2, m]) / (unit * unit)
 
 
-@jit_no_arrays
+@device_no_arrays
 def jet(at: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float) -> Jet:
     """f = sum c_ij u^i v^j, i + j <= degree, and its derivatives, with the monomials at[:, m] that end before `end`.
 
@@ -93,7 +93,7 @@ def jet(at: FloatArray, end: int, degree: int, u: float, v: float, half_x: float
     )
 
 
-@jit_no_arrays
+@device_no_arrays
 def fill_quintics(
     c: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float, out: FloatArray, row: int
 ) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined, jit_no_arrays
 from particle.records import Record, new_records
 from particle.surface.cells import NOWHERE, WHOLE, Cells
 from particle.surface.record import Surface
@@ -134,7 +134,7 @@ def cell_at(cells: Cells, x: float, y: float) -> int:
     return NOWHERE if cell >= 0 and cells.first_row[cell] == NOWHERE else cell
 
 
-@jit_no_arrays
+@device_no_arrays
 def _interval(along: float, width: float, count: int) -> int:
     """Which of `count` intervals of a width holds a coordinate; the outer edges belong to the outer ones."""
     place = int(math.floor(along / width))
@@ -145,14 +145,14 @@ def _interval(along: float, width: float, count: int) -> int:
     return place if 0 <= place < count else NOWHERE
 
 
-@jit_no_arrays
+@device_no_arrays
 def within_cell(local: LocalSurface, x: float, y: float) -> bool:
     """Whether the cell's polynomial holds at a point [m]."""
     f: Frame = local.frame[0]
     return abs(x - f.x) <= f.overhang * f.half_x and abs(y - f.y) <= f.overhang * f.half_y
 
 
-@jit_no_arrays
+@device_no_arrays
 def gap_at(surface: Surface, local: LocalSurface, x: float, y: float) -> float:
     """A distance [m] that a point of the cell is from the rim at least, negative off the plate; exact near the rim."""
     clear: float = local.frame[0].clear

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined, jit_no_arrays
 from particle.surface.record import Surface
 from particle.types import FloatArray
 
@@ -144,7 +144,7 @@ def edge_distance(edge: FloatArray, x: float, y: float) -> float:
     return nearest
 
 
-@jit_no_arrays
+@device_no_arrays
 def first_beyond(surface: Surface, gap: float, start: Vector, end: Vector, v_0: Vector, v_1: Vector, h: float) -> float:
     """The share of a step of h [s] after which its path is first seen off the plate; 1 when it is not.
 

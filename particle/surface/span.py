@@ -17,7 +17,7 @@ from particle.drives import (
     expand_piece,
     find_piece,
 )
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_bridged, shapes_in_cell
 from particle.surface.cells import UNBUILT
 from particle.surface.local import Clock, Frame, LocalSurface, cell_at, monomial_count
@@ -27,7 +27,7 @@ from particle.types import FloatArray
 MAX_SHIFT = 2.0  # units of time over which a polynomial is moved on; rounding grows with the fifth power of that
 
 
-@jit_no_arrays
+@device_no_arrays
 def enter(surface: Surface, local: LocalSurface, x: float, y: float, time: float, end: float) -> int:
     """Prepare for points around (x, y) [m] and times from `time` [s] to the span's end, at most `end`: frame.end.
 
@@ -113,13 +113,13 @@ def _move_on(surface: Surface, local: LocalSurface, time: float, end: float) -> 
     return True
 
 
-@jit_no_arrays
+@device_no_arrays
 def _has_passed(clock: Clock, time: float) -> bool:
     """Whether a drive needs another piece from a time [s] on."""
     return bool(clock.until <= time + clock.slack)
 
 
-@jit_no_arrays
+@device_no_arrays
 def _find_piece(surface: Surface, local: LocalSurface, i: int) -> None:
     """The quintic of the i-th drive, from frame.time to its next breakpoint."""
     frame: Frame = local.frame[0]
@@ -145,7 +145,7 @@ def _find_piece(surface: Surface, local: LocalSurface, i: int) -> None:
     clock.slack = breakpoint_slack(table, drive, until) if math.isfinite(until) else 0.0
 
 
-@jit_no_arrays
+@device_no_arrays
 def _take_out(surface: Surface, local: LocalSurface, i: int) -> None:
     """Move the quintic of the i-th drive on to frame.time, and take its shape out."""
     frame: Frame = local.frame[0]
@@ -155,7 +155,7 @@ def _take_out(surface: Surface, local: LocalSurface, i: int) -> None:
     _add(surface, local, i, -1.0)
 
 
-@jit_no_arrays
+@device_no_arrays
 def _add(surface: Surface, local: LocalSurface, i: int, sign: float) -> None:
     """Add the quintic of the i-th drive times its shape."""
     frame: Frame = local.frame[0]
@@ -174,7 +174,7 @@ def _add(surface: Surface, local: LocalSurface, i: int, sign: float) -> None:
         _add_row(local.smooth, cells.rows, cells.first_row[frame.cell] + i * width, width, piece, sign)
 
 
-@jit_no_arrays
+@device_no_arrays
 def _add_row(out: FloatArray, rows: FloatArray, first: int, width: int, piece: FloatArray, sign: float) -> None:
     """Add a quintic times the shape that begins at `first`."""
     row = rows[first : first + width]  # as slices, these loops fill the processor's vector units
@@ -186,7 +186,7 @@ def _add_row(out: FloatArray, rows: FloatArray, first: int, width: int, piece: F
                 total[m] += row[m] * c
 
 
-@jit_no_arrays
+@device_no_arrays
 def _shift(c: FloatArray, shift: float, width: int) -> None:
     """Polynomials (6, width) of s as ones of s - shift."""
     for k in range(ORDER - 1):
@@ -195,7 +195,7 @@ def _shift(c: FloatArray, shift: float, width: int) -> None:
                 c[j, m] += shift * c[j + 1, m]
 
 
-@jit_no_arrays
+@device_no_arrays
 def _shift_one(c: FloatArray, shift: float) -> None:
     """A polynomial (6, ...) of s as one of s - shift."""
     for k in range(ORDER - 1):

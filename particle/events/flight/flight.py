@@ -29,7 +29,7 @@ from particle.events.mechanics import (
 from particle.events.memory import Memory
 from particle.events.request import Request
 from particle.events.sliding import MIN_STEP
-from particle.jit import inlined, jit
+from particle.jit import device, inlined
 from particle.modes import NO_EVENT, EventKind, Verdict
 from particle.surface import LocalSurface, Surface, SurfacePoint, first_beyond, rim_gap, surface_at, within_cell
 from particle.types import FloatArray
@@ -85,7 +85,7 @@ def fly(surface: Surface, request: Request, memory: Memory) -> int:
     return NO_EVENT
 
 
-@jit
+@device
 def _heights(request: Request, memory: Memory, here: SurfacePoint, graze: float) -> FloatArray:
     """The height over the surface in a step that is short enough for a quintic: its Bernstein coefficients (6,).
 
@@ -139,7 +139,7 @@ def _exit_share(surface: Surface, memory: Memory, part: Part, here: SurfacePoint
     return high
 
 
-@jit
+@device
 def _height(f: SurfacePoint, part: Part, motion: Motion) -> tuple[float, float, float]:
     """The height [m] over the surface of a flying part and its two derivatives in time."""
     v_x, v_y = motion.v_x, motion.v_y

@@ -30,7 +30,7 @@ from particle.events.mechanics.parallel import (
     to_height,
 )
 from particle.friction import friction_limit
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 TURNS, SETTLED = 50, 1e-15
@@ -67,7 +67,7 @@ class Mobility(NamedTuple):
     yy: float
 
 
-@jit_no_arrays
+@device_no_arrays
 def rest_pull(f: SurfacePoint, part: Part) -> RestPull:
     """The pull at rest in the frame that it and the surface define."""
     p = pull(f, 0.0, 0.0, part)
@@ -78,7 +78,7 @@ def rest_pull(f: SurfacePoint, part: Part) -> RestPull:
     return RestPull(demand, limit, d_x, d_y, n_x, n_y, p.normal)
 
 
-@jit_no_arrays
+@device_no_arrays
 def _turned_left(f: SurfacePoint, d_x: float, d_y: float) -> tuple[float, float]:
     """n at right angles to d along the surface: M n is d turned left, M = I + grad w grad w^T, det M = s^2."""
     s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
@@ -86,7 +86,7 @@ def _turned_left(f: SurfacePoint, d_x: float, d_y: float) -> tuple[float, float]
     return -m_y / s, m_x / s
 
 
-@jit_no_arrays
+@device_no_arrays
 def mobility(f: SurfacePoint, part: Part) -> Mobility:
     """K."""
     shape = shape_operator(f)
@@ -95,13 +95,13 @@ def mobility(f: SurfacePoint, part: Part) -> Mobility:
     return Mobility(xx, xy, yx, yy)
 
 
-@jit_no_arrays
+@device_no_arrays
 def moved(k: Mobility, x: float, y: float) -> tuple[float, float]:
     """K times a vector."""
     return k.xx * x + k.xy * y, k.yx * x + k.yy * y
 
 
-@jit_no_arrays
+@device_no_arrays
 def first_slip(f: SurfacePoint, k: Mobility, p_x: float, p_y: float, limit: float) -> tuple[float, float, float]:
     """r, e_x and e_y with K (p - limit e) = r e, for a pull p [m/s^2] along the surface; exact where K = I."""
     size = length(f, p_x, p_y)
@@ -124,7 +124,7 @@ def first_slip(f: SurfacePoint, k: Mobility, p_x: float, p_y: float, limit: floa
     return rate, e_x, e_y
 
 
-@jit_no_arrays
+@device_no_arrays
 def heading(
     local: LocalSurface, part: Part, time: float, x: float, y: float, u: float, f: SurfacePoint, a: RestPull
 ) -> Heading:
@@ -206,14 +206,14 @@ def _contact_acceleration(
     return a_x + z * (n.x + n.down * f.w_x / s) + c_x, a_y + z * (n.y + n.down * f.w_y / s) + c_y
 
 
-@jit_no_arrays
+@device_no_arrays
 def velocity(f: SurfacePoint, part: Part, u: float, h: Heading) -> tuple[float, float]:
     """The velocity (x', y') [m/s] on the manifold at the contact's speed u [m/s]."""
     k_x, k_y = _direction(u, h)
     return over_plane(f, part, u * k_x, u * k_y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def _direction(u: float, h: Heading) -> tuple[float, float]:
     """The direction of the contact's velocity."""
     back = min(max(h.kappa * u, -1.0), 1.0)

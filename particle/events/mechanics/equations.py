@@ -38,7 +38,7 @@ from particle.events.mechanics.parallel import (
     unstretched,
 )
 from particle.friction import FrictionLaw, friction_limit
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 
@@ -64,7 +64,7 @@ class Pull(NamedTuple):
     speed: float  # m/s, sliding speed u
 
 
-@jit_no_arrays
+@device_no_arrays
 def pull(f: SurfacePoint, v_x: float, v_y: float, part: Part) -> Pull:
     """Acceleration without friction, normal force and sliding speed."""
     a_x, a_y = f.base_ax - part.tilt_x, f.base_ay - part.tilt_y
@@ -81,7 +81,7 @@ def pull(f: SurfacePoint, v_x: float, v_y: float, part: Part) -> Pull:
     return Pull(p_x, p_y, normal, slip_speed(f, part, v_x, v_y))
 
 
-@jit_no_arrays
+@device_no_arrays
 def carried(f: SurfacePoint, v_x: float, v_y: float) -> tuple[float, float]:
     """2 grad u_t v + v.grad grad u v: what the mid-plane's motion in its plane adds to u_tt at a steady v [m/s^2]."""
     return (
@@ -90,45 +90,45 @@ def carried(f: SurfacePoint, v_x: float, v_y: float) -> tuple[float, float]:
     )
 
 
-@jit_no_arrays
+@device_no_arrays
 def rising(f: SurfacePoint, v_x: float, v_y: float) -> float:
     """w_t + v.grad w: how fast [m/s] a point that moves over the mid-plane by v rises."""
     s_x, s_y = stretched(f, v_x, v_y)
     return f.w_t + s_x * f.w_x + s_y * f.w_y
 
 
-@jit_no_arrays
+@device_no_arrays
 def slip_speed(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> float:
     """The speed [m/s] of the contact over the surface."""
     k_x, k_y = slip(f, part, v_x, v_y)
     return length(f, k_x, k_y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def slip(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> tuple[float, float]:
     """The velocity [m/s] of the contact over the surface."""
     return to_height(shape_operator(f), part.contact, v_x, v_y) if part.contact > 0.0 else stretched(f, v_x, v_y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def over_plane(f: SurfacePoint, part: Part, k_x: float, k_y: float) -> tuple[float, float]:
     """The velocity (x', y') [m/s] of a part from that of its contact."""
     return from_height(shape_operator(f), part.contact, k_x, k_y) if part.contact > 0.0 else unstretched(f, k_x, k_y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def by_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
     """(x', y') from the centre of mass's velocity [m/s] along the surface; also (x'', y'') from its acceleration."""
     return from_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else unstretched(f, x, y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def of_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
     """The velocity [m/s] of the centre of mass along the surface from (x', y'): the inverse of `by_centre`."""
     return to_height(shape_operator(f), part.centre, x, y) if part.centre > 0.0 else stretched(f, x, y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def length(f: SurfacePoint, x: float, y: float) -> float:
     """Length along the surface of a vector given in the plane's coordinates."""
     climb = x * f.w_x + y * f.w_y
@@ -151,7 +151,7 @@ def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> flo
     return p.normal
 
 
-@jit_no_arrays
+@device_no_arrays
 def turning(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> float:
     """k.M (k - (I - z_c S) v) [m^2/s^2]; times Q/u the power of friction's moment, which turns a sliding part."""
     if part.centre == part.contact:
@@ -162,14 +162,14 @@ def turning(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> float:
     return inner(f, k_x, k_y, k_x - c_x, k_y - c_y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def push(f: SurfacePoint, part: Part, load: float) -> float:
     """The power [W] of the surface's normal force, net of the squeeze, at the surface's velocity."""
     s = math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
     return (load - part.squeeze) / s * (f.w_t - f.w_x * f.base_vx - f.w_y * f.base_vy)
 
 
-@jit_no_arrays
+@device_no_arrays
 def drag(f: SurfacePoint, part: Part, x: float, y: float) -> float:
     """The velocity [m/s] of the place that the centre of mass has on the surface, times a vector along the surface."""
     along = x * f.base_vx + y * f.base_vy + (x * f.w_x + y * f.w_y) * f.w_t
@@ -179,7 +179,7 @@ def drag(f: SurfacePoint, part: Part, x: float, y: float) -> float:
     return along
 
 
-@jit_no_arrays
+@device_no_arrays
 def energy(
     f: SurfacePoint, x: float, y: float, v_x: float, v_y: float, z: float, v_z: float, part: Part
 ) -> tuple[float, float]:
@@ -195,7 +195,7 @@ def energy(
     return 0.5 * part.mass * (s_x * s_x + s_y * s_y + s_z * s_z), part.mass * height
 
 
-@jit_no_arrays
+@device_no_arrays
 def energy_at_rest(local: LocalSurface, part: Part, time: float, motion: Motion) -> float:
     """The energy [J] of a part at rest on the surface at the place of `motion`."""
     f = surface_at(local, motion.x, motion.y, time)
@@ -203,7 +203,7 @@ def energy_at_rest(local: LocalSurface, part: Part, time: float, motion: Motion)
     return kinetic + potential
 
 
-@jit_no_arrays
+@device_no_arrays
 def margin(local: LocalSurface, part: Part, load: float, gap: float) -> float:
     """How far the part is from the end of its contact: negative beyond the rim, below pull-off, above the largest load.
 

@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.surface import SurfacePoint
 
 
@@ -38,7 +38,7 @@ class Shape(NamedTuple):
     f_yy: float
 
 
-@jit_no_arrays
+@device_no_arrays
 def shape_operator(f: SurfacePoint) -> Shape:
     """S and F; where F = I, the eigenvalues of S are the principal curvatures, positive where the surface is hollow."""
     square = 1 + f.w_x * f.w_x + f.w_y * f.w_y
@@ -53,14 +53,14 @@ def shape_operator(f: SurfacePoint) -> Shape:
     )
 
 
-@jit_no_arrays
+@device_no_arrays
 def to_height(shape: Shape, z: float, x: float, y: float) -> tuple[float, float]:
     """(F - z S) a: the velocity at the height z [m] of a point whose normal moves over the mid-plane by a = (x, y)."""
     f_x, f_y = shape.f_xx * x + shape.f_xy * y, shape.f_yx * x + shape.f_yy * y
     return f_x - z * (shape.xx * x + shape.xy * y), f_y - z * (shape.yx * x + shape.yy * y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def from_height(shape: Shape, z: float, x: float, y: float) -> tuple[float, float]:
     """(F - z S)^-1 a, the inverse of `to_height`."""
     xx, xy = shape.f_xx - z * shape.xx, shape.f_xy - z * shape.xy
@@ -69,27 +69,27 @@ def from_height(shape: Shape, z: float, x: float, y: float) -> tuple[float, floa
     return (yy * x - xy * y) / det, (xx * y - yx * x) / det
 
 
-@jit_no_arrays
+@device_no_arrays
 def stretched(f: SurfacePoint, x: float, y: float) -> tuple[float, float]:
     """F a: the velocity in space, over its material, of a point that moves over the mid-plane by a = (x, y)."""
     return f.x_x * x + f.x_y * y, f.y_x * x + f.y_y * y
 
 
-@jit_no_arrays
+@device_no_arrays
 def unstretched(f: SurfacePoint, x: float, y: float) -> tuple[float, float]:
     """F^-1 a, the inverse of `stretched`."""
     det = f.x_x * f.y_y - f.x_y * f.y_x
     return (f.y_y * x - f.x_y * y) / det, (f.x_x * y - f.y_x * x) / det
 
 
-@jit_no_arrays
+@device_no_arrays
 def seen_in_space(f: SurfacePoint, x: float, y: float) -> tuple[float, float]:
     """F^-T a."""
     det = f.x_x * f.y_y - f.x_y * f.y_x
     return (f.y_y * x - f.y_x * y) / det, (f.x_x * y - f.x_y * x) / det
 
 
-@jit_no_arrays
+@device_no_arrays
 def stretch_rate(f: SurfacePoint, v_x: float, v_y: float, a_x: float, a_y: float) -> tuple[float, float]:
     """F' a [m/s^2], F' the rate of F as seen by a point that moves by v."""
     return (
@@ -98,13 +98,13 @@ def stretch_rate(f: SurfacePoint, v_x: float, v_y: float, a_x: float, a_y: float
     )
 
 
-@jit_no_arrays
+@device_no_arrays
 def inner(f: SurfacePoint, a_x: float, a_y: float, b_x: float, b_y: float) -> float:
     """The scalar product of two vectors along the surface."""
     return a_x * b_x + a_y * b_y + (a_x * f.w_x + a_y * f.w_y) * (b_x * f.w_x + b_y * f.w_y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def slope_rate(f: SurfacePoint, v_x: float, v_y: float) -> tuple[float, float]:
     """The rate [1/s] of the slope as seen by a point that moves by (v_x, v_y) [m/s]."""
     return seen_in_space(f, f.w_xt + f.w_xx * v_x + f.w_xy * v_y, f.w_yt + f.w_xy * v_x + f.w_yy * v_y)
@@ -125,7 +125,7 @@ def _slope_bend(f: SurfacePoint, v_x: float, v_y: float, p_x: float, p_y: float)
     )
 
 
-@jit_no_arrays
+@device_no_arrays
 def _pulled_back(f: SurfacePoint, time: float, v_x: float, v_y: float, p_x: float, p_y: float) -> tuple[float, float]:
     """F_q^T p, with q along `time` and v."""
     xx, xy = time * f.x_xt + f.x_xx * v_x + f.x_xy * v_y, time * f.x_yt + f.x_xy * v_x + f.x_yy * v_y
@@ -133,7 +133,7 @@ def _pulled_back(f: SurfacePoint, time: float, v_x: float, v_y: float, p_x: floa
     return xx * p_x + yx * p_y, xy * p_x + yy * p_y
 
 
-@jit_no_arrays
+@device_no_arrays
 def _slope_bend_along(f: SurfacePoint, v_x: float, v_y: float) -> tuple[float, float]:
     """That of w, (-g, 1).P, in the derivative along v of the `slope_rate` of a point that moves by v."""
     xx, xy, yy = v_x * v_x, 2 * v_x * v_y, v_y * v_y
@@ -143,7 +143,7 @@ def _slope_bend_along(f: SurfacePoint, v_x: float, v_y: float) -> tuple[float, f
     )
 
 
-@jit_no_arrays
+@device_no_arrays
 def normal_rate(f: SurfacePoint, v_x: float, v_y: float) -> tuple[float, float, float]:
     """The rate [1/s] of the normal, in space, at a point that moves by (v_x, v_y) [m/s]."""
     g_x, g_y = slope_rate(f, v_x, v_y)
@@ -160,7 +160,7 @@ class Bend(NamedTuple):
     down: float  # 1/s^2
 
 
-@jit_no_arrays
+@device_no_arrays
 def normal_bend(f: SurfacePoint, v_x: float, v_y: float) -> Bend:
     """The second derivative of the normal in time, at a point that moves steadily by (v_x, v_y) [m/s]."""
     p_x, p_y = slope_rate(f, v_x, v_y)
@@ -168,7 +168,7 @@ def normal_bend(f: SurfacePoint, v_x: float, v_y: float) -> Bend:
     return _bend(f, p_x, p_y, p_x, p_y, pp_x, pp_y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def normal_bend_along(f: SurfacePoint, v_x: float, v_y: float) -> Bend:
     """The derivative along v of the normal's rate in time, at a point that moves steadily by v [m/s]."""
     p_x, p_y = seen_in_space(f, f.w_xx * v_x + f.w_xy * v_y, f.w_xy * v_x + f.w_yy * v_y)
@@ -180,7 +180,7 @@ def normal_bend_along(f: SurfacePoint, v_x: float, v_y: float) -> Bend:
     return _bend(f, p_x, p_y, q_x, q_y, pq_x, pq_y)
 
 
-@jit_no_arrays
+@device_no_arrays
 def _bend(f: SurfacePoint, p_x: float, p_y: float, q_x: float, q_y: float, pq_x: float, pq_y: float) -> Bend:
     """n_pq from g_p, g_q and g_pq."""
     square = 1 + f.w_x * f.w_x + f.w_y * f.w_y

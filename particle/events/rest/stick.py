@@ -19,7 +19,7 @@ from particle.events.polynomials import narrow
 from particle.events.rest.stick_bound import DEGREE as BOUND_DEGREE
 from particle.events.rest.stick_bound import is_safe_by_bound, largest_force
 from particle.events.rest.stick_margin import DEGREE, NARROW, fill_margin, holds_at_end, is_safe_by_margin
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, motion_at
 from particle.types import FloatArray
 
@@ -99,7 +99,7 @@ def leaves_rest(local: LocalSurface, part: Part, rest: Rest, x: float, y: float,
     return math.inf
 
 
-@jit_no_arrays
+@device_no_arrays
 def _narrow(motion: FloatArray, plane: FloatArray, low: float, width: float) -> None:
     """Polynomials of s on [low, low + width] as ones of the share of it, in place."""
     for row in range(motion.shape[0]):

@@ -20,7 +20,7 @@ from particle.drives import ORDER
 from particle.events.bernstein import quintic_to_bernstein
 from particle.events.mechanics import Part
 from particle.friction import friction_limit
-from particle.jit import jit_no_arrays
+from particle.jit import device_no_arrays
 from particle.types import FloatArray
 
 DEGREE = 8  # of the bound's polynomials
@@ -30,7 +30,7 @@ _TO_BERNSTEIN = np.array(
 MAX_STRETCH = 0.5  # of the gradient of u, up to which the bound is of use
 
 
-@jit_no_arrays
+@device_no_arrays
 def _extremes(row: FloatArray, lasting: float, b: FloatArray) -> tuple[float, float, float]:
     """Bounds of the size of a quintic (6,) of the share of `lasting` [s] and of its two derivatives; b: scratch."""
     quintic_to_bernstein(row, b)
@@ -44,7 +44,7 @@ def _extremes(row: FloatArray, lasting: float, b: FloatArray) -> tuple[float, fl
     return largest, 5 * fastest / lasting, 20 * sharpest / (lasting * lasting)
 
 
-@jit_no_arrays
+@device_no_arrays
 def is_safe_by_bound(
     part: Part, motion: FloatArray, plane: FloatArray, lasting: float, b: FloatArray, force: FloatArray
 ) -> bool:
@@ -87,7 +87,7 @@ def is_safe_by_bound(
     return bool(largest_force(part, motion, plane, lasting, force) + rest <= limit)
 
 
-@jit_no_arrays
+@device_no_arrays
 def largest_force(part: Part, motion: FloatArray, plane: FloatArray, lasting: float, force: FloatArray) -> float:
     """What |a + U grad w - z grad w''| is at most [m/s^2]; force: scratch."""
     rate, square = 1.0 / (lasting * lasting), 0.0

@@ -23,7 +23,7 @@ from particle.events.bernstein import to_bernstein
 from particle.events.mechanics import Part
 from particle.events.polynomials import derivative, second_derivative, total
 from particle.friction import friction_limit
-from particle.jit import inlined, jit, jit_no_arrays
+from particle.jit import device, device_no_arrays, inlined
 from particle.types import FloatArray
 
 Vector = tuple[FloatArray, FloatArray, FloatArray]
@@ -36,7 +36,7 @@ C, F, SQUARE, E, X, Y = range(6)
 ROUNDING = 1 + 1e-14
 
 
-@jit
+@device
 def _short(a: FloatArray, b: FloatArray) -> FloatArray:
     """The product of two polynomials, up to the highest power that counts."""
     out = np.zeros(min(len(a) + len(b) - 1, DEGREE + 1))
@@ -60,13 +60,13 @@ def _normal(motion: FloatArray, plane: FloatArray) -> Vector:
     )
 
 
-@jit
+@device
 def _dot(a: Vector, b: Vector) -> FloatArray:
     """a.b."""
     return total(total(_short(a[0], b[0]), _short(a[1], b[1])), _short(a[2], b[2]))
 
 
-@jit
+@device
 def _across(a: Vector, b: Vector) -> FloatArray:
     """|a|^2 |b|^2 - (a.b)^2, as the square of their vector product: it loses no digits where it is small."""
     x = total(_short(a[1], b[2]), -_short(a[2], b[1]))
@@ -110,7 +110,7 @@ def fill_margin(part: Part, motion: FloatArray, plane: FloatArray, lasting: floa
     to_bernstein(bends, out[Y])
 
 
-@jit_no_arrays
+@device_no_arrays
 def _over(value: float, low: float, high: float) -> tuple[float, float]:
     """The least and the largest of a value over a divisor from `low` to `high`."""
     return (value / high, value / low) if value > 0.0 else (value / low, value / high)
@@ -142,7 +142,7 @@ def is_safe_by_margin(part: Part, margin: FloatArray, slack: float) -> bool:
     return True
 
 
-@jit_no_arrays
+@device_no_arrays
 def holds_at_end(part: Part, margin: FloatArray, slack: float) -> bool:
     """Whether the part stays at the end of a subinterval: -pull-off <= N <= largest load and |m p| <= Q(N)."""
     last = margin.shape[1] - 1

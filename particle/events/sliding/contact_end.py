@@ -8,7 +8,7 @@ from particle.events.request import Request
 from particle.events.sliding.manifold import MAX_TOUCH
 from particle.events.sliding.runge_kutta import attempt, first_excursion
 from particle.events.tableau import Tableau
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.modes import Verdict
 from particle.surface import Surface, first_beyond, rim_gap
 
@@ -77,7 +77,7 @@ def _locate_end(surface: Surface, part: Part, pair: Tableau, memory: Memory) -> 
     return high
 
 
-@jit_no_arrays
+@device_no_arrays
 def end_reason(surface: Surface, part: Part, load: float, motion: Motion) -> int:
     """Why contact ends where the margin is negative."""
     if rim_gap(surface, motion.x, motion.y) < 0.0:

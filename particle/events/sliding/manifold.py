@@ -21,7 +21,7 @@ from particle.events.memory import Memory
 from particle.events.request import Request
 from particle.events.sliding.runge_kutta import motion_rate
 from particle.friction import friction_limit
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.modes import Mode
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
@@ -30,13 +30,13 @@ MAX_TOUCH = 1e-6  # of a stroke: a break-away that has not come off by then was 
 GOOD, AGAIN, AT_REST = range(3)
 
 
-@jit_no_arrays
+@device_no_arrays
 def first_mode(part: Part, load: float) -> int:
     """How a part begins to slide: without friction there is no slow manifold, and no stiffness either."""
     return Mode.MANIFOLD if friction_limit(part.law, load) > 0.0 else Mode.SLIDING
 
 
-@jit_no_arrays
+@device_no_arrays
 def manifold_error(local: LocalSurface, part: Part, time: float, motion: Motion) -> float:
     """What the slow manifold's next term would move the part by [m]."""
     f = surface_at(local, motion.x, motion.y, time)
@@ -60,7 +60,7 @@ def joins_manifold(
     return bool(off <= 0.01 * tolerance and 3 * abs(h.kappa) * u**3 / a.limit <= 0.01 * tolerance)
 
 
-@jit_no_arrays
+@device_no_arrays
 def to_plane(local: LocalSurface, part: Part, time: float, motion: Motion, f: SurfacePoint, a: RestPull) -> None:
     """Turn the sliding speed u of a motion on the manifold into v_x and v_y."""
     h = heading(local, part, time, motion.x, motion.y, motion.v_x, f, a)

@@ -9,12 +9,12 @@ from particle.events.memory import Memory
 from particle.events.step import Step
 from particle.events.tableau import Tableau
 from particle.friction import friction_limit
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.modes import Mode
 from particle.surface import LocalSurface, Surface, SurfacePoint, gap_at, surface_at, within_cell
 
 
-@jit_no_arrays
+@device_no_arrays
 def motion_rate(
     f: SurfacePoint, mode: int, local: LocalSurface, part: Part, time: float, motion: Motion, rate: Motion
 ) -> float:
@@ -27,7 +27,7 @@ def motion_rate(
     return manifold_rate(f, local, part, time, motion, rate)
 
 
-@jit_no_arrays
+@device_no_arrays
 def attempt(surface: Surface, part: Part, pair: Tableau, memory: Memory, h: float) -> bool:
     """Tries a step of h [s] from the part's motion, whose rate is step.rates[0]; its end goes to step.end.
 

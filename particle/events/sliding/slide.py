@@ -19,7 +19,7 @@ from particle.events.sliding.manifold import (
 from particle.events.sliding.runge_kutta import attempt, motion_rate, step_error
 from particle.events.sliding.stop import Stop, come_to_rest, frozen_stop, stop_ahead
 from particle.events.tableau import Pairs
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.modes import NO_EVENT, EventKind, Mode, Verdict
 from particle.surface import (
     NOWHERE,
@@ -44,7 +44,7 @@ OFF_MANIFOLD = 0.4  # of the last step on the slow manifold: the first one off i
 CLOSE, LATE = 0.1, 0.01  # of a step: how close and how late it must pass an actuator to end there
 
 
-@jit_no_arrays
+@device_no_arrays
 def bridge(local: LocalSurface, request: Request, mode: int) -> None:
     """Bridge breakpoints under a sliding part only: when one slips, lands or comes off is located without."""
     frame: Frame = local.frame[0]
@@ -54,7 +54,7 @@ def bridge(local: LocalSurface, request: Request, mode: int) -> None:
     allow_bridges(local, request.bridged[0] if sliding else 0.0, request.bridged[1] if sliding else 0.0)
 
 
-@jit_no_arrays
+@device_no_arrays
 def slide(surface: Surface, request: Request, pairs: Pairs, memory: Memory) -> int:
     """Moves the part on by one step of about now.h [s], not beyond now.span_end, or to its stop.
 

@@ -36,7 +36,7 @@ from particle.events.mechanics import (
     rest_pull,
     slip,
 )
-from particle.jit import inlined, jit_no_arrays
+from particle.jit import device_no_arrays, inlined
 from particle.surface import LocalSurface, SurfacePoint, surface_at
 
 # Gauss's rule on [0, 1], and its end, at which only the load is of interest.
@@ -58,7 +58,7 @@ class Stop(NamedTuple):
     miss: float  # m, what K has across the way
 
 
-@jit_no_arrays
+@device_no_arrays
 def frozen_stop(f: SurfacePoint, part: Part, a: RestPull, v_x: float, v_y: float, small: float) -> Stop:
     """The stop under frozen forces; `small` [m] is a length that does not count, r^2/Q of a part that turns back."""
     k_x, k_y = slip(f, part, v_x, v_y)

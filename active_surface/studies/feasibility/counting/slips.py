@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from particle import kernel, kernel_no_arrays
+from particle import kernel, kernel_device_no_arrays
 from particle.events import Part, pull
 from particle.friction import friction_limit
 from particle.surface import SurfacePoint
@@ -64,7 +64,7 @@ def find_responses(f: Fields, part: Part, responses: FloatArray) -> None:
             responses[n, 4 + 3 * q] = p.x * x + p.y * y - q * responses[n, 4]
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def state_of(r: FloatArray, q: float, part: Part) -> int:
     """The state of a part at rest with a response (8,) under drives sqrt(q) times as fast."""
     load = r[0] + q * r[1]
@@ -80,13 +80,13 @@ def state_of(r: FloatArray, q: float, part: Part) -> int:
     return SLIPS if slips else RESTS
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def offset(k: int) -> float:
     """Where the k-th of the points along a side is, from the square's centre, over the side."""
     return (k + 0.5) / SIDE - 0.5
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def along(responses: FloatArray, neighbours: IndexArray, n: int, k: int, axis: int) -> float:
     """By how much the k-th number of responses (n, 8) grows over a side of the n-th square."""
     before, after = neighbours[n, 2 * axis], neighbours[n, 2 * axis + 1]
@@ -139,7 +139,7 @@ def find_states(responses: FloatArray, scales: FloatArray, part: Part, states: S
             states[n, k] = state_of(responses[n], scales[k], part)
 
 
-@kernel_no_arrays
+@kernel_device_no_arrays
 def sample(before: FloatArray, after: FloatArray, neighbours: IndexArray, n: int, samples: FloatArray) -> None:
     """Responses at the points of a square, each in its share of the time between two moments: (SIDE, SIDE, 8)."""
     for k in range(8):
