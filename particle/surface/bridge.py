@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from particle.drives import DriveTable, drive_piece, quintic_end
-from particle.jit import device_no_arrays, inlined
+from particle.jit import device_no_arrays
 from particle.surface.local import Frame, LocalSurface
 from particle.surface.record import Surface
 
@@ -21,7 +21,7 @@ JUMP_STEP, MIN_JUMP = 4.0, 1e-12  # factor between the jumps tried as limit, and
 WORTHWHILE = 0.9  # of the spans: bridges must leave fewer
 
 
-@inlined
+@device_no_arrays
 def allow_bridges(local: LocalSurface, velocity_error: float, acceleration_error: float) -> None:
     """How far [m/s, m/s^2] the surface's motion may be off over bridges, from the next span on; 0: there are none."""
     frame: Frame = local.frame[0]
@@ -44,7 +44,7 @@ def shapes_in_cell(frame: Frame) -> int:
     return int(frame.drives - frame.in_plane - frame.base_drives)
 
 
-@inlined
+@device_no_arrays
 def find_jump(surface: Surface, local: LocalSurface, i: int) -> None:
     """By how much the third derivative of what the i-th drive does in this cell jumps."""
     frame: Frame = local.frame[0]
@@ -71,7 +71,7 @@ def find_end(surface: Surface, local: LocalSurface, end: float) -> None:
     frame.end = max(first, min(unbridged, frame.time + frame.max_bridge))
 
 
-@inlined
+@device_no_arrays
 def _choose(surface: Surface, local: LocalSurface) -> None:
     """From which jump on breakpoints end a span, and how long the others may be bridged: what makes fewest spans."""
     frame: Frame = local.frame[0]

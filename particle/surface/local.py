@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from particle.drives import ORDER
-from particle.jit import device_no_arrays, inlined, jit_no_arrays
+from particle.jit import device_no_arrays, jit_no_arrays
 from particle.records import Record, new_records
 from particle.surface.cells import NOWHERE, WHOLE, Cells
 from particle.surface.record import Surface
@@ -119,7 +119,7 @@ def monomial_count(degree: int) -> int:
     return (degree + 1) * (degree + 2) // 2
 
 
-@inlined
+@device_no_arrays
 def cell_at(cells: Cells, x: float, y: float) -> int:
     """The cell that holds a point [m]; NOWHERE when there is no plate, UNBUILT when there may be."""
     if not math.isfinite(cells.width[0]):

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from particle.jit import device_no_arrays, inlined, jit_no_arrays
+from particle.jit import device_no_arrays, jit_no_arrays
 from particle.surface.record import Surface
 from particle.types import FloatArray
 
@@ -53,7 +53,7 @@ def rim_gap(surface: Surface, x: float, y: float) -> float:
     return nearest if inside else -nearest
 
 
-@inlined
+@device_no_arrays
 def ellipse_gap(x: float, y: float, a: float, b: float) -> float:
     """Distance [m] from an ellipse with semi-axes a and b [m] around the origin, positive inside.
 
@@ -83,7 +83,7 @@ def ellipse_gap(x: float, y: float, a: float, b: float) -> float:
     return distance if (x / a) ** 2 + (y / b) ** 2 < 1.0 else -distance
 
 
-@inlined
+@device_no_arrays
 def crosses(edge: FloatArray, x: float, y: float) -> bool:
     """Whether a ray from (x, y) towards positive x crosses an edge (3, 2) an odd number of times.
 
@@ -108,7 +108,7 @@ def crosses(edge: FloatArray, x: float, y: float) -> bool:
     return crossed
 
 
-@inlined
+@device_no_arrays
 def edge_distance(edge: FloatArray, x: float, y: float) -> float:
     """Distance [m] of (x, y) from an edge (3, 2), by its nearest parameter.
 

@@ -17,7 +17,7 @@ from particle.drives import (
     expand_piece,
     find_piece,
 )
-from particle.jit import device_no_arrays, inlined
+from particle.jit import device_no_arrays
 from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_bridged, shapes_in_cell
 from particle.surface.cells import UNBUILT
 from particle.surface.local import Clock, Frame, LocalSurface, cell_at, monomial_count
@@ -47,7 +47,7 @@ def enter(surface: Surface, local: LocalSurface, x: float, y: float, time: float
     return cell
 
 
-@inlined
+@device_no_arrays
 def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: float) -> None:
     """Prepare for a cell from nothing."""
     frame: Frame = local.frame[0]
@@ -81,7 +81,7 @@ def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: f
         _add(surface, local, i, 1.0)
 
 
-@inlined
+@device_no_arrays
 def _move_on(surface: Surface, local: LocalSurface, time: float, end: float) -> bool:
     """Move what is prepared on to a later time; False where that is not worth it."""
     frame: Frame = local.frame[0]
