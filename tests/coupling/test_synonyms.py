@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from sweeps import DISC_PLATE
+from sweeps import DISC_PLATE, toml
 
 from active_surface.cli.program import main
 from active_surface.steering import AimTables
@@ -28,27 +28,13 @@ COLUMNS = {"time", "x", "y", "z", "loads", "limits"}
 
 CASE = (
     DISC_PLATE
-    + """\
-density = "2330 kg/m^3"
-inertia = true
-
-[[actuators]]
-position = ["0 um", "0 um"]
-stroke = "10 um"
-frequency = "500 Hz"
-cycle = "sine"
-
-[part]
-mass = "2e-9 kg"
-position = ["100 um", "50 um"]
-
-[friction]
-model = "coulomb"
-coefficient = 0.3
-
-[run]
-duration = "50 ms"
-"""
+    + 'density = "2330 kg/m^3"\ninertia = true\n\n'
+    + toml(
+        actuators=[{"position": ["0 um", "0 um"], "stroke": "10 um", "frequency": "500 Hz", "cycle": "sine"}],
+        part={"mass": "2e-9 kg", "position": ["100 um", "50 um"]},
+        friction={"model": "coulomb", "coefficient": 0.3},
+        run={"duration": "50 ms"},
+    )
 )
 
 
