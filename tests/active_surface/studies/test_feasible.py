@@ -135,9 +135,14 @@ PART_OF = '[[actuators.segments]]\nstroke = "{}"\nfrequency = "{}"\n'
     ("drives", "frequency", "whole"),
     [
         ((FIRST, REST), 400, 2.5e-3),
-        ((FIRST, PART_OF.format("20 um", "3 kHz")), 3000, 1 / 3000 + 2.5e-3),
-        ((REST, PART_OF.format("20 um", "250 Hz") + PART_OF.format("9 um", "500 Hz")), 500, 5e-3),
-        ((REST, 'table = [["0 ms", "0 um"], ["1 ms", "9 um"], ["3 ms", "0 um"]]\n'), 500, 3e-3),
+        *(
+            pytest.param(*one, marks=pytest.mark.slow)
+            for one in (
+                ((FIRST, PART_OF.format("20 um", "3 kHz")), 3000, 1 / 3000 + 2.5e-3),
+                ((REST, PART_OF.format("20 um", "250 Hz") + PART_OF.format("9 um", "500 Hz")), 500, 5e-3),
+                ((REST, 'table = [["0 ms", "0 um"], ["1 ms", "9 um"], ["3 ms", "0 um"]]\n'), 500, 3e-3),
+            )
+        ),
     ],
 )
 def test_the_fastest_drive_is_one_that_moves_of_any_kind(tmp_path, monkeypatch, drives, frequency, whole):
@@ -206,6 +211,7 @@ def test_a_base_that_shakes_a_slope_lifts_the_part():
         assert (outcome is Outcome.DETACHED) == lost
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_long_window_is_cut_and_the_rest_of_it_is_not_hidden():
     surface = surface_motion(SHAPES, [Drive(STROKE, 400.0)])
@@ -242,6 +248,7 @@ def test_command_writes_map_and_labelled_data(tmp_path, coarse):
     case = write_case(read_case(CASE).vary({"run.duration": "3.4 ms"}), tmp_path / "case" / "one_actuator.toml")
     tmp_path = tmp_path / "out"
     options = ["--lowest", "100 Hz", "--highest", "2 kHz", "--across", "30", "--json", "--output", str(tmp_path)]
+    options += ["--smallest", "50 um", "--largest", "300 um"]
     done = CliRunner().invoke(main, ["feasibility", str(case), *options])
     assert done.exit_code == 0, done.output
     figures = json.loads(done.stdout)

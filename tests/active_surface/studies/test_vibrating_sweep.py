@@ -56,6 +56,7 @@ def test_plate_and_modes_are_found_once(found):
     assert counts == {"plate": 1, "modes": 1} and not records["mistakes"].any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("k", [2, 3])
 def test_paths_are_those_of_single_runs(found, k):
     """Which keep other modes each: to 1e-6 of the place at the end, and 1e-4 of the path."""

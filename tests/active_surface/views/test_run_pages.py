@@ -262,6 +262,7 @@ def test_a_part_in_flight_is_above_the_surface(tmp_path):
     assert 0 < begin < end == pytest.approx(2.0)
 
 
+@pytest.mark.slow
 def test_a_part_that_stays_has_no_trail(tmp_path):
     (tmp_path / "stays.toml").write_text(CASE.replace("41.8 nN", "9 N"))
     run_case(read_case(tmp_path / "stays.toml"), tmp_path)
@@ -270,6 +271,7 @@ def test_a_part_that_stays_has_no_trail(tmp_path):
     assert numbers(data["stretches"]["stuck"]) == pytest.approx([0.0, 2.0])
 
 
+@pytest.mark.slow
 def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
     for kind in ("plate", "part"):
         (tmp_path / f"cut.partial.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())

@@ -103,12 +103,13 @@ def test_small_strokes_are_those_of_a_plate_that_does_not_stretch():
     assert accelerations[0] == pytest.approx(accelerations[1], abs=2e-4 * largest)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 @pytest.mark.parametrize(
     ("frequency", "height", "allowed"),
     [
         (20e3, 1.0, (1e-5, 2e-3)),
-        pytest.param(259e3, 0.5, (1e-5, 3e-3), marks=pytest.mark.slow),
+        (259e3, 0.5, (1e-5, 3e-3)),
     ],
 )
 def test_driven_motion_is_that_of_a_disc_by_bessel_functions(frequency, height, allowed):
@@ -155,6 +156,7 @@ def test_without_a_common_period_there_is_no_steady_state():
         plate.corrections([once], 1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 @pytest.mark.parametrize("delay", [3e-6])
 def test_a_small_steady_state_is_that_of_a_plate_that_does_not_stretch(delay):
