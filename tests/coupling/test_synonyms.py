@@ -98,11 +98,7 @@ def test_a_word_leads_to_what_is_meant_and_that_is_right(
         ('frequency = "500 Hz"', 'frequency = "500 Hz"\nperiod = "2 ms"', "frequency is given already; leave out one"),
         ('frequency = "500 Hz"', 'period = "2 mm"', "did you mean frequency? It is 1 over the period"),
         ('frequency = "500 Hz"', 'freq = "500 hz"', 'there is no unit "hz"; did you mean "500 Hz"?'),
-        (
-            'mass = "2e-9 kg"',
-            'weight = "20 nN"',
-            'did you mean mass? It must be a mass such as "2e-9 kg"; got "20 nN"',
-        ),
+        ('mass = "2e-9 kg"', 'weight = "20 nN"', 'did you mean mass? It must be a mass such as "2e-9 kg"; got "20 nN"'),
         ('mass = "2e-9 kg"', 'mass = "2e-9 kg"\ngravity = "1 m/s^2"', "part.gravity is not known; it belongs to [run]"),
         ("coefficient = 0.3", "coefficient = 0.3\nlimit = 3", 'it goes with model = "constant"'),
         ('cycle = "sine"', 'waveform = "square"', 'did you mean cycle? It must be "up-down", "up", "sine" or "cosine"'),

@@ -268,10 +268,7 @@ def test_command_writes_map_and_labelled_data(tmp_path, coarse):
     [
         (["--lowest", "5 um"], "--lowest must be a frequency"),
         (["--lowest", "5 kHz", "--highest", "1 kHz"], "below the highest"),
-        (
-            ["--highest", "10 Hz"],
-            "  --highest must be above the lowest, by default a quarter of the case's, 75 Hz",
-        ),
+        (["--highest", "10 Hz"], "  --highest must be above the lowest, by default a quarter of the case's, 75 Hz"),
         (
             ["--lowest", "90 kHz"],
             "--lowest must be positive and below the highest, by default eight times the case's, 2.4 kHz",

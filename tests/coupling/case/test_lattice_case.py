@@ -135,19 +135,11 @@ PARTLY_RIGHT = [
         "lattice.columns is missing",
         "1 / row",
     ),
-    (
-        FIVE.replace("5 mm", "1") + 'stroke = "1 / x um"\nfrequency = "1 / row Hz"\n',
-        "lattice.pitch",
-        "1 / row",
-    ),
+    (FIVE.replace("5 mm", "1") + 'stroke = "1 / x um"\nfrequency = "1 / row Hz"\n', "lattice.pitch", "1 / row"),
     (FIVE + 'magrin = "1 m"\nstroke = "1 / row um"\nfrequency = "0 Hz"\n', "magrin", "0 Hz"),
     (FIVE + 'where = "rwo > 1"\nstroke = "1 / row um"\nfrequency = "-1 Hz"\n', "rwo", "-1 Hz"),
     (FIVE + 'margin = 0\nstroke = "1 / row um"\nfrequency = "1 Hz"\n', "lattice.margin"),
-    (
-        'rows = 200000\npitch = "1 m"\nstroke = "log(row) um"\nfrequency = "1 Hz"\n',
-        "columns is missing",
-        "got 200000",
-    ),
+    ('rows = 200000\npitch = "1 m"\nstroke = "log(row) um"\nfrequency = "1 Hz"\n', "columns is missing", "got 200000"),
     (
         FIVE + 'stroke = "5 um"\nforce = "x N"\nfrequency = "1 Hz"\nstiffness = "row N/m"\n',
         "13.5059 mm",

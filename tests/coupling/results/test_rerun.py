@@ -148,10 +148,7 @@ XDMF = b'<Xdmf Version="3.0"><DataItem Format="%s" Dimensions="3">%s</DataItem><
 
 LEADS = [
     (with_text(lambda text: text.replace('"motion.csv"', '"/etc/passwd"')), "it lacks the file that plate.motion"),
-    (
-        with_text(lambda text: text.replace('"model": "table"', '"model": "table", "file": "/x.csv"')),
-        "names a file",
-    ),
+    (with_text(lambda text: text.replace('"model": "table"', '"model": "table", "file": "/x.csv"')), "names a file"),
     (with_text(lambda text: text.replace('"duration"', '"duratoin"')), "run.duratoin of Case is not known"),
     (with_file("..", b"x"), "it cannot be read to its end"),
     (with_file("a.xdmf", XDMF % (b"HDF", b"/etc/a.h5:/x")), "its file a.xdmf leads elsewhere"),

@@ -93,10 +93,7 @@ def test_small_strokes_are_those_of_a_plate_that_does_not_stretch():
     moving = [*drives, *found.drives]
     accelerations = [
         shapes.values(xy) @ np.array([drive.evaluate(times)[2] for drive in all_drives])
-        for shapes, all_drives in (
-            (plate.shapes, moving),
-            (linear.shapes, [*drives, *linear.modal_drives(drives)]),
-        )
+        for shapes, all_drives in ((plate.shapes, moving), (linear.shapes, [*drives, *linear.modal_drives(drives)]))
     ]
     largest = np.abs(accelerations[1]).max()
     print(f"accelerations differ by {np.abs(accelerations[0] - accelerations[1]).max() / largest:.1e}")
@@ -105,13 +102,7 @@ def test_small_strokes_are_those_of_a_plate_that_does_not_stretch():
 
 @pytest.mark.slow
 @pytest.mark.compiled
-@pytest.mark.parametrize(
-    ("frequency", "height", "allowed"),
-    [
-        (20e3, 1.0, (1e-5, 2e-3)),
-        (259e3, 0.5, (1e-5, 3e-3)),
-    ],
-)
+@pytest.mark.parametrize(("frequency", "height", "allowed"), [(20e3, 1.0, (1e-5, 2e-3)), (259e3, 0.5, (1e-5, 3e-3))])
 def test_driven_motion_is_that_of_a_disc_by_bessel_functions(frequency, height, allowed):
     """At .04 and .5 of the first frequency. Without inertia w_tt is 8 % and 94 % off."""
     drive = Drive(height * THICKNESS, frequency)
