@@ -50,7 +50,7 @@ def ran(folder, text=PLATE, duration="5 ms"):
 STUDIES = {
     "one": FREQUENCY,
     "two": FREQUENCY + STROKE + '[map]\nthreshold = "distance > 1 um"\n',
-    "three": FREQUENCY.replace("count = 4", "count = 2") + STROKE + MASS,
+    "three": FREQUENCY + STROKE + MASS,
     "points": 'sampling = "random"\npoints = 8\n' + FREQUENCY.replace("count = 4\n", "") + STROKE,
     "starts": X + Y,
 }
