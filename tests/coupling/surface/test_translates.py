@@ -41,15 +41,16 @@ def inside(count):
 def test_cells_a_pitch_apart_deep_in_a_lattice_have_the_same_polynomials_and_their_own_drives(surface):
     surface.evaluate(inside(50), 0.0)
     cells = surface.store.cells
-    leaves = np.flatnonzero(cells.first_row >= 0)
-    shared = [c for c in leaves if (cells.first_row[leaves] == cells.first_row[c]).sum() > 1]
+    leaves = cells.cell[cells.cell["first_row"] >= 0]
+    shared = [cell for cell in leaves if (leaves["first_row"] == cell.first_row).sum() > 1]
     assert len(shared) > 20
     one = shared[0]
     for other in shared[1:]:
-        if cells.first_row[other] == cells.first_row[one]:
-            pitches = np.round((cells.centre[other] - cells.centre[one]) / PITCH)
-            assert cells.centre[other] - cells.centre[one] == pytest.approx(pitches * PITCH, abs=1e-9 * PITCH)
-            a, b = (cells.drive[cells.first_drive[c] : cells.first_drive[c + 1]] for c in (one, other))
+        if other.first_row == one.first_row:
+            way = np.array([other.x - one.x, other.y - one.y])
+            pitches = np.round(way / PITCH)
+            assert way == pytest.approx(pitches * PITCH, abs=1e-9 * PITCH)
+            a, b = (cells.drive[cell.first_drive : cell.first_drive + cell.drives] for cell in (one, other))
             assert surface.sources[b] - surface.sources[a] == pytest.approx(
                 np.tile(pitches * PITCH, (len(a), 1)), abs=1e-9 * PITCH
             )
@@ -129,7 +130,7 @@ def test_a_lattice_without_an_inside_shares_nothing(change, section):
     shapes = Plate(mesh, section).influence(points, truncation=TRUNCATION)
     surface = surface_motion(shapes, [Drive(1e-6, 300.0)] * len(points))
     surface.evaluate(np.random.default_rng(5).uniform(-1, 1, (20, 2)) * PITCH, 0.0)
-    first_row = surface.store.cells.first_row
+    first_row = surface.store.cells.cell["first_row"]
     leaves = first_row[first_row >= 0]
     assert len(np.unique(leaves)) == len(leaves)
 
