@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from particle.records import Record, new_records, record_type
-
 from particle.types import FloatArray, IntArray
 
 NOWHERE, UNBUILT = -1, -2  # the cell of points where there is no plate, and of those that nobody has asked for yet
