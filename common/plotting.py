@@ -25,11 +25,19 @@ def draw(thing: Any, *axes: Any, **options: Any) -> Figure:
         package = kind.__module__
         while "." in package:
             package = package.rpartition(".")[0]
-            if find_spec(f"{package}.{PICTURES}"):
+            if _has_pictures(package):
                 import_module(f"{package}.{PICTURES}")
                 if draw.dispatch(type(thing)) is not _FALLBACK:
                     return draw(thing, *axes, **options)
     raise TypeError(f"Input thing of draw must be of a type that has a picture; got {type(thing).__name__}")
+
+
+def _has_pictures(package: str) -> bool:
+    """Whether a package has pictures; a type may also name a module that cannot be imported."""
+    try:
+        return find_spec(f"{package}.{PICTURES}") is not None
+    except ModuleNotFoundError:
+        return False
 
 
 _FALLBACK = draw.dispatch(object)

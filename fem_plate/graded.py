@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_plate.elements import (
+    FREE,
     MAX_EXPONENT,
     MeshGrading,
     PlateModel,
@@ -20,7 +22,6 @@ from fem_plate.elements import (
     singular_corners,
     wedges,
 )
-from fem_plate.inputs import check_tension
 from fem_plate.sections import Field, PlateSection, Section, VaryingSection
 from fem_plate.types import FloatArray
 from meshes import PlateMesh
@@ -125,3 +126,16 @@ class GradedPlate:
         more += f"; with {len(self.forms)} forms" if self.forms else ""
         thick = f"{about}{self.section.thickness:.4g} m thick"
         return f"Plate of {width:.4g} m x {height:.4g} m, {thick}; {rims}{tension}{more}"
+
+
+def check_tension(tension: float, supports: Mapping[str, str]) -> None:
+    """ValueError unless a uniform tension [N/m] is in balance at every boundary; a free rim pulls on nothing."""
+    if not math.isfinite(tension):
+        raise ValueError(f"Input tension of Plate must be finite; got {tension!r}")
+    free = [name for name, support in supports.items() if support == FREE]
+    if tension and free:
+        names = ", ".join(map(repr, free))
+        raise ValueError(
+            "Input tension of Plate must be 0 where a boundary is free, as a free rim carries none; "
+            f"got {tension!r} N/m, and free {names}"
+        )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -86,19 +85,6 @@ def check_on_plate(outline: Outline, xy: FloatArray, size: float) -> None:
     beyond = outline.gap(xy) < -SAME_PLACE * size
     if np.any(beyond):
         raise ValueError(f"Input xy of evaluate must lie on the plate; got {xy[beyond][0].tolist()} m")
-
-
-def check_tension(tension: float, supports: Mapping[str, str]) -> None:
-    """ValueError unless a uniform tension [N/m] is in balance at every boundary; a free rim pulls on nothing."""
-    if not math.isfinite(tension):
-        raise ValueError(f"Input tension of Plate must be finite; got {tension!r}")
-    free = [name for name, support in supports.items() if support == "free"]
-    if tension and free:
-        names = ", ".join(map(repr, free))
-        raise ValueError(
-            "Input tension of Plate must be 0 where a boundary is free, as a free rim carries none; "
-            f"got {tension!r} N/m, and free {names}"
-        )
 
 
 def not_positive(section: str, **values: float | None) -> list[str]:

@@ -9,8 +9,7 @@ from scipy.sparse import csc_matrix, diags
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from fem_plate.elements import MeshGrading, PlateModel, grade_mesh, rounded_corners
-from fem_plate.graded import GradedPlate
-from fem_plate.inputs import check_tension
+from fem_plate.graded import GradedPlate, check_tension
 
 
 def buckling_load(plate: GradedPlate) -> float:

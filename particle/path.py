@@ -65,9 +65,8 @@ _scratch = _Scratch()
 
 def _memory(surface: Surface, pairs: Pairs, stop: IntArray) -> Memory:
     """Scratch memory for a path over the surface."""
-    cells = surface.cells
-    planar = cells.plane_highest, surface.in_plane_count
-    measures = cells.highest, cells.most_near, cells.most_drives, *planar, len(pairs.long.c)
+    sizes = surface.cells.grid[0].item()[4:]
+    measures = *sizes, surface.in_plane_count, len(pairs.long.c)
     if _scratch.measures != measures:
         _scratch.measures, _scratch.memory = measures, new_memory(surface, pairs, stop)
         return _scratch.memory

@@ -14,7 +14,7 @@ from coupling.files import whole_file
 from coupling.new_file import NewFile
 from particle import SurfaceMotion
 from particle.drives import DriveTable
-from particle.surface import BuiltCells, Cells
+from particle.surface import BuiltCells, cells_of, columns_of
 
 KIND, VERSION = "active-surface surface motion", 4
 
@@ -53,8 +53,8 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
         file.attrs.update({name: getattr(surface, name) for name in LENGTHS})
         for name in ("sources", "conics", "edges"):
             file[name] = getattr(surface, name)
-        for group, table in (("drives", surface.drives), ("cells", surface.store.cells)):
-            for name, value in table._asdict().items():
+        for group, table in (("drives", surface.drives._asdict()), ("cells", columns_of(surface.store.cells))):
+            for name, value in table.items():
                 file[f"{group}/{name}"] = value
     return path
 
@@ -110,7 +110,7 @@ def _read(path: Path) -> SurfaceMotion:
         rest |= {name: np.ascontiguousarray(file[name][()]) for name in ("sources", "conics", "edges")}
         return SurfaceMotion(
             drives=DriveTable(**tables["drives"]),
-            store=BuiltCells(Cells(**tables["cells"]), float(file.attrs["error"])),
+            store=BuiltCells(cells_of(tables["cells"]), float(file.attrs["error"])),
             moving_base=bool(file.attrs["moving_base"]),
             in_plane_count=int(file.attrs["in_plane_count"]),
             **rest,

@@ -163,8 +163,10 @@ class IsotropicPlate(InfinitePlate):
             logarithm = np.log(square)  # 2 ln r
             results = [UNIT_STRENGTH * 0.5 * square * logarithm]
             if count > 1:
-                results += [UNIT_STRENGTH * value for value in (logarithm + 1, 2 / square, -4 / square**2)]
-            return results[:count]
+                results.append(UNIT_STRENGTH * (logarithm + 1))
+            for order in range(2, count):
+                results.append(UNIT_STRENGTH * -((-2) ** (order - 1)) / square ** (order - 1))
+            return results
         weak = abs(self.tension) < WEAK
         near = np.full(square.shape, True) if weak else abs(self.tension) / 4 * square <= SERIES
         results = [np.empty(square.shape) for _ in range(count)]

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from fem_plate.arrays import PatchedShapes
 from fem_plate.influence import InfluenceShapes
-from fem_plate.optics.package import fits_package
+from fem_plate.optics.measured import fits_package
 from fem_plate.sections import PlateSection, VaryingSection
 from fem_plate.types import BoolArray, FloatArray, IntArray
 

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from fem_plate.optics.package import fits_package
 from fem_plate.types import FloatArray, IntArray
 
 OURS = "active-surface"
@@ -166,3 +165,13 @@ def _image(arrays: list[Any], header: Any, pixel: float | None, path: object) ->
     actuators = np.array([own]) if header.get("CREATOR") == OURS and own is not None else None
     layout = "proper" if "P2PDX_M" in header else "image"
     return MeasuredInfluence(layout, _grid(x, y), image.reshape(1, -1), actuators, False, (ny, nx))
+
+
+def fits_package() -> Any:
+    """astropy's module of FITS; ValueError, which says how to get it, where it is not installed."""
+    try:
+        from astropy.io import fits  # here, as it takes a while
+    except ImportError:
+        how = "pip install 'active-surface[optics]'"
+        raise ValueError(f"FITS files of influence functions need astropy, which comes with {how}") from None
+    return fits

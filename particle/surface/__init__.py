@@ -2,7 +2,18 @@
 
 from particle.surface.at_point import SurfacePoint, motion_at, point_of, surface_at
 from particle.surface.bridge import allow_bridges
-from particle.surface.cells import NO_PLANE, NOWHERE, UNBUILT, WHOLE, BuiltCells, CellFit, CellPool, Cells
+from particle.surface.cells import (
+    NO_PLANE,
+    NOWHERE,
+    UNBUILT,
+    WHOLE,
+    BuiltCells,
+    CellFit,
+    CellPool,
+    Cells,
+    cells_of,
+    columns_of,
+)
 from particle.surface.local import Frame, LocalSurface, gap_at, missing_place, new_local, prepare, within_cell
 from particle.surface.moving_surface import SurfaceMotion
 from particle.surface.record import Surface

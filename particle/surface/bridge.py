@@ -35,7 +35,7 @@ def drive_of(surface: Surface, local: LocalSurface, i: int) -> int:
     beyond = i - shapes_in_cell(frame)
     if beyond >= 0:
         return int(surface.shape_count + beyond)
-    return int(surface.cells.drive[surface.cells.first_drive[frame.cell] + i])
+    return int(surface.cells.drive[surface.cells.cell[frame.cell].first_drive + i])
 
 
 @device_no_arrays
@@ -50,7 +50,7 @@ def find_jump(surface: Surface, local: LocalSurface, i: int) -> None:
     frame: Frame = local.frame[0]
     cells, jump = surface.cells, surface.drives.rough[drive_of(surface, local, i)]
     counted = i < shapes_in_cell(frame)
-    weight = cells.weight[cells.first_drive[frame.cell] + i] if counted else math.inf
+    weight = cells.weight[cells.cell[frame.cell].first_drive + i] if counted else math.inf
     local.clock[i].jump = weight * jump if jump > 0.0 else 0.0
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from particle.drives import ORDER
 from particle.jit import device_no_arrays, jit_no_arrays
 from particle.records import Record, new_records
-from particle.surface.cells import NOWHERE, WHOLE, Cells
+from particle.surface.cells import NOWHERE, WHOLE, Cells, Grid
 from particle.surface.record import Surface
 from particle.surface.rim import rim_gap
 from particle.types import FloatArray
@@ -80,16 +80,16 @@ class LocalSurface(NamedTuple):
 
 def new_local(surface: Surface) -> LocalSurface:
     """Scratch memory that fits the surface, with no cell and no time yet."""
-    cells = surface.cells
-    width, drives = monomial_count(cells.highest) + cells.most_near, cells.most_drives + surface.in_plane_count + 2
-    plane = 2 * monomial_count(cells.plane_highest)
+    grid: Grid = surface.cells.grid[0]
+    width, drives = monomial_count(grid.highest) + grid.most_near, grid.most_drives + surface.in_plane_count + 2
+    plane = 2 * monomial_count(grid.plane_highest)
     local = LocalSurface(
         frame=new_records(Frame),
         clock=new_records(Clock, drives),
         pieces=np.zeros((drives, ORDER)),
         smooth=np.zeros((ORDER, width)),
         at=np.zeros((3, width)),
-        sources=np.zeros((cells.most_near, 2)),
+        sources=np.zeros((grid.most_near, 2)),
         base=np.zeros((ORDER, 2)),
         plane=np.zeros((ORDER, plane)),
         plane_at=np.zeros((3, plane)),
@@ -122,16 +122,18 @@ def monomial_count(degree: int) -> int:
 @device_no_arrays
 def cell_at(cells: Cells, x: float, y: float) -> int:
     """The cell that holds a point [m]; NOWHERE when there is no plate, UNBUILT when there may be."""
-    if not math.isfinite(cells.width[0]):
+    grid: Grid = cells.grid[0]
+    if not math.isfinite(grid.width_x):
         return 0
-    i = _interval(x - cells.origin[0], cells.width[0], cells.roots.shape[0])
-    j = _interval(y - cells.origin[1], cells.width[1], cells.roots.shape[1])
+    i = _interval(x - grid.x, grid.width_x, cells.roots.shape[0])
+    j = _interval(y - grid.y, grid.width_y, cells.roots.shape[1])
     if i == NOWHERE or j == NOWHERE:
         return NOWHERE
     cell = int(cells.roots[i, j])
-    while cell >= 0 and cells.quarters[cell] != WHOLE:
-        cell = int(cells.quarters[cell]) + 2 * (x >= cells.centre[cell, 0]) + (y >= cells.centre[cell, 1])
-    return NOWHERE if cell >= 0 and cells.first_row[cell] == NOWHERE else cell
+    while cell >= 0 and cells.cell[cell].quarters != WHOLE:
+        divided = cells.cell[cell]
+        cell = int(divided.quarters) + 2 * (x >= divided.x) + (y >= divided.y)
+    return NOWHERE if cell >= 0 and cells.cell[cell].first_row == NOWHERE else cell
 
 
 @device_no_arrays

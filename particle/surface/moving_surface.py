@@ -74,7 +74,7 @@ class SurfaceMotion:
         )
 
     def __repr__(self) -> str:
-        cells = int((self.store.cells.first_row != NOWHERE).sum())
+        cells = int((self.store.cells.cell["first_row"] != NOWHERE).sum())
         error = f"{self.error:.1e}" if cells else "not measured"
         return f"<SurfaceMotion: drives {len(self.drives.delay)}, cells built {cells}, error {error}>"
 
@@ -94,7 +94,7 @@ class SurfaceMotion:
     @property
     def tilts(self) -> bool:
         """Whether it can be anything but level."""
-        return self.store.cells.highest > 0 or len(self.sources) > 0
+        return bool(self.store.cells.grid[0].highest > 0) or len(self.sources) > 0
 
     @property
     def shape_count(self) -> int:

@@ -19,7 +19,7 @@ from particle.drives import (
 )
 from particle.jit import device_no_arrays
 from particle.surface.bridge import bridge, drive_of, find_end, find_jump, is_bridged, shapes_in_cell
-from particle.surface.cells import UNBUILT
+from particle.surface.cells import UNBUILT, Cell
 from particle.surface.local import Clock, Frame, LocalSurface, cell_at, monomial_count
 from particle.surface.record import Surface
 from particle.types import FloatArray
@@ -51,18 +51,17 @@ def enter(surface: Surface, local: LocalSurface, x: float, y: float, time: float
 def _begin(surface: Surface, local: LocalSurface, cell: int, time: float, end: float) -> None:
     """Prepare for a cell from nothing."""
     frame: Frame = local.frame[0]
-    cells = surface.cells
-    frame.x, frame.y = cells.centre[cell, 0], cells.centre[cell, 1]
-    frame.half_x, frame.half_y = cells.half[cell, 0], cells.half[cell, 1]
-    frame.clear, frame.time, frame.unit = cells.clear[cell], time, surface.unit
+    entered: Cell = surface.cells.cell[cell]
+    frame.x, frame.y = entered.x, entered.y
+    frame.half_x, frame.half_y = entered.half_x, entered.half_y
+    frame.clear, frame.time, frame.unit = entered.clear, time, surface.unit
     frame.cell, frame.begun = cell, time
-    frame.degree, frame.monomials = cells.degree[cell], monomial_count(cells.degree[cell])
-    frame.drives = cells.first_drive[cell + 1] - cells.first_drive[cell] + frame.in_plane + frame.base_drives
-    frame.plane_degree, frame.plane_monomials = cells.plane_degree[cell], monomial_count(cells.plane_degree[cell])
-    first = cells.first_near[cell]
-    frame.logarithms = cells.first_near[cell + 1] - first
+    frame.degree, frame.monomials = entered.degree, monomial_count(entered.degree)
+    frame.drives = entered.drives + frame.in_plane + frame.base_drives
+    frame.plane_degree, frame.plane_monomials = entered.plane_degree, monomial_count(entered.plane_degree)
+    frame.logarithms = entered.logarithms
     for j in range(frame.logarithms):
-        source = cells.near[first + j]
+        source = surface.cells.near[entered.first_near + j]
         local.sources[j, 0], local.sources[j, 1] = surface.sources[source, 0], surface.sources[source, 1]
     for k in range(ORDER):
         for m in range(frame.monomials + frame.logarithms):
@@ -159,19 +158,17 @@ def _take_out(surface: Surface, local: LocalSurface, i: int) -> None:
 def _add(surface: Surface, local: LocalSurface, i: int, sign: float) -> None:
     """Add the quintic of the i-th drive times its shape."""
     frame: Frame = local.frame[0]
-    cells, piece = surface.cells, local.pieces[i]
-    shapes = shapes_in_cell(frame)
+    cells, piece, shapes = surface.cells, local.pieces[i], shapes_in_cell(frame)
     if i >= shapes + frame.in_plane:
         for k in range(ORDER):
             local.base[k, i - shapes - frame.in_plane] += sign * piece[k]
     elif i >= shapes:
         width = 2 * frame.plane_monomials
-        _add_row(
-            local.plane, cells.plane_rows, cells.first_plane[frame.cell] + (i - shapes) * width, width, piece, sign
-        )
+        first = cells.cell[frame.cell].first_plane + (i - shapes) * width
+        _add_row(local.plane, cells.plane_rows, first, width, piece, sign)
     else:
         width = frame.monomials + frame.logarithms
-        _add_row(local.smooth, cells.rows, cells.first_row[frame.cell] + i * width, width, piece, sign)
+        _add_row(local.smooth, cells.rows, cells.cell[frame.cell].first_row + i * width, width, piece, sign)
 
 
 @device_no_arrays

@@ -53,7 +53,7 @@ def test_a_folder_is_no_file(tmp_path: Path) -> None:
         NewFile(tmp_path)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(0, 6, 2))
 def test_ctrl_c_ends_writing_without_harm(tmp_path: Path, seed: int) -> None:
     """The signal may come while HDF5 is at the file: it is raised once the library has returned."""
     delay, path = 0.002 * (1 + 3 * seed), tmp_path / "file"
@@ -141,42 +141,47 @@ def test_after_an_error_the_bytes_are_those_that_were_marked(tmp_path: Path, mon
     assert path.read_bytes()[:10] == b"0123456789"
 
 
-def on_a_small_disk(folder: Path, most: int, sender: Connection) -> None:
-    """Write a run of steps where no file may have more than so many bytes; says what came of it."""
+MOST = [0, 100, 512, 2048, 4096, *range(8192, 17_000, 800), 30_000, 10**6]
+
+
+def on_small_disks(folder: Path, sender: Connection) -> None:
+    """Write runs of steps where no file may have more than so many bytes; says what came of each."""
     import resource
 
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
-    noise, steps = np.random.default_rng(1).normal(size=(STEPS, 3)), 0
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    try:
-        with vtkhdf.plate_file(folder, "run", corners, [[0, 1, 2]]) as plate:
-            for k in range(STEPS):
-                plate.append(float(k), deflection=noise[k])
-                plate.flush()
-                steps = k + 1
-    except OSError as error:
-        sender.send((steps, error.strerror, error.filename))
-    else:
-        sender.send((steps, "", ""))
+    noise, corners = np.random.default_rng(1).normal(size=(STEPS, 3)), np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    for most in MOST:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+        (folder / str(most)).mkdir()
+        steps = 0
+        try:
+            with vtkhdf.plate_file(folder / str(most), "run", corners, [[0, 1, 2]]) as plate:
+                for k in range(STEPS):
+                    plate.append(float(k), deflection=noise[k])
+                    plate.flush()
+                    steps = k + 1
+        except OSError as error:
+            sender.send((steps, error.strerror, error.filename))
+        else:
+            sender.send((steps, "", ""))
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no limits of file sizes")
-@pytest.mark.parametrize("most", [0, 100, 512, 2048, 4096, *range(8192, 17_000, 800), 30_000, 10**6])
-def test_a_full_disk_is_an_error_and_leaves_what_was_flushed(tmp_path: Path, most: int) -> None:
+def test_a_full_disk_is_an_error_and_leaves_what_was_flushed(tmp_path: Path) -> None:
     receiver, sender = multiprocessing.Pipe(duplex=False)
-    child = multiprocessing.get_context("spawn").Process(target=on_a_small_disk, args=(tmp_path, most, sender))
+    child = multiprocessing.get_context("spawn").Process(target=on_small_disks, args=(tmp_path, sender))
     child.start()
     child.join()
     assert child.exitcode == 0
-    steps, said, name = receiver.recv()
-    partial = tmp_path / "run.partial.plate.vtkhdf"
-    if most == 10**6:
-        assert steps == STEPS and not said
-        return
-    assert said == "File too large" and name == str(partial)
-    assert not (tmp_path / "run.plate.vtkhdf").exists()
-    if steps:
-        with h5py.File(partial) as file:
-            assert steps <= file["VTKHDF/Steps"].attrs["NSteps"] <= steps + 1
-            assert np.isfinite(file["VTKHDF/PointData/deflection"][: 3 * steps]).all()
+    for most in MOST:
+        steps, said, name = receiver.recv()
+        partial = tmp_path / str(most) / "run.partial.plate.vtkhdf"
+        if most == 10**6:
+            assert steps == STEPS and not said
+            continue
+        assert said == "File too large" and name == str(partial)
+        assert not (tmp_path / str(most) / "run.plate.vtkhdf").exists()
+        if steps:
+            with h5py.File(partial) as file:
+                assert steps <= file["VTKHDF/Steps"].attrs["NSteps"] <= steps + 1
+                assert np.isfinite(file["VTKHDF/PointData/deflection"][: 3 * steps]).all()

@@ -178,7 +178,7 @@ def test_a_short_path_is_drawn_in_a_window_with_keys_for_what_is_there(tmp_path)
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("case", [plate_case(limit=1e-3), plate_case(2.6e-6, 1e-3), plate_case(strokes=(0.0, 0.0))])
+@pytest.mark.parametrize("case", [plate_case(2.6e-6, 1e-3), plate_case(strokes=(0.0, 0.0))])
 def test_a_part_at_rest_is_a_point_on_the_map_with_axes_that_can_be_read(case, tmp_path):
     figure = drawn(case, tmp_path)
     assert texts(figure) == ["the part, which stays where it is", "actuator", "stuck"]
@@ -219,6 +219,7 @@ def test_a_run_that_slips_has_strokes_and_margins_over_time_and_a_line_where_it_
         )
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_of_many_cycles_all_and_some_around_the_first_slip_are_drawn_and_curves_that_crowd_are_bands(tmp_path):
     figure = drawn(plate_case(0.15), tmp_path)

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from sweeps import DISC
 
 from coupling import Case, read_run, report, run_case
 from coupling.case import ActuatorCase, ConstantCase, PartCase, RunCase
@@ -12,14 +13,7 @@ from coupling.scene.plate import build_plate
 pytestmark = pytest.mark.compiled
 
 THICKNESS = 5e-6
-PLATE = {
-    "shape": "disc",
-    "radius": 300e-6,
-    "youngs_modulus": 169e9,
-    "poisson_ratio": 0.3,
-    "thickness": THICKNESS,
-    "cell_size": 60e-6,
-}
+PLATE = DISC | {"cell_size": 60e-6}
 VON_KARMAN = PLATE | {"theory": "von-karman"}
 ACTUATORS = [
     ActuatorCase(position=(-75e-6, 0.0), stroke=6e-6, frequency=300, cycle="up"),

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from sweeps import DISC_PLATE
+from sweeps import DISC_PLATE, toml
 
 from active_surface.cli.program import main
 from active_surface.steering import AimTables
@@ -28,27 +28,13 @@ COLUMNS = {"time", "x", "y", "z", "loads", "limits"}
 
 CASE = (
     DISC_PLATE
-    + """\
-density = "2330 kg/m^3"
-inertia = true
-
-[[actuators]]
-position = ["0 um", "0 um"]
-stroke = "10 um"
-frequency = "500 Hz"
-cycle = "sine"
-
-[part]
-mass = "2e-9 kg"
-position = ["100 um", "50 um"]
-
-[friction]
-model = "coulomb"
-coefficient = 0.3
-
-[run]
-duration = "50 ms"
-"""
+    + 'density = "2330 kg/m^3"\ninertia = true\n\n'
+    + toml(
+        actuators=[{"position": ["0 um", "0 um"], "stroke": "10 um", "frequency": "500 Hz", "cycle": "sine"}],
+        part={"mass": "2e-9 kg", "position": ["100 um", "50 um"]},
+        friction={"model": "coulomb", "coefficient": 0.3},
+        run={"duration": "50 ms"},
+    )
 )
 
 
@@ -112,11 +98,7 @@ def test_a_word_leads_to_what_is_meant_and_that_is_right(
         ('frequency = "500 Hz"', 'frequency = "500 Hz"\nperiod = "2 ms"', "frequency is given already; leave out one"),
         ('frequency = "500 Hz"', 'period = "2 mm"', "did you mean frequency? It is 1 over the period"),
         ('frequency = "500 Hz"', 'freq = "500 hz"', 'there is no unit "hz"; did you mean "500 Hz"?'),
-        (
-            'mass = "2e-9 kg"',
-            'weight = "20 nN"',
-            'did you mean mass? It must be a mass such as "2e-9 kg"; got "20 nN"',
-        ),
+        ('mass = "2e-9 kg"', 'weight = "20 nN"', 'did you mean mass? It must be a mass such as "2e-9 kg"; got "20 nN"'),
         ('mass = "2e-9 kg"', 'mass = "2e-9 kg"\ngravity = "1 m/s^2"', "part.gravity is not known; it belongs to [run]"),
         ("coefficient = 0.3", "coefficient = 0.3\nlimit = 3", 'it goes with model = "constant"'),
         ('cycle = "sine"', 'waveform = "square"', 'did you mean cycle? It must be "up-down", "up", "sine" or "cosine"'),

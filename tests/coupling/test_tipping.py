@@ -21,10 +21,7 @@ LAWS = {
 
 def on_a_platform(friction, **part):
     return Case(
-        plate={
-            "shape": "platform",
-            "motion": {"x": {"stroke": STROKE, "frequency": FREQUENCY, "cycle": "cosine"}},
-        },
+        plate={"shape": "platform", "motion": {"x": {"stroke": STROKE, "frequency": FREQUENCY, "cycle": "cosine"}}},
         part={"mass": MASS, "position": (0.0, 0.0), "centre_height": HEIGHT, "size": SIZE} | part,
         friction=friction,
         run={"duration": 0.02},

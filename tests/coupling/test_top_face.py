@@ -107,9 +107,10 @@ def test_a_saved_surface_keeps_its_height(tmp_path):
     assert read_surface(write_surface(surface, tmp_path / "s.h5")).half_thickness == 50e-6
 
 
+@pytest.mark.slow
 def test_forces_come_on_request(tmp_path):
     rough = KogutEtsionCase(preset="paper")
-    given = case(rough, part={"centre_height": 40e-6})
+    given = case(rough, part={"centre_height": 40e-6}, frames=12)
     run_case(given, tmp_path / "without", csv=True)
     result = run_case(given, tmp_path, csv=True, forces=True)
     with (tmp_path / "case.csv").open() as file:

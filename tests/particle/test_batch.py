@@ -87,9 +87,9 @@ def test_paths_have_the_same_bits_one_by_one_and_in_any_order_and_number_of_thre
 def test_samples_have_the_same_bits_whatever_cells_are_built_after_the_path(surface, parts):
     path = simulate(surface, parts[0], LAW, 3e-3, tolerance=1e-6)
     times = np.linspace(0, 3e-3, 100)
-    before, cells = path.at(times), len(surface.store.cells.centre)
+    before, cells = path.at(times), len(surface.store.cells.cell)
     surface.store.build(np.random.default_rng(3).uniform(-0.6, 0.6, (100, 2)) * RADIUS)
-    assert len(surface.store.cells.centre) > cells
+    assert len(surface.store.cells.cell) > cells
     for one, other in zip(before, path.at(times), strict=True):
         assert np.array_equal(one, other)
 

@@ -24,7 +24,7 @@ def test_rows_that_are_shared_are_kept_once(pool):
     for _ in range(3):
         pool.add(CENTRE, HALF, fit(rows, shared=True))
         pool.add(CENTRE, HALF, fit(rows + 3))
-    assert pool.cells().first_row.tolist() == [0, 3, 0, 6, 0, 9]
+    assert pool.cells().cell["first_row"].tolist() == [0, 3, 0, 6, 0, 9]
     assert pool.cells().rows.tolist() == [0, 1, 2] + [3, 4, 5] * 3
 
 

@@ -34,14 +34,14 @@ def test_the_first_row_needs_a_cell_even_where_the_first_step_has_one(surface, s
     """Within the first step the part goes from a cell that is not built into one that is."""
     side, middle = 0.0, 0.25 * RADIUS
     surface.store.build(np.array([[side + 1e-6, middle]]))
-    cells = len(surface.store.cells.centre)
+    cells = len(surface.store.cells.cell)
     part, run = Micropart(MASS, (side - 1e-10, middle), (0.3, 0.0)), {"scheme": scheme, "time_step": 1e-8}
     first = simulate(surface, part, ConstantFriction(1e-9), 2e-7, **run)
     again = simulate(surface, part, ConstantFriction(1e-9), 2e-7, **run)
     assert np.isfinite(first.height).all() and np.isfinite(first.normal_force).all()
     assert np.array_equal(first.height, again.height) and np.array_equal(first.energy.work, again.energy.work)
     assert first.energy.balance < 1
-    assert len(surface.store.cells.centre) > cells
+    assert len(surface.store.cells.cell) > cells
 
 
 @SCHEMES
@@ -51,9 +51,9 @@ def test_samples_are_of_their_time_where_one_step_has_jumped_cells(surface, sche
     surface.store.build(np.array([part.position]))
     path = simulate(surface, part, ConstantFriction(1e-12), duration, scheme=scheme, time_step=duration)
     times = np.linspace(0, duration, 21)
-    cells = len(surface.store.cells.centre)
+    cells = len(surface.store.cells.cell)
     found = samples(path, times)
-    assert len(surface.store.cells.centre) > cells
+    assert len(surface.store.cells.cell) > cells
     assert (np.diff(found[:, 0]) > 0).all()
     assert found[:, 4] == pytest.approx(
         [surface.evaluate(xy, time).w[0] for xy, time in zip(found[:, :2], times, strict=True)], rel=1e-9

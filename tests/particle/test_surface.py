@@ -134,8 +134,8 @@ def test_the_stated_error_is_that_of_the_unit_shapes(surface, exact, spots, layo
 
 def test_a_smaller_tolerance_takes_finer_cells_and_meets_it(exact):
     coarse, fine = (surface_motion(exact, DRIVES, surface_tolerance=t) for t in (1e-6, 1e-12))
-    assert len(fine.store.cells.half) > len(coarse.store.cells.half)
-    assert fine.store.cells.half.min() < coarse.store.cells.half.min()
+    assert len(fine.store.cells.cell) > len(coarse.store.cells.cell)
+    assert fine.store.cells.cell["half_x"].min() < coarse.store.cells.cell["half_x"].min()
     assert fine.error <= 1e-12 < coarse.error <= 1e-6
 
 
@@ -144,7 +144,8 @@ def test_cells_hold_a_little_beyond_their_sides(surface, exact):
     record = surface.record
     local, corners = new_local(record), np.array([[1, 1], [-1, 1], [1, -1], [-1, -1], [1, 0], [0, -1]])
     cell = enter(record, local, 0.1 * surface.size, -0.2 * surface.size, 1e-3, math.inf)
-    outside = record.cells.centre[cell] + surface.overhang * corners * record.cells.half[cell]
+    one = record.cells.cell[cell]
+    outside = (one.x, one.y) + surface.overhang * corners * (one.half_x, one.half_y)
     strokes = [drive.evaluate(1e-3)[0] for drive in DRIVES]
     for (x, y), truth in zip(outside, exact.evaluate(outside, strokes)[0], strict=True):
         assert within_cell(local, 0.999 * x, 0.999 * y) and not within_cell(local, x + surface.size, y)
@@ -181,7 +182,7 @@ def test_finite_elements_give_the_closed_forms_surface(section, radius, layout, 
 
 def test_a_surface_from_finite_elements_needs_no_finer_cells_than_the_exact_one(section, radius, layout, surface):
     shapes = Plate(disc(radius, radius / 12), section).influence(layout)
-    assert surface_motion(shapes, DRIVES).store.cells.half.shape == surface.store.cells.half.shape
+    assert surface_motion(shapes, DRIVES).store.cells.cell.shape == surface.store.cells.cell.shape
 
 
 def test_a_close_pair_of_actuators_is_fitted_relative_to_its_steep_shapes(radius):

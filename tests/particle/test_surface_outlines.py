@@ -73,8 +73,9 @@ def test_cells_are_square_and_as_many_as_the_box_is_long():
     cells = surface.store.cells
     nx, ny = cells.roots.shape
     assert (nx, ny) == (nx, nx // 2)
-    assert cells.width == pytest.approx([2 / nx, 2 / nx])
-    assert cells.origin == pytest.approx([-1.0, -0.5])
+    grid = cells.grid[0]
+    assert (grid.width_x, grid.width_y) == pytest.approx((2 / nx, 2 / nx))
+    assert (grid.x, grid.y) == pytest.approx((-1.0, -0.5))
     assert (cells.roots >= 0).all()
 
 
@@ -96,7 +97,7 @@ def test_at_a_reentrant_corner_the_fit_ends_and_says_how_far_it_came():
 
     shapes = Bumps(outline, notch)
     surface = surface_motion(shapes, UP)
-    assert surface.store.cells.half.min() >= 2 / 8 / 2**6 / 2
+    assert surface.store.cells.cell["half_x"].min() >= 2 / 8 / 2**6 / 2
     assert 1e-6 < surface.error < 1e-2
     xy = on_plate(outline)
     wrong = np.abs(surface.evaluate(xy, 2.0).w - notch(*xy.T)) / abs(notch(*shapes.points[0]))
@@ -109,7 +110,7 @@ def test_a_shape_driven_by_a_force_counts_by_its_own_height():
     whole, small = (
         surface_motion(Bumps(OUTLINES["annulus"], lambda x, y, f=f: f * ripples(x, y)), UP) for f in (1.0, 1e-6)
     )
-    assert small.store.cells.half.shape == whole.store.cells.half.shape
+    assert small.store.cells.cell.shape == whole.store.cells.cell.shape
     assert small.error == pytest.approx(whole.error, rel=1e-3)
 
 

@@ -1,30 +1,26 @@
 """A plate for lattices, and cases that have one."""
 
 import pytest
+from sweeps import toml
 
 from coupling import Case, CaseError, read_case
 from coupling.case import ConstantCase, DiscCase, PartCase, RunCase
 
-FRAME = """\
-[plate]
-shape = "rectangle"
-width = "1 mm"
-height = "0.8 mm"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "50 um"
-[part]
-mass = "2e-9 kg"
-position = ["10 um", "20 um"]
-[friction]
-model = "constant"
-limit = "1 uN"
-[run]
-duration = "50 ms"
-"""
+FRAME = toml(
+    plate={
+        "shape": "rectangle",
+        "width": "1 mm",
+        "height": "0.8 mm",
+        "youngs_modulus": "169 GPa",
+        "poisson_ratio": 0.3,
+        "thickness": "50 um",
+    },
+    part={"mass": "2e-9 kg", "position": ["10 um", "20 um"]},
+    friction={"model": "constant", "limit": "1 uN"},
+    run={"duration": "50 ms"},
+)
 PLACES = '[lattice]\nrows = 3\ncolumns = 4\npitch = ["150 um", "120 um"]\n'
 DRIVE = 'stroke = "5 um"\nfrequency = "300 Hz"\n'
-FIRST = 1 + (FRAME + PLACES).count("\n")  # the line after the lattice's places
 
 
 def read(folder, lattice) -> Case:

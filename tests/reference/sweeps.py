@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 from xarray import Dataset
 
@@ -86,6 +88,9 @@ frequency = "400 Hz"
     + PLATE[PLATE.index("[part]") :]
 )
 
+DISC = {"shape": "disc", "radius": 300e-6, "youngs_modulus": 169e9, "poisson_ratio": 0.3, "thickness": 5e-6}
+"""That plate for cases made in Python."""
+
 SHAKEN = """\
 [[axes]]
 field = "plate.motion.x.stroke"
@@ -95,6 +100,16 @@ values = ["5 um", "20 um", "40 um"]
 field = "friction.limit"
 values = ["10 nN", "1 uN"]
 """
+
+
+def toml(**tables: Any) -> str:
+    """The text of tables, and of lists of tables, whose values JSON and TOML write alike."""
+    text = ""
+    for name, found in tables.items():
+        for one in found if isinstance(found, list) else [found]:
+            text += f"[[{name}]]\n" if isinstance(found, list) else f"[{name}]\n"
+            text += "".join(f"{key} = {json.dumps(value, ensure_ascii=False)}\n" for key, value in one.items()) + "\n"
+    return text
 
 
 def altered(case: str, *changes: tuple[str, str]) -> str:

@@ -9,3 +9,8 @@ from coupling.advice import advise
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
     coupling.summary.advise = advise if "advice" in item.keywords else lambda *_: None
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown() -> None:
+    coupling.summary.advise = advise

@@ -63,7 +63,7 @@ def test_actuators_at_the_rim_do_not_make_cells_without_end(gap):
     points = [[RADIUS - gap, 0.0], [-150e-6, 0.0]]
     shapes = Plate(meshes.disc(RADIUS, 60e-6), SECTION).influence(points)
     cells = PlateCells(shapes, 1e-8)
-    assert len(cells.cells.quarters) < 1500
+    assert len(cells.cells.cell) < 1500
     assert cells.error > 1e-6  # and this is said
 
 

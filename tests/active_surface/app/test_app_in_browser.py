@@ -18,7 +18,7 @@ from selenium.webdriver.common.keys import Keys  # noqa: E402
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore::ResourceWarning")]
 
-ACTIONS = 80
+ACTIONS = 30
 ACT = """
 const [act, r, text] = arguments, all = [...knobs.values()], knob = all[Math.floor(r[0] * all.length)];
 const said = (control, value, ...kinds) => {

@@ -53,6 +53,7 @@ def test_a_path_that_takes_too_long_is_cut_and_marked(case, monkeypatch):
     assert any("first" in text for text in cut.coarse) and any("steps" in text for text in cut.coarse)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_plate_that_stretches_is_linear_until_its_model_is_made(case, patient):
     stretching = case.vary(

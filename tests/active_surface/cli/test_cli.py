@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from sweeps import toml
 
 from active_surface.cli import ctrl_c
 from active_surface.cli.program import main
@@ -30,26 +31,12 @@ from active_surface.cli.program import main
 sys.argv[1:] = {words!r}
 main()
 """
-BROKEN = """\
-[plate]
-shape = "disc"
-radius = "300 um"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.6
-thicknes = "5 um"
-
-[[actuators]]
-position = ["400 um", "0 um"]
-stroke = 150
-frequency = "300 Hz"
-
-[part]
-mass = "2e-9 kg"
-position = ["100 um", "100 um"]
-
-[run]
-duration = "50 ms"
-"""
+BROKEN = toml(
+    plate={"shape": "disc", "radius": "300 um", "youngs_modulus": "169 GPa", "poisson_ratio": 0.6, "thicknes": "5 um"},
+    actuators=[{"position": ["400 um", "0 um"], "stroke": 150, "frequency": "300 Hz"}],
+    part={"mass": "2e-9 kg", "position": ["100 um", "100 um"]},
+    run={"duration": "50 ms"},
+)
 
 
 @pytest.fixture
@@ -82,21 +69,6 @@ def test_an_interrupt_exits_130_with_one_line(command, tmp_path, monkeypatch):
     assert (done.exit_code, done.stdout, done.stderr) == (130, "", "interrupted\n")
 
 
-# The command, with a line when it begins to follow the part.
-SPY = """
-import os
-from coupling import run
-follow = run.follow_part
-def spied(*arguments):
-    os.write(1, b"begins\\n")
-    return follow(*arguments)
-run.follow_part = spied
-from active_surface.cli import ctrl_c
-from active_surface.cli.program import main
-main()
-"""
-
-
 def pressed(command, cache):
     """Ctrl-C for a command once it has printed a line: that line, exit code, output, further errors."""
     environment = os.environ | {"NUMBA_CACHE_DIR": str(cache)}
@@ -115,7 +87,10 @@ def pressed(command, cache):
     ("command", "file", "end"),
     [
         ("run", "two_actuators.toml", "interrupted\n"),
-        ("sweep", "studies/starts.toml", "interrupted; the same command goes on where this one stopped\n"),
+        pytest.param(
+            *("sweep", "studies/starts.toml", "interrupted; the same command goes on where this one stopped\n"),
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_ctrl_c_ends_a_command_that_compiles(command, file, end, tmp_path):
@@ -128,6 +103,7 @@ def test_ctrl_c_ends_a_command_that_compiles(command, file, end, tmp_path):
     assert not [path for path in (tmp_path / "out").glob("*.*") if path.is_file()]
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 @pytest.mark.skipif(sys.platform == "win32", reason="needs signals")
 def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
@@ -142,28 +118,6 @@ def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
         output, errors = run.communicate(timeout=LATEST)
     assert (run.returncode, output) == (130, "") and errors.endswith("interrupted\n") and "Traceback" not in errors
     assert not (tmp_path / "out").exists()
-
-
-def test_missing_file_exits_2():
-    done = CliRunner().invoke(main, ["check", "nowhere.toml"])
-    assert done.exit_code == 2
-    assert "nowhere.toml" in done.output
-
-
-def test_contact_without_a_stable_branch_is_refused(tmp_path):
-    text = (EXAMPLES / "one_actuator.toml").read_text()
-    path = tmp_path / "sticky.toml"
-    path.write_text(text.replace('preset = "paper"', 'adhesion_energy = "1e3 J/m^2"'))
-    done = CliRunner().invoke(main, ["check", str(path)])
-    assert done.exit_code == 2
-    assert "Inputs of KogutEtsion" in done.output
-
-
-@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
-def test_examples_are_fine(path):
-    done = CliRunner().invoke(main, ["check", str(path)])
-    assert done.exit_code == 0
-    assert "fine" in done.output
 
 
 def test_verify_passes_and_writes_every_figure(tmp_path):
@@ -182,16 +136,6 @@ def test_verify_exits_1_when_a_bound_fails(monkeypatch):
     done = CliRunner().invoke(main, ["verify"])
     assert done.exit_code == 1
     assert "FAILED" in done.output
-
-
-@pytest.mark.compiled
-def test_run_prints_the_summary_as_json(tmp_path):
-    done = CliRunner().invoke(
-        main, ["run", str(EXAMPLES / "one_actuator.toml"), "--output", str(tmp_path / "out"), "--json"]
-    )
-    assert done.exit_code == 0
-    assert json.loads(done.stdout)["outcome"] == "moving"
-    assert len(list((tmp_path / "out").glob("*.vtkhdf"))) == 2
 
 
 SHAKEN = """\
@@ -216,6 +160,7 @@ duration = "25 ms"
 """
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 @pytest.mark.advice
 def test_run_writes_the_advised_case_which_moves(tmp_path):

@@ -6,38 +6,32 @@ import numpy as np
 import pytest
 from astropy.io import fits
 from click.testing import CliRunner
+from sweeps import toml
 
 from active_surface.cli.program import main
 
-CASE = """
-[plate]
-shape = "disc"
-radius = "300 um"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
-tension = "{tension} N/m"
-cell_size = "75 um"
-
-[lattice]
-rows = 3
-columns = 3
-pitch = "100 um"
-stroke = "1 um"
-frequency = "300 Hz"
-stiffness = "{stiffness} N/m"
-
-[part]
-mass = "2e-9 kg"
-position = ["0 um", "0 um"]
-
-[friction]
-model = "constant"
-limit = "1 uN"
-
-[run]
-duration = "1 ms"
-"""
+CASE = toml(
+    plate={
+        "shape": "disc",
+        "radius": "300 um",
+        "youngs_modulus": "169 GPa",
+        "poisson_ratio": 0.3,
+        "thickness": "5 um",
+        "tension": "{tension} N/m",
+        "cell_size": "75 um",
+    },
+    lattice={
+        "rows": 3,
+        "columns": 3,
+        "pitch": "100 um",
+        "stroke": "1 um",
+        "frequency": "300 Hz",
+        "stiffness": "{stiffness} N/m",
+    },
+    part={"mass": "2e-9 kg", "position": ["0 um", "0 um"]},
+    friction={"model": "constant", "limit": "1 uN"},
+    run={"duration": "1 ms"},
+)
 
 
 @pytest.fixture

@@ -199,22 +199,3 @@ def test_ctrl_c_that_compiled_code_went_on_after_ends_a_command_as_any(cause, en
     monkeypatch.setattr("coupling.case.parse", read)
     done = CliRunner().invoke(main, ["check", "any.toml"])
     assert done.exit_code == ending and (done.stderr == "interrupted\n") == (ending == 130)
-
-
-@pytest.mark.parametrize(
-    ("command", "file", "said"),
-    [
-        (
-            "run",
-            "studies/frequency_stroke.toml",
-            "CASE must be a case; got {0}, a study; write active-surface sweep {0}",
-        ),
-        ("run", "aims/around_the_corner.toml", "CASE must be a case; got {0}, an aim; write active-surface aim {0}"),
-        ("sweep", "one_actuator.toml", "STUDY must be a study; got {0}, a case; write active-surface run {0}"),
-    ],
-)
-def test_a_file_for_another_command_is_told_in_one_line(tmp_path, command, file, said):
-    path = Path(__file__).parents[3] / "examples" / file
-    done = CliRunner().invoke(main, [command, str(path), "-o", str(tmp_path / "out")])
-    assert done.exit_code == 2 and not (tmp_path / "out").exists()
-    assert said.format(path) in done.output and len(done.output.splitlines()) == 2

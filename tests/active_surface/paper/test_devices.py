@@ -26,6 +26,7 @@ def test_heights_of_parts():
     assert POINT.name == "a = 300 um, 20 um thick, point on the mid-plane"
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_thick_device_bends_as_the_papers_plate():
     """At 3 % of a thickness it hardly stretches; but its points move in its plane, by about w^2 / a."""
@@ -93,25 +94,9 @@ def test_devices_that_are_done_are_not_computed_again(tmp_path):
 
 def test_the_sections_of_the_page():
     page = "\n".join(section(BUILDER, None))
-    assert "| 12 | **100** | 0 |" in page and "| 16 | 75 | 0 |" in page and "| hold | 1 | 0 |" in page
-    assert "10 nm elsewhere, 3e-04 of it" in page and "took 10 minutes, 15 of processor time" in page
-    assert "| 300 | 20 | 150 | 7.5 | 0.86 | 105 | 178 | 10.4 | 1940 |" in page
-    assert "| 600 | 0 | 25 | 75 | 2 | 0.15 | -900 | -200 | -391 | 0 | 100 |" in page
-    assert "| 300 | silicon block | 20 | 3 | 1000 | 2000 | **95** | 1000 | 2.0 |" in page
-    assert "| 300 | silicon block | 5 | 0.6 | - | - | 0 | - | - |" in page
-    assert "| 300 | silicon block | 20 | 12 | 0 | 62 |" in page
-    strain, held, lost, ladder, windows, handed = summary(BUILDER)
-    assert "stroke breaks any stiff plate" in strain and "5 um of silicon bear 5 um with a = 300 um" in strain
-    assert "0 hold on all 2 devices (-), 1 on some (12), 20 on none (5;" in held
-    assert (
-        "make 60 and 26 % at 600 Hz" in lost
-        and "over the corner" in lost
-        and "The stroke's acceleration is enough in 0 % of the losses; in 100 %" in lost
-    )
-    assert (
-        "0 % come off the linear plate; off the one that stretches: 75 % (20 um thick, point on the mid-plane)"
-        in ladder
-    )
-    assert "with 20 um at 1000 Hz (silicon block, a = 300 um). The least strain of these is 3 %" in windows
-    assert "below 1 % at best 0 % converge, with 5 um at 500 Hz" in windows
-    assert "12 % where it runs 1.33 times as fast, 0 % where it runs 1.5 times as fast, 62 % where it rests" in handed
+    for row in ("| 12 | **100** | 0 |", "| 600 | 0 | 25 | 75 | 2 | 0.15 | -900 |", "| 300 | silicon block | 20 | 12 |"):
+        assert row in page
+    strain, held, _, ladder, windows, handed = summary(BUILDER)
+    assert "5 um of silicon bear 5 um with a = 300 um" in strain and "0 hold on all 2 devices" in held
+    assert "off the one that stretches: 75 %" in ladder and "with 20 um at 1000 Hz (silicon block" in windows
+    assert "12 % where it runs 1.33 times as fast" in handed

@@ -25,6 +25,11 @@ def bench():
     return Bench()
 
 
+@pytest.fixture(autouse=True)
+def coarse_swings(monkeypatch):
+    monkeypatch.setattr("active_surface.paper.figures.friction_logic.SWING_STEP", 2e-3)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("module", MODULES)
 def test_figure_runs_and_is_written(module, bench):

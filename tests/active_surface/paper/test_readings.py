@@ -18,7 +18,7 @@ from active_surface.paper.readings import (
 from active_surface.paper.readings.cases import STATEMENTS, cases_of, cell, where
 from active_surface.paper.readings.effects import CHANGES, differences, pairs_of
 from active_surface.paper.readings.reading import CONSTANT, FLAT, INDEX, RIM, benches_of
-from active_surface.paper.readings.sensitivity import Left, Sensitivity, Variant
+from active_surface.paper.readings.sensitivity import Sensitivity
 from active_surface.paper.readings.single import strokes_of
 from active_surface.paper.readings.two import _sixteen
 from active_surface.paper.reproduction import builder_of
@@ -94,15 +94,6 @@ def test_gravity_and_the_contact_by_pairs():
     page = page_of_readings(sweep)
     assert "| gravity in place of none, 1 pairs | 1: 19 (1) | 1: 17a (1) | 0: - | 0: - |" in page
     assert "constant friction in place" not in page  # no pair of readings differs in it
-
-
-def test_the_page_has_contact_step_and_what_has_left():
-    shares = {name: {"": 0.5} for name in STATEMENTS} | {"17a": {"": 0.95}}
-    table_1 = Variant("plasticity index 2.5 (Table 1)", 2334.0, 1858.0, float("nan"), shares)
-    left = [Left("paper", 150e-6, 1.0, 0.25), Left("closed", 150e-6, 0.9, 0.0)]
-    page = page_of_readings(Sweep(SIZE, ROWS), Sensitivity([table_1], [table_1._replace(name="10 us")], left))
-    assert "| plasticity index 2.5 (Table 1) | 2334 | 1858 | none | 50 | 95 |" in page
-    assert "| 10 µs | none | 50 | 95 |" in page and "| 150 | 100 | 25 | 90 | 0 |" in page
 
 
 def test_data_and_page_are_written_and_what_was_kept_goes(tmp_path, monkeypatch):

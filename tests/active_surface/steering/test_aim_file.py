@@ -162,8 +162,7 @@ def test_way_points_are_checked_before_any_search(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "place"),
-    [("100,-50", (1e-4, -5e-5)), ("0.1 mm,50um", (1e-4, 5e-5)), (" -1e2 , +.5 ", (-1e-4, 5e-7))],
+    ("text", "place"), [("100,-50", (1e-4, -5e-5)), ("0.1 mm,50um", (1e-4, 5e-5)), (" -1e2 , +.5 ", (-1e-4, 5e-7))]
 )
 def test_places_are_in_micrometres_or_have_units(text, place):
     assert read_place(text, "--target") == place

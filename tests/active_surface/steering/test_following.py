@@ -46,6 +46,7 @@ def case(tmp_path):
     return read_case(tmp_path / "base.toml")
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_the_closed_loop_meets_way_points_that_the_open_one_misses_with_a_device_of_other_friction(case):
     """Measured: the open loop ends 2.29 um off the last way-point; the closed one meets both to 0.29 and 0.39 um."""

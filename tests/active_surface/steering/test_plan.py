@@ -62,6 +62,7 @@ def test_a_schedule_is_the_drives_of_its_legs_one_after_the_other(case):
     assert np.abs(heights - wanted).max() < 1e-15
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_plan_carries_the_part_over_its_way_points_and_its_file_runs_the_same(case, tmp_path):
     told = []

@@ -30,6 +30,7 @@ def case_of(*places):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_part_is_brought_to_a_target_and_a_run_of_its_own_ends_there():
     settings = Settings(paths=600, scatter=4)

@@ -109,24 +109,6 @@ def test_few_chunks_are_under_way_at_a_time(tmp_path, cluster):
 
 
 @pytest.mark.slow
-def test_a_stop_keeps_the_chunks_that_came_in(tmp_path, cluster, monkeypatch):
-    monkeypatch.setattr(Engine, "_chunk_length", lambda engine: 2)
-    study = read_study(written(tmp_path, SHAKEN, PLATFORM))
-
-    def stop(done, of):
-        if done == 8:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        run_study(study, tmp_path / "out", tell=stop, scheduler=cluster.scheduler_address)
-    assert len(list((tmp_path / "out").rglob("*.chunk"))) == 4
-    told = []
-    found = run_study(study, tmp_path / "out", tell=lambda done, of: told.append(done))  # without the cluster
-    assert sorted(told) == told == list(range(8, 25, 2))
-    assert bits(found.dataset) == bits(run_study(study).dataset)
-
-
-@pytest.mark.slow
 def test_a_worker_with_another_version_is_refused(tmp_path, cluster, monkeypatch):
     study = read_study(written(tmp_path, SHAKEN, PLATFORM))
     own = {"active-surface": "9.8.7", "numpy": np.__version__}

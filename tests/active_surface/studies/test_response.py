@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray
 from click.testing import CliRunner
-from sweeps import DISC_PLATE
+from sweeps import DISC_PLATE, toml
 
 from active_surface.cli.program import main
 from active_surface.cli.values import place_of
@@ -17,30 +17,16 @@ from coupling import read_case
 
 CASE = (
     DISC_PLATE
-    + """\
-density = "2330 kg/m^3"
-cell_size = "100 um"
-
-[[actuators]]
-position = ["90 um", "30 um"]
-stroke = "1 um"
-frequency = "20 kHz"
-[[actuators]]
-position = ["-75 um", "-105 um"]
-stroke = "1 um"
-frequency = "20 kHz"
-
-[part]
-mass = "2e-9 kg"
-position = ["100 um", "0 um"]
-
-[friction]
-model = "constant"
-limit = "10 nN"
-
-[run]
-duration = "0.1 ms"
-"""
+    + 'density = "2330 kg/m^3"\ncell_size = "100 um"\n\n'
+    + toml(
+        actuators=[
+            {"position": ["90 um", "30 um"], "stroke": "1 um", "frequency": "20 kHz"},
+            {"position": ["-75 um", "-105 um"], "stroke": "1 um", "frequency": "20 kHz"},
+        ],
+        part={"mass": "2e-9 kg", "position": ["100 um", "0 um"]},
+        friction={"model": "constant", "limit": "10 nN"},
+        run={"duration": "0.1 ms"},
+    )
 )
 POINTS = ["200 um, 100 um", "-200um,100um"]
 TAB = {"blue": (31, 119, 180), "orange": (255, 127, 14), "green": (44, 160, 44), "red": (214, 39, 40)}

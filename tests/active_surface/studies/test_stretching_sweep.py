@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sweeps import DISC_PLATE, written
+from sweeps import DISC_PLATE, toml, written
 
 from active_surface.studies import read_study
 from active_surface.studies.engine import Engine
@@ -12,26 +12,13 @@ pytestmark = pytest.mark.compiled
 
 CASE = (
     DISC_PLATE
-    + """\
-cell_size = "75 um"
-theory = "von-karman"
-
-[[actuators]]
-position = ["0 um", "0 um"]
-stroke = "10 um"
-frequency = "2000 Hz"
-
-[part]
-mass = "2e-9 kg"
-position = ["50 um", "60 um"]
-
-[friction]
-model = "constant"
-limit = "2 nN"
-
-[run]
-duration = "2 ms"
-"""
+    + 'cell_size = "75 um"\ntheory = "von-karman"\n\n'
+    + toml(
+        actuators=[{"position": ["0 um", "0 um"], "stroke": "10 um", "frequency": "2000 Hz"}],
+        part={"mass": "2e-9 kg", "position": ["50 um", "60 um"]},
+        friction={"model": "constant", "limit": "2 nN"},
+        run={"duration": "2 ms"},
+    )
 )
 AXES = """\
 [[axes]]

@@ -144,9 +144,7 @@ def test_an_axis_over_part_of_what_another_one_varies_is_a_mistake(tmp_path, fir
 
 
 def test_a_file_without_axes_and_one_without_a_case_are_told(tmp_path):
-    assert mistakes(tmp_path, "") == [
-        "None axes is missing; it must be a table, written [[axes]]",
-    ]
+    assert mistakes(tmp_path, "") == ["None axes is missing; it must be a table, written [[axes]]"]
     (told,) = mistakes(tmp_path, '[study]\ncase = "nowhere.toml"\n' + STROKE)
     assert "2 study.case must be the file of a case; " in told and "nowhere.toml" in told
     (told,) = mistakes(tmp_path, '[study]\ncase = "a\\u0000"\n' + STROKE)

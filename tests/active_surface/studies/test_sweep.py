@@ -59,7 +59,7 @@ def test_a_platform_is_swept_in_memory_and_its_axes_are_labelled(tmp_path):
                 ("[friction]", 'velocity = ["{} m/s", "0 m/s"]\n[friction]'),
                 ('duration = "5 ms"', 'duration = "{} s"'),
             ],
-            marks=pytest.mark.compiled,
+            marks=[pytest.mark.compiled, pytest.mark.slow],
         ),
         pytest.param(
             LATTICE,
@@ -89,7 +89,7 @@ def test_each_path_has_the_bits_of_a_run_of_a_file_with_its_values(tmp_path, tex
 
 
 @pytest.mark.parametrize(
-    ("axes", "case"), [(SHAKEN, PLATFORM), pytest.param(STROKES, PLATE, marks=pytest.mark.compiled)]
+    ("axes", "case"), [(SHAKEN, PLATFORM), pytest.param(STROKES, PLATE, marks=[pytest.mark.compiled, pytest.mark.slow])]
 )
 def test_the_bits_do_not_depend_on_the_number_of_threads(tmp_path, axes, case):
     study = read_study(written(tmp_path, axes, case))
@@ -154,7 +154,7 @@ def test_a_point_with_cycles_without_end_is_refused(tmp_path, case, monkeypatch)
 def test_a_start_off_the_plate_is_refused_where_it_is_off(tmp_path):
     axes = '[[axes]]\nfield = "part.position.0"\nvalues = ["0 um", "290 um", "300 um", "1 m"]\n'
     found = run_study(read_study(written(tmp_path, axes))).dataset
-    assert found["mistakes"].values.tolist() == [0, 0, 1, 1]
+    assert found["mistakes"].values.tolist() == [0, 0, 1, 1] and found["start_x"].values[-1] == 1.0
     axes = 'repeats = 60\njitter = "30 um"\n' + axes
     found = run_study(read_study(written(tmp_path, axes))).dataset
     assert 0 < found["mistakes"].sel({"part.position.0": 290e-6}).sum() < 60

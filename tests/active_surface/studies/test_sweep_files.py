@@ -22,6 +22,8 @@ from active_surface.studies.record import COLUMNS
 from coupling import environment as versions
 from coupling.progress import CountBar
 
+pytestmark = pytest.mark.usefixtures("without_pictures")
+
 MASS = """\
 [[axes]]
 field = "part.mass"
@@ -82,30 +84,21 @@ def test_the_sources_are_hashed_with_their_places(tmp_path, monkeypatch):
     assert len(found) == 3
 
 
-@pytest.mark.parametrize(
-    ("text", "case", "said"),
-    [
-        (
-            MASS.replace("count = 9", "count = 8"),
-            PLATFORM,
-            "points, 7 of which are not in this study: --overwrite drops these and keeps the other 2 paths",
-        ),
-        (MASS, PLATFORM.replace("20 nN", "30 nN"), "case: --overwrite replaces it"),
-        (
-            MASS.replace("count = 9", "count = 8"),
-            PLATFORM.replace("20 nN", "30 nN"),
-            "case and points: --overwrite replaces it",
-        ),
-    ],
-)
-def test_results_of_another_study_are_replaced_only_when_that_is_asked_for(tmp_path, text, case, said):
+def test_results_of_another_study_are_replaced_only_when_that_is_asked_for(tmp_path):
+    fewer, other = MASS.replace("count = 9", "count = 8"), PLATFORM.replace("20 nN", "30 nN")
+    lost = "points, 7 of which are not in this study: --overwrite drops these and keeps the other 2 paths"
+    others = [
+        (fewer, other, "case and points: --overwrite replaces it"),
+        (MASS, other, "case: --overwrite replaces it"),
+        (fewer, PLATFORM, lost),
+    ]
     assert swept(tmp_path).exit_code == 0
     kept = (tmp_path / "out" / "study.nc").read_bytes()
-    path = written(tmp_path, text, case)
-    command = ["sweep", str(path), "-o", str(tmp_path / "out")]
-    done = CliRunner().invoke(main, command)
-    assert done.exit_code == 2 and f"whose study.nc is of other {said}" in done.output
-    assert (tmp_path / "out" / "study.nc").read_bytes() == kept
+    for text, case, said in others:
+        command = ["sweep", str(written(tmp_path, text, case)), "-o", str(tmp_path / "out")]
+        done = CliRunner().invoke(main, command)
+        assert done.exit_code == 2 and f"whose study.nc is of other {said}" in done.output
+        assert (tmp_path / "out" / "study.nc").read_bytes() == kept
     assert CliRunner().invoke(main, [*command, "--overwrite"]).exit_code == 0
     assert (tmp_path / "out" / "study.nc").read_bytes() != kept
     assert CliRunner().invoke(main, command).exit_code == 0

@@ -93,12 +93,12 @@ def test_a_camera_is_a_name_or_two_angles():
             camera_of(text)
 
 
-@pytest.mark.parametrize("duration", [3e-9, 1e-3, 0.02, 0.05, 0.6, 4.0, 70.0, 1e5])
-def test_a_film_without_a_wish_lasts_about_eight_seconds(duration):
-    pace = pace_of(np.array([0.0, duration]), 30.0, None)
-    assert 6.5 < pace.lasts < 9.5
-    assert pace.times[0] == 0 and pace.times[-1] == duration
-    assert pace.lasts == pytest.approx(duration * pace.slow_motion, abs=2 / 30)
+def test_a_film_without_a_wish_lasts_about_eight_seconds():
+    for duration in (3e-9, 1e-3, 0.02, 0.05, 0.6, 4.0, 70.0, 1e5):
+        pace = pace_of(np.array([0.0, duration]), 30.0, None)
+        assert 6.5 < pace.lasts < 9.5
+        assert pace.times[0] == 0 and pace.times[-1] == duration
+        assert pace.lasts == pytest.approx(duration * pace.slow_motion, abs=2 / 30)
 
 
 def test_the_pace_is_said_in_words():
@@ -205,8 +205,9 @@ def test_flight_is_counted_from_the_surface():
     assert frame.flight == pytest.approx(4e-6)
 
 
-@pytest.mark.parametrize("camera", CAMERAS)
-@pytest.mark.parametrize("size", [(1280, 720), (330, 500), (320, 320)])
+@pytest.mark.parametrize(
+    ("camera", "size"), [*zip(CAMERAS, [(1280, 720), (330, 500), (320, 320), (330, 500)], strict=True)]
+)
 def test_the_surface_fills_its_part_of_the_picture_at_all_times(camera, size):
     stage = stage_of(rising())
     layout = layout_of(stage, CAMERAS[camera], size, 10.0)

@@ -41,8 +41,7 @@ def test_numbered_pictures_replace_older_ones(tmp_path):
     assert [file.name for file in tmp_path.iterdir()] == ["frames"]
 
 
-@pytest.mark.parametrize("kind", ["mp4", "gif", "png"])
-@pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
+@pytest.mark.parametrize(("kind", "error"), [("mp4", KeyboardInterrupt), ("gif", ValueError), ("png", ValueError)])
 def test_a_film_that_is_broken_off_leaves_nothing_and_an_older_one_as_it_was(tmp_path, kind, error):
     path = tmp_path / (f"film.{kind}" if kind != "png" else "film")
     for older in (False, True):
@@ -80,12 +79,13 @@ def test_what_is_put_into_a_folder_of_frames_meanwhile_stays(tmp_path):
     assert [file.name for file in tmp_path.iterdir()] == ["frames"]
 
 
-@pytest.mark.parametrize("name", ["a:b.mp4", "-x.mp4", "100%d.gif"])
-def test_names_that_ffmpeg_would_take_for_something_else(tmp_path, monkeypatch, name):
+def test_names_that_ffmpeg_would_take_for_something_else(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with film_file(Path(name), name[-3:], SIZE, 10.0) as film:
-        film.add(shade(5))
-    assert [file.name for file in tmp_path.iterdir()] == [name]
+    for name in ("a:b.mp4", "-x.mp4", "100%d.gif"):
+        with film_file(Path(name), name[-3:], SIZE, 10.0) as film:
+            film.add(shade(5))
+        assert [file.name for file in tmp_path.iterdir()] == [name]
+        (tmp_path / name).unlink()
 
 
 def test_two_processes_that_make_a_film_of_one_name_leave_each_other_alone(tmp_path, monkeypatch):

@@ -55,8 +55,7 @@ def reds(image):
     return (red > 100) & (red > 2 * green) & (red > 2 * blue)
 
 
-@pytest.mark.parametrize("camera", CAMERAS)
-@pytest.mark.parametrize("state", list(State))
+@pytest.mark.parametrize(("camera", "state"), [*zip(CAMERAS, [*State, State.SLIP], strict=True)])
 def test_the_part_is_where_it_should_be_in_the_colour_of_its_state(renderer, camera, state):
     above = 3e-4 if state is State.FLIGHT else 2e-4
     look, frame, image = painted(hilly(above=above, state=int(state)), renderer, camera)
@@ -66,6 +65,7 @@ def test_the_part_is_where_it_should_be_in_the_colour_of_its_state(renderer, cam
     assert {State.SLIP: red > 2 * blue, State.STICK: blue > 2 * red, State.FLIGHT: max(red, blue) < 150}[state]
 
 
+@pytest.mark.slow
 def test_the_trail_is_seen_before_a_hill_and_hidden_behind_it(renderer):
     before = made_run(PATH + [0, -3e-4], lambda points: hill(points, 5e-4))
     behind = made_run(PATH * [1 / 3, 1] + [0, 2.5e-4], lambda points: hill(points, 5e-4))
@@ -80,6 +80,7 @@ def test_a_trail_over_a_surface_that_has_risen_is_not_swallowed(renderer):
     assert row.sum() > 0.28 * SIZE[1]  # the path is two thirds of a plate that fills 0.71 of the height
 
 
+@pytest.mark.slow
 def test_both_painters_draw_the_same_picture(refused):
     if refused is not None:
         pytest.skip(f"pyvista cannot draw here: {refused}")
@@ -89,6 +90,7 @@ def test_both_painters_draw_the_same_picture(refused):
         assert apart.mean() < 6 and (apart > 60).mean() < 0.05
 
 
+@pytest.mark.slow
 def test_both_painters_draw_heights_far_before_and_behind(refused):
     if refused is not None:
         pytest.skip(f"pyvista cannot draw here: {refused}")
@@ -164,8 +166,7 @@ def test_ticks_of_the_bar_can_be_told_apart(height, level):
     assert len(words) > 2 and len(set(words)) == len(words)
 
 
-@pytest.mark.parametrize("size", [(320, 240), (1280, 720), (330, 900), (1000, 320)])
-@pytest.mark.parametrize("state", [0, 2])
+@pytest.mark.parametrize(("size", "state"), [((320, 240), 2), ((1280, 720), 0), ((330, 900), 2), ((1000, 320), 0)])
 def test_no_word_is_clipped(size, state):
     stage = stage_of(hilly(1e-7, state=state, above=1e-4))
     captions = Captions(
@@ -177,6 +178,7 @@ def test_no_word_is_clipped(size, state):
     assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= size[0] and box.y1 <= size[1]
 
 
+@pytest.mark.slow
 def test_a_film_of_one_step_is_a_frame(renderer, tmp_path):
     made = animate(made_run([[0.0, 0.0]], lambda points: hill(points, 1e-5)), tmp_path / "f.gif", renderer=renderer)
     with Image.open(made.file) as film:
@@ -191,6 +193,7 @@ def test_a_still_is_the_frame_of_its_time(refused):
         still(hilly(), 1.0, size=SIZE)
 
 
+@pytest.mark.slow
 def test_a_window_that_vtk_has_not_is_found_out_and_harms_nothing(monkeypatch):
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkNoSuchWindow")
     monkeypatch.delenv("DISPLAY", raising=False)

@@ -238,11 +238,7 @@ def test_a_case_or_study_file_stands_for_its_result(tmp_path):
     (tmp_path / "many.nc").touch()
     found = result_of(tmp_path / "one.toml", results)
     assert (found.path, found.page) == (results / "one", results / "one.html")  # of which either file may be partial
-    assert result_of(tmp_path / "many.toml", results)[:3] == (
-        tmp_path / "many.nc",
-        tmp_path / "many.sweep.html",
-        True,
-    )
+    assert result_of(tmp_path / "many.toml", results)[:3] == (tmp_path / "many.nc", tmp_path / "many.sweep.html", True)
 
 
 @pytest.mark.parametrize("name", ["x.part.vtkhdf", "x.nc", "x"])

@@ -29,10 +29,7 @@ def pages(tmp_path_factory):
     single = read_run(folder / "base")
     for name in ("time", "position", "velocity", "state", "normal_force", "friction_force"):
         object.__setattr__(single, name, getattr(single, name)[:1])
-    return {
-        "run": write_run_page(run, folder / "run.html"),
-        "single": write_run_page(single, folder / "single.html"),
-    }
+    return {"run": write_run_page(run, folder / "run.html"), "single": write_run_page(single, folder / "single.html")}
 
 
 @pytest.fixture(scope="module")

@@ -47,55 +47,59 @@ def ran(folder, text=PLATE, duration="5 ms"):
     return run_case(read_case(folder / "case.toml"), folder)
 
 
+STUDIES = {
+    "one": FREQUENCY,
+    "two": FREQUENCY + STROKE + '[map]\nthreshold = "distance > 1 um"\n',
+    "three": FREQUENCY + STROKE + MASS,
+    "points": 'sampling = "random"\npoints = 8\n' + FREQUENCY.replace("count = 4\n", "") + STROKE,
+    "starts": X + Y,
+}
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """The results of a run, and of sweeps over one axis, two, three, random points and starts."""
+    """The results of a run."""
     folder = tmp_path_factory.mktemp("results")
-    ran(folder)
-    studies = {
-        "one": FREQUENCY,
-        "two": FREQUENCY + STROKE + '[map]\nthreshold = "distance > 1 um"\n',
-        "three": FREQUENCY + STROKE + MASS,
-        "points": 'sampling = "random"\npoints = 8\n' + FREQUENCY.replace("count = 4\n", "") + STROKE,
-        "starts": X + Y,
-        "again": 'repeats = 3\njitter = "1 um"\n' + FREQUENCY,
-    }
-    for name, text in studies.items():
-        path = written(folder, text, PLATE.replace('"5 ms"', '"2 ms"'))
-        run_study(read_study(path.rename(folder / f"{name}.toml")), folder, threads=1).dataset.close()
+    ran(folder, duration="2 ms")
     return folder
 
 
+def swept(folder, name):
+    """The results of a sweep over one axis, two, three, random points or starts."""
+    file = folder / f"{name}.nc"
+    if not file.exists():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("active_surface.studies.run.draw_sweep", lambda study, dataset, path: path)
+            path = written(folder, STUDIES[name], PLATE.replace('"5 ms"', '"1 ms"'))
+            run_study(read_study(path.rename(folder / f"{name}.toml")), folder, threads=1).dataset.close()
+    return file
+
+
 def findings_of(folder, name, *chosen):
-    with read_findings(folder / f"{name}.nc") as findings:
+    with read_findings(swept(folder, name)) as findings:
         return findings, sweep_pictures(findings, *chosen)
 
 
-@pytest.fixture(
-    scope="module",
-    params=[PLATE, STAYS, PLATFORM, COMES_OFF, MANY],
-    ids=["plate", "stays", "platform", "off", "many"],
-)
-def pictured(request, tmp_path_factory):
-    """A run and its pictures."""
-    folder = tmp_path_factory.mktemp("run")
-    result = ran(folder, request.param, "2 ms")
-    return result, run_pictures(portrait_of_saved(read_run(folder / "case")))
+RUNS = {"plate": PLATE, "stays": STAYS, "platform": PLATFORM, "off": COMES_OFF, "many": MANY}
+SOME_SLOW = [("off", 60), *(pytest.param(*one, marks=pytest.mark.slow) for one in (("stays", 85), ("platform", 60)))]
+SOME_SLOW += [pytest.param(*one, marks=pytest.mark.slow) for one in (("plate", 180), ("many", 180))]
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("width", [60, pytest.param(85, marks=pytest.mark.slow), 180])
-def test_pictures_of_a_run_can_be_read(pictured, width):
-    result, pictures = pictured
+@pytest.mark.parametrize(("name", "width"), SOME_SLOW)
+def test_pictures_of_a_run_can_be_read(tmp_path, name, width):
+    result = ran(tmp_path, RUNS[name], "2 ms")
+    pictures = run_pictures(portrait_of_saved(read_run(tmp_path / "case")))
     assert [picture.name for picture in pictures if picture.name != "closeup"] == ["path", "time"]
     assert result.summary.sentence in pictures[0].caption
     for picture in pictures:
         check(drawn(picture, width), width)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_saved_run_looks_as_the_run_itself(folder):
-    result = ran(folder)
+    result = ran(folder, duration="2 ms")
     saved = portrait_of_saved(read_run(folder / "case"))
     ground = display_surface(result.scene, result.trajectory)
     times = read_run(folder / "case").time
@@ -129,6 +133,7 @@ def heights(result, moment):
     return np.array([[drive.evaluate([moment])[0][0]] for drive in result.scene.lifts])
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_what_jumps_is_drawn_with_jumps(tmp_path):
     ran(tmp_path, COMES_OFF.replace("[run]", '[run]\nafter_detachment = "fly"'), "2 ms")
@@ -167,38 +172,41 @@ def test_events_are_marked_where_they_happen(folder):
 
 @pytest.mark.compiled
 @pytest.mark.parametrize(
-    ("name", "chosen", "expected"),
+    ("name", "chosen", "expected", "width"),
     [
-        ("one", (), ["distance", "outcome"]),
-        ("again", (), ["distance", "outcome"]),
-        ("two", (), ["distance", "outcome", "threshold"]),
-        ("two", (None, None, "largest_load"), ["largest_load"]),
-        ("two", ("stroke", "frequency", "outcome"), ["outcome"]),
-        ("three", ("mass",), ["distance", "outcome"]),
-        ("points", (), ["distance", "outcome"]),
-        ("starts", (), ["basins", "nearness"]),
-        ("starts", (None, None, "evaluations"), ["evaluations"]),
+        ("two", (), ["distance", "outcome", "threshold"], 60),
+        *(
+            pytest.param(*one, marks=pytest.mark.slow)
+            for one in (
+                ("one", (), ["distance", "outcome"], 180),
+                ("two", (None, None, "largest_load"), ["largest_load"], 180),
+                ("three", ("mass",), ["distance", "outcome"], 60),
+                ("points", (), ["distance", "outcome"], 180),
+                ("starts", (), ["basins", "nearness"], 60),
+                ("starts", (None, None, "evaluations"), ["evaluations"], 180),
+            )
+        ),
     ],
 )
-def test_pictures_of_a_sweep_can_be_read(folder, name, chosen, expected):
+def test_pictures_of_a_sweep_can_be_read(folder, name, chosen, expected, width):
     _, pictures = findings_of(folder, name, *chosen)
     assert [picture.name for picture in pictures] == expected
-    for width in (60, 180):
-        for picture in pictures:
-            figure = drawn(picture, width)
-            if not picture.name.startswith("eval"):
-                check(figure, width)
+    for picture in pictures:
+        figure = drawn(picture, width)
+        if not picture.name.startswith("eval"):
+            check(figure, width)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_axes_of_a_map_are_those_that_are_named(folder):
-    with read_findings(folder / "two.nc") as findings:
+    with read_findings(swept(folder, "two")) as findings:
         found, turned = Selection.of(findings), Selection.of(findings, "stroke")
         assert [scale.axis.name for scale in found.axes] == ["frequency", "stroke"]
         assert [scale.axis.name for scale in turned.axes] == ["stroke", "frequency"]
         assert turned.mean_value.T.tolist() == found.mean_value.tolist()
         assert turned.holds.T.tolist() == found.holds.tolist()
-    with read_findings(folder / "three.nc") as findings:
+    with read_findings(swept(folder, "three")) as findings:
         shown = Selection.of(findings, "mass", None, "path_length")
         assert [scale.axis.name for scale in shown.axes] == ["mass", "frequency"] and shown.fixed == {"stroke": "40 µm"}
         expected = findings.dataset["path_length"].sel(stroke=40e-6, method="nearest").transpose("mass", "frequency")
@@ -206,23 +214,24 @@ def test_axes_of_a_map_are_those_that_are_named(folder):
 
 
 @pytest.mark.compiled
-def test_files_have_text_as_text_and_the_wanted_width(folder, tmp_path):
-    done = CliRunner().invoke(
-        main, ["plot", str(folder / "case"), "-o", str(tmp_path / "new"), "--format", "svg", "--format", "pdf"]
-    )
+@pytest.mark.parametrize("form", ["svg", pytest.param("pdf", marks=pytest.mark.slow)])
+def test_files_have_text_as_text_and_the_wanted_width(folder, tmp_path, form):
+    done = CliRunner().invoke(main, ["plot", str(folder / "case"), "-o", str(tmp_path / "new"), "--format", form])
     assert done.exit_code == 0, done.output
     assert "not written to the end" not in done.output
-    assert re.search(r"wrote +\S+case.path.svg, \S+case.path.pdf\n +The path over the plate at ", done.output)
-    said = (tmp_path / "new/case.path.svg").read_text()
-    assert all(
-        re.search(rf"<text[^>]*>{text}</text>", said) for text in (r"x \[µm\]", r"deflection \[µm\]", "actuator")
-    )
+    assert re.search(rf"wrote +\S+case.path.{form}\n +The path over the plate at ", done.output)
+    raw = (tmp_path / f"new/case.path.{form}").read_bytes()
+    if form == "pdf":
+        assert b"/TrueType" in raw or b"/CIDFontType2" in raw
+        assert b"/Type3" not in raw and b"/FontFile2" in raw
+        return
+    said = raw.decode()
+    for text in (r"x \[µm\]", r"deflection \[µm\]", "actuator"):
+        assert re.search(rf"<text[^>]*>{text}</text>", said)
     assert float(re.search(r'width="([\d.]+)pt"', said)[1]) == pytest.approx(85 * MM * 72, abs=0.1)
-    raw = (tmp_path / "new/case.path.pdf").read_bytes()
-    assert b"/TrueType" in raw or b"/CIDFontType2" in raw
-    assert b"/Type3" not in raw and b"/FontFile2" in raw
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_the_same_picture_gives_the_same_bytes(folder, tmp_path, monkeypatch):
     """Even where the layout's solver, which orders its unknowns by their addresses, rounds otherwise."""
@@ -248,8 +257,10 @@ def test_the_same_picture_gives_the_same_bytes(folder, tmp_path, monkeypatch):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
+    one, two = (swept(folder, name) for name in ("one", "two"))
     (tmp_path / "text.nc").write_text("mine")
     (tmp_path / "other.vtkhdf").write_text("mine")
     (tmp_path / "text.part.vtkhdf").write_text("mine")
@@ -272,11 +283,11 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
     others = [
         ([tmp_path / "text.part.vtkhdf"], "but there is no"),
         ([folder / "case", "--value", "distance"], "--value must be given for a sweep only"),
-        ([folder / "two.nc", "--x", "strok"], "must be one of frequency, stroke; got strok; did you mean stroke?"),
-        ([folder / "two.nc", "--value", "distanc"], "did you mean distance?"),
-        ([folder / "two.nc", "--x", "strok", "--value", "distanc"], "plot: 2 mistakes"),
-        ([folder / "two.nc", "--x", "stroke", "--y", "stroke"], "must be another axis than x; got stroke for both"),
-        ([folder / "one.nc", "--y", "frequency"], "must not be given where there is but one axis"),
+        ([two, "--x", "strok"], "must be one of frequency, stroke; got strok; did you mean stroke?"),
+        ([two, "--value", "distanc"], "did you mean distance?"),
+        ([two, "--x", "strok", "--value", "distanc"], "plot: 2 mistakes"),
+        ([two, "--x", "stroke", "--y", "stroke"], "must be another axis than x; got stroke for both"),
+        ([one, "--y", "frequency"], "must not be given where there is but one axis"),
         ([folder / "case", "--width", "10"], "--width must be from 50 to 500 mm; got 10"),
         ([folder / "case", "--format", "gif"], '--format must be pdf, svg or png; got "gif"'),
     ]

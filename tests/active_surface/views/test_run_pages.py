@@ -41,11 +41,6 @@ def run(folder, result):
     return read_run(folder / NAME)
 
 
-def test_the_summary_of_a_file_is_that_of_the_run(run, result):
-    assert report.lines(summary_of(run.summary)) == report.lines(result.summary)
-    assert report.warnings(summary_of(run.summary)) == report.warnings(result.summary)
-
-
 def test_a_page_has_the_steps_of_its_run(run):
     data = run_data(run)
     surface = data["surface"]
@@ -80,6 +75,7 @@ def test_a_page_has_margins_and_names_the_actuator_at_its_events(run, result):
     assert data["events"][slips[0]]["text"].startswith("slips at ") and data["lost"] == ""
 
 
+@pytest.mark.slow
 def test_a_page_says_what_moved_the_part_and_when(run, tmp_path):
     slips = [event.time * 1e3 for event in run.events if event.kind is EventKind.SLIPS]
     assert not any(event.kind is EventKind.STOPS for event in run.events)
@@ -201,6 +197,7 @@ def test_the_smallest_margins_are_marked_on_their_curves(run):
         assert panel["least"]["value"] == pytest.approx(np.interp(panel["least"]["time"], times[known], values[known]))
 
 
+@pytest.mark.slow
 def test_a_page_says_what_the_device_is_and_how_far_to_trust_it(run, tmp_path):
     text = write_run_page(run, tmp_path / "page.html").read_text(encoding="utf-8")
     assert f"<h1>{report.device(run.case)}</h1>" in text.replace("&#x27;", "'")
@@ -246,6 +243,7 @@ def test_a_platform_is_flat_and_positions_are_counted_from_it(tmp_path):
     assert len(numbers(data["trail"]["step"])) > 5
 
 
+@pytest.mark.slow
 def test_a_part_in_flight_is_above_the_surface(tmp_path):
     text = CASE.replace(
         'model = "constant"\nlimit = "41.8 nN"', 'model = "coulomb"\ncoefficient = 0.3\nadhesion = "0.05 uN"'
@@ -264,6 +262,7 @@ def test_a_part_in_flight_is_above_the_surface(tmp_path):
     assert 0 < begin < end == pytest.approx(2.0)
 
 
+@pytest.mark.slow
 def test_a_part_that_stays_has_no_trail(tmp_path):
     (tmp_path / "stays.toml").write_text(CASE.replace("41.8 nN", "9 N"))
     run_case(read_case(tmp_path / "stays.toml"), tmp_path)
@@ -272,6 +271,7 @@ def test_a_part_that_stays_has_no_trail(tmp_path):
     assert numbers(data["stretches"]["stuck"]) == pytest.approx([0.0, 2.0])
 
 
+@pytest.mark.slow
 def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
     for kind in ("plate", "part"):
         (tmp_path / f"cut.partial.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())
@@ -282,6 +282,7 @@ def test_a_partial_result_is_shown_and_said_to_be_one(folder, result, tmp_path):
     assert f'<p class="sentence">{result.summary.sentence}' in text  # the summary is whole, whatever was written
 
 
+@pytest.mark.slow
 def test_a_case_that_is_not_that_of_its_result_is_told_of(folder, result, tmp_path):
     for kind in ("plate", "part"):
         (tmp_path / f"one.{kind}.vtkhdf").write_bytes((folder / f"{NAME}.{kind}.vtkhdf").read_bytes())
@@ -299,8 +300,9 @@ def test_open_opens_the_page(folder, result, monkeypatch):
     assert opened == [(folder / f"{NAME}.html").as_uri()]
 
 
+@pytest.mark.slow
 def test_view_writes_beside_the_result_or_where_it_is_told(folder, result, tmp_path):
-    for ending in ("", ".plate.vtkhdf", ".part.vtkhdf"):
+    for ending in ("", ".part.vtkhdf"):
         (folder / f"{NAME}.html").unlink(missing_ok=True)
         said = CliRunner().invoke(main, ["view", str(folder / f"{NAME}{ending}")])
         assert said.exit_code == 0 and f"{NAME}.html" in said.output
@@ -313,27 +315,26 @@ def test_view_writes_beside_the_result_or_where_it_is_told(folder, result, tmp_p
     assert json.loads(said.output) == {"warnings": [], "files": [str(page)], "bytes": page.stat().st_size}
 
 
-@pytest.mark.parametrize(
-    ("name", "text", "said"),
-    [
-        ("gone", None, "there is no"),
-        ("gone.nc", None, "there is no such file"),
-        ("text.nc", "no netCDF", "which is something else"),
-        ("text.plate.vtkhdf", "no HDF5", "no"),
-        ("broken.toml", "[plate", "broken.toml"),
-        ("case.toml", "[plate]\n", "active-surface run"),
-        ("study.toml", "[study]\n", "active-surface sweep"),
-        ("aim.toml", "[aim]\n", "whose table [aim] is for `active-surface aim`"),
-    ],
-)
-def test_what_is_no_result_is_refused(tmp_path, name, text, said):
-    if text is not None:
-        (tmp_path / name).write_text(text)
-    answer = CliRunner().invoke(main, ["view", str(tmp_path / name)])
+NO_RESULTS = [
+    ("gone", None, "there is no"),
+    ("gone.nc", None, "there is no such file"),
+    ("text.nc", "no netCDF", "which is something else"),
+    ("text.plate.vtkhdf", "no HDF5", "no"),
+    ("broken.toml", "[plate", "broken.toml"),
+    ("case.toml", "[plate]\n", "active-surface run"),
+    ("study.toml", "[study]\n", "active-surface sweep"),
+    ("aim.toml", "[aim]\n", "whose table [aim] is for `active-surface aim`"),
+]
+
+
+def test_what_is_no_result_is_refused(tmp_path):
+    for name, text, said in NO_RESULTS:
+        if text is not None:
+            (tmp_path / name).write_text(text)
+        answer = CliRunner().invoke(main, ["view", str(tmp_path / name)])
+        assert answer.exit_code == 2 and said in answer.output and "Traceback" not in answer.output
     assert CliRunner().invoke(main, ["view", str(tmp_path / "no" / name)]).exit_code == 2
-    assert not (tmp_path / "no").exists()
-    assert answer.exit_code == 2 and said in answer.output and "Traceback" not in answer.output
-    assert not list(tmp_path.glob("*.html"))
+    assert not (tmp_path / "no").exists() and not list(tmp_path.glob("*.html"))
 
 
 def test_paths_are_of_sweeps_only(folder, result):

@@ -5,29 +5,19 @@ from functools import partial
 import numpy as np
 import pytest
 from mistakes import answered_otherwise
+from sweeps import toml
 
 from coupling.case import ActuatorCase, Case, CaseError, SegmentCase, amplitude, read_case
 from coupling.run import build_drives
 from particle import Drive, Segment, SegmentDrive, TableDrive
 
-FRAME = """\
-[plate]
-shape = "disc"
-radius = "300 um"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
-[part]
-mass = "2e-9 kg"
-position = ["100 um", "100 um"]
-[friction]
-model = "constant"
-limit = "1 uN"
-[run]
-duration = "50 ms"
-[[actuators]]
-position = ["0 um", "0 um"]
-"""
+FRAME = toml(
+    plate={"shape": "disc", "radius": "300 um", "youngs_modulus": "169 GPa", "poisson_ratio": 0.3, "thickness": "5 um"},
+    part={"mass": "2e-9 kg", "position": ["100 um", "100 um"]},
+    friction={"model": "constant", "limit": "1 uN"},
+    run={"duration": "50 ms"},
+    actuators=[{"position": ["0 um", "0 um"]}],
+)
 FIRST = 1 + FRAME.count("\n")  # the line of the drive
 CYCLE = 'stroke = "5 um"\nfrequency = "300 Hz"\n'
 TABLE = 'table = [["0 ms", "1 um"], ["1 ms", "-50 um"], ["3 ms", "1 um"]]\n'
@@ -131,8 +121,8 @@ cycle | + repeats = 2 => 2 repeats must not be given without a table or segments
 cycle | + cycle = "sine"\ndwell = "1 s" => 3 dwell must not be given with cycle = "sine"; it is the rest after
 cycle | + cycle = "up"\ndwell = "1 s" => 3 dwell must not be given with cycle = "up"
 cycle | + cycle = "up"\ncycles = 1 => 3 cycles must not be given with cycle = "up"
-+ stroke = "1 um" => -2 frequency is missing; it must be a frequency such as "300 Hz"
-+ frequency = "1 Hz" => -2 stroke is missing; it must be a length such as "150 um", or have a force such as
++ stroke = "1 um" => -3 frequency is missing; it must be a frequency such as "300 Hz"
++ frequency = "1 Hz" => -3 stroke is missing; it must be a length such as "150 um", or have a force such as
 cycle | + dwell = "-1 s" => 2 dwell must be at least 0; got "-1 s"
 cycle | + dwel = "1 s" => 2 dwel is not known; did you mean dwell?
 table | + repeats = "ever" => 1 repeats must be a whole number of at least 1, or "endless"; got "ever"

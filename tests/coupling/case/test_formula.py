@@ -159,7 +159,7 @@ def outcome(text):
     return value
 
 
-@settings(max_examples=600)
+@settings(max_examples=200)
 @given(st.lists(WORDS, max_size=14).map(" ".join) | st.lists(WORDS, max_size=14).map("".join) | st.text(max_size=40))
 def test_hostile_text_gives_a_finite_number_or_the_clear_error(text):
     outcome(text)
@@ -183,7 +183,7 @@ NUMBERS = st.recursive(
 )
 
 
-@settings(max_examples=600)
+@settings(max_examples=200)
 @given(NUMBERS)
 def test_any_expression_gives_a_finite_number_or_the_clear_error(expression):
     outcome(f"{expression} ms")

@@ -95,13 +95,13 @@ BAD_FILES = [
 ]
 
 
-@pytest.mark.parametrize("points, says", BAD_FILES, ids=lambda value: value[0] if isinstance(value, list) else "")
-def test_everything_wrong_with_a_file_is_told_at_once_with_its_lines(write, points, says):
-    found = mistakes(write(FILE, points))
-    assert len(found) == len(says)
-    for (line, message), said in zip(found, says, strict=True):
-        where = "" if said.startswith("must be a file") else "in friction.csv: "
-        assert line == 2 and message.startswith(f"friction.file {where}{said}")
+def test_everything_wrong_with_a_file_is_told_at_once_with_its_lines(write):
+    for points, says in BAD_FILES:
+        found = mistakes(write(FILE, points))
+        assert len(found) == len(says)
+        for (line, message), said in zip(found, says, strict=True):
+            where = "" if said.startswith("must be a file") else "in friction.csv: "
+            assert line == 2 and message.startswith(f"friction.file {where}{said}")
 
 
 MISSING = 'friction.loads is missing; it must be forces such as ["-1 uN", "0 N", "5 uN"], or have file = "friction.csv"'
@@ -174,15 +174,14 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize("command", ["check", "run"])
-@pytest.mark.parametrize("friction, says", REFUSED)
-def test_a_refused_law_exits_2_and_leaves_nothing(write, command, friction, says, tmp_path, monkeypatch):
+def test_a_refused_law_exits_2_and_leaves_nothing(write, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    file = write(friction)
-    done = CliRunner().invoke(main, [command, str(file)])
-    assert done.exit_code == 2 and isinstance(done.exception, SystemExit)
-    assert says in done.output and "Traceback" not in done.output
-    assert list(tmp_path.iterdir()) == [file]
+    for k, (friction, says) in enumerate(REFUSED):
+        file = write(friction)
+        done = CliRunner().invoke(main, ["run" if k % 3 == 1 else "check", str(file)])
+        assert done.exit_code == 2 and isinstance(done.exception, SystemExit)
+        assert says in done.output and "Traceback" not in done.output
+        assert list(tmp_path.iterdir()) == [file]
 
 
 @pytest.mark.parametrize("friction", [LISTS, FILE])
@@ -197,3 +196,12 @@ def test_the_default_numbers_have_a_law_that_check_need_not_make(preset):
     assert has_known_law(standard) and friction_law(standard).law
     for key, value in {"roughness": 21e-9, "plasticity_index": 3.0, "coefficients": "unrounded"}.items():
         assert not has_known_law(standard.model_copy(update={key: value}))
+
+
+def test_defaults_of_the_case_file_are_those_of_the_contact():
+    assert particle.KogutEtsion(**KogutEtsionCase().model_dump(exclude={"model", "preset"})) == particle.KogutEtsion()
+
+
+def test_preset_of_the_case_file_is_that_of_the_contact():
+    read = KogutEtsionCase(preset="paper")
+    assert particle.KogutEtsion(**read.model_dump(exclude={"model", "preset"})) == particle.KogutEtsion.paper()

@@ -24,11 +24,7 @@ def test_without_words_a_plate_has_no_inertia(tmp_path):
 
 @pytest.mark.parametrize(
     "written, damping",
-    [
-        ("0.1", 0.1),
-        ("0", 0.0),
-        ('[["20 kHz", 0.02], ["80 kHz", 0.01]]', ((20e3, 0.02), (80e3, 0.01))),
-    ],
+    [("0.1", 0.1), ("0", 0.0), ('[["20 kHz", 0.02], ["80 kHz", 0.01]]', ((20e3, 0.02), (80e3, 0.01)))],
 )
 def test_damping_is_a_ratio_or_pairs(tmp_path, written, damping):
     case = read(tmp_path, changed((THICKNESS, VIBRATES + f"damping = {written}")))

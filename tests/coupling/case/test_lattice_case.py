@@ -62,8 +62,8 @@ def test_a_case_with_a_lattice_is_read_again_as_it_was_written_down(tmp_path):
 WRONG = r"""
 nothing => lattice.stroke is missing; it must be a length such as "150 um", or have a force
 + stroke = "5 um" => lattice.frequency is missing
-drive | + stifness = 3 => 22 lattice.stifness is not known; did you mean stiffness?
-drive | + hue = 3 => 22 lattice.hue is not known; [lattice] has rows, columns, pitch, centre
+drive | + stifness = 3 => 26 lattice.stifness is not known; did you mean stiffness?
+drive | + hue = 3 => 26 lattice.hue is not known; [lattice] has rows, columns, pitch, centre
 drive | + delay = "1 / row ms" => lattice.delay must be a time for each actuator; "1 / row ms" divides by zero
 drive | + delay = "log(row) ms" => "log(row) ms" has no real value at row 0, column 0
 drive | + delay = "10 ** (400 * max(0, column - 1)) ms" => is too large at row 0, column 2
@@ -101,11 +101,11 @@ WRONG_PLACES = r"""
 
 
 def test_each_mistake_is_told_once(tmp_path):
-    def told(text):
+    def answers(text):
         found = problems(tmp_path, PLACES + text)
         return found if len(found) == 1 or not text else [f"also {found}"]
 
-    assert answered_otherwise(WRONG, told, nothing="", drive=DRIVE) == []
+    assert answered_otherwise(WRONG, answers, nothing="", drive=DRIVE) == []
     assert answered_otherwise(WRONG_PLACES, lambda text: problems(tmp_path, text + DRIVE), lattice="[lattice]\n") == []
 
 
@@ -135,19 +135,11 @@ PARTLY_RIGHT = [
         "lattice.columns is missing",
         "1 / row",
     ),
-    (
-        FIVE.replace("5 mm", "1") + 'stroke = "1 / x um"\nfrequency = "1 / row Hz"\n',
-        "lattice.pitch",
-        "1 / row",
-    ),
+    (FIVE.replace("5 mm", "1") + 'stroke = "1 / x um"\nfrequency = "1 / row Hz"\n', "lattice.pitch", "1 / row"),
     (FIVE + 'magrin = "1 m"\nstroke = "1 / row um"\nfrequency = "0 Hz"\n', "magrin", "0 Hz"),
     (FIVE + 'where = "rwo > 1"\nstroke = "1 / row um"\nfrequency = "-1 Hz"\n', "rwo", "-1 Hz"),
     (FIVE + 'margin = 0\nstroke = "1 / row um"\nfrequency = "1 Hz"\n', "lattice.margin"),
-    (
-        'rows = 200000\npitch = "1 m"\nstroke = "log(row) um"\nfrequency = "1 Hz"\n',
-        "columns is missing",
-        "got 200000",
-    ),
+    ('rows = 200000\npitch = "1 m"\nstroke = "log(row) um"\nfrequency = "1 Hz"\n', "columns is missing", "got 200000"),
     (
         FIVE + 'stroke = "5 um"\nforce = "x N"\nfrequency = "1 Hz"\nstiffness = "row N/m"\n',
         "13.5059 mm",
@@ -214,3 +206,39 @@ def test_ten_thousand_actuators_are_read(tmp_path):
     file.write_text(text + lattice + 'delay = "0.05 * (row + column) % 8 ms"\n')
     table = drive_table(build_drives(read_case(file)))
     assert len(table.delay) == 10_000
+
+
+def test_where_leaves_out(tmp_path):
+    near = 'where = "not (row == 1 and column == 2) and hypot(x, y) < 200e-6"\n'
+    case = read(tmp_path, PLACES + near + DRIVE)
+    assert len(case.actuators) == 5
+    assert all(np.hypot(*a.position) < 200e-6 and a.position != pytest.approx((75e-6, 0)) for a in case.actuators)
+    # Formulas need a value only where there is an actuator, and only an actuator must be on the plate.
+    delay = 'delay = "0.1 / abs(column - 1) ms"\n'
+    assert len(read(tmp_path, PLACES + 'where = "column != 1"\n' + DRIVE + delay).actuators) == 9
+    wide = '[lattice]\nrows = 9\ncolumns = 9\npitch = "0.3 mm"\nwhere = "x*x + y*y < 1e-7"\n'
+    assert len(read(tmp_path, wide + DRIVE).actuators) == 5
+    lattice = LatticeCase(rows=3, columns=3, pitch=9e-5, where="row > 0", stroke=0, frequency=1)
+    assert len(python_case(lattice=lattice).actuators) == 6
+
+
+def test_where_and_margin_leave_out_together(tmp_path):
+    places = '[lattice]\nrows = 21\ncolumns = 21\npitch = "100 um"\nmargin = "50 um"\n'
+    case = read(tmp_path, places + 'where = "sqrt(4.6e-4 - abs(x)) > 0 and row != 10"\n' + DRIVE)
+    assert len(case.actuators) == 9 * 6
+    assert all(abs(a.position[0]) < 450e-6 and 0 < abs(a.position[1]) < 350e-6 for a in case.actuators)
+
+
+WRONG_WHERE = r"""
++ where = "row > 5" => lattice.where must be true for one actuator or more; "row > 5" is true for none
++ where = "column" => true or false for each actuator; "column" is a number and not a comparison at row 0, column 0
++ where = "1 / column > 2" => "1 / column > 2" divides by zero at row 0, column 0
++ where = "rwo > 2" => that is true or false; got "rwo > 2": there is no rwo; did you mean row?
++ where = "x > 10 um" => "um" is too much; it has no unit
++ where = "" => lattice.where must be an expression that is true or false, such as
++ where = true => lattice.where must be an expression that is true or false, such as
+"""
+
+
+def test_mistakes_in_where(tmp_path):
+    assert answered_otherwise(WRONG_WHERE, lambda text: problems(tmp_path, text), lattice=PLACES + DRIVE) == []

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import subprocess
+import sys
 from functools import partial
 from pathlib import Path
 
@@ -36,6 +38,7 @@ def test_five_mistakes_at_once(tmp_path: Path) -> None:
     )
 
 
+ROOT = Path(__file__).parents[3]
 BROKEN = r"""
 stroke = "150 um" ->  => line 8  actuators[0].stroke is missing; it must be a length such as "150 um"
 shape = "disc" ->  => line 1  plate.shape is missing; it must be "disc", "rectangle", "annulus", "ellipse", "polygon" or
@@ -200,3 +203,30 @@ def test_case_error_survives_pickling(tmp_path: Path) -> None:
 def test_a_null_byte_in_the_name_of_a_file_is_told_where_it_is(tmp_path: Path, where: str, text: str) -> None:
     (told,) = problems(tmp_path, text)
     assert f" {where} must be a file that can be read" in told and told.endswith("null character in it")
+
+
+def test_a_mistake_in_5000_rows_is_reported_with_its_line(tmp_path: Path) -> None:
+    rows = "".join(f'["{k} ms", "{k} um"],\n' for k in range(5000))
+    text = changed((STROKE + '\nfrequency = "300 Hz"', f'table = [\n{rows}["9 s", 3]]'))
+    (problem,) = problems(tmp_path, text)
+    assert problem.startswith("line 10 ") and "actuators[0].table[5000][1] must be" in problem
+
+
+def test_lines_are_right_beside_texts_with_brackets_and_comments(tmp_path: Path) -> None:
+    text = changed(
+        (STROKE, 'stroke = "[1"  # "]'),
+        ("[part]", '[part]\nsize = """\n[\\""" '.replace('\\"""', '"""')),
+        ('duration = "50 ms"', "duration = '''\n#{'''"),
+    )
+    lines = [int(problem.split()[1]) for problem in problems(tmp_path, text)]
+    at = [text[: text.index(start)].count("\n") + 1 for start in ('stroke = "[1"', "size =", "duration =")]
+    assert lines == at
+
+
+def test_a_good_case_is_checked_without_numerics_or_pictures() -> None:
+    code = (
+        "import sys; from active_surface.cli.program import main;"
+        "main(['check', 'examples/two_actuators.toml'], standalone_mode=False);"
+        "sys.exit(not {'numba', 'scipy', 'pint', 'matplotlib'}.isdisjoint(sys.modules))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.DEVNULL).returncode == 0

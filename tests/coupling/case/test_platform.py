@@ -190,9 +190,7 @@ def test_a_motion_must_last_as_long_as_the_run(tmp_path):
     (tmp_path / "shaker.csv").write_text(HEADER + ROWS)
     assert read(tmp_path, FILE).run.duration == 4e-3
     (tmp_path / "shaker.csv").write_text(HEADER + "".join(ROWS.splitlines(keepends=True)[:8]))
-    assert problems(tmp_path, FILE) == [
-        "11 run.duration must not exceed the measured motion's, 0.0035 s; got 0.004 s",
-    ]
+    assert problems(tmp_path, FILE) == ["11 run.duration must not exceed the measured motion's, 0.0035 s; got 0.004 s"]
 
 
 def test_columns_of_other_names_are_ignored(tmp_path):

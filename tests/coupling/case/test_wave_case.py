@@ -210,10 +210,7 @@ def test_a_regular_polygon_is_a_plate(tmp_path, sides):
             '[["0 um", "0 um"], ["2 um", "0 um"], ["0 um", "1 um"]], '
             "or have a number of sides and a radius in their place",
         ),
-        (
-            'sides = 6\nradius = "1 mm"\nwidth = "1 m"',
-            'plate.width is not known; it goes with shape = "rectangle"',
-        ),
+        ('sides = 6\nradius = "1 mm"\nwidth = "1 m"', 'plate.width is not known; it goes with shape = "rectangle"'),
     ],
 )
 def test_what_a_regular_polygon_lacks_is_named(tmp_path, shape, expected):

@@ -179,10 +179,7 @@ def test_steps_written_together_are_those_written_one_by_one(tmp_path: Path, blo
     steps = range(N_STEPS)
     together = tmp_path / "together"
     together.mkdir()
-    with (
-        vtkhdf.plate_file(together, "run", POINTS, TRIANGLES) as plate,
-        vtkhdf.part_file(together, "run") as part,
-    ):
+    with vtkhdf.plate_file(together, "run", POINTS, TRIANGLES) as plate, vtkhdf.part_file(together, "run") as part:
         for some in (steps[first : first + block] for first in range(0, N_STEPS, block)):
             times = [TIMES[k] for k in some]
             fields = [part_fields(k) for k in some]

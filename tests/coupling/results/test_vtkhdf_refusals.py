@@ -4,16 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from vtkhdf_files import (
-    POINTS,
-    TRIANGLES,
-    bump,
-    gradient,
-    names,
-    position,
-    step_in_vtk,
-    times_in_vtk,
-)
+from vtkhdf_files import POINTS, TRIANGLES, bump, gradient, names, position, step_in_vtk, times_in_vtk
 
 from coupling.results import vtkhdf
 

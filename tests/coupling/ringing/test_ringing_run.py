@@ -2,39 +2,27 @@
 
 import numpy as np
 import pytest
+from sweeps import toml
 
-from coupling import build_drives, build_scene, read_case, report, run_case, shared_surface
+from coupling import build_drives, build_scene, read_case, report, shared_surface
 
-CASE = """
-[plate]
-shape = "disc"
-radius = "300 um"
-supports = "clamped"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
-density = "2330 kg/m^3"
-theory = "von-karman"
-inertia = true
-
-[[actuators]]
-position = ["-60 um", "0 um"]
-stroke = "5 um"
-frequency = "20 kHz"
-
-[part]
-mass = "2e-9 kg"
-centre_height = "45 um"
-position = ["40 um", "20 um"]
-
-[friction]
-model = "coulomb"
-coefficient = 0.1
-adhesion = "50 uN"
-
-[run]
-duration = "0.2 ms"
-"""
+CASE = toml(
+    plate={
+        "shape": "disc",
+        "radius": "300 um",
+        "supports": "clamped",
+        "youngs_modulus": "169 GPa",
+        "poisson_ratio": 0.3,
+        "thickness": "5 um",
+        "density": "2330 kg/m^3",
+        "theory": "von-karman",
+        "inertia": True,
+    },
+    actuators=[{"position": ["-60 um", "0 um"], "stroke": "5 um", "frequency": "20 kHz"}],
+    part={"mass": "2e-9 kg", "centre_height": "45 um", "position": ["40 um", "20 um"]},
+    friction={"model": "coulomb", "coefficient": 0.1, "adhesion": "50 uN"},
+    run={"duration": "0.2 ms"},
+)
 
 
 def case_of(folder, *changes):
@@ -48,8 +36,8 @@ def case_of(folder, *changes):
 
 
 @pytest.mark.compiled
-def test_a_run_says_how_many_modes_the_membrane_couples(tmp_path):
-    result = run_case(case_of(tmp_path))
+def test_a_run_says_how_many_modes_the_membrane_couples(ran):
+    result = ran("ringing")
     vibration = result.summary.vibration
     assert 1 <= vibration.coupled < vibration.modes
     assert result.summary.theory == "von-karman" and result.summary.quasi_static_error is None

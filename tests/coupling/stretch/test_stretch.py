@@ -112,6 +112,7 @@ def test_a_folder_that_cannot_be_written_to_is_no_hindrance(model, large, tmp_pa
     assert model_of(large).reduction is model.reduction
 
 
+@pytest.mark.slow
 def test_a_broken_file_is_made_anew(model, large, tmp_path, monkeypatch):
     monkeypatch.setenv(FOLDER, str(tmp_path))
     made = []
@@ -123,6 +124,7 @@ def test_a_broken_file_is_made_anew(model, large, tmp_path, monkeypatch):
     assert len(made) == 2
 
 
+@pytest.mark.slow
 def test_a_file_of_something_else_is_made_anew(model, large, tmp_path, monkeypatch):
     monkeypatch.setenv(FOLDER, str(tmp_path))
     made = []
@@ -136,6 +138,7 @@ def test_a_file_of_something_else_is_made_anew(model, large, tmp_path, monkeypat
     assert len(made) == 3 and model_of(large).mesh_error == model.mesh_error and len(made) == 3
 
 
+@pytest.mark.slow
 def test_an_interrupted_or_killed_write_leaves_no_model(model, large, tmp_path, monkeypatch):
     monkeypatch.setenv(FOLDER, str(tmp_path))
     monkeypatch.setattr("coupling.stretch.making.reduce", lambda *_: model.reduction)

@@ -95,7 +95,7 @@ def test_the_gradient_is_that_of_the_material(surface, places):
 def test_shapes_that_are_hardly_driven_take_fewer_cells(places):
     exact = PlateCells(Corrected(), 1e-8)
     scaled, cut = PlateCells(Corrected(heights=1e3), 1e-8), PlateCells(Corrected(truncation_error=1e-5), 1e-8)
-    counts = [len(cells.cells.degree) for cells in (exact, scaled, cut)]
+    counts = [len(cells.cells.cell) for cells in (exact, scaled, cut)]
     assert counts[1] < 0.7 * counts[0] and counts[2] < 0.7 * counts[0]
     assert scaled.error < 2e-8 and cut.error < 1e-5
 

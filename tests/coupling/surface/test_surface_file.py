@@ -3,6 +3,7 @@
 import h5py
 import numpy as np
 import pytest
+from sweeps import toml
 
 from coupling import read_case, read_surface, run_case, surface_motion, write_surface
 from fem_plate.analytic import DiscShapes
@@ -74,32 +75,20 @@ def test_what_is_something_else_is_neither_read_nor_written_over(tmp_path):
     assert write_surface(surface, tmp_path / "twice.h5").exists()
 
 
-CASE = """\
-[plate]
-shape = "disc"
-radius = "300 um"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.22
-thickness = "5 um"
-cell_size = "100 um"
-
-[[actuators]]
-position = ["100 um", "0 um"]
-stroke = "1 um"
-frequency = "300 Hz"
-
-[part]
-mass = "2e-9 kg"
-position = ["-100 um", "20 um"]
-
-[friction]
-model = "constant"
-limit = "4 nN"
-
-[run]
-duration = "1 ms"
-frames = 3
-"""
+CASE = toml(
+    plate={
+        "shape": "disc",
+        "radius": "300 um",
+        "youngs_modulus": "169 GPa",
+        "poisson_ratio": 0.22,
+        "thickness": "5 um",
+        "cell_size": "100 um",
+    },
+    actuators=[{"position": ["100 um", "0 um"], "stroke": "1 um", "frequency": "300 Hz"}],
+    part={"mass": "2e-9 kg", "position": ["-100 um", "20 um"]},
+    friction={"model": "constant", "limit": "4 nN"},
+    run={"duration": "1 ms", "frames": 3},
+)
 
 
 def test_a_run_saves_its_surface_on_request(tmp_path):

@@ -20,7 +20,6 @@ GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(8)
     "stiffness, ratio",
     [
         pytest.param([np.inf, 2e3, np.inf], 0.02, id="a spring"),
-        pytest.param(np.inf, 0.02, id="rigid", marks=pytest.mark.slow),
         pytest.param(np.inf, 0.0, id="undamped", marks=pytest.mark.slow),
     ],
 )
