@@ -1,9 +1,10 @@
-"""Kernels that make no arrays compile in any order: they call nothing that makes arrays inside."""
+"""Kernels that make no arrays call nothing that makes arrays inside; each is compiled once, with what calls it."""
 
 import ast
 import importlib
 import inspect
 import textwrap
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -28,21 +29,58 @@ def kernels():
                 yield f"{name}.{value.py_func.__name__}", value
 
 
-def makes_none(kernel):
-    return kernel.targetoptions.get("_nrt") is False
+def is_inlined(kernel):
+    return kernel.targetoptions.get("inline") == "always"
+
+
+def calls(function):
+    """The calls in a function, by the text of what is called."""
+    tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    return [ast.unparse(call.func) for call in ast.walk(tree) if isinstance(call, ast.Call)]
 
 
 def test_kernels_without_arrays_call_nothing_that_makes_them():
-    every = [(name, kernel) for name, kernel in kernels() if makes_none(kernel)]
-    assert len(every) > 100
+    every = [(name, kernel) for name, kernel in kernels() if kernel.targetoptions.get("_nrt") is False]
+    assert len(every) > 80
     wrong = []
-    for name, kernel in every:
-        function = ast.parse(textwrap.dedent(inspect.getsource(kernel.py_func)))
-        for call in (node for node in ast.walk(function) if isinstance(node, ast.Call)):
-            text = ast.unparse(call.func)
-            if isinstance(call.func, ast.Name):
-                called = kernel.py_func.__globals__.get(text)
-                wrong += [f"{name} calls {text}"] * (isinstance(called, Dispatcher) and not makes_none(called))
-            elif not text.startswith("math.") and text not in OF_NUMBERS:
+    while every:
+        name, kernel = every.pop()
+        for text in calls(kernel.py_func):
+            called = kernel.py_func.__globals__.get(text)
+            if isinstance(called, Dispatcher) and is_inlined(called):
+                every.append((f"{name} > {text}", called))
+            elif isinstance(called, Dispatcher):
+                wrong += [f"{name} calls {text}"] * (called.targetoptions.get("_nrt") is not False)
+            elif "." in text and not text.startswith("math.") and text not in OF_NUMBERS:
                 wrong.append(f"{name} calls {text}")
     assert not wrong
+
+
+def test_an_inlined_kernel_is_called_once_and_by_a_kernel():
+    """Its code would stand twice in what is compiled; Python would compile it by itself."""
+    every, count = dict(kernels()), Counter()
+    for kernel in every.values():
+        for text in calls(kernel.py_func):
+            called = kernel.py_func.__globals__.get(text)
+            if isinstance(called, Dispatcher):
+                count[called] += 1
+    inlined = {name: count[kernel] for name, kernel in every.items() if is_inlined(kernel)}
+    assert len(inlined) > 30
+    assert {name: number for name, number in inlined.items() if number != 1} == {}
+
+
+def test_python_calls_no_kernel_without_a_way_in():
+    """It would run as Python, a hundred times slower."""
+    wrong = []
+    for path in sorted(path for folder in ("particle", "coupling") for path in (ROOT / folder).rglob("*.py")):
+        if path.name == "__init__.py" or "kernel" not in path.read_text() and "particle" not in path.read_text():
+            continue
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        for function in vars(importlib.import_module(name)).values():
+            if not (inspect.isfunction(function) and function.__module__ == name):
+                continue
+            for text in calls(function):
+                called = function.__globals__.get(text)
+                if isinstance(called, Dispatcher) and called.targetoptions.get("no_cpython_wrapper"):
+                    wrong.append(f"{name}.{function.__name__} calls {text}")
+    assert wrong == []

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from particle.events.rest.stick_stretched import NARROW, fill_stretched, is_safe_stretched, largest_force
 from scipy.optimize import brentq
 from scipy.special import comb
 from steep_surface import LAWS, PLACE, G, local_at, steep_surface
@@ -15,6 +14,8 @@ from particle import (
 )
 from particle.events.mechanics.equations import Part, length, pull
 from particle.events.rest.stick import leaves_rest, new_rest
+from particle.events.rest.stick_bound import is_safe_by_bound, largest_force
+from particle.events.rest.stick_margin import NARROW, fill_margin
 from particle.surface.at_point import surface_at
 
 
@@ -25,11 +26,11 @@ def test_the_proof_that_a_part_stays_is_made_of_the_pull_on_it():
     for heights in ((0.1, 0.25), (0.0, 0.0)):
         part = Part(2.0, G, 0.3, -0.2, 0.0, LAWS["constant"].law, *heights)
         leaves_rest(local, part, rest, *PLACE, begin, begin + lasting)
-        fill_stretched(part, rest.motion, rest.plane, lasting, rest.stretched[0])
-        degree, z = rest.stretched.shape[2] - 1, part.centre
+        fill_margin(part, rest.motion, rest.plane, lasting, rest.margins[0])
+        degree, z = rest.margins.shape[2] - 1, part.centre
         for s in (0.0, 0.3, 0.77, 1.0):
             basis = [comb(degree, i) * s**i * (1 - s) ** (degree - i) for i in range(degree + 1)]
-            c, force, square, e, x, y = rest.stretched[0] @ basis
+            c, force, square, e, x, y = rest.margins[0] @ basis
             p = pull(surface_at(local, *PLACE, begin + s * lasting), 0.0, 0.0, part)
             assert p.normal == pytest.approx(part.mass * (c / math.sqrt(square) - z * e / square**2), rel=1e-12)
             found = (force + 2 * z * x / square**1.5 + z * z * y / square**3) / square
@@ -61,7 +62,7 @@ def test_a_part_at_rest_slips_when_its_pull_says_so(centre):
             limit = demands[0] + share * (demands.max() - demands[0])
             held = part._replace(law=ConstantFriction(limit).law)
             found = leaves_rest(local, held, rest, *PLACE, 0.0, 1.0)
-            safe = is_safe_stretched(held, rest.motion, rest.plane, 1.0, rest.bounds, rest.force)
+            safe = is_safe_by_bound(held, rest.motion, rest.plane, 1.0, rest.quintic, rest.force)
             over = np.flatnonzero(demands > limit)
             quick, proved = quick + safe, proved + math.isinf(found)
             if share > 1:
@@ -94,5 +95,5 @@ def test_the_bound_of_a_part_at_rest_is_close(strain):
             assert force == pytest.approx(max(demands), rel=0.02 + 3 * strain + lasting * 3)
             for share, safe in ((1 - 1e-12, False), (1.02 + 20 * strain + lasting * 3, True)):
                 held = part._replace(law=ConstantFriction(share * max(demands)).law)
-                quick = is_safe_stretched(held, rest.motion, rest.plane, lasting, rest.bounds, rest.force)
+                quick = is_safe_by_bound(held, rest.motion, rest.plane, lasting, rest.quintic, rest.force)
                 assert quick == safe, (seed, lasting, share)

@@ -18,13 +18,18 @@ EVENTS = ("events", *(f"events/{room}" for room in ("mechanics", "rest", "slidin
 ROOMS = ("", "drives", "friction", "surface", *EVENTS, "fixed")
 USE = """
 import os
+import numpy as np
 from particle.events.mechanics.equations import Part
-from particle.events.rest.slipping import load_and_demand
+from particle.events.rest.slipping import rest_loads
+from particle.surface.at_point import POINT_SIZE, SurfacePoint
 from particle import ConstantFriction
-part, LEVEL = Part(1.0, 9.0, 0.0, 0.0, 2.0, ConstantFriction(1.0).law), (0.0, 0.0)
+law = ConstantFriction(1.0)
+law.friction_limit(1.0)
+level = SurfacePoint(*np.zeros(POINT_SIZE))._replace(w_tt=1.0, x_x=1.0, y_y=1.0)
 import particle
 assert particle.__file__.startswith(os.getcwd())
-print(load_and_demand(1.0, LEVEL, LEVEL, LEVEL, LEVEL, part)[0], sum(load_and_demand.stats.cache_misses.values()))
+loads, _ = rest_loads(np.array([level]), Part(1.0, 9.0, 0.0, 0.0, 2.0, law.law))
+print(loads[0], sum(rest_loads.stats.cache_misses.values()))
 """
 # A room of another package, with a kernel that calls one of its own and one of `particle`.
 ROOM = {
@@ -208,7 +213,7 @@ def test_a_process_that_is_killed_as_it_keeps_a_kernel_leaves_nothing_wrong(pack
         assert process.returncode == -signal.SIGKILL
         killed += 1
         assert killed < 40
-    assert float(text.split()[0]) == 12.0 and killed > 1
+    assert float(text.split()[0]) == 12.0 and killed >= 1
     assert result(start(package, cache)) == (12.0, 0)
 
 
@@ -240,12 +245,12 @@ def test_half_files_and_those_of_other_forms_count_as_not_there(package, tmp_pat
     cache = tmp_path / "own"
     assert result(start(package, cache)) == (12.0, 1)
     files = sorted(cache.rglob("*.nbc"))
-    assert len(files) > 2
+    assert len(files) == 2
     for file in files:
         file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     assert result(start(package, cache)) == (12.0, 1)
     assert result(start(package, cache)) == (12.0, 0)
-    (largest,) = (file for file in files if file.name.startswith("load_and_demand"))
+    (largest,) = (file for file in files if file.name.startswith("rest_loads"))
     other = next(file for file in files if file != largest)
     shutil.copy(other, largest)
     assert result(start(package, cache)) == (12.0, 1)

@@ -7,7 +7,7 @@ import pytest
 
 from particle import Drive, polynomial_surface
 from particle.drives import drive_table, next_breakpoint, quintic_drives
-from particle.surface import advance, enter, new_local, surface_at
+from particle.surface import enter, new_local, surface_at
 
 EDGES = np.array([0.0, 0.5, 0.75, 2.0])
 
@@ -95,10 +95,7 @@ def test_a_surface_under_them_is_the_sum_of_its_shapes():
     record = surface.record
     local, time, spans = new_local(record), 0.0, 0
     while time < 6.0:
-        if spans % 3:
-            advance(record, local, time, 7.0)
-        else:
-            enter(record, local, 0.0, 0.0, time, 7.0)
+        enter(record, local, 0.0, 0.0, time, 7.0)
         end = local.frame[0].end
         for share in (0.0, 0.4, 0.99):
             at = time + share * (end - time) + 1e-9

@@ -4,14 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from motions import motion
 
 from particle import ConstantFriction, polynomial_surface
 from particle.events.mechanics.equations import Part
 from particle.events.mechanics.motion import as_numbers
 from particle.events.memory import new_memory
 from particle.events.sliding.runge_kutta import attempt, motion_rate, step_error
-from particle.events.step import surface_at_start
 from particle.events.tableau import Pairs, pairs_for, tableau
 from particle.modes import Mode
 from particle.surface.at_point import surface_at
@@ -102,21 +100,3 @@ def test_the_part_does_not_slide_back_within_a_step_under_friction():
     end = as_numbers(memory.step.end)[0]
     assert end == pytest.approx([0.9 - 0.5 * 0.81, 0, 0.1, 0, -0.5 * (1 - 0.01) + 0.495, 0.495, 0, 0], abs=1e-14)
     assert not attempt(surface, part, pair, memory, 1.5)
-
-
-def test_the_surface_at_a_steps_end_serves_the_next_step_in_the_same_cell():
-    surface, part = bowl().record, Part(1.0, 1e9, 0.0, 0.0, 0.0, ConstantFriction(0.0).law)
-    memory, h = prepared(surface, pairs_for(1e-9), 0.1, 0.0, 0.0, 0.2), 0.01
-    local, step, counts, end = memory.local, memory.step, memory.counts[0], memory.step.end[0]
-    surface_at_start(local, step, counts, 0.0, memory.motion[0])
-    assert counts.evaluations == 1
-    find_rate(memory, part)
-    assert attempt(surface, part, tableau(8), memory, h)
-    assert surface_at_start(local, step, counts, h, end) == surface_at(local, end.x, end.y, h)
-    assert counts.evaluations == 1  # it was kept
-    elsewhere = motion(end.x + 1e-15, end.y)
-    assert surface_at_start(local, step, counts, h, elsewhere) == surface_at(local, elsewhere.x, elsewhere.y, h)
-    surface_at_start(local, step, counts, 1.1 * h, end)
-    local.frame["cell"] += 1
-    surface_at_start(local, step, counts, h, end)
-    assert counts.evaluations == 4  # another place, time or cell
