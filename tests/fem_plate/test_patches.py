@@ -56,6 +56,7 @@ def test_tiles_that_look_alike_share_a_patch(shapes):
     assert np.concatenate([np.sort(tile.rows[tile.patch.core]) for tile in shapes.tiles]).tolist() == list(range(60))
 
 
+@pytest.mark.slow
 def test_rounding_and_another_order_of_the_points_do_not_keep_patches_apart(row):
     rng = np.random.default_rng(2)
     points = lattice(60, 1) + [0.01234565 * PITCH, 0.0]
@@ -191,6 +192,7 @@ def test_all_shapes_at_too_many_points_are_refused_and_sums_are_not(shapes, monk
         assert np.abs(total[:10] - np.tensordot(one, weights, (1, 0))).max() < 1e-11 * np.abs(one).max()
 
 
+@pytest.mark.slow
 def test_the_shapes_nearby_are_all_that_are_not_zero_there(row):
     points, springs = lattice(60, 1), np.where(np.arange(60) % 3, np.inf, 0.0)
     shapes = row.influence(points, springs, truncation=1e-4)

@@ -77,6 +77,7 @@ def test_creep_beside_an_actuator_does_not_use_up_the_work(tolerance):
     assert path.outcome is not Outcome.WORK_LIMIT
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 @pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
 def test_a_quick_stop_keeps_the_energy_ledger(tolerance):
