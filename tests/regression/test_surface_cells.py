@@ -83,4 +83,4 @@ def test_roughness_of_the_shapes_is_not_divided_for_ever():
     for cells in (smooth, rough):
         cells.build(points)
     assert smooth.error < 1e-8 and 5e-7 < rough.error < 2e-6
-    assert len(rough.cells.quarters) < 3.5 * len(smooth.cells.quarters)
+    assert len(rough.cells.cell) < 3.5 * len(smooth.cells.cell)
