@@ -16,10 +16,10 @@ unexport PYTHONDONTWRITEBYTECODE
 PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-reorder
 # In plain Python a bad index raises: a few kernels in `make test`, and in test-all what else marches.
 PLAIN := $(addprefix tests/particle/test_, bernstein.py drive.py in_plane_motion.py runge_kutta.py slide.py stick.py)
-MARCHES := tests/particle tests/physics tests/regression $(addprefix tests/validation/test_, single_stroke.py two_actuators.py)
+MARCHES := tests/particle tests/physics tests/regression tests/validation/test_single_stroke.py
 # Only in test-all: tests marked slow, and files that take long as a whole. What is left keeps to its budget.
-LONG := *_in_browser.py test_aim_examples.py test_cluster.py test_large_arrays.py test_paper_figures.py
-LONG += test_rivals.py test_study_examples.py test_wheel.py
+LONG := *_in_browser.py $(addprefix test_, aim_examples.py cluster.py large_arrays.py paper_figures.py ring_example.py)
+LONG += $(addprefix test_, rivals.py study_examples.py wheel.py)
 CHOSEN := -m "not slow" --budget $(LONG:%=--ignore-glob='*/%')
 
 .PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark abuse fuzz paths kills clean
@@ -91,6 +91,7 @@ docs: .venv/developer
 	$(BIN)/python docs/pictures.py
 
 site: .venv/site
+	$(BIN)/python docs/scorecard.py --check
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/site
 	@echo "wrote       build/site/index.html"
 

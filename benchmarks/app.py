@@ -18,28 +18,17 @@ from pathlib import Path
 import numpy as np
 from selenium import webdriver
 
-ROOT = Path(__file__).parent.parent
-CASE = """
-[plate]
-shape = "disc"
-radius = "300 um"
-supports = "clamped"
-youngs_modulus = "169 GPa"
-poisson_ratio = 0.3
-thickness = "5 um"
-density = "2330 kg/m^3"
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "reference"))
+import app_case  # noqa: E402
 
-[part]
-mass = "2e-9 kg"
-position = ["50 um", "30 um"]
-
-[friction]
-model = "kogut-etsion"
-preset = "paper"
-
-[run]
-duration = "40 ms"
-"""
+PLATE, OTHERS = app_case.CASE.split("# The only one.")
+PART = OTHERS[OTHERS.index("[part]") :]
+for of_tests, here in (
+    ("80 um", "50 um"),
+    ("3 ms", "40 ms"),
+    ('model = "constant"\nlimit = "40 nN"', 'model = "kogut-etsion"\npreset = "paper"'),
+):
+    PART = PART.replace(of_tests, here)
 ACTUATOR = """
 [[actuators]]
 position = ["{x:g} um", "{y:g} um"]
@@ -93,7 +82,7 @@ def write_case(folder, count):
         for k, (x, y) in enumerate(LAYOUTS[count])
     ]
     path = Path(folder, f"actuators_{count}.toml")
-    path.write_text(CASE + "".join(drives))
+    path.write_text(PLATE + "".join(drives) + "\n" + PART)
     return path
 
 

@@ -1,8 +1,12 @@
-"""Write docs/validation.md's tables: published values beside ours. Run: python docs/scorecard.py"""
+"""Write docs/validation.md's tables: published values beside ours. Run: python docs/scorecard.py
+
+With --check it writes nothing, and fails if the tables of the page are others.
+"""
 
 from __future__ import annotations
 
 import math
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -129,7 +133,13 @@ def _text(case: Any) -> str:
 
 def main() -> None:
     tables = tomllib.loads((HERE / "published.toml").read_text())["table"]
-    write(HERE / "validation.md", "scorecard", [line for table in tables for line in lines(table)][:-1])
+    page, rows = HERE / "validation.md", [line for table in tables for line in lines(table)][:-1]
+    if "--check" not in sys.argv:
+        write(page, "scorecard", rows)
+    elif "\n".join(rows) not in page.read_text():
+        sys.exit(
+            f"{page} has other tables than scorecard.py writes: {[row for row in rows if row not in page.read_text()]}"
+        )
 
 
 if __name__ == "__main__":

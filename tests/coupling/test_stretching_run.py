@@ -67,6 +67,7 @@ def test_a_saved_run_has_the_same_summary_and_case(run, saved):
     assert saved.case.plate.theory == "von-karman"
 
 
+@pytest.mark.slow
 def test_files_show_the_plate_of_the_full_solution(saved, full):
     inside = np.hypot(*saved.points.T) < 0.999 * 300e-6
     w = full.evaluate(saved.points[inside])[0]
@@ -77,6 +78,7 @@ def test_files_show_the_plate_of_the_full_solution(saved, full):
     assert not drive[2:].any()
 
 
+@pytest.mark.slow
 def test_files_show_membrane_force_and_strain_of_the_full_solution(saved, full):
     away = np.hypot(*(saved.points[:, None] - saved.actuators).transpose(2, 0, 1)).min(axis=1) > THICKNESS
     away &= np.hypot(*saved.points.T) < 0.9 * 300e-6
@@ -93,6 +95,7 @@ def test_files_show_membrane_force_and_strain_of_the_full_solution(saved, full):
     assert np.isfinite(saved.plate_field("strain")).all()
 
 
+@pytest.mark.slow
 def test_the_linear_plate_has_neither_and_bends_otherwise(run, saved, tmp_path):
     linear = run_case(case_of(PLATE), tmp_path)
     other = read_run(linear.files[0])

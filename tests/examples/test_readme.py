@@ -16,6 +16,7 @@ MAX_WORDS = 900
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 @pytest.mark.parametrize("block", BLOCKS)
 def test_python_of_the_readme_runs(block, tmp_path, monkeypatch, capsys):
     (tmp_path / "examples").symlink_to(ROOT / "examples")
@@ -25,6 +26,7 @@ def test_python_of_the_readme_runs(block, tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_main_job_prints_the_lines_of_the_readme(tmp_path):
     case = ROOT / "examples/transport.toml"
     printed = CliRunner().invoke(main, ["run", str(case), "--output", str(tmp_path)]).output
@@ -50,6 +52,7 @@ PAGE = (ROOT / "docs" / "python.md").read_text()
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_python_of_the_page_on_python_runs(tmp_path, monkeypatch, capsys):
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     monkeypatch.chdir(tmp_path)

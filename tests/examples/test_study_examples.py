@@ -11,11 +11,11 @@ from active_surface.studies import read_study, run_study
 
 STUDIES = Path(__file__).parents[2] / "examples" / "studies"
 FILES = [file for file in sorted(STUDIES.glob("*.toml")) if "[study]" in file.read_text()]
-# Whole they take ten minutes. Fewer frequencies, starts on a third of the same lattice, and parts in one corner.
+# Whole they take ten minutes. Fewer points and repeats, starts on a part of the same lattice, and parts in one corner.
 FEWER = {
     "chladni": {"points = 1000": "points = 24", '"-4.9 mm"': '"3.4 mm"'},
-    "frequency_stroke": {'"5 kHz"]\ncount = 41': '"5 kHz"]\ncount = 21'},
-    "jittered_starts": {"count = 41": "count = 11"},
+    "frequency_stroke": {'"5 kHz"]\ncount = 41': '"5 kHz"]\ncount = 11', '"5 um"]\ncount = 41': '"5 um"]\ncount = 14'},
+    "jittered_starts": {"count = 41": "count = 2", "repeats = 40": "repeats = 20"},
     "starts": {
         '"x"\nrange = ["-1 mm", "1 mm"]\ncount = 61': '"x"\nrange = ["-1 mm", "0 mm"]\ncount = 31',
         '"y"\nrange = ["-1 mm", "1 mm"]\ncount = 61': '"y"\nrange = ["-0.2 mm", "1 mm"]\ncount = 37',

@@ -71,7 +71,10 @@ def test_a_clamped_ellipse_under_a_pressure():
     np.testing.assert_allclose(plate.pressure(1.0).evaluate(SPOTS)[0], expected, rtol=1e-9)
 
 
-@pytest.mark.parametrize("support", ["clamped", "simply-supported", "free"])
+@pytest.mark.parametrize(
+    "support",
+    [pytest.param("clamped", marks=pytest.mark.slow), pytest.param("simply-supported", marks=pytest.mark.slow), "free"],
+)
 def test_a_disc_with_its_material_turned_is_the_turned_disc(support):
     mesh, angle = meshes.disc(1.0, 0.2), 0.5
     straight = Plate(mesh, wood(), support, tolerance=1e-8)
@@ -82,6 +85,7 @@ def test_a_disc_with_its_material_turned_is_the_turned_disc(support):
     np.testing.assert_allclose(shapes.values(ACTUATORS), np.eye(3), atol=1e-9)
 
 
+@pytest.mark.slow
 def test_balanced_forces_on_a_free_plate_leave_no_mean_deflection_or_slope():
     mesh, angle = meshes.disc(1.0, 0.2), 0.5
     points = np.array([[0.5, 0.0], [-0.5, 0.0], [0.0, 0.5], [0.0, -0.5]])
@@ -106,6 +110,7 @@ def test_an_isotropic_stiffness_gives_the_isotropic_plate():
     np.testing.assert_allclose(ours.stiffness, other.stiffness, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_patches_serve_anisotropic_plates():
     mesh = meshes.rectangle(2.0, 0.2, 0.05)
     x, y = np.meshgrid(np.linspace(-0.95, 0.95, 39), [-0.05, 0.0, 0.05])

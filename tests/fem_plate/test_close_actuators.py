@@ -49,6 +49,7 @@ def test_the_estimate_tells_of_actuators_that_all_but_coincide(section, radius, 
     assert errors.max() < 2e-9 + 2e-15 / apart
 
 
+@pytest.mark.slow
 def test_two_pairs_and_a_group_of_three_are_as_exact(section, radius):
     apart = 1e-7
     pair = np.add(PLACES[1], [[0, 0], [apart, 0]])

@@ -135,7 +135,7 @@ worker = threading.Thread(target=lambda: kept.append(factorised(csc_matrix(diags
 worker.start()
 worker.join()
 print(kept[0](np.ones(299))[1])
-from meshes import survives
+from common import survives
 survives(__file__)
 """
     path = tmp_path / "program.py"

@@ -46,9 +46,8 @@ def test_a_form_of_bending_is_another_material(support):
     np.testing.assert_allclose(made.frequencies(3), expected.frequencies(3), rtol=1e-6)
 
 
-@pytest.mark.parametrize("support", ["clamped", "simply-supported"])
-def test_a_form_of_a_membrane_is_the_tension(support):
-    mesh = meshes.disc(1.0, 0.2)
+def test_a_form_of_a_membrane_is_the_tension():
+    mesh, support = meshes.disc(1.0, 0.2), "simply-supported"
     expected = Plate(mesh, UNIT, support, tolerance=1e-8, tension=50.0).influence(POINTS)
     found = Plate(mesh, UNIT, support, tolerance=1e-6, forms=[pull]).influence(POINTS)
     error = np.abs(found.values(SPOTS) - expected.values(SPOTS)).max()

@@ -14,7 +14,7 @@ RADII = np.array([0.05, 0.2, 0.5, 0.7])
 ON_RADII = np.stack([RADII * np.cos(1.0), RADII * np.sin(1.0)], axis=1)
 
 
-@pytest.mark.parametrize(("modulus", "tolerance"), [(1.0, 1e-7), (300.0, 1e-7), (1e5, 1e-5)])
+@pytest.mark.parametrize(("modulus", "tolerance"), [(300.0, 1e-7), (1e5, 1e-5)])
 def test_a_clamped_disc_bends_as_kelvins_functions_say(modulus, tolerance):
     plate = Plate(meshes.disc(1.0, 0.1), UNIT, foundation=modulus, tolerance=tolerance)
     found = plate.deflection([[0.0, 0.0]], [1.0])
@@ -52,6 +52,7 @@ def test_a_pad_between_the_mesh_s_points_holds_the_plate():
         Plate(meshes.disc(1.0, 0.5), UNIT, foundation=lambda x, y: -60 * pad(x, y))
 
 
+@pytest.mark.slow
 def test_the_compliance_follows_the_modulus():
     """dw/dk = -int (1 + x) w^2 at a unit force."""
     mesh, point = meshes.disc(1.0, 0.2), np.array([[0.2, 0.1]])
@@ -104,6 +105,7 @@ def test_a_foundation_of_no_use_is_named():
         Plate(mesh, UNIT, foundation=lambda x, y: np.where(x > 0.5, np.inf, 1.0))
 
 
+@pytest.mark.slow
 def test_a_foundation_stays_while_stiffness_and_tension_are_fitted():
     plate, points = Plate(meshes.disc(1.0, 0.25), UNIT, tension=10.0, foundation=300.0), [[0.3, 0.1], [-0.2, 0.4]]
     grid = np.stack(np.meshgrid(np.linspace(-0.7, 0.7, 15), np.linspace(-0.7, 0.7, 15)), axis=-1).reshape(-1, 2)

@@ -43,6 +43,7 @@ def test_annulus_is_that_of_its_logarithms(inner, outer):
     assert plate.residual < 1e-14 and np.ptp(ring) < 1e-15 and ring[0] > 1e-5
 
 
+@pytest.mark.slow
 def test_hole_off_the_centre_converges():
     rim = [[Arc(0, (1, 0.8), CLAMPED)], [Arc(0.2 + 0.1j, (0.3, 0.2), FREE, 0, -2 * np.pi)]]
     spots = [(0.6, 0.1), (-0.5, 0.2)]
@@ -87,6 +88,7 @@ def test_mixed_square_converges_and_is_reciprocal(supports):
     assert coarse == pytest.approx(there, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_clamped_l_with_its_reentrant_corner():
     spots = [(-0.3, 0.5), (-0.5, -0.4), (-0.03, -0.02)]
     coarse, fine = (

@@ -56,10 +56,10 @@ def test_tiles_that_look_alike_share_a_patch(shapes):
     assert np.concatenate([np.sort(tile.rows[tile.patch.core]) for tile in shapes.tiles]).tolist() == list(range(60))
 
 
-@pytest.mark.parametrize("shift", [0.1234565, 0.5, pytest.param(1 / 3, marks=pytest.mark.slow)])
-def test_rounding_and_another_order_of_the_points_do_not_keep_patches_apart(row, shift):
+@pytest.mark.slow
+def test_rounding_and_another_order_of_the_points_do_not_keep_patches_apart(row):
     rng = np.random.default_rng(2)
-    points = lattice(60, 1) + [shift * PITCH / 10, 0.0]
+    points = lattice(60, 1) + [0.01234565 * PITCH, 0.0]
     plain = row.influence(points, truncation=1e-3)
     order = rng.permutation(60)
     other = row.influence((points + rng.uniform(-1e-12, 1e-12, points.shape) * PITCH)[order], truncation=1e-3)
@@ -111,10 +111,8 @@ ONE, TWO = [[-16, -10]], [[-16, -10], [15, 12]]
 @pytest.mark.parametrize(
     ("mesh", "places"),
     [
-        pytest.param(RECTANGLE, ONE, id="one-rectangle", marks=pytest.mark.slow),
-        pytest.param(RECTANGLE, TWO, id="two-rectangle"),
-        pytest.param(DISC, ONE, id="one-disc"),
-        pytest.param(DISC, TWO, id="two-disc", marks=pytest.mark.slow),
+        pytest.param(RECTANGLE, TWO, id="two-rectangle", marks=pytest.mark.slow),
+        pytest.param(DISC, ONE, id="one-disc", marks=pytest.mark.slow),
     ],
 )
 def test_clusters_on_a_big_plate_take_patches_as_large_as_needed(section, mesh, places):
@@ -158,11 +156,11 @@ def test_a_boundary_named_cut_is_not_taken_for_one(section):
 @pytest.mark.slow
 def test_points_on_the_rim_and_on_cuts_belong_to_the_plate(section):
     """On a free rim a shape does not vanish, wherever rounding puts the point."""
-    plate = Plate(rectangle(61 * PITCH, 4 * PITCH, PITCH), section, {"left": "clamped", "right": "clamped"})
-    points = lattice(60, 2, PITCH, 1.7 * PITCH)
+    plate = Plate(rectangle(31 * PITCH, 4 * PITCH, PITCH), section, {"left": "clamped", "right": "clamped"})
+    points = lattice(30, 2, PITCH, 1.7 * PITCH)
     dense, shapes = plate.influence(points), plate.influence(points, truncation=1e-3)
-    x = np.concatenate([np.linspace(-30.5, 30.5, 123), np.unique([t.cut.box[:, 0] / PITCH for t in shapes.tiles])])
-    x = np.clip(np.concatenate([x, (points[:, 0] / PITCH)[::8] - 0.5]), -30.5, 30.5)
+    x = np.concatenate([np.linspace(-15.5, 15.5, 63), np.unique([t.cut.box[:, 0] / PITCH for t in shapes.tiles])])
+    x = np.clip(np.concatenate([x, (points[:, 0] / PITCH)[::4] - 0.5]), -15.5, 15.5)
     for y in (-2.0, 0.0, 2.0):
         xy = np.stack([x, np.full(len(x), y)], axis=1) * PITCH
         value = dense.evaluate(xy)[0]
@@ -194,6 +192,7 @@ def test_all_shapes_at_too_many_points_are_refused_and_sums_are_not(shapes, monk
         assert np.abs(total[:10] - np.tensordot(one, weights, (1, 0))).max() < 1e-11 * np.abs(one).max()
 
 
+@pytest.mark.slow
 def test_the_shapes_nearby_are_all_that_are_not_zero_there(row):
     points, springs = lattice(60, 1), np.where(np.arange(60) % 3, np.inf, 0.0)
     shapes = row.influence(points, springs, truncation=1e-4)

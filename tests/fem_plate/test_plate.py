@@ -98,6 +98,7 @@ def test_shapes_meet_a_tolerance_near_the_rim_too(section, radius, tolerance, sp
     assert np.abs(shapes.evaluate(away)[0] - DiscShapes(points, radius).evaluate(away)[0]).max() < 3 * tolerance
 
 
+@pytest.mark.slow
 def test_a_tolerance_out_of_reach_ends_and_says_what_was_reached(section, radius, layout):
     shapes = Plate(disc(radius, radius / 2), section, tolerance=1e-14).influence(layout)
     assert shapes.unknowns < 100_000

@@ -113,6 +113,7 @@ def test_a_layer_too_thin_for_the_cells_is_in_the_estimate():
     assert 1e-8 < error < 5 * deflection.error_estimate < 1e-2
 
 
+@pytest.mark.slow
 def test_shapes_on_patches_are_those_on_the_whole_plate():
     pitch, side = 1.0, np.arange(26) - 12.5
     points = np.stack([side, 0 * side], axis=1)

@@ -231,6 +231,7 @@ def test_another_ctrl_c_loses_nothing(surface, parts, submitted, monkeypatch):
         simulate_many(surface, parts, LAW, 1e-4, threads=1, progress=progress)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_ctrl_c_keeps_what_is_done(surface, parts):
     """Two parts that are soon done, and two whose paths would take minutes."""

@@ -145,6 +145,7 @@ def result(process: subprocess.Popen[str]) -> tuple[float, int]:
     return float(load), int(compiled)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_kernel_is_compiled_once_and_anew_when_one_that_it_calls_has_changed(package, tmp_path):
     cache = tmp_path / "own"
@@ -164,6 +165,7 @@ def test_a_kernel_is_compiled_once_and_anew_when_one_that_it_calls_has_changed(p
     assert result(start(package, cache)) == (12.0, 0)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_kernel_of_another_room_is_compiled_anew_when_its_room_or_the_package_has_changed(package, tmp_path):
     room, cache = tmp_path / "other" / "room", tmp_path / "own"
@@ -206,7 +208,7 @@ def test_a_process_that_is_killed_as_it_keeps_a_kernel_leaves_nothing_wrong(pack
     """However many it has kept by then; what it has is used."""
     cache, killed = tmp_path / "own", 0
     while True:
-        process = start(package, cache, KILLED.format(left=2, after=after) + USE)
+        process = start(package, cache, KILLED.format(left=3, after=after) + USE)
         text = process.communicate(timeout=600)[0]
         if process.returncode == 0:
             break

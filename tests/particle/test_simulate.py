@@ -243,6 +243,7 @@ def test_every_outcome_is_said_in_a_sentence():
     assert len({outcome.sentence for outcome in Outcome}) == len(Outcome)
 
 
+@pytest.mark.compiled
 def test_no_row_is_lost_when_the_record_grows():
     """More than 1 024 rows and 256 events, the record's first sizes, by a part on a shaken platform."""
     base = [Drive(1e-2, 20.0), Drive(0.0, 20.0)]

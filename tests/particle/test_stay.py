@@ -29,6 +29,7 @@ def test_a_stroke_that_comes_later_is_seen(exact):
     assert run(exact, [late, Drive(0.0, 300)], 6e-3).events
 
 
+@pytest.mark.compiled
 def test_a_part_that_only_both_drives_together_move_is_told_of_from_their_common_period(exact):
     """Out of step within the run, in step after 1 / (310 Hz - 300 Hz)."""
     drives = [Drive(60e-6, 300), Drive(60e-6, 310, delay=0.5 / 310)]

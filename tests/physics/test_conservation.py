@@ -26,6 +26,7 @@ def test_a_bowl_without_friction_keeps_the_energy(tolerance, bound):
     assert np.ptp(energy) < bound * energy[0]
 
 
+@pytest.mark.compiled
 def test_friction_takes_the_work_of_its_way():
     """Constant friction on a bowl at rest: energy lost = Q times the way along the surface."""
     surface, q = polynomial_surface(BOWL), 0.5

@@ -29,7 +29,7 @@ def test_surface_can_be_evaluated_where_the_rim_touches_its_box(direction):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("axis", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_a_part_that_leaves_along_an_axis_has_its_files(axis, tmp_path):
     position, velocity = [0.0, 0.0], [0.0, 0.0]
     position[axis], velocity[axis] = 200e-6, 1.0

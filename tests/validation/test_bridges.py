@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from rivals import ours
-from rivals.problem import MASS, RADIUS, STARTS, problem
+from rivals.problem import MASS, RADIUS, STARTS, problem, surface_of
 
 from particle import Micropart, simulate
 
@@ -13,7 +12,7 @@ COUNT, START, DURATION = 100, STARTS[100], 6e-3
 @pytest.fixture(scope="module")
 def run():
     many = problem(COUNT, START, duration=DURATION)
-    surface = ours.surface_of(many)
+    surface = surface_of(many)
 
     def path(tolerance):
         return simulate(surface, Micropart(MASS, START), many.friction, DURATION, tolerance=tolerance)

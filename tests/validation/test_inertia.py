@@ -48,7 +48,8 @@ def test_printed_figures(surface, time, w, w_tt):
     assert own[0] == pytest.approx(w, rel=1e-9) and own[2] == pytest.approx(w_tt, rel=1e-7)
 
 
-@pytest.mark.parametrize("share, cycles", [pytest.param(0.2, 8, marks=pytest.mark.slow), (0.95, 20)])
+@pytest.mark.slow
+@pytest.mark.parametrize("share, cycles", [(0.2, 8), (0.95, 20)])
 def test_strokes_near_the_first_frequency(share, cycles):
     end = cycles / (share * FIRST)
     surface = build_surface(case_of(up_down(share * FIRST), end))

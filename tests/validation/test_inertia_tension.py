@@ -52,6 +52,7 @@ def test_frequencies_and_responses_under_tension():
     assert response(case, on_radii()).resonances[:2] == pytest.approx(TENSE.omega[:2] * UNIT / (2 * np.pi), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_strokes_under_tension_move_the_disc_as_its_series():
     end = 4 / (0.3 * TENSE_FIRST)
     surface = build_surface(
@@ -92,6 +93,7 @@ def test_responses_with_a_table_of_damping():
     assert found.dampings == pytest.approx(DAMPINGS[:3], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_strokes_with_a_table_of_damping_move_the_disc_as_its_series():
     frequency = 0.55 * FIRST
     end = 6 / frequency

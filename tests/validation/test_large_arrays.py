@@ -41,9 +41,7 @@ IRREGULAR = lattice(15, 15) + np.random.default_rng(1).uniform(-0.3, 0.3, (225, 
 KINDS = np.random.default_rng(2).choice([np.inf, 20e3, 0.0], 400, p=[0.6, 0.3, 0.1])  # N/m
 
 CASES = {
-    "clamped rectangle": (SQUARE, "clamped", lattice(11, 10), None),
     "rectangle, mixed sides": (SQUARE, MIXED, lattice(11, 10), None),
-    "disc, lattice": (DISC, "clamped", inside(DISC, lattice(15, 15), 0.6), None),
     "disc, irregular": (DISC, "clamped", inside(DISC, IRREGULAR, 0.6), None),
     "annulus": (RING, {"outer": "clamped"}, inside(RING, lattice(16, 16), 0.6), None),
     "springs and floating": (DISC, "clamped", inside(DISC, lattice(15, 15), 0.6), KINDS),
@@ -60,7 +58,7 @@ def test_patches_give_the_shapes_of_the_whole_plate(section, monkeypatch, name):
     dense, shapes = plate.influence(points, springs), plate.influence(points, springs, truncation=TRUNCATION)
     finer = dense.refine()
     assert len(shapes.tiles) > 4 and shapes.truncation_error <= TRUNCATION
-    xy = np.random.default_rng(0).uniform(*mesh.outline.box, (1500, 2))
+    xy = np.random.default_rng(0).uniform(*mesh.outline.box, (600, 2))
     xy = xy[(mesh.outline.gap(xy) > 0.2 * PITCH) & (cKDTree(points).query(xy)[0] > 0.1 * PITCH)]
     scale = np.abs(dense.evaluate(points)[0]).max(axis=0)  # of each shape: m per m, or m/N where it floats
     weights = np.random.default_rng(3).uniform(-1, 1, len(points)) / scale

@@ -41,20 +41,21 @@ def test_the_second_discretisation_has_the_known_digits():
         assert centre == pytest.approx(known, rel=4e-6)
 
 
-@pytest.mark.parametrize("height, bound", [(0.5, 1e-7), (1.0, 1e-7), (5.0, 1e-5), (10.0, 1e-4), (30.0, 1e-4)])
+@pytest.mark.parametrize(
+    "height, bound", [(1.0, 1e-7), (5.0, 1e-5), (10.0, 1e-4), pytest.param(30.0, 1e-4, marks=pytest.mark.slow)]
+)
 def test_reactions_of_the_immovable_disc(clamped, height, bound):
     state = clamped.large_deflection(CENTRE).solve([height])
     assert state.reactions == pytest.approx([radial.disc(height=height).force], rel=bound)
 
 
-@pytest.mark.parametrize("height", [0.5, 1.0])
-def test_reactions_of_the_movable_disc(clamped, height):
+def test_reactions_of_the_movable_disc(clamped):
+    height = 1.0
     state = clamped.large_deflection(CENTRE, "movable").solve([height])
     assert state.reactions == pytest.approx([radial.disc(height=height, movable=True).force], rel=1e-7)
 
 
-@pytest.mark.parametrize("in_plane", ["immovable", "movable"])
-@pytest.mark.parametrize("load", [1.0, 2.0, 5.0, 10.0])
+@pytest.mark.parametrize("in_plane, load", [("immovable", 2.0), ("immovable", 10.0), ("movable", 5.0)])
 def test_pressure(clamped, in_plane, load):
     expected = radial.disc(pressure=E * load, movable=in_plane == "movable").w[0]
     state = clamped.large_deflection([], in_plane).solve([], E * load)
@@ -66,7 +67,7 @@ def test_two_actuators(clamped):
     assert state.reactions == pytest.approx([135.01462, -113.52870], rel=2e-7)
 
 
-@pytest.mark.parametrize("height, expected", [(0.0, 22.736774), (0.5, 23.28367), (1.0, 24.81147), (5.0, 50.522)])
+@pytest.mark.parametrize("height, expected", [(0.0, 22.736774), (1.0, 24.81147), (5.0, 50.522)])
 def test_frequencies_with_the_centre_held(clamped, height, expected):
     state = clamped.large_deflection(CENTRE).solve([height])
     frequencies = 2 * np.pi * clamped.modes(4, CENTRE, deflected=state).frequencies
@@ -102,8 +103,9 @@ def test_orders_of_the_disc(support):
     assert fine[2] < 1e-8
 
 
-@pytest.mark.parametrize("clamped_sides", [True, False])
-@pytest.mark.parametrize("membrane", ["airy", "plane-stress"])
+@pytest.mark.parametrize(
+    "clamped_sides, membrane", [(True, "airy"), pytest.param(False, "plane-stress", marks=pytest.mark.slow)]
+)
 def test_the_square_against_ritz(clamped_sides, membrane):
     """Both geometries are exact there: the energy's errors fall together with those of w."""
     pressure = 100.0 if clamped_sides else 50.0
@@ -120,19 +122,17 @@ def test_the_square_against_ritz(clamped_sides, membrane):
     assert state.stretching_energy == pytest.approx(stretching, rel=5e-7)
 
 
-@pytest.mark.parametrize("held", [True, False])
 @pytest.mark.slow
-def test_the_annulus_converges(held):
-    pressure = 2000.0 if held else 100.0
-    expected = radial.annulus(0.4, pressure=pressure, held=held)
-    large = Plate(annulus(0.4, 1.0, 0.2), UNIT, C if held else {"outer": C}).large_deflection([])
+def test_the_annulus_converges():
+    pressure = 100.0
+    expected = radial.annulus(0.4, pressure=pressure, held=False)
+    large = Plate(annulus(0.4, 1.0, 0.2), UNIT, {"outer": C}).large_deflection([])
     r, angle = np.linspace(0.42, 0.98, 25), np.linspace(0, 6, 25)
     off = []
     for halvings in (0, 1, 2):
         state = large.solved(np.zeros(0), pressure, 0, halvings)
         w = state.evaluate(np.column_stack([r * np.cos(angle), r * np.sin(angle)]))[0]
         off.append(np.abs(w - radial.at_radii(expected, expected.w, r)).max() / np.abs(expected.w).max())
-    print(held, off)
     assert off[2] < off[1] / 8
     assert off[2] < 1e-6
     assert state.stretching_energy == pytest.approx(expected.stretching, rel=1e-5)
@@ -156,14 +156,10 @@ def test_the_energy_bracket_closes():
 
 ORDERS = [3.3, 2.1, 1.5]  # of w, gradient and reaction
 LAYOUTS = {
-    "a disc at .3 t": (disc(1.0, 0.3), C, CENTRE, [0.3], {}, 0.0),
     "a disc at 5 t": (disc(1.0, 0.3), C, TWO, [5.2, -3.0], {}, 0.0),
-    "a disc at 10 t": (disc(1.0, 0.3), C, [(0.2, 0.1)], [10.0], {}, 0.0),
     "near the rim": (disc(1.0, 0.3), C, [(0.85, 0.1), (-0.2, 0.3)], [1.0, -0.5], {}, 0.0),
     "near each other": (disc(1.0, 0.3), S, [(0.1, 0.1), (0.1, 0.2)], [2.0, 1.8], {}, 0.0),
     "springs": (disc(1.0, 0.3), C, TWO, [3.0, 2.0], {"stiffness": [20.0, 200.0]}, 0.0),
-    "pressure": (disc(1.0, 0.3), S, [], [], {}, 60.0),
-    "a clamped square": (rectangle(1.0, 1.0, 0.2), C, [(0.1, 0.2), (-0.2, -0.1)], [3.0, -1.0], {}, 0.0),
     "a movable square": (rectangle(1.0, 1.0, 0.2), S, [(0.1, 0.2)], [2.0], {"in_plane_supports": "movable"}, 0.0),
     "an annulus": (annulus(0.4, 1.0, 0.25), C, [(0.7, 0.0), (0.0, -0.6)], [2.0, 1.0], {}, 0.0),
     "an ellipse": (ellipse(1.0, 0.6, 0.25), C, [(0.3, 0.1)], [1.0], {"in_plane_supports": "movable"}, 100.0),

@@ -48,7 +48,7 @@ def test_height_slope_and_curvature_are_those_of_the_exact_sum(count):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("count", [1, 2, 9, 25])
+@pytest.mark.parametrize("count", [1, 9, pytest.param(25, marks=pytest.mark.slow)])
 def test_ends_of_paths_hardly_change_with_the_fit(count):
     """In the median over a few starts, each by one stroke or two: longer paths magnify any difference."""
     shapes, lifts = DiscShapes(sunflower(count), RADIUS), drives(count, 120e-6 / count**0.25)

@@ -142,6 +142,7 @@ def test_buckling_loads():
     assert Plate(rectangle(2.0, 1.4, 0.15), UNIT, sides).buckling_load() == pytest.approx(mixed, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_two_actuators_to_a_tolerance():
     """The shapes of two actuators from the response to one force at each place, which the series gives."""
     places = np.array([[0.3, 0.1], [-0.25, -0.35]])

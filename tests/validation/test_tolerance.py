@@ -31,8 +31,8 @@ CASES = {
     "two actuators": (PAIR, STROKES, HEIGHTS, BREAKPOINTS, (60e-6, -40e-6), CONSTANT, 9.80665, 3e-3),
     "two actuators, rough contact": (PAIR, STROKES, HEIGHTS, BREAKPOINTS, (60e-6, -40e-6), ROUGH, 9.80665, 3e-3),
 }
-LONG = "up and down at 300 Hz"
-NAMES = [pytest.param(name, marks=[pytest.mark.slow] * (name == LONG)) for name in CASES]
+LONG = "up and down at 300 Hz", "two actuators, rough contact"
+NAMES = [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in CASES]
 TOLERANCES = 10.0 ** -np.arange(4, 12)
 ORACLE = 2e-11  # of the radius; what the truth of a pass over an actuator may be wrong by
 MOST, MOST_BELOW_1E_6 = 25, 2  # error over tolerance; the lower order down to 1e-6 is the coarser one

@@ -1,7 +1,7 @@
 """Parts on the top face of a bent plate, some of which also stretch, against `motion_oracle`.
 
 The oracle differentiates places in space by Taylor arithmetic (`top_face`) and shares no formula with the integrator.
-What it found is written down in `top_face_results`; the slow test finds it again.
+What it found is written down in `top_face_results`; the slow test finds some of it again.
 """
 
 import math
@@ -60,7 +60,7 @@ def test_without_the_lengths_the_part_of_the_reference_moves_a_third_as_far():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", ["one actuator", "steep bowl on a base", "tilted, squeezed, on a base, stretched"])
 def test_the_oracle_finds_again_what_is_written_down(name):
     case, expected = CASES[name], RESULTS[name]
     path = case.trace()

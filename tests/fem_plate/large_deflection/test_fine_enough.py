@@ -15,6 +15,7 @@ def large_of(tolerance, cell_size=0.5):
     return Plate(disc(1.0, cell_size), UNIT, tolerance=tolerance).large_deflection(POINTS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance, halvings", [(None, 0), (1e-3, 0), (2.1e-6, 1)])
 def test_cells_are_halved_until_the_tolerance_is_met(tolerance, halvings):
     discrete, error = fine_enough(large_of(tolerance), HEIGHTS)
@@ -22,6 +23,7 @@ def test_cells_are_halved_until_the_tolerance_is_met(tolerance, halvings):
     assert tolerance is None or error <= tolerance
 
 
+@pytest.mark.slow
 def test_the_error_is_that_against_a_much_finer_mesh():
     large = large_of(None)
     error = fine_enough(large, HEIGHTS)[1]

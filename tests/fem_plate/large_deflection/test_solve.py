@@ -38,6 +38,7 @@ def test_a_movable_rim(support):
     assert difference(state, expected) < 1e-6
 
 
+@pytest.mark.slow
 def test_pressure_and_a_force_together():
     expected = radial.disc(force=40.0, pressure=30.0, support=S)
     plate = Plate(disc(1.0, 0.15), UNIT, S)
@@ -82,6 +83,7 @@ def test_the_first_gain_of_stiffness():
     assert gain == pytest.approx(0.444922, rel=2e-4)
 
 
+@pytest.mark.slow
 def test_springs_and_forces_are_rigid_actuators_elsewhere():
     plate, heights = Plate(disc(1.0, 0.4), UNIT), np.array([2.0, -1.0])
     rigid = plate.large_deflection(TWO).solve(heights)
@@ -93,6 +95,7 @@ def test_springs_and_forces_are_rigid_actuators_elsewhere():
         assert state.evaluate(TWO)[0] == pytest.approx(heights, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_metres_and_newtons():
     """The same plate in other units."""
     a, t = 300e-6, 5e-6

@@ -59,6 +59,7 @@ def test_gradient_and_energy(lifted):
     assert state.stretching_energy == pytest.approx(expected.stretching, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_both_membranes_move_alike():
     """Actuators off every symmetry, on a square, where both geometries are exact."""
     plate = Plate(rectangle(2.0, 2.0, 0.3), UNIT)
@@ -71,6 +72,7 @@ def test_both_membranes_move_alike():
     assert states[0].reactions == pytest.approx(states[1].reactions, rel=2e-5)
 
 
+@pytest.mark.slow
 def test_energy_bracket_closes():
     """The Airy function's stretching energy of one and the same w is the lower, in-plane motion's the upper bound."""
     gaps = []
@@ -96,6 +98,7 @@ def test_energy_is_the_work_of_the_reactions():
     assert large.solve(heights).energy == pytest.approx(work, rel=3e-6)
 
 
+@pytest.mark.slow
 def test_forces_and_moments_on_a_free_plate_balance():
     """Forces to rounding. Moments as far as in-plane motion makes up for the strain of a rotation, as the mesh does."""
     points = np.array([(0.5, 0.1), (-0.3, 0.5), (-0.3, -0.5), (0.1, 0.0)])
@@ -113,6 +116,7 @@ def test_pressure_on_a_free_plate_is_borne_by_its_actuators():
     assert np.abs(points.T @ state.reactions).max() < 1e-6 * 20 * np.pi
 
 
+@pytest.mark.slow
 def test_the_estimate_is_honest():
     """Within a factor of five of the error, by cells halved twice more."""
     large = Plate(disc(1.0, 0.5), UNIT).large_deflection(TWO)

@@ -24,6 +24,7 @@ def test_a_flat_state_has_the_modes_of_the_plate():
     assert plate.modes(4, TWO, deflected=flat).frequencies == pytest.approx(plate.frequencies(4, TWO), rel=5e-6)
 
 
+@pytest.mark.slow
 def test_the_tangent_stiffness_is_the_slope_of_the_reactions():
     large, heights = Plate(disc(1.0, 0.4), UNIT).large_deflection(TWO), np.array([1.5, -1.0])
     equilibrium = large.discrete(0, 0).equilibrium
@@ -36,6 +37,7 @@ def test_the_tangent_stiffness_is_the_slope_of_the_reactions():
         assert tangent == pytest.approx((ahead - behind) / (2 * step), rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_mode_is_a_slow_motion_of_a_soft_spring():
     """Where a heavy spring at a point gives way, it does so against the tangent stiffness of the deflected plate."""
     plate = Plate(disc(1.0, 0.25), UNIT)

@@ -48,6 +48,7 @@ def test_uncertainties_hold_what_noise_does(shapes, untold, tmp_path):
     assert abs(fit.tension - TENSION) < 4 * fit.tension_error < 0.04 * TENSION
 
 
+@pytest.mark.slow
 def test_one_function_is_fitted_as_well_as_its_noise_allows(section, shapes, untold, tmp_path):
     """Cramer and Rao's bound by central differences about the truth, gain and all: errors are it, fits scatter so."""
     exact, values = measured(shapes, tmp_path, "proper"), {}
