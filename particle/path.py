@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from particle.drives import horizon
 from particle.events import (
     Memory,
     Motion,
@@ -19,7 +20,6 @@ from particle.events import (
     Request,
     clear_memory,
     contact_states,
-    horizon,
     march,
     new_memory,
     new_record,

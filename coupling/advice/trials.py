@@ -17,7 +17,7 @@ from coupling.part import build_part, friction_law
 from coupling.progress import silent
 from coupling.scene import PlateScene, Scene, lifts_of, plate_scene
 from particle import Micropart, Outcome, PartAtRest, State, SurfaceMotion, part_at_rest, simulate
-from particle.events import horizon
+from particle.drives import horizon
 from particle.friction import Contact, ScaledFriction
 
 # Factors of the strokes, in the order in which they are tried.

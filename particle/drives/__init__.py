@@ -15,4 +15,4 @@ from particle.drives.pieces import (
 )
 from particle.drives.points import QuinticDrive, quintic_drives
 from particle.drives.quintics import begun_at
-from particle.drives.table import AnyDrive, Segments, accelerations, drive_table, monomial_table, scaled_table
+from particle.drives.table import AnyDrive, Segments, accelerations, drive_table, horizon, monomial_table, scaled_table

@@ -1,6 +1,6 @@
 """The event-located integrator: rest, sliding, flight, and what lies between them."""
 
-from particle.events.contact_state import ContactState, contact_states
+from particle.events.contact_state import ContactState, contact_states, rest_loads
 from particle.events.integrator import FIRST_STEP, march
 from particle.events.mechanics import (
     Counts,
@@ -24,6 +24,6 @@ from particle.events.mechanics import (
 from particle.events.memory import Memory, clear_memory, new_memory
 from particle.events.record import ROW, EventRow, PathRecord, Row, fill_row, new_record, note, write
 from particle.events.request import Request
-from particle.events.rest import ROUNDING, horizon, rest_loads
+from particle.events.rest import ROUNDING
 from particle.events.sliding import end_reason
 from particle.events.tableau import Pairs, Tableau, pairs_for, tableau

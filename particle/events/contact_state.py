@@ -1,4 +1,4 @@
-"""Where contact and centre of mass of a part are in space, and what acts on it there."""
+"""Where contact and centre of mass of a part are in space, and what acts on it there, over samples of the surface."""
 
 from __future__ import annotations
 
@@ -74,3 +74,14 @@ def contact_states(
             d_x, d_y = -against * p.x, -against * p.y
         state.friction_x, state.friction_y, state.friction_z = d_x, d_y, d_x * f.w_x + d_y * f.w_y
     return out
+
+
+@jit
+def rest_loads(points: FloatArray, part: Part) -> tuple[FloatArray, FloatArray]:
+    """Net loads N [N] and pulls |p|_M [m/s^2] (n,) on a part at rest at points of the surface (n, 49)."""
+    loads, demands = np.zeros(len(points)), np.zeros(len(points))
+    for n in range(len(points)):
+        f = point_of(points[n])
+        p = pull(f, 0.0, 0.0, part)
+        loads[n], demands[n] = p.normal, length(f, p.x, p.y)
+    return loads, demands

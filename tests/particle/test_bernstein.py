@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from particle.events.bernstein import MAX_HALVINGS, first_negative, halve, quintic_to_bernstein, to_bernstein
+from particle.events.polynomials import MAX_HALVINGS, first_negative, halve, quintic_to_bernstein, to_bernstein
 
 SIZES = st.integers(1, 17)
 NUMBERS = st.floats(-1, 1, allow_subnormal=False)

@@ -20,7 +20,7 @@ USE = """
 import os
 import numpy as np
 from particle.events.mechanics.equations import Part
-from particle.events.rest.slipping import rest_loads
+from particle.events.contact_state import rest_loads
 from particle.surface.at_point import POINT_SIZE, SurfacePoint
 from particle import ConstantFriction
 law = ConstantFriction(1.0)

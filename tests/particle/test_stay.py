@@ -5,8 +5,7 @@ import pytest
 
 from coupling.surface.motion import surface_motion
 from particle import ConstantFriction, CoulombAdhesion, Drive, Micropart, Outcome, polynomial_surface, simulate
-from particle.drives import drive_table, monomial_table
-from particle.events.rest.stay import horizon
+from particle.drives import drive_table, horizon, monomial_table
 
 MASS, START = 2e-9, (100e-6, -30e-6)
 

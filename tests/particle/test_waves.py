@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from particle import Drive
-from particle.drives import drive_table, next_breakpoint
+from particle.drives import drive_table, horizon, next_breakpoint
 from particle.drives.table import Segments
-from particle.events.rest.stay import horizon
 
 F, STROKE = 700.0, 2.0
 PHASES = [0.0, math.pi / 2, -2.5]

@@ -28,8 +28,7 @@ from coupling.case import Case, PlateCase, largest_stroke
 from coupling.ringing import RingingModel
 from coupling.vibration import VibrationModel, always_running
 from particle import AnyDrive, interruptible
-from particle.drives import drive_table
-from particle.events import horizon
+from particle.drives import drive_table, horizon
 
 SPAN: Final = 0.25, 8.0  # times the case's own frequency
 # Times its own strokes; a plate that stretches is solved up to the largest of them.

@@ -25,8 +25,7 @@ from coupling import (
 from coupling.case import Case, PlateCase, scaled_case
 from meshes import Outline
 from particle import PartAtRest, SurfaceMotion, Trajectory, part_at_rest, simulate_many
-from particle.drives import drive_table
-from particle.events import horizon
+from particle.drives import drive_table, horizon
 from particle.friction import Contact
 
 SETS: Final = 9  # frequencies whose drives stand for those of all

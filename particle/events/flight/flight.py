@@ -10,7 +10,6 @@ import math
 
 import numpy as np
 
-from particle.events.bernstein import first_negative, quintic_between, quintic_value
 from particle.events.flight.ballistics import fly_ahead
 from particle.events.flight.impact import MIN_JUMP, land
 from particle.events.mechanics import (
@@ -27,6 +26,7 @@ from particle.events.mechanics import (
     to_height,
 )
 from particle.events.memory import Memory
+from particle.events.polynomials import first_negative, quintic_between, quintic_value
 from particle.events.request import Request
 from particle.events.sliding import MIN_STEP
 from particle.jit import device, inlined

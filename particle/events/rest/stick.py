@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from particle.drives import ORDER
-from particle.events.bernstein import MAX_HALVINGS, halve
 from particle.events.mechanics import Part
-from particle.events.polynomials import narrow
+from particle.events.polynomials import MAX_HALVINGS, halve, narrow
 from particle.events.rest.stick_bound import DEGREE as BOUND_DEGREE
 from particle.events.rest.stick_bound import is_safe_by_bound, largest_force
 from particle.events.rest.stick_margin import DEGREE, NARROW, fill_margin, holds_at_end, is_safe_by_margin

@@ -17,8 +17,8 @@ import math
 import numpy as np
 
 from particle.drives import ORDER
-from particle.events.bernstein import quintic_to_bernstein
 from particle.events.mechanics import Part
+from particle.events.polynomials import quintic_to_bernstein
 from particle.friction import friction_limit
 from particle.jit import device_no_arrays
 from particle.types import FloatArray

@@ -19,9 +19,8 @@ import math
 
 import numpy as np
 
-from particle.events.bernstein import to_bernstein
 from particle.events.mechanics import Part
-from particle.events.polynomials import derivative, second_derivative, total
+from particle.events.polynomials import derivative, second_derivative, to_bernstein, total
 from particle.friction import friction_limit
 from particle.jit import device, device_no_arrays, inlined
 from particle.types import FloatArray

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from particle.events.mechanics import INTEGRATED, Motion, Part, manifold_rate, margin, slide_rate
-from particle.events.memory import Memory
-from particle.events.step import Step
+from particle.events.memory import Memory, Step
 from particle.events.tableau import Tableau
 from particle.friction import friction_limit
 from particle.jit import device_no_arrays, inlined
