@@ -97,18 +97,12 @@ def test_summary_warns_where_the_model_ends(result):
 
 
 @pytest.mark.slow
-def test_thousands_of_actuators_run_and_their_files_stay_small(tmp_path):
-    """A quarter of the example of ten thousand."""
-    text = FILES[0].with_name(f"{LARGE}.toml").read_text()
-    for old, new in (("15.3 mm", "7.8 mm"), ("rows = 100", "rows = 50"), ("columns = 100", "columns = 50")):
-        assert old in text
-        text = text.replace(old, new)
-    (tmp_path / "case.toml").write_text(text)
-    result = run_case(read_case(tmp_path / "case.toml"), output=tmp_path / "results")
-    assert len(result.case.actuators) == 2500
+def test_ten_thousand_actuators_run_and_their_files_stay_small(tmp_path):
+    result = run_case(read_case(FILES[0].with_name(f"{LARGE}.toml")), output=tmp_path)
+    assert len(result.case.actuators) == 10_000
     summary = result.summary
     assert summary.plate_error < 1e-6 and summary.hold_residual < 1e-6
     assert 0.006 <= summary.deflection_over_thickness < 0.007 and 0 < summary.part_sag < 1e-12
     assert 1e6 < summary.first_frequency < 1e8 and summary.drives_over_first == (summary.drive_over_first,) * 2
-    assert sum(file.stat().st_size for file in result.files) < 5e3 * 2500
+    assert sum(file.stat().st_size for file in result.files) < 50e6
     test_plate_is_lifted_by_the_drives_at_every_step(result)

@@ -48,7 +48,9 @@ def test_a_larger_stroke_moves_the_part_at_a_lower_frequency(found):
     moves = (distance > 10e-6).values
     frequency = distance["frequency"].values
     threshold = [frequency[moves[:, k]].min() for k in range(moves.shape[1]) if moves[:, k].any()]
-    assert len(threshold) > 20 and (np.diff(threshold) <= 0).all() and threshold[0] > 1.5 * threshold[-1]
+    assert (
+        len(threshold) > moves.shape[1] / 2 and (np.diff(threshold) <= 0).all() and threshold[0] > 1.5 * threshold[-1]
+    )
 
 
 def test_parts_near_an_actuator_are_driven_away_from_it_and_far_ones_stay(found):
@@ -66,7 +68,7 @@ def test_parts_near_an_actuator_are_driven_away_from_it_and_far_ones_stay(found)
 
 def test_jittered_starts_end_close_to_each_other_below_the_threshold(found):
     data = found["jittered_starts"].dataset
-    assert data.sizes == {"frequency": 11, "repeat": 40}
+    assert data.sizes == {"frequency": 2, "repeat": 20}
     assert (data["distance"].sel(frequency=500).values < 1e-6).all()
     assert (data["distance"].sel(frequency=3700).values > 100e-6).all()
 

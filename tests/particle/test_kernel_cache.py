@@ -208,7 +208,7 @@ def test_a_process_that_is_killed_as_it_keeps_a_kernel_leaves_nothing_wrong(pack
     """However many it has kept by then; what it has is used."""
     cache, killed = tmp_path / "own", 0
     while True:
-        process = start(package, cache, KILLED.format(left=3, after=after) + USE)
+        process = start(package, cache, KILLED.format(left=2, after=after) + USE)
         text = process.communicate(timeout=600)[0]
         if process.returncode == 0:
             break

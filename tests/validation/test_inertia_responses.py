@@ -102,10 +102,11 @@ def test_responses_of_a_free_disc_that_rides_on_its_actuator(tmp_path):
     )
     assert exact.k[:3] ** 2 == pytest.approx([3.75196802, 20.90810067, 60.64453608], rel=1e-9)
     own = exact.k[:3] ** 2
-    omega = np.sort([0.1, 1.0, 3.0, 4.2, 10.0, 15.0, 25.0, 40.0, 61.0, *own])
+    beyond = own[2] * (1 + 1e-9)  # so that rounding does not decide whether the third resonance lies within the range
+    omega = np.sort([0.1, 1.0, 3.0, 4.2, 10.0, 15.0, 25.0, 40.0, beyond, *own])
     found = response(case, on_radii(radii), omega * UNIT / (2 * np.pi))
     off = np.abs(found.values[:, 0] - exact.transfer(radii, omega, 0.02)) / np.abs(found.values[:, 0])
-    assert (off[:, ~np.isin(omega, own)] < 1e-5).all() and (off < 1e-3).all()
+    assert (off[:, ~np.isin(omega, [beyond, *own])] < 1e-5).all() and (off < 1e-3).all()
     assert found.resonances == pytest.approx(own[:3] * UNIT / (2 * np.pi), rel=1e-5)
 
 

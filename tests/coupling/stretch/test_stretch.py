@@ -161,7 +161,7 @@ def test_an_interrupted_or_killed_write_leaves_no_model(model, large, tmp_path, 
 
 
 def test_bars_read_what_is_being_done(model, large, tmp_path, monkeypatch):
-    def solved(discrete, strokes, tolerance, tell):
+    def solved(discrete, strokes, tolerance, solve, tell):
         tell(7, 2e-4)
         return model.reduction
 
