@@ -188,6 +188,7 @@ def test_a_part_at_rest_is_a_point_on_the_map_with_axes_that_can_be_read(case, t
     assert not any(axis.get_offset_text().get_text() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis))
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_run_that_slips_has_strokes_and_margins_over_time_and_a_line_where_it_was_lost(tmp_path):
     case = plate_case(3e-3, 4e-9)

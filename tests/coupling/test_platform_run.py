@@ -124,6 +124,7 @@ def test_a_gap_in_the_energy_ledger_is_warned_of():
     assert any("closes only to 2.0e-06" in warning for warning in report.warnings(worse))
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_measured_motion_from_the_command_line(tmp_path):
     command = ["run", str(EXAMPLES / "shaker.toml"), "--output", str(tmp_path), "--csv", "--json"]

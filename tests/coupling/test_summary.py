@@ -153,6 +153,7 @@ def test_a_drive_at_rest_counts_for_nothing():
     assert s.strokes_over_first == pytest.approx((600 / s.first_frequency,) * 2)
 
 
+@pytest.mark.slow
 def test_long_runs_say_that_their_files_strobe():
     """2 s of 300 Hz in at most 1000 steps; the extremes are found although 201 even moments fall on whole periods."""
     case = Case(

@@ -52,6 +52,7 @@ def test_toml_is_toml():
     assert all(tomllib.loads(block) for page in PAGES for block in blocks(page, "toml"))
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_first_case_prints_what_the_quick_start_says(folder):
     printed = CliRunner().invoke(main, ["run", "first.toml"]).output

@@ -57,7 +57,7 @@ def test_the_halves_are_the_polynomial_on_either_half(b, s):
     assert right[-1] == b[-1] and left[0] == b[0]
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.lists(NUMBERS, min_size=2, max_size=17))
 def test_the_first_negative_place_is_the_first_odd_root_of_numpy(b):
     """Where numpy's roots are told apart from each other and from the ends; the others are met below."""
@@ -82,7 +82,7 @@ def test_the_first_negative_place_is_the_first_odd_root_of_numpy(b):
         assert found == math.inf
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.lists(st.floats(-1, 1).map(lambda x: round(x, 2)), min_size=1, max_size=17))
 def test_what_is_passed_over_is_nowhere_negative_and_what_is_found_is(b):
     """Without roots: before the place found nothing is negative, right behind it something is. In exact numbers."""

@@ -92,7 +92,7 @@ def test_a_base_moves_on_as_well():
 def test_bridges_are_as_good_as_asked_and_meet_the_surface_at_both_ends(off):
     surface, (x, y) = spread(100), (0.31 * RADIUS, 0.2 * RADIUS)
     surface.evaluate([[x, y]], 0.0)
-    record, end = surface.record, 0.05
+    record, end = surface.record, 0.005
     velocity, acceleration = off * STROKE * 1e3, 10 * off * STROKE * 1e6
     exact, bridged, time, breakpoints, spans = new_local(record), new_local(record), 0.0, 0, 0
     allow_bridges(bridged, velocity, acceleration)

@@ -104,6 +104,7 @@ def test_a_track_alone_gives_longer_intervals_than_beside_others(tracks, found):
     assert alone.estimates[1].high - alone.estimates[1].low > 2 * (beside.high - beside.low)
 
 
+@pytest.mark.slow
 def test_the_search_costs_as_much_for_each_track_however_many_there_are(tracks):
     def followed(count: int) -> int:
         cases, surface = [braking()] * count, build_surface(braking())
@@ -116,6 +117,7 @@ def test_the_search_costs_as_much_for_each_track_however_many_there_are(tracks):
     assert followed(6) < 2 * 3 * followed(2)
 
 
+@pytest.mark.slow
 def test_tracks_of_one_case_may_share_all_fields(tmp_path):
     """Two recordings of one run: the value is the mean of both by their widths, the interval as long as of that."""
     pair = [braked(2e-8, noise, 40, seed) for seed, noise in ((5, 1e-4), (6, 2e-4))]
@@ -130,6 +132,7 @@ def test_tracks_of_one_case_may_share_all_fields(tmp_path):
     assert [file.name for file in both.written(tmp_path).files] == ["braking_identified.toml", "braking_identified.png"]
 
 
+@pytest.mark.slow
 def test_tracks_without_a_shared_field_are_as_if_alone(tracks):
     cases = [braking("a"), braking("b")]
     together = identify(cases, tracks[:2], own=OWN, threads=1)
@@ -140,6 +143,7 @@ def test_tracks_without_a_shared_field_are_as_if_alone(tracks):
             assert getattr(estimate, end) == pytest.approx(getattr(alone, end), abs=0.04 * width)
 
 
+@pytest.mark.slow
 def test_distances_of_several_tracks_withstand_outliers(tracks):
     spoilt = [Track(track.time, np.array(track.position)) for track in tracks[:2]]
     for track, noise in zip(spoilt, NOISES, strict=False):
@@ -181,6 +185,7 @@ def folder(tmp_path, monkeypatch, tracks):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_command_takes_a_track_for_each_case(folder):
     words = ["identify", "a.toml", "b.toml", "--track", "a.csv", "b.csv", "--free", *FREE, "--own", *OWN]
     done = CliRunner().invoke(main, [*words, "--bounds", "part.velocity.0=500 mm/s,2 m/s", "-t", "1", "--json"])

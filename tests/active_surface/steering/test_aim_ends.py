@@ -57,6 +57,7 @@ def test_a_start_at_the_rim_is_disturbed_on_the_plate_only(tmp_path):
     assert len(found.scatter.distance) == 20
 
 
+@pytest.mark.slow
 def test_a_search_is_not_lost_by_an_interruption_of_its_scatter(tmp_path, monkeypatch):
     case = case_of(tmp_path)
 
@@ -168,6 +169,7 @@ def test_a_share_of_the_parts_is_within_a_distance_only_where_that_many_are(off,
     assert scatter_line(scatter).startswith(said)
 
 
+@pytest.mark.slow
 def test_a_plan_says_which_way_points_it_missed(tmp_path):
     case_of(tmp_path)
     (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\npaths = 3\nscatter = 2\n')
@@ -211,6 +213,7 @@ def test_a_robust_search_by_few_paths_ends_with_them(tmp_path, monkeypatch):
     assert np.isfinite(found.distance) and found.paths <= paths + SAMPLES and len(asked) < 20
 
 
+@pytest.mark.slow
 def test_the_option_robust_is_the_quantile(tmp_path):
     case_of(tmp_path)
     (tmp_path / "aim.toml").write_text('[aim]\ncase = "base.toml"\npaths = 200\nscatter = 2\n')

@@ -84,6 +84,7 @@ def test_the_cvar_is_the_minimum_of_rockafellar_and_uryasev(share):
         assert conditional_value_at_risk(distances, share) == pytest.approx(np.sort(distances)[-4:].mean())
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_the_objective_is_the_distance_of_a_run_of_its_case(case):
     goal = objective(Task(case, TARGET, Settings()), threads=1)

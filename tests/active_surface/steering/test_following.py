@@ -63,6 +63,7 @@ def test_the_closed_loop_meets_way_points_that_the_open_one_misses_with_a_device
         assert leg.case.part.position == start
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_the_command_aims_the_next_leg_from_where_the_part_was_measured(case, tmp_path):
     file, out = tmp_path / "measured.csv", tmp_path / "out"

@@ -35,6 +35,7 @@ def engine(tmp_path_factory):
     return Engine(read_study(written(tmp_path_factory.mktemp("sweep"), AXES, CASE)))
 
 
+@pytest.mark.slow
 def test_paths_are_those_of_single_runs(engine):
     records = engine.records(range(4))
     assert not records["mistakes"].any()

@@ -150,6 +150,7 @@ def test_a_point_with_cycles_without_end_is_refused(tmp_path, case, monkeypatch)
         run_study(read_study(written(tmp_path, axes, case)))
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_start_off_the_plate_is_refused_where_it_is_off(tmp_path):
     axes = '[[axes]]\nfield = "part.position.0"\nvalues = ["0 um", "290 um", "300 um", "1 m"]\n'

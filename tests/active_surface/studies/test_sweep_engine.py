@@ -37,6 +37,7 @@ def test_a_group_that_fails_is_followed_path_by_path(tmp_path, monkeypatch, fail
     assert sweep.dataset["end_x"].values[others].tobytes() == whole["end_x"].values[others].tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_plate_that_cannot_be_solved_is_refused_with_the_reason(tmp_path, monkeypatch):
     solved = engine.shared_surface
@@ -110,6 +111,7 @@ def test_chunks_are_as_long_as_the_longest_of_their_paths_lets_them_be(tmp_path,
     assert long < short / 20 if field != "part.mass" else long == short
 
 
+@pytest.mark.slow
 def test_ten_thousand_actuators_are_varied_at_once(tmp_path):
     case = LATTICE.replace("rows = 1", "rows = 100").replace("columns = 3", "columns = 100")
     case = case.replace('pitch = "100 um"', 'pitch = "2 um"').replace('"5 * (1 + column) um"', '"5 um"')
@@ -127,6 +129,7 @@ def test_ten_thousand_actuators_are_varied_at_once(tmp_path):
 SOFT = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["1 um", "60 um", "0.1 um"]\n'
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_the_command_warns_where_the_model_stops_holding(tmp_path, monkeypatch):
     monkeypatch.setattr("coupling.summary.advise", None)  # a sweep needs no trial runs: its parts may well stay

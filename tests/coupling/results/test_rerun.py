@@ -52,6 +52,7 @@ PLATFORM = toml(
 MOTION = "time [ms], x [um]\n" + "".join(f"{k}, {(-1) ** k * k * 10}\n" for k in range(8))
 
 
+@pytest.mark.slow
 def test_a_moved_result_with_a_measured_motion_and_friction_reruns_to_the_same_bits(moved, tmp_path):
     result = moved(PLATFORM, motion_csv=MOTION.encode(), friction_csv=POINTS.encode())
     done = rerun(result, "--output", str(tmp_path / "again"))
@@ -157,6 +158,7 @@ LEADS = [
 ]
 
 
+@pytest.mark.slow
 def test_a_result_leads_to_no_other_file(moved, tmp_path):
     result = moved(PLATFORM, motion_csv=MOTION.encode(), friction_csv=POINTS.encode())
     for k, (alter, wrong) in enumerate(LEADS):

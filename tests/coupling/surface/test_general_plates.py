@@ -31,6 +31,7 @@ def test_an_even_thickness_gives_the_path_of_the_uniform_plate():
     np.testing.assert_allclose(other.position[-1], uniform.position[-1], atol=1e-4 * uniform.distance)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_mirrored_thickness_and_mirrored_drives_give_the_mirrored_path():
     mesh, ends = meshes.disc(RADIUS, 60e-6), []

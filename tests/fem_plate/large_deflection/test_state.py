@@ -109,6 +109,7 @@ def test_forces_and_moments_on_a_free_plate_balance():
     assert np.abs(P).min() > 0.1
 
 
+@pytest.mark.slow
 def test_pressure_on_a_free_plate_is_borne_by_its_actuators():
     points = np.array([(0.5, 0.1), (-0.3, 0.5), (-0.3, -0.5)])
     state = Plate(disc(1.0, 0.3), UNIT, "free").large_deflection(points).solve([0.0, 0.5, 0.3], 20.0)
