@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from particle.events.mechanics import Part, length, pull, slip
+from particle.events.mechanics import Part, at_contact, length, pull, slip
 from particle.events.record import Row
 from particle.jit import jit
 from particle.modes import Mode
@@ -31,7 +31,7 @@ class ContactState(Record):
     friction_x: float  # N, on the part
     friction_y: float
     friction_z: float
-    pull: float  # m/s^2, without friction
+    pull: float  # m/s^2, friction per kg that a part at rest needs
     point_pull: float  # m/s^2, the same on a point of the mid-plane
     added_pull: float  # m/s^2, the length of their difference
 
@@ -62,26 +62,27 @@ def contact_states(
         if row.mode == Mode.FLYING:
             continue
         p, q = pull(f, v_x, v_y, part), pull(f, v_x, v_y, point)
-        state.pull, state.point_pull = length(f, p.x, p.y), length(f, q.x, q.y)
-        state.added_pull = length(f, p.x - q.x, p.y - q.y)
+        p_x, p_y = at_contact(f, part, p.x, p.y)
+        state.pull, state.point_pull = length(f, p_x, p_y), length(f, q.x, q.y)
+        state.added_pull = length(f, p_x - q.x, p_y - q.y)
         if row.mode == Mode.RESTING:
-            d_x, d_y = -part.mass * p.x, -part.mass * p.y
+            d_x, d_y = -part.mass * p_x, -part.mass * p_y
         elif p.speed > 0.0:
             k_x, k_y = slip(f, part, v_x, v_y)
             d_x, d_y = -row.friction / p.speed * k_x, -row.friction / p.speed * k_y
         else:  # it begins to slide, along the pull
             against = row.friction / state.pull if state.pull > 0.0 else 0.0
-            d_x, d_y = -against * p.x, -against * p.y
+            d_x, d_y = -against * p_x, -against * p_y
         state.friction_x, state.friction_y, state.friction_z = d_x, d_y, d_x * f.w_x + d_y * f.w_y
     return out
 
 
 @jit
 def rest_loads(points: FloatArray, part: Part) -> tuple[FloatArray, FloatArray]:
-    """Net loads N [N] and pulls |p|_M [m/s^2] (n,) on a part at rest at points of the surface (n, 49)."""
+    """Net loads N [N], and |K^-1 p|_M [m/s^2], of a part at rest at points of the surface (n, 49); (n,) each."""
     loads, demands = np.zeros(len(points)), np.zeros(len(points))
     for n in range(len(points)):
         f = point_of(points[n])
         p = pull(f, 0.0, 0.0, part)
-        loads[n], demands[n] = p.normal, length(f, p.x, p.y)
+        loads[n], demands[n] = p.normal, length(f, *at_contact(f, part, p.x, p.y))
     return loads, demands

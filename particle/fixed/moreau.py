@@ -7,25 +7,23 @@ surface) and the pull p of `particle.events.mechanics.equations`, the velocity a
 
 or 0 where that bracket is negative: friction's impulse brings v + h p to rest when it can. Its direction is that of the
 end, implicit, hence a part at rest has v = 0 to the bit and a sliding part stops without creeping. Off the mid-plane v
-is the velocity of the centre of mass along the surface, and the direction that of the contact, K v+ with K of
-`particle.events.mechanics.breakaway`.
+is the velocity of the centre of mass along the surface, and the impulse is that of `after_friction`.
 
 J.J. Moreau, Unilateral contact and dry friction in finite freedom dynamics, 1988.
 """
 
 from __future__ import annotations
 
+import math
+
 from particle.events import (
     ROUNDING,
     Motion,
     Part,
+    after_friction,
     by_centre,
     drag,
-    first_slip,
     inner,
-    length,
-    mobility,
-    moved,
     of_centre,
     pull,
     push,
@@ -50,23 +48,13 @@ def moreau_step(
     limit = friction_limit(part.law, p.normal)
     c_x, c_y = of_centre(f, part, v_x, v_y)
     free_x, free_y = c_x + h * p.x, c_y + h * p.y
-    speed, largest = length(f, free_x, free_y), h * limit / part.mass
-    held = largest * part.law.static_ratio if mode == Mode.RESTING else largest
-    kept = 0.0 if speed * speed <= held * held * ROUNDING else 1.0 - largest / speed
-    end_x, end_y = kept * free_x, kept * free_y
-    if kept > 0.0 and part.centre != part.contact:
-        _, e_x, e_y = first_slip(f, mobility(f, part), free_x, free_y, largest)
-        end_x, end_y = free_x - largest * e_x, free_y - largest * e_y
+    largest = h * limit / part.mass
+    static = largest * part.law.static_ratio if mode == Mode.RESTING else largest
+    end_x, end_y, slides = after_friction(f, part, free_x, free_y, largest, static * math.sqrt(ROUNDING))
     # Friction's impulse per kg; it dissipates at the mean velocity.
     lost_x, lost_y = free_x - end_x, free_y - end_y
     mean_x, mean_y = 0.5 * (c_x + end_x), 0.5 * (c_y + end_y)
     after.v_x, after.v_y = by_centre(f, part, end_x, end_y)
     after.work = motion.work + h * push(f, part, p.normal) - part.mass * drag(f, part, lost_x, lost_y)
     after.dissipated = motion.dissipated + part.mass * inner(f, lost_x, lost_y, mean_x, mean_y)
-    if part.centre != part.contact:
-        # Friction acts at the contact; its moment turns the part with the surface.
-        k_x, k_y = moved(mobility(f, part), mean_x, mean_y)
-        turns = part.mass * inner(f, lost_x, lost_y, k_x - mean_x, k_y - mean_y)
-        after.work += turns
-        after.dissipated += turns
-    return (Mode.SLIDING if kept > 0.0 else Mode.RESTING), p.normal, 0.5 * h * after.v_x, 0.5 * h * after.v_y
+    return (Mode.SLIDING if slides else Mode.RESTING), p.normal, 0.5 * h * after.v_x, 0.5 * h * after.v_y

@@ -172,14 +172,13 @@ def _logarithm(floor: float, square: float) -> tuple[float, float, float]:
 def motion_at(local: LocalSurface, x: float, y: float, motion: FloatArray, plane: FloatArray) -> None:
     """The surface at a fixed point [m] as polynomials in (t - time) / unit.
 
-    motion (3, 6): w, w_x, w_y.  plane (6, 6): the place along x, base included, its derivatives by x and y; the same
-    along y.
+    motion (6, 6): w, w_x, w_y, w_xx, w_xy, w_yy.  plane (2, 6, 6): the same of the place along x and y, base included.
     """
     frame: Frame = local.frame[0]
     size = frame.surface_size
     u, v = (x - frame.x) / frame.half_x, (y - frame.y) / frame.half_y
     half_x, half_y = frame.half_x, frame.half_y
-    fill_quintics(local.smooth, frame.monomials, frame.degree, u, v, half_x, half_y, motion, 0)
+    fill_quintics(local.smooth, frame.monomials, frame.degree, u, v, half_x, half_y, motion)
     for j in range(frame.logarithms):
         d_x, d_y = (x - local.sources[j, 0]) / size, (y - local.sources[j, 1]) / size
         bounded, inner, logarithm = _logarithm(frame.floor, d_x * d_x + d_y * d_y)
@@ -190,14 +189,18 @@ def motion_at(local: LocalSurface, x: float, y: float, motion: FloatArray, plane
             motion[0, k] += f * value
             motion[1, k] += f * slope * d_x
             motion[2, k] += f * slope * d_y
+            bend = f / (size * size)
+            motion[3, k] += bend * (logarithm + 1 + inner + 2 * d_x * d_x / bounded)
+            motion[4, k] += bend * 2 * d_x * d_y / bounded
+            motion[5, k] += bend * (logarithm + 1 + inner + 2 * d_y * d_y / bounded)
     plane[:] = 0.0
     if frame.in_plane > 0:
         count, degree = frame.plane_monomials, frame.plane_degree
         for along in range(2):
-            fill_quintics(local.plane, (along + 1) * count, degree, u, v, half_x, half_y, plane, 3 * along)
+            fill_quintics(local.plane, (along + 1) * count, degree, u, v, half_x, half_y, plane[along])
     for k in range(ORDER):
-        plane[0, k] += local.base[k, 0]
-        plane[3, k] += local.base[k, 1]
+        plane[0, 0, k] += local.base[k, 0]
+        plane[1, 0, k] += local.base[k, 1]
 
 
 @jit

@@ -95,19 +95,27 @@ def jet(at: FloatArray, end: int, degree: int, u: float, v: float, half_x: float
 
 @device_no_arrays
 def fill_quintics(
-    c: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float, out: FloatArray, row: int
+    c: FloatArray, end: int, degree: int, u: float, v: float, half_x: float, half_y: float, out: FloatArray
 ) -> None:
-    """f, f_x and f_y at one place as polynomials of s into three rows (6,) of `out`; c (6, ...) as in `at_time`."""
+    """f, f_x, f_y, f_xx, f_xy and f_yy at one place as polynomials of s into the rows of `out` (6, 6).
+
+    c (6, ...): as in `at_time`.
+    """
     for k in range(ORDER):
-        w = w_u = w_v = 0.0
+        w = w_u = w_v = w_uu = w_uv = w_vv = 0.0
         m = end
         for i in range(degree, -1, -1):
-            a = a_v = 0.0
+            a = a_v = a_vv = 0.0
             for _ in range(degree + 1 - i):
                 m -= 1
+                a_vv = a_vv * v + a_v
                 a_v = a_v * v + a
                 a = a * v + c[k, m]
+            w_uu = w_uu * u + w_u
             w_u = w_u * u + w
             w = w * u + a
+            w_uv = w_uv * u + w_v
             w_v = w_v * u + a_v
-        out[row, k], out[row + 1, k], out[row + 2, k] = w, w_u / half_x, w_v / half_y
+            w_vv = w_vv * u + a_vv
+        out[0, k], out[1, k], out[2, k] = w, w_u / half_x, w_v / half_y
+        out[3, k], out[4, k], out[5, k] = 2 * w_uu / half_x**2, w_uv / (half_x * half_y), 2 * w_vv / half_y**2

@@ -68,6 +68,7 @@ def test_over_a_lattice_all_cells_but_those_at_the_rim_are_alike(across, pitch):
     assert np.rad2deg(angles(points, triangles).min()) > 15
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_actuators_have_no_more_points_than_they_need():
     points, _ = display_mesh(meshes.rectangle(400.0, 252.0, 100.0), lattice(398, 250))
     assert len(points) < 1.05 * MAX_POINTS

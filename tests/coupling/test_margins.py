@@ -345,6 +345,7 @@ def test_a_part_on_level_ground_is_sent_elsewhere():
     assert "nothing pulls the part aside" in dict(report.lines(middle.summary))["margins"]
 
 
+@pytest.mark.slow
 def test_the_actuator_of_an_event_is_that_of_the_margin_at_its_time():
     result = run_case(case_of(stroke=4e-6, frequency=4000))
     events, margins = result.trajectory.events, result.summary.margins

@@ -156,7 +156,13 @@ def test_smooth_motions_get_no_jump(noise):
         assert not fit_motion("x", SAMPLED, samples)[1].jumps
 
 
-@pytest.mark.parametrize(("frequency", "noise", "seed"), [(10, 2e-6, 1), (20, 2e-6, 0), (10, 1e-5, 0), (10, 1e-5, 3)])
+@pytest.mark.parametrize(
+    ("frequency", "noise", "seed"),
+    [
+        (10, 1e-5, 3),
+        *(pytest.param(*one, marks=pytest.mark.slow) for one in ((10, 2e-6, 1), (20, 2e-6, 0), (10, 1e-5, 0))),
+    ],
+)
 def test_strokes_up_and_down_are_no_impacts(frequency, noise, seed):
     """The jerk jumps where they meet. With noise each such jump alone looks much as one of velocity."""
     rng = np.random.default_rng(seed)

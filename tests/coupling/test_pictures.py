@@ -161,6 +161,7 @@ def plate_case(duration=1e-3, limit=1e-9, strokes=(5e-5, 4e-5)):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_a_short_path_is_drawn_in_a_window_with_keys_for_what_is_there(tmp_path):
     figure = drawn(plate_case(), tmp_path)

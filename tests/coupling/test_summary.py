@@ -48,6 +48,7 @@ def result():
     return run_case(case)
 
 
+@pytest.mark.slow
 def test_the_slowest_and_fastest_drive_and_stroke_are_stated_over_the_first_frequency(result):
     s = result.summary
     assert s.drives_over_first == pytest.approx((200 / s.first_frequency, 400 / s.first_frequency))
@@ -101,6 +102,7 @@ def summary_with(*actuators, duration=1e-3):
     return quick_summary(case, build_scene(case))
 
 
+@pytest.mark.slow
 def test_a_late_stroke_beside_a_busy_drive_is_seen():
     late = [{"cycle": "hold", "dwell": "70.2 ms"}, {"stroke": 5e-6, "frequency": 4000.0}]
     s = summary_with(

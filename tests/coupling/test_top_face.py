@@ -52,6 +52,7 @@ def test_the_summary_has_the_share_of_the_heights(runs):
     assert f"top face and centre of mass add {shares[1]:.3g} times the mid-plane's pull on the part" in texts
 
 
+@pytest.mark.slow
 def test_a_part_that_is_too_high_tips_over():
     high = {"centre_height": 150e-6}
     tips = run_case(case(COULOMB, part=high)).summary

@@ -68,6 +68,7 @@ def test_rounding_and_another_order_of_the_points_do_not_keep_patches_apart(row)
     assert np.abs(other.evaluate(spots)[0] - plain.evaluate(spots)[0][:, order]).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_actuators_out_of_line_keep_patches_apart(row, shapes):
     points = lattice(60, 1)
     points[30, 1] += 1e-3 * PITCH

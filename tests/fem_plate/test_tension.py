@@ -102,6 +102,7 @@ def test_cells_follow_the_layer_at_the_rim():
     assert 3 * len(fine.triangles) < len(halved.triangles) < 6 * len(fine.triangles)
 
 
+@pytest.mark.slow
 def test_a_layer_too_thin_for_the_cells_is_in_the_estimate():
     """Of width 1e-3, in the limit of 100 000 unknowns; the membrane's own answer lies a layer's width off."""
     deflection = Plate(disc(1.0, 0.25), UNIT, tolerance=1e-8, tension=1e6).pressure(1.0)

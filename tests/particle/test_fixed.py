@@ -209,6 +209,7 @@ def test_the_default_step_is_a_fraction_of_the_shortest_stroke():
     assert simulate(platform, part, ConstantFriction(0.0), 0.015, scheme="fixed").evaluations == 15_000  # of 1 us
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_rows_are_thinned_but_for_events():
     base = [Drive(1e-2, 20.0), Drive(0.0, 20.0)]

@@ -12,7 +12,8 @@ from particle import (
     ConstantFriction,
     polynomial_surface,
 )
-from particle.events.mechanics.equations import Part, length, pull
+from particle.events.mechanics.breakaway import rest_pull
+from particle.events.mechanics.equations import Part
 from particle.events.rest.stick import leaves_rest, new_rest
 from particle.events.rest.stick_bound import is_safe_by_bound, largest_force
 from particle.events.rest.stick_margin import NARROW, fill_margin
@@ -20,22 +21,20 @@ from particle.surface.at_point import surface_at
 
 
 def test_the_proof_that_a_part_stays_is_made_of_the_pull_on_it():
-    """Its polynomials are load and pull at any time, and so they are with a centre of mass on the mid-plane."""
+    """Its polynomials are the load and what is needed at any time, with a centre of mass on the mid-plane too."""
     local, begin, lasting = local_at(steep_surface(), time=0.1), 0.1, NARROW
     rest = new_rest()
     for heights in ((0.1, 0.25), (0.0, 0.0)):
         part = Part(2.0, G, 0.3, -0.2, 0.0, LAWS["constant"].law, *heights)
         leaves_rest(local, part, rest, *PLACE, begin, begin + lasting)
         fill_margin(part, rest.motion, rest.plane, lasting, rest.margins[0])
-        degree, z = rest.margins.shape[2] - 1, part.centre
+        degree = rest.margins.shape[2] - 1
         for s in (0.0, 0.3, 0.77, 1.0):
             basis = [comb(degree, i) * s**i * (1 - s) ** (degree - i) for i in range(degree + 1)]
-            c, force, square, e, x, y = rest.margins[0] @ basis
-            p = pull(surface_at(local, *PLACE, begin + s * lasting), 0.0, 0.0, part)
-            assert p.normal == pytest.approx(part.mass * (c / math.sqrt(square) - z * e / square**2), rel=1e-12)
-            found = (force + 2 * z * x / square**1.5 + z * z * y / square**3) / square
-            demand = length(surface_at(local, *PLACE, begin + s * lasting), p.x, p.y)
-            assert found == pytest.approx(demand**2, rel=1e-11)
+            load, needed = rest.margins[0] @ basis
+            a = rest_pull(surface_at(local, *PLACE, begin + s * lasting), part)
+            assert load == pytest.approx(a.load, rel=1e-12)
+            assert needed == pytest.approx(a.demand**2, rel=1e-11)
 
 
 @pytest.mark.parametrize("centre", [0.0, 0.2])
@@ -51,9 +50,7 @@ def test_a_part_at_rest_slips_when_its_pull_says_so(centre):
         part = Part(1.0, G, 0.0, 0.0, 0.0, ConstantFriction(0.0).law, centre / 2, centre)
 
         def demand(t, local=local, part=part):
-            f = surface_at(local, *PLACE, t)
-            p = pull(f, 0.0, 0.0, part)
-            return length(f, p.x, p.y)
+            return rest_pull(surface_at(local, *PLACE, t), part).demand
 
         demands = np.array([demand(t) for t in moments])
         if demands.max() < 1.01 * demands[0]:
@@ -88,9 +85,7 @@ def test_the_bound_of_a_part_at_rest_is_close(strain):
             leaves_rest(local, part, rest, *PLACE, 0.0, lasting)
             demands = []
             for time in np.linspace(0.0, lasting, 50):
-                f = surface_at(local, *PLACE, time)
-                p = pull(f, 0.0, 0.0, part)
-                demands.append(length(f, p.x, p.y))
+                demands.append(rest_pull(surface_at(local, *PLACE, time), part).demand)
             force = largest_force(part, rest.motion, rest.plane, lasting, rest.force)
             assert force == pytest.approx(max(demands), rel=0.02 + 3 * strain + lasting * 3)
             for share, safe in ((1 - 1e-12, False), (1.02 + 20 * strain + lasting * 3, True)):

@@ -4,14 +4,16 @@ With r(X, t) the place in space of the centre of mass above the surface's point 
 normal, Newton's law in the coordinates X of the surface is
 
     free = r'' at X'' = 0, less gravity,  N = m n.free + squeeze,  pull = -(free - (n.free) n)
-    at rest while |pull| <= static ratio Q(N)/m,  sliding: (dr/dX) X'' = pull - (Q/m) J X'/|J X'|,  J = dr_0/dX
+    at rest while the q along the surface with J^T q = (dr/dX)^T pull has |q| <= static ratio Q(N)/m,  J = dr_0/dX
+    sliding: (dr/dX)^T (dr/dX) X'' = (dr/dX)^T pull - (Q/m) J^T J X'/|J X'|
 
-A point on a surface that moves upwards, `Point`, has r = r_0 = (X + base, w); `top_face` lifts both off the mid-plane.
-Sliding is DOP853 in (X, X'). Where |X'| is small compared with friction times a stroke, it is either
+(d'Alembert: pressure does no work in a displacement dX, friction does Q J dX). A point on a surface that moves
+upwards, `Point`, has r = r_0 = (X + base, w); `top_face` lifts both off the mid-plane. Sliding is DOP853 in (X, X').
+Where |X'| is small compared with friction times a stroke, it is either
 
 - on its way to rest: with dt = u ds, u = |X'|, the equations in (t, X, ln u, n = X'/u) are regular,
   (ln u)' = n.X'', n' = X'' - (n.X'') n, and u falls exponentially in s; or
-- just off: the direction relaxes at the rate Q/(m u), and Radau takes (X, X') from a speed of 1e-13 m/s along the pull.
+- just off: the direction relaxes at the rate Q/(m u), and Radau takes (X, X') from a speed of 5e-14 m/s.
 
 In flight the centre of mass is thrown, the squeeze acts straight down, and X is the point whose r lies above or below
 it; the part lands where r meets it. Everything that ends a piece is located by repeating the last step, not by its
@@ -31,7 +33,7 @@ from scipy.integrate import DOP853, Radau
 from scipy.optimize import brentq
 
 LENGTH_ERROR, SPEED_ERROR = 1e-18, 1e-16  # of one step; m, m/s (a plate is 1e-4 m wide)
-FIRST_SPEED, LAST_SPEED = 1e-13, 1e-14  # m/s
+FIRST_SPEED, LAST_SPEED = 5e-14, 5e-15  # m/s
 HEAT_ERROR = 1e-18  # J/kg
 SCAN = 1000  # moments of a span at which a part at rest or in flight is looked at
 
@@ -59,7 +61,7 @@ def trace(problem: Problem, position: Sequence[float], velocity: Sequence[float]
             else:
                 if mode == "off":
                     f = force(problem, time, y[:2], np.zeros(2))
-                    along = f.accelerates(f.pull)
+                    along = f.gives()
                     y[2:4] = FIRST_SPEED * along / size_of(along)
                 time, y, found = slide(problem, time, end, y, mode == "off")
             if found == "leaves" or (found == "detaches" and not problem.flies):
@@ -71,7 +73,7 @@ def trace(problem: Problem, position: Sequence[float], velocity: Sequence[float]
             elif found == "at rest":
                 y[2:4] = 0.0
                 f = force(problem, time, y[:2], y[2:4])
-                held = size_of(f.pull) <= problem.static_ratio * f.limit
+                held = f.needed() <= problem.static_ratio * f.limit
                 note("stops" if held else "reverses")
                 mode = "rest" if held else "off"
             elif found == "detaches":
@@ -108,7 +110,7 @@ def rest(problem: Problem, time: float, end: float, place: np.ndarray) -> tuple[
 
     def margins(moment: float) -> tuple[float, float]:
         f = force(problem, moment, place, np.zeros(2))
-        return problem.static_ratio * f.limit - size_of(f.pull), f.load + problem.pull_off
+        return problem.static_ratio * f.limit - f.needed(), f.load + problem.pull_off
 
     moments = np.linspace(time, end, SCAN)
     values = np.array([margins(moment) for moment in moments]).T
@@ -173,9 +175,14 @@ def land(problem: Problem, thrown: Callable, time: float, y: np.ndarray) -> np.n
     f = problem.surface(y[0], y[1], time).frame(np.zeros(2))
     relative = thrown(time)[1] - f.velocity
     into = relative @ f.normal
-    along = relative - into * f.normal
-    kept = max(0.0, 1 - problem.impact * abs(into) / size_of(along)) * along
-    v = np.linalg.solve(f.centre.T @ f.centre, f.centre.T @ kept)
+    along = f.centre.T @ (relative - into * f.normal)
+    most, mass, slips = problem.impact * abs(into), f.centre.T @ f.centre, f.contact.T @ f.contact
+    v = np.zeros(2)
+    if along @ np.linalg.solve(slips, along) > most**2:  # else friction's impulse brings the contact to rest
+        v = np.linalg.solve(mass, along)
+        for _ in range(200):
+            v = np.linalg.solve(mass + most / size_of(f.contact @ v) * slips, along)
+    kept = f.centre @ v
     return np.array([*y[:2], *v, y[4] + (relative @ relative - kept @ kept) / 2])
 
 

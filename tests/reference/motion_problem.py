@@ -90,15 +90,23 @@ class Force(NamedTuple):
     load: float  # N
     limit: float  # Q/m
 
-    def accelerates(self, along: np.ndarray) -> np.ndarray:
-        """The X'' that accelerates the centre of mass by a vector along the surface."""
-        a = self.frame.centre
-        return np.linalg.solve(a.T @ a, a.T @ along)
+    def gives(self) -> np.ndarray:
+        """The X' with which the contact slides along the friction J X' that keeps a part at rest.
+
+        With J dX that works as the pull with (dr/dX) dX.
+        """
+        j = self.frame.contact
+        return np.linalg.solve(j.T @ j, self.frame.centre.T @ self.pull)
+
+    def needed(self) -> float:
+        """The size of that friction per kg."""
+        return size_of(self.frame.contact @ self.gives())
 
     def acceleration(self, v: np.ndarray) -> np.ndarray:
-        """X'' of a part that slides."""
-        slip = self.frame.contact @ v
-        return self.accelerates(self.pull - self.limit * slip / size_of(slip))
+        """X'' of a part that slides, by d'Alembert: friction works with J dX, the other forces with (dr/dX) dX."""
+        a, j = self.frame.centre, self.frame.contact
+        slip = j @ v
+        return np.linalg.solve(a.T @ a, a.T @ self.pull - self.limit * j.T @ slip / size_of(slip))
 
     def heats(self, v: np.ndarray) -> float:
         """W/kg"""

@@ -212,7 +212,7 @@ CASES = {
         57e-6,
         (60e-6, -40e-6),
         CoulombAdhesion(0.2, 8e-7, static_coefficient=0.26),
-        4e-3,
+        8e-3,
         STROKES,
         actuators=PAIR,
     ),

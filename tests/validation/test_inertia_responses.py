@@ -90,6 +90,7 @@ duration = "1 ms"
 )
 
 
+@pytest.mark.slow
 def test_responses_of_a_free_disc_that_rides_on_its_actuator(tmp_path):
     """Its two tilts are left; a run of it is refused, its response is not."""
     (tmp_path / "free.toml").write_text(FREE)

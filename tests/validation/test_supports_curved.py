@@ -78,6 +78,7 @@ def test_pressure_on_the_clamped_ellipse_is_a_polynomial():
         assert (found < (1e-11, 1e-10, 1e-9)).all()
 
 
+@pytest.mark.slow
 def test_a_force_on_ellipses_of_every_support():
     """Against the least-squares plate, up to a rigid motion on the free one, where four forces balance."""
     four = np.array([[0.5, 0.15], [-0.3, 0.3], [-0.45, -0.25], [0.25, -0.35]])

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from particle.events.flight.ballistics import centre_velocity, from_centre_velocity
-from particle.events.mechanics import Motion, Part, by_centre, normal_rate, of_centre, rising, stretched
+from particle.events.mechanics import Motion, Part, after_friction, by_centre, normal_rate, of_centre, rising, stretched
 from particle.jit import device, inlined
 from particle.modes import Mode
 from particle.surface import SurfacePoint
@@ -33,9 +33,9 @@ def land(f: SurfacePoint, part: Part, slack: float, motion: Motion) -> int:
         c_x, c_y = of_centre(f, part, motion.v_x, motion.v_y)
         t_x, t_y = t_x + c_x - v_x, t_y + c_y - v_y
         t_z = t_x * f.w_x + t_y * f.w_y
-    speed = math.sqrt(t_x * t_x + t_y * t_y + t_z * t_z)
-    kept = max(0.0, 1.0 - part.law.impact_coefficient * abs(into) / speed) if speed > slack else 0.0
-    after_x, after_y, after_z = kept * t_x, kept * t_y, kept * t_z
+    most = part.law.impact_coefficient * abs(into)
+    after_x, after_y, slides = after_friction(f, part, t_x, t_y, most, max(most, slack))
+    after_z = after_x * f.w_x + after_y * f.w_y
     if part.centre > 0.0:
         v_x, v_y, v_z = t_x - into * f.w_x / s, t_y - into * f.w_y / s, t_z + into / s
     p_x, p_y, p_z = after_x - v_x, after_y - v_y, after_z - v_z  # impulse per kg
@@ -45,7 +45,7 @@ def land(f: SurfacePoint, part: Part, slack: float, motion: Motion) -> int:
     motion.dissipated -= 0.5 * part.mass * (p_x * (v_x + after_x) + p_y * (v_y + after_y) + p_z * (v_z + after_z))
     motion.v_x, motion.v_y = by_centre(f, part, after_x, after_y)
     motion.z, motion.v_z = f.w, rising(f, motion.v_x, motion.v_y) if z > 0.0 else f.w_t + after_z
-    return Mode.SLIDING if kept > 0.0 else Mode.RESTING
+    return Mode.SLIDING if slides else Mode.RESTING
 
 
 @inlined

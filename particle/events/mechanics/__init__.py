@@ -2,6 +2,7 @@
 
 from particle.events.mechanics.breakaway import (
     RestPull,
+    after_friction,
     first_slip,
     heading,
     manifold_rate,
@@ -12,6 +13,8 @@ from particle.events.mechanics.breakaway import (
 )
 from particle.events.mechanics.equations import (
     Part,
+    at_centre,
+    at_contact,
     by_centre,
     carried,
     drag,

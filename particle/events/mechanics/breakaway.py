@@ -1,15 +1,15 @@
 """The first moments of sliding, on the slow manifold.
 
 At a small sliding speed u friction turns the contact's velocity at the rate Q/u, so that explicit steps from rest fall
-to first order. The slow solution is known. With K = (I - z_k S)(I - z_c S)^-1, F for I where the mid-plane stretches,
-which takes a force per kg to the contact's acceleration, the contact begins to slide along e, where
+to first order. The slow solution is known. With K of `equations`, friction q per kg accelerates the contact by K^2 q,
+and a pull p on the centre of mass does the same as K^-1 p = A d at the contact. The contact begins to slide along e,
 
-    K (A d - Q e) = r e,     |e| = 1,     r = u' at first,
+    K^2 (A d - Q e) = r e,     |e| = 1,     r = u' at first;
 
-d is the direction of the pull and A its size; where the contact is as high as the centre of mass, K = I, e = d and
-r = A - Q. From there the velocity lags by the angle kappa u,
+where the contact is as high as the centre of mass, K = I, e = d and r = A - Q. From there the velocity lags by the
+angle kappa u,
 
-    k = u (sqrt(1 - kappa^2 u^2) e - kappa u n),     kappa = (turning rate of e) / (2 r + Q n.K n),
+    k = u (sqrt(1 - kappa^2 u^2) e - kappa u n),     kappa = (turning rate of e) / (2 r + Q n.K^2 n),
 
 with n at right angles to e (all of unit length along the surface). It is regular at u = 0.
 """
@@ -19,15 +19,22 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from particle.events.mechanics.equations import Part, Pull, drag, length, over_plane, pull, push, turning
+from particle.events.mechanics.equations import (
+    Part,
+    Pull,
+    at_centre,
+    at_contact,
+    drag,
+    length,
+    over_plane,
+    pull,
+    push,
+)
 from particle.events.mechanics.motion import Motion
 from particle.events.mechanics.parallel import (
-    from_height,
     inner,
     normal_bend_along,
-    shape_operator,
     stretch_rate,
-    to_height,
 )
 from particle.friction import friction_limit
 from particle.jit import device_no_arrays, inlined
@@ -37,7 +44,7 @@ TURNS, SETTLED = 50, 1e-15
 
 
 class RestPull(NamedTuple):
-    """The pull on a part at rest: its size A and Q/m [m/s^2], unit vectors along and across it, the load."""
+    """The friction A that a part at rest needs, and Q/m [m/s^2], unit vectors along and across it, the load."""
 
     demand: float
     limit: float
@@ -59,7 +66,7 @@ class Heading(NamedTuple):
 
 
 class Mobility(NamedTuple):
-    """The matrix K, by rows: the contact's acceleration along the surface for a force per kg on the centre of mass."""
+    """The matrix K^2, by rows: the contact's acceleration along the surface for friction per kg."""
 
     xx: float
     xy: float
@@ -71,8 +78,9 @@ class Mobility(NamedTuple):
 def rest_pull(f: SurfacePoint, part: Part) -> RestPull:
     """The pull at rest in the frame that it and the surface define."""
     p = pull(f, 0.0, 0.0, part)
-    demand = length(f, p.x, p.y)
-    d_x, d_y = (p.x / demand, p.y / demand) if demand > 0.0 else (1.0 / length(f, 1.0, 0.0), 0.0)
+    a_x, a_y = at_contact(f, part, p.x, p.y)
+    demand = length(f, a_x, a_y)
+    d_x, d_y = (a_x / demand, a_y / demand) if demand > 0.0 else (1.0 / length(f, 1.0, 0.0), 0.0)
     n_x, n_y = _turned_left(f, d_x, d_y)
     limit = friction_limit(part.law, p.normal) / part.mass
     return RestPull(demand, limit, d_x, d_y, n_x, n_y, p.normal)
@@ -88,27 +96,26 @@ def _turned_left(f: SurfacePoint, d_x: float, d_y: float) -> tuple[float, float]
 
 @device_no_arrays
 def mobility(f: SurfacePoint, part: Part) -> Mobility:
-    """K."""
-    shape = shape_operator(f)
-    xx, yx = to_height(shape, part.contact, *from_height(shape, part.centre, 1.0, 0.0))
-    xy, yy = to_height(shape, part.contact, *from_height(shape, part.centre, 0.0, 1.0))
+    """K^2."""
+    xx, yx = at_centre(f, part, *at_centre(f, part, 1.0, 0.0))
+    xy, yy = at_centre(f, part, *at_centre(f, part, 0.0, 1.0))
     return Mobility(xx, xy, yx, yy)
 
 
 @device_no_arrays
 def moved(k: Mobility, x: float, y: float) -> tuple[float, float]:
-    """K times a vector."""
+    """K^2 times a vector."""
     return k.xx * x + k.xy * y, k.yx * x + k.yy * y
 
 
 @device_no_arrays
 def first_slip(f: SurfacePoint, k: Mobility, p_x: float, p_y: float, limit: float) -> tuple[float, float, float]:
-    """r, e_x and e_y with K (p - limit e) = r e, for a pull p [m/s^2] along the surface; exact where K = I."""
+    """r, e_x and e_y with K^2 (p - limit e) = r e, for a pull p [m/s^2] at the contact; exact where K = I."""
     size = length(f, p_x, p_y)
     e_x, e_y = p_x / size, p_y / size
     rate = size - limit
     for _ in range(TURNS):
-        # (r K^-1 + limit) e = p with r from the e before, then as long as 1: K is nearly I, so ten turns settle it.
+        # (r K^-2 + limit) e = p with r from the e before, then as long as 1: K is nearly I, so ten turns settle it.
         a_x, a_y = moved(k, p_x - limit * e_x, p_y - limit * e_y)
         rate = inner(f, e_x, e_y, a_x, a_y)
         q_x, q_y = moved(k, p_x, p_y)
@@ -122,6 +129,27 @@ def first_slip(f: SurfacePoint, k: Mobility, p_x: float, p_y: float, limit: floa
         if off < SETTLED:
             break
     return rate, e_x, e_y
+
+
+@device_no_arrays
+def after_friction(
+    f: SurfacePoint, part: Part, c_x: float, c_y: float, largest: float, static: float
+) -> tuple[float, float, bool]:
+    """The centre's velocity along the surface after friction's impulse, of a part that would go on by c [m/s].
+
+    static: m/s, the impulse per kg that may bring the part to rest; `largest` is what it is if not, against the
+    contact's velocity after it, c - largest K e with K (c - largest K e) along e.  Also whether the part slides on.
+    """
+    k_x, k_y = at_contact(f, part, c_x, c_y)
+    size = length(f, k_x, k_y)
+    if size <= static:
+        return 0.0, 0.0, False
+    if part.centre == part.contact:
+        kept = 1.0 - largest / size
+        return kept * c_x, kept * c_y, True
+    _, e_x, e_y = first_slip(f, mobility(f, part), k_x, k_y, largest)
+    e_x, e_y = at_centre(f, part, e_x, e_y)
+    return c_x - largest * e_x, c_y - largest * e_y, True
 
 
 @device_no_arrays
@@ -182,7 +210,7 @@ def _raised_heading(
     g = surface_at(local, x + step * v_x, y + step * v_y, time + step)
     ahead = pull(g, 0.0, 0.0, part)
     limit = friction_limit(part.law, ahead.normal) / part.mass
-    _, g_x, g_y = first_slip(g, mobility(g, part), ahead.x, ahead.y, limit)
+    _, g_x, g_y = first_slip(g, mobility(g, part), *at_contact(g, part, ahead.x, ahead.y), limit)
     turning_rate = inner(f, n_x, n_y, (g_x - e_x) / step, (g_y - e_y) / step)
     if u > 0.0:
         fast = pull(f, v_x, v_y, part)
@@ -199,7 +227,8 @@ def _contact_acceleration(
     f: SurfacePoint, part: Part, k: Mobility, p: Pull, v_x: float, v_y: float, q_x: float, q_y: float
 ) -> tuple[float, float]:
     """The rate [m/s^2], in x and y, of the contact's velocity over the surface under a pull p and friction q per kg."""
-    a_x, a_y = moved(k, p.x - q_x, p.y - q_y)
+    a_x, a_y = at_contact(f, part, p.x, p.y)
+    a_x, a_y = moved(k, a_x - q_x, a_y - q_y)
     n, s = normal_bend_along(f, v_x, v_y), math.sqrt(1 + f.w_x * f.w_x + f.w_y * f.w_y)
     z = part.contact
     c_x, c_y = stretch_rate(f, v_x, v_y, v_x, v_y)
@@ -237,7 +266,8 @@ def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float,
     rate.x, rate.y = v_x, v_y
     if part.centre > 0.0 or local.frame[0].in_plane > 0:
         q = limit / part.mass
-        a_x, a_y = moved(mobility(f, part), p.x - q * d_x, p.y - q * d_y)
+        a_x, a_y = at_contact(f, part, p.x, p.y)
+        a_x, a_y = moved(mobility(f, part), a_x - q * d_x, a_y - q * d_y)
         n = normal_bend_along(f, v_x, v_y)
         # With what the surface adds by its own height, w_pq along the motion.
         lift = v_x * f.w_xt + v_y * f.w_yt + v_x * (f.w_xx * v_x + 2 * f.w_xy * v_y) + v_y * f.w_yy * v_y
@@ -249,8 +279,6 @@ def manifold_rate(f: SurfacePoint, local: LocalSurface, part: Part, time: float,
         along = d_x * (f.base_ax - part.tilt_x) + d_y * (f.base_ay - part.tilt_y)
         rate.v_x = -along - climb * upright - limit / part.mass
     rate.v_y = 0.0
-    rate.work = push(f, part, p.normal) - limit * drag(f, part, d_x, d_y)
-    if u > 0.0:
-        rate.work += limit / u * turning(f, part, v_x, v_y)
+    rate.work = push(f, part, p.normal) - limit * drag(f, part, *at_centre(f, part, d_x, d_y))
     rate.dissipated = limit * u
     return p.normal

@@ -8,17 +8,20 @@ of w at that point and time, and S, n' and n'' (for x'' = y'' = 0) of `mechanics
     N = m (B / s - z_c |n'|^2) + squeeze                    normal force, from the constraint
     p = -a - B grad(w)/s^2 - z_c n''                        pull without friction, along the surface
     k = (I - z_k S) v,   u = |k|_M                          velocity and speed of the contact over the surface
-    (I - z_c S) (x'', y'') = p - (Q(N)/m) k/u               while it slides
+    (I - z_c S) (x'', y'') = p - (Q(N)/m) K k/u             while it slides,   K = (I - z_c S)^-1 (I - z_k S)
 
-and it sticks while m |p|_M at v = 0 is at most Q(N). With z_k = z_c = 0 the part is a point on the mid-plane.
+and it sticks while m |K^-1 p|_M at v = 0 is at most Q(N). K is d'Alembert's: in a displacement dX the pressure does no
+work, friction Q.(I - z_k S) dX; so the pressure that bears its moment leans with the surface. With z_k = z_c = 0
+the part is a point on the mid-plane.
 
 Where the mid-plane moves in its plane by u, (x, y) is a point of the material, F = I + grad u, and grad w the slope as
 seen in space, F^-T grad w; the second derivatives of w are those of P times (-grad w, 1). Then a holds u_tt, the pull p
 also holds -2 grad u_t v - v.grad grad u.v, and F takes the place of I in front of the curvature S: (3.8) to (3.11) in
 docs/motion.md. So they do at u = 0, where F = I.
 
-The surface does the work of the contact's force at its own velocity, and that of the moment that turns the part with
-it; friction dissipates Q u; the rest is kinetic and potential energy of the part, both as seen by one at rest.
+The surface does the work of the contact's whole force at its own velocity where the centre of mass is, about which
+that force has no moment; friction dissipates Q u; the rest is kinetic and potential energy of the part, both as seen
+by one at rest.
 """
 
 from __future__ import annotations
@@ -29,7 +32,6 @@ from typing import NamedTuple
 from particle.events.mechanics.motion import Motion
 from particle.events.mechanics.parallel import (
     from_height,
-    inner,
     normal_bend,
     normal_rate,
     shape_operator,
@@ -129,6 +131,24 @@ def of_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, f
 
 
 @device_no_arrays
+def at_centre(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
+    """K a = F (F - z_c S)^-1 (F - z_k S) F^-1 a: the force along the surface on the centre of mass by friction a."""
+    if part.centre == part.contact:
+        return x, y
+    shape = shape_operator(f)
+    return stretched(f, *from_height(shape, part.centre, *to_height(shape, part.contact, *unstretched(f, x, y))))
+
+
+@device_no_arrays
+def at_contact(f: SurfacePoint, part: Part, x: float, y: float) -> tuple[float, float]:
+    """K^-1 a: the friction that bears a force a along the surface on the centre of mass."""
+    if part.centre == part.contact:
+        return x, y
+    shape = shape_operator(f)
+    return stretched(f, *from_height(shape, part.contact, *to_height(shape, part.centre, *unstretched(f, x, y))))
+
+
+@device_no_arrays
 def length(f: SurfacePoint, x: float, y: float) -> float:
     """Length along the surface of a vector given in the plane's coordinates."""
     climb = x * f.w_x + y * f.w_y
@@ -143,23 +163,12 @@ def slide_rate(f: SurfacePoint, part: Part, motion: Motion, rate: Motion) -> flo
     limit = friction_limit(part.law, p.normal)
     slow = limit / part.mass / p.speed if p.speed > 0.0 else 0.0
     k_x, k_y = slip(f, part, v_x, v_y)
+    q_x, q_y = at_centre(f, part, slow * k_x, slow * k_y)
     rate.x, rate.y = v_x, v_y
-    rate.v_x, rate.v_y = by_centre(f, part, p.x - slow * k_x, p.y - slow * k_y)
-    rate.work = push(f, part, p.normal) - part.mass * slow * drag(f, part, k_x, k_y)
-    rate.work += part.mass * slow * turning(f, part, v_x, v_y)
+    rate.v_x, rate.v_y = by_centre(f, part, p.x - q_x, p.y - q_y)
+    rate.work = push(f, part, p.normal) - part.mass * drag(f, part, q_x, q_y)
     rate.dissipated = limit * p.speed
     return p.normal
-
-
-@device_no_arrays
-def turning(f: SurfacePoint, part: Part, v_x: float, v_y: float) -> float:
-    """k.M (k - (I - z_c S) v) [m^2/s^2]; times Q/u the power of friction's moment, which turns a sliding part."""
-    if part.centre == part.contact:
-        return 0.0
-    shape = shape_operator(f)
-    k_x, k_y = to_height(shape, part.contact, v_x, v_y)
-    c_x, c_y = to_height(shape, part.centre, v_x, v_y)
-    return inner(f, k_x, k_y, k_x - c_x, k_y - c_y)
 
 
 @device_no_arrays

@@ -30,11 +30,11 @@ class Rest(NamedTuple):
 
     low: FloatArray  # (MAX_HALVINGS + 2,)
     width: FloatArray  # (MAX_HALVINGS + 2,)
-    margins: FloatArray  # (MAX_HALVINGS + 2, 6, DEGREE + 1), of `stick_margin`, from the narrow subinterval on
-    motion: FloatArray  # (3, 6), w, w_x and w_y at the place as polynomials of the share of the time
-    plane: FloatArray  # (6, 6), u + base along x, its derivatives by x and y; the same along y
-    part_motion: FloatArray  # (3, 6), the same over a part of the time
-    part_plane: FloatArray  # (6, 6)
+    margins: FloatArray  # (MAX_HALVINGS + 2, 2, DEGREE + 1), of `stick_margin`, from the narrow subinterval on
+    motion: FloatArray  # (6, 6), w at the place, w_x, w_y, w_xx, w_xy, w_yy, as polynomials of the share of the time
+    plane: FloatArray  # (2, 6, 6), the same of u + base along x and along y
+    part_motion: FloatArray  # (6, 6), these over a part of the time
+    part_plane: FloatArray  # (2, 6, 6)
     quintic: FloatArray  # (6,), one of these in Bernstein form
     force: FloatArray  # (BOUND_DEGREE + 1,), of `stick_bound`
 
@@ -43,11 +43,11 @@ def new_rest() -> Rest:
     return Rest(
         np.zeros(MAX_HALVINGS + 2),
         np.zeros(MAX_HALVINGS + 2),
-        np.zeros((MAX_HALVINGS + 2, 6, DEGREE + 1)),
-        np.zeros((3, ORDER)),
+        np.zeros((MAX_HALVINGS + 2, 2, DEGREE + 1)),
         np.zeros((6, ORDER)),
-        np.zeros((3, ORDER)),
+        np.zeros((2, 6, ORDER)),
         np.zeros((6, ORDER)),
+        np.zeros((2, 6, ORDER)),
         np.zeros(ORDER),
         np.zeros(BOUND_DEGREE + 1),
     )
@@ -103,5 +103,5 @@ def _narrow(motion: FloatArray, plane: FloatArray, low: float, width: float) -> 
     """Polynomials of s on [low, low + width] as ones of the share of it, in place."""
     for row in range(motion.shape[0]):
         narrow(motion[row], low, width)
-    for row in range(plane.shape[0]):
-        narrow(plane[row], low, width)
+        narrow(plane[0, row], low, width)
+        narrow(plane[1, row], low, width)

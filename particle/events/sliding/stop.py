@@ -7,8 +7,8 @@ across it), |A| < Q stops the part after
     X = (A p^2 + 2 Q p u + A u^2)/(4 (Q^2 - A^2)) along d
     Y = r (2 Q u + A p)/(4 Q^2 - A^2) across it.
 
-Here p, r, X and Y are the contact's, and A and Q are multiplied by d.K d of `mechanics.breakaway`, which is 1
-where the contact is as high as the centre of mass. What K has across d is left to the error.
+Here p, r, X and Y are the contact's, and A and Q are multiplied by d.K^2 d of `mechanics.breakaway`, which is 1
+where the contact is as high as the centre of mass. What K^2 has across d is left to the error.
 
 A pull A > Q instead turns a part that moves nearly straight against it, after T = u/(A + Q), X = p u/(2 (A + Q)) and
 Y = r u/(A + 2 Q), which is exact up to lengths of r^2/Q.
@@ -25,6 +25,7 @@ from particle.events.mechanics import (
     Motion,
     Part,
     RestPull,
+    at_centre,
     drag,
     inner,
     mobility,
@@ -54,8 +55,7 @@ class Stop(NamedTuple):
     impulse_x: float  # m/s, what friction takes from the part on the way, per kg
     impulse_y: float
     loss: float  # m^2/s^2, what friction dissipates on the way, per kg
-    turning: float  # m^2/s^2, what its moment takes to turn the part with the surface
-    miss: float  # m, what K has across the way
+    miss: float  # m, what K^2 has across the way
 
 
 @device_no_arrays
@@ -83,13 +83,14 @@ def frozen_stop(f: SurfacePoint, part: Part, a: RestPull, v_x: float, v_y: float
         time, reverses = u / (force + q), True
         along, across = 0.5 * p * time, r * u / (force + 2 * q)
     else:
-        return Stop(math.inf, 0.0, 0.0, False, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Stop(math.inf, 0.0, 0.0, False, 0.0, 0.0, 0.0, 0.0)
     x, y = over_plane(f, part, along * a.d_x + across * a.n_x, along * a.d_y + across * a.n_y)
     c_x, c_y = of_centre(f, part, v_x, v_y)
-    c_x, c_y = c_x + a.demand * a.d_x * time, c_y + a.demand * a.d_y * time
+    p_x, p_y = at_centre(f, part, a.demand * a.d_x, a.demand * a.d_y)
+    c_x, c_y = c_x + p_x * time, c_y + p_y * time
     loss = (0.5 * u * u + force * along) / straight
     miss = bent * abs(along) + (bent + wide) * abs(across)
-    return Stop(time, x, y, reverses, c_x, c_y, loss, loss * (1.0 - 1.0 / straight), miss)
+    return Stop(time, x, y, reverses, c_x, c_y, loss, miss)
 
 
 @inlined
@@ -133,6 +134,6 @@ def come_to_rest(local: LocalSurface, part: Part, time: float, motion: Motion, s
             push(f, part, load) * stop.time - part.mass * drag(f, part, stop.impulse_x, stop.impulse_y)
         )
     motion.x, motion.y, motion.v_x, motion.v_y = x + stop.x, y + stop.y, 0.0, 0.0
-    motion.work += work + part.mass * stop.turning
+    motion.work += work
     motion.dissipated += part.mass * stop.loss
     return True

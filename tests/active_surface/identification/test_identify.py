@@ -105,6 +105,7 @@ def test_a_part_that_stays_bounds_friction_on_one_side():
     assert "at least 0.3" in one.text
 
 
+@pytest.mark.slow
 def test_values_that_contradict_each_other_or_lie_off_the_plate_are_passed_over():
     """Static friction below sliding friction is no case, nor is a part beyond the rim."""
     case = braking().vary({"friction.static_coefficient": 0.6})

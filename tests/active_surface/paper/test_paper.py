@@ -47,6 +47,7 @@ def test_figure_runs_and_is_written(module, bench):
     assert found.name in page_of([found], TINY, PARAMETERS, "paper")
 
 
+@pytest.mark.slow
 def test_some_figures_are_written_and_a_page_of_all_only(bench, monkeypatch, tmp_path):
     monkeypatch.setattr(reproduction, "Bench", lambda _: bench)
     done = reproduce(["fig12", "FIG4"], tmp_path, TINY)

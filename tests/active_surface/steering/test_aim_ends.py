@@ -142,6 +142,7 @@ def test_the_scatter_of_a_plan_is_about_the_way_point_of_its_last_leg(tmp_path, 
     assert comment == [f"# The drives carry the part over (-20 um, 20 um) but for {off}.", f"# {planned.failure}"]
 
 
+@pytest.mark.slow
 def test_a_plan_whose_disturbed_runs_are_all_lost_says_nothing_of_how_near_they_are(tmp_path):
     case = case_of(tmp_path)
     planned = plan(Route(case, (TARGET,), Settings(**LIFTED)), tmp_path / "out")
@@ -192,6 +193,7 @@ def test_bounds_that_leave_no_time_for_a_cycle_are_refused(tmp_path):
     Task(case, TARGET, Settings(delay=(18e-3, 40e-3)))
 
 
+@pytest.mark.slow
 def test_a_case_file_may_follow_the_way_points(tmp_path):
     case_of(tmp_path)
     (tmp_path / "1.toml").write_text('[aim]\ncase = "base.toml"\npaths = 3\nscatter = 2\n')

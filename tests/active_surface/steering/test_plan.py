@@ -116,6 +116,7 @@ def test_what_the_start_cannot_reach_a_later_place_may(tmp_path):
     assert route.leg(1, (1e-7, 6e-5)).target == ways[1]
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_legs_before_an_interruption_count(case, surface):
     def stop(done, of):

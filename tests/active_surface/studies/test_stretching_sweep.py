@@ -47,6 +47,7 @@ def test_paths_are_those_of_single_runs(engine):
         assert end == pytest.approx(path.position[-1], abs=3e-4 * path.path_length)
 
 
+@pytest.mark.slow
 def test_records_do_not_depend_on_the_chunk(engine):
     together = engine.records(range(4))
     other = Engine(engine.study, threads=1)
@@ -64,6 +65,7 @@ def test_the_plate_stretches(engine):
     assert np.hypot(*(one.position[-1] - other.position[-1])) > 0.05 * one.path_length
 
 
+@pytest.mark.slow
 def test_longer_runs_than_the_base_cases_are_followed(tmp_path):
     text = '[[axes]]\nfield = "run.duration"\nvalues = ["1 ms", "4 ms"]\n'
     engine = Engine(read_study(written(tmp_path, text, CASE.replace('"2000 Hz"', '"2000 Hz"\ncycles = 20'))))

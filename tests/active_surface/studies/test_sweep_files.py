@@ -84,6 +84,7 @@ def test_the_sources_are_hashed_with_their_places(tmp_path, monkeypatch):
     assert len(found) == 3
 
 
+@pytest.mark.slow
 def test_results_of_another_study_are_replaced_only_when_that_is_asked_for(tmp_path):
     fewer, other = MASS.replace("count = 9", "count = 8"), PLATFORM.replace("20 nN", "30 nN")
     lost = "points, 7 of which are not in this study: --overwrite drops these and keeps the other 2 paths"

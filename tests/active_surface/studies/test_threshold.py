@@ -132,6 +132,7 @@ def test_a_condition_that_holds_nowhere_says_so(tmp_path):
     assert [text.get_text() for text in curve.texts] == ["outcome = moving nowhere"]
 
 
+@pytest.mark.slow
 def test_another_threshold_is_drawn_without_running_again(tmp_path, monkeypatch):
     first = read_study(written(tmp_path, AXES + '[map]\nthreshold = "distance > 1 um"\n', PLATFORM))
     one = run_study(first, tmp_path / "out").files[1].read_bytes()

@@ -159,6 +159,7 @@ def test_a_picture_of_a_partial_run_says_so(folder, tmp_path):
     assert told["complete"] is False and [len(one["files"]) for one in told["pictures"]] == [1] * len(told["pictures"])
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_events_are_marked_where_they_happen(folder):
     run = read_run(folder / "case")

@@ -65,6 +65,7 @@ def test_a_moved_result_with_a_measured_motion_and_friction_reruns_to_the_same_b
     assert json.loads(twice.stdout)["same_end"] and after.case.source == before.case.source == PLATFORM
 
 
+@pytest.mark.slow
 def test_a_result_keeps_the_files_as_they_were_when_its_run_began(tmp_path):
     (tmp_path / "motion.csv").write_text(MOTION)
     (tmp_path / "friction.csv").write_text(POINTS)

@@ -105,6 +105,7 @@ def test_an_export_that_fails_leaves_nothing_that_mixes_runs(folder, tmp_path, f
     assert not files[0].exists() if form == "pvd" else files[0].read_bytes() == before[files[0]]
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_is_exported_with_the_steps_that_it_has_and_stays_partial(folder, tmp_path):
     for kind in ("plate", "part"):
         shutil.copy(folder / f"one.{kind}.vtkhdf", tmp_path / f"one.partial.{kind}.vtkhdf")

@@ -59,6 +59,7 @@ def test_a_run_is_finished_though_its_picture_cannot_be_drawn(tmp_path, monkeypa
     assert not list(tmp_path.glob("*.png")) and read_run(tmp_path / "run").complete
 
 
+@pytest.mark.slow
 def test_a_run_leaves_nothing_of_an_older_one_beside_it(tmp_path):
     run_case(shaken(), tmp_path, csv=True, save_surface=True)
     assert {file.name for file in tmp_path.iterdir()} >= {"run.csv", "run.surface.h5"}

@@ -20,6 +20,7 @@ def path(plate, drives, points=POINTS):
     return simulate(surface, PART, LAW, 2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_an_even_thickness_gives_the_path_of_the_uniform_plate():
     mesh, drives = meshes.disc(RADIUS, 60e-6), [Drive(10e-6, 1300.0), Drive(10e-6, 1000.0)]

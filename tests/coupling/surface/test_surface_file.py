@@ -91,6 +91,7 @@ CASE = toml(
 )
 
 
+@pytest.mark.slow
 def test_a_run_saves_its_surface_on_request(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
     result = run_case(read_case(tmp_path / "case.toml"), tmp_path / "out", save_surface=True)
