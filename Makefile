@@ -17,9 +17,10 @@ PYTEST := $(BIN)/python -m pytest -q -n logical --dist loadfile --no-loadscope-r
 # In plain Python a bad index raises: a few kernels in `make test`, and in test-all what else marches.
 PLAIN := $(addprefix tests/particle/test_, bernstein.py drive.py in_plane_motion.py runge_kutta.py slide.py stick.py)
 MARCHES := tests/particle tests/physics tests/regression tests/validation/test_single_stroke.py
-# Only in test-all: tests marked slow, and files that take long as a whole. What is left keeps to its budget.
-LONG := *_in_browser.py $(addprefix test_, aim_examples.py cluster.py large_arrays.py paper_figures.py ring_example.py)
-LONG += $(addprefix test_, rivals.py study_examples.py wheel.py)
+# Only in test-all: tests marked slow, and files that take long as a whole.
+LONG := *_in_browser.py $(addprefix test_, aim_examples.py cluster.py large_arrays.py paper_figures.py platform_examples.py)
+LONG += $(addprefix test_, ring_example.py rivals.py study_examples.py wheel.py)
+# What is left keeps to its budget.
 CHOSEN := -m "not slow" --budget $(LONG:%=--ignore-glob='*/%')
 
 .PHONY: demo test test-all coverage forget-coverage plain lint kernels docs site paper benchmark abuse fuzz paths kills clean

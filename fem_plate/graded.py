@@ -90,7 +90,7 @@ class GradedPlate:
         """The plate on cells as they are, under another tension [N/m]."""
         rows = corner_rows(mesh, self._other_corners)
         if self.energy is not None:
-            return PlateModel(mesh, self.supports, replace(self.energy, tension=tension), rows)
+            return PlateModel(mesh, self.supports, replace(self.energy, tension=tension, size=mesh.size), rows)
         section = self.section
         return PlateModel(mesh, self.supports, section.law, rows, tension / section.rigidity, self.enriched_corners)
 

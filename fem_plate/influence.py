@@ -125,7 +125,8 @@ def unheld_shapes(
         check_held("influence", model.motions(x), held)
     functions, green = held_shapes(model, x, stiffness, stiffness_unit, may_move=True)
     free = np.linalg.svd(motions)[2][np.linalg.matrix_rank(motions, tol=RANK) :].T  # (r, f), 0 at all actuators
-    plate = HeldPlate(model, x * model.mesh.size, stiffness_unit / stiffness)
+    size = model.mesh.size
+    plate = HeldPlate(model, x * size, stiffness_unit * size**2, stiffness)
     rigid = model.rigid @ free
     moved = model.space.linear() @ rigid
     shares = np.linalg.solve(moved.T @ plate.with_mass(moved), moved.T @ plate.inertia_of(functions))

@@ -89,11 +89,12 @@ class Modes:
 class HeldPlate:
     """A plate held at points (N, 2) [m], by the finite elements v of its trial functions.
 
-    compliance: (N,) dimensionless, of the springs there, 1/k; 0 where the hold is rigid.
+    rigidity: N m.  stiffness: (N,) N/m, of the springs there; inf where the hold is rigid.
     """
 
-    def __init__(self, model: PlateModel, held: FloatArray, compliance: FloatArray) -> None:
-        self.model, self.held = model, held / model.mesh.size
+    def __init__(self, model: PlateModel, held: FloatArray, rigidity: float, stiffness: FloatArray) -> None:
+        self.model, self.held, self.rigidity = model, held / model.mesh.size, rigidity
+        compliance = rigidity / model.mesh.size**2 / stiffness  # dimensionless, 1/k
         space, x = model.space, self.held
         self.mass = model.mass
         self.responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without F
@@ -120,6 +121,10 @@ class HeldPlate:
             np.concatenate([np.ones(len(on_springs)), np.full(inertia.shape[1], -1 / RIGID_SHIFT)])
         )
         self.solve = _corrected(model.solve, rows, weights)
+
+    def unit(self, inertia: float) -> float:
+        """The squared angular frequency [1/s^2] that makes eigenvalues dimensionless; inertia: kg/m^2, by area."""
+        return self.rigidity / (inertia * self.model.mesh.size**4)
 
     def with_mass(self, v: FloatArray) -> FloatArray:
         """The inertial load (unknowns, ...) of v, the integrals of its trial functions with all of them."""
@@ -151,12 +156,12 @@ class HeldPlate:
         return whole.weighted(np.diag(1 / largest)), largest
 
 
-def modes(held_plate: HeldPlate, count: int, unit: float, refine: Callable[[], Modes] | None = None) -> Modes:
+def modes(held_plate: HeldPlate, count: int, inertia: float, refine: Callable[[], Modes] | None = None) -> Modes:
     """The lowest modes of a plate held at points.
 
-    unit: 1/s^2, the squared angular frequency that makes eigenvalues dimensionless.  refine: solves on halved cells.
+    inertia: kg/m^2, mass per area.  refine: solves on halved cells.
     """
-    unknowns = held_plate.model.unknowns
+    unknowns, unit = held_plate.model.unknowns, held_plate.unit(inertia)
     mass_operator = LinearOperator((unknowns, unknowns), matvec=held_plate.with_mass, dtype=float)
     squares, vectors = eigsh(
         mass_operator,  # only its shape is used: with sigma = 0 all that is solved with is OPinv
@@ -255,9 +260,9 @@ class Excitation:
     """
 
     def __init__(self, shapes: WithModel, inertia: float, rigidity: float) -> None:
-        size, held = shapes.size, shapes.springs > 0
-        self._unit = rigidity / (inertia * size**4)  # rad^2/s^2
-        self._plate = HeldPlate(shapes.model, shapes.points[held], rigidity / size**2 / shapes.springs[held])
+        held = shapes.springs > 0
+        self._plate = HeldPlate(shapes.model, shapes.points[held], rigidity, shapes.springs[held])
+        self._unit = self._plate.unit(inertia)
         self._load = self._plate.inertia_of(shapes.functions)  # (phi_i, q)
         none = np.zeros((len(self._load), 0))
         self._basis, self._stiff, self._heavy = none, none, none  # V, K V and M V, V orthonormal in M

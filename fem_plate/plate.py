@@ -286,15 +286,13 @@ class Plate(GradedPlate):
         max_count = model.unknowns // 2 - 1
         if not (isinstance(count, int | np.integer) and 1 <= count <= max_count):
             raise ValueError(f"Input count of modes must be a whole number from 1 to {max_count}; got {count!r}")
-        inertia = density * self.section.thickness * self.mesh.size**4
-        rigidity = self.section.rigidity
-        compliance = rigidity / self.mesh.size**2 / actuator_stiffness
+        inertia = density * self.section.thickness
         if deflected is not None:
-            return deflected.modes(count, points, compliance, rigidity / inertia)
+            return deflected.modes(count, points, actuator_stiffness, inertia)
 
         def solve(halvings: int) -> Modes:
-            held_plate = HeldPlate(self.model(points, halvings), points, compliance)
-            return modes.modes(held_plate, count, rigidity / inertia, lambda: solve(halvings + 1))
+            held_plate = HeldPlate(self.model(points, halvings), points, self.section.rigidity, actuator_stiffness)
+            return modes.modes(held_plate, count, inertia, lambda: solve(halvings + 1))
 
         return solve(0)
 

@@ -20,6 +20,7 @@ FORMATS = {".msh": "gmsh", ".vtu": "vtu", ".xdmf": "xdmf"}
 """The files that are read: what meshio calls them, by their endings."""
 DAMAGED = "it is damaged, or its parts do not fit together"
 NO_NUMBER = "string or file could not be read to its end"
+PARAMETRIC = "its nodes have parameters; save it in gmsh with Mesh.SaveParametric = 0"
 REASONS = {
     NO_NUMBER: "something in it that should be a number is none",
     r"Illegal data type '(.*?)'": "it has numbers of the type {}, which VTU does not have",
@@ -28,6 +29,9 @@ REASONS = {
     r"^ '(Version|Format|TopologyType|Name|Center)'$": "something in it lacks the attribute {}",
     "Only supports one grid": "it does not have one grid",
     r"Need mesh format in .*\(got (.*?)\)": "it is of gmsh {}; versions 2 and 4 are read",
+    "parametric nodes": PARAMETRIC,
+    "Incompatible cell data 'gmsh:physical'": "only some of its points, curves and surfaces are in a physical group; "
+    "save it in gmsh with Mesh.SaveAll = 0, or with Mesh.MshFileVersion = 2.2",
 }
 """What is wrong with a file, by what numpy and meshio say of it."""
 CUT = [errors.codes[code] for code in (errors.XML_ERROR_NO_ELEMENTS, errors.XML_ERROR_UNCLOSED_TOKEN)]
@@ -66,7 +70,8 @@ def load(path: Path) -> Any:
             warnings.filterwarnings("error", NO_NUMBER)  # which would end the array there
             mesh = meshio.read(path, FORMATS[ending])
     except (Exception, SystemExit) as error:
-        raise ValueError(f"{EXPECTED}; {path} cannot be read as one: {_reason(error, printed.getvalue())}") from error
+        said = "parametric nodes" if b"$ParametricNodes" in path.read_bytes() else printed.getvalue()
+        raise ValueError(f"{EXPECTED}; {path} cannot be read as one: {_reason(error, said)}") from error
     if ending == ".vtu":
         mesh.field_data = {}  # such as the time; only gmsh has names of boundaries there
     _check_arrays(mesh, path)

@@ -26,6 +26,7 @@ STRAIGHT = 1e-9  # of the chord: edges whose middle is closer to it are straight
 RIM = "rim"  # the boundary of a mesh that names none
 WANTED = "a plane mesh of triangles with named boundaries"
 GMSH = "give them a Physical Curve name in gmsh"
+SURFACE = "give the plate a Physical Surface in gmsh, without which only the named curves are saved"
 NUMBERED = "give them lines, with a whole number each in the cell data boundary"
 BENT = 1e-6  # of the chord: inner edges must not be bent more
 
@@ -110,9 +111,6 @@ def from_skfem(mesh: MeshTri1 | MeshTri2, unit: float = 1.0) -> PlateMesh:
     corners, middles = mesh.t.T.astype(np.int64), np.full((mesh.t.shape[1], 3), -1)
     if type(mesh).__name__ == "MeshTri2":
         middles = mesh.dofs.element_dofs[3:].T.astype(np.int64)  # of edges 01, 12 and 02
-    clockwise = areas(mesh.doflocs.T, corners) < 0  # it sorts the corners
-    corners = np.where(clockwise[:, None], corners[:, [0, 2, 1]], corners)
-    middles = np.where(clockwise[:, None], middles[:, [2, 1, 0]], middles)
     boundaries = mesh.boundaries or {RIM: mesh.boundary_facets()}
     pairs = [mesh.facets[:, facets].T.astype(np.int64) for facets in boundaries.values()]
     names = [{name} for name, facets in boundaries.items() for _ in facets]
@@ -124,7 +122,7 @@ def _plate_mesh(found: Found, unit: float, mistakes: list[str], wrong: str) -> P
     """The mesh of what was found; raises ValueError with all mistakes."""
     points, corners, middles, pairs, line_sets, naming = found
     if not len(corners):
-        mistakes.append("no triangles")
+        mistakes.append("no triangles" + f"; {SURFACE}" * (naming == GMSH))
         _refuse(mistakes, wrong)
     for numbers, what in ((corners, "triangle"), (middles, "curved triangle"), (pairs, "line")):
         lowest = -1 if numbers is middles else 0
@@ -186,8 +184,9 @@ def _cells(mesh: Any, mistakes: list[str]) -> tuple[IntArray, IntArray]:
 
 
 def _turned_over(points: FloatArray, corners: IntArray, middles: IntArray) -> tuple[IntArray, IntArray]:
-    """The cells, reversed if all run clockwise."""
-    return (corners[:, [0, 2, 1]], middles[:, [2, 1, 0]]) if (areas(points, corners) < 0).all() else (corners, middles)
+    """The cells, all counter-clockwise: a file may turn them either way, as surfaces of a CAD model are."""
+    clockwise = areas(points, corners)[:, None] < 0
+    return np.where(clockwise, corners[:, [0, 2, 1]], corners), np.where(clockwise, middles[:, [2, 1, 0]], middles)
 
 
 def _pieces(corners: IntArray) -> int:
@@ -202,12 +201,8 @@ def _pieces(corners: IntArray) -> int:
 
 
 def _check_cells(points: FloatArray, corners: IntArray, box: float, mistakes: list[str]) -> None:
-    area, centre = areas(points, corners), points[corners].mean(axis=1)
-    flat = np.abs(area) <= MIN_AREA * box
-    _note(mistakes, flat.sum(), "cell", "without an area", centre[flat])
-    turned = (area < 0) if 2 * (area < 0).sum() <= len(area) else (area > 0)
-    turned &= ~flat
-    _note(mistakes, turned.sum(), "cell", "turned the other way round than the rest", centre[turned])
+    flat = areas(points, corners) <= MIN_AREA * box
+    _note(mistakes, flat.sum(), "cell", "without an area", points[corners].mean(axis=1)[flat])
 
 
 def _edges(points: FloatArray, corners: IntArray, middles: IntArray, mistakes: list[str]) -> RimEdges:
@@ -218,6 +213,10 @@ def _edges(points: FloatArray, corners: IntArray, middles: IntArray, mistakes: l
     halfway = points[pairs].mean(axis=1)
     many = np.unique(edge[count[edge] > 2], return_index=True)[1]
     _note(mistakes, len(many), "edge", "shared by more than two cells", halfway[np.flatnonzero(count[edge] > 2)[many]])
+    ascending = np.bincount(edge, pairs[:, 0] < pairs[:, 1])
+    over = (count[edge] == 2) & (ascending[edge] != 1)
+    folds = np.flatnonzero(over)[np.unique(edge[over], return_index=True)[1]]
+    _note(mistakes, len(folds), "edge", "at which the plate folds back over itself", halfway[folds])
     start, end = np.moveaxis(points[pairs], 1, 0)
     pieces = np.stack([start, np.where(middle[:, None] < 0, halfway, points[middle]), end], axis=1)
     chord, rise = end - start, pieces[:, 1] - start

@@ -142,7 +142,8 @@ def _stays(surface: SurfaceMotion, request: Request, pairs: Pairs, x: float, y: 
 def _by_events(surface: SurfaceMotion, request: Request, pairs: Pairs, rows: Rows, times: FloatArray) -> Rows:
     """The rows at ascending times [s]: pieces of the path, each from the row before."""
     places = np.searchsorted(rows["time"], times, side="right") - 1
-    found, record, stop = rows[places], surface.record, np.zeros(1, dtype=np.int64)
+    found, record, out = rows[places], surface.record, new_record()
+    memory = _memory(record, pairs, np.zeros(1, dtype=np.int64))
     between = (times > found["time"]) & (places + 1 < len(rows))
     for k in np.flatnonzero(between):
         row, time = found[k], float(times[k])
@@ -153,7 +154,9 @@ def _by_events(surface: SurfaceMotion, request: Request, pairs: Pairs, rows: Row
             until=time,
             first_step=time - float(row["time"]),
         )
-        done = march(record, piece, pairs, _memory(record, pairs, stop), new_record())
+        clear_memory(record, memory)
+        out.lengths[0] = 0
+        done = march(record, piece, pairs, memory, out)
         found[k] = done.rows[done.lengths[0]["rows"] - 1]
     return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -27,6 +28,7 @@ class Record(_Row):
 AnyRecord = TypeVar("AnyRecord", bound=Record)
 
 
+@cache
 def record_type(kind: type[Record]) -> np.dtype[Any]:
     """The type of arrays of such rows."""
     return np.dtype((kind, [(name, _KINDS[annotation]) for name, annotation in kind.__annotations__.items()]))
@@ -34,7 +36,7 @@ def record_type(kind: type[Record]) -> np.dtype[Any]:
 
 def new_records(kind: type[AnyRecord], count: int = 1) -> NDArray[AnyRecord]:
     """Rows of zeros, (count,)."""
-    return np.zeros(count, record_type(kind))
+    return np.zeros(count, record_type(kind))  # type: ignore[arg-type]  # classes are hashable
 
 
 def _setter(name: str) -> Any:

@@ -181,9 +181,9 @@ class PatchedShapes(Shapes):
         """
         cut, rows = self._array.sparsest()
         held = self.points[rows] - cut.origin
-        model, rigidity = self._array.model(self._array.cutter, cut, held), self._array.rigidity
-        held_plate = HeldPlate(model, held, rigidity / model.mesh.size**2 / self.springs[rows])
-        return float(modes(held_plate, 1, rigidity / (inertia * model.mesh.size**4)).frequencies[0])
+        model = self._array.model(self._array.cutter, cut, held)
+        held_plate = HeldPlate(model, held, self._array.rigidity, self.springs[rows])
+        return float(modes(held_plate, 1, inertia).frequencies[0])
 
     def _width(self, x: FloatArray, weights: FloatArray | None) -> int:
         """The number of functions to evaluate; ValueError when they are too many for the points."""

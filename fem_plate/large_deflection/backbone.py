@@ -54,8 +54,9 @@ def backbone(
     movable = movable_by_boundary(in_plane_supports, plate.supports)
     membrane = AIRY if airy_applies(plate, movable) else PLANE_STRESS
     discrete = DiscretePlate(plate, points, np.full(len(points), np.inf), movable, membrane, 0, 0)
-    found = modes(HeldPlate(discrete.model, points, np.zeros(len(points))), count, 1.0)
-    squares, trial = (2 * np.pi * found.frequencies) ** 2, discrete.trial
+    held_plate = HeldPlate(discrete.model, points, discrete.rigidity, np.full(len(points), np.inf))
+    found, trial = modes(held_plate, count, 1.0), discrete.trial
+    squares = (2 * np.pi * found.frequencies) ** 2 / held_plate.unit(1.0)
     v = found.functions.unknowns - trial.extra.unknowns[:, : len(points)] @ found.functions.forces
     space = discrete.model.space
     xy, weights = space.quadrature

@@ -107,12 +107,13 @@ class DeflectedPlate(Estimated):
         """The unknowns of the in-plane motion."""
         return self.discrete.in_plane_motion(self.coefficients)
 
-    def modes(self, count: int, held: FloatArray, compliance: FloatArray, unit: float) -> Modes:
+    def modes(self, count: int, held: FloatArray, stiffness: FloatArray, inertia: float) -> Modes:
         """The lowest modes about this state, as `Plate.modes`.
 
-        held: (k, 2) m.  compliance: (k,) dimensionless.  unit: 1/s^2, of squared angular frequencies.
+        held: (k, 2) m.  stiffness: (k,) N/m.  inertia: kg/m^2, mass per area.
         """
-        discrete, x = self.discrete, self.functions.sources
+        discrete, x, rigidity = self.discrete, self.functions.sources, self.discrete.rigidity
+        compliance = rigidity / self.size**2 / stiffness
         holds = np.full(len(x), np.inf)
         for point, c in zip(held / self.size, compliance, strict=True):
             near = np.flatnonzero(np.hypot(*(x - point).T) < SAME_PLACE)
@@ -123,8 +124,9 @@ class DeflectedPlate(Estimated):
                 )
             holds[near] = c
         squares, functions = modes_about(discrete, self.coefficients, holds, count)
-        frequencies, finer = np.sqrt(squares * unit) / (2 * np.pi), cast(Callable[[], DeflectedPlate], self.refine)
-        return Modes(frequencies, discrete.model, functions, lambda: finer().modes(count, held, compliance, unit))
+        frequencies = np.sqrt(squares * rigidity / (inertia * self.size**4)) / (2 * np.pi)
+        finer = cast(Callable[[], DeflectedPlate], self.refine)
+        return Modes(frequencies, discrete.model, functions, lambda: finer().modes(count, held, stiffness, inertia))
 
     def _dimensionless(self, xy: ArrayLike) -> FloatArray:
         xy = np.asarray(xy, dtype=float)

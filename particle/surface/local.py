@@ -101,7 +101,7 @@ def new_local(surface: Surface) -> LocalSurface:
 
 def prepare(surface: Surface, local: LocalSurface) -> None:
     """Scratch memory of a surface before there is a cell and a time."""
-    local.frame[:] = np.zeros_like(local.frame)
+    local.frame[0] = 0
     frame: Frame = local.frame[0]
     frame.surface_size, frame.floor, frame.overhang = surface.size, surface.floor / surface.size, surface.overhang
     frame.base_drives, frame.in_plane, frame.cell = 2 * surface.moving_base, surface.in_plane_count, NOWHERE

@@ -55,6 +55,7 @@ def lattice(nx, ny):
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("across", "pitch"), [(12, (1.0, 1.0)), (30, (1.0, 0.7)), (100, (1.0, 1.0))])
 def test_over_a_lattice_all_cells_but_those_at_the_rim_are_alike(across, pitch):
     actuators = lattice(across, across) * pitch

@@ -178,6 +178,7 @@ def test_a_short_path_is_drawn_in_a_window_with_keys_for_what_is_there(tmp_path)
     assert start.get_markerfacecolor() == "none"
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 @pytest.mark.parametrize("case", [plate_case(2.6e-6, 1e-3), plate_case(strokes=(0.0, 0.0))])
 def test_a_part_at_rest_is_a_point_on_the_map_with_axes_that_can_be_read(case, tmp_path):

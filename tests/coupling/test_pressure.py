@@ -65,6 +65,7 @@ def test_strokes_add_their_shapes():
         assert np.abs(state.w_tt - alone.w_tt).max() < 1e-7 * max(np.abs(alone.w_tt).max(), 1e-9)
 
 
+@pytest.mark.slow
 def test_a_plate_on_actuators_alone_bears_all_of_the_pressure_there():
     plate = Plate(rectangle(400e-6, 300e-6, 40e-6), PlateSection(169e9, 0.3, T), "free", 1e-7)
     points = np.array([[-150e-6, -90e-6], [140e-6, -100e-6], [20e-6, 110e-6], [-20e-6, 10e-6]])

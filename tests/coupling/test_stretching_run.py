@@ -49,6 +49,7 @@ def full(run):
     return large.solve([drive.evaluate([2.5e-3])[0][0] for drive in run.scene.lifts])
 
 
+@pytest.mark.slow
 def test_the_summary_says_how_exactly_the_plate_stretches(run):
     s = run.summary
     assert s.theory == "von-karman"

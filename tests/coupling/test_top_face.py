@@ -70,6 +70,7 @@ def test_a_part_that_is_too_high_tips_over():
     )
 
 
+@pytest.mark.slow
 def test_adhesion_keeps_a_part_from_tipping_over():
     """Enough of it that the part sticks: the force on it is then the same, and the pressing force larger by it."""
     high = {"centre_height": 150e-6, "size": 50e-6}

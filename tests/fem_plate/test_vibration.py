@@ -115,6 +115,30 @@ def test_an_annulus_vibrates_faster_than_its_disc():
     assert omega(Plate(annulus(0.3, 1.0, 0.3), UNIT), 1)[0] > 2 * omega(Plate(disc(1.0, 0.3), UNIT), 1)[0]
 
 
+@pytest.mark.parametrize("stiffness", [np.inf, 20.0])
+def test_a_curved_rim_on_coarse_cells_does_not_scale_the_frequencies(stiffness):
+    """Cells that are made smaller for a held point reach farther out to the rim, and with them the unit of length."""
+    angles = 2 * np.pi * np.arange(3) / 3
+    for coarse, fine, radius in (
+        (disc(1.0, 0.5), disc(1.0, 0.2), 0.9),
+        (annulus(0.5, 1, 0.2), annulus(0.5, 1, 0.1), 0.95),
+    ):
+        held = radius * np.column_stack([np.cos(angles), np.sin(angles)])
+        inner = "clamped" if len(coarse.boundaries) == 1 else {"inner": "clamped"}
+        true = Plate(fine, UNIT, inner).frequencies(2, held[:1], stiffness)
+        for place in held:
+            found = Plate(coarse, UNIT, inner).modes(2, [place], stiffness)
+            assert found.frequencies == pytest.approx(true, rel=1e-4)
+            assert found.error_estimate.max() < 1e-4
+
+
+def test_a_foundation_adds_to_the_squares_of_the_frequencies_on_any_cells():
+    """omega^2 = omega_0^2 + k/(rho t)."""
+    mesh, held = annulus(0.5, 1.0, 0.2), [(0.95, 0.0)]
+    free, borne = (omega(Plate(mesh, UNIT, foundation=k), 2, held) for k in (0.0, 1e3))
+    assert borne**2 - free**2 == pytest.approx([1e3, 1e3], rel=1e-6)
+
+
 def test_without_density_it_says_what_is_missing():
     bare = Plate(disc(1.0, 0.5), PlateSection(169e9, 0.3, 5e-6))
     with pytest.raises(ValueError, match="^Input density of PlateSection must be given for frequencies; got None$"):

@@ -135,6 +135,12 @@ def test_vtu_and_xdmf_by_any_of_the_known_numbers(tmp_path, suffix, key):
     assert areas(mesh).sum() == pytest.approx(1.0)
 
 
+def test_cells_may_be_turned_either_way(tmp_path):
+    """As surfaces of a CAD model are."""
+    mesh = read(write(tmp_path / "mesh.msh", triangles=[(0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 3, 4)]))
+    assert areas(mesh) == pytest.approx([1] * 4)
+
+
 def test_a_clockwise_mesh_with_unused_points_is_put_right(tmp_path):
     points = np.concatenate([[(9, 9)], POINTS])
     mesh = read(write(tmp_path / "mesh.msh", points, TRIANGLES[:, ::-1] + 1, LINES[:, ::-1] + 1))
@@ -147,7 +153,8 @@ def test_second_order_cells_turned_over_keep_their_middles(tmp_path):
     middles = np.array([(1, -0.1), (2, 1), (1, 2), (0, 1), (0.5, 0.5), (1.5, 0.5), (1.5, 1.5), (0.5, 1.5)])
     cells = np.array([(0, 1, 4, 5, 10, 9), (1, 2, 4, 6, 11, 10), (2, 3, 4, 7, 12, 11), (3, 0, 4, 8, 9, 12)])
     points = np.concatenate([POINTS, middles])
-    for data in (cells, cells[:, [0, 2, 1, 5, 4, 3]]):
+    turned = cells[:, [0, 2, 1, 5, 4, 3]]
+    for data in (cells, turned, [*cells[:2], *turned[2:]]):
         mesh = read(write(tmp_path / "mesh.msh", points, data, kind="triangle6"))
         assert list(mesh.curves) == ["foot"]
         assert true_area(mesh) == pytest.approx(4 + 2 * 0.1 * 2 / 3)
@@ -170,9 +177,13 @@ MISTAKES = {
         {"points": np.column_stack([POINTS, [0, 0, 0, 0.1, 0]])},
         "1 point off the plane of the others, at (0, 2, 0.1)",
     ),
-    "flipped": (
-        {"triangles": [(0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 3, 4)]},
-        "1 cell turned the other way round than the rest, at (0.333333, 1)",
+    "folded": (
+        {"points": np.concatenate([POINTS, [(1, 0.5)]]), "triangles": [*TRIANGLES, (0, 1, 5)]},
+        "1 edge at which the plate folds back over itself, at (1, 0)",
+    ),
+    "no surface": (
+        {"triangles": np.empty((0, 3), dtype=int)},
+        "no triangles; give the plate a Physical Surface in gmsh, without which only the named curves are saved",
     ),
     "flat": (
         {"points": np.concatenate([POINTS, [(1, 0)]]), "triangles": [*TRIANGLES, (0, 5, 1)]},
@@ -237,13 +248,12 @@ def test_edges_bent_beyond_their_cell_are_refused(tmp_path):
 
 def test_many_mistakes_come_at_once_and_many_places_as_three(tmp_path):
     mesh = rectangle(2, 2, 0.2)
-    triangles = mesh.triangles.copy()
-    triangles[:5] = triangles[:5, ::-1]
+    points = np.column_stack([mesh.points, 0.1 * (np.arange(len(mesh.points)) < 5)])
     with pytest.raises(ValueError) as error:
-        read(write(tmp_path / "mesh.msh", mesh.points, triangles, mesh.boundaries["left"], [7] * 10))
+        read(write(tmp_path / "mesh.msh", points, mesh.triangles, mesh.boundaries["left"], [7] * 10))
     lines = str(error.value).splitlines()[1:]
     assert len(lines) == 2
-    assert re.fullmatch(r"  5 cells turned .*, at (\([-\d., ]+\), ){3}\.\.\.", lines[0])
+    assert re.fullmatch(r"  5 points off the plane of the others, at (\([-\d., ]+\), ){3}\.\.\.", lines[0])
     assert lines[1].startswith("  an unnamed boundary: 30 edges, the first between (")
 
 

@@ -45,11 +45,58 @@ def test_a_file_with_fields_such_as_the_time_is_read(tmp_path, kind, values):
     assert {name: len(edges) for name, edges in read(tmp_path / "mesh.vtu").boundaries.items()} == {"7": 2, "8": 1}
 
 
+SOME_NAMED = """$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+2 7 "plate"
+$EndPhysicalNames
+$Entities
+0 1 1 0
+1 0 0 0 1 0 0 0 0
+1 0 0 0 1 1 0 1 7 1 1
+$EndEntities
+$Nodes
+1 3 1 3
+2 1 0 3
+1
+2
+3
+0 0 0
+1 0 0
+0.5 0.5 0
+$EndNodes
+$Elements
+2 2 1 2
+1 1 1 1
+1 1 2
+2 1 2 1
+2 1 2 3
+$EndElements
+"""
+PARAMETRIC = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$ParametricNodes
+1
+1 0 0 0 0 1
+$EndParametricNodes
+$Elements
+1
+1 2 2 1 1 1 1 1
+$EndElements
+"""
+
+
 @pytest.mark.parametrize(
     "name, content, message",
     [
         ("none.msh", None, "there is no file {path}"),
         ("case.toml", "[plate]", "got {path}"),
+        ("all.msh", SOME_NAMED, UNREAD + "only some of its points, curves and surfaces are in a physical group; save"),
+        ("parameters.msh", PARAMETRIC, UNREAD + "its nodes have parameters; save it in gmsh with Mesh.SaveParametric"),
+        ("also.msh", SOME_NAMED.replace("2 1 0 3", "2 1 1 3"), UNREAD + "its nodes"),
         ("mesh.stl", "solid\nendsolid", "got {path}"),
         ("mesh.msh", "text", UNREAD + DAMAGED),
         ("old.msh", "$MeshFormat\n1.0 0 8\n$EndMeshFormat", UNREAD + "it is of gmsh 1.0; versions 2 and 4 are read"),

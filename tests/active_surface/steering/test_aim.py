@@ -41,6 +41,7 @@ def surface(case):
     return build_surface(case)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 def test_an_aim_reaches_its_target_and_its_case_file_the_same_point_to_the_bit(case, tmp_path):
     found = aim(Task(case, TARGET, Settings(scatter=3, tolerance=1e-6)), tmp_path, threads=1)

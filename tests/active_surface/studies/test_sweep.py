@@ -128,6 +128,7 @@ def test_a_point_that_cannot_be_run_is_refused_and_told(tmp_path):
     assert ("refused", said) in lines(sweep)
 
 
+@pytest.mark.slow
 @pytest.mark.compiled
 @pytest.mark.parametrize("case", [PLATE, PLATFORM], ids=["plate", "platform"])
 def test_a_point_with_cycles_without_end_is_refused(tmp_path, case, monkeypatch):

@@ -140,6 +140,7 @@ def test_partial_files_have_the_steps_that_both_hold(folder, name):
     assert len(saved.time) == len(saved.plate_field("deflection")) == 8
 
 
+@pytest.mark.slow
 def test_files_of_one_run_find_each_other_beside_those_of_another(folder):
     """A kill between the two renamings leaves the new part with the old plate under their final names."""
     unfinished(folder, ["plate"])

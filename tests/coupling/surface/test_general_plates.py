@@ -48,6 +48,7 @@ def test_a_mirrored_thickness_and_mirrored_drives_give_the_mirrored_path():
     np.testing.assert_allclose(mirrored, ends[0].position[-1], atol=1e-3 * ends[0].distance)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reference", [5e-6, 10e-6])
 def test_cells_follow_the_logarithm_at_each_actuator(reference):
     """It is as strong as the plate is soft there."""

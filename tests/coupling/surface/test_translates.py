@@ -56,6 +56,7 @@ def test_cells_a_pitch_apart_deep_in_a_lattice_have_the_same_polynomials_and_the
             )
 
 
+@pytest.mark.slow
 def test_a_shared_fit_is_as_good_as_the_cut_off_shapes_and_says_so(surface, shapes):
     xy, time = inside(300), 1.7e-3
     strokes = [drive.evaluate(time)[0] for drive in map(lambda d: Drive(1e-6, 300.0, delay=d), surface.drives.delay)]
