@@ -26,6 +26,7 @@ from particle.friction import Contact
 FloatArray = NDArray[np.float64]
 
 
+MAX_SLOPE, MAX_STRAIN = 0.2, 0.005  # of the plate, to which the model holds; silicon breaks near twice the strain
 # The path error of small-deflection theory, measured on separate solvers: 8 % of the path at one thickness.
 LINEAR_ERROR = 0.08
 # The quasi-static model's error of w_tt, measured likewise, over one over a stroke's time by the plate's first

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from common import draw, notebook_html
-from coupling.advice import advised_case, moves
 from coupling.case import Case
 from coupling.scene import Scene
 from coupling.summary import Summary
@@ -55,18 +54,6 @@ class Result:
     def __repr__(self) -> str:
         text = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."
         return f"Result of {self.case!r}. {text}"
-
-    @property
-    def advised(self) -> Case | None:
-        """The case of the trial run that the advice tells of; None: there is none, or the motion is measured."""
-        advice = self.summary.advice
-        trial = None if advice is None or advice.measured else advice.trial
-        return None if trial is None else advised_case(self.case, trial)
-
-    @property
-    def moves(self) -> bool:
-        """Whether the drives carried the part far and kept it, so that there is nothing to advise."""
-        return moves(self.scene, self.trajectory)
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the path over the surface as it is when it is deflected most, and the motion over time.

@@ -127,10 +127,10 @@ def run_over(
 
 
 def quick_summary(case: Case, scene: Scene) -> Summary:
-    """The summary of a run without its second path, whose error counts as zero, and without advice: these take long."""
+    """The summary of a run without its second path, whose error counts as zero."""
     friction = build_friction(case)
     trajectory = interruptible(follow_part, case, scene.surface, friction)
-    return summarise(case, scene, trajectory, trajectory, friction, advised=False)
+    return summarise(case, scene, trajectory, trajectory, friction)
 
 
 def build_scene(case: Case, progress: Progress = silent, shapes: PlateShapes | None = None) -> Scene:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 import numpy as np
 
-from coupling.advice import MAX_SLOPE, MAX_STRAIN, Advice, advice_from, advise
 from coupling.case import Case
 from coupling.drives import first_jump, frame_times
 from coupling.margins import Margins, margins_from, margins_of
 from coupling.measured import MotionFit, fit_from
 from coupling.plate_figures import PlateFigures, StretchError, VibrationFigures, plate_figures
 from coupling.scene import PlateScene, Scene
+from coupling.thresholds import Thresholds, thresholds_of
 from particle import AnyDrive, EventKind, State, Trajectory
 from particle.friction import Contact
 
@@ -54,7 +54,9 @@ class Summary:
     same_events: bool  # whether that run has the same kinds of events in the same order
     path_resolution: float  # m, the tolerance of one step
     margins: Margins
-    advice: Advice | None  # for a part that hardly moved or was lost; None also where no drive moves
+    thresholds: (
+        Thresholds | None
+    )  # of a part that hardly moved or was lost; None also where no factor scales its drives
     frames_per_cycle: (
         float | None
     )  # steps of the result files to a cycle of the fastest drive; None: measured, or nothing moves
@@ -81,8 +83,8 @@ def summary_of(figures: Mapping[str, Any]) -> Summary:
     }
     plain["motion_fits"] = tuple(fit_from(fit) for fit in plain["motion_fits"])
     plain["margins"] = margins_from(plain["margins"])
-    if plain["advice"] is not None:
-        plain["advice"] = advice_from(plain["advice"])
+    if plain["thresholds"] is not None:
+        plain["thresholds"] = Thresholds(**plain["thresholds"])
     if plain["stretch_error"] is not None:
         plain["stretch_error"] = StretchError(**plain["stretch_error"])
     if plain["vibration"] is not None:
@@ -91,13 +93,8 @@ def summary_of(figures: Mapping[str, Any]) -> Summary:
     return kind(**{field.name: plain[field.name] for field in fields(kind)})
 
 
-def summarise(
-    case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory, friction: Contact, advised: bool = True
-) -> Summary:
-    """The run's summary; `tighter` is the same run at a hundredth of the tolerance, or with half the time step.
-
-    advised: whether to look for advice, which takes trial runs where the part hardly moved or was lost.
-    """
+def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory, friction: Contact) -> Summary:
+    """The run's summary; `tighter` is the same run at a hundredth of the tolerance, or with half the time step."""
     same = [e.kind for e in trajectory.events] == [e.kind for e in tighter.events]
     moved = float(np.hypot(*(trajectory.position[-1] - tighter.position[-1])))
     drives = [*scene.lifts, *scene.base]
@@ -133,23 +130,12 @@ def summarise(
         same_events=same,
         path_resolution=case.run.tolerance * scene.surface.size,
         margins=margins_of(case, scene, trajectory, friction),
-        advice=None,
+        thresholds=thresholds_of(case, scene, trajectory, friction),
         frames_per_cycle=None if scene.fits else _frames_per_cycle(case, drives, float(trajectory.time[-1])),
     )
     if isinstance(scene, PlateScene):
-        figures = plate_figures(case, scene, trajectory, friction)
-        summary, most = PlateSummary(**vars(summary), **vars(figures)), _largest_stroke(figures)
-    else:
-        most = math.inf
-    return replace(summary, advice=advise(case, scene, trajectory, friction, most)) if advised else summary
-
-
-def _largest_stroke(figures: PlateFigures) -> float:
-    """The factor of strokes up to which slope and strain stay in bounds; 1 where the plate stretches."""
-    if figures.theory != "linear":
-        return 1.0
-    rooms = [(MAX_SLOPE, figures.largest_slope), (MAX_STRAIN, figures.largest_strain or 0.0)]
-    return min((bound / value for bound, value in rooms if value > 0), default=math.inf)
+        return PlateSummary(**vars(summary), **vars(plate_figures(case, scene, trajectory, friction)))
+    return summary
 
 
 def _frames_per_cycle(case: Case, drives: Sequence[AnyDrive], end: float) -> float | None:

@@ -1,23 +1,8 @@
-"""Advice: what would make a part move that stayed where it was, or keep one that was lost."""
+"""Advice: a search for what would make a part move that stayed where it was, or keep one that was lost."""
 
-from coupling.advice.advise import Advice, advice_from, advise, advised_case, moves
+from coupling.advice.advise import ADVISED, Advice, advise, advised_case
 from coupling.advice.setting import Setting, Trial
-from coupling.advice.thresholds import BEFORE, LEAST, RANGE, Thresholds
-from coupling.advice.trials import MAX_SLOPE, MAX_STRAIN, Trials
+from coupling.advice.trials import Trials
+from coupling.advice.words import trial_text
 
-__all__ = [
-    "BEFORE",
-    "LEAST",
-    "MAX_SLOPE",
-    "MAX_STRAIN",
-    "RANGE",
-    "Advice",
-    "Setting",
-    "Thresholds",
-    "Trial",
-    "Trials",
-    "advice_from",
-    "advise",
-    "advised_case",
-    "moves",
-]
+__all__ = ["ADVISED", "Advice", "Setting", "Trial", "Trials", "advise", "advised_case", "trial_text"]

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from coupling.advice.setting import Trial
-from coupling.advice.trials import FAR, Trials
+from coupling.advice.trials import Trials
 from coupling.case import (
     Case,
     DriveCase,
@@ -21,73 +20,62 @@ from coupling.case import (
     with_index,
 )
 from coupling.drives import travel
-from coupling.scene import PlateScene, Scene
-from particle import Drive, Outcome, Trajectory
-from particle.friction import Contact
+from coupling.part import build_friction
+from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
+from coupling.result import Result
+from coupling.summary import PlateSummary, Summary
+from coupling.thresholds import kept, lacks_motion
+from particle import Drive
 
 ADVISED: Final = "_advised"  # the end of the name of such a case
-ENDS: Final = Outcome.STUCK, Outcome.MOVING, Outcome.DETACHED, Outcome.OVERLOADED
 
 
 @dataclass(frozen=True)
 class Advice:
-    """What thresholds and trial runs show."""
+    """What trial runs show."""
 
-    knob: str  # "frequency" or "stroke": what the thresholds are of
-    slips_from: float | None  # times the case's own: a part at rest slips at its start; None: at none up to 64
-    comes_off_from: float | None  # likewise from where it comes off, or is overloaded
-    holds: float | None  # the pull over what friction holds just before it comes off, where it does not slip before
     trial: Trial | None  # None: none moved the part and kept it
     friction: dict[str, float]  # keys of the case's law in proportion to which friction is; none: its list of limits
     frequencies: tuple[float, ...]  # Hz, the case's own, of the drives that move
     strokes: tuple[float, ...]  # m, or N of actuators that are forces
     unit: str | None  # of these; None: of either kind
-    plate: bool  # whether the drives are those of a plate
     delayed: bool  # whether drives have times besides their frequency
     measured: bool = False  # whether the motion is a measured one, which no case scales
 
 
-def advise(
-    case: Case, scene: Scene, trajectory: Trajectory, friction: Contact, largest_stroke: float = math.inf
-) -> Advice | None:
-    """What would have the part move and stay on.
+def advise(result: Result, largest_stroke: float | None = None) -> Advice | None:
+    """Search for what would have the part of a run move and stay on, by trial runs.
 
-    largest_stroke: factor of the strokes up to which the model holds.
-    None where it moved far and stayed on, where no drive moves, and with inertia in large deflection: no factor scales
-    that.
+    largest_stroke: the factor of strokes up to which the model holds [that of the summary].
+    None where it moved far and stayed on, where no drive moves, and with inertia in large deflection.
     """
-    kept = trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
+    case, scene, trajectory = result.case, result.scene, result.trajectory
+    if not lacks_motion(case, scene, trajectory):
+        return None
+    most = _largest_stroke(result.summary) if largest_stroke is None else largest_stroke
+    trials = Trials(case, scene, build_friction(case), most, trajectory.distance if kept(trajectory) else 0.0)
     moving = [drive for drive in (*scene.lifts, *scene.base) if travel(drive) > 0]
-    if moves(scene, trajectory) or trajectory.outcome not in ENDS or any(case.part.velocity) or not moving:
-        return None
-    stretches = isinstance(scene, PlateScene) and scene.stretch is not None
-    rings = bool(scene.fits) or (isinstance(scene, PlateScene) and scene.has_inertia)
-    if stretches and rings:
-        return None
-    trials = Trials(case, scene, friction, rings, stretches, largest_stroke, trajectory.distance if kept else 0.0)
-    own = trials.thresholds(trials.part)
     driven = [(one, abs(amplitude(one))) for one in _drives(case)]
     units = {"N" if getattr(one, "force", None) is not None else "m" for one, most in driven if most > 0} or {"m"}
     return Advice(
-        knob="stroke" if rings else "frequency",
-        slips_from=None if math.isinf(own.slips) else own.slips,
-        comes_off_from=None if math.isinf(own.comes_off) else own.comes_off,
-        holds=trials.holds(own),
         trial=trials.best(),
         friction=friction_scales(case.friction) or {},
         frequencies=tuple(dict.fromkeys(drive.frequency for drive in moving)),
         strokes=tuple(dict.fromkeys(most for _, most in driven if most > 0)),
         unit=units.pop() if len(units) == 1 else None,
-        plate=isinstance(scene, PlateScene),
         delayed=any(drive.delay > 0 or not isinstance(drive, Drive) for drive in moving),
         measured=bool(scene.fits),
     )
 
 
-def moves(scene: Scene, trajectory: Trajectory) -> bool:
-    """Whether a part was carried far and stayed on, so that there is nothing to advise."""
-    kept = trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
-    return kept and trajectory.distance > FAR * scene.surface.size
+def _largest_stroke(summary: Summary) -> float:
+    """The factor of strokes up to which slope and strain of a plate stay in bounds; 1 where it stretches."""
+    if not isinstance(summary, PlateSummary):
+        return math.inf
+    if summary.theory != "linear":
+        return 1.0
+    rooms = [(MAX_SLOPE, summary.largest_slope), (MAX_STRAIN, summary.largest_strain or 0.0)]
+    return min((bound / value for bound, value in rooms if value > 0), default=math.inf)
 
 
 def _drives(case: Case) -> list[DriveCase]:
@@ -116,12 +104,3 @@ def advised_case(case: Case, trial: Trial) -> Case:
     if trial.place is not None:
         update["part"] = case.part.model_copy(update={"position": trial.place})
     return scaled_case(case, trial.frequency, trial.stroke, shortly=True).model_copy(update=update)
-
-
-def advice_from(figures: Mapping[str, Any]) -> Advice:
-    """The advice that was written as JSON."""
-    trial = figures["trial"]
-    if trial is not None:
-        trial = Trial(**trial | {"place": trial["place"] and tuple(trial["place"])})
-    lists = {name: tuple(figures[name]) for name in ("frequencies", "strokes")}
-    return Advice(**{**figures, **lists, "trial": trial})

@@ -11,13 +11,21 @@ from typing import Final
 import numpy as np
 
 from coupling.advice.setting import OWN, Setting, Trial
-from coupling.advice.thresholds import BEFORE, LEAST, Thresholds, thresholds_of
 from coupling.case import Case, PlateCase, friction_scales, more_plastic, ramped_case, with_index
 from coupling.part import build_part, friction_law
-from coupling.progress import silent
+from coupling.progress import doing, silent
 from coupling.scene import PlateScene, Scene, lifts_of, plate_scene
-from particle import Micropart, Outcome, PartAtRest, State, SurfaceMotion, part_at_rest, simulate
-from particle.drives import horizon
+from coupling.thresholds import FAR, LEAST, Factors, driven, factors_of, stretches, strokes_alone, window
+from particle import (
+    Micropart,
+    Outcome,
+    PartAtRest,
+    State,
+    SurfaceMotion,
+    interruptible,
+    part_at_rest,
+    simulate,
+)
 from particle.friction import Contact, ScaledFriction
 
 # Factors of the strokes, in the order in which they are tried.
@@ -26,12 +34,10 @@ FRICTION: Final = 0.7, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05  # likewise, of what fri
 SHARES: Final = 0.5, 0.25, 0.75  # of the way from slipping to coming off, in logarithms
 WIDE: Final = 4.0  # where nothing comes off: up to so many times the frequency from which it slips
 ROOM: Final = 1.05  # ratio of both thresholds below which a trial counts only where there is no other
-FAR, NEAR = 1e-3, 3e-5  # of the surface's size: by what a trial moves the part that ends the search, or counts at all
+NEAR: Final = 3e-5  # of the surface's size: by what a trial must move the part
 ENOUGH: Final = 2e-4  # likewise: by what one within the bounds ends the search beyond them
 FARTHER: Final = 1.2  # times the motion of the case itself, that a trial must make
 LEVEL: Final = 1e-6  # of what friction holds: nothing pulls
-MAX_SLOPE, MAX_STRAIN = 0.2, 0.005  # of the plate, to which the model holds; silicon breaks near twice the strain
-MAX_STROKES: Final = 85  # of the shortest, in which thresholds are looked for
 TURNS: Final = 2  # of the fastest drive, that a trial run has at least
 TRIED: Final = 300  # of the shortest, that a trial run lasts at most
 RAMP: Final = 3.0  # cycles over which forces grow
@@ -41,8 +47,7 @@ RADII, ANGLES = (0.25, 0.5), (0.3, 1.9, 3.4, 5.0)  # of other places around the 
 class Trials:
     """Runs of a case with other drives or less friction.
 
-    rings: the plate does not follow its drives at once, or they are measured: only strokes vary.  stretches: it is not
-    linear in its strokes, which do not vary.
+    largest_stroke: the factor of strokes up to which the model holds.  moved: m, by the case itself.
     """
 
     def __init__(
@@ -50,18 +55,17 @@ class Trials:
         case: Case,
         scene: Scene,
         friction: Contact,
-        rings: bool,
-        stretches: bool,
         largest_stroke: float,
         moved: float = 0.0,
     ) -> None:
         self.case, self.scene, self.friction = case, scene, friction
         self.least = max(NEAR * scene.surface.size, FARTHER * moved)  # m, by which a trial must move the part
-        self.rings, self.stretches, self.largest_stroke, self.part = rings, stretches, largest_stroke, build_part(case)
+        self.rings, self.stretches = strokes_alone(scene), stretches(scene)
+        self.largest_stroke, self.part, self.count = largest_stroke, build_part(case), 0
         self._laws: dict[float, Contact] = {}
         shortest = float(scene.surface.stroke_times.min(initial=case.run.duration))
         # A drive that does not even repeat itself once carries nothing along.
-        self.least_factor = LEAST if rings else min(1.0, TURNS * 2 * shortest / case.run.duration)
+        self.least_factor = LEAST if self.rings else min(1.0, TURNS * 2 * shortest / case.run.duration)
 
     @property
     def level(self) -> bool:
@@ -77,13 +81,7 @@ class Trials:
 
     def _rest(self, part: Micropart, setting: Setting = OWN) -> PartAtRest:
         surface = self._surface(setting)
-        return part_at_rest(surface, part, self._law(setting), self._window(surface), self.case.run.gravity)
-
-    def _window(self, surface: SurfaceMotion) -> float:
-        """How long [s] a part at rest is looked at."""
-        duration, repeated = self.case.run.duration, horizon(surface.drives, 0.0)
-        shortest = float(surface.stroke_times.min(initial=duration))
-        return min(duration, MAX_STROKES * shortest, math.inf if repeated is None else repeated)
+        return part_at_rest(surface, part, self._law(setting), window(self.case, surface), self.case.run.gravity)
 
     def _surface(self, setting: Setting) -> SurfaceMotion:
         return self.scene.surface if setting.ramp is None else self._ramped or self.scene.surface
@@ -99,23 +97,10 @@ class Trials:
         assert isinstance(case.plate, PlateCase)
         return plate_scene(ramped, case.plate, silent, scene.shapes).surface
 
-    def thresholds(self, part: Micropart, setting: Setting = OWN) -> Thresholds:
+    def thresholds(self, part: Micropart, setting: Setting = OWN) -> Factors:
         """The thresholds of a part that stays at its start."""
         rest = self._rest(part, setting)
-
-        def scaled(factor: float) -> PartAtRest:
-            return self._scaled(rest, factor, setting.stroke)
-
-        return thresholds_of(scaled)
-
-    def _scaled(self, rest: PartAtRest, factor: float, stroke: float = 1.0) -> PartAtRest:
-        return rest.scaled(1.0, factor) if self.rings else rest.scaled(factor, stroke)
-
-    def holds(self, own: Thresholds) -> float | None:
-        """The pull over what friction holds just before the part comes off, where it slips no earlier; else None."""
-        if own.slips < own.comes_off * BEFORE or not 0 < own.comes_off < math.inf:
-            return None
-        return self._scaled(self._rest(self.part), own.comes_off * BEFORE).slip().value
+        return factors_of(lambda factor: driven(self.scene, rest, factor, setting.stroke))
 
     def best(self) -> Trial | None:
         """The trial within the model's bounds that goes far enough, or the farthest of these and of those beyond.
@@ -178,7 +163,9 @@ class Trials:
         frequency, stroke = (1.0, factor) if self.rings else (factor, setting.stroke)
         surface, run = self._surface(setting).scaled(frequency, stroke), self.case.run
         duration = min(run.duration, TRIED * float(surface.stroke_times.min(initial=run.duration)))
-        path = simulate(surface, part, self._law(setting), duration, run.gravity, run.tolerance)
+        self.count += 1
+        doing(f"Trial run {self.count}", 0.0)
+        path = interruptible(simulate, surface, part, self._law(setting), duration, run.gravity, run.tolerance)
         loads = path.normal_force[path.state != State.FLIGHT]
         least = float(loads.min()) if len(loads) else 0.0
         kept = path.outcome in (Outcome.STUCK, Outcome.MOVING) and (setting.pulled or least >= 0)
@@ -196,6 +183,8 @@ class Trials:
             for angle in ANGLES:
                 x, y = nearest + radius * gap * np.array([math.cos(angle), math.sin(angle)])
                 place = float(f"{x:.3g}"), float(f"{y:.3g}")
+                if outline.gap(np.array([place]))[0] <= 0:  # a rim may be nearer than three digits tell
+                    continue
                 if trial := self._farthest(replace(self.part, position=place), settings):
                     found.append(replace(trial, place=place))
                     if trial.distance > FAR * scene.surface.size:
@@ -207,7 +196,7 @@ def _keeps_friction(setting: Setting) -> bool:
     return setting.friction == 1 and setting.plasticity is None
 
 
-def _between(thresholds: Thresholds, least: float, most: float) -> Iterator[float]:
+def _between(thresholds: Factors, least: float, most: float) -> Iterator[float]:
     """Factors from the least to the largest, of three digits, at which a part at rest slips and does not come off."""
     low = max(thresholds.slips, least)
     high = min(thresholds.comes_off, WIDE * low, most)

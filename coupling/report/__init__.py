@@ -2,6 +2,6 @@
 
 from coupling.report.device import device
 from coupling.report.lines import lines, trust
-from coupling.report.margins import LIFTS, PULLS, margin_lines, trial_text
-from coupling.report.warnings import warnings
-from coupling.report.wording import joined, with_micro_signs
+from coupling.report.margins import LIFTS, PULLS, margin_lines
+from coupling.report.warnings import MAX_DEFLECTION, MAX_QUASI_STATIC_ERROR, warnings
+from coupling.report.wording import MICRO, in_percent, joined, percent, quantity, with_micro_signs

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from coupling.advice import MAX_SLOPE, MAX_STRAIN
 from coupling.case import INERTIA, MAX_STRETCHING, MAX_VIBRATING, VON_KARMAN
+from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.report.wording import MICRO, MILLI, bending, count, in_percent, percent, quantity
 from coupling.summary import PlateSummary, Summary
 

@@ -11,6 +11,7 @@ from click.testing import CliRunner
 
 from active_surface.cli.program import main
 from coupling import report, run_case, summary_of
+from coupling.advice import advise, trial_text
 from coupling.case import Case, ConstantCase, CoulombCase, PartCase, RunCase
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -141,12 +142,13 @@ def test_a_measured_motion_from_the_command_line(tmp_path):
 
 
 @pytest.mark.compiled
-@pytest.mark.advice
 def test_advice_on_a_measured_motion_names_no_strokes(tmp_path):
     file = tmp_path / "motion.csv"
     file.write_text("time [ms], x [um]\n" + "".join(f"{k}, {0.1 * math.sin(k)}\n" for k in range(60)))
-    text = said(run_case(case(str(file), {"duration": 5e-2})))
-    assert "times the stroke" in text and "A trial run with " in text
+    result = run_case(case(str(file), {"duration": 5e-2}))
+    advice = advise(result)
+    assert "times the stroke" in said(result)
+    assert trial_text(result.summary, advice).startswith("A trial run with ") and advice.measured
 
 
 def test_a_measured_motion_is_not_written_over(tmp_path):

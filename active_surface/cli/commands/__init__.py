@@ -1,6 +1,7 @@
 """The commands, a module for each or two; each adds itself to the group when it is loaded."""
 
 from active_surface.cli.commands import (
+    advise,
     aim,
     animate,
     app,

@@ -34,10 +34,10 @@ MISUSES = [
     (["run", "x", "--ouput", "y"], "active-surface run: 1 mistake\n  --ouput is not known; did you mean --output?"),
     (["aim", "x", "--out", "y"], "  --out is not known; did you mean --output?"),
     (["plot", "x", "--length", "y"], "  --length is not known; active-surface plot has "),
-    (["run", "x", "--bogus"], "  --bogus is not known; active-surface run has --advised"),
+    (["run", "x", "--bogus"], "  --bogus is not known; active-surface run has --csv"),
     (
         ["run", "x", "--frob"],
-        "  --frob is not known; active-surface run has --advised, --csv, --forces, --help, --json, --output",
+        "  --frob is not known; active-surface run has --csv, --forces, --help, --json, --output",
     ),
     (["run", "x", "-o"], "active-surface run: 1 mistake\n  -o must be followed by its value; got nothing"),
     (["sweep", "x", "-t", "0"], "  --threads must be a whole number of at least 1; got 0"),

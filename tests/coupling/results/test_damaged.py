@@ -55,10 +55,10 @@ def summary_without(key):
     return change
 
 
-def advice_without_a_field(file):
+def thresholds_without_a_field(file):
     attributes = file["active_surface"].attrs
     summary = json.loads(attributes["summary"])
-    summary["advice"] = {"frequencies": [], "strokes": [], "trial": None}
+    summary["thresholds"] = {"knob": "stroke"}
     attributes["summary"] = json.dumps(summary)
 
 
@@ -105,7 +105,7 @@ def rows_that_are_not_there(file):
 DAMAGES = [
     ("part", summary_without("squeeze"), "which is damaged: the summary lacks squeeze, as that of another version may"),
     ("part", with_summary('{"some": 1}'), "which is damaged: the summary lacks "),
-    ("part", advice_without_a_field, "which is damaged: its advice lacks "),
+    ("part", thresholds_without_a_field, "which is damaged: its thresholds lacks "),
     ("part", with_summary("text"), "which is damaged: Expecting value"),
     ("part", lambda file: file.__delitem__("active_surface/events"), "which is damaged: it has no events"),
     ("part", lambda file: file.__delitem__("active_surface/margins"), "which is damaged: it has no margins"),
