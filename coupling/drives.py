@@ -50,11 +50,15 @@ def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray, derivative: in
     return np.stack([known[drive] for drive in drives], axis=1)
 
 
+def fastest(drives: Sequence[AnyDrive]) -> float:
+    """The frequency [Hz] of the fastest drive that moves; 0 where none does."""
+    return max((drive.frequency for drive in dict.fromkeys(drives) if travel(drive) > 0), default=0.0)
+
+
 def frame_times(frames: int | None, drives: Sequence[AnyDrive], end: float) -> FloatArray:
     """The times [s] of the result files' steps, from 0 to the end; frames: how many; None: enough for the drives."""
-    fastest = max(drive.frequency for drive in drives)
     most = min(max(MAX_HEIGHTS // len(drives), FRAMES[0]), FRAMES[1])
-    count = frames or min(max(math.ceil(end * fastest * FRAMES_PER_CYCLE) + 1, FRAMES[0]), most)
+    count = frames or min(max(math.ceil(end * fastest(drives) * FRAMES_PER_CYCLE) + 1, FRAMES[0]), most)
     return np.linspace(0, end, count)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from coupling.case import Case
-from coupling.drives import first_jump, frame_times
+from coupling.drives import fastest, first_jump, frame_times
 from coupling.margins import Margins, margins_from, margins_of
 from coupling.measured import MotionFit, fit_from
 from coupling.plate_figures import PlateFigures, StretchError, VibrationFigures, plate_figures
@@ -139,7 +139,7 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
 
 
 def _frames_per_cycle(case: Case, drives: Sequence[AnyDrive], end: float) -> float | None:
-    cycles = end * max(drive.frequency for drive in drives)
+    cycles = end * fastest(drives)
     return (len(frame_times(case.run.frames, drives, end)) - 1) / cycles if cycles > 0 else None
 
 

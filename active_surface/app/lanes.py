@@ -30,13 +30,17 @@ class Lanes:
         self.quick = ThreadPoolExecutor(1, "quick")
         self.full = ThreadPoolExecutor(FULL, "full")
         self.models = ThreadPoolExecutor(1, "models")
+        self._closed = False
 
     async def run(self, lane: ThreadPoolExecutor, work: Callable[..., Answer], *arguments: object) -> Answer:
-        """work(*arguments) on a lane."""
+        """work(*arguments) on a lane; cancelled once that takes no more work."""
+        if self._closed:
+            raise asyncio.CancelledError
         return await asyncio.get_running_loop().run_in_executor(lane, work, *arguments)
 
     def close(self) -> None:
         """Take no more work."""
+        self._closed = True
         for lane in (self.quick, self.full, self.models):
             lane.shutdown(wait=False, cancel_futures=True)
 

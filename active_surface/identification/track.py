@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from coupling.case import AXES, Quantity, read_columns, unreadable
+from coupling.case.values import first_of
 
 LENGTH: Final = Quantity("m", "150 um")
 QUANTITIES: Final = {"time": Quantity("s", "50 ms"), "x": LENGTH, "y": LENGTH}
@@ -76,6 +78,11 @@ def read_track(path: str | os.PathLike[str]) -> Track:
     ------
     ValueError
         The file cannot be read; names every mistake with its line.
+
+    Warns
+    -----
+    UserWarning
+        Rows have no position, as those of frames in which the tracker lost the part, and are left out.
     """
     file = Path(path)
     try:
@@ -95,6 +102,10 @@ def read_track(path: str | os.PathLike[str]) -> Track:
         elif times[0] < 0:
             mistakes.append(f"line {read.lines[0]} must have a time of 0 or later; got {times[0]:g} s")
     if mistakes:
-        raise ValueError("\n".join(f"Input track of identify in {file.name}: {mistake}" for mistake in mistakes[:10]))
+        raise ValueError(
+            "\n".join(f"Input track of identify in {file.name}: {mistake}" for mistake in first_of(mistakes))
+        )
+    if read.lost:
+        warnings.warn(f"{file.name}: {read.lost} rows without a position are left out", stacklevel=2)
     missing = (np.nan,) * len(times)
     return Track(np.array(times), np.array([read.columns.get(axis, missing) for axis in AXES[:2]]).T)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import warnings
 from dataclasses import dataclass
@@ -33,6 +34,8 @@ class MeasuredInfluence:
         Whether values are metres of surface per metre of stroke, and not in a unit of their own.
     shape : tuple of int
         Pixels along y and along x.
+    pitch : float or None
+        Distance of actuators that the file states [m]; only "proper" does.
     """
 
     layout: str
@@ -41,6 +44,7 @@ class MeasuredInfluence:
     actuators: IntArray | None
     scaled: bool
     shape: tuple[int, int]
+    pitch: float | None = None
 
     @property
     def alone(self) -> bool:
@@ -79,7 +83,7 @@ def read_influence(path: str | os.PathLike[str], pixel: float | None = None) -> 
     if not raw.startswith(b"SIMPLE  ="):
         raise ValueError(f"Input path of read_influence must be a FITS file; got {path}, which is none")
     try:
-        with warnings.catch_warnings(), fits.open(path, memmap=False) as hdus:
+        with warnings.catch_warnings(), fits.open(io.BytesIO(raw)) as hdus:
             warnings.simplefilter("ignore")  # headers that are not quite standard, as that of PROPER's own file
             warnings.filterwarnings("error", message="File may have been truncated")
             names = {hdu.name: hdu for hdu in hdus}
@@ -89,8 +93,11 @@ def read_influence(path: str | os.PathLike[str], pixel: float | None = None) -> 
             if {"INFLUENCE_FUNCTION", "MASK_INF_FUNC"} <= names.keys():
                 return _specula(names, header, pixel, path)
             return _image(of_array, header, pixel, path)
-    except (OSError, TypeError, KeyError, IndexError, UserWarning) as error:  # where it is cut off, or lacks a key
-        raise ValueError(f"Input path of read_influence must be a whole FITS file; got {path}: {error}") from None
+    except (OSError, TypeError, KeyError, IndexError, UserWarning, ValueError) as error:
+        if isinstance(error, ValueError) and str(error).startswith("Input "):
+            raise
+        lack = f"lacks the key {error}" if isinstance(error, KeyError) else "is cut off or damaged"
+        raise ValueError(f"Input path of read_influence must be a whole FITS file; {path} {lack}") from None
 
 
 def _step(header: Any, key: str, pixel: float | None, path: object) -> float:
@@ -163,8 +170,11 @@ def _image(arrays: list[Any], header: Any, pixel: float | None, path: object) ->
     x, y = (step * (np.arange(n) - n // 2) for n in (nx, ny))
     own = header.get("ACTUATOR")
     actuators = np.array([own]) if header.get("CREATOR") == OURS and own is not None else None
-    layout = "proper" if "P2PDX_M" in header else "image"
-    return MeasuredInfluence(layout, _grid(x, y), image.reshape(1, -1), actuators, False, (ny, nx))
+    if "P2PDX_M" not in header:
+        return MeasuredInfluence("image", _grid(x, y), image.reshape(1, -1), actuators, False, (ny, nx))
+    pitch = header.get("C2CDX_M")
+    pitch = float(pitch) * step / header["P2PDX_M"] if isinstance(pitch, int | float) and pitch > 0 else None
+    return MeasuredInfluence("proper", _grid(x, y), image.reshape(1, -1), actuators, False, (ny, nx), pitch)
 
 
 def fits_package() -> Any:

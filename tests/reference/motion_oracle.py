@@ -13,7 +13,7 @@ Where |X'| is small compared with friction times a stroke, it is either
 
 - on its way to rest: with dt = u ds, u = |X'|, the equations in (t, X, ln u, n = X'/u) are regular,
   (ln u)' = n.X'', n' = X'' - (n.X'') n, and u falls exponentially in s; or
-- just off: the direction relaxes at the rate Q/(m u), and Radau takes (X, X') from a speed of 5e-14 m/s.
+- just off: the direction relaxes at the rate Q/(m u), and Radau takes (X, X') from a speed of 1e-13 m/s.
 
 In flight the centre of mass is thrown, the squeeze acts straight down, and X is the point whose r lies above or below
 it; the part lands where r meets it. Everything that ends a piece is located by repeating the last step, not by its
@@ -33,7 +33,7 @@ from scipy.integrate import DOP853, Radau
 from scipy.optimize import brentq
 
 LENGTH_ERROR, SPEED_ERROR = 1e-18, 1e-16  # of one step; m, m/s (a plate is 1e-4 m wide)
-FIRST_SPEED, LAST_SPEED = 5e-14, 5e-15  # m/s
+FIRST_SPEED, LAST_SPEED = 1e-13, 1e-14  # m/s
 HEAT_ERROR = 1e-18  # J/kg
 SCAN = 1000  # moments of a span at which a part at rest or in flight is looked at
 

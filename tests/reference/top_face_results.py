@@ -1,6 +1,6 @@
 """What `motion_oracle` found for `top_face_cases`, with RTOL 1e-13.
 
-With RTOL, FIRST_SPEED and LAST_SPEED halved, ends move by at most 7e-10 of the length of the path, most by 4e-12.
+With RTOL, FIRST_SPEED and LAST_SPEED halved, ends move by at most 2e-9 of the length of the path.
 """
 
 from typing import NamedTuple

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from contextlib import nullcontext
@@ -13,12 +14,15 @@ import click
 from active_surface.cli import options
 from active_surface.cli.group import main, read, refusing
 from active_surface.cli.values import amount_of
+from common import quantity_text
 
 if TYPE_CHECKING:
     from coupling.case import Case
     from fem_plate import InfluenceFit, MeasuredInfluence
 
 Answer = TypeVar("Answer")
+MAX_RESIDUAL = 0.1  # of the largest value: more is left by what is no influence function of the plate
+SAME_PITCH = 0.01  # by how much pitches may differ
 
 
 @main.command()
@@ -58,7 +62,7 @@ def fit(
     with nullcontext(silent) if quiet else StageBar(1) as bar, bar("Fitting the plate"):
         found = refusing(_in_words, _fitted, measured, parsed, actuator, kept, pull)
     figures = vars(found) | {"layout": measured.layout}
-    options.tell(figures, _lines(found, measured), quiet, as_json, _warnings(found))
+    options.tell(figures, _lines(found, measured), quiet, as_json, _warnings(found, measured, parsed))
 
 
 def _in_words(work: Callable[..., Answer], *arguments: object) -> Answer:
@@ -110,8 +114,18 @@ def _lines(found: InfluenceFit, measured: MeasuredInfluence) -> list[tuple[str, 
     return rows
 
 
-def _warnings(found: InfluenceFit) -> list[str]:
+def _warnings(found: InfluenceFit, measured: MeasuredInfluence, case: Case) -> list[str]:
+    from scipy.spatial.distance import pdist
+
     warned = []
+    if found.residual > MAX_RESIDUAL:
+        warned.append(
+            f"the functions are not those of this plate: the best fit leaves {found.residual:.0%} of the largest value"
+        )
+    pitch = float(pdist([actuator.position for actuator in case.actuators]).min(initial=math.inf))
+    if measured.pitch is not None and math.isfinite(pitch) and abs(measured.pitch / pitch - 1) > SAME_PITCH:
+        own, other = quantity_text(measured.pitch, "m"), quantity_text(pitch, "m")
+        warned.append(f"the file is of actuators {own} apart (C2CDX_M), the nearest of the case are {other} apart")
     if found.rigid:
         warned.append("the actuators cannot be told from rigid ones: the stiffness is a lower bound")
     for name in ("stiffness", "tension"):

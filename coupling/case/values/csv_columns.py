@@ -1,12 +1,18 @@
-"""Measured numbers in a CSV file, whose header gives each column its name and unit: time [ms], x [um]."""
+"""Measured numbers in a CSV file, whose header gives each column its name and unit: time [ms], x [um].
+
+Instruments and trackers write it in their own ways. What is unambiguous is read: semicolons and tabs in place of
+commas, decimal commas between these, UTF-16 and Windows-1252, units in parentheses or in rows below the header.
+"""
 
 from __future__ import annotations
 
+import codecs
 import csv
 import math
 import os
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,6 +22,8 @@ from coupling.files import MAX_NUMBERS, contents, why
 from coupling.suggestion import near, near_file
 
 MAX_MISTAKES = 10  # of a file that are listed one by one
+DECIMAL_COMMA = re.compile(r"^([-+]?\d*),(\d+(?:[eE].*)?)$")
+TRACKMATE = {"position_x": "x", "position_y": "y", "position_t": "time"}  # its names of columns
 
 Columns = dict[str, tuple[float, ...]]
 
@@ -36,28 +44,37 @@ class MeasuredColumns(NamedTuple):
     lines: tuple[int, ...]  # of its rows, from 1
     mistakes: list[str]
     ignored: tuple[str, ...] = ()  # the cells of the header whose columns have another name than those known
+    lost: int = 0  # rows without numbers but for the time, as those of frames in which a tracker found nothing
 
 
 def read_rows(path: Path, example: str) -> Rows | str:
     """The rows of a file, or why it has none; empty lines and lines that begin with # are left out.
 
+    Cells are separated as those of the header: by semicolons, else tabs, else commas.
+
     example: a header, for messages.
     Raises OSError when the file cannot be read, and ValueError when no file can have that name.
     """
-    try:
-        text = contents(path, MAX_NUMBERS).decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return "is not UTF-8 text"
+    text = _text(contents(path, MAX_NUMBERS))
+    if text is None:
+        return "is not text in UTF-8, UTF-16 or Windows-1252"
+    lines = [
+        (number, line)
+        for number, line in enumerate(text.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        return f'is empty; it must begin with a header such as "{example}"'
+    delimiter = next((mark for mark in ";\t" if mark in lines[0][1]), ",")
     try:
         rows = [
-            (number, [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))])
-            for number, line in enumerate(text.splitlines(), 1)
-            if line.strip() and not line.lstrip().startswith("#")
+            (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))])
+            for number, line in lines
         ]
     except csv.Error:
         return f"has a cell of more than {csv.field_size_limit()} characters, the most that is read"
-    if not rows:
-        return f'is empty; it must begin with a header such as "{example}"'
+    if delimiter != ",":
+        rows = [(number, [DECIMAL_COMMA.sub(r"\1.\2", cell) for cell in row]) for number, row in rows]
     (header_line, header), *rows = rows
     uneven = [
         (number, f"must have {len(header)} columns; got {len(cells)}")
@@ -67,10 +84,40 @@ def read_rows(path: Path, example: str) -> Rows | str:
     return Rows(header, header_line, [row for row in rows if len(row[1]) == len(header)], uneven)
 
 
+def _text(data: bytes) -> str | None:
+    """The text in the bytes of a file; None: it is none."""
+    marked = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    for encoding in ("utf-16",) if marked else ("utf-8-sig", "cp1252"):
+        with suppress(UnicodeDecodeError):
+            text = data.decode(encoding)
+            return None if "\0" in text else text
+    return None
+
+
 def name_and_unit(cell: str) -> tuple[str, str | None]:
-    """The name and the unit in a cell of a header; None where it has no unit."""
-    match = re.fullmatch(r"([^\[\]]*?)\s*(?:\[(.*)\])?", cell)
-    return (match[1], match[2]) if match else (cell, None)
+    """The name and the unit, in brackets or parentheses, in a cell of a header; None where it has no unit."""
+    match = re.fullmatch(r"([^\[\]()]*?)\s*(?:\[(.*)\]|\((.*)\))?", cell)
+    return (match[1], match[2] if match[3] is None else match[3]) if match else (cell, None)
+
+
+def _with_units_below(read: Rows, known: Mapping[str, Quantity]) -> Rows:
+    """The rows with the names that are known, and with the units of a row without numbers below the header."""
+    header = [_known_name(cell, known) for cell in read.header]
+    texts = 0
+    while texts < len(read.rows) and not any(_number(cell) is not None for cell in read.rows[texts][1]):
+        texts += 1
+    if not texts or any(name_and_unit(cell)[1] is not None for cell in header):
+        return read._replace(header=header)
+    units = [cell.strip("()[]") for cell in read.rows[texts - 1][1]]
+    header = [f"{name} [{unit}]" if name in known and unit else name for name, unit in zip(header, units, strict=True)]
+    return read._replace(header=header, rows=read.rows[texts:])
+
+
+def _known_name(cell: str, known: Mapping[str, Quantity]) -> str:
+    """A cell of a header with the name in lower case, or that of TrackMate's column, where this is known."""
+    name = name_and_unit(cell)[0]
+    meant = TRACKMATE.get(name.lower(), name.lower())
+    return meant + cell[len(name) :] if name not in known and meant in known else cell
 
 
 def read_columns(
@@ -84,18 +131,24 @@ def read_columns(
     read = read_rows(path, example)
     if isinstance(read, str):
         return MeasuredColumns({}, (), [read])
+    read = _with_units_below(read, known)
     header, line = read.header, read.header_line
     if any(_number(cell) is not None for cell in header):
         message = f'line {line} must be a header such as "{example}"; got {quoted(", ".join(header))}'
         return MeasuredColumns({}, (), [message])
     columns, ignored, mistakes = _header(header, known)
-    meant = {like for cell in header if (like := near(cell.partition("[")[0], known))}
-    mistakes += [f'must have a column {_either(names)}, as in "{example}"' for names in needed if not meant & {*names}]
+    meant = {like for cell in header if (like := near(name_and_unit(cell)[0], known))}
+    got = quoted(", ".join(read.header))
+    mistakes += [
+        f'must have a column {_either(names)}, as in "{example}"; got {got}' for names in needed if not meant & {*names}
+    ]
     if mistakes:
         return MeasuredColumns({}, (), [f"line {line} {mistake}" for mistake in mistakes])
     wrong = list(read.mistakes)
     values: list[list[float]] = [[] for _ in header]
-    for number, cells in read.rows:
+    measured = [k for k, (name, _) in enumerate(columns) if name not in ignored and name != "time"]
+    rows = [row for row in read.rows if any(row[1][k].lower() not in ("", "nan") for k in measured)]
+    for number, cells in rows:
         for (name, factor), cell, column in zip(columns, cells, values, strict=True):
             value = _number(cell)
             if name in ignored:
@@ -105,7 +158,8 @@ def read_columns(
             else:
                 column.append(value * factor)
     filled = {name: tuple(column) for (name, _), column in zip(columns, values, strict=True) if name not in ignored}
-    return MeasuredColumns(filled, tuple(number for number, _ in read.rows), first_of(by_line(wrong)), ignored)
+    lost = len(read.rows) - len(rows)
+    return MeasuredColumns(filled, tuple(number for number, _ in rows), first_of(by_line(wrong)), ignored, lost)
 
 
 def by_line(wrong: Sequence[tuple[int, str]]) -> list[str]:
@@ -157,7 +211,8 @@ def _header(
             columns[-1] = name, quantity.parse(f"1 {unit}")
         except ValueError as error:
             reason = str(error).partition(f'got "1 {unit}"')[2].replace('"1 ', '"')
-            mistakes.append(f"must give {name} in a unit of {DIMENSIONS[quantity.unit][2:]}; got [{unit}]{reason}")
+            kind = DIMENSIONS[quantity.unit].partition(" ")[2]
+            mistakes.append(f"must give {name} in a unit of {kind}; got [{unit}]{reason}")
     return columns, tuple(ignored), mistakes
 
 

@@ -130,3 +130,26 @@ def test_what_is_not_determined_is_warned_of(here):
     command("influence", "rigid.toml", "-l", "specula", "--pixels", "15")
     done = command("fit", "results/rigid.specula.fits", "guess.toml", "--tension", "0 N/m")
     assert done.exit_code == 0 and "warning     the actuators cannot be told from rigid ones" in done.output
+
+
+def test_another_pitch_and_what_is_no_influence_function_are_warned_of(here):
+    command("influence", "mirror.toml", "--layout", "proper")
+    (here / "wide.toml").write_text(CASE.format(stiffness=250, tension=300).replace("100 um", "120 um"))
+    done = command("fit", "results/mirror.proper.fits", "wide.toml", "--tension", "300 N/m")
+    words = "the file is of actuators 100 µm apart (C2CDX_M), the nearest of the case are 120 µm apart"
+    assert done.exit_code == 0 and words in done.output
+    assert "C2CDX_M" not in command("fit", "results/mirror.proper.fits", "mirror.toml", "--tension", "300 N/m").output
+    noise = np.random.default_rng(0).normal(size=(31, 31))
+    fits.PrimaryHDU(noise).writeto("noise.fits")
+    done = command("fit", "noise.fits", "mirror.toml", "--pixel", "9 um", "--tension", "300 N/m")
+    assert done.exit_code == 0 and "the functions are not those of this plate: the best fit leaves " in done.output
+
+
+@pytest.mark.parametrize("layout", ["proper", "compass", "specula"])
+def test_a_file_that_is_cut_off_is_said_to_be(here, layout):
+    command("influence", "mirror.toml", "--layout", layout)
+    whole = (here / f"results/mirror.{layout}.fits").read_bytes()
+    for share in (0.4, 0.7, 0.95):
+        (here / "cut.fits").write_bytes(whole[: int(share * len(whole))])
+        done = command("fit", "cut.fits", "mirror.toml")
+        assert done.exit_code == 2 and "reshape" not in done.output and "must " in done.output

@@ -107,7 +107,7 @@ def test_a_byte_order_mark_and_tabs_are_no_mistake(folder: Path) -> None:
         (["examples/aims/to_target.toml"], "is an aim; write active-surface aim examples/aims/to_target.toml"),
         (["examples"], "is no command; it is a folder; name a file in it, such as examples/one_actuator.toml"),
         (["transport.toml"], "is no command; it cannot be read: no such file or directory; did you mean examples/tr"),
-        (["zebra.toml"], "zebra.toml is not known; active-surface has aim, animate"),
+        (["zebra.toml"], "zebra.toml is not known; active-surface has advise, aim"),
         (["simulate", "x"], "simulate is not known; did you mean run?"),
         (["run", "examples/studies/starts.toml"], "a study; write active-surface sweep examples/studies/starts.toml"),
         (["run", "examples/aims/to_target.toml"], "an aim; write active-surface aim examples/aims/to_target.toml"),

@@ -131,8 +131,7 @@ SOFT = '[[axes]]\nfield = "actuators.*.stroke"\nvalues = ["1 um", "60 um", "0.1 
 
 @pytest.mark.slow
 @pytest.mark.compiled
-def test_the_command_warns_where_the_model_stops_holding(tmp_path, monkeypatch):
-    monkeypatch.setattr("coupling.summary.advise", None)  # a sweep needs no trial runs: its parts may well stay
+def test_the_command_warns_where_the_model_stops_holding(tmp_path):
     case = PLATE.replace('"60 um"', '"0.1 um"')
     warning, slope, strain = run_study(read_study(written(tmp_path, SOFT, case))).warnings
     assert slope.startswith("The surface is as steep as ")

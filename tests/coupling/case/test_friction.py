@@ -75,7 +75,7 @@ MANY = """load [uN], limit [nN]
 """
 BAD_FILES = [
     (None, ['must be a file that can be read; got "friction.csv": no such file or directory']),
-    (b"load [uN], limit [nN]\n-1 \xb5", ["is not UTF-8 text"]),
+    (b"load [uN], limit [nN]\n-1 \xb5", ["line 2 must have 2 columns; got 1"]),
     ("# nothing\n", ['is empty; it must begin with a header such as "load [uN], limit [nN]"']),
     ("load; limit\n1; 2\n", ['line 1 must name one column "load"', 'line 1 must name one column "limit"']),
     ("load [uN], load [N], limit [nN]\n", ['line 1 must name one column "load"']),

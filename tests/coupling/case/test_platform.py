@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from mistakes import answered_otherwise
 
-from coupling.case import Case, CaseError, CoulombCase, PartCase, RunCase, read_case
+from coupling.case import Case, CaseError, CoulombCase, PartCase, RunCase, read_case, read_columns
+from coupling.case.plates.platform import QUANTITIES
 from coupling.run import build_surface
 
 FRAME = """\
@@ -137,7 +138,6 @@ WRONG_FILES = [
         "time, X [um], q [um], z [s]\n",
         [
             "line 1 must give the unit of time, as in",
-            'line 1 has a column "X [um]" that is not known; did you mean x?',
             "line 1 must give z in a unit of length; got [s], a time",
         ],
     ),
@@ -201,6 +201,39 @@ def test_columns_of_other_names_are_ignored(tmp_path):
     assert motion.columns["vx"][3] == pytest.approx(6e-3)
 
 
+DIALECTS = {
+    "semicolons": "time [ms];x [um]\n0;0\n1;2.5\n",
+    "decimal commas": "time [ms];x [um]\n0,0;0\n1,0;2,5\n",
+    "tabs": "time [ms]\tx [um]\n0\t0\n1\t2,5e0\n",
+    "parentheses": "Time (ms), X (um)\n0, 0\n1, 2.5\n",
+    "a row of units": "time,x\nms,um\n0,0\n1,2.5\n",
+    "Windows-1252": "time [ms], x [\xb5m]\n0, 0\n1, 2.5\n".encode("cp1252"),
+    "UTF-16": "time [ms], x [\xb5m]\n0, 0\n1, 2.5\n".encode("utf-16"),
+    "TrackMate": "LABEL,POSITION_X,POSITION_T\nLabel,X,T\n,(micron),(sec)\nID0,0,0\nID1,2.5,0.001\n",
+    "lost frames": "time [ms], x [um]\n0, 0\n0.4, \n0.6, NaN\n1, 2.5\n",
+}
+
+
+@pytest.mark.parametrize("name", DIALECTS)
+def test_files_of_instruments_and_trackers_are_read(tmp_path, name):
+    content, file = DIALECTS[name], tmp_path / "shaker.csv"
+    file.write_bytes(content if isinstance(content, bytes) else content.encode())
+    found = read_columns(file, QUANTITIES, [["time"], ["x"]], HEADER)
+    assert found.mistakes == [] and found.lost == (2 if name == "lost frames" else 0)
+    assert found.columns["time"] == pytest.approx([0, 1e-3]) and found.columns["x"] == pytest.approx([0, 2.5e-6])
+
+
+def test_what_is_ambiguous_is_refused(tmp_path):
+    for content, said in {
+        "time [ms], x [um]\n0,0, 1,5\n": "line 2 must have 2 columns; got 4",
+        ",y,x,frame\n0,1,2,0\n": "line 1 must have a column time",
+        "scorer,m,m\ncoords,x,y\n0,1,2\n": 'got "scorer, m, m"',
+    }.items():
+        (tmp_path / "shaker.csv").write_text(content)
+        found = read_columns(tmp_path / "shaker.csv", QUANTITIES, [["time"], ["x"]], HEADER)
+        assert any(said in mistake for mistake in found.mistakes), found.mistakes
+
+
 def test_bytes_are_no_motion(tmp_path):
     (tmp_path / "shaker.csv").write_bytes(b"\xff\xfe\x00")
-    assert problems(tmp_path, FILE) == ["3 plate.motion in shaker.csv: is not UTF-8 text"]
+    assert problems(tmp_path, FILE) == ["3 plate.motion in shaker.csv: is not text in UTF-8, UTF-16 or Windows-1252"]
