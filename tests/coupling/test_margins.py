@@ -346,6 +346,7 @@ def test_a_part_on_level_ground_is_sent_elsewhere():
     assert "nothing pulls the part aside" in dict(report.lines(middle.summary))["margins"]
 
 
+@pytest.mark.slow
 def test_a_place_that_rounds_off_the_plate_is_not_tried():
     """An actuator 10 nm from the rim: places around it of three digits lie on the rim."""
     rim = [ActuatorCase(position=(2.9999e-4, 0.0), stroke=1e-6, frequency=1000)]

@@ -14,7 +14,6 @@ import click
 from active_surface.cli import options
 from active_surface.cli.group import main, read, refusing
 from active_surface.cli.values import amount_of
-from common import quantity_text
 
 if TYPE_CHECKING:
     from coupling.case import Case
@@ -116,6 +115,8 @@ def _lines(found: InfluenceFit, measured: MeasuredInfluence) -> list[tuple[str, 
 
 def _warnings(found: InfluenceFit, measured: MeasuredInfluence, case: Case) -> list[str]:
     from scipy.spatial.distance import pdist
+
+    from common import quantity_text
 
     warned = []
     if found.residual > MAX_RESIDUAL:

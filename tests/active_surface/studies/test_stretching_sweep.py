@@ -57,6 +57,7 @@ def test_records_do_not_depend_on_the_chunk(engine):
     )
 
 
+@pytest.mark.slow
 def test_the_plate_stretches(engine):
     """The linear plate's paths are others."""
     case = engine.study.case
