@@ -29,7 +29,7 @@ EXACT: Final = 1e-7  # of a threshold
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Times which frequency or stroke a part that stays at its start slips, and comes off or is overloaded.
+    """From how many times the frequency or stroke a part at its start slips, and comes off or is overloaded.
 
     None: at none up to 64; 0: at any.
     """

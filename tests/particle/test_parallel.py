@@ -202,10 +202,10 @@ def test_the_ledger_closes_with_the_new_terms(name, scheme):
     c[2, 0, 0] = c[0, 2, 0] = 2.0
     c[1, 0, 2:], c[0, 0, 2:] = [0.8, -1.5, 0.9], [0.3, -0.2, 0.1]
     surface = replace(polynomial_surface(c, base=[Drive(0.05, 1.0), Drive(-0.03, 2.0)]), half_thickness=0.02)
-    part = Micropart(MASS, (0.12, -0.05), (0.1, 0.2), centre_height=0.03)
+    part = Micropart(MASS, (0.12, -0.05), (0.15, 0.3), centre_height=0.03)
     step = {"time_step": 5e-4} if scheme == "fixed" else {}
     path = simulate(surface, part, LAWS[name], 0.5, scheme=scheme, tolerance=1e-10, **step)
-    assert path.path_length > 5e-4
+    assert path.path_length > 1e-3
     assert path.energy.balance < (1e-8 if scheme == "events" else 1e-2)
     if scheme == "fixed":
         truth = simulate(surface, part, LAWS[name], 0.5, tolerance=1e-10).energy

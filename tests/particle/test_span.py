@@ -88,11 +88,12 @@ def test_a_base_moves_on_as_well():
 
 
 @pytest.mark.compiled
+@pytest.mark.parametrize("end", [0.005, pytest.param(0.05, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("off", [1e-3, 1e-5])
-def test_bridges_are_as_good_as_asked_and_meet_the_surface_at_both_ends(off):
+def test_bridges_are_as_good_as_asked_and_meet_the_surface_at_both_ends(off, end):
     surface, (x, y) = spread(100), (0.31 * RADIUS, 0.2 * RADIUS)
     surface.evaluate([[x, y]], 0.0)
-    record, end = surface.record, 0.005
+    record = surface.record
     velocity, acceleration = off * STROKE * 1e3, 10 * off * STROKE * 1e6
     exact, bridged, time, breakpoints, spans = new_local(record), new_local(record), 0.0, 0, 0
     allow_bridges(bridged, velocity, acceleration)

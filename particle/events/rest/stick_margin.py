@@ -105,14 +105,20 @@ def _along(n: Vector, normal: Vector, inverse: FloatArray) -> Vector:
 
 
 @device
-def _borne(part: Part, motion: FloatArray, plane: FloatArray, n: Vector, v: Vector, inverse: FloatArray) -> FloatArray:
-    """|K^-1 p|^2 from the normal n, V and 1 / s."""
+def _borne(
+    part: Part,
+    motion: FloatArray,
+    plane: FloatArray,
+    p_x: Vector,
+    p_y: Vector,
+    n: Vector,
+    v: Vector,
+    inverse: FloatArray,
+) -> FloatArray:
+    """|K^-1 p|^2; p_x, p_y: P_x and P_y.  inverse: 1 / s."""
     t, h, z, z_k = _cross(n, v), part.centre - part.contact, part.centre, part.contact
     if h == 0.0:
         return _dot(t, t)
-    p_x, p_y = (plane[0, 1].copy(), plane[1, 1], motion[1]), (plane[0, 2], plane[1, 2].copy(), motion[2])
-    p_x[0][0] += 1.0
-    p_y[1][0] += 1.0
     p_xx, p_xy = (plane[0, 3], plane[1, 3], motion[3]), (plane[0, 4], plane[1, 4], motion[4])
     p_yy = (plane[0, 5], plane[1, 5], motion[5])
     n_x = _along(n, _sum(_cross(p_xx, p_y), _cross(p_x, p_xy)), inverse)
@@ -156,7 +162,7 @@ def fill_margin(part: Part, motion: FloatArray, plane: FloatArray, lasting: floa
     load = part.mass * _dot(n, v)
     load[0] += part.squeeze
     to_bernstein(load, out[LOAD])
-    to_bernstein(_borne(part, motion, plane, n, v, inverse), out[NEEDED])
+    to_bernstein(_borne(part, motion, plane, p_x, p_y, n, v, inverse), out[NEEDED])
 
 
 @inlined

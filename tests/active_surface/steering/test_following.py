@@ -22,8 +22,8 @@ BELOW = {
     "actuators.*.stroke": 8e-6,
     "actuators.*.frequency": 2e3,
 }  # of a part below both actuators, which drive it away
-AWAY = ((2e-6, -46e-6), (-2e-6, -54e-6))
-MORE = 1.1  # times the friction of the case
+AWAY = ((2e-6, -46e-6), (-2e-6, -56e-6))
+MORE = 1.25  # times the friction of the case
 
 
 class Device:
@@ -49,7 +49,7 @@ def case(tmp_path):
 @pytest.mark.slow
 @pytest.mark.compiled
 def test_the_closed_loop_meets_way_points_that_the_open_one_misses_with_a_device_of_other_friction(case):
-    """Measured: the open loop ends 3.63 um off the last way-point; the closed one meets both to 0.42 and 0.38 um."""
+    """Measured: the open loop ends 15.3 um off the last way-point; the closed one meets both to 0.49 and 0.25 um."""
     case = case.vary(BELOW)
     route = Route(case, AWAY, Settings(tolerance=0.5e-6, scatter=1, paths=2000, frequency=(1e3, 2.5e3), cycles=(1, 12)))
     opened = plan(route)
