@@ -13,7 +13,7 @@ from coupling.case import Case
 from coupling.drives import travel
 from coupling.part import build_part
 from coupling.scene import PlateScene, Scene
-from particle import Outcome, PartAtRest, SurfaceMotion, Trajectory, part_at_rest
+from particle import Micropart, Outcome, PartAtRest, SurfaceMotion, Trajectory, part_at_rest
 from particle.drives import horizon
 from particle.friction import Contact
 
@@ -51,7 +51,7 @@ def thresholds_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Co
     """The thresholds of a part that its drives did not carry far, or did not keep; None where no factor scales them."""
     if not lacks_motion(case, scene, trajectory):
         return None
-    rest = at_start(case, scene.surface, friction)
+    rest = at_rest(case, scene.surface, build_part(case), friction)
     own = factors_of(lambda factor: driven(scene, rest, factor))
     unslipped = own.slips >= own.comes_off * BEFORE and 0 < own.comes_off < math.inf
     return Thresholds(
@@ -92,16 +92,12 @@ def stretches(scene: Scene) -> bool:
     return isinstance(scene, PlateScene) and scene.stretch is not None
 
 
-def at_start(case: Case, surface: SurfaceMotion, friction: Contact) -> PartAtRest:
-    """A case's part that stays at its start, for as long as its drives take to repeat, or some strokes."""
-    return part_at_rest(surface, build_part(case), friction, window(case, surface), case.run.gravity)
-
-
-def window(case: Case, surface: SurfaceMotion) -> float:
-    """How long [s] a part at rest is looked at."""
+def at_rest(case: Case, surface: SurfaceMotion, part: Micropart, friction: Contact) -> PartAtRest:
+    """A part that stays at its start, for as long as the drives take to repeat, or some strokes."""
     duration, repeated = case.run.duration, horizon(surface.drives, 0.0)
     shortest = float(surface.stroke_times.min(initial=duration))
-    return min(duration, MAX_STROKES * shortest, math.inf if repeated is None else repeated)
+    window = min(duration, MAX_STROKES * shortest, math.inf if repeated is None else repeated)
+    return part_at_rest(surface, part, friction, window, case.run.gravity)
 
 
 def driven(scene: Scene, rest: PartAtRest, factor: float, stroke: float = 1.0) -> PartAtRest:

@@ -166,6 +166,8 @@ def read_measured(path: str | os.PathLike[str]) -> list[Place]:
         raise ValueError(f"--measured {unreadable(str(file), error)}") from None
     if read.mistakes:
         raise ValueError("\n".join(f"{file.name} {mistake}" for mistake in read.mistakes))
+    if read.lost:
+        raise ValueError(f"{file.name} must have a place in each row, one after each leg; got {read.lost} without")
     return list(zip(read.columns.get("x", ()), read.columns.get("y", ()), strict=True))
 
 

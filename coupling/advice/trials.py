@@ -15,7 +15,7 @@ from coupling.case import Case, PlateCase, friction_scales, more_plastic, ramped
 from coupling.part import build_part, friction_law
 from coupling.progress import doing, silent
 from coupling.scene import PlateScene, Scene, lifts_of, plate_scene
-from coupling.thresholds import FAR, LEAST, Factors, driven, factors_of, stretches, strokes_alone, window
+from coupling.thresholds import FAR, LEAST, Factors, at_rest, driven, factors_of, stretches, strokes_alone
 from particle import (
     Micropart,
     Outcome,
@@ -23,7 +23,6 @@ from particle import (
     State,
     SurfaceMotion,
     interruptible,
-    part_at_rest,
     simulate,
 )
 from particle.friction import Contact, ScaledFriction
@@ -80,8 +79,7 @@ class Trials:
         return self._laws[setting.plasticity]
 
     def _rest(self, part: Micropart, setting: Setting = OWN) -> PartAtRest:
-        surface = self._surface(setting)
-        return part_at_rest(surface, part, self._law(setting), window(self.case, surface), self.case.run.gravity)
+        return at_rest(self.case, self._surface(setting), part, self._law(setting))
 
     def _surface(self, setting: Setting) -> SurfaceMotion:
         return self.scene.surface if setting.ramp is None else self._ramped or self.scene.surface

@@ -9,6 +9,7 @@ from sweeps import PLATE
 from active_surface.cli.program import main
 from active_surface.steering import Route, Settings, follow_plan, plan
 from active_surface.steering.following import Progress, next_leg, progress_of
+from active_surface.steering.read import read_measured
 from coupling import read_case, run_case
 
 CASE = PLATE.replace('duration = "5 ms"', 'duration = "20 ms"').replace('["-140 um", "20 um"]', '["0 um", "40 um"]')
@@ -85,6 +86,14 @@ def test_the_command_aims_the_next_leg_from_where_the_part_was_measured(case, tm
     file.write_text("x [um], y\n-20, 20.5\n")
     done = CliRunner().invoke(main, [*words, "-o", str(out)])
     assert done.exit_code == 2 and "must give the unit of y" in done.output
+
+
+def test_a_leg_without_a_place_is_refused(tmp_path):
+    """Rows of a track without one are left out, but these are counted by leg."""
+    file = tmp_path / "measured.csv"
+    file.write_text("x [um], y [um]\n-20, 20.5\n, \n-30, 50.2\n")
+    with pytest.raises(ValueError, match=r"must have a place in each row, one after each leg; got 1 without"):
+        read_measured(file)
 
 
 def test_a_way_point_is_done_within_the_tolerance_or_after_the_last_attempt(case):
