@@ -78,21 +78,27 @@ class GradedPlate:
     def model(self, points: FloatArray | None = None, halvings: int = 0) -> PlateModel:
         """The plate on cells for actuators at points (N, 2) [m], with the corner functions of its wedges."""
         corners = self.graded_corners
+        rim_points = np.empty((0, 2))
+        if points is not None:
+            on_rim = self.mesh.on_rim(points)
+            points, rim_points = points[~on_rim], points[on_rim]
+            corners += [SingularCorner(point, 1.0) for point in rim_points]
         if self.energy is not None and points is not None and self.energy.exponent < MAX_EXPONENT:
             corners += [SingularCorner(point, self.energy.exponent) for point in points]
         mesh = self._graded(corners, points, halvings)
-        key = mesh.points.tobytes()
+        key = mesh.points.tobytes() + rim_points.tobytes()
         if self._last is None or self._last[0] != key:
-            self._last = key, self.model_on(mesh, self.tension)
+            self._last = key, self.model_on(mesh, self.tension, rim_points)
         return self._last[1]
 
-    def model_on(self, mesh: PlateMesh, tension: float) -> PlateModel:
-        """The plate on cells as they are, under another tension [N/m]."""
+    def model_on(self, mesh: PlateMesh, tension: float, rim_points: FloatArray | None = None) -> PlateModel:
+        """The plate on cells as they are, under another tension [N/m]; rim_points: as of `PlateModel`."""
         rows = corner_rows(mesh, self._other_corners)
         if self.energy is not None:
-            return PlateModel(mesh, self.supports, replace(self.energy, tension=tension, size=mesh.size), rows)
-        section = self.section
-        return PlateModel(mesh, self.supports, section.law, rows, tension / section.rigidity, self.enriched_corners)
+            energy = replace(self.energy, tension=tension, size=mesh.size)
+            return PlateModel(mesh, self.supports, energy, rows, rim_points=rim_points)
+        law, relative = self.section.law, tension / self.section.rigidity
+        return PlateModel(mesh, self.supports, law, rows, relative, self.enriched_corners, rim_points)
 
     @property
     def graded_corners(self) -> list[SingularCorner]:

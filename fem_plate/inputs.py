@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
+from fem_plate.elements.rim import FREE
 from fem_plate.types import BoolArray, FloatArray
 from meshes import Outline, PlateMesh
 
@@ -43,14 +45,21 @@ def stiffness_per_point(stiffness: ArrayLike | None, count: int, caller: str, ma
     return values
 
 
-def check_points(caller: str, points: FloatArray, gap: FloatArray, size: float) -> None:
+def check_points(
+    caller: str, points: FloatArray, gap: FloatArray, size: float, least: float = 0.0, free: bool = False
+) -> None:
     """Raise ValueError, naming every one of the points (N, 2) [m] that is not inside the rim or coincides with another.
 
-    gap: (N,) m, how far inside the rim they are.  size: m, of the plate.
+    gap: (N,) m, how far inside the rim they are.  size: m, of the plate.  least: m, the gap that is needed.
+    free: whether they might lie on a free boundary.
     """
     mistakes = [] if points.size else ["at least one point is needed"]
-    for i in np.flatnonzero(~(gap > SAME_PLACE * size)).tolist():
-        mistakes.append(f"point {i} at {points[i].tolist()} m must lie inside the rim; it is {-gap[i]:.3g} m beyond it")
+    needed = f" by more than {least:.3g} m" if least else ""
+    for i in np.flatnonzero(~(gap > max(least, SAME_PLACE * size))).tolist():
+        where = "inside" if gap[i] > SAME_PLACE * size else "off" if gap[i] > -SAME_PLACE * size else "beyond"
+        or_on = ", or on a free boundary" if free else ""
+        place = f"point {i} at {points[i].tolist()} m must lie inside the rim{needed}{or_on}"
+        mistakes.append(f"{place}; it is {abs(gap[i]):.3g} m {where} it")
     finite = np.flatnonzero(np.isfinite(points).all(axis=1))
     for i, j in finite[sorted(cKDTree(points[finite]).query_pairs(SAME_PLACE * size))].tolist():
         mistakes.append(f"points {i} and {j} must differ; both are at {points[i].tolist()} m")
@@ -59,14 +68,26 @@ def check_points(caller: str, points: FloatArray, gap: FloatArray, size: float) 
 
 
 def places_on(
-    mesh: PlateMesh, points: ArrayLike, caller: str, name: str = "points", most: float = math.inf
+    mesh: PlateMesh,
+    points: ArrayLike,
+    caller: str,
+    name: str = "points",
+    most: float = math.inf,
+    least: int = 0,
+    supports: Mapping[str, str] | None = None,
 ) -> FloatArray:
-    """Points of `caller` as an array (N, 2) [m], of which there may be none; ValueError as of the checks above."""
+    """Points of `caller` as an array (N, 2) [m], of which there may be none; ValueError as of the checks above.
+
+    supports: of a plate on whose free boundaries the points may lie.
+    """
     places = as_points(points, f"{name} of {caller}")
-    if len(places) > most:
-        raise ValueError(f"Input {name} of {caller} must be at most {most} points; got {len(places)}")
+    if not least <= len(places) <= most:
+        bound = f"at most {most} points" if len(places) > most else "one point or more"
+        raise ValueError(f"Input {name} of {caller} must be {bound}; got {len(places)}")
     if places.size:
-        check_points(caller, places, mesh.outline.gap(places), mesh.size)
+        free = [name for name, support in (supports or {}).items() if support == FREE]
+        gap = np.where(mesh.on_rim(places, free), np.inf, mesh.outline.gap(places))
+        check_points(caller, places, gap, mesh.size, mesh.least_gap, bool(free))
     return places
 
 

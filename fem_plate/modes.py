@@ -4,7 +4,8 @@ At a held point a mode bends as under a point force, which polynomials follow ba
 w = v + sum_j c_j psi_j, with psi_j the static response to a unit force at held point j. A spring pushes with
 c_j = -k_j w(x_j), so that c = -(G + 1/k)^-1 v(x_j), with 1/k = 0 where the hold is rigid. With a(v, psi_j) = v(x_j) and
 a(psi_i, psi_j) = G_ij, the energy of plate and springs has the stiffness K - B^T (G + 1/k)^-1 B, where B takes v at the
-held points: K with a correction of low rank, and so is its inverse.
+held points: K with a correction of low rank, and so is its inverse. On a free rim psi_j is one of the finite elements;
+there w itself obeys w(x_j) = 0, or has the spring's energy.
 """
 
 from __future__ import annotations
@@ -94,14 +95,17 @@ class HeldPlate:
 
     def __init__(self, model: PlateModel, held: FloatArray, rigidity: float, stiffness: FloatArray) -> None:
         self.model, self.held, self.rigidity = model, held / model.mesh.size, rigidity
-        compliance = rigidity / model.mesh.size**2 / stiffness  # dimensionless, 1/k
+        compliance = np.diag(rigidity / model.mesh.size**2 / stiffness)  # dimensionless, 1/k
         space, x = model.space, self.held
         self.mass = model.mass
         self.responses = model.under_forces(x) if len(x) else np.zeros((model.unknowns, 0))  # psi without F
         at_held = space.point_values(x)  # B
         green = model.infinite.point_value(x, x) + at_held @ self.responses
-        yielding = (green + green.T) / 2 + np.diag(compliance)  # G + 1/k
-        self._to_forces = -np.linalg.solve(yielding, at_held.toarray())  # v -> c, (N, unknowns)
+        inside = model.infinite.acts(x)
+        on_rim, both = ~inside, np.ix_(inside, inside)
+        yielding = (green + green.T)[both] / 2 + compliance[both]  # G + 1/k
+        self._to_forces = np.zeros((len(x), model.unknowns))  # v -> c
+        self._to_forces[inside] = -np.linalg.solve(yielding, at_held[inside].toarray())
         self._of_singular, inner = singular_masses(model, x, x)
         carried = self._of_singular.T @ self.responses
         self._cross = self.mass @ self.responses + self._of_singular  # int q psi_j
@@ -114,9 +118,12 @@ class HeldPlate:
         # the inverse of the modes' stiffness: the held points, the load that their forces put on the spread springs
         # (what psi_j weighs on each motion), and the rigid motions, moved out of the way.
         on_springs = model.mean.T + model.motions(x).T @ self._to_forces
-        rows = np.concatenate([at_held.toarray(), on_springs, inertia.T])
+        heights = at_held.toarray()
+        heights[on_rim] += green[on_rim] @ self._to_forces  # of w, which a spring of 1/k holds there
+        rows = np.concatenate([heights, on_springs, inertia.T])
         weights = np.zeros((len(rows), len(rows)))
-        weights[: len(x), : len(x)] = yielding
+        weights[: len(x), : len(x)][both] = yielding
+        weights[: len(x), : len(x)][np.ix_(on_rim, on_rim)] = -compliance[np.ix_(on_rim, on_rim)]
         weights[len(x) :, len(x) :] = np.diag(
             np.concatenate([np.ones(len(on_springs)), np.full(inertia.shape[1], -1 / RIGID_SHIFT)])
         )

@@ -14,7 +14,7 @@ from fem_plate.arrays import PatchedShapes, ProgressCallback, patched_shapes
 from fem_plate.deflection import Deflection, refined
 from fem_plate.graded import GradedPlate
 from fem_plate.influence import MAX_DENSE, InfluenceShapes
-from fem_plate.inputs import as_points, check_points, one_per_point, places_on, stiffness_per_point
+from fem_plate.inputs import one_per_point, places_on, stiffness_per_point
 from fem_plate.modes import HeldPlate, Modes
 from fem_plate.sections import Field, Section
 from fem_plate.stability import buckling_load, check_stability, warn_of_polygon, warn_of_wedges
@@ -123,7 +123,7 @@ class Plate(GradedPlate):
         Parameters
         ----------
         points : (N, 2) array_like
-            Places of the actuators [m].
+            Places of the actuators [m], inside the rim or, without a truncation, on a free boundary.
         stiffness : float or (N,) array_like, optional
             Stiffness of the actuators [N/m], springs in series with their strokes: inf is rigid (the default); 0 is a
             floating actuator, driven by a force.
@@ -139,14 +139,15 @@ class Plate(GradedPlate):
         Raises
         ------
         ValueError
-            Names every point that is not inside the rim or coincides with another; or a stiffness is negative, or
+            Names every point that coincides with another, or is not inside the rim by more than 6e-4 of half the
+            plate's longer side; or a stiffness is negative, or
             supports and actuators leave the plate a rigid motion that they may not.
         """
-        points = as_points(points, "points of influence")
+        on_patches = truncation is not None or np.size(points) > 2 * MAX_DENSE
+        points = places_on(self.mesh, points, "influence", least=1, supports=None if on_patches else self.supports)
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "influence", may_float=True)
-        check_points("influence", points, self.mesh.outline.gap(points), self.mesh.size)
         shapes: InfluenceShapes | PatchedShapes
-        if truncation is not None or len(points) > MAX_DENSE:
+        if on_patches:
             cut = TRUNCATION if truncation is None else truncation
             if self.energy is not None:
                 raise ValueError(
@@ -218,7 +219,7 @@ class Plate(GradedPlate):
         Parameters
         ----------
         points : (N, 2) array_like
-            Where the forces act [m].
+            Where the forces act [m], inside the rim or on a free boundary.
         forces : float or (N,) array_like
             [N].
         pressure : float
@@ -230,7 +231,7 @@ class Plate(GradedPlate):
             As for `influence`; or there is not one force per point, a load is not finite, or the loads on a plate that
             can move rigidly are not in balance.
         """
-        points = places_on(self.mesh, points, "deflection")
+        points = places_on(self.mesh, points, "deflection", supports=self.supports)
         loads = one_per_point(forces, len(points), "forces of deflection")
         if not (np.isfinite(loads).all() and np.isfinite(pressure)):
             raise ValueError("Input forces and pressure of deflection must be finite; got some that are not")
@@ -263,7 +264,7 @@ class Plate(GradedPlate):
         count : int
             Number of modes.
         held : (N, 2) array_like, optional
-            Points that actuators hold still [m].
+            Points that actuators hold still [m], inside the rim or, of the flat plate, on a free boundary.
         stiffness : float or (N,) array_like, optional
             Stiffness of those actuators [N/m]; inf is rigid (the default).
         deflected : DeflectedPlate, optional
@@ -280,7 +281,8 @@ class Plate(GradedPlate):
         density = self.section.density
         if density is None:
             raise ValueError("Input density of PlateSection must be given for frequencies; got None")
-        points = places_on(self.mesh, [] if held is None else held, "modes", "held", MAX_DENSE)
+        supports = self.supports if deflected is None else None
+        points = places_on(self.mesh, [] if held is None else held, "modes", "held", MAX_DENSE, supports=supports)
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "modes", may_float=False)
         model = self.model(points) if deflected is None else deflected.discrete.model
         max_count = model.unknowns // 2 - 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from skfem import MeshTri1, MeshTri2
 
 CORNER = np.deg2rad(15)  # a tangent that turns by more than this turns at a corner
+SAME_PLACE = 1e-9  # of half the longer side: points closer than this coincide
+LEAST_GAP = 6e-4  # of half the longer side
 CUT = "cut"  # the boundary along which a part was cut out
 
 
@@ -82,6 +84,20 @@ class PlateMesh:
     def size(self) -> float:
         """Half of the longer side of the box around the plate [m]; it makes the equations dimensionless."""
         return float(np.max(np.ptp(self.points, axis=0)) / 2)
+
+    @property
+    def least_gap(self) -> float:
+        """How far inside the rim an actuator must lie [m]: rounding spoils the cells that nearer ones need."""
+        return LEAST_GAP * self.size
+
+    def on_rim(self, xy: ArrayLike, names: Collection[str] | None = None) -> BoolArray:
+        """Which points (n, 2) [m] lie on the rim, on some boundaries and off all others by `least_gap`: (n,)."""
+        on = np.abs(self.outline.gap(xy)) <= SAME_PLACE * self.size
+        ends = np.array([0.0, 0.5, 1.0])
+        others = [self.arcs(name, ends)[0] for name in self.boundaries if names is not None and name not in names]
+        if others and on.any():
+            on &= np.abs(Outline(edges=np.concatenate(others)).gap(xy)) > self.least_gap
+        return np.asarray(on)
 
     def spans(self, places: ArrayLike) -> bool:
         """Whether places (n, 2) [m] are three or more that are not in a line."""

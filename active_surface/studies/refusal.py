@@ -17,7 +17,6 @@ from coupling.case import (
     CaseTables,
     FrictionCase,
     PlateCase,
-    beyond,
     cycles_fault,
     gaps,
     half_size,
@@ -25,6 +24,7 @@ from coupling.case import (
     location_text,
     message_of,
     mistakes_in,
+    must_be_inside,
 )
 from particle.friction import Contact
 
@@ -89,6 +89,6 @@ def start_faults(case: Case, starts: FloatArray) -> list[list[str]]:
     mesh = case.plate.coarse_mesh
     least = SAME_PLACE * half_size(mesh)
     return [
-        [] if gap > least else [f"part.position must be inside the rim; got a point {beyond(gap, least, 'um')}"]
+        [] if gap > least else [f"part.position {must_be_inside(gap, least, mesh)}"]
         for gap in gaps(mesh, [(x, y) for x, y in starts.tolist()])
     ]

@@ -8,9 +8,9 @@ from coupling.case.actuators import (
     LatticeCase,
     SegmentCase,
     amplitude,
-    beyond,
     gaps,
     half_size,
+    must_be_inside,
 )
 from coupling.case.case import Case, read_case
 from coupling.case.checks import MAX_STRETCHING, MAX_VIBRATING, cycles_fault

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from scipy.special import k0, k1, y0, y1
 
-from fem_plate.types import FloatArray
+from fem_plate.types import BoolArray, FloatArray
 
 UNIT_STRENGTH = 1 / (8 * np.pi)
 SERIES = 2.0  # |t| up to which the series is used
@@ -104,6 +104,10 @@ class InfinitePlate(ABC):
         """F around one source (2,) at points (..., 2), without a tension."""
         value, square = self._parts((xy - source)[..., None, :], source[None])
         return Radial(value[..., 0], square[..., 0])
+
+    def acts(self, sources: FloatArray) -> BoolArray:
+        """Whether forces at sources (N, 2) act on this plate, (N,)."""
+        return np.ones(len(sources), dtype=bool)
 
     def logarithms(self, sources: FloatArray) -> FloatArray:
         """What multiplies r^2 ln(r) / (8 pi) close to unit forces at sources (N, 2), (N,), the mean over directions."""
@@ -203,6 +207,30 @@ class IsotropicPlate(InfinitePlate):
             sign / (2 * np.pi) * (-size) ** (order - 1.0) * (powers[order] + bessel[order] / z**order)
             for order in range(count)
         ]
+
+
+@dataclass(frozen=True)
+class InteriorForces(InfinitePlate):
+    """An infinite plate that forces at some points (k, 2) do not act on: those on the rim load the elements instead."""
+
+    plate: InfinitePlate
+    rim_points: FloatArray
+
+    def acts(self, sources: FloatArray) -> BoolArray:
+        return np.asarray(~(sources[:, None] == self.rim_points).all(axis=-1).any(axis=1))
+
+    def derivatives(self, offset: FloatArray, sources: FloatArray, orders: Sequence[int]) -> Derivatives:
+        acts = self.acts(sources)
+        found = self.plate.derivatives(np.where(acts[:, None], offset, 1.0), sources, orders)
+        return [[np.where(acts, part, 0.0) for part in order] for order in found]
+
+    def pressure_derivatives(self, xy: FloatArray) -> list[FloatArray]:
+        return self.plate.pressure_derivatives(xy)
+
+    def point_load(self, xy: FloatArray, sources: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        value, gradient, hessian = super().point_load(xy, sources)
+        hessian[:, ~self.acts(sources)] = 0.0  # at the source, too
+        return value, gradient, hessian
 
 
 def _offsets(xy: FloatArray, sources: FloatArray) -> tuple[FloatArray, FloatArray]:

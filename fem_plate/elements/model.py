@@ -19,7 +19,7 @@ from fem_plate.elements.energy_form import EnergyForm
 from fem_plate.elements.enriched import EnrichedSpace
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.forms import rim_traces
-from fem_plate.elements.infinite import InfinitePlate
+from fem_plate.elements.infinite import InfinitePlate, InteriorForces
 from fem_plate.elements.rim import rigid_motions
 from fem_plate.elements.space import PlateSpace
 from fem_plate.elements.wedges import Wedge, corner_functions
@@ -38,6 +38,7 @@ class PlateModel:
     law: (3, 3), of M(v):H(q) over the plate's rigidity; or the energy, where that is a field or more than bending.
     tension: 1/m^2, over the rigidity too, of a plate of one law; 0 where a boundary is free.
     wedges: corners with functions of their own, of an isotropic plate.
+    rim_points: (k, 2) m, on free boundaries, where forces load the elements.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class PlateModel:
         free_corners: Iterable[int] = (),
         tension: float = 0.0,
         wedges: Sequence[Wedge] = (),
+        rim_points: FloatArray | None = None,
     ) -> None:
         self.mesh = mesh
         self.tension = tension * mesh.size**2  # dimensionless
@@ -56,11 +58,11 @@ class PlateModel:
         if isinstance(law, PlateEnergy):
             self.space: PlateSpace = PlateSpace(mesh, supports, rows)
             self.form = EnergyForm(self.space, law)
-            self.infinite: InfinitePlate = AnisotropicPlate(law.laws)
+            self.infinite = _with_forces(AnisotropicPlate(law.laws), mesh, rim_points)
             self.rigid = self._orthonormal(self._free(rigid_motions(self.space.rim)))  # (3, r), of 1, x, y
             return
         self.law = law
-        self.infinite = infinite_plate(law, self.tension)
+        self.infinite = _with_forces(infinite_plate(law, self.tension), mesh, rim_points)
         if wedges:
             functions = corner_functions(wedges, mesh.size)
             self.space = EnrichedSpace(mesh, supports, rows, functions, law, self.tension)
@@ -105,7 +107,7 @@ class PlateModel:
 
         There are no dipoles where the energy is a field: forces at different places have different laws.
         """
-        return source_basis(x, held if self.form is None else np.zeros_like(held))
+        return source_basis(x, held & self.infinite.acts(x) if self.form is None else np.zeros_like(held))
 
     def rounding(self, x: FloatArray, held: BoolArray) -> float:
         """The error of shapes of actuators at x (N, 2), relative to their largest value, that finer cells have too."""
@@ -177,6 +179,8 @@ class PlateModel:
     def under_forces(self, sources: FloatArray, basis: SourceBasis | None = None) -> FloatArray:
         """The smooth parts (unknowns, N) of the responses to unit forces at sources (N, 2), or to those of a basis."""
         responses = self._smooth_under(sources, basis)
+        if len(at_rim := np.flatnonzero(~self.infinite.acts(sources))):
+            responses[:, at_rim] += self.solve(self.space.point_values(sources[at_rim]).toarray().T)
         if not self.rigid.size:
             return responses
         # The springs respond to the known functions too, by a rigid motion.
@@ -224,3 +228,8 @@ class PlateModel:
     def motions(self, xy: FloatArray) -> FloatArray:
         """The rigid motions at points (n, 2): (n, r)."""
         return np.asarray(np.column_stack([np.ones(len(xy)), xy]) @ self.rigid)
+
+
+def _with_forces(infinite: InfinitePlate, mesh: PlateMesh, rim_points: FloatArray | None) -> InfinitePlate:
+    """The infinite plate, without the forces at points (k, 2) [m] of the rim."""
+    return infinite if rim_points is None or not len(rim_points) else InteriorForces(infinite, rim_points / mesh.size)

@@ -158,6 +158,66 @@ def test_a_held_point_beyond_the_rim_or_twice_is_refused(plate):
         plate.frequencies(1, held=[(0.2, 0), (0.2, 0)])
 
 
+@pytest.mark.parametrize(
+    ("mesh", "supports", "needed"),
+    [
+        (rectangle(2.0, 2.0, 0.5), "clamped", "by more than 0.0006 m; it is 0.0005 m inside it"),
+        (rectangle(2.0, 2.0, 0.5), "free", "by more than 0.0006 m, or on a free boundary; it is 0.0005 m inside it"),
+        (disc(1.0, 0.5), "simply-supported", "by more than 0.0006 m; it is 0.0005 m inside it"),
+    ],
+)
+def test_points_that_rounding_spoils_are_refused_and_the_next_ones_are_right(mesh, supports, needed):
+    """Nearer to the rim there were modes below those of the bare plate, and frequencies that were off by a quarter."""
+    plate = Plate(mesh, UNIT, supports)
+    for call in (plate.influence, lambda points: plate.frequencies(1, points), plate.large_deflection):
+        with pytest.raises(ValueError, match="inside the rim by more than"):
+            call([[0.9995, 0.0], [-0.9, 0.0], [0.0, 0.9]])
+    with pytest.raises(ValueError, match=needed):
+        plate.deflection([[0.9995, 0.0]], [1.0])
+    if supports != "free":
+        near, bare = plate.modes(3, [[0.9993, 0.0]]), omega(plate, 3)
+        assert (2 * np.pi * near.frequencies >= bare * (1 - 1e-4)).all()
+        assert near.error_estimate.max() < 1e-4
+
+
+def test_points_on_a_free_rim_hold_a_plate():
+    """The square on its corners has 7.110884; on the middles of its sides 13.46820, as with no points at all."""
+    plate = Plate(rectangle(2.0, 2.0, 0.4), UNIT, "free")
+    corners = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
+    middles = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    on_corners = plate.modes(3, corners)
+    assert 8 * np.pi * on_corners.frequencies == pytest.approx([7.110884, 15.770240, 15.770240], abs=6e-7)
+    assert on_corners.error_estimate.max() < 1e-8
+    assert np.abs(on_corners.evaluate(corners)[0]).max() < 1e-9
+    on_middles = plate.modes(1, middles)
+    assert 4 * omega(plate, 1, middles) == pytest.approx(4 * omega(plate, 1), rel=1e-6)
+    assert on_middles.error_estimate[0] < 1e-5
+    with_spring = [4 * omega(plate, 2, [*corners, [0.2, 0.1]])[0]]
+    with_spring += [8 * np.pi * plate.frequencies(2, [*corners, [0.2, 0.1]], [*[k] * 4, np.inf])[0] for k in (1e9, 1e3)]
+    assert with_spring[0] == pytest.approx(with_spring[1], rel=1e-6) and with_spring[2] < with_spring[0]
+
+
+def test_a_point_on_the_rim_is_the_limit_of_points_inside_it():
+    plate = Plate(annulus(0.4, 1.0, 0.3), UNIT, {"inner": "clamped"})
+    on, near, far = ([[1 - gap, 0.0], [0.0, -(1 - gap)]] for gap in (0.0, 1e-3, 2e-3))
+    assert omega(plate, 3, on) == pytest.approx(2 * omega(plate, 3, near) - omega(plate, 3, far), rel=1e-4)
+    shapes = plate.influence(on)
+    limit = 2 * plate.influence(near).stiffness - plate.influence(far).stiffness
+    assert shapes.stiffness == pytest.approx(limit, rel=1e-4) and shapes.error_estimate < 1e-5
+    with pytest.raises(ValueError, match="point 0 .* or on a free boundary; it is .* off it"):
+        plate.influence([[0.4, 0.0], [0.9, 0.0]])
+
+
+def test_forces_at_the_corners_twist_a_free_square():
+    """w = P xy / (2 D (1 - nu)), so that each corner's own stiffness is 2 D (1 - nu) / a^2."""
+    plate, corners = Plate(rectangle(2.0, 2.0, 0.25), UNIT, "free"), [[1, 1], [-1, 1], [1, -1], [-1, -1]]
+    xy = np.array([[0.3, 0.8], [-1.0, 0.2], [0.5, -0.5]])
+    w = plate.deflection(corners, [1.0, -1.0, -1.0, 1.0]).evaluate(xy)[0]
+    assert w == pytest.approx(xy.prod(axis=1) / 1.4, abs=1e-9)
+    stiffness = plate.influence(corners).stiffness
+    assert stiffness == pytest.approx(1.4 / 4 * np.outer([1, -1, -1, 1], [1, -1, -1, 1]), abs=1e-9)
+
+
 def test_evaluating_beyond_the_rim_is_refused(plate):
     with pytest.raises(ValueError, match="must lie on the plate"):
         plate.modes(1).evaluate([[1.0, 1.0]])

@@ -3,4 +3,12 @@
 from coupling.case.actuators.drive import ENDLESS, MIN_SPACING, ActuatorCase, DriveCase, SegmentCase
 from coupling.case.actuators.heights import amplitude
 from coupling.case.actuators.lattice import LatticeCase
-from coupling.case.actuators.lattice_places import SAME_PLACE, Place, Stand, beyond, gaps, half_size, shared_places
+from coupling.case.actuators.lattice_places import (
+    SAME_PLACE,
+    Place,
+    Stand,
+    gaps,
+    half_size,
+    must_be_inside,
+    shared_places,
+)

@@ -78,7 +78,7 @@ def _left(values: Mapping[str, Any], grid: Grid, mesh: PlateMesh | None) -> Sequ
         if mesh is None or not grid.whole:
             raise _NotKnownError
         least = SAME_PLACE * half_size(mesh)
-        needed = max(margin - least, least)
+        needed = max(margin - least, mesh.least_gap)
         depth = gaps(mesh, [(spot.x, spot.y) for spot in spots])
         spots = [spot for spot, gap in zip(spots, depth, strict=True) if gap > needed]
         if not spots:
@@ -106,15 +106,14 @@ def _chosen(where: Condition, spots: Sequence[Spot], grid: Grid) -> Sequence[Spo
 
 def _beyond_rim(spots: Sequence[Spot], mesh: PlateMesh, unit: str) -> list[Mistake]:
     """That places are not inside the rim; nothing if all are."""
-    least = SAME_PLACE * half_size(mesh)
     depth = gaps(mesh, [(spot.x, spot.y) for spot in spots])
-    outside = [(spot, gap) for spot, gap in zip(spots, depth, strict=True) if gap <= least]
+    outside = [(spot, gap) for spot, gap in zip(spots, depth, strict=True) if gap <= mesh.least_gap]
     if not outside:
         return []
     (spot, gap), *more = outside
     also = f", and {len(more)} more are not inside either" if more else ""
-    at = f"{spot} is {beyond(gap, least, unit)}{also}"
-    return [(("lattice",), f"must have all its actuators inside the rim; {at}; a margin leaves them out")]
+    inside, at = _inside(gap, mesh.least_gap, mesh, unit)
+    return [(("lattice",), f"must have all its actuators {inside}; {spot} is {at}{also}; a margin leaves them out")]
 
 
 def half_size(mesh: PlateMesh) -> float:
@@ -127,9 +126,17 @@ def gaps(mesh: PlateMesh, places: Sequence[Place]) -> list[float]:
     return mesh.outline.gap(places).tolist() if places else []
 
 
-def beyond(gap: float, least: float, unit: str) -> str:
-    """How far beyond the rim a place is, in words, in a unit; on it within `least` [m]."""
-    return f"{length_text(-gap, unit)} beyond it" if gap < -least else "on it"
+def must_be_inside(gap: float, least: float, mesh: PlateMesh, unit: str = "um") -> str:
+    """What is wrong with a place so far inside the rim, where more than `least` is needed; both in m."""
+    inside, at = _inside(gap, least, mesh, unit)
+    return f"must be {inside}; got a point {at}"
+
+
+def _inside(gap: float, least: float, mesh: PlateMesh, unit: str) -> tuple[str, str]:
+    same = SAME_PLACE * half_size(mesh)
+    if gap > same:
+        return f"more than {length_text(least, unit)} inside the rim", f"{length_text(gap, unit)} inside it"
+    return "inside the rim", f"{length_text(-gap, unit)} beyond it" if gap < -same else "on it"
 
 
 def shared_places(places: Sequence[Place], least: float) -> Iterator[tuple[int, int]]:

@@ -13,9 +13,9 @@ from coupling.case.actuators import (
     LatticeCase,
     Place,
     Stand,
-    beyond,
     gaps,
     half_size,
+    must_be_inside,
     shared_places,
 )
 from coupling.case.checks.parts import MAY_MOVE, Parts
@@ -72,7 +72,8 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
     ]
     part = _Spot.of(("part",), PartCase, parts.tables.get("part"), parts.written.get("part"), parts.context)
     least = SAME_PLACE * half_size(mesh)
-    yield from _beyond_rim([spot for spot in (*spots, part) if spot.place], mesh, least)
+    yield from _beyond_rim([spot for spot in spots if spot.place], mesh, mesh.least_gap)
+    yield from _beyond_rim([part] if part.place else [], mesh, least)
     places = {spot.location: spot.place for spot in spots if spot.place}
     for one, other in shared_places(list(places.values()), least):
         here, there = (list(places)[k] for k in (one, other))
@@ -143,11 +144,10 @@ def _boundary_names(key: str, supports: Any, names: list[str]) -> Mistakes:
 
 
 def _beyond_rim(spots: Sequence[_Spot], mesh: PlateMesh, least: float) -> Mistakes:
-    depth = gaps(mesh, [spot.place for spot in spots if spot.place])
-    for spot, gap in zip(spots, depth, strict=True):
+    """Yield that places are not inside the rim by more than `least` [m]."""
+    for spot, gap in zip(spots, gaps(mesh, [spot.place for spot in spots if spot.place]), strict=True):
         if gap <= least:
-            unit = written_unit(spot.written)
-            yield spot.location, f"must be inside the rim; got a point {beyond(gap, least, unit)}"
+            yield spot.location, must_be_inside(gap, least, mesh, written_unit(spot.written))
 
 
 def _held(parts: Parts, spots: Sequence[_Spot], stand: Stand | None) -> list[Place] | None:

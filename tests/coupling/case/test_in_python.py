@@ -13,13 +13,19 @@ from coupling.case import ActuatorCase, Case, InputError, PartCase
 
 
 @pytest.mark.parametrize(
-    ("distance", "inside"), [(299.999, True), (300 * (1 - 2e-9), True), (300 * (1 - 5e-10), False), (300, False)]
+    ("what", "gap", "inside"),
+    [
+        *(("part", 2e-9, True), ("part", 5e-10, False), ("part", 0, False)),
+        *(("actuator", 7e-4, True), ("actuator", 5e-4, False), ("actuator", 0, False)),
+    ],
 )
-def test_the_rim_itself_is_outside(distance: float, inside: bool) -> None:
+def test_the_rim_itself_is_outside(what: str, gap: float, inside: bool) -> None:
+    place = (0.6 * 300e-6 * (1 - gap), -0.8 * 300e-6 * (1 - gap))
+
     def build() -> Case:
-        return python_case(
-            actuators=[{"position": (0.6e-6 * distance, -0.8e-6 * distance), "stroke": 0, "frequency": 1}]
-        )
+        if what == "part":
+            return python_case(part={"mass": 2e-9, "position": place})
+        return python_case(actuators=[{"position": place, "stroke": 0, "frequency": 1}])
 
     if inside:
         build()
