@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_plate.elements import (
+    COARSE_GAIN,
     FREE,
     MAX_EXPONENT,
     MeshGrading,
@@ -99,6 +100,17 @@ class GradedPlate:
             return PlateModel(mesh, self.supports, energy, rows, rim_points=rim_points)
         law, relative = self.section.law, tension / self.section.rigidity
         return PlateModel(mesh, self.supports, law, rows, relative, self.enriched_corners, rim_points)
+
+    @property
+    def free_boundaries(self) -> tuple[str, ...]:
+        """The boundaries that no support holds."""
+        return tuple(name for name, support in self.supports.items() if support == FREE)
+
+    @property
+    def gain(self) -> float:
+        """What halving the cells divides the error of w by, at least: little where corners make most of the error."""
+        fine = all(self.grading.at_corner(corner)[1] for corner in self.corners)
+        return self.grading.gain if fine and not self.enriched_corners else COARSE_GAIN
 
     @property
     def graded_corners(self) -> list[SingularCorner]:

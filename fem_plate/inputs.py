@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
-from fem_plate.elements.rim import FREE
 from fem_plate.types import BoolArray, FloatArray
 from meshes import Outline, PlateMesh
 
@@ -74,18 +73,17 @@ def places_on(
     name: str = "points",
     most: float = math.inf,
     least: int = 0,
-    supports: Mapping[str, str] | None = None,
+    free: Sequence[str] = (),
 ) -> FloatArray:
     """Points of `caller` as an array (N, 2) [m], of which there may be none; ValueError as of the checks above.
 
-    supports: of a plate on whose free boundaries the points may lie.
+    free: boundaries that the points may lie on.
     """
     places = as_points(points, f"{name} of {caller}")
     if not least <= len(places) <= most:
         bound = f"at most {most} points" if len(places) > most else "one point or more"
         raise ValueError(f"Input {name} of {caller} must be {bound}; got {len(places)}")
     if places.size:
-        free = [name for name, support in (supports or {}).items() if support == FREE]
         gap = np.where(mesh.on_rim(places, free), np.inf, mesh.outline.gap(places))
         check_points(caller, places, gap, mesh.size, mesh.least_gap, bool(free))
     return places

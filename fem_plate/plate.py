@@ -144,7 +144,7 @@ class Plate(GradedPlate):
             supports and actuators leave the plate a rigid motion that they may not.
         """
         on_patches = truncation is not None or np.size(points) > 2 * MAX_DENSE
-        points = places_on(self.mesh, points, "influence", least=1, supports=None if on_patches else self.supports)
+        points = places_on(self.mesh, points, "influence", least=1, free=() if on_patches else self.free_boundaries)
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "influence", may_float=True)
         shapes: InfluenceShapes | PatchedShapes
         if on_patches:
@@ -163,7 +163,7 @@ class Plate(GradedPlate):
                     self.model(points, halvings), points, rigidity, actuator_stiffness, free_motions
                 ),
                 self.tolerance,
-                self.grading.gain,
+                self.gain,
             )
         shapes.plate = self
         return shapes
@@ -231,7 +231,7 @@ class Plate(GradedPlate):
             As for `influence`; or there is not one force per point, a load is not finite, or the loads on a plate that
             can move rigidly are not in balance.
         """
-        points = places_on(self.mesh, points, "deflection", supports=self.supports)
+        points = places_on(self.mesh, points, "deflection", free=self.free_boundaries)
         loads = one_per_point(forces, len(points), "forces of deflection")
         if not (np.isfinite(loads).all() and np.isfinite(pressure)):
             raise ValueError("Input forces and pressure of deflection must be finite; got some that are not")
@@ -239,7 +239,7 @@ class Plate(GradedPlate):
         return refined(
             lambda halvings: Deflection(self.model(points, halvings), points, loads, float(pressure), rigidity),
             self.tolerance,
-            self.grading.gain,
+            self.gain,
         )
 
     def pressure(self, load: float) -> Deflection:
@@ -281,8 +281,8 @@ class Plate(GradedPlate):
         density = self.section.density
         if density is None:
             raise ValueError("Input density of PlateSection must be given for frequencies; got None")
-        supports = self.supports if deflected is None else None
-        points = places_on(self.mesh, [] if held is None else held, "modes", "held", MAX_DENSE, supports=supports)
+        free = self.free_boundaries if deflected is None else ()
+        points = places_on(self.mesh, [] if held is None else held, "modes", "held", MAX_DENSE, free=free)
         actuator_stiffness = stiffness_per_point(stiffness, len(points), "modes", may_float=False)
         model = self.model(points) if deflected is None else deflected.discrete.model
         max_count = model.unknowns // 2 - 1

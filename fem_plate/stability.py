@@ -83,9 +83,10 @@ def warn_of_polygon(plate: GradedPlate) -> None:
 def warn_of_wedges(where: str, count: int) -> None:
     """Warn, in the caller's caller, of obtuse corners whose functions a plate leaves out there."""
     if count:
+        estimate = "leaves that out too" if where == "on patches" else "says by how much"
         warnings.warn(
             f"Plate has {count} simply supported corners over 90 degrees. A plate {where} leaves out "
-            "what is singular there: its shapes are off by more than their error estimate says, the more the wider "
-            "the corners are",
+            "what is singular there: it is less accurate, the more the wider the corners are; its error estimate "
+            f"{estimate}",
             stacklevel=3,
         )

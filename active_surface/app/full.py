@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.views import run_data
-from coupling import ProgressCallback, Result, SolvedPlates, limit_warnings, read_run, report, run_over
+from coupling import ProgressCallback, Result, SolvedPlates, case_warnings, limit_warnings, read_run, report, run_over
 from coupling.case import Case
 from particle import Stopped, stoppable
 
@@ -67,7 +67,7 @@ def _full_answer(case: Case, plates: SolvedPlates, tell: Tell) -> Full:
             "trust": report.with_micro_signs(report.trust(summary)),
             "warnings": [
                 report.with_micro_signs(text)
-                for text in [*report.warnings(summary), *limit_warnings(case, result.shapes)]
+                for text in [*report.warnings(summary), *case_warnings(case), *limit_warnings(case, result.shapes)]
             ],
             "rows": [[label, report.with_micro_signs(text)] for label, text in report.lines(summary)],
             "figures": {"distance": summary.distance, "end": summary.end_position, "outcome": summary.outcome},

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, TypeVar
 
 import click
 
-from active_surface.cli import ctrl_c
+from active_surface.cli import ctrl_c, options
 from active_surface.cli.refusal import Refusal, refusal, refusal_of
 from active_surface.cli.usage import mistakes_in, unknown
 from coupling import near, printable
@@ -120,6 +120,7 @@ class Group(Command, click.Group):
 
 def _told(message: Warning | str, *_: Any, **__: Any) -> None:
     """Print a library's warning as the commands print theirs, without the line of code."""
+    options.of_libraries.append(str(message))
     click.echo(printable(f"warning     {message}"), err=True)
 
 

@@ -27,6 +27,7 @@ def output_folder(usual: str, what: str = "results", default: Path | None = None
 
 
 folder = output_folder("results")
+of_libraries: list[str] = []  # the warnings that Python's `warnings` gave so far, printed already
 
 
 def tell(
@@ -39,7 +40,7 @@ def tell(
 ) -> None:
     """Prints what a command found, as figures or in words."""
     if as_json:
-        click.echo(json_text(figures))
+        click.echo(json_text({**figures, "warnings": [*of_libraries, *warnings]} if of_libraries else figures))
     elif not quiet:
         for label, text in lines:
             click.echo(printable(f"{label:<{WIDTH}}{text}"))

@@ -13,7 +13,7 @@ from coupling.case.actuators import (
     must_be_inside,
 )
 from coupling.case.case import Case, read_case
-from coupling.case.checks import MAX_STRETCHING, MAX_VIBRATING, cycles_fault
+from coupling.case.checks import MAX_STRETCHING, MAX_VIBRATING, common_period, cycles_fault
 from coupling.case.field import Field, Value, find_field
 from coupling.case.friction import (
     AnyFriction,

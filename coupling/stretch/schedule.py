@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coupling.case import common_period
 from particle import AnyDrive, kernel
 from particle.drives import DriveTable, drive_table, next_breakpoint
 
 FloatArray = NDArray[np.float64]
 
-MAX_CYCLES = 1000  # of one drive in the common period
-ROUNDING = 4 * np.finfo(float).eps  # of the period
 CLOSEST = 1e-9  # of the shortest stroke: breakpoints of the loop's ends
 
 
@@ -35,6 +33,8 @@ def schedule_of(drives: Sequence[AnyDrive], end: float) -> Schedule:
     begin, period = _period(moving)
     if not moving:
         return Schedule(np.array([0.0, end]), -1, table)
+    if math.isinf(min(end, begin)):  # there is no end to them
+        return Schedule(np.zeros(1), -1, table)
     if period is None:
         return Schedule(_edges(marks, min(end, begin)), -1, table)
     if not begin + period < end:
@@ -77,19 +77,7 @@ def _period(moving: Sequence[AnyDrive]) -> tuple[float, float | None]:
             begin = max(begin, drive.delay + pieces.duration)
             continue
         begin = max(begin, drive.delay + pieces.lead_time)
-        period = _common(period, pieces.span)
+        period = common_period(period, pieces.span)
         if math.isinf(period):
             return math.inf, None
     return begin, period
-
-
-def _common(one: float | None, other: float) -> float:
-    """The shortest whole multiple of both periods [s], to rounding; inf: there is none."""
-    if one is None:
-        return other
-    ratio = Fraction(one / other).limit_denominator(MAX_CYCLES)
-    cycles = float(ratio.numerator), float(ratio.denominator)
-    if min(cycles) < 1 or max(cycles) > MAX_CYCLES:
-        return math.inf
-    shared = cycles[1] * one
-    return shared if abs(shared - cycles[0] * other) <= ROUNDING * shared else math.inf

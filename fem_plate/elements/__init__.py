@@ -8,7 +8,15 @@ from fem_plate.elements.dipoles import SourceBasis, source_basis
 from fem_plate.elements.energy import PlateEnergy, plate_energy
 from fem_plate.elements.factor import factorised
 from fem_plate.elements.functions import Derivatives, PlateFunctions
-from fem_plate.elements.grading import GAIN, MeshGrading, SingularCorner, corner_rows, grade_mesh, singular_corners
+from fem_plate.elements.grading import (
+    COARSE_GAIN,
+    GAIN,
+    MeshGrading,
+    SingularCorner,
+    corner_rows,
+    grade_mesh,
+    singular_corners,
+)
 from fem_plate.elements.infinite import UNIT_STRENGTH, point_load, point_value
 from fem_plate.elements.model import PlateModel
 from fem_plate.elements.rim import CLAMPED, FREE, SIMPLY_SUPPORTED, by_boundary, rigid_motions, rim_quadrature

@@ -21,7 +21,8 @@ MAX_LAYER_CELLS = 1000.0  # spent on layers before any halving, about
 # What halving the cells is sure to divide the error of w by: without layers (observed: 2^5.5 and more), with cells at
 # the rim of up to COARSE_LAYER widths of a layer, and with larger ones.
 GAIN, LAYER_GAIN, COARSE_GAIN, COARSE_LAYER = 2.0**5, 8.0, 2.0, 6.0
-MIN_CELL = 1e-6  # of the plate's size: smaller cells add more rounding than accuracy
+MIN_CELL = 1e-6  # of the plate's size, at corners on the plate's own cells
+FINER, LEAST_CELL = 64.0, 1e-8  # what halving the cells divides that by, down to where rounding is more than accuracy
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,7 @@ class MeshGrading:
     size: float  # m, the scale of corners: the plate's size, or three half widths of a slender plate
     layer: float = np.inf  # m, over which a tension's boundary layer decays
     at_layer: float = np.inf  # m, of the cells there
+    least: float = MIN_CELL  # of the size, of the cells at corners
 
     @staticmethod
     def of(mesh: PlateMesh, tension: float = 0.0) -> MeshGrading:
@@ -83,7 +85,13 @@ class MeshGrading:
 
     def halved(self, times: int = 1) -> MeshGrading:
         """The fineness of cells halved so many times."""
-        return replace(self, cell=self.cell / 2**times, at_layer=self.at_layer / 2**times)
+        least = max(MIN_CELL / FINER**times, LEAST_CELL) if times else self.least
+        return replace(self, cell=self.cell / 2**times, at_layer=self.at_layer / 2**times, least=least)
+
+    def at_corner(self, corner: SingularCorner) -> tuple[float, bool]:
+        """The size [m] of the cells at a corner, and whether they are as small as is good for its error."""
+        needed = (corner.error * (self.cell / self.size) ** 6) ** (1 / (2 * corner.exponent))
+        return min(self.size * max(needed, self.least), corner.largest), needed >= self.least
 
 
 def _at_layer(share: float, layer: float, rim: float) -> float:
@@ -113,7 +121,7 @@ def grade_mesh(
         # An image across a hole may lie on the plate's other rim. None is closer to the plate than its actuator.
         images, nearest = cKDTree(mesh.mirrored(points)), mesh.outline.gap(points).min()
     share = fine.cell / fine.size
-    smallest = [_at_corner(corner, share, fine.size) for corner in corners]
+    smallest = [fine.at_corner(corner)[0] for corner in corners]
     while True:
         centre = mesh.points[mesh.triangles].mean(axis=1)
         allowed = np.full(len(centre), np.inf)
@@ -131,15 +139,6 @@ def grade_mesh(
         if not large.any():
             return mesh
         mesh = mesh.refined(large)
-
-
-def _at_corner(corner: SingularCorner, share: float, size: float) -> float:
-    """The size [m] of the cells at a corner.
-
-    share: the plate's cells over its size [m].
-    """
-    smallest = (corner.error * share**6) ** (1 / (2 * corner.exponent))
-    return min(size * max(smallest, MIN_CELL), corner.largest)
 
 
 def corner_rows(mesh: PlateMesh, corners: list[SingularCorner]) -> list[int]:

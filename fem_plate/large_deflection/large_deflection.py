@@ -89,9 +89,7 @@ class LargeDeflection:
 
     def _refined(self, strokes: FloatArray, pressure: float, level: int) -> DeflectedPlate:
         plate = self.plate
-        return refined(
-            lambda halvings: self.solved(strokes, pressure, level, halvings), plate.tolerance, plate.grading.gain
-        )
+        return refined(lambda halvings: self.solved(strokes, pressure, level, halvings), plate.tolerance, plate.gain)
 
     def solved(self, strokes: FloatArray, pressure: float, level: int, halvings: int) -> DeflectedPlate:
         """The plate in equilibrium on cells of a level of fineness, halved."""

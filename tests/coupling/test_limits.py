@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from case_files import plate, python_case
 from click.testing import CliRunner
 from mistakes import answered_otherwise
 from sweeps import DISC_PLATE, toml
@@ -9,6 +10,8 @@ from sweeps import DISC_PLATE, toml
 from active_surface.cli.program import main
 from coupling.case import CaseError, InputError, read_case
 from coupling.limits import largest_forces, limit_warnings
+from coupling.outlook import case_warnings, frequency_warnings
+from coupling.scene import build_plate
 
 PLATE = DISC_PLATE + 'cell_size = "75 um"\n\n'
 REST = toml(
@@ -79,3 +82,69 @@ def test_of_several_the_worst_is_named(tmp_path):
     case = read_case(file_with(tmp_path, LATTICE + 'stroke = "2 if column == 1 else 1 um"\nmax_force = "1 uN"'))
     (text,) = limit_warnings(case)
     assert text.startswith("3 actuators take more than max_force, actuator 1 most: ") and "of 1 µN" in text
+
+
+@pytest.mark.parametrize(
+    ("changes", "warned"),
+    [
+        (
+            {"part": {"mass": "1 g", "size": "75 um"}},
+            ["The part has 2.4e+09 kg/m^3 if it is as high as wide;"],
+        ),
+        ({"part": {"mass": "9.6 ug", "size": "75 um"}}, []),
+        (
+            {"part": {"mass": "10 ug", "size": "100 um", "centre_height": "10 um"}},
+            ["The part has 5e+04 kg/m^3; no"],
+        ),
+        ({"drive": {"cycles": 200}}, ["The drive of actuator 0 takes 200 ms, and the run ends after 50 ms: the rest"]),
+        ({"drive": {"cycles": 50}}, []),
+        ({"drive": {"cycles": 45, "dwell": "0.1 ms"}}, ["The drive of actuator 0 takes 54 ms"]),
+        ({"plate": {"thickness": "400 um"}}, ["The plate is 400 µm thick, 600 µm wide and 600 µm long; plate theory"]),
+        (
+            {"drive": {"frequency": "400 kHz"}},
+            ["The fastest drive is at 0.43 of the plate's first frequency, or more;"],
+        ),
+        ({"drive": {"frequency": "400 kHz"}, "plate": {"inertia": True}}, []),
+    ],
+)
+def test_check_warns_of_what_needs_no_solution(changes, warned, tmp_path):
+    tables = {
+        "plate": {"density": "2330 kg/m^3", **changes.get("plate", {})},
+        "part": {"mass": "2e-9 kg", "position": ["10 um", "0 um"], **changes.get("part", {})},
+    }
+    drive = {"stroke": "1 um", "frequency": "1 kHz", **changes.get("drive", {})}
+    case = python_case(
+        plate=plate(**tables["plate"]),
+        part=tables["part"],
+        actuators=[{"position": ("0 um", "0 um"), **drive}],
+        friction={"model": "constant", "limit": "1 uN"},
+    )
+    found = [*case_warnings(case), *frequency_warnings(case)]
+    assert len(found) == len(warned) and all(one.startswith(start) for one, start in zip(found, warned, strict=True))
+
+
+def test_the_first_frequency_of_the_warning_is_a_bound(tmp_path):
+    """The disc around the widest gap, clamped, is a trial shape of the plate."""
+    for where in (
+        [("0 um", "0 um")],
+        [("100 um", "0 um")],
+        [("100 um", "0 um"), ("-100 um", "50 um"), ("0 um", "-150 um")],
+    ):
+        case = python_case(
+            plate=plate(density="2330 kg/m^3"),
+            actuators=[
+                {"position": at, "stroke": "1 um", "frequency": "400 kHz"} for at in where or [("0 um", "0 um")]
+            ],
+        )
+        points = [actuator.position for actuator in case.actuators]
+        (text,) = frequency_warnings(case)
+        bound = 400e3 / float(text.split(" at ")[1].split(" ")[0])
+        assert 0.3 * bound < build_plate(case.plate).frequencies(1, points)[0] < 1.05 * bound  # its two digits
+
+
+def test_check_refuses_a_plate_that_buckles(tmp_path):
+    path = file_with(tmp_path, ONE + STROKE)
+    soft = 'supports = "simply-supported"\nfoundation = "-1e10 N/m^3"'
+    path.write_text(path.read_text().replace('cell_size = "75 um"', soft))
+    done = CliRunner().invoke(main, ["check", str(path)])
+    assert done.exit_code == 2 and "at which it buckles without actuators; got -10000000000" in done.output

@@ -18,7 +18,7 @@ from coupling import printable
 @options.as_json
 def check(file: Path, quiet: bool, as_json: bool) -> None:
     """Report every mistake in FILE: a case, a study or an aim."""
-    from coupling.case import has_known_law
+    from coupling.case import PlateCase, has_known_law
 
     kind = kind_of(refusing(parse_file, file))
     figures: dict[str, Any]
@@ -41,15 +41,25 @@ def check(file: Path, quiet: bool, as_json: bool) -> None:
             from coupling import build_friction  # takes a second to load
 
             refusing(lambda: build_friction(case).law)
-        if any(actuator.max_force is not None and actuator.force is None for actuator in case.actuators):
-            from coupling import limit_warnings  # which solves the plate
+        from coupling import case_warnings, frequency_warnings
 
-            warnings = refusing(limit_warnings, case)
+        warnings = case_warnings(case) + frequency_warnings(case)
+        limited = any(actuator.max_force is not None and actuator.force is None for actuator in case.actuators)
+        if limited or (isinstance(case.plate, PlateCase) and min(case.plate.foundation, case.plate.tension) < 0):
+            from coupling import limit_warnings  # these solve the plate
+            from coupling.scene import build_plate
+
+            refusing(build_plate, case.plate)  # which may buckle
+            warnings += refusing(limit_warnings, case)
         count = len(case.actuators)
         figures = {"actuators": count, "duration": case.run.duration}
         summary = f"{_counted(count, 'actuator') if count else 'a platform'}, {case.run.duration * 1e3:g} ms"
     if as_json:
-        click.echo(options.json_text({"file": str(file), "mistakes": [], "warnings": warnings, **figures}))
+        click.echo(
+            options.json_text(
+                {"file": str(file), "mistakes": [], "warnings": [*options.of_libraries, *warnings], **figures}
+            )
+        )
     elif not quiet:
         click.echo(printable(f"{file}: fine; {summary}"))
         options.warn(warnings)

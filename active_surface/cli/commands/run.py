@@ -34,14 +34,15 @@ def run(
 ) -> None:
     """Run CASE and write its results."""
     parsed = read(case)
-    from coupling import StageBar, answers_drives, limit_warnings, report, run_case, silent
+    from coupling import StageBar, answers_drives, case_warnings, limit_warnings, report, run_case, silent
     from coupling.results import check_folder
 
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
     with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(parsed)) as bar:
         result = refusing(run_case, parsed, folder, bar, csv, save_surface, forces)
-    files, warnings = result.files, report.warnings(result.summary) + limit_warnings(parsed, result.shapes)
-    lines = report.lines(result.summary, verbose)
-    figures = result.summary.as_dict() | {"warnings": warnings, "files": [str(file) for file in files]}
+    files, summary = result.files, result.summary
+    warnings = report.warnings(summary) + case_warnings(parsed) + limit_warnings(parsed, result.shapes)
+    lines = report.lines(summary, verbose)
+    figures = summary.as_dict() | {"warnings": warnings, "files": [str(file) for file in files]}
     options.tell(figures, lines, quiet, as_json, warnings, files)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from typing import Any, Final
 
 from coupling.case.actuators import ENDLESS, ActuatorCase, LatticeCase
@@ -21,6 +24,7 @@ MAX_PRESSED: Final = 250
 MAX_GENERAL: Final = 250
 """Actuators of a plate on a foundation, or of a wafer under a tension."""
 STEADY: Final = 'start = "steady"'
+MAX_CYCLES: Final = 1000  # of one drive in the common period
 
 
 def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
@@ -46,6 +50,8 @@ def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
         if inertia is False:
             yield ("run", "start"), f"must not be given without {INERTIA} in [plate]; only then do vibrations build up"
         yield from _ending(parts)
+        if inertia and right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
+            yield from _aperiodic(parts)
         damping = right_value(PlateCase, "damping", plate, parts.context)
         undamped = min(ratio for _, ratio in damping) == 0 if isinstance(damping, tuple) else damping == 0
         if inertia and undamped and right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
@@ -108,8 +114,40 @@ def _stretching(scheme: str | None, count: int) -> Iterator[Mistake]:
         )
 
 
-def _ending(parts: Parts) -> Iterator[Mistake]:
-    """Yield the drives that end, or grow, and so have no steady state."""
+def common_period(one: float | None, other: float) -> float:
+    """The shortest whole multiple of both periods [s], to rounding; inf: there is none of up to MAX_CYCLES of each."""
+    if one is None:
+        return other
+    ratio = Fraction(one / other).limit_denominator(MAX_CYCLES)
+    cycles = float(ratio.numerator), float(ratio.denominator)
+    if min(cycles) < 1 or max(cycles) > MAX_CYCLES:
+        return math.inf
+    shared = cycles[1] * one
+    return shared if abs(shared - cycles[0] * other) <= 4 * sys.float_info.epsilon * shared else math.inf
+
+
+def _aperiodic(parts: Parts) -> Iterator[Mistake]:
+    """Yield the drive of one frequency with which those before it have no common period."""
+    period: float | None = None
+    for location, values in _driven(parts):
+        frequency, dwell = values["frequency"], values["dwell"]
+        still = values["stroke"] == 0 or values["force"] == 0
+        if not isinstance(frequency, float) or not isinstance(dwell, float) or location == ("lattice",) or still:
+            continue
+        own = 1 / frequency + (2 * dwell if values["cycle"] == "up-down" else 0.0)
+        if math.isinf(shared := common_period(period, own)):
+            yield (
+                (*location, "frequency"),
+                f"must have a common period with the drives before it, with {VON_KARMAN} and {STEADY}; got a period of "
+                f"{own * 1e3:.7g} ms, and {(period or 0.0) * 1e3:.7g} ms of those; take frequencies in a ratio of "
+                "small whole numbers",
+            )
+            return
+        period = shared
+
+
+def _driven(parts: Parts) -> list[tuple[Location, Mapping[str, Any]]]:
+    """The values of all actuators, and of the lattice as one."""
     driven: list[tuple[Location, Mapping[str, Any]]] = [
         (("actuators", index), ActuatorCase.values_of(value, parts.context))
         for index, (value, _) in enumerate(parts.items("actuators"))
@@ -118,7 +156,12 @@ def _ending(parts: Parts) -> Iterator[Mistake]:
     lattice = parts.tables.get("lattice")
     if isinstance(lattice, (dict, LatticeCase)):
         driven.append((("lattice",), LatticeCase.values_of(lattice, parts.context)))
-    for location, values in driven:
+    return driven
+
+
+def _ending(parts: Parts) -> Iterator[Mistake]:
+    """Yield the drives that end, or grow, and so have no steady state."""
+    for location, values in _driven(parts):
         if values["cycle"] == "up":
             yield (*location, "cycle"), f'must not be "up" with {STEADY} in [run], which takes a drive without end'
         if isinstance(values["cycles"], int):

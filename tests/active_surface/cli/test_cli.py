@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 from sweeps import toml
 
-from active_surface.cli import ctrl_c
+from active_surface.cli import ctrl_c, group, options
 from active_surface.cli.program import main
 from fem_plate import verification
 
@@ -118,6 +118,15 @@ def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
         output, errors = run.communicate(timeout=LATEST)
     assert (run.returncode, output) == (130, "") and errors.endswith("interrupted\n") and "Traceback" not in errors
     assert not (tmp_path / "out").exists()
+
+
+def test_json_has_the_warnings_of_libraries(capsys, monkeypatch):
+    monkeypatch.setattr(options, "of_libraries", [])
+    group._told(UserWarning("it is a polygon"))
+    options.tell({"outcome": "stuck", "warnings": ["too fast"]}, [], False, True, ["too fast"])
+    captured = capsys.readouterr()
+    assert json.loads(captured.out)["warnings"] == ["it is a polygon", "too fast"]
+    assert captured.err == "warning     it is a polygon\n"
 
 
 def test_verify_passes_and_writes_every_figure(tmp_path):

@@ -4,11 +4,14 @@ import re
 
 import numpy as np
 import pytest
-from case_files import DURATION, STROKE, changed, problems, python_case, read
+from case_files import DURATION, STROKE, changed, plate, problems, python_case, read
 from click.testing import CliRunner
 
 from active_surface.cli import main
+from coupling.case import InputError
 from coupling.scene import damping_of
+from coupling.stretch.schedule import schedule_of
+from particle import Drive
 
 THICKNESS = 'thickness = "5 um"'
 VIBRATES = THICKNESS + '\ndensity = "2330 kg/m^3"\ninertia = true\n'
@@ -90,6 +93,31 @@ def test_a_plate_of_many_actuators_cannot_vibrate():
         ValueError, match=r"plate.inertia of Case must be false with more than 250 actuators.*got 251; a piece"
     ):
         python_case(plate=plate, actuators=places)
+
+
+@pytest.mark.parametrize(
+    ("frequencies", "period"),
+    [(("2 kHz", "1.5 kHz"), None), (("2 kHz", "1745.943 Hz"), "0.5"), (("700 Hz", "2 kHz", "1745.943 Hz"), "10")],
+)
+def test_a_stretching_plate_has_a_steady_state_where_its_drives_have_a_common_period(frequencies, period):
+    """Without one, breakpoints were listed until memory ended."""
+    actuators = [
+        {"position": (f"{90 * k - 90} um", "30 um"), "stroke": "1 um", "frequency": frequency}
+        for k, frequency in enumerate(frequencies)
+    ]
+    vibrating = plate(density="2330 kg/m^3", theory="von-karman", inertia=True)
+
+    def made():
+        return python_case(plate=vibrating, actuators=actuators, run={"duration": "1 ms", "start": "steady"})
+
+    if period is None:
+        assert made().run.start == "steady"
+        return
+    with pytest.raises(InputError, match=rf"got a period of 0.5727564 ms, and {period} ms of those") as error:
+        made()
+    assert f"actuators[{len(frequencies) - 1}].frequency" in str(error.value)
+    drives = [Drive(1e-6, float(word)) for word in (2000.0, 1745.943)]
+    assert schedule_of(drives, np.inf).loop == -1 and schedule_of(drives, 1e-3).edges[-1] == 1e-3
 
 
 def test_a_steady_state_takes_inertia_and_drives_without_end(tmp_path):
