@@ -41,7 +41,7 @@ class Opened:
         return self._step(self.undone, self.steps)
 
     def save(self, name: str, replace: bool) -> Path:
-        """Write the case to a file in its folder, with the comments and order of the file that it was read from.
+        """Write the case to a file in its folder, where all that is the same stays as it was written.
 
         Raises ValueError where the name is none of a case file, or is taken and not to be replaced.
         """

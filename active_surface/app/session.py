@@ -143,7 +143,11 @@ class Session:
         name = message.get("name")
         if not isinstance(name, str):
             raise Refused([("", 'the name must be that of a file, such as "my_case.toml"')])
+        selected = None if self._selected == ALL else self._open.case.actuators[int(self._selected) :][:1]
         path = self._open.save(name, bool(message.get("replace")))
+        if selected:  # which may have left a lattice, and so have another number
+            places = [math.dist(one.position, selected[0].position) for one in self._open.case.actuators]
+            self._selected = str(places.index(min(places)))
         self._answers.send({"kind": "note", "text": f"Saved {path}"})
         await self._stepped()
 

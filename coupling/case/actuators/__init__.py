@@ -10,5 +10,6 @@ from coupling.case.actuators.lattice_places import (
     gaps,
     half_size,
     must_be_inside,
+    outside,
     shared_places,
 )

@@ -11,7 +11,7 @@ from coupling.case.actuators.lattice import LatticeCase
 from coupling.case.actuators.lattice_values import Grid, Spot, actuators_at
 from coupling.case.mistakes import Location, Mistake
 from coupling.case.table import WRONG
-from coupling.case.values import Condition, length_text, quoted
+from coupling.case.values import UNITS_REQUIRED, Condition, length_text, quoted
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -60,6 +60,16 @@ class Stand(NamedTuple):
             if one < len(here) <= other:
                 at = f"must differ from that of {self.spots[one]} of the lattice"
                 yield list(others)[other - len(here)], f"{at}; got the same point"
+
+
+def outside(lattice: Mapping[str, Any], places: Sequence[Place]) -> str:
+    """The condition of a lattice, as a file has it, that leaves some of its places out as well."""
+    grid = Grid.of(dict(LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)))
+    spots = {(spot.x, spot.y): spot for spot in grid.spots}
+    several = [key for key in ("row", "column") if lattice[f"{key}s"] > 1]
+    left = [" or ".join(f"{key} != {getattr(spots[place], key)}" for key in several) for place in places]
+    parts = [*([lattice["where"]] if "where" in lattice else []), *left]
+    return " and ".join(f"({part})" for part in parts) if len(parts) > 1 else "".join(parts)
 
 
 class _NotKnownError(Exception):

@@ -201,7 +201,7 @@ def _lines(text: str) -> Iterator[tuple[Location, int]]:
     for line, statement in _statements(text):
         content = tomllib.loads(statement)
         if statement.lstrip().startswith("["):
-            table = _table(content, counts)
+            table = table_opened(content, counts)
             places += [(table[:depth], line) for depth in range(1, len(table) + 1)]
         else:
             places += [(location, line) for location in _locations(content, table)]
@@ -223,7 +223,7 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
             start, first = token.end(), line
 
 
-def _table(header: dict[str, Any], counts: Counter[Location]) -> Location:
+def table_opened(header: dict[str, Any], counts: Counter[Location]) -> Location:
     """The table that `header` opens; `counts` keeps how many tables each [[array]] has so far."""
     location: Location = ()
     while header:

@@ -12,7 +12,8 @@ from coupling.case.values.csv_columns import (
     unreadable,
 )
 from coupling.case.values.dimensions import DIMENSIONS, RANGES
-from coupling.case.values.formula import Amount, Choice, Condition, Formula
+from coupling.case.values.expression import LONGEST
+from coupling.case.values.formula import Amount, Choice, Condition, Formula, unit_of
 from coupling.case.values.quantities import (
     AXES,
     Angle,
@@ -47,6 +48,7 @@ from coupling.case.values.units import (
     Quantity,
     length_text,
     number_and_unit,
+    prefixed,
     quoted,
     written_unit,
 )

@@ -120,6 +120,11 @@ class Choice:
         return {"type": "string"}
 
 
+def unit_of(text: str) -> str:
+    """The unit that a quantity or formula ends with."""
+    return split(text)[1]
+
+
 def _words(text: str, expected: str) -> tuple[list[str], str]:
     try:
         return split(text)
