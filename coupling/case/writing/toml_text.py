@@ -8,7 +8,7 @@ from collections import Counter
 from typing import Any, Final, NamedTuple
 
 from coupling.case.mistakes import Location
-from coupling.case.parsing.toml_file import table_opened
+from coupling.case.parsing import table_opened
 from coupling.case.variation import value_at
 
 _TEXT: Final = r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:\\.|[^"\\])*"|\'[^\']*\''
