@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import json
+import re
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -20,6 +22,7 @@ from coupling import Progress, ProgressCallback, report
 from coupling.case import Case, InputError
 from particle import Trajectory
 
+TEXT: Final = re.compile(r'("(?:[^"\\]|\\.)*")')  # in quotes, as `quoted` writes it
 Send = Callable[[dict[str, Any]], object]
 Mistakes = list[tuple[str, str]]
 """Fields, and what is wrong with each."""
@@ -42,6 +45,14 @@ def mistakes_of(error: Exception, field: str = "") -> Mistakes | None:
     if isinstance(error, ValueError | OSError):
         return [(field, text.removeprefix(f"{field} ")) for text in str(error).split("\n")]
     return None
+
+
+def as_typed(message: str) -> str:
+    """A message whose texts stand as they are typed on the page, without the quotes that they have in a file."""
+    pieces = TEXT.split(message)
+    return "".join(
+        json.loads(one) or "nothing" if k % 2 else report.with_micro_signs(one) for k, one in enumerate(pieces)
+    )
 
 
 class Answers:
@@ -181,7 +192,7 @@ class Answers:
             traceback.print_exception(error)
             self.send({"kind": "trouble", "turn": page_turn, "text": f"the program failed: {error!r}"})
             return
-        told = [{"field": name, "message": report.with_micro_signs(message)} for name, message in mistakes]
+        told = [{"field": name, "message": as_typed(message)} for name, message in mistakes]
         self.send({"kind": "refused", "turn": page_turn, "mistakes": told})
 
     def spawn(self, work: Any) -> None:

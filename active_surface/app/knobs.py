@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Final, Literal
 
 from common import unit_for
-from coupling.case import Case, Field, PlateCase, find_field, lattice_of
+from coupling.case import Case, Field, PlateCase, find_field, lattice_of, quoted
 
 Scale = Literal["linear", "log", "choice"]
 
@@ -86,7 +86,7 @@ def allowed(case: Case, path: str) -> bool:
 
 
 def changes_of(case: Case, path: str, text: str) -> dict[str, Any]:
-    """What `Case.vary` is to change where a text was typed into a field."""
+    """What `Case.vary` is to change where a text was typed into a field; ValueError: a number was wanted."""
     if path in CHOICES:
         return {path: text == "true" if text in ("true", "false") else text}
     field = find_field(case, lattice_of(case)[0], path)
@@ -95,7 +95,8 @@ def changes_of(case: Case, path: str, text: str) -> dict[str, Any]:
         try:
             value = int(text) if field.kind == "whole" else float(text)
         except ValueError:
-            value = text
+            must = "a whole number such as 5" if field.kind == "whole" else "a number such as 0.3"
+            raise ValueError(f"must be {must}, without a unit; got {quoted(text)}") from None
     changes = {path: value}
     if path == "friction.plasticity_index" and getattr(case.friction, "preset", None):
         changes = {"friction.preset": None, **changes}  # which sets the index

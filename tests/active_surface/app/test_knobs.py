@@ -45,6 +45,15 @@ def test_texts_of_the_ends_of_sliders_are_read():
                 assert all("inside the rim" in message or "must" in message for _, message in error.problems)
 
 
+def test_a_length_takes_any_unit_and_a_plain_number_none():
+    case = read_case(examples_folder() / "two_actuators.toml")
+    assert case.vary(changes_of(case, "friction.roughness", "0.1 um")).friction.roughness == 1e-7
+    with pytest.raises(ValueError, match="must be a number such as 0.3, without a unit"):
+        changes_of(case, "friction.plasticity_index", "0.1 um")
+    with pytest.raises(ValueError, match="must be a whole number such as 5, without a unit"):
+        changes_of(case, "actuators.0.cycles", "5 s")
+
+
 def test_a_change_of_all_actuators_goes_to_each():
     case = read_case(examples_folder() / "two_actuators.toml")
     by_path = {knob["path"]: knob for knob in knobs(case, ALL)}

@@ -83,8 +83,12 @@ def test_mistakes_are_at_their_fields_in_the_words_of_check_and_change_nothing(p
     async def work():
         async with Page(path) as page:
             wrong = await page.set("refused", actuators__0__frequency="12 mm")
-            message = 'must be a frequency such as "300 Hz"; got "12 mm", a length'
+            message = "must be a frequency such as 300 Hz; got 12 mm, a length"  # as it is typed
             assert wrong["mistakes"] == [{"field": "actuators[0].frequency", "message": message}]
+            for text, got in (("0.1 um", "0.1 um"), ("0,3", "0,3"), ('"0.3"', '"0.3"'), ("", "nothing")):
+                plain = await page.set("refused", plate__poisson_ratio=text)
+                message = f"must be a number such as 0.3, without a unit; got {got}"
+                assert plain["mistakes"] == [{"field": "plate.poisson_ratio", "message": message}]
             off = await page.set("refused", part__position__0="400 um")
             assert "inside the rim" in off["mistakes"][0]["message"] or "must" in off["mistakes"][0]["message"]
             barred = await page.set("refused", friction__file="/etc/passwd")
