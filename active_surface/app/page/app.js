@@ -90,15 +90,15 @@ const TAKES = {
     }
   },
   path(answer) {
+    if (answer.turn) clearMistakes(); // before its case comes, which keeps what is wrong
     arrived(answer, () => {
-      if (answer.turn) clearMistakes();
       nowPath = { points: pairs(answer.line), coarse: answer.coarse, exact: false };
       for (const id of ["run", "trust"]) element(id).classList.add("old");
       drawPath();
       tellPath(answer);
     });
   },
-  later(answer) { arrived(answer, () => { clearMistakes(); element("coarse").textContent = "The path follows when the plate is solved."; }); },
+  later(answer) { clearMistakes(); arrived(answer, () => { element("coarse").textContent = "The path follows when the plate is solved."; }); },
   refused(answer) {
     const changed = Object.keys(onTheWay?.changes ?? {});
     element("picture").disabled = false;
@@ -243,15 +243,16 @@ onTurn = (knob, text, rest, stamp) => {
   change({ [knob.data.path]: text }, rest, stamp);
   if (rest) gestureOf = null;
 };
-const placeTexts = ({ kind, number, at }) => {
+const placeTexts = ({ kind, number, at, moved = [true, true] }) => { // of those of x and y that have moved
   const path = kind === "start" ? "part.position" : `actuators.${number}.position`, digits = 3 - Math.floor(Math.log10(frameBox[1][0] - frameBox[0][0]));
   const unit = mapData.unit.replace("µ", "u").replace("μ", "u");
-  return Object.fromEntries(at.map((c, k) => [`${path}.${k}`, `${Number(c.toFixed(Math.max(0, Math.min(12, digits + 1))))} ${unit}`]));
+  const texts = at.map((c, k) => [`${path}.${k}`, `${Number(c.toFixed(Math.max(0, Math.min(12, digits + 1))))} ${unit}`]);
+  return Object.fromEntries(texts.filter((_, k) => moved[k]));
 };
 onDrag = (what, stamp) => {
   const texts = placeTexts(what);
   gestureFor(what.group.dataset.key);
-  showTexts(texts);
+  for (const [path, text] of Object.entries(texts)) showText(path, text, Number.parseFloat(text) / mapData.perSI);
   change(texts, false, stamp);
 };
 onDrop = (what) => { change(placeTexts(what), true, performance.now()); gestureOf = null; };

@@ -44,6 +44,7 @@ function addKnob(data) {
     knob.slider.addEventListener("input", (event) => {
       knob.field.value = textAt(knob, Number(knob.slider.value) / NOTCHES);
       knob.slider.setAttribute("aria-valuetext", knob.field.value);
+      placeHandle(knob.data, knob.field.value);
       onTurn(knob, knob.field.value, false, event.timeStamp);
     });
     knob.slider.addEventListener("change", (event) => onTurn(knob, knob.field.value, true, event.timeStamp));
@@ -57,17 +58,15 @@ function addKnob(data) {
 
 // A slider keeps its ends while its value is well within them.
 function refresh(knob, data, anew) {
-  const typed = knob.field.getAttribute("aria-invalid") === "true" || knob.field === document.activeElement;
-  if (typed && !anew) return; // what is wrong stays to be mended
+  if (knob.field.getAttribute("aria-invalid") === "true" && !anew) return; // what is wrong stays to be mended
   const { low, high } = knob.data, inside = data.value > low + 0.02 * (high - low) && data.value < high - 0.02 * (high - low);
   const kept = !anew && inside && knob.data.unit === data.unit ? { low, high } : {};
   knob.data = { ...data, ...kept };
-  knob.field.value = data.text;
+  if (anew || knob.field !== document.activeElement) knob.field.value = data.text;
   if (!knob.slider) return;
   knob.field.placeholder = data.value === null ? "mixed" : "";
   knob.slider.title = `${textAt(knob, 0)} to ${textAt(knob, 1)}; the field also takes values beyond these`;
-  knob.slider.value = NOTCHES * shareAt(knob.data, data.value);
-  knob.slider.setAttribute("aria-valuetext", data.text || "mixed");
+  setSlider(knob, data.value, data.text || "mixed");
 }
 
 function shareAt({ low, high, scale }, value) {
@@ -85,9 +84,17 @@ function textAt({ data: { low, high, scale, unit, whole } }, share) {
 // To four digits of the size that counts.
 function rounded(value, size) { return size > 0 ? value.toFixed(Math.max(0, Math.min(15, 3 - Math.floor(Math.log10(size))))) : "0"; }
 
-// Have fields show texts that were not typed into them.
-function showTexts(texts) {
-  for (const [path, text] of Object.entries(texts)) if (knobs.has(path)) knobs.get(path).field.value = text;
+// Have a field and its slider show a length [m] that was set elsewhere.
+function showText(path, text, length) {
+  const knob = knobs.get(path);
+  if (!knob) return;
+  knob.field.value = text;
+  setSlider(knob, length * perMetre(knob.data.unit), text);
+}
+
+function setSlider({ slider, data }, value, text) {
+  slider.value = NOTCHES * shareAt(data, value);
+  slider.setAttribute("aria-valuetext", text);
 }
 
 function clearMistakes() {

@@ -58,7 +58,7 @@ function drawMap() {
   handle(map, "start", mapData.start, px, `Start of the part at ${place(mapData.start)}`);
   if (target) drawTarget(map, px);
   svg("circle", { class: "part", id: "map-part", r: 6 * px, visibility: "hidden" }, map);
-  drawScale(map, px);
+  drawScale(px);
   drawPath();
   drawHeights();
 }
@@ -70,6 +70,16 @@ function settleHandles() {
     if (kind === "start") put(group, mapData.start);
     if (kind === "actuator") put(group, mapData.actuators[Number(number)]);
   }
+}
+
+// Have the handle at a place follow a field of that place, whose text is a number of a unit.
+function placeHandle({ path, unit }, text) {
+  const [, owner, axis] = /^(part|actuators\.\d+)\.position\.([01])$/.exec(path) ?? [];
+  const group = owner && element("map").querySelector(`[data-key="${owner === "part" ? "start" : owner.replace("s.", " ")}"]`);
+  if (!group) return;
+  const to = [...group.place];
+  to[axis] = Number.parseFloat(text) * mapData.perSI / perMetre(unit);
+  put(group, to);
 }
 
 function place([x, y]) { return `(${said(x)}, ${said(y)}) ${mapData.unit}`; }
@@ -94,7 +104,7 @@ function handle(map, kind, at, px, label, number = null) {
     if (String(number) === mapData.selected || mapData.selected === "*") group.classList.add("selected");
   }
   put(group, at);
-  const what = { kind, number, group, at: [...at] };
+  const what = { kind, number, group, at: [...at], moved: [false, false] };
   group.addEventListener("pointerdown", (event) => grab(event, what));
   group.addEventListener("keydown", (event) => nudge(event, what));
   group.addEventListener("focus", () => {
@@ -106,7 +116,16 @@ function handle(map, kind, at, px, label, number = null) {
   return group;
 }
 
-function put(group, [x, y]) { group.setAttribute("transform", `translate(${x} ${-y})`); }
+function move(what, to) {
+  what.moved = what.moved.map((so, k) => so || to[k] !== what.group.place[k]);
+  what.at = to;
+  put(what.group, to);
+}
+
+function put(group, [x, y]) {
+  group.place = [x, y];
+  group.setAttribute("transform", `translate(${x} ${-y})`);
+}
 
 function drawTarget(map, px) {
   const size = 11 * px, group = svg("g", { class: "handle", tabindex: 0, role: "button", "aria-label": `Target at ${place(target)}. Arrow keys move it, Enter starts the search.` }, map);
@@ -123,12 +142,12 @@ function drawTarget(map, px) {
   });
 }
 
-function drawScale(map, px) {
-  const [low, high] = frameBox, width = element("map-box").clientWidth * px, about = 0.2 * width;
-  const power = 10 ** Math.floor(Math.log10(about)), length = [5, 2, 1].map((n) => n * power).find((n) => n <= about);
-  const middle = (low[0] + high[0]) / 2, left = middle - width / 2 + 14 * px, y = -low[1] - 10 * px;
-  svg("path", { class: "bar-line", d: `M${left},${y}h${length}` }, map);
-  svg("text", { class: "bar-text", x: left + length / 2, y: y - 6 * px, "font-size": 13 * px }, map).textContent = `${said(length)} ${mapData.unit}`;
+// Beside the map, so that it never lies over the plate.
+function drawScale(px) {
+  const about = 0.2 * element("map-box").clientWidth * px, power = 10 ** Math.floor(Math.log10(about));
+  const length = [5, 2, 1].map((n) => n * power).find((n) => n <= about);
+  element("scale-bar").style.width = `${length / px}px`;
+  element("scale-text").textContent = `${Number(length.toPrecision(1))} ${mapData.unit}`;
 }
 
 // The path as it is known now.
@@ -205,21 +224,20 @@ function grab(event, what) {
   if (aiming || event.button) return;
   event.preventDefault();
   what.group.focus();
-  const from = placeOf(event), began = [...what.at];
+  const from = placeOf(event), began = what.group.place;
   dragged = what;
   what.group.setPointerCapture(event.pointerId);
-  const move = (moved) => {
+  const follow = (moved) => {
     const to = placeOf(moved);
-    what.at = began.map((c, k) => c + to[k] - from[k]);
-    put(what.group, what.at);
+    move(what, began.map((c, k) => c + to[k] - from[k]));
     onDrag(what, moved.timeStamp);
   };
   const drop = () => {
-    what.group.removeEventListener("pointermove", move);
+    what.group.removeEventListener("pointermove", follow);
     dragged = null;
-    if (what.at.some((c, k) => c !== began[k])) onDrop(what);
+    if (what.moved.some(Boolean)) onDrop(what);
   };
-  what.group.addEventListener("pointermove", move);
+  what.group.addEventListener("pointermove", follow);
   what.group.addEventListener("lostpointercapture", drop, { once: true }); // however it ends
 }
 
@@ -236,8 +254,7 @@ let nudging = null;
 function nudge(event, what) {
   const [dx, dy] = arrow(event);
   if (!dx && !dy) return;
-  what.at = [what.at[0] + dx, what.at[1] + dy];
-  put(what.group, what.at);
+  move(what, [what.group.place[0] + dx, what.group.place[1] + dy]);
   onDrag(what, event.timeStamp);
   clearTimeout(nudging);
   nudging = setTimeout(() => onDrop(what), 350);

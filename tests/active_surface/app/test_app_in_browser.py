@@ -13,6 +13,7 @@ from coupling import read_case, run_case
 pytest.importorskip("selenium", reason="selenium is not installed")
 pytest.importorskip("tornado", reason="tornado is not installed")
 from page_browser import CASE, ONLINE, chromium, errors, wait  # noqa: E402
+from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
 from selenium.webdriver.common.by import By  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
 
@@ -84,7 +85,7 @@ def test_the_screen_shows_what_a_run_of_the_saved_case_gives(opened):
     field.clear()  # which is a mistake, too
     field.send_keys("12 mm", Keys.TAB)
     mistake = browser.find_element(By.ID, "knob-actuators-0-frequency-mistake")
-    wait(lambda: mistake.text == 'must be a frequency such as "300 Hz"; got "12 mm", a length')
+    wait(lambda: mistake.text == "must be a frequency such as 300 Hz; got 12 mm, a length")
     assert field.get_attribute("aria-invalid") == "true"
     field.clear()
     field.send_keys("410 Hz", Keys.TAB)
@@ -116,6 +117,69 @@ def test_an_actuator_moves_by_the_keyboard_and_back_by_undo(opened):
     assert browser.execute_script(places)[1] > began[1]
     browser.find_element(By.ID, "undo").click()
     wait(lambda: browser.execute_script(places) == began)
+
+
+SHOWN = """
+const [axis] = arguments, { e, f } = document.querySelector('[data-key="start"]').transform.baseVal[0].matrix;
+const { field, slider, data } = knobs.get(`part.position.${axis}`);
+return [[e, -f][axis], Number.parseFloat(field.value), data.low + (data.high - data.low) * slider.value / NOTCHES];
+"""
+
+
+def test_fields_sliders_and_the_start_on_the_map_follow_each_other(opened):
+    browser, path = opened
+
+    def shown(axis):
+        values = browser.execute_script(SHOWN, axis)
+        assert values == pytest.approx([values[0]] * 3, abs=0.5)  # um, a notch of the sliders
+        return values[0]
+
+    began = shown(0), shown(1)
+    handle = browser.find_element(By.CSS_SELECTOR, '[data-key="start"] .touch')
+    drag = ActionChains(browser).click_and_hold(handle).move_by_offset(-40, 0).move_by_offset(-20, 0)
+    drag.perform()
+    assert shown(0) < began[0] - 20 and shown(1) == began[1]
+    ActionChains(browser).release().perform()
+    wait(lambda: browser.execute_script("return caseData.changed && !onTheWay && !dragged"))
+    dragged = shown(0)
+    assert dragged < began[0] - 20
+    slide = (
+        "const { slider } = knobs.get('part.position.1'); slider.value = 600; slider.dispatchEvent(new Event('input'))"
+    )
+    browser.execute_script(slide)
+    assert shown(1) > began[1] + 20 and shown(0) == dragged
+    browser.execute_script("knobs.get('part.position.1').slider.dispatchEvent(new Event('change'))")
+    field = browser.find_element(By.ID, "knob-part-position-1")
+    field.send_keys(Keys.CONTROL, "a")
+    field.send_keys("-31 um", Keys.ENTER)
+    wait(lambda: browser.execute_script("return caseData.map.start[1]") == pytest.approx(-31))
+    assert shown(1) == pytest.approx(-31) and shown(0) == dragged
+
+
+def test_on_a_phone_the_scale_has_its_own_room_and_the_map_takes_a_third_at_most(opened):
+    browser, _ = opened
+    metrics = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    try:
+        wait(lambda: browser.execute_script("return innerWidth") == 390)
+        box = "const box = (id) => element(id).getBoundingClientRect();"
+        scale, shades, plate = browser.execute_script(
+            f"{box} return ['scale-text', 'shades', 'map-box'].map((id) => [box(id).top, box(id).bottom])"
+        )
+        assert browser.find_element(By.ID, "scale-text").text.endswith("\u00b5m")
+        assert scale[1] <= plate[0] and shades[1] <= plate[0]
+        place = "document.querySelector('#knob-part-mass').scrollIntoView({ block: 'end' });"
+        plate, third = browser.execute_script(f"{box} {place} return [box('map-box').bottom, innerHeight / 3]")
+        assert 0 < plate <= third
+        above = (
+            "return document.elementsFromPoint(195, innerHeight / 3 + 2).some((one) => one.closest('#map-box, .tools'))"
+        )
+        assert not browser.execute_script(above)
+        place = "element('curves').scrollIntoView({ block: 'start' });"
+        assert browser.execute_script(f"{box} {place} return box('map-box').bottom") <= 0
+        assert browser.execute_script("return document.documentElement.scrollWidth") == 390
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def test_random_actions_end_in_a_page_that_works(opened):
