@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from active_surface.identification.fit import TrackFit
 from active_surface.identification.result import Identified
 from common import Drawing, draw, figure_of, unit_for
-from coupling.pictures import map_axes
+from coupling.pictures import map_axes, put_title
 
 SAMPLES: Final = 2000  # of the path
 MEASURED: Final[dict[str, Any]] = {
@@ -38,7 +38,7 @@ def draw_identified(result: Identified, axes: Axes | None = None) -> Figure:
     figure = _of_one(result.fits[0]) if alone else _of_several(result)
     lines = [f"{one.field} = {one.text}" for one in result.estimates if alone or one.case is None]
     name = result.fits[0].case.name if alone else ", ".join(fit.name for fit in result.fits)
-    figure.suptitle("\n".join([name, *lines]), parse_math=False, fontsize=10)
+    put_title(figure, "\n".join([name, *lines]), fontsize=10)
     return figure
 
 

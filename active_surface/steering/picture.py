@@ -15,9 +15,21 @@ from matplotlib.patches import Circle
 from active_surface.arrays import FloatArray
 from active_surface.steering.result import Aimed, Planned, SteeringResult
 from active_surface.steering.scatter import Scatter
-from common import Drawing, Unit, draw_rim, quantity_text, unit_for
+from common import NOTHING, Drawing, Unit, draw_rim, quantity_text, unit_for
 from coupling.case import Case, PlateCase
-from coupling.pictures import draw_path, draw_window, is_visible, join, map_axes, path_window, save_picture
+from coupling.pictures import (
+    clear_labels,
+    draw_path,
+    draw_window,
+    is_visible,
+    join,
+    map_axes,
+    path_window,
+    put_keys,
+    put_label,
+    put_title,
+    save_picture,
+)
 from fem_plate import frame_around, mark_actuators, marker_size
 from meshes import rim_curves
 from particle import HALO, Trajectory
@@ -40,7 +52,7 @@ TARGET: dict[str, Any] = {
     "markersize": 14,
     "markeredgewidth": 1.8,
 }
-NUMBER: dict[str, Any] = {"textcoords": "offset points", "fontsize": 9, "path_effects": HALO}
+WORDS: dict[str, Any] = {"fontsize": 9, "path_effects": HALO}
 ENDS: dict[str, Any] = {"marker": "o", "color": "#1b4f9c", "markersize": 4, "markeredgewidth": 0, "alpha": 0.6}
 
 
@@ -66,12 +78,14 @@ def _draw(result: SteeringResult, title: str, targets: Sequence[Place], path: Pa
     case, trajectory, scatter = result.case, result.trajectory, result.scatter
     way = _way_of(case, trajectory, targets)
     maps = 1 if way.window is None else 2
-    figure = Drawing(figsize=((maps + 1) * SIZE + 0.8, SIZE + 0.5))
+    figure = Drawing(figsize=((maps + 1) * SIZE + 0.8, SIZE + 0.9))
+    figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
     axes = [figure.add_subplot(1, maps + 1, k + 1) for k in range(maps + 1)]
     keys = _draw_plate(figure, axes[:maps], case, way)
     keys += _draw_ends(axes[-1], trajectory, targets[-1], scatter)
-    figure.suptitle(title, parse_math=False)
-    figure.legend(handles=keys, loc="outside lower center", ncols=len(keys), frameon=False)
+    put_title(figure, title)
+    put_keys(figure, keys)
+    clear_labels(figure)
     return save_picture(figure, path)
 
 
@@ -111,7 +125,7 @@ def _draw_plate(figure: Figure, axes: Sequence[Axes], case: Case, way: _Way) -> 
     drawn = way.targets * unit.per_si
     keys += axes[-1].plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
     for number, place in enumerate(drawn.tolist() if len(drawn) > 1 else []):
-        axes[-1].annotate(str(number), place, (8, 8), color=TARGET["markeredgecolor"], weight="bold", **NUMBER)
+        put_label(axes[-1], str(number), place, (8, 8), color=TARGET["markeredgecolor"], weight="bold", **WORDS)
     return keys
 
 
@@ -130,7 +144,7 @@ def _draw_actuators(axes: Axes, case: Case, frame: FloatArray, unit: Unit) -> li
         keys += mark_actuators(axes, places[some], frame, unit.per_si, size=size, colour=colour, label=label)
     within = ((places > frame[0]) & (places < frame[1])).all(axis=1)
     for number in np.flatnonzero(within).tolist() if len(places) <= MAX_NUMBERED else ():
-        axes.annotate(str(number), places[number] * unit.per_si, (0, -20), ha="center", color="#606060", **NUMBER)
+        put_label(axes, str(number), places[number] * unit.per_si, (0, -6), color="#606060", **WORDS)
     return keys
 
 
@@ -160,13 +174,13 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
         way = -middle / np.hypot(*middle) * side * unit.per_si
         tail, tip = (centre * unit.per_si + share * way for share in (0.55, 0.95))
         axes.annotate("", tip, tail, arrowprops={"arrowstyle": "->", "color": TARGET["markeredgecolor"], "lw": 1.8})
-        axes.annotate(f"target, {quantity_text(float(np.hypot(*middle)), 'm')}", tail, (0, 14), ha="center", **NUMBER)
+        put_label(axes, f"target, {quantity_text(float(np.hypot(*middle)), 'm')}", tail, (0, 6), **WORDS)
     else:
         axes.plot(0, 0, linestyle="", **TARGET, zorder=4)
         for share, distance in circles.items():
             radius = distance * unit.per_si
             axes.add_patch(Circle((0, 0), radius, fill=False, edgecolor="#606060", linewidth=0.8))
-            axes.annotate(f"{share:.0%}", (0, radius), (2, 1), color="#606060", **NUMBER)
+            put_label(axes, f"{share:.0%}", (0, radius), (0, 3), color="#606060", **WORDS)
     low, high = (centre - side) * unit.per_si, (centre + side) * unit.per_si
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
@@ -179,4 +193,4 @@ def _draw_ends(axes: Axes, trajectory: Trajectory, target: Place, scatter: Scatt
 def _off(result: SteeringResult, target: Place, name: str = "the target") -> str:
     """How far from a target [m] the part ends, in words."""
     away = float(np.hypot(*(result.trajectory.position[-1] - target)))
-    return f"{quantity_text(away, 'm')} from {name}" if away > 0 else f"at {name}"
+    return f"{quantity_text(away, 'm')} from {name}" if away > NOTHING else f"at {name}"

@@ -2,7 +2,8 @@
 
 from coupling.pictures.case import draw_case
 from coupling.pictures.events import APART, MARKS, draw_events
-from coupling.pictures.figure import map_axes, plain_ticks, put_keys, save_picture
+from coupling.pictures.figure import map_axes, plain_ticks, put_keys, put_title, save_picture
+from coupling.pictures.labels import clear_labels, put_label
 from coupling.pictures.path import PITCHES, draw_path, is_visible, path_window
 from coupling.pictures.plate import (
     Piece,

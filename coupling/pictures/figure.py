@@ -1,9 +1,11 @@
-"""The figure of a picture: axes whose numbers are in a unit with a prefix, keys below all, and its PNG file."""
+"""The figure of a picture: axes whose numbers are in a unit with a prefix, title and keys, and its PNG file."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import fill
+from typing import Any
 
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -17,7 +19,7 @@ from coupling.files import whole_file
 DPI = 110
 COMPRESSION = 3  # of PNG: three times as fast as the usual 6 in files that are a tenth larger
 MAX_TICKS = 6
-PAD = 0.04  # inches, at least, at the left and right of keys
+PAD = 0.04  # inches, at least, at the left and right of title and keys
 
 
 def plain_ticks(axes: Axes) -> None:
@@ -46,6 +48,18 @@ def put_keys(figure: Figure, keys: Sequence[Artist]) -> None:
         if columns == 1 or legend.get_window_extent().width < figure.bbox.width - 2 * PAD * figure.dpi:
             return
         legend.remove()
+
+
+def put_title(figure: Figure, text: str, **look: Any) -> None:
+    """Put a title above all, on as many lines as the width needs."""
+    columns = max(map(len, text.splitlines()))
+    while True:
+        lines = [fill(line, columns) for line in text.splitlines()]
+        title = figure.suptitle("\n".join(lines), parse_math=False, **look)
+        times = title.get_window_extent().width / (figure.bbox.width - 2 * PAD * figure.dpi)
+        if times <= 1 or columns == 1:
+            return
+        columns = max(1, min(columns - 1, int(columns / times)))
 
 
 def save_picture(figure: Figure, path: Path) -> Path:

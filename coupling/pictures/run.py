@@ -21,7 +21,7 @@ from coupling.drives import frame_times
 from coupling.margins import MarginCurves, Margins, margin_curves, margins_of
 from coupling.part import build_friction
 from coupling.pictures.events import MARKS, draw_events
-from coupling.pictures.figure import map_axes, put_keys, save_picture
+from coupling.pictures.figure import map_axes, put_keys, put_title, save_picture
 from coupling.pictures.path import draw_path, is_visible, path_window
 from coupling.pictures.plate import AXES_WIDTH, draw_plate, draw_window, join
 from coupling.pictures.portrait import LOSSES, Portrait, deflected_most, portrait_of
@@ -109,7 +109,7 @@ def compose(figure: Figure, portrait: Portrait) -> None:
             figure, [rest[n, k] for n in range(len(curves) + 1)], portrait, curves, span, span == spans[-1]
         )
     keys += shade_keys(rows)
-    figure.suptitle(f"{portrait.name}: {portrait.sentence}", parse_math=False)
+    put_title(figure, f"{portrait.name}: {portrait.sentence}")
     put_keys(figure, keys)
 
 

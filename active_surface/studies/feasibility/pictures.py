@@ -17,7 +17,7 @@ from active_surface.studies.feasibility.area import Feasible
 from active_surface.studies.feasibility.chart_picture import draw_chart
 from active_surface.studies.feasibility.result import Feasibility
 from common import Drawing, draw, draw_rim, quantity_text, unit_for
-from coupling.pictures import map_axes
+from coupling.pictures import map_axes, put_title
 from fem_plate import frame_around, mark_actuators
 from meshes import rim_curves
 
@@ -35,10 +35,10 @@ def draw_feasibility(feasibility: Feasibility, picked: tuple[float, float] | Non
     draw_chart(figure.add_subplot(grid[0, 0]), feasibility, picked)
     _draw_map(figure, figure.add_subplot(grid[0, 1]), feasibility)
     _draw_curves(figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1]), feasibility)
-    figure.suptitle(
+    put_title(
+        figure,
         f"{feasibility.case.name}: fastest drive {quantity_text(feasibility.frequency, 'Hz', 4)}, largest stroke "
         f"{quantity_text(feasibility.stroke, feasibility.stroke_unit, 4)}",
-        parse_math=False,
     )
     return figure
 

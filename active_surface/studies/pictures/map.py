@@ -18,7 +18,7 @@ from active_surface.studies.pictures.selection import Selection
 from active_surface.studies.pictures.threshold_curve import draw_threshold
 from active_surface.studies.study import Study
 from common import Drawing
-from coupling.pictures import save_picture
+from coupling.pictures import put_title, save_picture
 
 if TYPE_CHECKING:
     import xarray
@@ -46,7 +46,7 @@ def compose(figure: Figure, findings: Findings) -> None:
     for axes, panel in zip(places, drawn, strict=True):
         panel.draw(figure, axes)
         axes.set_title(panel.title, fontsize=10, parse_math=False)
-    figure.suptitle(f"{findings.name}: {about(selection)}", parse_math=False)
+    put_title(figure, f"{findings.name}: {about(selection)}")
 
 
 def about(selection: Selection) -> str:

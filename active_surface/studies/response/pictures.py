@@ -14,7 +14,7 @@ from active_surface.arrays import FloatArray
 from active_surface.studies.response.functions import ComplexArray
 from active_surface.studies.response.response import FrequencyResponse
 from common import Drawing, draw, draw_rim, unit_for
-from coupling.pictures import map_axes
+from coupling.pictures import map_axes, put_title
 from fem_plate import frame_around, mark_actuators
 from meshes import rim_curves
 
@@ -33,7 +33,7 @@ def draw_response(response: FrequencyResponse) -> Figure:
     curves = _curves(response)
     _draw_curves(amplitude, phase, response, curves)
     _draw_places(figure.add_subplot(grid[:, 1]), response)
-    figure.suptitle(f"{response.case.name}: response of the plate to its actuators", parse_math=False)
+    put_title(figure, f"{response.case.name}: response of the plate to its actuators")
     return figure
 
 

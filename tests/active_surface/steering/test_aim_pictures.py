@@ -1,4 +1,4 @@
-"""Pictures of aims: a path that is short beside its plate gets a window."""
+"""Pictures of aims: a path that is short beside its plate gets a window, and no words lie over others or lines."""
 
 from pathlib import Path
 
@@ -11,20 +11,22 @@ from active_surface.steering.scatter import Scatter
 from coupling import read_case
 from particle import ConstantFriction, Micropart, platform_surface, simulate
 
-CASE = Path(__file__).parents[3] / "examples/aims/thick_plate.toml"
+EXAMPLES = Path(__file__).parents[3] / "examples"
+CASE = EXAMPLES / "aims/thick_plate.toml"
 START = (260e-6, 230e-6)
 LIMIT = 2e-9  # N: with 2e-9 kg a deceleration of 1 m/s^2
 
 
-def drawn(monkeypatch, tmp_path, way):
-    """The figure of a part that slides along x for a way [m] to its target."""
-    case = read_case(CASE)
-    target = (START[0] + way, START[1])
-    part = Micropart(2e-9, START, velocity=(np.sqrt(2 * way), 0.0))
+def drawn(monkeypatch, tmp_path, way, case=CASE, name=""):
+    """The axes of the figure of a part that slides along x for a way [m] to its target, and the target."""
+    case = read_case(case)
+    start = case.part.position
+    target = (start[0] + way, start[1])
+    part = Micropart(2e-9, start, velocity=(np.sqrt(2 * way), 0.0))
     path = simulate(platform_surface(size=1e-3), part, ConstantFriction(LIMIT), 0.1)
     assert path.position[-1] == pytest.approx(target, rel=1e-6)
     scatter = Scatter(path.position[-1:].repeat(9, axis=0) + 1e-6 * np.eye(9, 2), np.full(9, 1e-6))
-    found = Aimed(case=case, trajectory=path, paths=1, scatter=scatter, task=Task(case, target), legs=())
+    found = Aimed(case=case, trajectory=path, paths=1, scatter=scatter, task=Task(case, target, name=name), legs=())
     figures = []
     monkeypatch.setattr(picture, "save_picture", lambda figure, path: figures.append(figure))
     picture.draw_aim(found, tmp_path / "aim.png")
@@ -48,3 +50,30 @@ def test_a_short_path_is_drawn_in_a_window_beside_the_plate(monkeypatch, tmp_pat
 def test_a_long_path_is_drawn_over_the_plate(monkeypatch, tmp_path):
     (plate, _), _ = drawn(monkeypatch, tmp_path, 900e-6)
     assert "path" in [line.get_label() for line in plate.lines]
+
+
+@pytest.mark.parametrize(
+    ("case", "way"), [("aims/thick_plate", 50e-6), ("array_10x10", 50e-6), ("array_10x10", 400e-6)]
+)
+def test_words_are_clear_of_each_other_and_numbers_of_lines(monkeypatch, tmp_path, case, way):
+    axes, _ = drawn(monkeypatch, tmp_path, way, EXAMPLES / f"{case}.toml")
+    figure = axes[0].figure
+    line = 10 / 72 * figure.dpi  # pixels, of an axis label or the title of a panel
+    legend = figure.legends[0].get_window_extent()
+    for one in axes:
+        assert figure._suptitle.get_window_extent().y0 > one.title.get_window_extent().y1 + line / 2
+        assert legend.y1 < one.xaxis.label.get_window_extent().y0 - line / 2
+    for one in axes[:-1]:
+        boxes = [text.get_window_extent() for text in one.texts]
+        assert not any(box.count_overlaps(boxes[:k]) for k, box in enumerate(boxes))
+        curves = [line for line in one.lines if line.get_linestyle() != "None"]
+        curves += [*one.patches, *figure.artists]  # the window, and what joins it to its panel
+        paths = [curve.get_transform().transform_path(curve.get_path()) for curve in curves]
+        assert not any(path.intersects_bbox(box, filled=False) for path in paths for box in boxes)
+    assert len(axes[0].texts) == len(read_case(EXAMPLES / f"{case}.toml").actuators)
+
+
+def test_a_long_name_is_a_title_of_several_lines(monkeypatch, tmp_path):
+    axes, _ = drawn(monkeypatch, tmp_path, 900e-6, name="W" * 200)
+    title = axes[0].figure._suptitle.get_window_extent()
+    assert title.x0 > 0 and title.x1 < axes[0].figure.bbox.x1 and title.y0 > axes[0].title.get_window_extent().y1
