@@ -1,22 +1,26 @@
 """Progress: stages with a clock, or a count with its rate, on a terminal once the work has taken two seconds.
 
-Where there is no terminal only the compilation of kernels is announced, on one line.
+Where there is no terminal, as in a log, a line twice a minute says what is done and what is left.
 """
 
 from __future__ import annotations
 
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
+from datetime import timedelta
 from typing import Any
 
 ProgressCallback = Callable[[int, int], object]  # gets how many of the stage's pieces are done, and of how many
 Progress = Callable[[str], AbstractContextManager[ProgressCallback]]
 
 _open_bars: list[_Bar] = []
+_now = time.monotonic  # s
 
-PATIENCE = 2.0  # s of silence
+PATIENCE = 2.0  # s of silence on a terminal
+PERIOD = 30.0  # s between lines elsewhere
 PARTS = 100  # of what is done before pieces are counted
 COMPILING = "Compiling what this case needs for the first time (once, up to some minutes)"
 
@@ -37,33 +41,49 @@ def doing(text: str, share: float) -> None:
 
 
 class _Bar:
-    """A bar on the terminal's error stream after a while of silence; none elsewhere."""
+    """A bar on the terminal's error stream after a while of silence; elsewhere a line there now and then."""
 
     def __init__(self, total: int | None = None) -> None:
-        self._bar = _bar(self._columns()) if sys.stderr and sys.stderr.isatty() else None
-        self._task = self._bar.add_task("", total=total) if self._bar else None
-        self._announcing = ExitStack()
+        from rich.console import Console
+        from rich.progress import Progress as Bar
+
+        console = Console(stderr=True)
+        self._live = bool(sys.stderr) and sys.stderr.isatty() and not console.is_dumb_terminal
+        self._bar: Any = Bar(*self._columns(), console=console, transient=True)
+        self._task = self._bar.add_task("", total=total)
+        self._announcing, self._ended = ExitStack(), threading.Event()
 
     def _columns(self) -> list[Any]:
+        raise NotImplementedError
+
+    def _line(self) -> str:
+        """What is done and what is left."""
         raise NotImplementedError
 
     def _start(self) -> None:
         from particle import compilation_heard
 
         self._announcing.enter_context(compilation_heard(self._announce))
-        if self._bar:
-            self._timer = threading.Timer(PATIENCE, self._bar.start)
-            self._timer.daemon = True
-            self._timer.start()
+        self._since = _now()
+        self._teller = threading.Thread(target=self._show_bar if self._live else self._write_lines, daemon=True)
+        self._teller.start()
         _open_bars.append(self)
+
+    def _show_bar(self) -> None:
+        if not self._ended.wait(PATIENCE):
+            self._bar.start()
+
+    def _write_lines(self) -> None:
+        with suppress(OSError, ValueError):  # of a stream that nobody reads any more
+            while not self._ended.wait(PERIOD) and sys.stderr:
+                print(f"{_clock(_now() - self._since)}  {self._line()}", file=sys.stderr, flush=True)
 
     def show(self, text: str, share: float) -> None:
         """Show what is being done."""
-        if self._bar:
-            self._bar.update(self._task, description=text)
+        self._bar.update(self._task, description=text)
 
     def _announce(self) -> None:
-        if self._bar:
+        if self._live:
             self._bar.console.print(COMPILING, highlight=False)
         elif sys.stderr:
             print(COMPILING, file=sys.stderr, flush=True)
@@ -71,19 +91,14 @@ class _Bar:
     def __exit__(self, *_: object) -> None:
         _open_bars.remove(self)
         self._announcing.close()
-        if self._bar:
-            self._timer.cancel()
-            self._timer.join()
+        self._ended.set()
+        self._teller.join()
+        if self._live:
             self._bar.stop()
 
 
-def _bar(columns: list[Any]) -> Any:
-    """A bar of rich, which is slow to load; None where the terminal is too dumb for one."""
-    from rich.console import Console
-    from rich.progress import Progress as Bar
-
-    console = Console(stderr=True)
-    return None if console.is_dumb_terminal else Bar(*columns, console=console, transient=True)
+def _clock(seconds: float) -> str:
+    return str(timedelta(seconds=round(seconds)))
 
 
 class StageBar(_Bar):
@@ -104,13 +119,21 @@ class StageBar(_Bar):
 
     @contextmanager
     def _stage(self, stage: str) -> Iterator[ProgressCallback]:
-        if not self._bar:
-            yield no_progress
-            return
         bar, task = self._bar, self._task
         bar.update(task, description=stage)
         yield lambda done, of: bar.update(task, description=f"{stage}: {done} of {of}")
         bar.advance(task)
+
+    def _line(self) -> str:
+        from common import unit_for
+        from particle import under_way
+
+        task, path = self._bar.tasks[0], under_way()
+        line = f"{task.completed} of {task.total} stages done; {task.description}"
+        if path is None:
+            return line
+        unit = unit_for(path[1], "s")
+        return f"{line}, at {path[0] * unit.per_si:.3g} of {path[1] * unit.per_si:.3g} {unit.name}"
 
 
 class CountBar(_Bar):
@@ -120,7 +143,8 @@ class CountBar(_Bar):
     """
 
     def __init__(self, pieces: str) -> None:
-        self._pieces, self._begun = pieces, False
+        self._pieces = pieces
+        self._first: tuple[int, float] | None = None  # how many were done before, and when [s] counting began
         super().__init__()
 
     def _columns(self) -> list[Any]:
@@ -131,20 +155,29 @@ class CountBar(_Bar):
 
     def __enter__(self) -> ProgressCallback:
         self._start()
-        return self._tell if self._bar else no_progress
+        return self._tell
 
     def show(self, text: str, share: float) -> None:
         """Show what is being done; before the first count also how much of it."""
-        if self._bar:
-            done = {} if self._begun else {"completed": round(PARTS * share), "total": PARTS}
-            self._bar.update(self._task, description=text, **done)
+        done = {"completed": round(PARTS * share), "total": PARTS} if self._first is None else {}
+        self._bar.update(self._task, description=text, **done)
 
     def _tell(self, done: int, of: int) -> None:
-        assert self._bar
-        if not self._begun:
+        if self._first is None:
             self._bar.reset(self._task, completed=done, total=of)
-            self._begun = True
+            self._first = done, _now()
         speed = self._bar.tasks[0].speed
         rate = f"{self._pieces}, {speed:.0f}/s" if speed else self._pieces
         text = f"{self._pieces}; writing all" if done == of else rate
         self._bar.update(self._task, completed=done, description=text)
+
+    def _line(self) -> str:
+        task = self._bar.tasks[0]
+        if self._first is None:
+            return f"no {self._pieces} yet" + (f"; {task.description}, {task.completed} %" if task.description else "")
+        (before, since), done = self._first, task.completed
+        line = f"{done} of {task.total} {task.description}"
+        if not before < done < task.total:
+            return line
+        left = (task.total - done) * (_now() - since) / (done - before)
+        return f"{line}, about {_clock(left)} left"

@@ -41,6 +41,7 @@ from .jit import (
     kernel_no_arrays as kernel_no_arrays,
 )
 from .kernel_cache import compilation_heard as compilation_heard, source_digest as source_digest
+from .path import under_way as under_way
 from .rest import (
     Extreme as Extreme,
     PartAtRest as PartAtRest,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -53,6 +54,25 @@ _OUTCOMES = {
 }
 
 
+_under_way: dict[int, tuple[NDArray[Any], float]] = {}  # on each thread: where a path is, and until when it goes
+
+
+def under_way() -> tuple[float, float] | None:
+    """To which time [s] a path is followed that some thread is at, and until when it goes; None: there is none."""
+    paths = list(_under_way.values())
+    return (float(paths[-1][0]["time"][0]), paths[-1][1]) if paths else None
+
+
+@contextmanager
+def _seen(now: NDArray[Any], until: float) -> Iterator[None]:
+    """Shows a path to `under_way` in its block."""
+    _under_way[threading.get_ident()] = now, until
+    try:
+        yield
+    finally:
+        del _under_way[threading.get_ident()]
+
+
 class _Scratch(threading.local):
     """The scratch memory of the last path on each thread, which serves the next one that needs as much."""
 
@@ -85,7 +105,8 @@ def find_path(
 
     def path(record: Surface) -> Computed:
         memory = _memory(record, pairs, stop)
-        return _computed(march(record, request, pairs, memory, new_record()), memory)
+        with _seen(memory.now, request.until):
+            return _computed(march(record, request, pairs, memory, new_record()), memory)
 
     computed = _with_cells(surface, path)
     if computed.verdict == Verdict.INTERRUPTED:
@@ -106,7 +127,8 @@ def find_path_by_steps(
 
     def path(record: Surface) -> Computed:
         memory = new_fixed_memory(record)
-        return _computed(march_fixed(record, request, memory, new_record(), kind, step, steps, every), memory)
+        with _seen(memory.now, request.until):
+            return _computed(march_fixed(record, request, memory, new_record(), kind, step, steps, every), memory)
 
     computed = _with_cells(surface, path)
     return _trajectory(surface, request, computed, partial(_by_steps, surface, request, kind, computed.rows))

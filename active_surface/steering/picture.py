@@ -125,7 +125,7 @@ def _draw_plate(figure: Figure, axes: Sequence[Axes], case: Case, way: _Way) -> 
     drawn = way.targets * unit.per_si
     keys += axes[-1].plot(*drawn.T, linestyle="", **TARGET, path_effects=HALO, zorder=4, label="target")
     for number, place in enumerate(drawn.tolist() if len(drawn) > 1 else []):
-        put_label(axes[-1], str(number), place, (8, 8), color=TARGET["markeredgecolor"], weight="bold", **WORDS)
+        put_label(axes[-1], str(number), place, (11.5, 11.5), color=TARGET["markeredgecolor"], weight="bold", **WORDS)
     return keys
 
 

@@ -1,11 +1,14 @@
-"""Bars that read what is being done at a point that knows none of them."""
+"""Bars that read what is being done at a point that knows none of them, and lines where there is no terminal."""
 
 import io
 import sys
+import threading
 
 import pytest
 
+from coupling import progress
 from coupling.progress import CountBar, StageBar, doing
+from particle import ConstantFriction, Micropart, path, platform_surface, simulate
 
 
 @pytest.fixture
@@ -40,7 +43,79 @@ def test_a_count_begins_after_what_is_done_before_it(terminal):
         assert (task.completed, task.total) == (3, 20) and task.description.startswith("stretching")
 
 
-def test_nothing_is_printed_where_there_is_no_terminal(monkeypatch):
+class Log(io.StringIO):
+    """No terminal; says when there is a whole line."""
+
+    def __init__(self):
+        super().__init__()
+        self.written = threading.Event()
+
+    def flush(self):
+        self.written.set()
+
+    def next_line(self):
+        """The line after the one that was perhaps being written."""
+        for _ in range(2):
+            self.written.clear()
+            assert self.written.wait(10)
+        return self.getvalue().splitlines()[-1]
+
+
+def logged(monkeypatch):
+    """The log, with many lines a second; not a fixture, as pytest puts its own error stream in place after these."""
+    monkeypatch.setattr(sys, "stderr", Log())
+    monkeypatch.setattr(progress, "PERIOD", 0.01)
+    return sys.stderr
+
+
+def test_without_a_terminal_lines_say_which_stages_are_done_and_left(monkeypatch):
+    log = logged(monkeypatch)
+    with StageBar(3) as stages:
+        with stages("Solving"):
+            assert log.next_line() == "0:00:00  0 of 3 stages done; Solving"
+        with stages("Following") as tell:
+            tell(12, 40)
+            assert log.next_line().endswith("  1 of 3 stages done; Following: 12 of 40")
+            doing("stretching plate: 7 full solutions, error 2e-4", 0.4)
+            assert log.next_line().endswith("  1 of 3 stages done; stretching plate: 7 full solutions, error 2e-4")
+    end = log.getvalue()
+    log.written.clear()
+    assert not log.written.wait(0.05) and log.getvalue() == end
+
+
+def test_without_a_terminal_lines_count_pieces_and_estimate_the_time_left(monkeypatch):
+    log = logged(monkeypatch)
+    now = [0.0]
+    with CountBar("paths") as tell:
+        monkeypatch.setattr(progress, "_now", lambda: now[0])
+        assert log.next_line().endswith("  no paths yet")
+        doing("stretching plate: 7 full solutions, error 2e-4", 0.4)
+        assert log.next_line().endswith("  no paths yet; stretching plate: 7 full solutions, error 2e-4, 40 %")
+        tell(100, 400)  # those done before
+        now[0] = 60.0
+        tell(120, 400)  # 20 a minute
+        assert "  120 of 400 paths" in (line := log.next_line()) and line.endswith(", about 0:14:00 left")
+        tell(400, 400)
+        assert log.next_line().endswith("  400 of 400 paths; writing all")
+
+
+def test_without_a_terminal_lines_say_how_far_a_single_path_is(monkeypatch):
+    log = logged(monkeypatch)
+    lines, march = [], path.march
+
+    def slow(*arguments):
+        done = march(*arguments)
+        lines.append(log.next_line())
+        return done
+
+    monkeypatch.setattr(path, "march", slow)
+    with StageBar(1) as stages, stages("Following the part"):
+        part = Micropart(2e-9, (0.0, 0.0), velocity=(1e-3, 0.0))
+        simulate(platform_surface(size=1e-3), part, ConstantFriction(2e-9), 0.04)
+    assert lines[0].endswith("  0 of 1 stages done; Following the part, at 40 of 40 ms")
+
+
+def test_nothing_is_printed_in_a_short_time_where_there_is_no_terminal(monkeypatch):
     errors = io.StringIO()
     monkeypatch.setattr(sys, "stderr", errors)
     with CountBar("paths"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,13 +28,14 @@ def verify(quiet: bool, file: Path | None) -> None:
     Solves equation (2) and an off-centre layout on three meshes; exits with 1 when an error on the finest mesh or an
     observed order misses its bound.
     """
-    from coupling import whole_file
+    from coupling import StageBar, silent, whole_file
     from coupling.results import check_folder
     from fem_plate import verification
 
     if file is not None:
         refusing(check_folder, file.parent)
-    checks = verification.verify()
+    with nullcontext(silent) if quiet else StageBar(1) as bar, bar("Checking the plate"):
+        checks = verification.verify()
     if not quiet:
         for done in checks:
             _tell(done)

@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 from functools import reduce
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from sweeps import toml
 
 from active_surface.cli import ctrl_c, group, options
 from active_surface.cli.program import main
+from coupling import progress
 from fem_plate import verification
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -145,6 +147,15 @@ def test_verify_exits_1_when_a_bound_fails(monkeypatch):
     done = CliRunner().invoke(main, ["verify"])
     assert done.exit_code == 1
     assert "FAILED" in done.output
+
+
+def test_without_a_terminal_verify_says_what_it_does_unless_quiet(monkeypatch):
+    written, clock = threading.Event(), progress._clock
+    monkeypatch.setattr(progress, "PERIOD", 0.01)
+    monkeypatch.setattr(progress, "_clock", lambda seconds: written.set() or clock(seconds))
+    monkeypatch.setattr(verification, "verify", lambda: [] if written.wait(0.5) else [])
+    assert CliRunner().invoke(main, ["verify", "--quiet"]).stderr == ""
+    assert "0 of 1 stages done; Checking the plate\n" in CliRunner().invoke(main, ["verify"]).stderr
 
 
 SHAKEN = """\
