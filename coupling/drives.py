@@ -1,8 +1,7 @@
-"""From the drives of a case to those of the integrator: their heights, extremes, jumps, and the times of frames."""
+"""From the drives of a case to those of the integrator: their heights, extremes and jumps."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,9 +17,6 @@ SAMPLES, MAX_BREAKPOINTS = 201, 101  # moments at which extremes are sought
 MAX_ADDED, ENOUGH = 256, 0.99  # moments added for extremes that lie elsewhere; this share of an extreme is enough
 GOLDEN = (5**0.5 - 1) / 2
 PARTS = 8  # of a piece, between which its largest acceleration is sought
-FRAMES_PER_CYCLE = 20
-FRAMES = (100, 1000)  # the fewest and the most unless the case states a number
-MAX_HEIGHTS = 3_000_000  # frames times drives, beyond the fewest frames: it bounds the files of large arrays
 JUMP = 1e-3  # of a stroke over its time: a smaller change of velocity counts as none
 
 
@@ -53,13 +49,6 @@ def stroke_heights(drives: Sequence[AnyDrive], times: FloatArray, derivative: in
 def fastest(drives: Sequence[AnyDrive]) -> float:
     """The frequency [Hz] of the fastest drive that moves; 0 where none does."""
     return max((drive.frequency for drive in dict.fromkeys(drives) if travel(drive) > 0), default=0.0)
-
-
-def frame_times(frames: int | None, drives: Sequence[AnyDrive], end: float) -> FloatArray:
-    """The times [s] of the result files' steps, from 0 to the end; frames: how many; None: enough for the drives."""
-    most = min(max(MAX_HEIGHTS // len(drives), FRAMES[0]), FRAMES[1])
-    count = frames or min(max(math.ceil(end * fastest(drives) * FRAMES_PER_CYCLE) + 1, FRAMES[0]), most)
-    return np.linspace(0, end, count)
 
 
 def moments(drives: Sequence[AnyDrive], end: float) -> FloatArray:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 import numpy as np
 
 from coupling.case import Case
-from coupling.drives import fastest, first_jump, frame_times
+from coupling.display import frame_times
+from coupling.drives import fastest, first_jump
 from coupling.margins import Margins, margins_from, margins_of
 from coupling.measured import MotionFit, fit_from
 from coupling.plate_figures import PlateFigures, StretchError, VibrationFigures, plate_figures
 from coupling.scene import PlateScene, Scene
 from coupling.thresholds import Thresholds, thresholds_of
-from particle import AnyDrive, EventKind, State, Trajectory
+from particle import EventKind, State, Trajectory
 from particle.friction import Contact
 
 
@@ -131,16 +132,16 @@ def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Traject
         path_resolution=case.run.tolerance * scene.surface.size,
         margins=margins_of(case, scene, trajectory, friction),
         thresholds=thresholds_of(case, scene, trajectory, friction),
-        frames_per_cycle=None if scene.fits else _frames_per_cycle(case, drives, float(trajectory.time[-1])),
+        frames_per_cycle=None if scene.fits else _frames_per_cycle(case, scene, float(trajectory.time[-1])),
     )
     if isinstance(scene, PlateScene):
         return PlateSummary(**vars(summary), **vars(plate_figures(case, scene, trajectory, friction)))
     return summary
 
 
-def _frames_per_cycle(case: Case, drives: Sequence[AnyDrive], end: float) -> float | None:
-    cycles = end * fastest(drives)
-    return (len(frame_times(case.run.frames, drives, end)) - 1) / cycles if cycles > 0 else None
+def _frames_per_cycle(case: Case, scene: Scene, end: float) -> float | None:
+    cycles = end * fastest([*scene.lifts, *scene.base])
+    return (len(frame_times(case, scene, end)) - 1) / cycles if cycles > 0 else None
 
 
 def _noise_pull(case: Case, scene: Scene, friction: Contact) -> float | None:

@@ -15,8 +15,7 @@ from matplotlib.figure import Figure
 from common import unit_for
 from coupling import PlateSummary, Result, read_case, report, run_case
 from coupling.case import Case
-from coupling.display import display_surface
-from coupling.drives import frame_times
+from coupling.display import display_surface, frame_times
 from coupling.pictures import Portrait, draw_path, draw_plate, draw_window, is_visible, map_axes, path_window
 from coupling.pictures.portrait import deflected_most, portrait_of
 
@@ -36,7 +35,7 @@ def portrait(result: Result) -> Portrait:
     """What there is to draw of a run, with its plate when it is deflected most."""
     scene, path = result.scene, result.trajectory
     surface = display_surface(scene, path)
-    times = frame_times(result.case.run.frames, [*scene.lifts, *scene.base], float(path.time[-1]))
+    times = frame_times(result.case, scene, float(path.time[-1]))
     return portrait_of(result.case.name, scene, path, surface, deflected_most(scene, surface, times))
 
 

@@ -47,7 +47,7 @@ class RunCase(KeyedTable):
     surface_tolerance: StrictFloat = Field(default=1e-8, ge=1e-13, le=1e-3)
     """The error of the moving surface, relative to a stroke."""
     frames: StrictInt | None = Field(default=None, ge=2, le=1_000_000, examples=[200])
-    """The time steps in the result files; without it 20 a cycle, from 100 to 1000."""
+    """The time steps in the result files; without it 20 to a cycle of the fastest drive, up to about 300 MB."""
     scheme: Literal["events", "fixed", "paper"] = "events"
     """How the path is found: by located events, or for comparison by fixed steps."""
     time_step: PositiveTime | None = Field(default=None, gt=0, examples=["0.1 us"])

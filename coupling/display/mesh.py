@@ -61,10 +61,22 @@ def display_mesh(mesh: PlateMesh, actuators: FloatArray) -> tuple[FloatArray, In
     return points[used], np.searchsorted(used, triangles)
 
 
+def display_points(mesh: PlateMesh, actuators: FloatArray) -> int:
+    """How many points `display_mesh` has, about."""
+    cell = _cell(mesh, actuators)
+    ends = mesh.points[np.concatenate(list(mesh.boundaries.values()))]
+    rim = float(np.hypot(*(ends[:, 1] - ends[:, 0]).T).sum())
+    return int(_area(mesh) / cell.prod() + rim / cell.max())
+
+
+def _area(mesh: PlateMesh) -> float:
+    a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
+    return float(np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum() / 2)
+
+
 def _cell(mesh: PlateMesh, actuators: FloatArray) -> FloatArray:
     """The width and height (2,) [m] of the grid's cells: fractions of the pitch, unless the array is a small spot."""
-    a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
-    area = float(np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum() / 2)
+    area = _area(mesh)
     coarse = math.sqrt(2 * area / CELLS)
     if len(actuators) <= 1:
         return np.full(2, coarse)

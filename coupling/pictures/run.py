@@ -16,8 +16,7 @@ from matplotlib.gridspec import SubplotSpec
 
 from common import Drawing, Unit, draw, figure_of, label_places, unit_for
 from coupling.case import Case
-from coupling.display import DisplaySurface, display_surface
-from coupling.drives import frame_times
+from coupling.display import DisplaySurface, display_surface, frame_times
 from coupling.margins import MarginCurves, Margins, margin_curves, margins_of
 from coupling.part import build_friction
 from coupling.pictures.events import MARKS, draw_events
@@ -58,7 +57,7 @@ def draw_result(result: Result, axes: Axes | None = None) -> Figure:
     """Draw a run; with axes in m, only the path over its surface, into these."""
     case, scene, trajectory = result.case, result.scene, result.trajectory
     surface = display_surface(scene, trajectory)
-    times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
+    times = frame_times(case, scene, float(trajectory.time[-1]))
     moment = deflected_most(scene, surface, times)
     friction = build_friction(case)
     margins = margins_of(case, scene, trajectory, friction)

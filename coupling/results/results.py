@@ -12,8 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.case import Case
-from coupling.display import DisplaySurface, display_surface, most_deflected, moving_heights, onto_surface
-from coupling.drives import frame_times
+from coupling.display import (
+    DisplaySurface,
+    display_surface,
+    frame_times,
+    most_deflected,
+    moving_heights,
+    onto_surface,
+)
 from coupling.environment import versions
 from coupling.files import check_room
 from coupling.margins import MarginCurves, event_actuators, margin_curves
@@ -76,7 +82,7 @@ def write_results(
     and the CSV, too.  with_picture: whether the picture is wanted.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    times = frame_times(case.run.frames, [*scene.lifts, *scene.base], float(trajectory.time[-1]))
+    times = frame_times(case, scene, float(trajectory.time[-1]))
     ground = display_surface(scene, trajectory)
     heights, speeds = moving_heights(scene, times), moving_heights(scene, times, 1)
     metadata: dict[str, str | int] = {

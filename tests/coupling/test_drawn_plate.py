@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import meshes
-from coupling.display.mesh import CELLS, MAX_POINTS, display_mesh
+from coupling.display.mesh import CELLS, MAX_POINTS, display_mesh, display_points
 from meshes.triangles import angles, sides
 
 MESH = Path(__file__).parents[1] / "data" / "l_with_hole.msh"
@@ -34,6 +34,7 @@ def test_the_actuators_come_first_and_the_cells_tile_the_plate(name):
     actuators = np.array(actuators, dtype=float)
     points, triangles = display_mesh(mesh, actuators)
     assert np.array_equal(points[: len(actuators)], actuators)
+    assert 0.7 * len(points) < display_points(mesh, actuators) < 1.5 * len(points)
     assert CELLS / 2 < len(triangles) < 25 * len(actuators) + 2 * CELLS
     assert (areas(points, triangles) > 0).all()
     assert len(np.unique(triangles)) == len(points)
