@@ -37,6 +37,7 @@ from .run import (
     follow_part as follow_part,
     quick_summary as quick_summary,
     run_over as run_over,
+    stage_count as stage_count,
 )
 from .shared import (
     StretchedSurface as StretchedSurface,

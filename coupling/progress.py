@@ -106,6 +106,7 @@ class StageBar(_Bar):
 
     def __init__(self, stages: int) -> None:
         super().__init__(stages)
+        self._counts = False  # whether the stage has said how much of it is done
 
     def _columns(self) -> list[Any]:
         from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
@@ -121,7 +122,13 @@ class StageBar(_Bar):
     def _stage(self, stage: str) -> Iterator[ProgressCallback]:
         bar, task = self._bar, self._task
         bar.update(task, description=stage)
-        yield lambda done, of: bar.update(task, description=f"{stage}: {done} of {of}")
+        self._counts = False
+
+        def tell(done: int, of: int) -> None:
+            self._counts = True
+            bar.update(task, description=f"{stage}: {done} of {of}")
+
+        yield tell
         bar.advance(task)
 
     def _line(self) -> str:
@@ -130,10 +137,10 @@ class StageBar(_Bar):
 
         task, path = self._bar.tasks[0], under_way()
         line = f"{task.completed} of {task.total} stages done; {task.description}"
-        if path is None:
+        if path is None or self._counts:
             return line
         unit = unit_for(path[1], "s")
-        return f"{line}, at {path[0] * unit.per_si:.3g} of {path[1] * unit.per_si:.3g} {unit.name}"
+        return f"{line}; path at {path[0] * unit.per_si:.3g} of {path[1] * unit.per_si:.3g} {unit.name}"
 
 
 class CountBar(_Bar):

@@ -26,6 +26,8 @@ from particle import SurfaceMotion, Trajectory, interruptible
 from particle.fixed import default_step
 from particle.friction import Contact
 
+STAGES = 5  # of a platform, and of a plate that only bends
+
 
 def run_case(
     case: Case,
@@ -124,6 +126,13 @@ def run_over(
         if save_surface:
             files += (write_surface(scene.surface, output / f"{case.name}.surface.h5"),)
     return Result(case, scene, trajectory, summary, files)
+
+
+def stage_count(case: Case) -> int:
+    """How many stages a run of a case reports, with its files."""
+    if isinstance(case.plate, PlatformCase):
+        return STAGES
+    return STAGES + (2 if case.plate.theory == "von-karman" else int(case.plate.inertia))
 
 
 def quick_summary(case: Case, scene: Scene) -> Summary:

@@ -6,8 +6,8 @@ import threading
 
 import pytest
 
-from coupling import progress
-from coupling.progress import CountBar, StageBar, doing
+from coupling import build_scene, progress, stage_count
+from coupling.progress import CountBar, StageBar, doing, silent
 from particle import ConstantFriction, Micropart, path, platform_surface, simulate
 
 
@@ -83,6 +83,15 @@ def test_without_a_terminal_lines_say_which_stages_are_done_and_left(monkeypatch
     assert not log.written.wait(0.05) and log.getvalue() == end
 
 
+@pytest.mark.parametrize(
+    "kind", ["linear", pytest.param("vibrating", marks=pytest.mark.slow), "stretching", "platform"]
+)
+def test_a_run_has_as_many_stages_as_it_counts(ran, kind):
+    stages = []
+    build_scene(ran(kind).case, lambda stage: stages.append(stage) or silent(stage))
+    assert len([*stages, "path", "validity", "files"]) == stage_count(ran(kind).case)
+
+
 def test_without_a_terminal_lines_count_pieces_and_estimate_the_time_left(monkeypatch):
     log = logged(monkeypatch)
     now = [0.0]
@@ -109,10 +118,15 @@ def test_without_a_terminal_lines_say_how_far_a_single_path_is(monkeypatch):
         return done
 
     monkeypatch.setattr(path, "march", slow)
-    with StageBar(1) as stages, stages("Following the part"):
-        part = Micropart(2e-9, (0.0, 0.0), velocity=(1e-3, 0.0))
-        simulate(platform_surface(size=1e-3), part, ConstantFriction(2e-9), 0.04)
-    assert lines[0].endswith("  0 of 1 stages done; Following the part, at 40 of 40 ms")
+    inputs = platform_surface(size=1e-3), Micropart(2e-9, (0.0, 0.0)), ConstantFriction(2e-9), 0.04
+    with StageBar(2) as stages:
+        with stages("Following the part"):
+            simulate(*inputs)
+        with stages("Following the parts") as tell:
+            tell(3, 20)
+            simulate(*inputs)
+    assert lines[0].endswith("  0 of 2 stages done; Following the part; path at 40 of 40 ms")
+    assert lines[1].endswith("  1 of 2 stages done; Following the parts: 3 of 20")
 
 
 def test_nothing_is_printed_in_a_short_time_where_there_is_no_terminal(monkeypatch):

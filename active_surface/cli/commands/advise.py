@@ -11,8 +11,6 @@ import click
 from active_surface.cli import options
 from active_surface.cli.group import DEFAULT_OUTPUT, main, read, refusing
 
-STAGES = 5  # of a plate that only bends, and trials
-
 
 @main.command()
 @click.argument("case", type=click.Path(path_type=Path))
@@ -27,7 +25,7 @@ def advise(case: Path, overwrite: bool, output: Path | None, quiet: bool, as_jso
     case to NAME_advised.toml.
     """
     parsed = read(case)
-    from coupling import StageBar, advice, answers_drives, report, run_case, silent
+    from coupling import StageBar, advice, report, run_case, silent, stage_count
     from coupling.case import write_edited
     from coupling.results import check_folder
 
@@ -35,7 +33,7 @@ def advise(case: Path, overwrite: bool, output: Path | None, quiet: bool, as_jso
     refusing(check_folder, file.parent)
     if file.exists() and not overwrite:
         refusing(_refuse, file)
-    with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(parsed)) as bar:
+    with nullcontext(silent) if quiet else StageBar(stage_count(parsed)) as bar:
         result = refusing(run_case, parsed, None, bar)
         with bar("Trying other drives"):
             found = refusing(advice.advise, result)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import click
 
 from active_surface.cli import options
-from active_surface.cli.commands.run import STAGES
 from active_surface.cli.group import main, refusing
 
 if TYPE_CHECKING:
@@ -29,13 +28,13 @@ def rerun(result: Path, output: Path, quiet: bool, as_json: bool) -> None:
 
     RESULT is either file of a run, or FOLDER/NAME. Exits with 1 when the part ends elsewhere.
     """
-    from coupling import StageBar, answers_drives, rerun, silent
+    from coupling import StageBar, rerun, silent, stage_count
     from coupling.results import check_folder, read_run
 
     saved = refusing(read_run, result)
     refusing(check_folder, output)
     case = refusing(lambda: saved.case)
-    with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(case)) as bar:
+    with nullcontext(silent) if quiet else StageBar(stage_count(case)) as bar:
         done = refusing(rerun, saved, output, bar)
     figures = {"same_end": done.same_end, "moved": done.moved, "versions": done.changed, "complete": saved.complete}
     files = [str(file) for file in done.result.files]

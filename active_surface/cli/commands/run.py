@@ -10,8 +10,6 @@ import click
 from active_surface.cli import options
 from active_surface.cli.group import DEFAULT_OUTPUT, main, read, refusing
 
-STAGES = 5  # of a plate that only bends
-
 
 @main.command()
 @click.argument("case", type=click.Path(path_type=Path))
@@ -34,12 +32,12 @@ def run(
 ) -> None:
     """Run CASE and write its results."""
     parsed = read(case)
-    from coupling import StageBar, answers_drives, case_warnings, limit_warnings, report, run_case, silent
+    from coupling import StageBar, case_warnings, limit_warnings, report, run_case, silent, stage_count
     from coupling.results import check_folder
 
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(silent) if quiet else StageBar(STAGES + answers_drives(parsed)) as bar:
+    with nullcontext(silent) if quiet else StageBar(stage_count(parsed)) as bar:
         result = refusing(run_case, parsed, folder, bar, csv, save_surface, forces)
     files, summary = result.files, result.summary
     warnings = report.warnings(summary) + case_warnings(parsed) + limit_warnings(parsed, result.shapes)
