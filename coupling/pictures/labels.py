@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.path import Path
@@ -71,7 +72,7 @@ def _put(label: Annotation, side: NDArray[np.int64], distance: float) -> Bbox:
 def _drawn(axes: Axes) -> tuple[list[Path], FloatArray]:
     """The lines in axes, and their marks, with the middle and half the size (n, 4) of each, in pixels."""
     lines = [_path_of(one) for one in axes.patches]
-    for some in axes.collections:
+    for some in (one for one in axes.collections if isinstance(one, LineCollection)):
         lines += [some.get_transform().transform_path(path) for path in some.get_paths()]
     marks = [np.empty((0, 4))]
     for line in axes.lines:

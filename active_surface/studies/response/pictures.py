@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -14,7 +15,7 @@ from active_surface.arrays import FloatArray
 from active_surface.studies.response.functions import ComplexArray
 from active_surface.studies.response.response import FrequencyResponse
 from common import Drawing, draw, draw_rim, unit_for
-from coupling.pictures import map_axes, put_title
+from coupling.pictures import clear_labels, map_axes, put_keys, put_label, put_title
 from fem_plate import frame_around, mark_actuators
 from meshes import rim_curves
 
@@ -25,15 +26,17 @@ MARK: Final[dict[str, Any]] = {"color": "#404040", "linewidth": 1.1, "linestyle"
 @draw.register(FrequencyResponse)
 def draw_response(response: FrequencyResponse) -> Figure:
     """Draw a response; of many curves those with the largest amplitudes."""
-    figure = Drawing(figsize=(12.0, 6.0))
+    figure = Drawing(figsize=(12.0, 6.8))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
     grid = figure.add_gridspec(2, 2, width_ratios=(2.2, 1), height_ratios=(1.5, 1))
     amplitude = figure.add_subplot(grid[0, 0])
     phase = figure.add_subplot(grid[1, 0], sharex=amplitude)
     curves = _curves(response)
-    _draw_curves(amplitude, phase, response, curves)
+    keys = _draw_curves(amplitude, phase, response, curves)
     _draw_places(figure.add_subplot(grid[:, 1]), response)
     put_title(figure, f"{response.case.name}: response of the plate to its actuators")
+    put_keys(figure, keys)
+    clear_labels(figure)
     return figure
 
 
@@ -45,7 +48,10 @@ def _curves(response: FrequencyResponse) -> list[tuple[int, int]]:
     return [(int(point), int(actuator)) for point, actuator in pairs]
 
 
-def _draw_curves(amplitude: Axes, phase: Axes, response: FrequencyResponse, curves: list[tuple[int, int]]) -> None:
+def _draw_curves(
+    amplitude: Axes, phase: Axes, response: FrequencyResponse, curves: list[tuple[int, int]]
+) -> list[Artist]:
+    """Draw curves of point and actuator; return keys."""
     unit = unit_for(response.frequencies, "Hz")
     across = response.frequencies * unit.per_si
     for point, actuator in curves:
@@ -68,9 +74,8 @@ def _draw_curves(amplitude: Axes, phase: Axes, response: FrequencyResponse, curv
     phase.set_ylim(-190, 190)
     phase.set_yticks((-180, -90, 0, 90, 180))
     phase.set_xlabel(f"frequency [{unit.name}]")
-    handles, _ = amplitude.get_legend_handles_labels()
-    marked = [Line2D([], [], label="resonance", **MARK)]
-    amplitude.legend(handles=[*handles, *(marked if len(response.resonances) else [])], frameon=False, fontsize=8)
+    keys: list[Artist] = [*amplitude.get_legend_handles_labels()[0]]
+    return [*keys, Line2D([], [], label="resonance", **MARK)] if len(response.resonances) else keys
 
 
 def _wrapped(across: FloatArray, values: ComplexArray) -> tuple[FloatArray, FloatArray]:
@@ -93,13 +98,12 @@ def _draw_places(axes: Axes, response: FrequencyResponse) -> None:
     mark_actuators(axes, response.actuators, frame_around(box), unit.per_si)
     few = len(response.actuators) <= MAX_CURVES
     for number, place in enumerate(response.actuators if few else ()):
-        axes.annotate(
-            f"actuator {number}", place * unit.per_si, (0, 7), textcoords="offset points", ha="center", fontsize=8
-        )
+        put_label(axes, str(number), place * unit.per_si, (0, 7), fontsize=8)
     axes.plot(*(response.points * unit.per_si).T, "o", color="black", markersize=5)
     for number, place in enumerate(response.points[:MAX_CURVES]):
         text = "point" if len(response.points) == 1 else f"point {number}"
-        axes.annotate(text, place * unit.per_si, (0, -13), textcoords="offset points", ha="center", fontsize=8)
+        put_label(axes, text, place * unit.per_si, (0, -7), fontsize=8)
+    axes.set_title("The actuators by their numbers" if few else "The actuators", fontsize=10)
     map_axes(axes, unit)
     low, high = frame_around(box) * unit.per_si
     axes.set_xlim(low[0], high[0])

@@ -12,7 +12,7 @@ from sweeps import DISC_PLATE, toml
 from active_surface.cli.program import main
 from active_surface.cli.values import place_of
 from active_surface.studies.response import response
-from active_surface.studies.response.pictures import _wrapped
+from active_surface.studies.response.pictures import _wrapped, draw_response
 from coupling import read_case
 
 CASE = (
@@ -83,6 +83,17 @@ def test_its_picture_shows_the_curves(done):
     assert (right.max(axis=2) < 60).sum() > 1000  # the rim and its marks
     rows = np.flatnonzero((np.abs(lower - TAB["orange"]).max(axis=2) < 12).any(axis=1))
     assert np.ptp(rows) > 0.4 * len(lower)
+
+
+def test_its_labels_and_keys_are_clear_of_each_other_and_of_curves(done):
+    _, folder = done
+    found = response(read_case(folder / "plate.toml"), [(2e-4, 1e-4), (2.05e-4, 1e-4)], lowest=50e3, highest=2e6)
+    figure = draw_response(found)
+    figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for axes in figure.axes for text in axes.texts]
+    boxes += [legend.get_window_extent() for legend in figure.legends]
+    assert len(boxes) == len(found.actuators) + 3 and not any(axes.get_legend() for axes in figure.axes)
+    assert not any(box.count_overlaps(boxes[:k]) for k, box in enumerate(boxes))
 
 
 def test_the_phase_breaks_where_it_leaps_by_a_turn():
