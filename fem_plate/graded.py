@@ -108,9 +108,14 @@ class GradedPlate:
 
     @property
     def gain(self) -> float:
-        """What halving the cells divides the error of w by, at least: little where corners make most of the error."""
+        """What halving the cells divides the error of w by, at least: little where corners make most of the error.
+
+        Rounding of corner functions grows as cells shrink.
+        """
+        if self.enriched_corners:
+            return 1.0
         fine = all(self.grading.at_corner(corner)[1] for corner in self.corners)
-        return self.grading.gain if fine and not self.enriched_corners else COARSE_GAIN
+        return self.grading.gain if fine else COARSE_GAIN
 
     @property
     def graded_corners(self) -> list[SingularCorner]:

@@ -63,7 +63,7 @@ def test_the_first_frequency_of_a_hexagon_is_the_published_one():
     assert polygons.first_frequency(6) == pytest.approx(7.155339133926, rel=1e-9)
 
 
-@pytest.mark.parametrize("sides", [12, pytest.param(16, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("sides", [12, *(pytest.param(sides, marks=pytest.mark.slow) for sides in (16, 24))])
 def test_estimates_with_a_tolerance_are_no_less_than_half_of_the_error(sides):
     """Where rounding of corner functions is most of it, finer cells gain little: estimates were 1/3 to 1/30 of it."""
     xy, exact = places(sides), polygons.Polygon(sides, "pressure")

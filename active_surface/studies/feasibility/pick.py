@@ -18,6 +18,7 @@ from active_surface.studies.feasibility.result import Feasibility
 from common import quantity_text
 from coupling import Progress, Result, run_case, silent
 from coupling.case import Case, write_case
+from coupling.thresholds import FAR
 
 ROWS: Final = 7  # strokes tried in a column
 PARTS: Final = 16  # of the way from one column to the next, for distances from borders
@@ -90,15 +91,19 @@ def pick(
     case = found.at(frequency, stroke)
     result = run_case(case, progress=progress)
     picked = Picked(case, frequency, stroke, found.stroke_unit, result)
-    lost = result.trajectory.outcome in LOST
-    if lost or not result.summary.path_length > 0:
+    lost, far = result.trajectory.outcome in LOST, result.summary.distance
+    if lost or not far > FAR * found.ground.surface.size:
         where = f"{quantity_text(frequency, 'Hz', 5)} and {quantity_text(stroke, found.stroke_unit, 5)}"
-        what = f"is lost after {quantity_text(result.summary.end_time, 's', 3)}" if lost else "stays at rest"
+        what = f"is lost after {quantity_text(result.summary.end_time, 's', 3)}" if lost else _at_rest(far)
         raise ValueError(
             f"Input pick of feasibility must move the part without losing it; got {where}, where it {what}"
             + _beside(found, frequency)
         )
     return picked
+
+
+def _at_rest(far: float) -> str:
+    return f"moves only {quantity_text(far, 'm', 3)}" if far > 0 else "stays at rest"
 
 
 def _beside(found: Feasibility, frequency: float) -> str:
@@ -135,14 +140,9 @@ def best_point(
     clear = np.flatnonzero(rooms >= CLEAR * rooms.max())
     tried = clear[np.argsort(-rooms[clear], kind="stable")[:MAX_TRIED]]
     paths = ground.paths([(float(k), float(s)) for k, s in points[tried]], threads)
-    far = [
-        -1.0
-        if path.outcome in LOST or path.path_length == 0
-        else float(np.hypot(*(path.position[-1] - path.position[0])))
-        for path in paths
-    ]
+    far = [-1.0 if path.outcome in LOST else path.distance for path in paths]
     best = int(np.argmax(far))
-    if far[best] < 0:
+    if not far[best] > FAR * ground.surface.size:
         return None
     return float(points[tried[best], 0]), float(points[tried[best], 1])
 

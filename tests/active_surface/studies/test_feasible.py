@@ -305,7 +305,11 @@ def test_a_picked_case_moves_and_a_point_that_does_not_is_refused_with_its_borde
     frequencies, slips, lost, _ = found.borders()
     picked = pick(found, float(frequencies[0]), float(np.sqrt(slips[0] * lost[0])))
     assert run_case(read_case(picked.write(tmp_path / "picked.toml"))).summary.path_length > 0
-    for stroke, what in ((0.9 * slips[0], "where it stays at rest"), (2e-3, "where it is lost after")):
+    for stroke, what in (
+        (0.9 * slips[0], "where it stays at rest"),
+        (1.0002 * slips[0], r"where it moves only [\d.]+ [np]m"),
+        (2e-3, "where it is lost after"),
+    ):
         with pytest.raises(ValueError, match=what) as refused:
             pick(found, float(frequencies[0]), float(stroke))
         assert f"it slips from {quantity_text(slips[0], 'm', 4)} and is lost from" in str(refused.value)
