@@ -48,4 +48,5 @@ from .shared import (
 from .solved_plates import SolvedPlates as SolvedPlates
 from .suggestion import alike as alike, near as near, same_values as same_values
 from .margins import Margin as Margin
+from .thresholds import FAR as FAR
 from .summary import PlateSummary as PlateSummary, Summary as Summary, summary_of as summary_of

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from common import quantity_text
 from coupling.case import Case, PlateCase, half_size
@@ -89,6 +88,6 @@ def _widest_gap(case: Case, plate: PlateCase) -> float:
     axes = [np.linspace(low[k], high[k], SAMPLES) for k in (0, 1)]
     xy = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
     gap = outline.gap(xy)
-    if case.actuators:
-        gap = np.minimum(gap, cKDTree([actuator.position for actuator in case.actuators]).query(xy)[0])
+    for actuator in case.actuators:
+        gap = np.minimum(gap, np.hypot(*(xy - actuator.position).T))
     return float(gap.max())

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 from scipy.spatial import cKDTree
 
-from coupling.case import SAME_PLACE, Case
+from coupling.case import MAX_VIBRATING, SAME_PLACE, Case, InputError
 from coupling.drives import moments, stroke_heights, travel
 from coupling.ringing import RingingModel
 from coupling.scene import PlateScene
@@ -18,7 +18,7 @@ from coupling.steepest import around, circles, sharp_points, steepest
 from coupling.stretch import Stretch
 from coupling.tipping import states_adhesion, tipping_of
 from coupling.vibration import PIECES
-from fem_plate import InfluenceShapes, MovingShapes, PatchedShapes, Plate, PlateShapes, Shapes
+from fem_plate import InfluenceShapes, MovingShapes, PatchedShapes, Plate, PlateShapes, Shapes, VaryingSection
 from meshes import Outline
 from particle import AnyDrive, ContactSamples, SurfaceMotion, Trajectory
 from particle.friction import Contact
@@ -74,8 +74,10 @@ class PlateFigures:
     vibration: VibrationFigures | None  # None: without inertia
     deflection_over_thickness: float
     linear_path_error: float | None  # relative, of small-deflection theory; None: von Karman's
+    can_stretch: bool  # whether the same case goes with von Karman's theory; false where it has it
+    can_vibrate: bool  # likewise with inertia
     largest_slope: float
-    largest_strain: float | None  # of either face, in linear theory by bending alone; None: too many actuators to look
+    largest_strain: float | None  # of either face, in linear theory by bending and tension; None: too many actuators
     top_face_share: (
         float | None
     )  # what the top face and the centre of mass add to the pull on the part, over the rest; None: there is none
@@ -99,7 +101,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         moving = scene.moving_shapes, scene.moving_drives
         sharp = sharp_points(plate.singular_corners, shapes.points)
         slope, deflection, curvature = _extremes(*moving, case.run.duration, sharp, plate.section.thickness / 2)
-        strain = None if curvature is None else plate.section.thickness / 2 * curvature
+        strain = None if curvature is None else plate.section.thickness / 2 * curvature + _residual_strain(plate)
     else:
         deflection, slope, strain = stretch.extremes
     thickness = plate.section.thickness
@@ -122,6 +124,8 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         vibration=_vibration(scene),
         deflection_over_thickness=over_thickness,
         linear_path_error=LINEAR_ERROR * over_thickness**2 if stretch is None else None,
+        can_stretch=stretch is None and _goes_with(case, "plate.theory", "von-karman"),
+        can_vibrate=not scene.has_inertia and _goes_with(case, "plate.inertia", True),
         largest_slope=slope,
         largest_strain=strain,
         top_face_share=_top_face_share(contact),
@@ -136,6 +140,23 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force)))),
     )
+
+
+def _residual_strain(plate: Plate) -> float:
+    """The largest strain of the plate's tension N, N (1 - nu) / (E t) where it is isotropic."""
+    assert not isinstance(plate.section, VaryingSection)  # no case has one
+    return float(np.linalg.solve(plate.section.membrane_stiffness, [plate.tension, plate.tension, 0.0])[:2].max())
+
+
+def _goes_with(case: Case, field: str, value: object) -> bool:
+    """Whether a case may have another value in a field, such as theory or inertia, which large arrays may not."""
+    if len(case.actuators) > MAX_VIBRATING:
+        return False
+    try:
+        case.vary({field: value})
+    except InputError:
+        return False
+    return True
 
 
 def _stretch_error(stretch: Stretch) -> StretchError:

@@ -136,8 +136,9 @@ def _ends(
         return
     within = getattr(value, key, None)
     if not rest:
-        # Supports are one text or a table of texts.
-        annotation = str if isinstance(within, str) else field.annotation
+        # Supports are one text or a table of texts, damping is a number or pairs of them.
+        single = any(isinstance(within, kind) and kind in parts_of(field.annotation) for kind in (str, float))
+        annotation = type(within) if single else field.annotation
         yield here, type(value), key, annotation, field.metadata
     else:
         yield from _inside(rest, here, within, field.annotation, field.metadata)

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 LEFT_OUT: Final = ("name", "source")  # of a case, what no file has
 
 
+KINDS = ("model", "shape")  # say which table it is, also where Python's class does
+
+
 def plain_case(case: Case) -> dict[str, Any]:
     """The tables of a case as dicts of SI values."""
     return {key: table for key, table in plain_tables(case).items() if key not in LEFT_OUT}
@@ -34,7 +37,9 @@ def plain_tables(value: Any) -> Any:
             key: plain_tables(item)
             for key in fields
             if (item := getattr(value, key)) is not None
-            and (key in value.model_fields_set or fields[key].default is None or isinstance(item, tuple))
+            and (
+                key in value.model_fields_set or key in KINDS or fields[key].default is None or isinstance(item, tuple)
+            )
         }
     if isinstance(value, tuple):
         return tuple(plain_tables(item) for item in value)

@@ -103,6 +103,6 @@ def _dynamics(s: PlateSummary) -> str:
     elif s.quasi_static_error is None:
         dynamics = "it rings where a drive jumps"
     else:
-        remedy = f" ({INERTIA} has none)" if s.quasi_static_error > MAX_QUASI_STATIC_SHARE else ""
+        remedy = f" ({INERTIA} has none)" if s.can_vibrate and s.quasi_static_error > MAX_QUASI_STATIC_SHARE else ""
         dynamics = f"quasi-static error of the acceleration {percent(s.quasi_static_error)}{remedy}"
     return f"first frequency, actuators held: {quantity_text(s.first_frequency, 'Hz', 4)}; {dynamics}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from coupling.case import INERTIA, MAX_STRETCHING, MAX_VIBRATING, VON_KARMAN
+from coupling.case import INERTIA, VON_KARMAN
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.report.wording import MICRO, MILLI, bending, count, in_percent, percent, quantity
 from coupling.summary import PlateSummary, Summary
@@ -103,7 +103,7 @@ def _of_contact(s: Summary) -> Iterator[str]:
 def _of_solver(s: PlateSummary) -> Iterator[str]:
     if s.plate_error > MAX_NUMERICAL_ERROR:
         yield (
-            f"The plate's shapes are accurate to {s.plate_error:.1e} of a stroke only; reduce plate.cell_size, or move "
+            f"The plate's shapes are accurate to {s.plate_error:.1e} of a stroke only; take smaller cells, or move "
             "actuators away from the rim."
         )
     if s.vibration and s.vibration.mode_error > MAX_MODE_ERROR:
@@ -114,7 +114,7 @@ def _of_solver(s: PlateSummary) -> Iterator[str]:
     if s.stretch_error and (worst := s.stretch_error.largest) > MAX_STRETCH_ERROR:
         yield (
             f"The plate that stretches is accurate to {worst:.1e} of its deflection only; reduce "
-            + ("plate.cell_size." if worst == s.stretch_error.mesh else "the strokes.")
+            + ("the cells." if worst == s.stretch_error.mesh else "the strokes.")
         )
     if s.surface_error > max(MAX_NUMERICAL_ERROR, s.plate_error, s.vibration.mode_error if s.vibration else 0.0):
         yield (
@@ -125,12 +125,8 @@ def _of_solver(s: PlateSummary) -> Iterator[str]:
 
 def _of_model(s: PlateSummary) -> Iterator[str]:
     if s.linear_path_error is not None and s.deflection_over_thickness > MAX_DEFLECTION:
-        bounds = f"with up to {MAX_STRETCHING} actuators and no pressure"
-        remedy = (
-            f" {VON_KARMAN} in [plate] has the plate stretch, {bounds}."
-            if s.linear_path_error > MAX_LINEAR_ERROR
-            else ""
-        )
+        far = s.can_stretch and s.linear_path_error > MAX_LINEAR_ERROR
+        remedy = f" {VON_KARMAN} in [plate] has the plate stretch." if far else ""
         yield (
             f"The plate deflects by {s.deflection_over_thickness:.3g} times its thickness; small-deflection theory "
             f"holds to about {MAX_DEFLECTION}. Expect a path error of {percent(s.linear_path_error)}.{remedy}"
@@ -149,14 +145,13 @@ def _of_model(s: PlateSummary) -> Iterator[str]:
         yield (
             f"The drive is at {s.drive_over_first:.2g} of the plate's first frequency; the quasi-static model holds up "
             f"to about {MAX_FREQUENCY}. Expect an acceleration error of {percent(s.quasi_static_error)}."
-            + f" {INERTIA} in [plate] has the plate vibrate"
-            + (f", with up to {MAX_VIBRATING} actuators." if s.theory == "linear" else ".")
+            + (f" {INERTIA} in [plate] has the plate vibrate." if s.can_vibrate else "")
         )
     if s.plate_rings:
         yield (
             "A drive's velocity or acceleration jumps, as at the end of a sine or cosine, or at its start after a "
             "delay; a ramp avoids both. The plate then rings, by as much as its acceleration jumps, until damping ends "
-            "it. The quasi-static model leaves that out" + f"; {INERTIA} in [plate] has it."
+            "it. The quasi-static model leaves that out" + (f"; {INERTIA} in [plate] has it." if s.can_vibrate else ".")
         )
     if s.tips:
         yield (

@@ -94,7 +94,7 @@ def test_shapes_from_patches_show_themselves():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("kind", ["linear", "platform"])
+@pytest.mark.parametrize("kind", [pytest.param("linear", marks=pytest.mark.slow), "platform"])
 def test_results_and_trajectories_show_themselves(ran, kind):
     result = ran(kind)
     check(result, rf"Result of Case '{kind}': .* The part .* It is .* m from the start\.")

@@ -92,9 +92,9 @@ def quintic(s):
     return 10 * s**3 - 15 * s**4 + 6 * s**5
 
 
-def summary_with(*actuators, duration=1e-3):
+def summary_with(*actuators, duration=1e-3, plate=DISC | {"density": 2330}):
     case = Case(
-        plate=DISC | {"density": 2330},
+        plate=plate,
         actuators=actuators,
         part=PartCase(mass=2e-9, position=(50e-6, 120e-6)),
         friction=CoulombCase(coefficient=0.3, adhesion=1e-6),
@@ -225,6 +225,32 @@ def test_a_plate_beyond_linear_theory_names_the_line_to_add():
     assert "von-karman" not in text
 
 
+@pytest.mark.parametrize(
+    ("plate", "cycle", "stretches", "vibrates"),
+    [
+        ({}, "up-down", True, True),
+        ({"tension": 10.0}, "up-down", False, True),
+        ({"foundation": 1e8}, "sine", False, True),
+        ({"pressure": 10.0}, "sine", False, True),
+        pytest.param({"tension": 10.0, "inertia": True}, "up-down", False, False, marks=pytest.mark.slow),
+    ],
+)
+def test_a_remedy_that_is_named_is_possible(plate, cycle, stretches, vibrates):
+    drive = ActuatorCase(position=(0.0, 0.0), stroke=5e-6, frequency=100e3, cycle=cycle)
+    s = summary_with(drive, plate=DISC | {"density": 2330.0} | plate)
+    s = replace(s, deflection_over_thickness=0.9, linear_path_error=0.07, quasi_static_error=0.2)
+    said = " ".join(report.warnings(s))
+    assert ('theory = "von-karman"' in said, "inertia = true" in said) == (stretches, vibrates)
+
+
+def test_strain_has_that_of_a_residual_tension():
+    drive = ActuatorCase(position=(0.0, 0.0), stroke=1e-10, frequency=1000)
+    for more, modulus in (({}, 169e9 / 0.7), ({"wafer": "100"}, 165.64e9 + 63.94e9 - 2 * 63.94e9**2 / 165.64e9)):
+        plate = {key: value for key, value in DISC.items() if not (more and key in ("youngs_modulus", "poisson_ratio"))}
+        s = summary_with(drive, plate=plate | more | {"thickness": 10e-6, "tension": 1e3})
+        assert s.largest_strain == pytest.approx(1e3 / 10e-6 / modulus, rel=1e-3)
+
+
 def test_of_a_plate_that_stretches_the_summary_has_errors_and_strain():
     s = summary_with(ActuatorCase(position=(0.0, 0.0), stroke=5e-6, frequency=1000))
     error = StretchError(mesh=2e-4, reduction=3e-5, pieces=4e-6)
@@ -241,7 +267,7 @@ def test_of_a_plate_that_stretches_the_summary_has_errors_and_strain():
     assert summary_of(json.loads(json.dumps(s.as_dict()))) == s
     coarse = replace(s, stretch_error=replace(error, mesh=2e-3), largest_strain=0.006, largest_slope=0.3)
     texts = report.warnings(coarse)
-    assert "The plate that stretches is accurate to 2.0e-03 of its deflection only; reduce plate.cell_size." in texts
+    assert "The plate that stretches is accurate to 2.0e-03 of its deflection only; reduce the cells." in texts
     assert any("strained by 0.6 %; silicon breaks near 1 %" in text for text in texts)
     assert any("as steep as 0.3" in text for text in texts)
 

@@ -76,13 +76,13 @@ def test_estimates_with_a_tolerance_are_no_less_than_half_of_the_error(sides):
 
 @pytest.mark.parametrize(
     ("sides", "tension", "foundation"),
-    [(8, 0.0, 100.0), *(pytest.param(*case, marks=pytest.mark.slow) for case in ((8, -1.0, -10.0), (12, 0.0, 100.0)))],
+    [(6, 0.0, 100.0), *(pytest.param(*case, marks=pytest.mark.slow) for case in ((8, -1.0, -10.0), (12, 0.0, 100.0)))],
 )
 def test_modes_on_foundations_know_how_far_corners_take_them_off(sides, tension, foundation):
     """omega^2 rho t = D lam^2 + N lam + k, lam the membrane's; estimates were 3e3 to 2e5 times too small."""
     exact = polygons.first_frequency(sides)
     with warnings.catch_warnings(action="ignore"):
-        found = Plate(regular_polygon(sides, 1.0, 0.4), UNIT, S, None, tension, foundation).modes(1)
+        found = Plate(regular_polygon(sides, 1.0, 0.5), UNIT, S, None, tension, foundation).modes(1)
     error = 2 * np.pi * found.frequencies[0] / np.sqrt(exact**2 + tension * exact + foundation) - 1
     assert 0.5 < abs(error) / found.error_estimate[0] < 2
 

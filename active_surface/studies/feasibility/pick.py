@@ -16,9 +16,8 @@ from active_surface.studies.feasibility.chart import Chart
 from active_surface.studies.feasibility.ground import Ground
 from active_surface.studies.feasibility.result import Feasibility
 from common import quantity_text
-from coupling import Progress, Result, run_case, silent
+from coupling import FAR, Progress, Result, run_case, silent
 from coupling.case import Case, write_case
-from coupling.thresholds import FAR
 
 ROWS: Final = 7  # strokes tried in a column
 PARTS: Final = 16  # of the way from one column to the next, for distances from borders

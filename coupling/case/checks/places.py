@@ -91,6 +91,14 @@ def check_places(parts: Parts, outline: PlateCase, mesh: PlateMesh, stand: Stand
         rests = right_value(PlateCase, "foundation", plate, parts.context, 0.0)
         if held is not None and rests is not None and rests <= 0 and not (parts.context or {}).get(MAY_MOVE):
             yield from _rigid_motion(supported, mesh, held)
+            stretches = right_value(PlateCase, "theory", plate, parts.context) == "von-karman"
+            free = set(supported.supports_of(list(mesh.boundaries)).values()) == {"free"}
+            if stretches and free and len(held) == 3 == len(spots) + (len(stand.spots) if stand else 0):
+                yield (
+                    ("plate", "theory"),
+                    'must be "linear" on a free plate with three actuators, which tilt it without bending it; both '
+                    "theories are the same there",
+                )
 
 
 class _Spot(NamedTuple):

@@ -76,6 +76,7 @@ def test_longer_runs_than_the_base_cases_are_followed(tmp_path):
     assert end == pytest.approx(longer.position[-1], abs=3e-4 * longer.path_length)
 
 
+@pytest.mark.slow
 def test_drives_beyond_the_heights_of_the_model_are_refused(engine):
     case = engine.study.case
     surface = shared_surface(case, [build_drives(case)], case.run.duration)

@@ -9,7 +9,7 @@ import pytest
 from case_files import JARGON, plate, python_case
 from pydantic import ValidationError
 
-from coupling.case import ActuatorCase, Case, InputError, PartCase
+from coupling.case import ActuatorCase, Case, CoulombCase, InputError, PartCase
 
 
 @pytest.mark.parametrize(
@@ -88,3 +88,11 @@ def test_an_input_error_survives_pickling() -> None:
     with pytest.raises(InputError) as caught:
         PartCase(mass=-1, position=3)
     assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+
+
+def test_a_case_made_of_classes_is_varied() -> None:
+    """Which law of friction it is was said by the class alone."""
+    assert (
+        python_case(friction=CoulombCase(coefficient=0.3)).vary({"friction.coefficient": 0.4}).friction.coefficient
+        == 0.4
+    )

@@ -8,7 +8,7 @@ from case_files import DURATION, STROKE, changed, plate, problems, python_case, 
 from click.testing import CliRunner
 
 from active_surface.cli import main
-from coupling.case import InputError
+from coupling.case import InputError, find_field
 from coupling.scene import damping_of
 from coupling.stretch.schedule import schedule_of
 from particle import Drive
@@ -162,3 +162,23 @@ def test_a_platform_has_no_steady_state(tmp_path):
     text = platform + text[text.index("[part]") :]
     (problem,) = problems(tmp_path, text)
     assert 'run.start must be "rest" with shape = "platform", which does not vibrate; got "steady"' in problem
+
+
+def test_a_single_damping_ratio_is_a_field_that_can_be_varied():
+    vibrating = python_case(plate=plate(density="2330 kg/m^3", inertia=True))
+    field = find_field(vibrating, None, "plate.damping")
+    assert (field.kind, field.unit, field.base) == ("number", "1", 0.02) and field.read(0.05) == 0.05
+    with pytest.raises(ValueError, match="a ratio from 0 to below 1"):
+        field.read(1.5)
+    pairs = python_case(plate=plate(density="2330 kg/m^3", inertia=True, damping=[["20 kHz", 0.02], ["80 kHz", 0.01]]))
+    with pytest.raises(ValueError, match="must be a single value; got plate.damping"):
+        find_field(pairs, None, "plate.damping")
+
+
+def test_a_free_plate_on_three_actuators_only_tilts():
+    places = (("150 um", "0 um"), ("-100 um", "120 um"), ("-80 um", "-130 um"), ("10 um", "20 um"))
+    actuators = [{"position": at, "stroke": "1 um", "frequency": "1 kHz"} for at in places]
+    free = plate(supports="free", theory="von-karman")
+    with pytest.raises(InputError, match=r'theory of Case must be "linear" on a free plate with three actuators'):
+        python_case(plate=free, actuators=actuators[:3])
+    assert python_case(plate=free, actuators=actuators).plate.theory == "von-karman"
