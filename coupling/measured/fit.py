@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from coupling.measured.jumps import VELOCITY, find_kicks
 from coupling.measured.series import NO_KICKS, ORDER, Motion, Series, noise_of, series_of, smoothed
-from coupling.measured.smoothing import LEAST_LEFT, chosen, roughness_of
+from coupling.measured.smoothing import LEAST_LEFT, chosen, roughness_of, validation
 from particle import AnyDrive, HermiteDrive
 from particle.drives import QuinticDrive, Segments
 
@@ -22,6 +22,8 @@ ROUNDS = 4  # of smoothing and of kicks, each of which needs the other
 SAME = 0.05  # steps: kicks that hardly move have settled
 MIN_SAMPLES = 30  # of a series in which kicks are sought
 GAP = 3.0  # median steps: a longer one is a gap
+AROUND = 10.0  # steps on either side of a kick, in which kicks must lower the cross-validation
+WORTH = 0.7  # of that without any kick: less of a gain may be chance, or a blow that lasts some samples
 
 
 @dataclass(frozen=True)
@@ -96,15 +98,26 @@ def fit_motion(
 
 
 def found_motion(t: FloatArray, columns: Sequence[FloatArray | None]) -> tuple[Series, FloatArray, float]:
-    """The series of samples, with the noise that was found, the kicks of its motion and its roughness."""
-    series, kicks = series_of(t, columns), NO_KICKS
+    """The series of samples, with the noise that was found, the kicks of its motion and its roughness.
+
+    Kicks are kept where the motion with them follows the samples around them clearly better than the smooth motion.
+    """
+    smooth, smooth_roughness = chosen(series_of(t, columns), NO_KICKS)
+    series, kicks, roughness = smooth, NO_KICKS, smooth_roughness
     for _ in range(ROUNDS):
-        series, roughness = chosen(series, kicks)
         found = find_kicks(series, roughness) if len(t) >= MIN_SAMPLES else NO_KICKS
         if found.shape == kicks.shape and np.allclose(found, kicks, atol=SAME):
-            return series, kicks, roughness
+            break
         kicks = found
-    series, roughness = chosen(series, kicks)
+        series, roughness = chosen(series, kicks)
+    if len(kicks):
+        near = np.abs(series.time[:, None] - kicks[:, 0]).min(axis=1) <= AROUND
+        with_kicks, without = (
+            validation(smoothed(*one), smooth.noise, near)
+            for one in ((series, kicks, roughness), (smooth, NO_KICKS, smooth_roughness))
+        )
+        if with_kicks > WORTH * without:
+            return smooth, NO_KICKS, smooth_roughness
     return series, kicks, roughness
 
 

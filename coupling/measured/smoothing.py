@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from coupling.measured.series import Motion, Series, smoothed
 
+BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 
 ROUGHNESS = np.arange(-18.0, 13.0, 1.0)  # decimal logarithms of those tried first
@@ -19,11 +20,15 @@ LEAST_LEFT = 0.1  # of the samples: fewer degrees of freedom do not tell noise
 SETTLED = 0.02  # relative change of a noise that counts as none
 
 
-def validation(motion: Motion, noise: FloatArray) -> float:
-    """The generalised cross-validation of a motion (Craven and Wahba 1979); a kick's time is a parameter as well."""
-    count = int((motion.nodes.weight > 0).sum())
-    left = count - float(motion.freedom.sum()) - float((motion.nodes.kick > 0).sum())
-    squares = float(((motion.residuals / noise) ** 2).sum())
+def validation(motion: Motion, noise: FloatArray, chosen: BoolArray | slice = slice(None)) -> float:
+    """The generalised cross-validation of a motion (Craven and Wahba 1979); a kick's time is a parameter as well.
+
+    chosen: (n,) of samples, by default all; all kicks are among them.
+    """
+    places = motion.places[chosen]
+    count = int((motion.nodes.weight[places] > 0).sum())
+    left = count - float(motion.out.leverage[places].sum()) - float((motion.nodes.kick > 0).sum())
+    squares = float(((motion.residuals[chosen] / noise) ** 2).sum())
     return count * squares / left**2 if left > 0 else np.inf
 
 
