@@ -137,7 +137,7 @@ def _ends(
     within = getattr(value, key, None)
     if not rest:
         # Supports are one text or a table of texts, damping is a number or pairs of them.
-        single = any(isinstance(within, kind) and kind in parts_of(field.annotation) for kind in (str, float))
+        single = _kind(field.annotation, field.metadata) is None and type(within) in (str, float)
         annotation = type(within) if single else field.annotation
         yield here, type(value), key, annotation, field.metadata
     else:

@@ -74,3 +74,10 @@ def test_the_plasticity_index_takes_the_place_of_a_preset():
 )
 def test_the_page_changes_no_names_of_files(path):
     assert not allowed(read_case(examples_folder() / "two_actuators.toml"), path)
+
+
+def test_fields_have_their_units_and_take_any():
+    case = read_case(examples_folder() / "transport.toml")
+    units = {"actuators.0.stroke": "m", "actuators.*.frequency": "Hz", "plate.youngs_modulus": "Pa", "part.mass": "kg"}
+    assert {path: find_field(case, None, path).unit for path in units} == units
+    assert find_field(case, None, "actuators.0.stroke").read("5 um") == 5e-6
