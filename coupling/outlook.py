@@ -29,7 +29,8 @@ def case_warnings(case: Case) -> list[str]:
                 f"The part has {density:.2g} kg/m^3{as_high}; no solid has more than {MAX_DENSITY:,.0f}. Check "
                 "part.mass and part.size."
             )
-    ends = [(_end(actuator), index) for index, actuator in enumerate(case.actuators)]
+    moving = [(index, drive) for index, drive in enumerate(case.actuators) if drive.stroke or drive.force]
+    ends = [(_end(drive), index) for index, drive in moving]
     late = [(end, index) for end, index in ends if end > duration * (1 + 1e-9)]
     if late:
         end, index = max(late)
@@ -44,7 +45,7 @@ def case_warnings(case: Case) -> list[str]:
             found.append(
                 f"The plate is {quantity_text(thickness, 'm')} thick, {quantity_text(width, 'm')} wide and "
                 f"{quantity_text(length, 'm')} long; plate theory, which leaves out shear, holds up to a thickness of "
-                "about a tenth of the length."
+                "about a tenth of the length, and less than the width."
             )
     return found
 

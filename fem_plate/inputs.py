@@ -55,10 +55,11 @@ def check_points(
     mistakes = [] if points.size else ["at least one point is needed"]
     needed = f" by more than {least:.3g} m" if least else ""
     for i in np.flatnonzero(~(gap > max(least, SAME_PLACE * size))).tolist():
-        where = "inside" if gap[i] > SAME_PLACE * size else "off" if gap[i] > -SAME_PLACE * size else "beyond"
-        or_on = ", or on a free boundary" if free else ""
+        on = abs(gap[i]) <= SAME_PLACE * size
+        or_on = ", or on a free boundary and as far off the others" if free else ""
         place = f"point {i} at {points[i].tolist()} m must lie inside the rim{needed}{or_on}"
-        mistakes.append(f"{place}; it is {abs(gap[i]):.3g} m {where} it")
+        at = "on it" if on else f"{abs(gap[i]):.3g} m {'inside' if gap[i] > 0 else 'beyond'} it"
+        mistakes.append(f"{place}; it is {at}")
     finite = np.flatnonzero(np.isfinite(points).all(axis=1))
     for i, j in finite[sorted(cKDTree(points[finite]).query_pairs(SAME_PLACE * size))].tolist():
         mistakes.append(f"points {i} and {j} must differ; both are at {points[i].tolist()} m")

@@ -12,9 +12,7 @@ if TYPE_CHECKING:
     from coupling.case.case import Case
 
 LEFT_OUT: Final = ("name", "source")  # of a case, what no file has
-
-
-KINDS = ("model", "shape")  # say which table it is, also where Python's class does
+KINDS: Final = ("model", "shape")  # say which table it is, also where Python's class does
 
 
 def plain_case(case: Case) -> dict[str, Any]:

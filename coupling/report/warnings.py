@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from coupling.case import INERTIA, VON_KARMAN
+from coupling.outlook import MAX_FREQUENCY
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.report.wording import MICRO, MILLI, bending, count, in_percent, percent, quantity
 from coupling.summary import PlateSummary, Summary
@@ -15,7 +16,6 @@ MAX_LINEAR_ERROR = 0.01  # of the path: beyond it a run names the theory that ha
 MAX_CURVATURE = 0.1  # of one over the part's size
 MAX_QUASI_STATIC_ERROR = 0.05  # of the acceleration
 MAX_QUASI_STATIC_SHARE = 0.01  # of the acceleration: beyond it a run names the line that has inertia
-MAX_FREQUENCY = 0.015  # of the first one: strokes up and down reach that error there
 MAX_NUMERICAL_ERROR = 1e-6  # of a unit stroke, of the path
 MAX_MODE_ERROR = 1e-2  # of the acceleration of a plate with inertia
 MAX_STRETCH_ERROR = 1e-3  # of the deflection of a plate that stretches
@@ -113,8 +113,8 @@ def _of_solver(s: PlateSummary) -> Iterator[str]:
         )
     if s.stretch_error and (worst := s.stretch_error.largest) > MAX_STRETCH_ERROR:
         yield (
-            f"The plate that stretches is accurate to {worst:.1e} of its deflection only; reduce "
-            + ("the cells." if worst == s.stretch_error.mesh else "the strokes.")
+            f"The plate that stretches is accurate to {worst:.1e} of its deflection only; "
+            + ("take smaller cells." if worst == s.stretch_error.mesh else "reduce the strokes.")
         )
     if s.surface_error > max(MAX_NUMERICAL_ERROR, s.plate_error, s.vibration.mode_error if s.vibration else 0.0):
         yield (

@@ -267,7 +267,7 @@ def test_of_a_plate_that_stretches_the_summary_has_errors_and_strain():
     assert summary_of(json.loads(json.dumps(s.as_dict()))) == s
     coarse = replace(s, stretch_error=replace(error, mesh=2e-3), largest_strain=0.006, largest_slope=0.3)
     texts = report.warnings(coarse)
-    assert "The plate that stretches is accurate to 2.0e-03 of its deflection only; reduce the cells." in texts
+    assert "The plate that stretches is accurate to 2.0e-03 of its deflection only; take smaller cells." in texts
     assert any("strained by 0.6 %; silicon breaks near 1 %" in text for text in texts)
     assert any("as steep as 0.3" in text for text in texts)
 

@@ -162,7 +162,11 @@ def test_a_held_point_beyond_the_rim_or_twice_is_refused(plate):
     ("mesh", "supports", "needed"),
     [
         (rectangle(2.0, 2.0, 0.5), "clamped", "by more than 0.0006 m; it is 0.0005 m inside it"),
-        (rectangle(2.0, 2.0, 0.5), "free", "by more than 0.0006 m, or on a free boundary; it is 0.0005 m inside it"),
+        (
+            rectangle(2.0, 2.0, 0.5),
+            "free",
+            "by more than 0.0006 m, or on a free boundary and as far off the others; it is 0.0005 m inside it",
+        ),
         (disc(1.0, 0.5), "simply-supported", "by more than 0.0006 m; it is 0.0005 m inside it"),
     ],
 )
@@ -204,7 +208,7 @@ def test_a_point_on_the_rim_is_the_limit_of_points_inside_it():
     shapes = plate.influence(on)
     limit = 2 * plate.influence(near).stiffness - plate.influence(far).stiffness
     assert shapes.stiffness == pytest.approx(limit, rel=1e-4) and shapes.error_estimate < 1e-5
-    with pytest.raises(ValueError, match="point 0 .* or on a free boundary; it is .* off it"):
+    with pytest.raises(ValueError, match="point 0 .* or on a free boundary .*; it is on it"):
         plate.influence([[0.4, 0.0], [0.9, 0.0]])
 
 

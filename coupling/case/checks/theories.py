@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any, Final
@@ -25,6 +24,7 @@ MAX_GENERAL: Final = 250
 """Actuators of a plate on a foundation, or of a wafer under a tension."""
 STEADY: Final = 'start = "steady"'
 MAX_CYCLES: Final = 1000  # of one drive in the common period
+ROUNDING: Final = 1e-11  # of a period, as of one that is written with twelve digits
 
 
 def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
@@ -123,7 +123,7 @@ def common_period(one: float | None, other: float) -> float:
     if min(cycles) < 1 or max(cycles) > MAX_CYCLES:
         return math.inf
     shared = cycles[1] * one
-    return shared if abs(shared - cycles[0] * other) <= 4 * sys.float_info.epsilon * shared else math.inf
+    return shared if abs(shared - cycles[0] * other) <= ROUNDING * shared else math.inf
 
 
 def _aperiodic(parts: Parts) -> Iterator[Mistake]:
@@ -132,7 +132,7 @@ def _aperiodic(parts: Parts) -> Iterator[Mistake]:
     for location, values in _driven(parts):
         frequency, dwell = values["frequency"], values["dwell"]
         still = values["stroke"] == 0 or values["force"] == 0
-        if not isinstance(frequency, float) or not isinstance(dwell, float) or location == ("lattice",) or still:
+        if not isinstance(frequency, float) or not isinstance(dwell, float) or still:
             continue
         own = 1 / frequency + (2 * dwell if values["cycle"] == "up-down" else 0.0)
         if math.isinf(shared := common_period(period, own)):
