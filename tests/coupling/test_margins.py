@@ -348,8 +348,8 @@ def test_a_part_on_level_ground_is_sent_elsewhere():
 
 @pytest.mark.slow
 def test_a_place_that_rounds_off_the_plate_is_not_tried():
-    """An actuator 10 nm from the rim: places around it of three digits lie on the rim."""
-    rim = [ActuatorCase(position=(2.9999e-4, 0.0), stroke=1e-6, frequency=1000)]
+    """An actuator 0.2 um from the rim: places around it of three digits lie on the rim."""
+    rim = [ActuatorCase(position=(2.998e-4, 0.0), stroke=1e-6, frequency=1000)]
     result = run_case(case_of(place=(1e-5, 0.0), actuators=rim, friction=ConstantCase(limit=1.0)))
     assert advise(result).trial is None
 
