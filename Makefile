@@ -96,9 +96,8 @@ site: .venv/site
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/site
 	@echo "wrote       build/site/index.html"
 
-# The pages about the paper: its statements over all readings and on devices, then its figures, whose page sums these up.
+# The page about the paper, with its pictures.
 paper: .venv/installed
-	$(BIN)/active-surface reproduce readings --output docs
 	$(BIN)/active-surface reproduce all --output docs
 
 .venv/python:

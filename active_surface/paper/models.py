@@ -2,14 +2,13 @@
 
 "paper": the paper's scheme of fixed steps on the surface of equation (2).  "closed": our equations with located events
 on the same surface.  "plate": the same on a plate of finite elements, which all actuators are attached to.
-"device": the same on a plate that stretches, whose top face carries a part of some height; the readings alone have it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Final, NamedTuple
 
@@ -18,17 +17,16 @@ from numpy.typing import ArrayLike
 from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
-from active_surface.paper.device import device_surface
 from active_surface.paper.parameters import PARAMETERS, Effort, Parameters, Place
 from active_surface.paper.path import Path
 from active_surface.paper.profiles import profile_outline, profile_surface
-from coupling import StretchedSurface, surface_motion
+from coupling import surface_motion
 from fem_plate import DiscShapes, Plate, PlateSection, Shapes
 from meshes import Outline, disc
 from particle import Drive, Micropart, SurfaceMotion, Trajectory, processors, simulate, simulate_many
 from particle.friction import Contact
 
-PAPER, CLOSED, PLATE, DEVICE = "paper", "closed", "plate", "device"
+PAPER, CLOSED, PLATE = "paper", "closed", "plate"
 MODELS: Final = {
     PAPER: "paper's scheme, closed form",
     CLOSED: "our equations, closed form",
@@ -56,7 +54,7 @@ class Bench:
 
     def ground(self, model: str, actuators: str = "one") -> Ground:
         """The ground of a model; actuators: "one", or for two "superposed" or "nearest", which a plate knows not."""
-        solid = model in (PLATE, DEVICE)
+        solid = model == PLATE
         key = (model if solid else "profiles", "two" if solid and actuators != "one" else actuators)
         if key not in self.grounds:
             with threadpool_limits(limits=1, user_api="blas"):
@@ -66,11 +64,9 @@ class Bench:
     def _make(self, kind: str, actuators: str) -> Ground:
         p = self.parameters
         still = Drive(p.stroke, 1.0)
-        if kind in (PLATE, DEVICE):
+        if kind == PLATE:
             points = np.array([[0.0, 0.0]] if actuators == "one" else [[0.0, 0.0], [p.pitch, 0.0]])
             offset = points.mean(axis=0)
-            if kind == DEVICE:
-                return Ground(device_surface(p, points - offset), disc(p.radius, p.radius).outline, -offset)
             section = PlateSection(p.youngs_modulus, p.poisson_ratio, p.thickness, p.density)
             plate = Plate(disc(p.radius, p.radius / RINGS), section, tolerance=PLATE_TOLERANCE)
             shapes: Shapes = plate.influence(points - offset)  # type: ignore[assignment]
@@ -92,10 +88,7 @@ class Bench:
 
     def surface(self, model: str, drives: Sequence[Drive], duration: float, actuators: str = "one") -> SurfaceMotion:
         """The surface of a model under drives, for a time [s]."""
-        surface = self.ground(model, actuators).surface
-        if isinstance(surface, StretchedSurface):
-            surface = replace(surface, half_thickness=self.parameters.half_thickness, end=duration)
-        return surface.driven_by(drives)
+        return self.ground(model, actuators).surface.driven_by(drives)
 
     def paths(
         self,

@@ -4,17 +4,10 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
-
 import click
 
 from active_surface.cli import options
 from active_surface.cli.group import DEFAULT_OUTPUT, main, refusing
-
-if TYPE_CHECKING:
-    from coupling import Progress
-
-READINGS, READING_STAGES = "readings", 7
 
 
 @main.command()
@@ -27,25 +20,18 @@ def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: 
     """Reproduce figures of the paper, such as fig17, or all.
 
     Each in three models: the paper's scheme on its closed-form surface, our equations on that surface, and our
-    equations on a plate of finite elements. Writes a picture and the data of each; of all a page as well. READINGS in
-    place of a figure: over which choices of what the paper leaves open each of its statements holds, and on which
-    devices, as a page; a sweep that was stopped goes on where it was.
+    equations on a plate of finite elements. Writes a picture and the data of each; of all a page as well.
     """
     from active_surface.paper import FULL, QUICK, modules_of, rounded
     from active_surface.paper import reproduce as run
     from coupling import StageBar, silent
     from coupling.results import check_folder
 
-    names = [name for name in figures if name.strip().lower() != READINGS]
-    modules = refusing(modules_of, names) if names or not figures else []
+    modules = refusing(modules_of, figures)
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(silent) if quiet else StageBar(len(modules) + READING_STAGES * (len(names) < len(figures))) as bar:
-        if len(names) < len(figures):
-            _readings(folder, bar, quiet, as_json and not modules)
-        if not modules:
-            return
-        done = refusing(lambda: run(names, folder, FULL if full else QUICK, progress=bar))
+    with nullcontext(silent) if quiet else StageBar(len(modules)) as bar:
+        done = refusing(lambda: run(figures, folder, FULL if full else QUICK, progress=bar))
     verdicts = [verdict.as_dict() for verdict in done.verdicts]
     summary = {"verdicts": verdicts, "seconds": done.seconds, "files": list(map(str, done.files))}
     lines: list[tuple[str, str]] = []
@@ -55,12 +41,3 @@ def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: 
         lines.append(("", ""))
     lines.append(("time", f"{done.seconds:.0f} s"))
     options.tell(rounded(summary), lines, quiet, as_json, files=done.files)
-
-
-def _readings(folder: Path, bar: Progress, quiet: bool, as_json: bool) -> None:
-    from active_surface.paper import rounded
-    from active_surface.paper.readings import reproduce_readings
-
-    done = refusing(lambda: reproduce_readings(folder, progress=bar))
-    lines = [*done.lines, ("time", f"{done.seconds:.0f} s")]
-    options.tell(rounded(done.summary), lines, quiet, as_json, files=done.files)
