@@ -1,4 +1,4 @@
-"""The paper, reproduced: one module for each of its figures or group of them, in three models side by side."""
+"""The paper, reproduced: its figures in three models side by side, judged by one table of its statements."""
 
 import lazy_loader
 

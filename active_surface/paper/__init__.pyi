@@ -3,5 +3,4 @@ from .reproduction import reproduce as reproduce
 from .verdict import Verdict as Verdict
 
 # Not public: for the packages that build on this one.
-from .catalogue import modules_of as modules_of
-from .reproduction import rounded as rounded
+from .reproduction import figures_of as figures_of, rounded as rounded

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from fem_plate import PlateSection
 from particle import KogutEtsion
 from particle.friction import Contact
 
@@ -15,7 +16,7 @@ Place = tuple[float, float]  # m
 class Parameters:
     """What the paper states, and what it leaves open (docs/paper-open-points.md): one set for all figures.
 
-    What one figure alone needs and the paper does not state stands in its module.
+    What one figure alone needs and the paper does not state stands beside its computation.
     """
 
     radius: float = 300e-6  # m, a of equation (2); left open
@@ -28,7 +29,6 @@ class Parameters:
     gravity: float = 0.0  # m/s^2; the paper's forces have no weight
     friction: Contact = field(default_factory=KogutEtsion.paper)
     start: Place = (100e-6, 100e-6)  # figure 17, and wherever none is given
-    period_share: float = 1.0  # periods of an up-down drive in 1/frequency; 0.5: each of its strokes takes 1/frequency
     cycles: int = 30  # how long continuous drives run
     time_step: float = 2e-6  # s, of the paper's scheme; left open
     tolerance: float = 1e-8  # of the located events
@@ -39,10 +39,13 @@ class Parameters:
     poisson_ratio: float = 0.3  # of the plate
     thickness: float = 5e-6  # m
     density: float = 2330.0  # kg/m^3, of the plate; counts with inertia alone
-    half_thickness: float = 0.0  # m: the height over a device's mid-plane that parts lie at; the paper's lie on it
-    centre_height: float = 0.0  # m, of a part's mass over the surface; the paper's part is a point
     contact_side: float = 100e-6  # m, of the part's square contact
     seed: int = 4
+
+    @property
+    def section(self) -> PlateSection:
+        """Of the plate."""
+        return PlateSection(self.youngs_modulus, self.poisson_ratio, self.thickness, self.density)
 
 
 PARAMETERS = Parameters()

@@ -5,7 +5,7 @@ beyond it. "superposed": the sum of all. "nearest": that of the nearest actuator
 between actuators. A plate does neither: each actuator would have to let the others' deflection through.
 
 The cells hold the profiles exactly. Those that a disc's rim crosses are divided, down to CROSSED of the radius.
-The surface ends at the discs' rim, or goes on flat from there.
+The surface ends at the discs' rim.
 """
 
 from __future__ import annotations
@@ -29,18 +29,13 @@ ARC = 48  # edges of each disc's rim
 QUARTERS = np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]]) / 2
 
 
-def profile_outline(pitch: float, radius: float, margin: float = 0.0) -> Outline:
-    """The rim of the two discs around (0, 0) and (pitch, 0) [m] together, or a box around them, `margin` [m] wider.
+def profile_outline(pitch: float, radius: float) -> Outline:
+    """The rim of the two discs around (0, 0) and (pitch, 0) [m] together.
 
     Raises ValueError when the discs do not overlap, or one pitch is not shorter than the radius.
     """
     if not 0 < pitch < radius:
         raise ValueError(f"Input pitch of profile_outline must be positive and below the radius {radius}; got {pitch}")
-    if margin:
-        reach = radius + margin
-        corners = np.array([[-reach, -reach], [pitch + reach, -reach], [pitch + reach, reach], [-reach, reach]])
-        following = np.roll(corners, -1, axis=0)
-        return Outline(edges=np.stack([corners, (corners + following) / 2, following], axis=1))
     half = np.arccos(pitch / 2 / radius)
     angle = np.linspace(half, 2 * np.pi - half, 2 * ARC + 1)
     left = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -49,72 +44,53 @@ def profile_outline(pitch: float, radius: float, margin: float = 0.0) -> Outline
     return Outline(edges=np.concatenate(rims))
 
 
-def profile_surface(
-    kind: str, pitch: float, radius: float, drives: Sequence[AnyDrive], margin: float = 0.0
-) -> SurfaceMotion:
-    """The surface of two actuators at (0, 0) and (pitch, 0) [m]; kind: SUPERPOSED or NEAREST.
-
-    margin: m, by which it goes on flat beyond the discs.
-    """
+def profile_surface(kind: str, pitch: float, radius: float, drives: Sequence[AnyDrive]) -> SurfaceMotion:
+    """The surface of two actuators at (0, 0) and (pitch, 0) [m]; kind: SUPERPOSED or NEAREST."""
     points = np.array([[0.0, 0.0], [pitch, 0.0]])
-    outline = profile_outline(pitch, radius, margin)
     return SurfaceMotion(
         drives=drive_table(drives),
-        store=_Maker(kind, points, radius, margin).store(),
+        store=_Maker(kind, points, radius).store(),
         sources=points,
         size=radius,
         floor=FLOOR * radius,
         overhang=OVERHANG,
-        edges=outline.edges,
+        edges=profile_outline(pitch, radius).edges,
     )
 
 
 class _Maker:
     """Makes the cells of profiles."""
 
-    def __init__(self, kind: str, points: FloatArray, radius: float, margin: float) -> None:
-        self.kind, self.points, self.radius, self.flat = kind, points, radius, margin > 0
-        width = (points[1, 0] - points[0, 0]) / PER_PITCH
-        reach = int(np.ceil((radius + margin) / width))
-        self.origin = np.array([-reach * width, -reach * width])
+    def __init__(self, kind: str, points: FloatArray, radius: float) -> None:
+        self.kind, self.points, self.radius = kind, points, radius
+        self.width = (points[1, 0] - points[0, 0]) / PER_PITCH
+        reach = int(np.ceil(radius / self.width))
+        self.origin = np.array([-reach * self.width, -reach * self.width])
         counts = (2 * reach + PER_PITCH, 2 * reach)
-        self.width = width
-        self.pool = CellPool(self.origin, np.full(2, width), np.full(counts, UNBUILT))
+        self.pool = CellPool(self.origin, np.full(2, self.width), np.full(counts, UNBUILT))
 
     def store(self) -> BuiltCells:
         """All cells."""
+        half = np.full(2, self.width / 2)
         for i, j in np.ndindex(*self.pool.roots.shape):
             centre = self.origin + self.width * (np.array([i, j]) + 0.5)
-            self.pool.roots[i, j] = self._root(centre)
+            reached = self._reached(centre, half).any()
+            self.pool.roots[i, j] = self.pool.add(centre, half, *self._content(centre, half)) if reached else NOWHERE
         return BuiltCells(self.pool.cells(), 0.0)
-
-    def _root(self, centre: FloatArray) -> int:
-        half = np.full(2, self.width / 2)
-        if not self.flat and not self._reached(centre, half).any():
-            return NOWHERE
-        return self.pool.add(centre, half, *self._content(centre, half))
 
     def _content(self, centre: FloatArray, half: FloatArray) -> tuple[CellFit | None, int]:
         """What a cell holds: a fit, or the first of its quarters."""
-        reached, covered = self._reached(centre, half), self._covered(centre, half)
         if self.kind == NEAREST:
-            own = np.arange(2) == int(centre[0] > self.points[:, 0].mean())
-            if not self.flat:
-                return self._fit(centre, half, np.flatnonzero(own)), WHOLE
-            reached, covered = reached & own, covered & own
-        if (reached != covered).any() and half[0] > CROSSED * self.radius:
+            return self._fit(centre, half, np.array([int(centre[0] > self.points[:, 0].mean())])), WHOLE
+        crossed = self._reached(centre, half) != self._covered(centre, half)
+        if crossed.any() and half[0] > CROSSED * self.radius:
             places = [centre + quarter * half for quarter in QUARTERS]
             below = [self._content(place, half / 2) for place in places]
             rows = [self.pool.add(place, half / 2, *content) for place, content in zip(places, below, strict=True)]
             return None, rows[0]
-        inside = np.hypot(*(self.points - centre).T) < self.radius
-        members = np.flatnonzero(inside & own) if self.kind == NEAREST else np.flatnonzero(inside)
-        if not len(members) and self.flat:
-            none = np.array([0])
-            return CellFit(2, none, np.ones(1), none, np.zeros((1, 7)), clear=0.0), WHOLE
-        if not len(members):
-            members = np.array([int(np.argmin(np.hypot(*(self.points - centre).T)))])
-        return self._fit(centre, half, members), WHOLE
+        away = np.hypot(*(self.points - centre).T)
+        inside = np.flatnonzero(away < self.radius)
+        return self._fit(centre, half, inside if len(inside) else np.array([int(np.argmin(away))])), WHOLE
 
     def _reached(self, centre: FloatArray, half: FloatArray) -> BoolArray:
         """Which discs (2,) have a point in the cell."""

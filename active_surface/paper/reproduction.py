@@ -4,24 +4,44 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
+from importlib.resources import files
 from pathlib import Path
+from string import Template
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-
-from active_surface.paper.catalogue import MODULES, finder, modules_of
-from active_surface.paper.figure_result import FigureResult
-from active_surface.paper.models import Bench
-from active_surface.paper.page import page_of
+from active_surface.paper.bench import CLOSED, MODELS, PAPER, PLATE, Bench
+from active_surface.paper.dead_zones import dead_zones
+from active_surface.paper.feasible_area import feasible_area
+from active_surface.paper.one_actuator import accuracy, convergence, translocation
 from active_surface.paper.parameters import PARAMETERS, QUICK, Effort, Parameters
-from active_surface.paper.verdict import Verdict
+from active_surface.paper.picture import FigureResult, draw
+from active_surface.paper.strokes import deceleration, friction_logic, radial
+from active_surface.paper.threshold import threshold
+from active_surface.paper.two_actuators import handover, neighbours
+from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Share, Verdict
 from coupling import Progress, silent, whole_file
 
+FIGURES: Final[dict[tuple[str, ...], Callable[[Bench], FigureResult]]] = {
+    ("fig3", "fig4"): friction_logic,
+    ("fig5", "fig6"): feasible_area,
+    ("fig11", "fig12"): radial,
+    ("fig13", "fig14"): deceleration,
+    ("fig15",): translocation,
+    ("fig16",): neighbours,
+    ("fig17", "fig19"): convergence,
+    ("fig18",): threshold,
+    ("fig20", "fig21"): handover,
+    ("fig22",): accuracy,
+    ("deadzones",): dead_zones,
+}
+"""What computes figures that share a picture, in the order of the page."""
+ALL: Final = "all"
 FOLDER, PAGE = "paper", "paper.md"
-READINGS = "readings.json"  # of `reproduce readings`, whose summary the page repeats
+SAID = {REPRODUCED: "**reproduced**", PARTLY: "partly", NOT: "**not**", BEYOND: "-"}
+IN_SHORT = {REPRODUCED: "**yes**", PARTLY: "partly", NOT: "**no**"}
 
 
 class Reproduction(NamedTuple):
@@ -35,6 +55,20 @@ class Reproduction(NamedTuple):
     def verdicts(self) -> list[Verdict]:
         """Of all figures."""
         return [verdict for one in self.results for verdict in one.verdicts]
+
+
+def figures_of(names: Sequence[str]) -> list[tuple[str, ...]]:
+    """The groups of FIGURES that names ask for, each once, in their order; "all" or nothing: every one.
+
+    "fig17", "17", "17a" and "figure 17" are the same.
+    Raises ValueError, naming every name that there is no figure of, as it was given.
+    """
+    known = [name for group in FIGURES for name in group]
+    plain = [re.sub(r"^(?:fig\.?|figure)?\s*(\d+)[ab]?$", r"fig\1", name.strip().lower()) for name in names or [ALL]]
+    if wrong := [f'"{name}"' for name, one in zip(names, plain, strict=False) if one not in (*known, ALL)]:
+        which = f"among {', '.join(known)} or all (1, 2 and 7 to 10 are drawings)"
+        raise ValueError(f"Figures must be {which}; got {', '.join(wrong)}")
+    return [group for group in FIGURES if ALL in plain or set(plain) & set(group)]
 
 
 def reproduce(
@@ -51,7 +85,7 @@ def reproduce(
     names : sequence of str
         Names of the figures; empty: all.
     output : path, optional
-        Folder for a picture and a JSON file of each figure, and for the page when all are reproduced.
+        Folder for a picture and a JSON file of each figure, and for the page when all are reproduced with PARAMETERS.
     effort : Effort
         Numbers of starts, frequencies and places: `QUICK` or `FULL`.
     parameters : Parameters
@@ -64,54 +98,42 @@ def reproduce(
     ValueError
         There is no figure of a name.
     """
-    modules = modules_of(names)
-    begun, bench = perf_counter(), Bench(parameters)
+    groups = figures_of(names)
+    begun, bench = perf_counter(), Bench(parameters, effort)
     results: list[FigureResult] = []
-    files: list[Path] = []
-    for module in modules:
-        with progress(f"Reproducing {', '.join(MODULES[module])}"):
-            one = finder(module)(bench, effort)
-        results.append(one)
+    written: list[Path] = []
+    for group in groups:
+        with progress(f"Reproducing {', '.join(group)}"):
+            results.append(FIGURES[group](bench))
         if output is not None:
-            files += write(one, Path(output) / FOLDER)
+            written += write(results[-1], Path(output) / FOLDER)
     seconds = perf_counter() - begun
-    if output is not None and len(modules) == len(MODULES):
-        page = Path(output) / PAGE
-        replace_file(page, page_of(results, effort, parameters, FOLDER, builder_of(page.parent / FOLDER / READINGS)))
-        files.append(page)
-    return Reproduction(tuple(results), tuple(files), seconds)
+    if output is not None and len(groups) == len(FIGURES) and parameters is PARAMETERS:
+        written.append(Path(output) / PAGE)
+        with whole_file(written[-1]) as partial:
+            partial.write_text(page_of(results, effort))
+    return Reproduction(tuple(results), tuple(written), seconds)
 
 
-def builder_of(data: Path) -> list[str]:
-    """What a builder would see, in a few sentences, from the readings' data; nothing where these are not there."""
-    return list(json.loads(data.read_text()).get("builder", [])) if data.exists() else []
-
-
-def write(result: FigureResult, folder: Path) -> list[Path]:
+def write(found: FigureResult, folder: Path) -> list[Path]:
     """Writes NAME.png and NAME.json into a folder; returns them."""
     folder.mkdir(parents=True, exist_ok=True)
-    picture = folder / f"{result.name}.png"
-    figure = Figure(figsize=result.size)
-    FigureCanvasAgg(figure)
-    figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
-    result.draw(figure)
+    picture, data = folder / f"{found.name}.png", folder / f"{found.name}.json"
     with whole_file(picture) as partial:
-        figure.savefig(partial, dpi=90)
-    data = folder / f"{result.name}.json"
-    verdicts = [verdict.as_dict() for verdict in result.verdicts]
-    whole = {"title": result.title, "verdicts": verdicts, "data": result.data}
-    replace_file(data, written_as_json(whole))
+        draw(found).savefig(partial, dpi=90)
+    whole = {
+        "title": found.title, "verdicts": [verdict.as_dict() for verdict in found.verdicts], "panels": found.data,
+    }  # fmt: skip
+    with whole_file(data) as partial:
+        partial.write_text(json.dumps(rounded(whole), allow_nan=False) + "\n")
     return [picture, data]
 
 
-def written_as_json(value: Any) -> str:
-    """The text of a JSON file."""
-    return json.dumps(rounded(value), allow_nan=False) + "\n"
-
-
 def rounded(value: Any) -> Any:
-    """The same with numbers of seven digits, and None for what is none, as JSON knows no nan."""
-    if isinstance(value, dict):
+    """The same with numbers of seven digits, and None for what is none, as JSON knows no nan; of a share its value."""
+    if isinstance(value, Share):
+        return rounded(value.value)
+    if isinstance(value, Mapping):
         return {str(key): rounded(own) for key, own in value.items()}
     if isinstance(value, (list, tuple)):
         return [rounded(own) for own in value]
@@ -120,8 +142,51 @@ def rounded(value: Any) -> Any:
     return value
 
 
-def replace_file(path: Path, text: str) -> None:
-    """Writes a file whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with whole_file(path) as partial:
-        partial.write_text(text)
+def page_of(results: Sequence[FigureResult], effort: Effort) -> str:
+    """The page in Markdown, on PARAMETERS; pictures and data are in FOLDER beside it."""
+    verdicts = [verdict for one in results for verdict in one.verdicts]
+    head = ["figure", "the paper", "verdict", *MODELS.values()]
+    rows = [head, ["---"] * len(head)]
+    for verdict in verdicts:
+        cells = [_cell(verdict, model) for model in MODELS]
+        rows.append([verdict.figure, verdict.statement, SAID[verdict.verdict], *cells])
+    sections = [
+        "\n".join([
+            f"### {one.title}\n\n![{one.title}]({FOLDER}/{one.name}.png)\n",
+            f"{one.caption}. [Data]({FOLDER}/{one.name}.json)\n",
+            *(f"- **{verdict.figure}**: {verdict.why}" for verdict in one.verdicts),
+        ])
+        for one in results
+    ]  # fmt: skip
+    page = Template(files("active_surface.paper").joinpath("page.md").read_text()).substitute(
+        full=" --full" if effort.name == "full" else "",
+        counted=counted(verdicts),
+        starts=effort.starts,
+        by_steps=effort.starts_by_steps,
+        table="\n".join("| " + " | ".join(row) + " |" for row in rows),
+        figures="\n\n".join(sections),
+    )
+    return page.replace(" um", " µm").replace("m/s^2", "m/s²")
+
+
+def counted(verdicts: Sequence[Verdict]) -> str:
+    """How many statements hold in the paper's own scheme, and in ours."""
+    judged = [verdict for verdict in verdicts if not verdict.beyond]
+    kinds = [verdict.verdict for verdict in judged]
+    text = (
+        f"Of {len(judged)} statements the paper's own scheme reproduces {kinds.count(REPRODUCED)}, "
+        f"{kinds.count(PARTLY)} partly, {kinds.count(NOT)} not."
+    )
+    ours = []
+    for model, where in ((CLOSED, "on the closed form"), (PLATE, "on finite elements")):
+        own = [verdict.answers[model].verdict for verdict in judged if model in verdict.answers]
+        if own:
+            ours.append(f"{own.count(REPRODUCED)} of {len(own)} {where} ({own.count(PARTLY)} partly)")
+    return text + (f" Our equations meet {' and '.join(ours)}." if ours else "")
+
+
+def _cell(verdict: Verdict, model: str) -> str:
+    answer = verdict.answers.get(model)
+    if answer is None:
+        return "-"
+    return answer.text if verdict.beyond or model == PAPER else f"{IN_SHORT[answer.verdict]}: {answer.text}"

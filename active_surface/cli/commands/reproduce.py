@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from pathlib import Path
+
 import click
 
 from active_surface.cli import options
@@ -22,15 +23,15 @@ def reproduce(figures: tuple[str, ...], full: bool, output: Path | None, quiet: 
     Each in three models: the paper's scheme on its closed-form surface, our equations on that surface, and our
     equations on a plate of finite elements. Writes a picture and the data of each; of all a page as well.
     """
-    from active_surface.paper import FULL, QUICK, modules_of, rounded
+    from active_surface.paper import FULL, QUICK, figures_of, rounded
     from active_surface.paper import reproduce as run
     from coupling import StageBar, silent
     from coupling.results import check_folder
 
-    modules = refusing(modules_of, figures)
+    groups = refusing(figures_of, figures)
     folder = output or DEFAULT_OUTPUT
     refusing(check_folder, folder)
-    with nullcontext(silent) if quiet else StageBar(len(modules)) as bar:
+    with nullcontext(silent) if quiet else StageBar(len(groups)) as bar:
         done = refusing(lambda: run(figures, folder, FULL if full else QUICK, progress=bar))
     verdicts = [verdict.as_dict() for verdict in done.verdicts]
     summary = {"verdicts": verdicts, "seconds": done.seconds, "files": list(map(str, done.files))}

@@ -1,67 +1,69 @@
-"""The figures of the paper: each runs in a tiny mode and has its verdict."""
+"""Figures of the paper: each runs in a tiny mode and has its verdicts, and names of figures are what the command takes."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from click.testing import CliRunner
-from matplotlib.figure import Figure
 
 from active_surface.cli.program import main
 from active_surface.paper import reproduction
-from active_surface.paper.catalogue import MODULES, finder, modules_of
-from active_surface.paper.figure_result import FigureResult
-from active_surface.paper.figures.dead_zones import touched
-from active_surface.paper.models import Bench
-from active_surface.paper.page import page_of
+from active_surface.paper.bench import MODELS, Bench
+from active_surface.paper.dead_zones import touched
 from active_surface.paper.parameters import PARAMETERS, TINY
-from active_surface.paper.reproduction import reproduce, rounded
-from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Answer, Verdict, of_checks
+from active_surface.paper.picture import draw
+from active_surface.paper.reproduction import FIGURES, figures_of, page_of, reproduce, rounded
+from active_surface.paper.statements import STATEMENTS
+from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED
 
 pytestmark = pytest.mark.compiled
 
 
 @pytest.fixture(scope="module")
 def bench():
-    return Bench()
+    return Bench(effort=TINY)
 
 
 @pytest.fixture(autouse=True)
 def coarse_swings(monkeypatch):
-    monkeypatch.setattr("active_surface.paper.figures.friction_logic.SWING_STEP", 2e-3)
+    monkeypatch.setattr("active_surface.paper.strokes.SWING_STEP", 2e-3)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("module", MODULES)
-def test_figure_runs_and_is_written(module, bench):
-    found = finder(module)(bench, TINY)
+@pytest.mark.parametrize("group", FIGURES)
+def test_figure_runs_and_is_written(group, bench):
+    found = FIGURES[group](bench)
     assert found.verdicts and found.caption and found.title
     for verdict in found.verdicts:
         assert verdict.verdict in (REPRODUCED, PARTLY, NOT, BEYOND)
         assert verdict.statement and verdict.why and verdict.numbers
-        assert set(verdict.answers) <= {"paper", "closed", "plate"}
+        assert set(verdict.answers) <= set(MODELS)
         assert all(answer.text and 0 <= answer.met <= 1 for answer in verdict.answers.values())
-    figure = Figure()
-    found.draw(figure)
-    assert all(axes.has_data() for axes in figure.axes) and any(axes.get_xlabel() for axes in figure.axes)
+    assert all(axes.has_data() for axes in draw(found).axes)
     json.dumps(rounded([found.data, [verdict.as_dict() for verdict in found.verdicts]]), allow_nan=False)
-    assert found.name in page_of([found], TINY, PARAMETERS, "paper")
+    page = page_of([found], TINY)
+    assert found.name in page and all(
+        f"| {verdict.figure.replace(' um', ' µm')} |" in page for verdict in found.verdicts
+    )
 
 
 @pytest.mark.slow
 def test_some_figures_are_written_and_a_page_of_all_only(bench, monkeypatch, tmp_path):
-    monkeypatch.setattr(reproduction, "Bench", lambda _: bench)
+    monkeypatch.setattr(reproduction, "Bench", lambda *_: bench)
     done = reproduce(["fig12", "FIG4"], tmp_path, TINY)
     assert [path.name for path in done.files] == ["fig3-4.png", "fig3-4.json", "fig11-12.png", "fig11-12.json"]
-    assert all(path.exists() for path in done.files) and not (tmp_path / "paper.md").exists()
     assert {verdict.figure for verdict in done.verdicts} == {"3", "4", "4 (reversals)", "11", "12"}
+    monkeypatch.setattr(reproduction, "FIGURES", {group: FIGURES[group] for group in (("fig3", "fig4"),)})
+    assert reproduce([], tmp_path, TINY, replace(PARAMETERS)).files == done.files[:2]  # other parameters: no page
+    assert "Of 3 statements the paper's own scheme reproduces" in reproduce([], tmp_path, TINY).files[-1].read_text()
 
 
 def test_names_of_figures():
-    assert modules_of([]) == modules_of(["all"]) == list(MODULES)
-    assert modules_of(["fig6", "fig5", "fig22"]) == ["feasible_area", "accuracy"]
-    assert modules_of(["17", "17a", "Fig17b", "fig. 19", "figure 17"]) == ["convergence"]
-    with pytest.raises(ValueError, match=r'"Fig7" \(figures 1, 2 and 7 to 10 are drawings\), "170"'):
-        modules_of(["Fig7", "170", "17"])
+    assert figures_of([]) == figures_of(["all"]) == list(FIGURES)
+    assert figures_of(["fig6", "fig5", "fig22"]) == [("fig5", "fig6"), ("fig22",)]
+    assert figures_of(["17", "17a", "Fig17b", "fig. 19", "figure 17"]) == [("fig17", "fig19")]
+    with pytest.raises(ValueError, match=r'\(1, 2 and 7 to 10 are drawings\); got "Fig7", "170"'):
+        figures_of(["Fig7", "170", "17"])
 
 
 def test_command_prints_verdicts_and_refuses_other_figures(tmp_path):
@@ -69,30 +71,13 @@ def test_command_prints_verdicts_and_refuses_other_figures(tmp_path):
     assert done.exit_code == 0, done.output
     assert [verdict["figure"] for verdict in json.loads(done.stdout)["verdicts"]] == ["13, 14", "13, 14 (Table 1)"]
     wrong = CliRunner().invoke(main, ["reproduce", "fig71", "figure 2", "--output", str(tmp_path / "new")])
-    assert wrong.exit_code == 2 and '"fig71" (did you mean "fig21"?)' in wrong.output and '"figure 2"' in wrong.output
+    assert wrong.exit_code == 2 and '"fig71", "figure 2"' in wrong.output
     assert not (tmp_path / "new").exists()
 
 
-@pytest.mark.parametrize(("met", "said"), [((1, 0), REPRODUCED), ((0.5, 1), PARTLY), ((0, 1), NOT)])
-def test_a_verdict_is_that_of_the_papers_own_scheme(met, said):
-    answers = {model: Answer("", share) for model, share in zip(("paper", "closed"), met, strict=True)}
-    verdict = Verdict("1", "", answers, "")
-    assert verdict.verdict == said
-    assert verdict.as_dict()["answers"]["closed"]["verdict"] == (NOT if met[1] == 0 else REPRODUCED)
-
-
-def test_checks_and_what_is_beyond_the_paper():
-    assert of_checks("", [True, False]).met == 0.5
-    beyond = Verdict("1", "", {"plate": Answer("", 1.0)}, "", beyond=True)
-    assert beyond.verdict == BEYOND
-
-
-def test_what_is_beyond_the_paper_is_not_counted():
-    answers = {"paper": Answer("", 1.0), "plate": Answer("cell", 0.0, "a detail")}
-    rows = [Verdict(str(k), "", answers, "", beyond=k == 0) for k in range(3)]
-    page = page_of([FigureResult("x", "", tuple(rows), {}, lambda _: None)], TINY, PARAMETERS, "paper")
-    assert "Of 2 statements the paper's own scheme reproduces 2, 0 partly, 0 not" in page
-    assert "| **no**: cell |" in page and "a detail." in page and "a detail" not in page.split("## Figures")[0]
+def test_statements_have_one_row_each():
+    figures = [one.figure for one in STATEMENTS]
+    assert len(figures) == len(set(figures)) == 27 and [one.beyond for one in STATEMENTS].count(True) == 1
 
 
 @pytest.mark.parametrize(

@@ -48,19 +48,6 @@ def test_the_rim_is_that_of_both_discs():
     assert ((outline.gap(xy) > 0) == inside).all()
 
 
-@pytest.mark.parametrize("kind", [SUPERPOSED, NEAREST])
-def test_the_surface_may_go_on_flat_beyond_the_rim(kind):
-    margin = 200e-6
-    xy = np.random.default_rng(3).uniform(-RADIUS - margin, RADIUS + margin, (2000, 2)) + [PITCH / 2, 0]
-    ours = profile_surface(kind, PITCH, RADIUS, DRIVES, margin).evaluate(xy, TIME).w
-    each = np.stack([HEIGHTS[0] * profile(xy, [0, 0]), HEIGHTS[1] * profile(xy, [PITCH, 0])])
-    exact = each.sum(axis=0) if kind == SUPERPOSED else np.where(xy[:, 0] < PITCH / 2, *each)
-    assert np.abs(ours - exact).max() < 1e-4 * max(HEIGHTS)
-    assert (np.abs(ours[np.all(each == 0, axis=0)]) < 1e-4 * max(HEIGHTS)).all() and (each == 0).all(axis=0).sum() > 300
-    outline = profile_outline(PITCH, RADIUS, margin)
-    assert (outline.gap(xy) > 0).all() and not (outline.gap(xy + [PITCH + 2 * RADIUS + 2 * margin, 0]) > 0).any()
-
-
 @pytest.mark.parametrize("pitch", [0.0, 300e-6, -1e-6])
 def test_discs_must_overlap(pitch):
     with pytest.raises(ValueError, match="pitch"):
