@@ -14,7 +14,7 @@ import numpy as np
 
 from active_surface.arrays import BoolArray, FloatArray
 from active_surface.paper.bench import PLATE, STAYS, Bench, Ground
-from active_surface.paper.picture import MICRO, RED, Curve, FigureResult, Panel
+from active_surface.paper.picture import MICRO, RED, Curve, Found, Panel
 from active_surface.paper.verdict import NEARLY_ALL, share_of
 from coupling import surface_motion
 from fem_plate import Plate
@@ -31,7 +31,7 @@ COARSE: Final = 1e-6  # tolerance of a plate of which only shares of starts are 
 TOLERANCE: Final = 1e-6  # of paths
 
 
-def dead_zones(bench: Bench) -> FigureResult:
+def dead_zones(bench: Bench) -> Found:
     """The shares of starts that are served, over the pitch."""
     p, effort = bench.parameters, bench.effort
     pitches = np.geomspace(*PITCHES, effort.pitches) if effort.pitches > 1 else np.array([150e-6])
@@ -57,15 +57,9 @@ def dead_zones(bench: Bench) -> FigureResult:
     ]
     title = f"part of {MICRO * p.contact_side:g} µm"
     settings = {"xscale": "log", "ylim": (0, 105)}
-    return FigureResult(
-        "deadzones",
-        "Dead zones (beyond the paper)",
-        "Share of starts from which the part is brought to its nearest actuator, and of places where a part would "
-        "touch actuators; bars: 95 % intervals of so many starts",
-        {"beyond: dead zones": {PLATE: numbers}},
-        [[Panel("pitch [µm]", "share of the starts [%]", curves, title, settings=settings)]],
-        (7.5, 4.6),
-    )
+    return {"beyond: dead zones": {PLATE: numbers}}, [
+        [Panel("pitch [µm]", "share of the starts [%]", curves, title, settings=settings)]
+    ]
 
 
 def touched(pitch: float, side: float) -> tuple[float, float]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from active_surface.paper.bench import CLOSED, PLATE, Bench
-from active_surface.paper.picture import COLOURS, GOLD, GREEN, GREY, MICRO, Curve, FigureResult, Panel, dots
+from active_surface.paper.picture import COLOURS, GOLD, GREEN, GREY, MICRO, Curve, Found, Panel, dots
 from active_surface.paper.statements import BEGINS, LARGEST, RANGE
 from active_surface.studies.feasibility import Feasible, find_feasible
 from particle import Micropart
@@ -30,7 +30,7 @@ class Curved(NamedTuple):
     half: tuple[float, float]  # Hz, between which it is at least half as large
 
 
-def feasible_area(bench: Bench) -> FigureResult:
+def feasible_area(bench: Bench) -> Found:
     """Both figures, with both meanings of the feasible area: never coming off, and (dashed) attached at a moment."""
     p = bench.parameters
     factors = np.geomspace(1.0, HIGHEST / LOWEST, bench.effort.frequencies)
@@ -70,16 +70,7 @@ def feasible_area(bench: Bench) -> FigureResult:
               settings={"ylim": (0, 1.4 * max(np.max(curve.y, initial=0.0) for curve in peaks))}),
         Panel("frequency [Hz]", "time integral [µm² ms]", integrals, "figure 6", [("x", *LARGEST, GREEN), *grey]),
     ]  # fmt: skip
-    return FigureResult(
-        "fig5-6",
-        "Feasible area",
-        "Largest feasible area over a cycle, and its time integral. Places where the part comes off at some moment of "
-        "the cycle do not count; dashed: they do, at moments when it is attached. Golden: about 200 Hz; green: 300 to "
-        "400 Hz; grey: the paper's range",
-        numbers,
-        [panels],
-        (11.5, 4.6),
-    )
+    return numbers, [panels]
 
 
 def areas(bench: Bench, model: str, stroke: float, factors: FloatArray) -> Feasible:

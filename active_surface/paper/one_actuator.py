@@ -18,7 +18,7 @@ from active_surface.paper.picture import (
     MICRO,
     MILLI,
     Curve,
-    FigureResult,
+    Found,
     Panel,
     dots,
     look,
@@ -45,10 +45,7 @@ STATES: Final[tuple[tuple[Place, Place], ...]] = (
 NAMED: Final = ((0, 250.0), (2, 300.0))  # states and Hz for which it states less than 1 um
 
 
-# ---- figure 15
-
-
-def translocation(bench: Bench) -> FigureResult:
+def translocation(bench: Bench) -> Found:
     """How far one cycle of one actuator carries the part, over frequency, for several strokes."""
     p = bench.parameters
     frequencies = np.geomspace(*CARRIED, bench.effort.frequencies)
@@ -56,13 +53,10 @@ def translocation(bench: Bench) -> FigureResult:
     panels = []
     for model in MODELS:
         distance, outcome = carried(bench, model, frequencies)
-        first, last = zip(*[ends_of(frequencies, row) for row in distance], strict=True)
-        numbers[model] = {
-            "first": first,
-            "last": last,
-            "grows": grows(distance),
-            "beyond_the_last": [beyond(*rows) for rows in zip(distance, outcome, strict=True)],
-        }
+        first, last, beyond = zip(
+            *[window(frequencies, *rows) for rows in zip(distance, outcome, strict=True)], strict=True
+        )
+        numbers[model] = {"first": first, "last": last, "beyond_the_last": beyond, "grows": grows(distance)}
         curves = []
         for stroke, row, colour in zip(p.carrying, MICRO * moving(distance), COLOURS, strict=False):
             curves.append(Curve(frequencies, row, {"color": colour, "label": f"{MICRO * stroke:.4g} µm"}))
@@ -70,16 +64,7 @@ def translocation(bench: Bench) -> FigureResult:
             ends = np.unique([*going[:1], *going[-1:]]).astype(int)
             curves.append(Curve(frequencies[ends], row[ends], dots("o", colour)))
         panels.append(Panel("frequency [Hz]", "distance [µm]", curves, MODELS[model], legend=False))
-    return FigureResult(
-        "fig15",
-        "Distance over frequency and stroke",
-        "Distance from the start after one cycle, over the frequencies at which the part moves and stays. Below the "
-        "first friction holds it, beyond the last it comes off or leaves",
-        {"15": numbers},
-        [panels],
-        (13.0, 4.8),
-        {"sharey": True},
-    )
+    return {"15": numbers}, [panels]
 
 
 def carried(bench: Bench, model: str, frequencies: FloatArray) -> tuple[FloatArray, NDArray[Any]]:
@@ -108,24 +93,19 @@ def grows(distance: FloatArray) -> float:
     return float((known > 0).mean()) if len(known) else float("nan")
 
 
-def ends_of(frequencies: FloatArray, distance: FloatArray) -> tuple[float, float]:
-    """The first and the last of frequencies (F,) [Hz] at which a part moves and stays; nan: there is none."""
-    holds = np.flatnonzero(distance > CARRIED_FAR)
-    return (float(frequencies[holds[0]]), float(frequencies[holds[-1]])) if len(holds) else (np.nan, np.nan)
+def window(frequencies: FloatArray, distance: FloatArray, outcome: NDArray[Any]) -> tuple[float, float, str]:
+    """The first and the last of frequencies (F,) [Hz] at which a part moves and stays, and what becomes of it beyond.
+
+    nan: there is none.
+    """
+    going = np.flatnonzero(distance > CARRIED_FAR)
+    if not len(going):
+        return np.nan, np.nan, "not reached"
+    beyond = str(outcome[going[-1] + 1]) if going[-1] + 1 < len(distance) else "not reached"
+    return float(frequencies[going[0]]), float(frequencies[going[-1]]), beyond
 
 
-def beyond(distance: FloatArray, outcome: NDArray[Any]) -> str:
-    """What becomes of the part at the frequency above the last one at which it moves and stays."""
-    holds = np.flatnonzero(distance > CARRIED_FAR)
-    if not len(holds) or holds[-1] + 1 == len(distance):
-        return "not reached"
-    return str(outcome[holds[-1] + 1])
-
-
-# ---- figures 17 and 19
-
-
-def convergence(bench: Bench) -> FigureResult:
+def convergence(bench: Bench) -> Found:
     """One actuator that goes up and down without end, from the paper's start and from many states."""
     p = bench.parameters
     numbers: dict[str, dict[str, Any]] = {"17a": {}, "17b": {}, "19": {}}
@@ -146,16 +126,7 @@ def convergence(bench: Bench) -> FigureResult:
                 Panel("time [ms]", "distance [µm]", away, f"figure {name}: {MODELS[model]}",
                       [("y", MICRO * p.far, MICRO * p.far, GOLD)], legend=False)
             )  # fmt: skip
-    return FigureResult(
-        "fig17-19",
-        "Convergence to one actuator",
-        f"Continuous cycles of 150 µm, {LOW:g} Hz (17a), {HIGH:g} Hz (17b) and {ANY:g} Hz (19): how far from the "
-        "actuator the part is. Golden: beyond it, it has left",
-        numbers,
-        list(panels.values()),
-        (14.0, 9.0),
-        {"sharey": "row"},
-    )
+    return numbers, list(panels.values())
 
 
 def states(seed: int, count: int) -> tuple[FloatArray, FloatArray]:
@@ -189,10 +160,7 @@ def leaving(bench: Bench, paths: list[Path]) -> dict[str, Any]:
     }
 
 
-# ---- figure 22
-
-
-def accuracy(bench: Bench) -> FigureResult:
+def accuracy(bench: Bench) -> Found:
     """How far from the actuator parts come to lie, as a distribution; nan: the part is gone."""
     numbers: dict[str, dict[str, Any]] = {"22": {}, "22 (1 um)": {}, "22 (two cases)": {}}
     panels, distributions = [], []
@@ -222,15 +190,7 @@ def accuracy(bench: Bench) -> FigureResult:
         Panel("distance from the actuator [µm]", "share of the parts [%]", distributions, "as a distribution",
               [("x", 0.0, MICRO * BAND, GREEN)], settings={"xlim": (0, 15), "ylim": (0, 100)})
     )  # fmt: skip
-    return FigureResult(
-        "fig22",
-        "Accuracy of placement",
-        f"Where parts lie after {bench.parameters.cycles} cycles, 240 to 320 Hz, five states with displaced starts; "
-        "green: the paper's 5 µm",
-        numbers,
-        [panels],
-        (16.0, 4.8),
-    )
+    return numbers, [panels]
 
 
 def _placed(

@@ -57,6 +57,10 @@ class Panel:
     settings: dict[str, Any] = field(default_factory=dict)  # of matplotlib's `Axes.set`
 
 
+Found = tuple[dict[str, dict[str, Any]], Sequence[Sequence[Panel]]]
+"""Numbers by figure of the statements, then by model or otherwise; and panels by row."""
+
+
 @dataclass(frozen=True, eq=False)
 class FigureResult:
     """One figure, or a group of them that share a picture."""
@@ -65,9 +69,7 @@ class FigureResult:
     title: str
     caption: str
     numbers: dict[str, dict[str, Numbers]]  # by figure of the statements, then by model or otherwise
-    panels: Sequence[Sequence[Panel]]
-    size: tuple[float, float]  # inches
-    layout: dict[str, Any] = field(default_factory=dict)  # of matplotlib's `Figure.subplots`
+    panels: Sequence[Sequence[Panel]]  # by row
 
     @property
     def verdicts(self) -> list[Verdict]:
@@ -90,11 +92,15 @@ class FigureResult:
 
 
 def draw(found: FigureResult) -> Figure:
-    """The picture."""
-    figure = Figure(figsize=found.size)
+    """The picture; panels of a row share their vertical axis where it has one label, and then columns their other."""
+    rows, columns = len(found.panels), len(found.panels[0])
+    figure = Figure(figsize=(min(4.7 * columns, 15.0), 4.7 if rows == 1 else 10.0))
     FigureCanvasAgg(figure)
     figure.set_layout_engine("constrained", w_pad=0.1, h_pad=0.06)
-    grid = figure.subplots(len(found.panels), len(found.panels[0]), squeeze=False, **found.layout)
+    shared = columns > 1 and all(len({panel.up for panel in row}) == 1 for row in found.panels)
+    grid = figure.subplots(
+        rows, columns, squeeze=False, sharex="col" if shared else False, sharey="row" if shared else False
+    )
     below: dict[str, Any] = {}
     for axes, panel in zip(grid.ravel(), [panel for row in found.panels for panel in row], strict=True):
         for x, y, look, error in panel.curves:
@@ -105,7 +111,7 @@ def draw(found: FigureResult) -> Figure:
         axes.set(xlabel=panel.across, ylabel=panel.up, **panel.settings)
         axes.set_title(panel.title, fontsize=10)
         axes.grid(alpha=0.3)
-        if "sharey" in found.layout:
+        if shared:
             axes.label_outer()
         if panel.legend:
             axes.legend(frameon=False, fontsize=8)

@@ -11,7 +11,7 @@ import numpy as np
 from active_surface.arrays import FloatArray
 from active_surface.paper.bench import CLOSED, MODELS, PAPER, Bench, Path
 from active_surface.paper.parameters import Place
-from active_surface.paper.picture import GREEN, GREY, LOOK, MICRO, MILLI, Curve, FigureResult, Panel, dots, look
+from active_surface.paper.picture import GREEN, GREY, LOOK, MICRO, MILLI, Curve, Found, Panel, dots, look
 from active_surface.paper.statements import SLIP, STICK
 from particle import (
     ConstantFriction,
@@ -67,7 +67,7 @@ PLATFORMS: Final = (
 """The first does what the paper says and is judged; the second shows what that rests on."""
 
 
-def friction_logic(bench: Bench) -> FigureResult:
+def friction_logic(bench: Bench) -> Found:
     """Figures 3 and 4. There is no plate: both schemes are asked."""
     p = bench.parameters
     limit = float(p.friction.friction_limit(p.mass * p.gravity))
@@ -93,16 +93,7 @@ def friction_logic(bench: Bench) -> FigureResult:
         curves.insert(1, Curve(times, part, {"color": GREEN, "linestyle": "-.", "linewidth": 1.2, "label": "part"}))
         grey = [("x", SLIP, SLIP, GREY), ("x", STICK, STICK, GREY), ("y", 0.0, 0.0, GREY)]
         panels.append(Panel("time [s]", "velocity [m/s]", curves, f"figure 4: {platform.name}", grey))
-    return FigureResult(
-        "fig3-4",
-        "Friction logic",
-        "Friction against the load along the surface, and velocities on two swinging platforms; grey lines: the "
-        "paper's 2.41 and 2.87 s",
-        numbers,
-        [panels],
-        (13.5, 4.4),
-        {"width_ratios": (1, 1.4, 1.4)},
-    )
+    return numbers, [panels]
 
 
 class Slips(NamedTuple):
@@ -187,7 +178,7 @@ def one_cycle(bench: Bench) -> Drive:
     return bench.drive(FREQUENCY, cycles=1)
 
 
-def radial(bench: Bench) -> FigureResult:
+def radial(bench: Bench) -> Found:
     """Figures 11 and 12, and the same from a start that is not on the diagonal."""
     numbers: dict[str, dict[str, Any]] = {"11": {}, "12": {}}
     speeds: list[list[Curve]] = [[], []]
@@ -216,15 +207,7 @@ def radial(bench: Bench) -> FigureResult:
     ]
     near = {"xlim": (-20, 260), "ylim": (-20, 260), "aspect": "equal"}
     panels.append(Panel("x [µm]", "y [µm]", ways, "figure 12; grey: the line through the actuator", settings=near))
-    return FigureResult(
-        "fig11-12",
-        "Transformation of the state",
-        "One cycle of 150 µm at 1.6 kHz: velocities from two starts, and both paths. Where the y velocity, times the "
-        "ratio of the start's coordinates, lies on the x velocity, the statement holds",
-        numbers,
-        [panels],
-        (14.5, 4.8),
-    )
+    return numbers, [panels]
 
 
 def _ratio(path: Path, start: Place) -> float:
@@ -245,7 +228,7 @@ def _bend(path: Path, start: Place) -> float:
     return float(away.max() / path.trajectory.path_length)
 
 
-def deceleration(bench: Bench) -> FigureResult:
+def deceleration(bench: Bench) -> Found:
     """Figures 13 and 14: after one stroke friction alone brings the part to rest, with the preset and with Table 1."""
     p, drive = bench.parameters, one_cycle(bench)
     numbers: dict[str, Any] = {}
@@ -272,15 +255,7 @@ def deceleration(bench: Bench) -> FigureResult:
         Panel("time [ms]", "velocity [m/s]", own, f"figure {name}", [("x", end, end, GREY)], legend=name == "13")
         for name, own in zip(("13", "14"), curves, strict=True)
     ]
-    return FigureResult(
-        "fig13-14",
-        "Friction during motion",
-        "Speed over time after one cycle at 1.6 kHz, which ends at the grey line",
-        {"13, 14": numbers, "13, 14 (Table 1)": {PAPER: by_table}},
-        [panels],
-        (11.0, 4.2),
-        {"sharey": True},
-    )
+    return {"13, 14": numbers, "13, 14 (Table 1)": {PAPER: by_table}}, [panels]
 
 
 def slowing(paths: list[Path], drive: Drive) -> dict[str, list[float]]:

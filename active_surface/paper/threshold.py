@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from active_surface.arrays import BoolArray, FloatArray
 from active_surface.paper.bench import CLOSED, MODELS, PAPER, Bench
-from active_surface.paper.picture import GOLD, GREEN, MICRO, RED, Curve, FigureResult, Panel, dots, look
+from active_surface.paper.picture import GOLD, GREEN, MICRO, RED, Curve, Found, Panel, dots, look
 from active_surface.paper.statements import THRESHOLD, THRESHOLD_STROKE
 from active_surface.paper.verdict import HARDLY_ANY, Share
 
@@ -28,7 +28,7 @@ class Ends(NamedTuple):
     moves: BoolArray  # friction does not hold them where they were placed
 
 
-def threshold(bench: Bench) -> FigureResult:
+def threshold(bench: Bench) -> Found:
     """Below which frequency parts converge and above which they leave, over the stroke.
 
     One actuator's surface is round, so that of a place at rest only its distance from the actuator counts.
@@ -60,16 +60,7 @@ def threshold(bench: Bench) -> FigureResult:
             maps.append(_map(frequencies, ends, f"{MICRO * THRESHOLD_STROKE:g} µm: {MODELS[model]}"))
     star = dots("*", GOLD, "the paper's 320 Hz", 14, zorder=5)
     curves.append(Curve([MICRO * THRESHOLD_STROKE], [THRESHOLD], star))
-    return FigureResult(
-        "fig18",
-        "Threshold of convergence",
-        "Left: the threshold, with the step between frequencies, and the quadratic through it. Right: what becomes of "
-        "parts placed at rest; golden: the paper's 320 Hz",
-        numbers,
-        [[Panel("stroke [µm]", "threshold frequency [Hz]", curves, "figure 18"), *maps]],
-        (15.0, 5.2),
-        {"width_ratios": (1.2, 1, 1)},
-    )
+    return numbers, [[Panel("stroke [µm]", "threshold frequency [Hz]", curves, "figure 18"), *maps]]
 
 
 def _map(frequencies: FloatArray, ends: Ends, title: str) -> Panel:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from active_surface.paper.bench import CLOSED, OVER, PAPER, PLATE, STAYS, Bench, Path, coming_off
 from active_surface.paper.parameters import Place
-from active_surface.paper.picture import GREY, MICRO, Curve, FigureResult, Panel, dots, ways
+from active_surface.paper.picture import GREY, MICRO, Curve, Found, Panel, dots, ways
 from active_surface.paper.profiles import NEAREST, SUPERPOSED
 from active_surface.paper.verdict import Share, share_of
 from particle import Drive
@@ -68,10 +68,7 @@ def anywhere(bench: Bench, count: int) -> ArrayLike:
     return np.random.default_rng(p.seed).uniform([-AROUND, -AROUND], [p.pitch + AROUND, AROUND], (count, 2))
 
 
-# ---- figure 16
-
-
-def neighbours(bench: Bench) -> FigureResult:
+def neighbours(bench: Bench) -> Found:
     """Two actuators at one frequency, at which the part stays with the first one or goes to the other."""
     p = bench.parameters
     paths = {}
@@ -90,16 +87,7 @@ def neighbours(bench: Bench) -> FigureResult:
             for f, row in own.items()
         ])  # fmt: skip
     waves: dict[str, Any] = {PAPER: {"2 a": p.pitch / (2 * p.radius), "a": p.pitch / p.radius}}
-    return FigureResult(
-        "fig16",
-        "Two actuators at one frequency",
-        f"Paths from ({MICRO * START[0]:g}, {MICRO * START[1]:g}) um in {CYCLES} cycle, and how all starts end. Grey: "
-        "the actuators and half-way",
-        {"VI-B": waves, "16": numbers},
-        panels,
-        (14.0, 10.0),
-        {"sharex": True, "sharey": True},
-    )
+    return {"VI-B": waves, "16": numbers}, panels
 
 
 def _across(paths: list[Path], frequency: float) -> list[Curve]:
@@ -131,10 +119,7 @@ def trend_of(paths: dict[float, list[Path]], pitch: float) -> dict[str, Share | 
     }
 
 
-# ---- figures 20 and 21
-
-
-def handover(bench: Bench) -> FigureResult:
+def handover(bench: Bench) -> Found:
     """From an actuator with a high frequency to its neighbour with a low one: both figures, and starts anywhere."""
     p = bench.parameters
     places = [(0.0, 0.0), (p.pitch, 0.0)]
@@ -163,16 +148,7 @@ def handover(bench: Bench) -> FigureResult:
                 "ylim": (-MICRO * p.radius - 20, MICRO * p.radius + 20), "aspect": "equal",
             }))  # fmt: skip
         panels.append(row)
-    return FigureResult(
-        "fig20-21",
-        "From a high to a low frequency",
-        "The paths from the stated starts, some others, and how all of them end. Triangles: the actuators, golden the "
-        "slow one",
-        numbers,
-        panels,
-        (15.5, 10.0),
-        {"sharex": True, "sharey": True},
-    )
+    return numbers, panels
 
 
 def _plane(paths: list[Path], one: Handover, pitch: float) -> list[Curve]:

@@ -6,7 +6,8 @@ import pytest
 from active_surface.paper.bench import CLOSED, MODELS, PAPER, Bench
 from active_surface.paper.feasible_area import onset
 from active_surface.paper.parameters import PARAMETERS
-from active_surface.paper.strokes import PLATFORMS, deceleration, friction_logic, radial
+from active_surface.paper.reproduction import found_of
+from active_surface.paper.strokes import PLATFORMS
 from active_surface.paper.threshold import loss_from
 
 pytestmark = pytest.mark.compiled
@@ -18,14 +19,14 @@ def bench():
 
 
 def test_figure_11_has_a_constant_ratio_and_figure_12_a_straight_path_to_1e_9(bench):
-    eleven, twelve = radial(bench).verdicts
+    eleven, twelve = found_of(("fig11", "fig12"), bench).verdicts
     assert eleven.verdict == twelve.verdict == "reproduced"
     for model in MODELS:
         assert eleven.numbers[model]["ratio"] < 1e-9 and twelve.numbers[model]["bend"] < 1e-9
 
 
 def test_figures_13_and_14_slow_down_along_one_line_and_table_1_gives_another_value(bench):
-    slows, value = deceleration(bench).verdicts
+    slows, value = found_of(("fig13", "fig14"), bench).verdicts
     assert slows.verdict == "reproduced" and value.verdict == "not"
     table = value.numbers[PAPER]
     assert table["preset_at_zero_load"] == pytest.approx(20.9, abs=0.01)
@@ -36,7 +37,7 @@ def test_figures_13_and_14_slow_down_along_one_line_and_table_1_gives_another_va
 
 
 def test_figure_4_slips_and_turns_when_the_paper_says_and_is_at_rest_once_after_each_reversal(bench):
-    _, four, reversals = friction_logic(bench).verdicts
+    _, four, reversals = found_of(("fig3", "fig4"), bench).verdicts
     assert four.verdict == "reproduced" and reversals.verdict == "partly"
     other = PLATFORMS[1].name
     for model in (PAPER, CLOSED):

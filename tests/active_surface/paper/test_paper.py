@@ -1,4 +1,4 @@
-"""Figures of the paper: each runs in a tiny mode and has its verdicts, and names of figures are what the command takes."""
+"""Figures of the paper: each runs in a tiny mode and has its verdicts; names that the command takes."""
 
 import json
 from dataclasses import replace
@@ -12,7 +12,7 @@ from active_surface.paper.bench import MODELS, Bench
 from active_surface.paper.dead_zones import touched
 from active_surface.paper.parameters import PARAMETERS, TINY
 from active_surface.paper.picture import draw
-from active_surface.paper.reproduction import FIGURES, figures_of, page_of, reproduce, rounded
+from active_surface.paper.reproduction import FIGURES, figures_of, found_of, page_of, reproduce, rounded
 from active_surface.paper.statements import STATEMENTS
 from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED
 
@@ -32,7 +32,7 @@ def coarse_swings(monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize("group", FIGURES)
 def test_figure_runs_and_is_written(group, bench):
-    found = FIGURES[group](bench)
+    found = found_of(group, bench)
     assert found.verdicts and found.caption and found.title
     for verdict in found.verdicts:
         assert verdict.verdict in (REPRODUCED, PARTLY, NOT, BEYOND)
@@ -42,9 +42,7 @@ def test_figure_runs_and_is_written(group, bench):
     assert all(axes.has_data() for axes in draw(found).axes)
     json.dumps(rounded([found.data, [verdict.as_dict() for verdict in found.verdicts]]), allow_nan=False)
     page = page_of([found], TINY)
-    assert found.name in page and all(
-        f"| {verdict.figure.replace(' um', ' µm')} |" in page for verdict in found.verdicts
-    )
+    assert found.name in page and all(f"**{one.figure}**".replace(" um", " µm") in page for one in found.verdicts)
 
 
 @pytest.mark.slow
@@ -55,7 +53,8 @@ def test_some_figures_are_written_and_a_page_of_all_only(bench, monkeypatch, tmp
     assert {verdict.figure for verdict in done.verdicts} == {"3", "4", "4 (reversals)", "11", "12"}
     monkeypatch.setattr(reproduction, "FIGURES", {group: FIGURES[group] for group in (("fig3", "fig4"),)})
     assert reproduce([], tmp_path, TINY, replace(PARAMETERS)).files == done.files[:2]  # other parameters: no page
-    assert "Of 3 statements the paper's own scheme reproduces" in reproduce([], tmp_path, TINY).files[-1].read_text()
+    *_, page = reproduce([], tmp_path, TINY).files
+    assert "Statements that hold: paper's scheme, closed form, 2 of 3" in page.read_text()
 
 
 def test_names_of_figures():

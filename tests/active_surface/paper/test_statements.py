@@ -8,7 +8,7 @@ import pytest
 from active_surface.paper.bench import Bench, Path, coming_off
 from active_surface.paper.dead_zones import widest_served
 from active_surface.paper.feasible_area import curve_of
-from active_surface.paper.one_actuator import beyond, converging, ends_of, grows, leaving, placing, within
+from active_surface.paper.one_actuator import converging, grows, leaving, placing, window, within
 from active_surface.paper.parameters import PARAMETERS
 from active_surface.paper.statements import STATEMENTS
 from active_surface.paper.strokes import slips_of, zero_after_each
@@ -160,10 +160,9 @@ def test_5_a_curve_that_grows_and_falls_or_does_not():
 
 def test_15_grows_ends_and_what_is_beyond():
     row = np.array([0.0, 1e-6, 2e-6, 1.5e-6, NAN])
-    assert grows(row[None]) == 0.5 and ends_of(FREQUENCIES, row) == (220.0, 260.0)
-    assert beyond(row, np.array(["stuck", "stuck", "stuck", "stuck", "detached"])) == "detached"
-    assert beyond(row[:4], np.array(["stuck"] * 4)) == beyond(row[:1], np.array(["stuck"])) == "not reached"
-    assert np.isnan(ends_of(FREQUENCIES, 0 * FREQUENCIES)).all()
+    outcome = np.array(["stuck", "stuck", "stuck", "stuck", "detached"])
+    assert grows(row[None]) == 0.5 and window(FREQUENCIES, row, outcome) == (220.0, 260.0, "detached")
+    assert window(FREQUENCIES[:4], row[:4], outcome)[2] == window(FREQUENCIES, 0 * row, outcome)[2] == "not reached"
     assert met("15", first=[100.0, NAN], beyond_the_last=["detached"], grows=0.95) == pytest.approx(2 / 3)
 
 
