@@ -66,8 +66,6 @@ class FigureResult:
     """One figure, or a group of them that share a picture."""
 
     name: str
-    title: str
-    caption: str
     numbers: dict[str, dict[str, Numbers]]  # by figure of the statements, then by model or otherwise
     panels: Sequence[Sequence[Panel]]  # by row
 

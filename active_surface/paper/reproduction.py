@@ -24,72 +24,20 @@ from active_surface.paper.two_actuators import handover, neighbours
 from active_surface.paper.verdict import BEYOND, NOT, PARTLY, REPRODUCED, Share, Verdict
 from coupling import Progress, silent, whole_file
 
-
-class Figure(NamedTuple):
-    """A figure, or a group of them that share a picture."""
-
-    find: Callable[[Bench], Found]
-    title: str
-    caption: str
-
-
-FIGURES: Final[dict[tuple[str, ...], Figure]] = {
-    ("fig3", "fig4"): Figure(
-        friction_logic,
-        "Friction logic",
-        "Friction against the load along the surface, and velocities on two swinging platforms; grey: 2.41 and 2.87 s",
-    ),
-    ("fig5", "fig6"): Figure(
-        feasible_area,
-        "Feasible area",
-        "The largest area over a cycle, and its time integral. Dashed: counting places where the part comes off later. "
-        "Golden: about 200 Hz; green: 300 to 400 Hz; grey: the paper's range",
-    ),
-    ("fig11", "fig12"): Figure(
-        radial, "Transformation of the state", "One cycle of 150 µm at 1.6 kHz: velocities from two starts, and paths"
-    ),
-    ("fig13", "fig14"): Figure(
-        deceleration, "Friction during motion", "Speed after one cycle at 1.6 kHz, which ends at the grey line"
-    ),
-    ("fig15",): Figure(
-        translocation,
-        "Distance over frequency and stroke",
-        "Distance from the start after one cycle; below the first frequency friction holds the part, beyond the last "
-        "it comes off or leaves",
-    ),
-    ("fig16",): Figure(
-        neighbours,
-        "Two actuators at one frequency",
-        "Paths from (-100, 0) µm in one cycle, and how all starts end; grey: the actuators and half-way",
-    ),
-    ("fig17", "fig19"): Figure(
-        convergence,
-        "Convergence to one actuator",
-        "Continuous cycles of 150 µm at 300 Hz (17a), 600 Hz (17b) and 250 Hz (19); golden: beyond it, a part has left",
-    ),
-    ("fig18",): Figure(
-        threshold,
-        "Threshold of convergence",
-        "The threshold, with the step between frequencies, and what becomes of parts at rest; golden: 320 Hz",
-    ),
-    ("fig20", "fig21"): Figure(
-        handover,
-        "From a high to a low frequency",
-        "Some paths, and how all of them end; triangles: the actuators, golden the slow one",
-    ),
-    ("fig22",): Figure(
-        accuracy,
-        "Accuracy of placement",
-        "Where parts lie after 30 cycles, 240 to 320 Hz, five states with displaced starts; green: the paper's 5 µm",
-    ),
-    ("deadzones",): Figure(
-        dead_zones,
-        "Dead zones (beyond the paper)",
-        "Share of starts from which the part is brought to its nearest actuator, with intervals of 95 %, and of places "
-        "where a part would touch actuators",
-    ),
+FIGURES: Final[dict[tuple[str, ...], Callable[[Bench], Found]]] = {
+    ("fig3", "fig4"): friction_logic,
+    ("fig5", "fig6"): feasible_area,
+    ("fig11", "fig12"): radial,
+    ("fig13", "fig14"): deceleration,
+    ("fig15",): translocation,
+    ("fig16",): neighbours,
+    ("fig17", "fig19"): convergence,
+    ("fig18",): threshold,
+    ("fig20", "fig21"): handover,
+    ("fig22",): accuracy,
+    ("deadzones",): dead_zones,
 }
-"""By the names of figures, in the order of the page."""
+"""What computes them, by the names of figures that share a picture, in the order of the page."""
 ALL: Final = "all"
 FOLDER, PAGE = "paper", "paper.md"
 SAID = {REPRODUCED: "**yes**", PARTLY: "partly", NOT: "**no**", BEYOND: "-"}
@@ -168,8 +116,7 @@ def reproduce(
 
 def found_of(group: tuple[str, ...], bench: Bench) -> FigureResult:
     """What is found of a group of FIGURES."""
-    figure = FIGURES[group]
-    return FigureResult("-".join(group).replace("-fig", "-"), figure.title, figure.caption, *figure.find(bench))
+    return FigureResult("-".join(group).replace("-fig", "-"), *FIGURES[group](bench))
 
 
 def write(found: FigureResult, folder: Path) -> list[Path]:
@@ -178,9 +125,7 @@ def write(found: FigureResult, folder: Path) -> list[Path]:
     picture, data = folder / f"{found.name}.png", folder / f"{found.name}.json"
     with whole_file(picture) as partial:
         draw(found).savefig(partial, dpi=90)
-    whole = {
-        "title": found.title, "verdicts": [verdict.as_dict() for verdict in found.verdicts], "panels": found.data,
-    }  # fmt: skip
+    whole = {"verdicts": [verdict.as_dict() for verdict in found.verdicts], "panels": found.data}
     with whole_file(data) as partial:
         partial.write_text(json.dumps(rounded(whole), allow_nan=False) + "\n")
     return [picture, data]
@@ -200,28 +145,19 @@ def rounded(value: Any) -> Any:
 
 
 def page_of(results: Sequence[FigureResult], effort: Effort) -> str:
-    """The page in Markdown, on PARAMETERS; pictures and data are in FOLDER beside it."""
+    """page.md with the verdicts on PARAMETERS; pictures and data are in FOLDER beside it."""
     verdicts = [verdict for one in results for verdict in one.verdicts]
     head = ["figure", "the paper", "verdict", *MODELS.values()]
     rows = [head, ["---"] * len(head)]
     for verdict in verdicts:
         cells = [_cell(verdict, model) for model in MODELS]
         rows.append([verdict.figure, verdict.statement, SAID[verdict.verdict], *cells])
-    sections = [
-        "\n".join([
-            f"### {one.title}\n\n![{one.title}]({FOLDER}/{one.name}.png)\n",
-            f"{one.caption}. [Data]({FOLDER}/{one.name}.json)\n",
-            *(f"- **{verdict.figure}**: {verdict.why}" for verdict in one.verdicts),
-        ])
-        for one in results
-    ]  # fmt: skip
     page = Template(files("active_surface.paper").joinpath("page.md").read_text()).substitute(
         full=" --full" if effort.name == "full" else "",
         counted=counted(verdicts),
         starts=effort.starts,
         by_steps=effort.starts_by_steps,
         table="\n".join("| " + " | ".join(row) + " |" for row in rows),
-        figures="\n\n".join(sections),
     )
     return page.replace(" um", " µm").replace("m/s^2", "m/s²")
 

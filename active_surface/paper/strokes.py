@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from scipy.stats import linregress
 
 from active_surface.arrays import FloatArray
 from active_surface.paper.bench import CLOSED, MODELS, PAPER, Bench, Path
@@ -31,7 +32,7 @@ STILL: Final = 0.01  # of the platform's largest speed: a relative velocity that
 SWING_STEP: Final = 1e-4  # s, of the paper's scheme, as the platform swings for seconds
 RAMP_END, RAMP = 1e-2, 3.0  # s, and times the limit that the load along the surface rises to
 STARTS: Final[tuple[Place, ...]] = ((170.08e-6, 170.08e-6), (200e-6, 100e-6))  # m, and off the diagonal
-FREQUENCY: Final = 1600.0  # Hz
+FREQUENCY: Final = 1600.0  # Hz: a cycle takes 0.625 ms, after which the surface is flat and rests
 RADIAL_DURATION, SLOWING_DURATION = 3e-3, 5e-3  # s
 TOLERANCE: Final = 1e-12
 SLOW: Final = 1e-3  # of the largest speed, below which no ratio is taken
@@ -173,18 +174,14 @@ def _swing(bench: Bench, scheme: str, platform: Platform) -> Trajectory:
     return simulate(surface, Micropart(p.mass, (0.0, 0.0)), law, END, p.gravity, scheme=scheme, time_step=step)
 
 
-def one_cycle(bench: Bench) -> Drive:
-    """Up and down once, in the 0.625 ms after which the paper's actuator rests; then the surface is flat."""
-    return bench.drive(FREQUENCY, cycles=1)
-
-
 def radial(bench: Bench) -> Found:
     """Figures 11 and 12, and the same from a start that is not on the diagonal."""
     numbers: dict[str, dict[str, Any]] = {"11": {}, "12": {}}
     speeds: list[list[Curve]] = [[], []]
     ways: list[Curve] = []
+    drive = bench.drive(FREQUENCY, cycles=1)
     for model in MODELS:
-        paths = bench.paths(model, [one_cycle(bench)], STARTS, RADIAL_DURATION, tolerance=TOLERANCE)
+        paths = bench.paths(model, [drive], STARTS, RADIAL_DURATION, tolerance=TOLERANCE)
         both = list(zip(paths, STARTS, strict=True))
         numbers["11"][model] = {"ratio": max(_ratio(*one) for one in both)}
         numbers["12"][model] = {"bend": max(_bend(*one) for one in both)}
@@ -230,7 +227,7 @@ def _bend(path: Path, start: Place) -> float:
 
 def deceleration(bench: Bench) -> Found:
     """Figures 13 and 14: after one stroke friction alone brings the part to rest, with the preset and with Table 1."""
-    p, drive = bench.parameters, one_cycle(bench)
+    p, drive = bench.parameters, bench.drive(FREQUENCY, cycles=1)
     numbers: dict[str, Any] = {}
     curves: list[list[Curve]] = [[], []]
     for model in MODELS:
@@ -270,10 +267,8 @@ def slowing(paths: list[Path], drive: Drive) -> dict[str, list[float]]:
         rate = straight = float("nan")
         if end > begin:
             times = np.linspace(begin, end, 202)[1:-1]
-            speed = np.hypot(*path.trajectory.at(times).velocity.T)
-            slope, level = np.polyfit(times, speed, 1)
-            left = float(((speed - slope * times - level) ** 2).sum() / ((speed - speed.mean()) ** 2).sum())
-            rate, straight = -float(slope), 1 - left
+            line = linregress(times, np.hypot(*path.trajectory.at(times).velocity.T))
+            rate, straight = -float(line.slope), float(line.rvalue**2)
         found["rate"].append(rate)
         found["straight"].append(straight)
     return found

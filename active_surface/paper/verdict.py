@@ -67,7 +67,6 @@ class Statement(NamedTuple):
 
     figure: str
     says: str  # the paper's, in our words
-    why: str  # what makes the difference, or what the agreement rests on
     text: Callable[[Numbers], str] = lambda n: str(n["share"])  # a model's answer, from what was measured in it
     checks: Callable[[Numbers], Sequence[float | Share]] = lambda n: [n["share"]]  # each 1 where it is met, 0 where not
     beyond: bool = False  # no statement of the paper: nothing to judge
@@ -91,7 +90,7 @@ class Statement(NamedTuple):
                 answers[model] = Answer(", ".join(texts), max(one.met for one in own.values()))
         if CLOSED in answers and PAPER not in answers:
             answers = {PAPER: Answer(SAME, answers[CLOSED].met)} | answers
-        return Verdict(self.figure, self.says, answers, self.why, numbers, self.beyond)
+        return Verdict(self.figure, self.says, answers, numbers, self.beyond)
 
 
 @dataclass(frozen=True)
@@ -101,7 +100,6 @@ class Verdict:
     figure: str
     statement: str  # the paper's, in our words
     answers: dict[str, Answer]  # by model
-    why: str  # what makes the difference, or what the agreement rests on
     numbers: Mapping[str, Numbers]  # what was measured, by model or otherwise, in SI units
     beyond: bool = False  # no statement of the paper: nothing to judge
 
@@ -120,6 +118,5 @@ class Verdict:
                 for key, answer in self.answers.items()
             },
             "verdict": self.verdict,
-            "why": self.why,
             "numbers": self.numbers,
         }

@@ -67,7 +67,7 @@ def test_a_share_is_met_only_if_its_whole_interval_is(share, interval, met):
 
 
 def test_a_verdict_is_that_of_the_papers_own_scheme_over_the_better_surface():
-    row = Statement("1", "", "", lambda n: n["text"], lambda n: n["checks"])
+    row = Statement("1", "", lambda n: n["text"], lambda n: n["checks"])
     good, half, bad = ({"text": text, "checks": own} for text, own in (("g", [1]), ("h", [1, 0]), ("b", [0])))
     assert row.judged({"paper": good, "closed": bad}).verdict == REPRODUCED
     assert row.judged({"paper": bad, "closed": good, "else": good}).verdict == NOT
