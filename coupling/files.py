@@ -56,6 +56,15 @@ def why(error: OSError) -> str:
     return reason[:1].lower() + reason[1:]
 
 
+def check_folder(folder: Path) -> None:
+    """Raises ValueError unless the folder can be made and written to: better before the work than after it."""
+    made = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
+    if not made.is_dir():
+        raise ValueError(f"Input output must be a folder; got {folder}, but {made} is a file")
+    if not os.access(made, os.W_OK):
+        raise ValueError(f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it")
+
+
 def check_room(folder: Path, needed: int, kept: str = "") -> None:
     """Raise OSError unless a folder has room for so many bytes of results: a run shall not begin that cannot end.
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from common import quantity_text
-from coupling.case import Case, PlateCase, half_size
+from coupling.case import ActuatorCase, Case, PlateCase, half_size
 from coupling.case.plates import ShapeCase
 
 MAX_DENSITY = 23_000.0  # kg/m^3: osmium has 22 590
@@ -73,13 +73,12 @@ def frequency_warnings(case: Case) -> list[str]:
     ]
 
 
-def _end(drive: object) -> float:
+def _end(drive: ActuatorCase) -> float:
     """When [s] a drive of so many cycles ends; 0 of others."""
-    cycles, frequency = getattr(drive, "cycles", None), getattr(drive, "frequency", None)
-    if cycles is None or not frequency:
+    if drive.cycles is None or not drive.frequency:
         return 0.0
-    dwell = 2 * drive.dwell if drive.cycle == "up-down" else 0.0  # type: ignore[attr-defined]
-    return float(drive.delay + cycles * (1 / frequency + dwell))  # type: ignore[attr-defined]
+    dwell = 2 * drive.dwell if drive.cycle == "up-down" else 0.0
+    return drive.delay + drive.cycles * (1 / drive.frequency + dwell)
 
 
 def _widest_gap(case: Case, plate: PlateCase) -> float:

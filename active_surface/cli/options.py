@@ -1,68 +1,104 @@
-"""Options that several commands have, and how those tell what they found."""
+"""Options that several commands have, the quantities that options give, and bars."""
 
 from __future__ import annotations
 
-import json
-import math
-from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 import click
 
-from coupling import printable
+from active_surface.cli.command import option
+from active_surface.cli.refusal import refusing
 
-WIDTH = 12  # of labels
-Command = TypeVar("Command", bound=Callable[..., Any])
+if TYPE_CHECKING:
+    from coupling import Progress, ProgressCallback
 
-quiet = click.option("--quiet", "-q", is_flag=True, help="Print no summary, show no progress.")
-as_json = click.option("--json", "as_json", is_flag=True, help="Print the summary, or what is wrong, as JSON.")
-threads = click.option("--threads", "-t", type=click.IntRange(min=1), help="Paths found at a time [one a processor].")
-
-
-def output_folder(usual: str, what: str = "results", default: Path | None = None) -> Callable[[Command], Command]:
-    """The option of a folder for what a command makes."""
-    kind = click.Path(path_type=Path, file_okay=False)
-    return click.option("--output", "-o", type=kind, default=default, help=f"Folder for the {what} [{usual}].")
+RESULTS = Path("results")
+POSITIVE = click.IntRange(min=1)
+NOT_NEGATIVE = click.IntRange(min=0)
 
 
-folder = output_folder("results")
-of_libraries: list[str] = []  # the warnings that Python's `warnings` gave so far, printed already
+class Folder(click.Path):
+    """A folder that is there, or that can be made: better to know before the work than after it."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        from coupling import check_folder
+
+        with refusing():
+            check_folder(Path(value))
+        return Path(value)
 
 
-def tell(
-    figures: Mapping[str, Any],
-    lines: Iterable[tuple[str, str]],
-    quiet: bool,
-    as_json: bool,
-    warnings: Iterable[str] = (),
-    files: Iterable[Path] = (),
-) -> None:
-    """Prints what a command found, as figures or in words."""
-    if as_json:
-        click.echo(json_text({**figures, "warnings": [*of_libraries, *warnings]} if of_libraries else figures))
-    elif not quiet:
-        for label, text in lines:
-            click.echo(printable(f"{label:<{WIDTH}}{text}"))
-        warn(warnings)
-        for file in files:
-            click.echo(printable(f"{'wrote':<{WIDTH}}{file}"))
+EXAMPLES = {"Hz": "300 Hz", "m": "12 um", "N": "1 mN"}  # of quantities, by their units
+FILE = click.Path(path_type=Path, dir_okay=False)
+FOLDER = Folder(file_okay=False)
+Output = Annotated[Path, option("Folder for the results [results].", "-o", type=FOLDER)]
+Overwrite = Annotated[bool, option("Replace an earlier result.")]
+Threads = Annotated[int | None, option("Paths found at a time [one a processor].", "-t", type=POSITIVE)]
 
 
-def json_text(figures: Mapping[str, Any]) -> str:
-    """Figures as JSON, which has no nan and no infinity: they become null."""
-    return json.dumps(_finite(dict(figures)), indent=2, allow_nan=False)
+def stages(count: int) -> AbstractContextManager[Progress]:
+    """A bar over so many stages, unless the command is quiet."""
+    from coupling import StageBar, silent
+
+    return nullcontext(silent) if _is_quiet() else StageBar(count)
 
 
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+def counted(pieces: str) -> AbstractContextManager[ProgressCallback]:
+    """A bar over pieces of a kind, unless the command is quiet."""
+    from coupling import CountBar, no_progress
+
+    return nullcontext(no_progress) if _is_quiet() else CountBar(pieces)
 
 
-def warn(warnings: Iterable[str]) -> None:
-    """Prints warnings in yellow."""
-    for warning in warnings:
-        click.secho(printable(f"{'warning':<{WIDTH}}{warning}"), fg="yellow")
+def _is_quiet() -> bool:
+    return bool(click.get_current_context().params["quiet"])
+
+
+def check_free(file: Path, overwrite: bool) -> None:
+    """Raise ValueError where a file would be replaced that shall not."""
+    if file.exists() and not overwrite:
+        raise ValueError(f"{file} exists; --overwrite replaces it")
+
+
+def amount_of(text: str | None, unit: str, name: str, example: str = "") -> float | None:
+    """The quantity [unit] that an option gives; None: it is not given."""
+    from coupling.case import Quantity
+
+    if text is None:
+        return None
+    try:
+        return Quantity(unit, example or EXAMPLES[unit]).parse(text.strip())
+    except ValueError as error:
+        raise ValueError(f"{name} {error}") from None
+
+
+def point_of(text: str, unit: str, name: str) -> tuple[float, float] | tuple[()]:
+    """The frequency [Hz] and the stroke [m or N] that an option gives, with a comma between; (): the best point."""
+    if text.strip().lower() == "best":
+        return ()
+    frequency, comma, stroke = text.partition(",")
+    if not comma:
+        raise ValueError(f'{name} must be "best", or a frequency and a stroke such as "2.4 kHz, 12 um"; got "{text}"')
+    point = amount_of(frequency, "Hz", name) or 0.0, amount_of(stroke, unit, name) or 0.0
+    if not min(point) > 0:
+        raise ValueError(f'{name} must be a positive frequency and a positive stroke; got "{text}"')
+    return point
+
+
+def place_of(text: str, name: str) -> tuple[float, float]:
+    """The point [m] that an option gives, as two lengths with a comma between."""
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise ValueError(f'{name} must be two lengths, x and y, such as "100 um, 50 um"; got "{text}"')
+    x, y = (amount_of(part, "m", name, "100 um") or 0.0 for part in parts)
+    return x, y
+
+
+def numbers_of(text: str | None, name: str) -> list[int]:
+    """The numbers of actuators that an option gives, with commas between; none: it is not given."""
+    parts = [] if text is None else [part.strip() for part in text.split(",")]
+    if not all(part.isdecimal() for part in parts):
+        raise ValueError(f'{name} must be numbers of actuators, such as "3,7"; got "{text}"')
+    return sorted({int(part) for part in parts})

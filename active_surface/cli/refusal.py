@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from typing import IO, Any, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from coupling import printable, why
+from coupling import near, printable, why
+
+if TYPE_CHECKING:
+    from coupling.case import Case
 
 _SIZES = "its numbers are too far apart, too large or too small to compute with"
 BEYOND = {
@@ -18,6 +23,14 @@ BEYOND = {
     **dict.fromkeys(("ArithmeticError", "LinAlgError", "MatrixRankWarning"), _SIZES),
 }
 """What errors of numbers and machines mean, by the names of their classes; they have no words for users."""
+KINDS = {
+    "study": "a study; write active-surface sweep",
+    "aim": "an aim; write active-surface aim",
+    "case": "a case; write active-surface run",
+}
+"""What files are, and the command that takes them."""
+TABLES = {"study": "study", "axes": "study", "aim": "aim", "plate": "case"}
+"""The kind of file that has a table; a study or an aim may have those of a case."""
 
 
 class Mistake(NamedTuple):
@@ -39,12 +52,31 @@ class Refusal(click.ClickException):
         self.mistakes, self.as_json = mistakes, as_json
 
     def show(self, file: IO[Any] | None = None) -> None:
-        """Tells them on the error stream, or on the output as the JSON that is waited for there."""
+        """Print them on the error stream, or on the output as the JSON that is waited for there."""
         if self.as_json:
-            told = {"mistakes": [mistake._asdict() for mistake in self.mistakes]}
-            click.echo(printable(json.dumps(told, indent=2, ensure_ascii=False)), file)
+            figures = {"mistakes": [mistake._asdict() for mistake in self.mistakes]}
+            click.echo(printable(json.dumps(figures, indent=2, ensure_ascii=False)), file)
         else:
             click.echo(printable(self.message), file, err=True)
+
+
+@contextmanager
+def refusing() -> Iterator[None]:
+    """Refuse the input of the current command where its work raises an error."""
+    try:
+        yield
+    except BrokenPipeError:  # of a reader that has had enough, as `head` has
+        raise
+    except (ValueError, OSError, RuntimeError, ArithmeticError, MemoryError) as error:
+        context = click.get_current_context()
+        words: dict[str, str] = {}
+        for param in context.command.params:
+            if isinstance(param, click.Option):
+                words |= dict.fromkeys((param.name or "", param.opts[0].lstrip("-")), param.opts[0])
+            else:
+                words[param.name or ""] = param.human_readable_name
+                words.setdefault("path", param.human_readable_name)  # as readers of files call it
+        raise refusal_of(error, context.command_path, bool(context.params.get("as_json", context.obj)), words) from None
 
 
 def refusal_of(error: Exception, command: str, as_json: bool, words: Mapping[str, str]) -> Refusal:
@@ -54,30 +86,51 @@ def refusal_of(error: Exception, command: str, as_json: bool, words: Mapping[str
     """
     file = getattr(error, "file", None)
     if file is not None:  # of a CaseError, which knows its lines
-        problems: Iterable[Any] = getattr(error, "problems", ())
+        problems = getattr(error, "problems", ())
         mistakes = [Mistake(file, problem.line, problem.field, problem.message) for problem in problems]
         return Refusal(str(error), mistakes, as_json)
-    beyond = next(
-        (words for name, words in BEYOND.items() if name in [one.__name__ for one in type(error).__mro__]), ""
-    )
+    names = [one.__name__ for one in type(error).__mro__]
+    beyond = next((text for name, text in BEYOND.items() if name in names), "")
     if beyond or not isinstance(error, ValueError):  # no mistake, but something in the way
-        said = beyond or str(error)
+        text = beyond or str(error)
         if isinstance(error, OSError) and error.strerror:
-            said = ": ".join([*([str(error.filename)] if error.filename else []), why(error)])
-        return Refusal(f"{command}: {said}", [Mistake(None, None, "", said)], as_json)
-    texts = re.split(r"\n|; (?=Inputs? )", str(error))
-    return refusal(command, [_in_words(text, command.split()[-1], words) for text in texts], as_json)
+            text = ": ".join([*([str(error.filename)] if error.filename else []), why(error)])
+        return Refusal(f"{command}: {text}", [Mistake(None, None, "", text)], as_json)
+    mistakes = [_mistake(text, words) for text in re.split(r"\n|; (?=Inputs? )", str(error))]
+    lines = [f"  {f'{mistake.field} {mistake.message}'.lstrip()}" for mistake in mistakes]
+    head = f"{command}: {len(mistakes)} mistake{'s' * (len(mistakes) != 1)}"
+    return Refusal("\n".join([head, *lines]), mistakes, as_json)
 
 
-def _in_words(text: str, caller: str, words: Mapping[str, str]) -> tuple[str, str]:
-    """The input of the command, and what is wrong with it, where a text names an input of its function, or of none."""
-    of_caller = re.fullmatch(rf"Input (\S+) (?:of {re.escape(caller)} |(?!of ))(.*)", text, re.DOTALL)
-    return (words.get(of_caller[1], of_caller[1]), of_caller[2]) if of_caller else ("", text)
+def _mistake(text: str, words: Mapping[str, str]) -> Mistake:
+    """What is wrong, and with which input of the command where the text names one of a function."""
+    found = re.fullmatch(r"Input (\S+) (?:of [a-z]\w* )?(?!of )(.*)", text, re.DOTALL)
+    if found is None:
+        return Mistake(None, None, "", text)
+    return Mistake(None, None, words.get(found[1], found[1]), found[2])
 
 
-def refusal(command: str, mistakes: Iterable[tuple[str, str]], as_json: bool) -> Refusal:
-    """A refusal for inputs of a command: their names, and what is wrong with each."""
-    told = [Mistake(None, None, *mistake) for mistake in mistakes]
-    lines = [f"  {f'{mistake.field} {mistake.message}'.lstrip()}" for mistake in told]
-    head = f"{command}: {len(told)} mistake{'s' * (len(told) != 1)}"
-    return Refusal("\n".join([head, *lines]), told, as_json)
+def kind_of(file: Path, otherwise: str = "case") -> str:
+    """Which of the KINDS of files it is, as far as its tables show it; CaseError where it has none."""
+    from coupling.case import parse
+
+    tables = parse(file, lenient=True).tables
+    found = {TABLES[table] for table in tables if table in TABLES}
+    meant = {TABLES[table] for one in tables if (table := near(one, TABLES))}
+    return next((kind for kind in KINDS if kind in (found or meant)), otherwise)
+
+
+def check_kind(file: Path, *expected: str) -> None:
+    """Refuse a file of another of the KINDS, in which nearly all would be a mistake."""
+    kind = kind_of(file, expected[0])
+    if kind not in expected:
+        what = KINDS[expected[0]].partition(";")[0]
+        raise ValueError(f"Input path must be {what}; got {file}, {KINDS[kind]} {file}")
+
+
+def read(file: Path, may_move: bool = False) -> Case:
+    """The case in a file; may_move: as for `read_case`."""
+    from coupling.case import read_case
+
+    check_kind(file, "case")
+    return read_case(file, may_move)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from uuid import uuid4
 from warnings import warn
@@ -204,12 +203,3 @@ def _clear(folder: Path, name: str) -> None:
     for path, is_ours in ((folder / f"{name}.csv", is_trajectory), (folder / f"{name}.surface.h5", is_surface)):
         if path.is_file() and is_ours(path):
             path.unlink()
-
-
-def check_folder(folder: Path) -> None:
-    """Raises ValueError unless the folder can be made and written to: better before the work than after it."""
-    made = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
-    if not made.is_dir():
-        raise ValueError(f"Input output must be a folder; got {folder}, but {made} is a file")
-    if not os.access(made, os.W_OK):
-        raise ValueError(f"Input output must be a folder that can be written to; got {folder}, but {made} refuses it")

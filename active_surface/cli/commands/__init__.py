@@ -1,25 +1,13 @@
-"""The commands, a module for each or two; each adds itself to the group when it is loaded."""
+"""The commands, by what they take."""
 
-from active_surface.cli.commands import (
-    advise,
-    aim,
-    animate,
-    app,
-    check,
-    completion,
-    example,
-    export,
-    feasibility,
-    fit,
-    identify,
-    influence,
-    plot,
-    reproduce,
-    rerun,
-    response,
-    run,
-    schema,
-    sweep,
-    verify,
-    view,
-)
+from active_surface.cli.commands.cases import advise, app, check, run
+from active_surface.cli.commands.measured import fit, identify, influence
+from active_surface.cli.commands.reference import completion, example, reproduce, schema, verify
+from active_surface.cli.commands.results import animate, export, plot, rerun, view
+from active_surface.cli.commands.steering import aim, plan
+from active_surface.cli.commands.studies import feasibility, response, sweep
+
+COMMANDS = [
+    *(advise, aim, animate, app, check, completion, example, export, feasibility, fit, identify, influence),
+    *(plan, plot, reproduce, rerun, response, run, schema, sweep, verify, view),
+]

@@ -23,9 +23,9 @@ from active_surface.views.film.look import Look
 from active_surface.views.film.pace import Pace, pace_of, warnings_of
 from active_surface.views.film.painter import chosen, painter
 from active_surface.views.film.stage import Stage, stage_of
-from coupling import ProgressCallback, build_drives, no_progress
+from coupling import ProgressCallback, build_drives, check_folder, no_progress
 from coupling.case import Case
-from coupling.results import SavedRun, check_folder, read_run
+from coupling.results import SavedRun, read_run
 
 FPS = {"mp4": 30.0, "gif": 20.0, "png": 30.0}
 SIZE = {"mp4": (1280, 720), "gif": (800, 450), "png": (1280, 720)}

@@ -14,7 +14,7 @@ import pytest
 from click.testing import CliRunner
 from sweeps import toml
 
-from active_surface.cli import ctrl_c, group, options
+from active_surface.cli import command, ctrl_c, program
 from active_surface.cli.program import main
 from coupling import progress
 from fem_plate import verification
@@ -100,7 +100,7 @@ def test_ctrl_c_ends_a_command_that_compiles(command, file, end, tmp_path):
     line, code, output, errors = pressed(words, tmp_path / "cache")
     assert line == "Compiling what this case needs for the first time (once, up to some minutes)\n"
     assert (code, output, errors) == (130, "", end)
-    assert ctrl_c.PATIENCE + ctrl_c.EXIT < 3
+    assert ctrl_c.PATIENCE < 3
     # No result; a sweep may have begun the folder from which it goes on.
     assert not [path for path in (tmp_path / "out").glob("*.*") if path.is_file()]
 
@@ -123,9 +123,10 @@ def test_ctrl_c_ends_a_run_in_the_middle(tmp_path):
 
 
 def test_json_has_the_warnings_of_libraries(capsys, monkeypatch):
-    monkeypatch.setattr(options, "of_libraries", [])
-    group._told(UserWarning("it is a polygon"))
-    options.tell({"outcome": "stuck", "warnings": ["too fast"]}, [], False, True, ["too fast"])
+    monkeypatch.setattr(command, "from_libraries", said := [])
+    monkeypatch.setattr(program, "from_libraries", said)
+    program._show(UserWarning("it is a polygon"))
+    command.Answer({"outcome": "stuck"}, warnings=["too fast"]).show(False, True)
     captured = capsys.readouterr()
     assert json.loads(captured.out)["warnings"] == ["it is a polygon", "too fast"]
     assert captured.err == "warning     it is a polygon\n"

@@ -9,8 +9,8 @@ import xarray
 from click.testing import CliRunner
 from sweeps import DISC_PLATE, toml
 
+from active_surface.cli.options import place_of
 from active_surface.cli.program import main
-from active_surface.cli.values import place_of
 from active_surface.studies.response import response
 from active_surface.studies.response.pictures import _wrapped, draw_response
 from coupling import read_case

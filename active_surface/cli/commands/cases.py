@@ -1,0 +1,160 @@
+"""The commands `run`, `check`, `advise` and `app`, which take a case."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Any
+
+import click
+
+from active_surface.cli.command import Answer, command, option
+from active_surface.cli.options import RESULTS, Output, Overwrite, check_free, stages
+from active_surface.cli.refusal import kind_of, read
+
+if TYPE_CHECKING:
+    from coupling.case import Case
+
+
+@command
+def run(
+    case: Path,
+    output: Output = RESULTS,
+    csv: Annotated[bool, option("Also write the trajectory to NAME.csv.")] = False,
+    forces: Annotated[bool, option("Also write the parts of the contact's force to the part's file and CSV.")] = False,
+    verbose: Annotated[bool, option("Also print how the run was computed.", "-v")] = False,
+    save_surface: Annotated[bool, option("Also write the moving surface to NAME.surface.h5.")] = False,
+) -> Answer:
+    """Run CASE and write its results."""
+    parsed = read(case)
+    from coupling import case_warnings, limit_warnings, report, run_case, stage_count
+
+    with stages(stage_count(parsed)) as bar:
+        result = run_case(parsed, output, bar, csv, save_surface, forces)
+    summary = result.summary
+    warnings = report.warnings(summary) + case_warnings(parsed) + limit_warnings(parsed, result.shapes)
+    return Answer(summary.as_dict(), report.lines(summary, verbose), warnings, result.files)
+
+
+@command
+def check(file: Path) -> Answer:
+    """Report every mistake in FILE: a case, a study or an aim."""
+    kind = kind_of(file)
+    figures: dict[str, Any]
+    warnings: list[str] = []
+    if kind == "study":
+        from active_surface.studies import read_study
+
+        paths = len(read_study(file).points)
+        figures, text = {"paths": paths}, f"a study of {_counted(paths, 'path')}"
+    elif kind == "aim":
+        from active_surface.steering import read_settings
+
+        case, _, target = read_settings(file, True)
+        actuators = len(case.actuators)
+        figures = {"actuators": actuators, "target": target}
+        text = f"an aim of {case.name}, {_counted(actuators, 'actuator')}"
+    else:
+        case = read(file)
+        warnings, actuators = _warnings(case), len(case.actuators)
+        figures = {"actuators": actuators, "duration": case.run.duration}
+        text = f"{_counted(actuators, 'actuator') if actuators else 'a platform'}, {case.run.duration * 1e3:g} ms"
+    figures = {"file": str(file), "mistakes": [], **figures}
+    return Answer(figures, [(f"{file}: fine; {text}", "")], warnings)
+
+
+def _warnings(case: Case) -> list[str]:
+    """What a case warns of before it runs; ValueError where its plate or its friction cannot be built."""
+    from coupling import case_warnings, frequency_warnings
+    from coupling.case import PlateCase, has_known_law
+
+    if not has_known_law(case.friction):
+        from coupling import build_friction  # takes a second to load
+
+        _ = build_friction(case).law  # ValueError where its numbers have none
+    warnings = case_warnings(case) + frequency_warnings(case)
+    if isinstance(case.plate, PlateCase) and min(case.plate.foundation, case.plate.tension) < 0:
+        from coupling.scene import build_plate  # solves the plate
+
+        build_plate(case.plate)  # which may buckle
+    if any(actuator.max_force is not None and actuator.force is None for actuator in case.actuators):
+        from coupling import limit_warnings  # solves the plate
+
+        warnings += limit_warnings(case)
+    return warnings
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'s' * (count != 1)}"
+
+
+@command
+def advise(case: Path, overwrite: Overwrite = False, output: Output = RESULTS) -> Answer:
+    """Search for drives that move the part of CASE and keep it.
+
+    Runs CASE, then tries other frequencies, strokes, friction and starts until one carries the part far. Writes that
+    case to NAME_advised.toml.
+    """
+    parsed = read(case)
+    from coupling import advice, report, run_case, stage_count
+    from coupling.case import write_edited
+
+    file = output / f"{parsed.name}{advice.ADVISED}.toml"
+    check_free(file, overwrite)
+    with stages(stage_count(parsed)) as bar:
+        result = run_case(parsed, None, bar)
+        with bar("Trying other drives"):
+            found = advice.advise(result)
+    thresholds = result.summary.thresholds
+    figures = {"thresholds": thresholds and asdict(thresholds), "trial": found and found.trial and asdict(found.trial)}
+    lines = [row for row in report.lines(result.summary) if row[0] in ("outcome", "thresholds")]
+    files = []
+    if found is None:
+        lines.append(("advice", "The part moves already, or no factor scales what drives it."))
+    else:
+        text = advice.trial_text(result.summary, found)
+        lines.append(("advice", text))
+        if found.trial is not None and not found.measured:
+            moving = advice.advised_case(parsed, found.trial)
+            comment = f"The advice on {case.name}: {text}"
+            files = [write_edited(moving, parsed, case.absolute().parent, file, comment)]
+    return Answer(figures, lines, files=files)
+
+
+@command
+def app(
+    case: Path | None = None,
+    port: Annotated[int, option("Where the page is served [any that is free].", type=click.IntRange(0, 65535))] = 0,
+    no_browser: Annotated[bool, option("Print the address, and do not open it.")] = False,
+) -> None:
+    """Open CASE in the browser, where its path follows what is dragged.
+
+    Without CASE the page begins with the examples. Nothing leaves this machine: the page is served on the loopback
+    address, to whoever has the token in it. It ends when its last tab is closed, or with Ctrl-C.
+    """
+    if case is not None:
+        read(case)
+    try:
+        import tornado
+    except ImportError:
+        raise ValueError('the page needs the package tornado: pip install "active-surface[app]"') from None
+    assert tornado
+    from threadpoolctl import threadpool_limits
+
+    from active_surface.app import Server, open_case
+
+    server = Server(None if case is None else partial(open_case, case), port)
+    click.echo(f"{'page':<12}{server.address}")
+    click.echo(f"{'ends':<12}with its last tab, or Ctrl-C")
+    # Many small systems: BLAS threads would only wait for each other.
+    with threadpool_limits(limits=1, user_api="blas"), TemporaryDirectory(prefix="active-surface-") as folder:
+        server.run(lambda: None if no_browser else _open(server.address, Path(folder, "open.html")))
+
+
+def _open(address: str, page: Path) -> None:
+    """Open an address in the browser, by a file that leads there: other users see the words of commands."""
+    page.touch(mode=0o600)
+    page.write_text(f'<!doctype html><meta http-equiv="refresh" content="0; url={address}">', encoding="utf-8")
+    click.launch(page.absolute().as_uri())
