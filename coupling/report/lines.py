@@ -7,7 +7,7 @@ from coupling.case import INERTIA
 from coupling.report.details import details
 from coupling.report.margins import margin_lines
 from coupling.report.warnings import MAX_QUASI_STATIC_SHARE
-from coupling.report.wording import MICRO, MILLI, bending, count, in_percent, percent, quantity, unit_of
+from coupling.report.wording import MICRO, MILLI, by_theory, count, in_percent, percent, quantity, unit_of
 from coupling.summary import PlateSummary, Summary
 from particle import Outcome
 
@@ -60,7 +60,7 @@ def _trust(s: Summary) -> list[tuple[str, str]]:
     ledger = f"the energy ledger closes to {s.energy_balance:.1e} of its largest entry"
     if not isinstance(s, PlateSummary):
         return [("trust", f"{_path_error(s)}; {ledger}")]
-    strain = "" if s.largest_strain is None else f", strain {in_percent(s.largest_strain)}{bending(s)}"
+    strain = "" if s.largest_strain is None else f", strain {in_percent(s.largest_strain)}{by_theory(s)}"
     return [
         ("trust", f"{_path_error(s)}; {ledger}"),
         (

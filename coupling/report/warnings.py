@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from coupling.case import INERTIA, VON_KARMAN
 from coupling.outlook import MAX_FREQUENCY
 from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
-from coupling.report.wording import MICRO, MILLI, bending, count, in_percent, percent, quantity
+from coupling.report.wording import MICRO, MILLI, by_theory, count, in_percent, percent, quantity
 from coupling.summary import PlateSummary, Summary
 
 # The model holds to about a per cent up to these.
@@ -138,7 +138,7 @@ def _of_model(s: PlateSummary) -> Iterator[str]:
         )
     if s.largest_strain is not None and s.largest_strain > MAX_STRAIN:
         yield (
-            f"The plate is strained by {in_percent(s.largest_strain)}{bending(s)}; silicon breaks near 1 %, "
+            f"The plate is strained by {in_percent(s.largest_strain)}{by_theory(s)}; silicon breaks near 1 %, "
             f"where {100 * MAX_STRAIN:g} % is prudent, and metals yield below that."
         )
     if s.quasi_static_error is not None and s.quasi_static_error > MAX_QUASI_STATIC_ERROR:

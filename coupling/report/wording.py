@@ -32,8 +32,8 @@ def count(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
-def bending(s: PlateSummary) -> str:
-    return " by bending alone" if s.theory == "linear" else ""
+def by_theory(s: PlateSummary) -> str:
+    return " by linear theory" if s.theory == "linear" else ""
 
 
 def quantity(value: float, si: str, digits: int = 3) -> str:
