@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,16 +84,6 @@ def margins_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Conta
         scale=path.scale,
         smallest_load=-load.value,
     )
-
-
-def margins_from(figures: Mapping[str, Any]) -> Margins:
-    """The margins that were written as JSON."""
-    worst = {
-        name: None if one is None else Margin(**one | {"position": tuple(one["position"])})
-        for name, one in figures.items()
-        if name in ("slip", "contact")
-    }
-    return Margins(**{**figures, **worst})
 
 
 def _or_least(values: FloatArray) -> FloatArray:

@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
+from functools import cache
 from typing import Any
 
 import numpy as np
+from pydantic import TypeAdapter, ValidationError
 
 from coupling.case import Case
 from coupling.display import frame_times
 from coupling.drives import fastest, first_jump
-from coupling.margins import Margins, margins_from, margins_of
-from coupling.measured import MotionFit, fit_from
-from coupling.plate_figures import PlateFigures, StretchError, VibrationFigures, plate_figures
+from coupling.margins import Margins, margins_of
+from coupling.measured import MotionFit
+from coupling.plate_figures import PlateFigures, plate_figures
 from coupling.scene import PlateScene, Scene
 from coupling.thresholds import Thresholds, thresholds_of
 from particle import EventKind, State, Trajectory
@@ -55,12 +57,8 @@ class Summary:
     same_events: bool  # whether that run has the same kinds of events in the same order
     path_resolution: float  # m, the tolerance of one step
     margins: Margins
-    thresholds: (
-        Thresholds | None
-    )  # of a part that hardly moved or was lost; None also where no factor scales its drives
-    frames_per_cycle: (
-        float | None
-    )  # steps of the result files to a cycle of the fastest drive; None: measured, or nothing moves
+    thresholds: Thresholds | None  # of a part that hardly moved or was lost; None also where no factor scales its drives
+    frames_per_cycle: float | None  # steps in files to a cycle of the fastest drive; None: measured, or nothing moves
 
     def as_dict(self) -> dict[str, Any]:
         """The figures by name; those of a plate are None where there is none."""
@@ -75,23 +73,19 @@ class PlateSummary(PlateFigures, Summary):
 def summary_of(figures: Mapping[str, Any]) -> Summary:
     """The summary whose `as_dict`, written as JSON and read again, gave these figures.
 
-    Raises ValueError when one is missing.
+    Raises ValueError where one is missing or has another form.
     """
-    if lost := [field.name for field in fields(PlateSummary) if field.name not in figures]:
-        raise ValueError(f"the summary lacks {', '.join(lost)}, as that of another version may")
-    plain: dict[str, Any] = {
-        name: tuple(value) if isinstance(value, list) else value for name, value in figures.items()
-    }
-    plain["motion_fits"] = tuple(fit_from(fit) for fit in plain["motion_fits"])
-    plain["margins"] = margins_from(plain["margins"])
-    if plain["thresholds"] is not None:
-        plain["thresholds"] = Thresholds(**plain["thresholds"])
-    if plain["stretch_error"] is not None:
-        plain["stretch_error"] = StretchError(**plain["stretch_error"])
-    if plain["vibration"] is not None:
-        plain["vibration"] = VibrationFigures(**plain["vibration"])
-    kind = Summary if plain["plate_unknowns"] is None else PlateSummary
-    return kind(**{field.name: plain[field.name] for field in fields(kind)})
+    try:
+        return _reader(figures["plate_unknowns"] is not None).validate_python(figures)
+    except (KeyError, ValidationError) as error:
+        wrong = ["plate_unknowns"] if isinstance(error, KeyError) else [str(one["loc"][0]) for one in error.errors()]
+        text = f"the summary has no valid {', '.join(dict.fromkeys(wrong))}, as that of another version may"
+        raise ValueError(text) from None
+
+
+@cache
+def _reader(of_plate: bool) -> TypeAdapter[Summary]:
+    return TypeAdapter(PlateSummary if of_plate else Summary)
 
 
 def summarise(case: Case, scene: Scene, trajectory: Trajectory, tighter: Trajectory, friction: Contact) -> Summary:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -119,12 +119,6 @@ def found_motion(t: FloatArray, columns: Sequence[FloatArray | None]) -> tuple[S
         if with_kicks > WORTH * without:
             return smooth, NO_KICKS, smooth_roughness
     return series, kicks, roughness
-
-
-def fit_from(figures: Mapping[str, object]) -> MotionFit:
-    """The fit whose fields, written as JSON and read again, are these."""
-    fit = MotionFit(**figures)  # type: ignore[arg-type]
-    return replace(fit, jumps=tuple((time, size) for time, size in fit.jumps), ignored=tuple(fit.ignored))
 
 
 def _drive(series: Series, motion: Motion) -> QuinticDrive:

@@ -103,9 +103,9 @@ def rows_that_are_not_there(file):
 
 
 DAMAGES = [
-    ("part", summary_without("squeeze"), "which is damaged: the summary lacks squeeze, as that of another version may"),
-    ("part", with_summary('{"some": 1}'), "which is damaged: the summary lacks "),
-    ("part", thresholds_without_a_field, "which is damaged: its thresholds lacks "),
+    ("part", summary_without("squeeze"), "which is damaged: the summary has no valid squeeze, as that of another version may"),
+    ("part", with_summary('{"some": 1}'), "which is damaged: the summary has no valid "),
+    ("part", thresholds_without_a_field, "which is damaged: the summary has no valid thresholds"),
     ("part", with_summary("text"), "which is damaged: Expecting value"),
     ("part", lambda file: file.__delitem__("active_surface/events"), "which is damaged: it has no events"),
     ("part", lambda file: file.__delitem__("active_surface/margins"), "which is damaged: it has no margins"),
