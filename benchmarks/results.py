@@ -2,7 +2,7 @@
 
     python benchmarks/results.py
 
-Compares VTKHDF with and without gzip with PVD + VTU by meshio and by VTK, and with XDMF. Every step of the VTKHDF files
+Compares VTKHDF with PVD + VTU by meshio and by VTK, and with XDMF. Every step of the VTKHDF files
 is read back by VTK and compared bit for bit. Times are those of the processor.
 """
 
@@ -51,8 +51,8 @@ def fields(points: NDArray[np.float64], step: int) -> dict[str, NDArray[np.float
     return {name: values.astype(np.float32) for name, values in found.items()}
 
 
-def write_vtkhdf(folder: Path, compress: bool, frames: list[Frame], triangles: NDArray[np.int64]) -> None:
-    with plate_file(folder, "run", frames[0].points, triangles, compress=compress) as file:
+def write_vtkhdf(folder: Path, frames: list[Frame], triangles: NDArray[np.int64]) -> None:
+    with plate_file(folder, "run", frames[0].points, triangles) as file:
         for frame in frames:
             file.append(frame.time, **frame.fields)
 
@@ -86,11 +86,11 @@ def read_back(path: Path, frames: list[Frame]) -> float:
     return time.process_time() - start
 
 
-def check_part(folder: Path, compress: bool) -> None:
+def check_part(folder: Path) -> None:
     """Write and read back a part on the same time axis."""
     rng = np.random.default_rng(1)
     places, speeds, forces = rng.normal(size=(STEPS, 3)), rng.normal(size=(STEPS, 3)), rng.normal(size=STEPS)
-    with part_file(folder, "run", compress=compress) as file:
+    with part_file(folder, "run") as file:
         for k in range(STEPS):
             file.append(k * 2.5e-4, places[k], velocity=speeds[k], state=k % 3, normal_force=forces[k])
     reader = pyvista.get_reader(folder / "run.part.vtkhdf")
@@ -108,8 +108,7 @@ def compare(names: tuple[str, ...]) -> None:
     every = (fields(points, k) for k in range(STEPS))
     frames = [Frame(k * 2.5e-4, flat, {name: one[name] for name in names}) for k, one in enumerate(every)]
     ways: dict[str, Callable[[Path], object]] = {
-        "VTKHDF, gzip": lambda folder: write_vtkhdf(folder, True, frames, triangles),
-        "VTKHDF": lambda folder: write_vtkhdf(folder, False, frames, triangles),
+        "VTKHDF, gzip": lambda folder: write_vtkhdf(folder, frames, triangles),
         "PVD + VTU, zlib, meshio": lambda folder: write_pvd(folder, "run", "triangle", triangles, iter(frames)),
         "VTU, zlib, VTK": lambda folder: write_vtu_by_vtk(folder, frames, triangles),
         "XDMF, gzip": lambda folder: write_xdmf(folder, "run", "triangle", triangles, iter(frames)),
@@ -132,10 +131,9 @@ def compare(names: tuple[str, ...]) -> None:
 def main() -> None:
     compare(FIELDS[:1])
     compare(FIELDS)
-    for compress in (True, False):
-        with tempfile.TemporaryDirectory() as folder:
-            check_part(Path(folder), compress)
-    print("\nEvery step of plate and part read back by VTK with the bits that were written, gzip on and off.")
+    with tempfile.TemporaryDirectory() as folder:
+        check_part(Path(folder))
+    print("\nEvery step of plate and part read back by VTK with the bits that were written.")
 
 
 if __name__ == "__main__":

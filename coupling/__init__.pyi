@@ -18,7 +18,6 @@ from .files import (
     whole_file as whole_file,
     why as why,
 )
-from .new_file import NewFile as NewFile, Sink as Sink
 from .progress import (
     CountBar as CountBar,
     Progress as Progress,
@@ -27,16 +26,18 @@ from .progress import (
     silent as silent,
     no_progress as no_progress,
 )
-from .repeat import Rerun as Rerun, rerun as rerun
 from .limits import limit_warnings as limit_warnings
 from .outlook import case_warnings as case_warnings, frequency_warnings as frequency_warnings
 from . import advice as advice, report as report
 from .report import warnings as warnings
 from .part import build_friction as build_friction, build_part as build_part, friction_law as friction_law
+from .results import Output as Output
 from .run import (
+    Rerun as Rerun,
     build_scene as build_scene,
     follow_part as follow_part,
     quick_summary as quick_summary,
+    rerun as rerun,
     run_over as run_over,
     stage_count as stage_count,
 )

@@ -7,12 +7,14 @@ import os
 import re
 import shutil
 import stat
+import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 MAX_TEXT = 2**24  # bytes of a case, study or aim
 MAX_NUMBERS = 2**26  # bytes of a table of numbers
+SPARE, TRIED = 2**21, 2**26  # bytes beyond what is needed, and at most that are reserved to see whether they are there
 _open: set[Path] = set()
 _CONTROL = re.compile(r"[\0-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
@@ -66,13 +68,25 @@ def check_folder(folder: Path) -> None:
 
 
 def check_room(folder: Path, needed: int, kept: str = "") -> None:
-    """Raise OSError unless a folder has room for so many bytes of results: a run shall not begin that cannot end.
+    """Raise OSError unless a folder has room for so many bytes of results, and SPARE ones.
+
+    A run shall not begin that cannot end, and HDF5 must not meet a full disk, on which it crashes.
 
     kept: what to say of what is there already.
     """
-    free = shutil.disk_usage(folder).free
-    if free < needed:
-        raise OSError(f"{folder}: the results take {needed / 1e6:.1f} MB, and {free / 1e6:.1f} MB are free{kept}")
+    needed += SPARE
+    try:
+        if (free := shutil.disk_usage(folder).free) < needed:
+            raise OSError(errno.ENOSPC, f"{free / 1e6:.1f} MB are free")
+        if hasattr(os, "posix_fallocate"):
+            with tempfile.TemporaryFile(dir=folder) as file:  # which meets quotas and limits of files as well
+                os.posix_fallocate(file.fileno(), 0, min(needed, TRIED))
+    except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+            text = f"{folder}: the results take {needed / 1e6:.1f} MB: {why(error)}{kept}"
+            raise OSError(text) from error
+        if error.errno not in (errno.EOPNOTSUPP, errno.EINVAL, errno.ENOSYS):  # of disks that reserve nothing
+            raise
 
 
 @contextmanager

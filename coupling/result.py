@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from common import draw, notebook_html
 from coupling.case import Case
+from coupling.display import DisplaySurface, display_surface, frame_times
+from coupling.margins import MarginCurves, margin_curves
+from coupling.part import build_friction
 from coupling.scene import Scene
 from coupling.summary import Summary
 from fem_plate import PlateShapes
@@ -50,6 +57,21 @@ class Result:
     def shapes(self) -> PlateShapes | None:
         """The influence shapes of a plate; None: there is a platform."""
         return self.scene.shapes
+
+    @cached_property
+    def frames(self) -> NDArray[np.float64]:
+        """The times (k,) [s] of the steps in files."""
+        return frame_times(self.case, self.scene, float(self.trajectory.time[-1]))
+
+    @cached_property
+    def ground(self) -> DisplaySurface:
+        """The surface as files and pictures have it."""
+        return display_surface(self.scene, self.trajectory)
+
+    @cached_property
+    def margin_curves(self) -> MarginCurves:
+        """The margins over time."""
+        return margin_curves(self.case, self.scene.surface, self.trajectory, build_friction(self.case))
 
     def __repr__(self) -> str:
         text = f"{self.summary.sentence} It is {self.summary.distance:.4g} m from the start."

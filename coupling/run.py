@@ -6,21 +6,24 @@ case -> scene (mesh -> plate influence shapes, or a platform's drives -> surface
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
+from warnings import warn
 
 from threadpoolctl import threadpool_limits
 
 import particle
 from coupling.case import Case, PlatformCase, RunCase
 from coupling.drives import build_drives as build_drives
+from coupling.environment import versions
 from coupling.part import build_friction, build_part
 from coupling.progress import Progress, silent
 from coupling.result import Result
-from coupling.results import CaseRecord, check_csv, record_of, write_results
+from coupling.results import CaseRecord, Output, SavedRun, record_of, write_results
 from coupling.scene import Scene, plate_scene, platform_scene
 from coupling.summary import Summary, summarise
-from coupling.surface import check_surface, write_surface
 from fem_plate import PlateShapes
 from particle import SurfaceMotion, Trajectory, interruptible
 from particle.fixed import default_step
@@ -37,6 +40,7 @@ def run_case(
     save_surface: bool = False,
     forces: bool = False,
     shapes: PlateShapes | None = None,
+    picture: bool = True,
 ) -> Result:
     """Run a case.
 
@@ -58,6 +62,8 @@ def run_case(
         Those of another result, `result.shapes`, with the same plate and places of actuators: the plate is not solved
         again. Of a plate that stretches or vibrates only its influence shapes are taken; the equilibria or modes
         beyond these, which depend on the drives, are found anew.
+    picture : bool
+        Whether there is NAME.png among the files. One that cannot be drawn is left out, with a RuntimeWarning.
 
     Returns
     -------
@@ -72,43 +78,25 @@ def run_case(
     OSError
         A file that the case reads is gone.
     """
-    if output is not None and csv:
-        check_csv(Path(output) / f"{case.name}.csv")
-    if output is not None and save_surface:
-        check_surface(Path(output) / f"{case.name}.surface.h5")
+    wanted = None if output is None else Output(Path(output), csv, save_surface, forces, picture)
+    if wanted is not None:
+        wanted.check(case.name)
     # Many small systems: BLAS threads would only wait for each other, and take two to four times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        folder = None if output is None else Path(output)
-        return _run(case, folder, progress, csv, save_surface, forces, shapes)
-
-
-def _run(
-    case: Case,
-    output: Path | None,
-    progress: Progress,
-    csv: bool,
-    save_surface: bool,
-    forces: bool,
-    shapes: PlateShapes | None,
-) -> Result:
-    record = None if output is None else record_of(case)  # its files may be others when the path is found
-    return run_over(case, build_scene(case, progress, shapes), output, progress, csv, save_surface, forces, record)
+        record = None if wanted is None else record_of(case)  # its files may be others when the path is found
+        return run_over(case, build_scene(case, progress, shapes), wanted, progress, record)
 
 
 def run_over(
     case: Case,
     scene: Scene,
-    output: Path | None = None,
+    output: Output | None = None,
     progress: Progress = silent,
-    csv: bool = False,
-    save_surface: bool = False,
-    forces: bool = False,
     record: CaseRecord | None = None,
-    picture: bool = True,
 ) -> Result:
     """Run a case over its scene, as `run_case` does.
 
-    record: of the case, for the files; None: it is taken now.  picture: whether there is one among the files.
+    record: of the case, for the files; None: it is taken now.
     """
     if output is not None and record is None:
         record = record_of(case)
@@ -118,14 +106,25 @@ def run_over(
         tighter = interruptible(follow_part, case, scene.surface, friction, True)
     with progress("Checking the model's validity"):
         summary = summarise(case, scene, trajectory, tighter, friction)
+    result = Result(case, scene, trajectory, summary)
     if output is None or record is None:
-        return Result(case, scene, trajectory, summary)
+        return result
     with progress("Writing the results") as tell:
-        law = friction if forces else None
-        files = write_results(case, record, scene, trajectory, summary, output, csv, tell, law, picture)
-        if save_surface:
-            files += (write_surface(scene.surface, output / f"{case.name}.surface.h5"),)
-    return Result(case, scene, trajectory, summary, files)
+        of_run, further = write_results(result, record, output, tell)
+        picture = _draw(result, output.folder) if output.picture else ()
+    return replace(result, files=(*of_run, *picture, *further))
+
+
+def _draw(result: Result, folder: Path) -> tuple[Path, ...]:
+    """Draw the picture of a run, if that can be."""
+    path = folder / f"{result.case.name}.png"
+    try:
+        from coupling.pictures import draw_run  # here, because it loads matplotlib
+
+        return (draw_run(result, path),)
+    except Exception as error:  # the run is finished, whatever becomes of its picture
+        warn(f"{path} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
+        return ()
 
 
 def stage_count(case: Case) -> int:
@@ -179,3 +178,38 @@ def follow_part(case: Case, surface: SurfaceMotion, friction: Contact, tighter: 
     except MemoryError:
         text = "run.duration must be shorter, as the steps of the path take more memory than there is"
         raise ValueError(f"{text}; got {run.duration:g} s") from None
+
+
+@dataclass(frozen=True, eq=False)
+class Rerun:
+    """A run and its repetition."""
+
+    saved: SavedRun
+    result: Result
+    changed: dict[str, tuple[str, str]] = field(default_factory=dict)  # versions then and now, where they differ
+
+    @property
+    def same_end(self) -> bool:
+        """Whether both end at the same time and place, bit for bit."""
+        return self._end == (self.result.summary.end_time, *self.result.summary.end_position)
+
+    @property
+    def moved(self) -> float:
+        """How far [m] the ends are from each other."""
+        return math.dist(self._end[1:], self.result.summary.end_position)
+
+    @property
+    def _end(self) -> tuple[float, float, float]:
+        return (self.saved.summary["end_time"], *self.saved.summary["end_position"])
+
+
+def rerun(saved: SavedRun, output: str | Path | None = None, progress: Progress = silent) -> Rerun:
+    """Run the case of a saved run again; output: as of `run_case`.
+
+    Raises ValueError when the output is the folder of the saved run, whose files would be replaced.
+    """
+    if output is not None and Path(output).resolve() == saved.part_path.parent.resolve():
+        raise ValueError(f"Input output of rerun must be another folder than that of the result; got {output}")
+    now = versions()
+    changed = {key: (old, now.get(key, "none")) for key, old in saved.versions.items() if now.get(key) != old}
+    return Rerun(saved, run_case(saved.case, output, progress), changed)

@@ -15,9 +15,8 @@ from matplotlib.figure import Figure
 from common import unit_for
 from coupling import PlateSummary, Result, read_case, report, run_case
 from coupling.case import Case
-from coupling.display import display_surface, frame_times
-from coupling.pictures import Portrait, draw_path, draw_plate, draw_window, is_visible, map_axes, path_window
-from coupling.pictures.portrait import deflected_most, portrait_of
+from coupling.pictures import draw_path, draw_plate, draw_window, is_visible, map_axes, path_window
+from coupling.pictures.portrait import portrait_of
 
 DOCS = Path(__file__).parent
 CASES = ("transport", "two_actuators")
@@ -31,14 +30,6 @@ def in_theory(case: Case, theory: str) -> Case:
     return case.model_copy(update={"plate": case.plate.model_copy(update={"theory": theory})})
 
 
-def portrait(result: Result) -> Portrait:
-    """What there is to draw of a run, with its plate when it is deflected most."""
-    scene, path = result.scene, result.trajectory
-    surface = display_surface(scene, path)
-    times = frame_times(result.case, scene, float(path.time[-1]))
-    return portrait_of(result.case.name, scene, path, surface, deflected_most(scene, surface, times))
-
-
 def end(summary: PlateSummary) -> str:
     """Where and when a run ended."""
     x, y = (MICRO * c for c in summary.end_position)
@@ -48,7 +39,7 @@ def end(summary: PlateSummary) -> str:
 
 def draw(results: list[Result]) -> Figure:
     """Both paths over their plates; short ones in windows of the same frame, beside the whole plate."""
-    portraits = [portrait(result) for result in results]
+    portraits = [portrait_of(result) for result in results]
     both = np.concatenate([one.samples.position for one in portraits])
     relief = portraits[0].relief
     assert relief is not None

@@ -13,7 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from active_surface.views import run_data
-from coupling import ProgressCallback, Result, SolvedPlates, case_warnings, limit_warnings, read_run, report, run_over
+from coupling import (
+    Output,
+    ProgressCallback,
+    Result,
+    SolvedPlates,
+    case_warnings,
+    limit_warnings,
+    read_run,
+    report,
+    run_over,
+)
 from coupling.case import Case
 from particle import Stopped, stoppable
 
@@ -55,7 +65,7 @@ def _full_answer(case: Case, plates: SolvedPlates, tell: Tell) -> Full:
 
     with TemporaryDirectory(prefix="active-surface-") as folder:
         scene = plates.scene(case, progress)
-        result = run_over(case, scene, Path(folder), progress, picture=False)
+        result = run_over(case, scene, Output(Path(folder), picture=False), progress)
         tell("Drawing", 0, 0)
         data = run_data(read_run(Path(folder, case.name)))
     summary = result.summary

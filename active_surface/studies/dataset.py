@@ -17,7 +17,7 @@ from active_surface.studies.heights import heights_key
 from active_surface.studies.record import COLUMNS, KIND, OUTCOMES, SENTENCES, Records
 from active_surface.studies.stored import AT_ONCE, KIND_ATTRIBUTE, slabs, stored_records
 from active_surface.studies.study import Study, versions
-from coupling import Sink, check_room, whole_file
+from coupling import check_room, whole_file
 from coupling.case import Case, PlateCase
 from meshes import rim_curves
 
@@ -58,10 +58,8 @@ def renew_labels(study: Study, path: Path) -> None:
 
 
 def _write(study: Study, chunks: Iterable[tuple[int, Records]], path: Path, warnings: Sequence[str]) -> None:
-    with Sink(path) as sink:
-        with h5netcdf.File(sink, "w") as file:
-            _fill_in(file, study, chunks, warnings)
-        sink.check()
+    with h5netcdf.File(path, "w") as file:
+        _fill_in(file, study, chunks, warnings)
 
 
 def _fill_in(file: h5netcdf.File, study: Study, chunks: Iterable[tuple[int, Records]], warnings: Sequence[str]) -> None:

@@ -15,10 +15,11 @@ from coupling.display import most_deflected, moving_heights
 from coupling.drives import travel
 from coupling.margins import MarginCurves, Margins
 from coupling.pictures.plate import Relief, relief_of
-from particle import AnyDrive, Event, EventKind, Rows, Samples, Trajectory
+from particle import AnyDrive, Event, EventKind, Rows, Samples
 
 if TYPE_CHECKING:
     from coupling.display import DisplaySurface
+    from coupling.result import Result
     from coupling.scene import Scene
 
 FloatArray = NDArray[np.float64]
@@ -75,16 +76,10 @@ class Portrait:
         return "when it is deflected most" + ("" if self.complete else " of the steps that were written")
 
 
-def portrait_of(
-    case: Case,
-    scene: Scene,
-    trajectory: Trajectory,
-    surface: DisplaySurface,
-    moment: float,
-    margins: Margins,
-    curves: MarginCurves,
-) -> Portrait:
-    """The portrait of a run, with its surface as it is at a moment [s]."""
+def portrait_of(result: Result) -> Portrait:
+    """The portrait of a run that has just ended."""
+    case, scene, trajectory, surface = result.case, result.scene, result.trajectory, result.ground
+    margins, moment = result.summary.margins, deflected_most(scene, surface, result.frames)
     end, drives = float(trajectory.time[-1]), [*scene.lifts, *scene.base]
     cycles = end * max(drive.frequency for drive in drives if travel(drive) > 0 or drive is drives[0])
     samples = int(np.clip(PER_CYCLE * cycles, SAMPLES, MAX_SAMPLES))
@@ -100,7 +95,7 @@ def portrait_of(
         moment,
         scene.base,
         chosen_drives(case, scene.lifts, margins),
-        curves,
+        result.margin_curves,
         margins.by_pull_off,
         decisive_moment(trajectory.events, margins),
     )

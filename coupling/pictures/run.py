@@ -15,19 +15,14 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
 from common import Drawing, Unit, draw, figure_of, label_places, unit_for
-from coupling.case import Case
-from coupling.display import DisplaySurface, display_surface, frame_times
-from coupling.margins import MarginCurves, Margins, margin_curves, margins_of
-from coupling.part import build_friction
 from coupling.pictures.events import MARKS, draw_events
 from coupling.pictures.figure import map_axes, put_keys, put_title, save_picture
 from coupling.pictures.path import draw_path, is_visible, path_window
 from coupling.pictures.plate import AXES_WIDTH, draw_plate, draw_window, join
-from coupling.pictures.portrait import LOSSES, Portrait, deflected_most, portrait_of
+from coupling.pictures.portrait import LOSSES, Portrait, portrait_of
 from coupling.pictures.time import Curves, Span, curves_of, draw_over_time
 from coupling.result import Result
-from coupling.scene import Scene
-from particle import HALO, Trajectory, shade_keys
+from particle import HALO, shade_keys
 
 PANEL = 5.0  # inches, about: the side of a map
 ROW, STRIP = 1.4, 0.16  # inches: the heights of a row over time, and of the strip of events
@@ -36,33 +31,15 @@ NARROWEST = 7.6  # inches, of the picture
 MANY, SHOWN = 30.0, 6.0  # cycles: a longer run is drawn twice over time, whole and around the decisive moment
 
 
-def draw_run(
-    case: Case,
-    scene: Scene,
-    trajectory: Trajectory,
-    surface: DisplaySurface,
-    moment: float,
-    path: Path,
-    margins: Margins,
-    curves: MarginCurves,
-) -> None:
-    """Draw the run into a PNG file; moment: the time [s] at which the surface is drawn."""
-    figure = Drawing()
-    compose(figure, portrait_of(case, scene, trajectory, surface, moment, margins, curves))
-    save_picture(figure, path)
+def draw_run(result: Result, path: Path) -> Path:
+    """Draw a run into a PNG file; return its path."""
+    return save_picture(draw_result(result), path)
 
 
 @draw.register(Result)
 def draw_result(result: Result, axes: Axes | None = None) -> Figure:
     """Draw a run; with axes in m, only the path over its surface, into these."""
-    case, scene, trajectory = result.case, result.scene, result.trajectory
-    surface = display_surface(scene, trajectory)
-    times = frame_times(case, scene, float(trajectory.time[-1]))
-    moment = deflected_most(scene, surface, times)
-    friction = build_friction(case)
-    margins = margins_of(case, scene, trajectory, friction)
-    curves = margin_curves(case, scene.surface, trajectory, friction)
-    portrait = portrait_of(case, scene, trajectory, surface, moment, margins, curves)
+    portrait, trajectory = portrait_of(result), result.trajectory
     if axes is None:
         drawing = Drawing()
         compose(drawing, portrait)

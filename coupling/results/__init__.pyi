@@ -1,7 +1,6 @@
 from .case_record import CaseRecord as CaseRecord, files_of as files_of, record_of as record_of
-from .csv_file import check_csv as check_csv
 from .export import export_run as export_run
-from .results import write_results as write_results
+from .results import Output as Output, write_results as write_results
 from .saved import (
     ENDINGS as ENDINGS,
     SavedRun as SavedRun,

@@ -17,8 +17,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.files import whole_file
-from coupling.new_file import NewFile
+from coupling.files import check_room, whole_file
 from coupling.progress import ProgressCallback, no_progress
 from coupling.results.csv_file import HEADER, csv_rows, is_trajectory
 from coupling.results.saved import OF_PART, SavedRun
@@ -136,6 +135,7 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
 
         first: NDArray | None = None
         for k, frame in enumerate(frames):
+            check_room(folder, sum(array.nbytes for array in (cells, frame.points, *frame.fields.values())))
             first = frame.points if first is None else first
             grid = ET.SubElement(steps, "Grid", Name=f"step {k}", GridType="Uniform")
             ET.SubElement(grid, "Time", Value=repr(frame.time))
@@ -153,7 +153,7 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
 def _numbers(folder: Path, name: str) -> Iterator[h5py.File]:
     """NAME.h5 to write to; once whole it replaces the old one, and NAME.xdmf, which is of the old numbers, goes."""
     with whole_file(folder / f"{name}.h5") as partial:
-        with NewFile(partial) as file:
+        with h5py.File(partial, "w") as file:
             yield file
         (folder / f"{name}.xdmf").unlink(missing_ok=True)
 

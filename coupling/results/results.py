@@ -1,41 +1,32 @@
-"""Result files of a run: two VTKHDF files on one time axis, a picture, and on request a CSV file."""
+"""Result files of a run: two VTKHDF files on one time axis, on request the trajectory and the moving surface."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
-from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coupling.case import Case
-from coupling.display import (
-    DisplaySurface,
-    display_surface,
-    frame_times,
-    most_deflected,
-    moving_heights,
-    onto_surface,
-)
+from coupling.display import DisplaySurface, moving_heights, onto_surface
 from coupling.environment import versions
 from coupling.files import check_room
-from coupling.margins import MarginCurves, event_actuators, margin_curves
+from coupling.margins import MarginCurves, event_actuators
 from coupling.part import build_friction
 from coupling.progress import ProgressCallback, no_progress
+from coupling.result import Result
 from coupling.results.case_record import CaseRecord
-from coupling.results.csv_file import is_trajectory, write_csv
+from coupling.results.csv_file import check_csv, is_trajectory, write_csv
 from coupling.results.vtkhdf import part_file, plate_file
-from coupling.scene import Scene
-from coupling.summary import Summary
-from coupling.surface import is_surface
+from coupling.surface import check_surface, is_surface, write_surface
 from particle import KogutEtsion, Samples, Trajectory
-from particle.friction import Contact
 
 FloatArray = NDArray[np.float64]
 
-PART_STEP, ROOM = 500, 2_000_000  # bytes of a step of the part, and of what does not grow with the run
+PART_STEP = 500  # bytes of a step of the part
 AT_ONCE = 64  # time steps whose deflections are computed and written together
 UNITS = {
     "time": "s",
@@ -60,92 +51,78 @@ UNITS = {
 }
 
 
+@dataclass(frozen=True)
+class Output:
+    """What of a run is written, and where."""
+
+    folder: Path
+    csv: bool = False  # whether there is NAME.csv, the trajectory
+    surface: bool = False  # whether there is NAME.surface.h5, the moving surface
+    forces: bool = False  # whether the part's file and the CSV have the parts of the contact's force
+    picture: bool = True  # whether there is NAME.png
+
+    def check(self, name: str) -> None:
+        """Raise ValueError where NAME.csv or NAME.surface.h5 would replace something else."""
+        if self.csv:
+            check_csv(self.folder / f"{name}.csv")
+        if self.surface:
+            check_surface(self.folder / f"{name}.surface.h5")
+
+
 def write_results(
-    case: Case,
-    record: CaseRecord,
-    scene: Scene,
-    trajectory: Trajectory,
-    summary: Summary,
-    folder: Path,
-    csv: bool = False,
-    tell: ProgressCallback = no_progress,
-    friction: Contact | None = None,
-    with_picture: bool = True,
-) -> tuple[Path, ...]:
-    """Writes NAME.plate.vtkhdf, NAME.part.vtkhdf and NAME.png into the folder, made if need be; returns their paths.
+    result: Result, record: CaseRecord, output: Output, tell: ProgressCallback = no_progress
+) -> tuple[list[Path], list[Path]]:
+    """Write NAME.plate.vtkhdf and NAME.part.vtkhdf, and what else is wanted but a picture; return the paths of both.
 
-    A picture that cannot be drawn is left out, with a RuntimeWarning.
+    The folder is made if need be. What a run of an older case left there goes.
 
-    record: of the case, taken before the work: later its files may be others.  csv: whether to write NAME.csv as well.
-    tell: gets how many time steps are written, and of how many.  friction: the contact's forces go to the part's file
-    and the CSV, too.  with_picture: whether the picture is wanted.
+    record: of the case, taken before the work: later its files may be others.
+    tell: gets how many time steps are written, and of how many.
     """
+    case, scene, trajectory, folder = result.case, result.scene, result.trajectory, output.folder
     folder.mkdir(parents=True, exist_ok=True)
-    times = frame_times(case, scene, float(trajectory.time[-1]))
-    ground = display_surface(scene, trajectory)
+    times, ground, friction = result.frames, result.ground, build_friction(case)
     heights, speeds = moving_heights(scene, times), moving_heights(scene, times, 1)
     metadata: dict[str, str | int] = {
         "run": uuid4().hex,  # the same in both files, which so find each other
         "case": case.source or record.text,
-        "summary": json.dumps(summary.as_dict()),
+        "summary": json.dumps(result.summary.as_dict()),
         "units": json.dumps(UNITS | {"points": f"m, counted from {scene.origin}"}),
         "versions": json.dumps(versions()),
         "actuators": len(case.actuators),
     }
     samples = trajectory.at(times)
-    position = np.column_stack([onto_surface(scene, samples.position), samples.height])
-    velocity = np.column_stack([samples.velocity, samples.vertical_velocity])
     rough = friction if isinstance(friction, KogutEtsion) else None
-    forces = {} if friction is None else _contact_fields(trajectory, times, rough)
-    law = build_friction(case)
-    curves = margin_curves(case, scene.surface, trajectory, law)
-    by = event_actuators(case, scene, trajectory, law)
-    check_room(
-        folder, _needed(_fields(ground, heights[:1], speeds[:1], len(scene.lifts), times[:1]), times, trajectory)
-    )
-    spread: list[FloatArray] = []
+    of_part: dict[str, NDArray[Any]] = {
+        "velocity": np.column_stack([samples.velocity, samples.vertical_velocity]),
+        "state": samples.state,
+        "normal_force": samples.normal_force,
+        "friction_force": samples.friction_force,
+        **(_contact_fields(trajectory, times, rough) if output.forces else {}),
+    }
+    position = np.column_stack([onto_surface(scene, samples.position), samples.height])
+    arrays = _arrays(record, trajectory, result.margin_curves, event_actuators(case, scene, trajectory, friction))
+    step = _fields(ground, heights[:1], speeds[:1], len(scene.lifts), times[:1])
+    step_size = sum(values.nbytes for values in step.values()) + PART_STEP
+    check_room(folder, len(times) * step_size + sum(values.nbytes for values in arrays["rows"].values()))
     with (
         plate_file(folder, case.name, ground.points, ground.triangles, metadata) as plate,
         part_file(folder, case.name, metadata) as part,
     ):
-        for group, arrays in _arrays(record, trajectory, curves, by).items():
-            part.add_arrays(group, arrays)
+        for group, members in arrays.items():
+            part.add_arrays(group, members)
         for first in range(0, len(times), AT_ONCE):
             tell(first, len(times))
             some = slice(first, first + AT_ONCE)
-            fields = _fields(ground, heights[some], speeds[some], len(scene.lifts), times[some])
-            spread.append(np.square(fields["deflection"], dtype=np.float64).mean(axis=1))
-            plate.append(times[some], **fields)
-            part.append(
-                times[some],
-                position[some],
-                velocity=velocity[some],
-                state=samples.state[some],
-                normal_force=samples.normal_force[some],
-                friction_force=samples.friction_force[some],
-                **{name: values[some] for name, values in forces.items()},
-            )
-    picture = folder / f"{case.name}.png"
-    files = [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"]
+            plate.append(times[some], **_fields(ground, heights[some], speeds[some], len(scene.lifts), times[some]))
+            part.append(times[some], position[some], **{name: values[some] for name, values in of_part.items()})
     _clear(folder, case.name)
-    if with_picture:
-        try:
-            from coupling.pictures import draw_run  # here, because it loads matplotlib
-
-            moment = float(times[most_deflected(np.concatenate(spread))])
-            draw_run(case, scene, trajectory, ground, moment, picture, summary.margins, curves)
-            files.append(picture)
-        except Exception as error:  # the run is finished, whatever becomes of its picture
-            warn(f"{picture} could not be drawn: {error}", RuntimeWarning, stacklevel=2)
-    if csv:
-        files.append(write_csv(trajectory, folder / f"{case.name}.csv", times, friction is not None, rough))
-    return tuple(files)
-
-
-def _needed(fields: dict[str, NDArray[np.float32]], times: FloatArray, trajectory: Trajectory) -> int:
-    """How many bytes the files take at most; fields: of one time step."""
-    rows = sum(np.asarray(getattr(trajectory, key)).nbytes for key in Samples._fields)
-    return len(times) * (sum(values.nbytes for values in fields.values()) + PART_STEP) + rows + ROOM
+    further = []
+    if output.csv:
+        further.append(write_csv(trajectory, folder / f"{case.name}.csv", times, output.forces, rough))
+    if output.surface:
+        further.append(write_surface(scene.surface, folder / f"{case.name}.surface.h5"))
+    return [folder / f"{case.name}.plate.vtkhdf", folder / f"{case.name}.part.vtkhdf"], further
 
 
 def _contact_fields(trajectory: Trajectory, times: FloatArray, friction: KogutEtsion | None) -> dict[str, FloatArray]:

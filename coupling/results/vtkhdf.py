@@ -13,43 +13,134 @@ Metadata are attributes, and further arrays datasets, of the group `/active_surf
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import math
+import time
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import TypeVar
+from types import MappingProxyType
+from typing import Any, TypeVar
 
 import h5py  # type: ignore[import-untyped]
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from coupling.files import whole_file
-from coupling.new_file import NewFile
-from coupling.results.steps_file import GZIP, Filters, Metadata, StepsFile, growing
+from coupling.files import check_room, whole_file
+
+Metadata = Mapping[str, str | float | int]
+NONE: Metadata = MappingProxyType({})
+
+FLUSH_AFTER = 0.1  # s, of which a kill of the process can lose the steps, and those of the block before
+GZIP: Mapping[str, Any] = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
+ROWS = 256  # of small datasets, in a chunk
+
+
+class StepsFile:
+    """Steps, fields and metadata of an open file, whose single piece keeps its topology.
+
+    A scalar field has `shape` at each step, a vector field `(*shape, 3)`. `topologies` is () if VTK keeps one list
+    of cells for this `data_type`, (k,) if it keeps k.
+    """
+
+    def __init__(self, file: h5py.File, data_type: str, shape: tuple[int, ...], topologies: tuple[int, ...]) -> None:
+        self._file, self._shape, self._n_points = file, shape, math.prod(shape)
+        self._times = np.empty(0)
+        self._flushed = -math.inf  # when, on the monotonic clock
+        self._metadata = file.create_group("active_surface")
+
+        self._root = file.create_group("VTKHDF")
+        self._root.attrs["Version"] = (2, 0)  # the first with time steps
+        self._root.attrs["Type"] = np.bytes_(data_type)
+        self._root["NumberOfPoints"] = [self._n_points]
+
+        self._steps = self._root.create_group("Steps")
+        self._steps.attrs["NSteps"] = 0
+        growing(self._steps, "Values", np.float64)
+        growing(self._steps, "PointOffsets", np.int64)
+        # The same at every step: one piece, read from the start of its topology.
+        cells = np.zeros((1, *topologies), np.int64)
+        self._constants = {"CellOffsets": cells, "ConnectivityIdOffsets": cells}
+        self._constants |= {"NumberOfParts": np.ones(1, np.int64), "PartOffsets": np.zeros(1, np.int64)}
+        for name, row in self._constants.items():
+            growing(self._steps, name, np.int64, row.shape[1:])
+
+    @property
+    def count(self) -> int:
+        """How many steps it has."""
+        return len(self._times)
+
+    def add_metadata(self, metadata: Metadata) -> None:
+        """Store texts and numbers as attributes of `/active_surface`; a key given before gets the new value."""
+        for key, value in metadata.items():
+            self._metadata.attrs[key] = value
+
+    def add_arrays(self, group: str, arrays: Mapping[str, ArrayLike]) -> None:
+        """Store arrays in the group `/active_surface/GROUP`, which has none of these names yet."""
+        made, data = self._metadata.require_group(group), {name: np.asarray(array) for name, array in arrays.items()}
+        self._check_room(data)
+        for name, array in data.items():
+            made.create_dataset(name, data=array, **(GZIP if array.size else {}))
+
+    def flush(self) -> None:
+        """Put all steps so far on disk, where they outlive this process."""
+        self._file.flush()  # the data first: NSteps must not count what is not there
+        # VTK copies all of Values, unchecked, into room for NSteps numbers. So the two change only here, together.
+        _write(self._steps["Values"], 0, self._times)
+        self._steps.attrs.modify("NSteps", self.count)
+        self._file.flush()
+        self._flushed = time.monotonic()
+
+    def _append(self, times: ArrayLike, fields: Mapping[str, ArrayLike], points: ArrayLike | None = None) -> None:
+        """Write a step at a time () [s] or k at (k,), later than the last, with points (3,) or (k, 3) if these move.
+
+        All steps have the same fields. Raises OSError, and writes nothing, where the disk has no room.
+        """
+        new, first = np.atleast_1d(np.asarray(times, np.float64)), self.count
+        arrays = {name: np.asarray(values) for name, values in fields.items()}
+        self._check_room(arrays)
+        steps = np.arange(first, first + len(new))
+        for name, array in arrays.items():
+            rows = array.reshape(len(new) * self._n_points, *array.shape[np.ndim(times) + len(self._shape) :])
+            if not first:
+                dtype = array.dtype if array.dtype == np.float32 else float if array.dtype.kind == "f" else np.int64
+                growing(self._steps, f"PointDataOffsets/{name}", np.int64)
+                growing(self._root, f"PointData/{name}", dtype, rows.shape[1:], self._n_points)
+            _write(self._root["PointData"][name], first * self._n_points, rows)
+            _write(self._steps["PointDataOffsets"][name], first, steps * self._n_points)
+        for name, row in self._constants.items():
+            _write(self._steps[name], first, np.repeat(row, len(steps), axis=0))
+        _write(self._steps["PointOffsets"], first, np.zeros_like(steps) if points is None else steps)
+        if points is not None:
+            _write(self._root["Points"], first, np.reshape(points, (-1, 3)))
+        self._times = np.concatenate([self._times, new])
+        if time.monotonic() - self._flushed >= FLUSH_AFTER:
+            self.flush()
+
+    def _check_room(self, arrays: Mapping[str, Any]) -> None:
+        path, needed = Path(self._file.filename), sum(array.nbytes for array in arrays.values())
+        check_room(path.parent, needed, f"; {path.name} has what was written before")
 
 
 class PlateFile(StepsFile):
     """The open result file of the plate; `plate_file` makes it."""
 
-    def __init__(
-        self, file: h5py.File, points: NDArray[np.float64], triangles: NDArray[np.int64], filters: Filters
-    ) -> None:
-        super().__init__(file, "UnstructuredGrid", shape=(len(points),), topologies=(), filters=filters)
+    def __init__(self, file: h5py.File, points: NDArray[np.float64], triangles: NDArray[np.int64]) -> None:
+        super().__init__(file, "UnstructuredGrid", shape=(len(points),), topologies=())
         offsets = np.arange(0, triangles.size + 1, 3)
         types = np.full(len(triangles), 5, np.uint8)  # VTK_TRIANGLE
         mesh = {"Points": points, "Connectivity": triangles.ravel(), "Offsets": offsets, "Types": types}
+        self._check_room(mesh)
         for name, data in mesh.items():
-            self._root.create_dataset(name, data=data, **filters)
+            self._root.create_dataset(name, data=data, **GZIP)
         self._root["NumberOfCells"] = [len(triangles)]
         self._root["NumberOfConnectivityIds"] = [triangles.size]
 
     def append(self, times: ArrayLike, *, deflection: ArrayLike, **fields: ArrayLike) -> None:
         """Add the step at a time () [s]: the deflection (n,) [m], and any fields (n,) or (n, 3), in SI units.
 
-        Or k steps at times (k,), all with a first axis of k: much faster. The first step fixes the fields. Integers and
-        truth values are stored as int64, float32 as it is, any other number as float64.
-
-        Raises ValueError, and writes nothing, if a time is not finite or not later than the last, or if a field
-        has a wrong shape or type, is missing or is new.
+        Or k steps at times (k,), all with a first axis of k: much faster. The first step fixes the fields; times
+        increase. Integers and truth values are stored as int64, float32 as it is, any other number as float64.
+        Raises OSError, and writes nothing, where the disk has no room.
         """
         self._append(times, {"deflection": deflection, **fields})
 
@@ -57,8 +148,8 @@ class PlateFile(StepsFile):
 class PartFile(StepsFile):
     """The open result file of the part; `part_file` makes it."""
 
-    def __init__(self, file: h5py.File, filters: Filters) -> None:
-        super().__init__(file, "PolyData", shape=(), topologies=(4,), filters=filters)
+    def __init__(self, file: h5py.File) -> None:
+        super().__init__(file, "PolyData", shape=(), topologies=(4,))
         growing(self._root, "Points", np.float64, (3,))
         for name, n_cells in {"Vertices": 1, "Lines": 0, "Polygons": 0, "Strips": 0}.items():  # VTK wants all four
             cells = self._root.create_group(name)
@@ -69,53 +160,27 @@ class PartFile(StepsFile):
     def append(self, times: ArrayLike, position: ArrayLike, **fields: ArrayLike) -> None:
         """Add a step, or k: the position (3,) [m], z being the surface's height, and any fields () or (3,).
 
-        Times and fields are as in `PlateFile.append`, which has the errors, too; ValueError also if the position is not
-        three numbers.
+        Times and fields are as in `PlateFile.append`.
         """
-        points, shape = np.asarray(position, np.float64), (*np.shape(times), 3)
-        if points.shape != shape:
-            raise ValueError(f"the position has shape {points.shape}; it must have {shape}")
-        self._append(times, fields, points)
+        self._append(times, fields, position)
 
 
 def plate_file(
-    directory: str | Path,
-    name: str,
-    points: ArrayLike,
-    triangles: ArrayLike,
-    metadata: Metadata | None = None,
-    compress: bool = True,
+    folder: str | Path, name: str, points: NDArray[np.float64], triangles: NDArray[np.int64], metadata: Metadata = NONE
 ) -> AbstractContextManager[PlateFile]:
-    """Write `NAME.plate.vtkhdf` in the existing `directory`, replacing it when the `with` block ends well.
+    """Write `NAME.plate.vtkhdf` in an existing folder, replacing it when the `with` block ends well.
 
     `points` (n, 2) or (n, 3) [m] are at rest, with z = 0 if not given; `triangles` (m, 3) are their numbers from 0.
-    compress: whether by gzip, which loses nothing.
 
-    Raises ValueError for points or triangles of another shape or without meaning, and at the end if no step was
-    appended; OSError if the file cannot be written.
+    Raises OSError if the file cannot be written, BlockingIOError where another process writes it.
     """
-    corners = np.asarray(points, np.float64)
-    if corners.ndim != 2 or corners.shape[1] not in (2, 3) or not np.isfinite(corners).all():
-        raise ValueError(f"points of shape {corners.shape} are refused: they must be finite, (n, 2) or (n, 3)")
-    corners = np.pad(corners, ((0, 0), (0, 3 - corners.shape[1])))
-    cells = np.asarray(triangles)
-    if cells.ndim != 2 or cells.shape[1] != 3 or cells.dtype.kind not in "iu" or not len(cells):
-        raise ValueError(f"triangles of shape {cells.shape}, {cells.dtype}, are refused: they must be integers (m, 3)")
-    if cells.min() < 0 or cells.max() >= len(corners):
-        raise ValueError(f"triangles name points {cells.min()} to {cells.max()}; there are {len(corners)} points")
-    filters, numbers = GZIP if compress else {}, cells.astype(np.int64)
-    return _written(lambda file: PlateFile(file, corners, numbers, filters), directory, name, "plate", metadata)
+    in_space = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
+    return _written(lambda file: PlateFile(file, in_space, triangles), Path(folder), name, "plate", metadata)
 
 
-def part_file(
-    directory: str | Path, name: str, metadata: Metadata | None = None, compress: bool = True
-) -> AbstractContextManager[PartFile]:
-    """Write `NAME.part.vtkhdf` in the existing `directory`, replacing it when the `with` block ends well.
-
-    Raises ValueError at the end if no step was appended; OSError if the file cannot be written.
-    """
-    filters = GZIP if compress else {}
-    return _written(lambda file: PartFile(file, filters), directory, name, "part", metadata)
+def part_file(folder: str | Path, name: str, metadata: Metadata = NONE) -> AbstractContextManager[PartFile]:
+    """Write `NAME.part.vtkhdf` in an existing folder; the rest is as in `plate_file`."""
+    return _written(PartFile, Path(folder), name, "part", metadata)
 
 
 AnyFile = TypeVar("AnyFile", bound=StepsFile)
@@ -123,21 +188,47 @@ AnyFile = TypeVar("AnyFile", bound=StepsFile)
 
 @contextmanager
 def _written(
-    create: Callable[[h5py.File], AnyFile], directory: str | Path, name: str, kind: str, metadata: Metadata | None
+    create: Callable[[h5py.File], AnyFile], folder: Path, name: str, kind: str, metadata: Metadata
 ) -> Iterator[AnyFile]:
     """Yield the file that `create` lays out under its partial name; give it the final name if all goes well."""
-    partial = Path(directory, f"{name}.partial.{kind}.vtkhdf")
-    with whole_file(Path(directory, f"{name}.{kind}.vtkhdf"), partial, keep=True):
+    partial = folder / f"{name}.partial.{kind}.vtkhdf"
+    with whole_file(folder / f"{name}.{kind}.vtkhdf", partial, keep=True), _opened(partial) as file:
+        result = create(file)
+        result.add_metadata(metadata)
         try:
-            opened = NewFile(partial)
-        except BlockingIOError as error:
-            raise BlockingIOError(error.errno, "another run is writing it", str(partial)) from error
-        with opened as file:
-            result = create(file)
-            result.add_metadata(metadata or {})
-            try:
-                yield result
-            finally:
-                result.flush()
-            if not result.count:
-                raise ValueError(f"{partial} has no step")
+            yield result
+        finally:
+            result.flush()
+
+
+def _opened(path: Path) -> h5py.File:
+    """The file, emptied unless another process writes it, which is a BlockingIOError."""
+    try:
+        try:
+            h5py.File(path, "r").close()  # to open it for writing empties it before the lock is tried
+        except BlockingIOError:
+            raise
+        except OSError:
+            pass  # there is none, or what a kill left
+        return h5py.File(path, "w")
+    except BlockingIOError as error:
+        raise BlockingIOError(error.errno, "another run is writing it", str(path)) from error
+
+
+def growing(
+    group: h5py.Group, name: str, dtype: DTypeLike, columns: tuple[int, ...] = (), rows_per_step: int = 1
+) -> h5py.Dataset:
+    """A dataset without rows yet. Large steps make a chunk each, which gzip compresses, and so are written once.
+
+    Single rows share chunks that are rewritten with each row. They stay uncompressed, lest the chunks move about.
+    """
+    chunk, filters = (ROWS, {}) if rows_per_step == 1 else (rows_per_step, GZIP)
+    shape, limits, chunks = ((rows, *columns) for rows in (0, None, chunk))
+    return group.create_dataset(name, shape, dtype, maxshape=limits, chunks=chunks, **filters)
+
+
+def _write(dataset: h5py.Dataset, start: int, rows: NDArray[Any]) -> None:
+    """Make `rows` the last rows of the dataset, from row `start` on."""
+    dataset.resize(start + len(rows), axis=0)
+    if len(rows):
+        dataset[start:] = rows

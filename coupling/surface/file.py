@@ -10,8 +10,7 @@ import h5py
 import numpy as np
 
 from common import UNREADABLE, check_hdf5, survives
-from coupling.files import whole_file
-from coupling.new_file import NewFile
+from coupling.files import check_room, whole_file
 from particle import SurfaceMotion
 from particle.drives import DriveTable
 from particle.surface import BuiltCells, cells_of, columns_of
@@ -47,13 +46,15 @@ def write_surface(surface: SurfaceMotion, path: str | os.PathLike[str]) -> Path:
     """
     path = Path(path)
     check_surface(path)
-    with whole_file(path) as partial, NewFile(partial) as file:
+    tables = {"drives": surface.drives._asdict(), "cells": columns_of(surface.store.cells)}
+    check_room(path.parent, sum(np.asarray(value).nbytes for table in tables.values() for value in table.values()))
+    with whole_file(path) as partial, h5py.File(partial, "w") as file:
         file.attrs.update(kind=KIND, version=VERSION, error=surface.error, moving_base=surface.moving_base)
         file.attrs["in_plane_count"] = surface.in_plane_count
         file.attrs.update({name: getattr(surface, name) for name in LENGTHS})
         for name in ("sources", "conics", "edges"):
             file[name] = getattr(surface, name)
-        for group, table in (("drives", surface.drives._asdict()), ("cells", columns_of(surface.store.cells))):
+        for group, table in tables.items():
             for name, value in table.items():
                 file[f"{group}/{name}"] = value
     return path

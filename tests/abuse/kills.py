@@ -34,15 +34,15 @@ LONGEST = 0.5  # s of steps that a kill may lose
 # What the command runs, with a line for each write and flush: the kind of file, its steps, what it was, and when.
 SPY = """
 import os, time
-from coupling.results import steps_file
+from coupling.results import vtkhdf
 def spied(name):
-    plain = getattr(steps_file.StepsFile, name)
+    plain = getattr(vtkhdf.StepsFile, name)
     def call(self, *arguments):
         begun = time.monotonic()
         plain(self, *arguments)
         kind, when = type(self).__name__[:-4].lower(), begun if name == "_append" else time.monotonic()
         os.write(1, f"{kind} {self.count} {name} {when}\\n".encode())
-    setattr(steps_file.StepsFile, name, call)
+    setattr(vtkhdf.StepsFile, name, call)
 spied("flush")
 spied("_append")
 from active_surface.cli.program import main

@@ -11,10 +11,9 @@ from matplotlib.lines import Line2D
 from common import Unit, quantity_text, range_text, unit_for
 from coupling.case import ActuatorCase, Case, ConstantCase, CoulombCase, PartCase, RunCase
 from coupling.display.mesh import display_mesh
-from coupling.display.surface import DisplaySurface, deflections, display_surface, most_deflected
+from coupling.display.surface import DisplaySurface, deflections, most_deflected
 from coupling.drives import build_drives
-from coupling.margins import Margin, Margins, margin_curves
-from coupling.part import build_friction
+from coupling.margins import Margin, Margins
 from coupling.pictures.figure import put_keys
 from coupling.pictures.path import MAX_LENGTHS, MIN_LENGTHS, path_window
 from coupling.pictures.plate import BOTH_WAYS, UPWARDS, Scale, draw_plate, fine_piece, relief_of
@@ -123,13 +122,6 @@ def test_the_moment_shown_is_the_first_of_the_most():
     assert most_deflected(np.zeros(5)) == 0
 
 
-def portrait(result, ground, moment):
-    """The portrait of a run."""
-    case, margins, friction = result.case, result.summary.margins, build_friction(result.case)
-    curves = margin_curves(case, result.surface, result.trajectory, friction)
-    return portrait_of(case, result.scene, result.trajectory, ground, moment, margins, curves)
-
-
 def drawn(case, tmp_path):
     """The figure of a run, drawn, with warnings as errors."""
     result = run_case(case, tmp_path)
@@ -137,8 +129,7 @@ def drawn(case, tmp_path):
     canvas = FigureCanvasAgg(figure)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        ground = display_surface(result.scene, result.trajectory)
-        compose(figure, portrait(result, ground, result.trajectory.time[-1] / 3))
+        compose(figure, portrait_of(result))
         canvas.draw()
     return figure
 
@@ -197,7 +188,7 @@ def test_a_run_that_slips_has_strokes_and_margins_over_time_and_a_line_where_it_
     lost = case.vary({"friction": CoulombCase(coefficient=0.4, adhesion=1e-7)})
     result = run_case(lost)
     assert result.summary.outcome == "detached"
-    found = portrait(result, display_surface(result.scene, result.trajectory), 1e-4)
+    found = portrait_of(result)
     off = result.trajectory.events[-1]
     assert found.decisive == off.time and found.why == "when it is lost"
     assert list(found.drives) == ["actuator 0", "actuator 1"]

@@ -19,11 +19,8 @@ from active_surface.views.prints.run_pictures import courses, run_pictures
 from active_surface.views.prints.saved_portrait import portrait_of_saved
 from active_surface.views.prints.sheet import MM, drawn
 from coupling import read_case, run_case
-from coupling.display import display_surface
-from coupling.margins import margin_curves
-from coupling.part import build_friction
 from coupling.pictures.events import MARKS
-from coupling.pictures.portrait import deflected_most, portrait_of
+from coupling.pictures.portrait import portrait_of
 from coupling.results.saved import read_run
 from particle import EventKind
 
@@ -101,17 +98,7 @@ def test_pictures_of_a_run_can_be_read(tmp_path, name, width):
 def test_a_saved_run_looks_as_the_run_itself(folder):
     result = ran(folder, duration="2 ms")
     saved = portrait_of_saved(read_run(folder / "case"))
-    ground = display_surface(result.scene, result.trajectory)
-    times = read_run(folder / "case").time
-    found = portrait_of(
-        result.case,
-        result.scene,
-        result.trajectory,
-        ground,
-        deflected_most(result.scene, ground, times),
-        result.summary.margins,
-        margin_curves(result.case, result.surface, result.trajectory, build_friction(result.case)),
-    )
+    found = portrait_of(result)
     assert saved.decisive == found.decisive and list(saved.drives) == list(found.drives)
     for one, other in zip(saved.margins, found.margins, strict=True):
         np.testing.assert_array_equal(one, other)

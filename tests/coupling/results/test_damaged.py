@@ -103,7 +103,11 @@ def rows_that_are_not_there(file):
 
 
 DAMAGES = [
-    ("part", summary_without("squeeze"), "which is damaged: the summary has no valid squeeze, as that of another version may"),
+    (
+        "part",
+        summary_without("squeeze"),
+        "the summary has no valid squeeze, as that of another version may",
+    ),
     ("part", with_summary('{"some": 1}'), "which is damaged: the summary has no valid "),
     ("part", thresholds_without_a_field, "which is damaged: the summary has no valid thresholds"),
     ("part", with_summary("text"), "which is damaged: Expecting value"),

@@ -26,19 +26,19 @@ from vtkhdf_files import (
 )
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
-from coupling.results import steps_file, vtkhdf
+from coupling.results import vtkhdf
 
 ROOT = Path(vtkhdf.__file__).parents[2]
 
 
-def write_plate(directory: Path, steps: int = N_STEPS, first: int = 0, compress: bool = True) -> None:
-    with vtkhdf.plate_file(directory, "run", POINTS, TRIANGLES, compress=compress) as plate:
+def write_plate(directory: Path, steps: int = N_STEPS, first: int = 0) -> None:
+    with vtkhdf.plate_file(directory, "run", POINTS, TRIANGLES) as plate:
         for k in range(first, first + steps):
             plate.append(TIMES[k], deflection=bump(k), gradient=gradient(k))
 
 
-def write_part(directory: Path, steps: int = N_STEPS, compress: bool = True) -> None:
-    with vtkhdf.part_file(directory, "run", compress=compress) as part:
+def write_part(directory: Path, steps: int = N_STEPS) -> None:
+    with vtkhdf.part_file(directory, "run") as part:
         for k in range(steps):
             part.append(TIMES[k], position(k), **part_fields(k))
 
@@ -61,9 +61,8 @@ def assert_part_step(path: Path, step: int) -> None:
     assert mesh["state"].dtype == np.int64
 
 
-@pytest.mark.parametrize("compress", [True, False])
-def test_vtk_reads_every_step_of_the_plate(tmp_path: Path, compress: bool) -> None:
-    write_plate(tmp_path, compress=compress)
+def test_vtk_reads_every_step_of_the_plate(tmp_path: Path) -> None:
+    write_plate(tmp_path)
     path = tmp_path / "run.plate.vtkhdf"
     assert names(tmp_path) == [path.name]
     assert times_in_vtk(path) == TIMES
@@ -71,9 +70,8 @@ def test_vtk_reads_every_step_of_the_plate(tmp_path: Path, compress: bool) -> No
         assert_plate_step(path, step)
 
 
-@pytest.mark.parametrize("compress", [True, False])
-def test_vtk_reads_every_step_of_the_part(tmp_path: Path, compress: bool) -> None:
-    write_part(tmp_path, compress=compress)
+def test_vtk_reads_every_step_of_the_part(tmp_path: Path) -> None:
+    write_part(tmp_path)
     path = tmp_path / "run.part.vtkhdf"
     assert names(tmp_path) == [path.name]
     assert times_in_vtk(path) == TIMES
@@ -130,8 +128,8 @@ CHILD = """
 import sys
 sys.path[:0] = sys.argv[2:]
 from vtkhdf_files import *
-from coupling.results import steps_file, vtkhdf
-steps_file.FLUSH_AFTER = 0.0
+from coupling.results import vtkhdf
+vtkhdf.FLUSH_AFTER = 0.0
 with vtkhdf.plate_file(sys.argv[1], "run", POINTS, TRIANGLES, {"case": "text"}) as plate, \\
         vtkhdf.part_file(sys.argv[1], "run") as part:
     for k in range(N_STEPS - 1):
@@ -160,7 +158,7 @@ def test_a_kill_leaves_partial_files_with_the_flushed_steps(tmp_path: Path) -> N
 
 def test_steps_are_flushed_at_least_every_half_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
-    monkeypatch.setattr(steps_file.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(vtkhdf.time, "monotonic", lambda: clock[0])
     flushed = 0.0
     with vtkhdf.part_file(tmp_path, "run") as part:
         for k in range(N_STEPS):
