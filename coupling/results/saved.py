@@ -19,9 +19,21 @@ from common import DEADLY, check_hdf5, survives
 from coupling.case import Case
 from coupling.margins import MarginCurves
 from coupling.results.case_record import CaseRecord, case_of
-from coupling.results.numbers import check_finite, check_shapes, checked_cells, checked_count
-from coupling.results.opening import EXPECTED, opened, readable
-from coupling.results.other_file import described, meant
+from coupling.results.opening import (
+    ENDINGS,
+    EXPECTED,
+    KINDS,
+    PARTIAL,
+    SUFFIX,
+    check_numbers,
+    checked_cells,
+    checked_count,
+    described,
+    meant,
+    opened,
+    readable,
+    split,
+)
 from coupling.summary import summary_of
 from particle import Event, EventKind, Outcome, Samples, State, dataset_of, table_of
 
@@ -31,12 +43,8 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-KINDS = {"plate": "UnstructuredGrid", "part": "PolyData"}  # and the type of their VTKHDF
-SUFFIX, PARTIAL = ".vtkhdf", ".partial"
-ENDINGS = tuple(f"{part}.{kind}{SUFFIX}" for part in ("", PARTIAL) for kind in KINDS)
 EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
 OF_PART = ("velocity", "state", "normal_force", "friction_force")
-OVER_TIME = ("time", "position", *OF_PART)
 LOSSES = (EventKind.DETACHES, EventKind.LEAVES_PLATE, EventKind.OVERLOADS)
 LOST = tuple(outcome.value for outcome in (Outcome.DETACHED, Outcome.LEFT_PLATE, Outcome.OVERLOADED))
 
@@ -134,7 +142,8 @@ class SavedRun:
             values = np.empty((rows.size, n, *data.shape[1:]), data.dtype)
             for row, step in zip(values, np.atleast_1d(rows).tolist(), strict=True):
                 row[...] = data[step * n : (step + 1) * n]
-            check_finite(**{name: values})
+            if not np.isfinite(values).all():
+                raise ValueError(f"{name} has a number that is not finite")
         return values.reshape(*rows.shape, *values.shape[1:])
 
 
@@ -186,8 +195,8 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
     rows = Samples(**{name: ours["rows"][name][()] for name in Samples._fields})
     columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE))
     return SavedRun(
-        name=_split(paths["plate"])[0],
-        complete=not any(_split(path)[2] for path in paths.values()),
+        name=split(paths["plate"])[0],
+        complete=not any(split(path)[2] for path in paths.values()),
         **{key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")},
         time=part["VTKHDF/Steps/Values"][:k],
         **surface,
@@ -209,36 +218,31 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
 def _check(run: SavedRun, k: int) -> None:
     """Raises ValueError where what was read of a part over k steps does not fit together."""
     summary_of(run.summary)
-    for name in OVER_TIME:
-        if len(getattr(run, name)) != k:
-            raise ValueError(f"{name} has {len(getattr(run, name))} of {k} steps")
-    check_finite(time=run.time, position=run.position, rows=run.rows.position)
-    check_shapes("rows", run.rows._asdict(), {"position": 2, "velocity": 2})
-    check_shapes("margins", run.margins._asdict(), {})
-    if len(run.event_actuators) != len(run.events):
-        raise ValueError(f"events has {len(run.event_actuators)} actuators of {len(run.events)}")
-    for name, columns in (("position", 3), ("velocity", 3)):
-        if getattr(run, name).shape != (k, columns):
-            raise ValueError(f"{name} has the shape {getattr(run, name).shape}, not {(k, columns)}")
+    of_each = dict.fromkeys(("time", "state", "normal_force", "friction_force"), (k,))
+    check_numbers("the part", vars(run), {**of_each, "position": (k, 3), "velocity": (k, 3)})
+    for group, one in (("rows", run.rows), ("margins", run.margins)):
+        vectors = {name: (len(one.time), 2) for name in ("position", "velocity") if group == "rows"}
+        check_numbers(group, one._asdict(), {**dict.fromkeys(one._fields, (len(one.time),)), **vectors})
+    check_numbers("events", {"actuator": run.event_actuators}, {"actuator": (len(run.events),)})
     for states in (run.state, run.rows.state):
         if states.dtype.kind not in "iu" or not np.isin(states, list(State)).all():
             raise ValueError("a state is none of the part's")
-    if not ((np.diff(run.time) > 0).all() and (np.diff(run.rows.time) >= 0).all()):  # nor where one is no number
+    if not ((np.diff(run.time) > 0).all() and (np.diff(run.rows.time) >= 0).all()):
         raise ValueError("a time is not later than the one before")
 
 
 def _pair(path: Path) -> dict[str, Path]:
     """The two files of a run by their kinds: those of one run, finished ones first."""
-    name, kind, _ = _split(path)
+    name, kind, _ = split(path)
     found: dict[str, list[Path]] = {}
     for one in KINDS:
         both = [path] if one == kind else [path.with_name(f"{name}{part}.{one}{SUFFIX}") for part in ("", PARTIAL)]
         found[one] = [file for file in both if file.is_file()]
-        if not found[one] and kind is None and not any(found.values()) and (other := described(path, ENDINGS)):
+        if not found[one] and kind is None and not any(found.values()) and (other := described(path)):
             raise ValueError(f"{EXPECTED}; got {path}, {other}")
         if not found[one] and (kind in (None, one) or path.is_file()):
             beside = "" if kind in (None, one) else ", the other file of this run"
-            like = "" if beside else meant(path.with_name(name), ENDINGS)
+            like = "" if beside else meant(path.with_name(name))
             raise ValueError(f"{EXPECTED}; got {path}, but there is no {both[0]}{beside}{like}")
     for plate, part in product(*found.values()):
         if _run(plate, "plate") == _run(part, "part"):
@@ -248,28 +252,19 @@ def _pair(path: Path) -> dict[str, Path]:
 
 def name_of(path: Path) -> str:
     """The NAME of a run, from one of its files or from FOLDER/NAME."""
-    return _split(path)[0]
+    return split(path)[0]
 
 
 def is_run(path: Path) -> bool:
     """Whether a path is that of a run's file, or FOLDER/NAME of such files, even of one that is damaged."""
-    if _split(path)[1] is not None:
+    if split(path)[1] is not None:
         return path.is_file()
     return any(path.with_name(path.name + ending).is_file() for ending in ENDINGS)
 
 
 def instead(path: Path) -> str:
     """What a path that is no result leads to, and what may be meant."""
-    return described(path, ENDINGS) or f"which is no file{meant(path, ENDINGS)}"
-
-
-def _split(path: Path) -> tuple[str, str | None, bool]:
-    """A file's NAME, its kind, None where the path is FOLDER/NAME, and whether it is a partial one."""
-    for kind in KINDS:
-        name = path.name.removesuffix(f".{kind}{SUFFIX}")
-        if name != path.name:
-            return name.removesuffix(PARTIAL), kind, name.endswith(PARTIAL)
-    return path.name, None, False
+    return described(path) or f"which is no file{meant(path)}"
 
 
 def _run(path: Path, kind: str) -> str:

@@ -103,11 +103,7 @@ def rows_that_are_not_there(file):
 
 
 DAMAGES = [
-    (
-        "part",
-        summary_without("squeeze"),
-        "the summary has no valid squeeze, as that of another version may",
-    ),
+    ("part", summary_without("squeeze"), "the summary has no valid squeeze, as that of another version may"),
     ("part", with_summary('{"some": 1}'), "which is damaged: the summary has no valid "),
     ("part", thresholds_without_a_field, "which is damaged: the summary has no valid thresholds"),
     ("part", with_summary("text"), "which is damaged: Expecting value"),
@@ -115,14 +111,14 @@ DAMAGES = [
     ("part", lambda file: file.__delitem__("active_surface/margins"), "which is damaged: it has no margins"),
     ("part", lambda file: file["active_surface"].attrs.__delitem__("units"), "which is damaged: it has no units"),
     ("part", lambda file: put(file, "active_surface/events/kind", [99]), "99 is not a valid EventKind"),
-    ("part", lambda file: put(file, "VTKHDF/Points", np.zeros((3, 3))), "position has 3 of 11 steps"),
+    ("part", lambda file: put(file, "VTKHDF/Points", np.zeros((3, 3))), "position of the shape (3, 3), not (11, 3)"),
     ("part", lambda file: put(file, "VTKHDF/Points", np.full((11, 3), np.nan)), "position has a number that is not"),
     ("part", lambda file: put(file, "active_surface/rows/height", [0.0]), "rows has height of the shape"),
-    ("part", with_time("rows/time", np.nan), "a time is not later than the one before"),
+    ("part", with_time("rows/time", np.nan), "time has a number that is not finite"),
     ("part", with_time("rows/time", -1.0), "a time is not later than the one before"),
     ("part", lambda file: put(file, "active_surface/margins/slip", [0.0]), "margins has slip of the shape"),
     ("part", lambda file: put(file, "VTKHDF/PointData/state", np.full(11, 9)), "a state is none of the part's"),
-    ("part", lambda file: put(file, "VTKHDF/PointData/velocity", np.zeros(11)), "velocity has the shape"),
+    ("part", lambda file: put(file, "VTKHDF/PointData/velocity", np.zeros(11)), "velocity of the shape (11,)"),
     ("part", rows_that_are_not_there, "rows/time says that it has 8000000000000 bytes, of which 0 are there"),
     ("part", lambda file: put(file, "active_surface/rows", h5py.ExternalLink("/etc/passwd", "/")), "rows is a link"),
     ("plate", cells([0, 1, 99]), "a corner that is none of the 4 points"),
@@ -136,7 +132,7 @@ NUMBERS = [
         ("plate", cells(values), "Connectivity must be whole numbers, three a triangle")
         for values in (np.zeros(0, int), [0, 1, 2, 3], [[0, 1, 2]], [0.0, 1.0, 2.0], [0j, 1j, 2j])
     ),
-    ("plate", lambda file: put(file, "VTKHDF/Points", np.zeros(12)), "Points must be three numbers a point"),
+    ("plate", lambda file: put(file, "VTKHDF/Points", np.zeros(12)), "Points of the shape (12,), not (12, 3)"),
     ("plate", lambda file: put(file, "VTKHDF/Points", np.zeros((4, 3), complex)), "Points must be real numbers"),
 ]
 DAMAGES_BESIDE = [
