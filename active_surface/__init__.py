@@ -15,12 +15,12 @@ _COMMANDS = ("-m", "active-surface", "active-surface.exe")
 def _refuse_shadows() -> None:
     """Raise ImportError if a module of the user hides one of our packages; a command ends with exit code 2."""
     # Loaded by its path, because a coupling.py of the user would hide its package.
-    spec = util.spec_from_file_location("shadow", os.path.join(_HERE, os.pardir, "coupling", "shadow.py"))
+    spec = util.spec_from_file_location("environment", os.path.join(_HERE, os.pardir, "coupling", "environment.py"))
     assert spec and spec.loader
-    shadow = util.module_from_spec(spec)
-    spec.loader.exec_module(shadow)
+    environment = util.module_from_spec(spec)
+    spec.loader.exec_module(environment)
     try:
-        shadow.refuse_shadows("coupling", "common", "meshes", "fem_plate", "particle")
+        environment.refuse_shadows("coupling", "common", "meshes", "fem_plate", "particle")
     except ImportError as error:
         if os.path.basename(sys.argv[0]) not in _COMMANDS:
             raise

@@ -2,7 +2,7 @@
 
 import lazy_loader
 
-from coupling.shadow import refuse_shadows
+from coupling.environment import refuse_shadows
 
 refuse_shadows("common", "meshes", "fem_plate", "particle")
 

@@ -26,8 +26,11 @@ from .progress import (
     silent as silent,
     no_progress as no_progress,
 )
-from .limits import limit_warnings as limit_warnings
-from .outlook import case_warnings as case_warnings, frequency_warnings as frequency_warnings
+from .outlook import (
+    case_warnings as case_warnings,
+    frequency_warnings as frequency_warnings,
+    limit_warnings as limit_warnings,
+)
 from . import advice as advice, report as report
 from .report import warnings as warnings
 from .part import build_friction as build_friction, build_part as build_part, friction_law as friction_law

@@ -1,11 +1,11 @@
-"""Versions of the packages that compute a path."""
+"""The packages that compute a path: their versions, and that no module of a user hides them."""
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
 from functools import cache
-from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 OURS = "active-surface"
@@ -13,8 +13,20 @@ OTHERS = ("numpy", "scipy", "numba")
 PACKAGES = ("meshes", "fem_plate", "particle", "coupling")
 
 
+def refuse_shadows(*packages: str) -> None:
+    """Raise ImportError if Python would import one of these packages from anywhere but beside this one."""
+    root = Path(__file__).resolve().parents[1]
+    for name in packages:
+        spec = find_spec(name)
+        if spec and spec.origin and Path(spec.origin).resolve() != root / name / "__init__.py":
+            module = Path(spec.origin).parent if spec.submodule_search_locations else spec.origin
+            raise ImportError(f"{module} hides the package {name} of active-surface; rename it")
+
+
 def versions(packages: Sequence[str] = PACKAGES) -> dict[str, str]:
     """The versions of what computes a path; that of active-surface has a hash of the sources of these packages."""
+    from importlib.metadata import version  # here, because every command loads this module first
+
     numbers = {name: version(name) for name in (OURS, *OTHERS)}
     return numbers | {OURS: f"{numbers[OURS]}+{_sources(tuple(packages))}"}
 

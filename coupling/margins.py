@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -78,8 +77,8 @@ def margins_of(case: Case, scene: Scene, trajectory: Trajectory, friction: Conta
     if off := [event.time for event in trajectory.events if event.kind is EventKind.DETACHES]:
         distance = Extreme(0.0, off[0])  # also where a blow throws it off
     return Margins(
-        slip=None if slip.value == -np.inf else _margin(scene, path, slip, _holding),
-        contact=None if distance.value == np.inf else _margin(scene, path, distance, _falling),
+        slip=None if slip.value == -np.inf else _margin(scene, path, slip, EventKind.SLIPS),
+        contact=None if distance.value == np.inf else _margin(scene, path, distance, EventKind.DETACHES),
         pull_off=None if distance.value == np.inf else path.part.law.pull_off,
         scale=path.scale,
         smallest_load=-load.value,
@@ -103,11 +102,9 @@ def margin_curves(case: Case, surface: SurfaceMotion, trajectory: Trajectory, fr
 def event_actuators(case: Case, scene: Scene, trajectory: Trajectory, friction: Contact) -> NDArray[np.int64]:
     """The actuator (e,) whose stroke counts most when the part slips or comes off; -1: none, or another event."""
     path, numbers = _Path(case, scene.surface, trajectory, friction), np.full(len(trajectory.events), -1)
-    if not isinstance(scene, PlateScene):
-        return numbers
     for k, event in enumerate(trajectory.events[:MAX_NAMED]):
-        if counts := COUNTS.get(event.kind):
-            actuator = _actuator(scene, path, np.array(event.position), event.time, counts)
+        if event.kind in (EventKind.SLIPS, EventKind.DETACHES):
+            actuator = _actuator(scene, path, np.array(event.position), event.time, event.kind)
             numbers[k] = -1 if actuator is None else actuator
     return numbers
 
@@ -142,67 +139,31 @@ class _Path:
         return ratios, loads
 
 
-Counts = Callable[[_Path, "_Pushes"], FloatArray]
-
-
-class _Pushes(NamedTuple):
-    """How the surface and each actuator alone move a place at one moment, by linear theory."""
-
-    w_tt: float  # m/s^2, of the surface
-    slope: FloatArray  # (2,)
-    slope_tt: FloatArray  # (2,) 1/s^2
-    each_w_tt: FloatArray  # (N,) of each actuator
-    each_slope: FloatArray  # (N, 2)
-    each_slope_tt: FloatArray  # (N, 2)
-
-
-def _margin(scene: Scene, path: _Path, extreme: Extreme, counts: Counts) -> Margin:
+def _margin(scene: Scene, path: _Path, extreme: Extreme, kind: EventKind) -> Margin:
     place = path.trajectory.at([extreme.time]).position[0]
-    return Margin(
-        extreme.value,
-        extreme.time,
-        (float(place[0]), float(place[1])),
-        _actuator(scene, path, place, extreme.time, counts) if isinstance(scene, PlateScene) else None,
-    )
+    at = (float(place[0]), float(place[1]))
+    return Margin(extreme.value, extreme.time, at, _actuator(scene, path, place, extreme.time, kind))
 
 
-def _actuator(scene: PlateScene, path: _Path, place: FloatArray, time: float, counts: Counts) -> int | None:
-    """The actuator whose stroke counts most for a margin at a place [m] and time [s]; None: none does.
+def _actuator(scene: Scene, path: _Path, place: FloatArray, time: float, kind: EventKind) -> int | None:
+    """The actuator whose stroke counts most for slipping or detaching at a place [m] and time [s]; None: none does.
 
-    What an actuator does is taken from its influence shape, without the plate's inertia and stretching.
+    What an actuator does is taken from its influence shape, without the plate's inertia and stretching. It lessens the
+    load by how it accelerates the place downwards. By how much the pull grows with its stroke is (3.4) in
+    docs/motion.md, for small slopes.
     """
-    if scene.shapes.outline.gap(place[None])[0] < 0:
+    if not isinstance(scene, PlateScene) or scene.shapes.outline.gap(place[None])[0] < 0:
         return None
     height, _, acceleration = (
         np.array(rows) for rows in zip(*(lift.evaluate(time) for lift in scene.lifts), strict=True)
     )
-    value, gradient, _ = scene.shapes.evaluate(place[None])
-    state = scene.surface.evaluate(place[None], time)
-    shares = counts(
-        path,
-        _Pushes(
-            float(state.w_tt[0]),
-            state.gradient[0],
-            state.gradient_tt[0],
-            value[0] * acceleration,
-            gradient[0] * height[:, None],
-            gradient[0] * acceleration[:, None],
-        ),
-    )
+    (value,), (gradient,), _ = scene.shapes.evaluate(place[None])  # of each actuator alone (N,) and (N, 2)
+    shares = -value * acceleration
+    if kind is EventKind.SLIPS:
+        state, centre = scene.surface.evaluate(place[None], time), path.part.centre
+        b, slope = path.part.gravity + float(state.w_tt[0]), state.gradient[0]
+        pull = -b * slope + centre * state.gradient_tt[0]
+        tilts = -b * gradient * height[:, None] + centre * gradient * acceleration[:, None]
+        each = tilts - np.outer(value * acceleration, slope)
+        shares = each @ pull / (np.hypot(*pull) or 1.0)
     return int(np.argmax(shares)) if shares.max() > 0 else None
-
-
-def _falling(path: _Path, pushes: _Pushes) -> FloatArray:
-    """How much each actuator lessens the load, over the mass (N,) [m/s^2]."""
-    return -pushes.each_w_tt
-
-
-def _holding(path: _Path, pushes: _Pushes) -> FloatArray:
-    """By how much the pull grows with each stroke, for small slopes (N,) [m/s^2]: (3.4) in docs/motion.md."""
-    b = path.part.gravity + pushes.w_tt
-    pull = -b * pushes.slope + path.part.centre * pushes.slope_tt
-    each = -b * pushes.each_slope - np.outer(pushes.each_w_tt, pushes.slope) + path.part.centre * pushes.each_slope_tt
-    return np.asarray(each @ pull / (np.hypot(*pull) or 1.0))
-
-
-COUNTS: Final = {EventKind.SLIPS: _holding, EventKind.DETACHES: _falling}

@@ -1,12 +1,33 @@
-"""The part of a case and its friction law, as the integrator takes them."""
+"""The part of a case and its friction law, as the integrator takes them, and how far a path leaves a point part."""
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from coupling.case import Case, ConstantCase, CoulombCase, FrictionCase, TableCase
-from particle import ConstantFriction, CoulombAdhesion, FrictionTable, KogutEtsion, Micropart
+from particle import (
+    ConstantFriction,
+    ContactSamples,
+    CoulombAdhesion,
+    FrictionTable,
+    KogutEtsion,
+    Micropart,
+    SurfaceMotion,
+    Trajectory,
+)
 from particle.friction import Contact
+
+if TYPE_CHECKING:
+    from meshes import Outline
+
+FloatArray = NDArray[np.float64]
+
+SEPARATIONS = 1001  # of a rough contact, from pull-off to the largest load: linear between them to 1e-4
 
 
 def build_friction(case: Case) -> Contact:
@@ -30,3 +51,59 @@ def build_part(case: Case, position: tuple[float, float] | None = None) -> Micro
     """The part of a case, at its start or another place [m]."""
     p = case.part
     return Micropart(p.mass, position or p.position, p.velocity, p.squeeze, p.centre_height)
+
+
+def tipping_of(case: Case, trajectory: Trajectory, friction: Contact, times: FloatArray) -> float | None:
+    """The largest shift of the centre of pressure at times (k,) [s], over half the part's size; None: size not given.
+
+    Friction F on the face below a centre of mass at height h over it has the moment F h. What presses on the face, N +
+    adhesion, takes it up by its shift s = F h / (N + adhesion); beyond s = size / 2 the part turns about its edge.
+    Adhesion draws on the whole face alike, so it has no moment about its middle.
+    """
+    if case.footprint is None:
+        return None
+    if case.part.centre_height == 0:
+        return 0.0
+    samples = trajectory.contact_at(times)
+    pressing = pressing_force(samples.normal_force, friction)
+    touching = pressing > 0  # neither in flight nor at pull-off, where friction ends as well
+    forces = np.linalg.norm(samples.friction[touching], axis=1)
+    shift = case.part.centre_height * forces / pressing[touching]
+    return float(shift.max(initial=0.0)) / (case.footprint / 2)
+
+
+def states_adhesion(friction: Contact) -> bool:
+    """Whether a friction law states the adhesion, also of 0; a constant limit holds under any pull."""
+    return friction.pull_off < math.inf
+
+
+def pressing_force(load: FloatArray, friction: Contact) -> FloatArray:
+    """What presses the part's face on the plate, load + adhesion [N], under net loads (k,) [N].
+
+    The adhesion is that of the separation in a rough contact, the pull-off force in other laws, and 0 with a constant
+    limit, which states none.
+    """
+    if isinstance(friction, KogutEtsion):
+        contact, adhesion, _ = friction.forces(np.linspace(*friction.branch[::-1], SEPARATIONS))
+        return np.asarray(np.interp(load, contact - adhesion, contact))
+    return load + (friction.pull_off if states_adhesion(friction) else 0.0)
+
+
+def part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, trajectory: Trajectory) -> float | None:
+    """The part's size times the largest curvature under it at the rows of its path."""
+    size = case.footprint
+    if size is None:
+        return None
+    on_plate = outline.gap(trajectory.position) >= 0  # all but the last of a part that slid over the rim
+    places = zip(trajectory.position[on_plate], trajectory.time[on_plate], strict=True)
+    hessians = np.concatenate([surface.evaluate(xy, t).hessian for xy, t in places])
+    return size * float(np.abs(np.linalg.eigvalsh(hessians)).max())
+
+
+def top_face_share(contact: ContactSamples) -> float | None:
+    """What the heights of contact and centre of mass add to the pull, over that on a point of the mid-plane.
+
+    Root mean squares over the path, of the vectors' lengths; None where the rest is 0.
+    """
+    rest, added = (float(np.sqrt(np.nanmean(np.square(pull)))) for pull in (contact.point_pull, contact.added_pull))
+    return added / rest if rest > 0 else None

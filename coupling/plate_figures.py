@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
-from scipy.spatial import cKDTree
 
 from coupling.case import MAX_VIBRATING, SAME_PLACE, Case, InputError
-from coupling.drives import moments, stroke_heights, travel
+from coupling.drives import moments, travel
+from coupling.extremes import extremes, sharp_points
+from coupling.part import part_curvature, states_adhesion, tipping_of, top_face_share
 from coupling.ringing import RingingModel
 from coupling.scene import PlateScene
-from coupling.steepest import around, circles, sharp_points, steepest
 from coupling.stretch import Stretch
-from coupling.tipping import states_adhesion, tipping_of
 from coupling.vibration import PIECES
-from fem_plate import InfluenceShapes, MovingShapes, PatchedShapes, Plate, PlateShapes, Shapes, VaryingSection
-from meshes import Outline
-from particle import AnyDrive, ContactSamples, SurfaceMotion, Trajectory
+from fem_plate import PatchedShapes, Plate, PlateShapes, VaryingSection
+from particle import Trajectory
 from particle.friction import Contact
-
-FloatArray = NDArray[np.float64]
-
 
 MAX_SLOPE, MAX_STRAIN = 0.2, 0.005  # of the plate, to which the model holds; silicon breaks near twice the strain
 # The path error of small-deflection theory, measured on separate solvers: 8 % of the path at one thickness.
@@ -100,7 +93,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
     if stretch is None:
         moving = scene.moving_shapes, scene.moving_drives
         sharp = sharp_points(plate.singular_corners, shapes.points)
-        slope, deflection, curvature = _extremes(*moving, case.run.duration, sharp, plate.section.thickness / 2)
+        slope, deflection, curvature = extremes(*moving, case.run.duration, sharp, plate.section.thickness / 2)
         strain = None if curvature is None else plate.section.thickness / 2 * curvature + _residual_strain(plate)
     else:
         deflection, slope, strain = stretch.extremes
@@ -128,7 +121,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         can_vibrate=not scene.has_inertia and _goes_with(case, "plate.inertia", True),
         largest_slope=slope,
         largest_strain=strain,
-        top_face_share=_top_face_share(contact),
+        top_face_share=top_face_share(contact),
         tipping=tipping,
         tips=tipping is not None and tipping > 1 and states_adhesion(friction),
         first_frequency=first,
@@ -137,7 +130,7 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         strokes_over_first=strokes,
         plate_rings=rings,
         quasi_static_error=None if scene.has_inertia or rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],
-        part_curvature=_part_curvature(case, shapes.outline, surface, trajectory),
+        part_curvature=part_curvature(case, shapes.outline, surface, trajectory),
         part_sag=part_sag(plate, shapes, trajectory, float(np.nanmax(np.abs(contact.normal_force)))),
     )
 
@@ -202,55 +195,6 @@ def _hold_residual(shapes: PlateShapes) -> float:
         return float(abs(heights).max())
     heights = shapes.values(places) + give[:, None] * shapes.stiffness[held]
     return float(np.abs(heights - np.eye(len(shapes.points))[held]).max())
-
-
-def _extremes(
-    shapes: Shapes, drives: Sequence[AnyDrive], end: float, sharp: FloatArray, off: float
-) -> tuple[float, float, float | None]:
-    """The largest slope, deflection [m] and curvature [1/m] over the time asked for, wherever the run ended.
-
-    They are those at the mesh's points and on circles around the actuators, where the slope is largest. Curvatures are
-    principal ones, `off` [m] or farther from the sharp points (k, 2) [m], where they are infinite. Of very many
-    actuators, slope and deflection over the neighbourhood of those where they must be.
-    """
-    heights = stroke_heights(drives, moments(drives, end))
-    if isinstance(shapes, PatchedShapes):
-        return *steepest(shapes, heights), None
-    assert isinstance(shapes, InfluenceShapes | MovingShapes)
-    steep = np.concatenate([shapes.functions.space.points * shapes.size, around(shapes)])
-    points = np.concatenate([steep, circles(shapes, sharp, off)])
-    value, gradient, hessian = shapes.evaluate(points)
-    value, gradient = value[: len(steep)], gradient[: len(steep)]
-    slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
-    far = cKDTree(sharp).query(points)[0] >= off * (1 - SAME_PLACE)
-    rows = np.stack([hessian[far, :, 0, 0], hessian[far, :, 0, 1], hessian[far, :, 1, 1]])
-    curvature = max(float(_principal(*(rows @ h)).max()) for h in heights)
-    return slope, float(np.abs(heights @ value.T).max()), curvature
-
-
-def _principal(xx: FloatArray, xy: FloatArray, yy: FloatArray) -> FloatArray:
-    """The larger one of a symmetric tensor's two principal values, without its sign."""
-    return np.asarray(np.abs(xx + yy) / 2 + np.hypot((xx - yy) / 2, xy))
-
-
-def _part_curvature(case: Case, outline: Outline, surface: SurfaceMotion, trajectory: Trajectory) -> float | None:
-    """The part's size times the largest curvature under it at the rows of its path."""
-    size = case.footprint
-    if size is None:
-        return None
-    on_plate = outline.gap(trajectory.position) >= 0  # all but the last of a part that slid over the rim
-    places = zip(trajectory.position[on_plate], trajectory.time[on_plate], strict=True)
-    hessians = np.concatenate([surface.evaluate(xy, t).hessian for xy, t in places])
-    return size * float(np.abs(np.linalg.eigvalsh(hessians)).max())
-
-
-def _top_face_share(contact: ContactSamples) -> float | None:
-    """What the heights of contact and centre of mass add to the pull, over that on a point of the mid-plane.
-
-    Root mean squares over the path, of the vectors' lengths; None where the rest is 0.
-    """
-    rest, added = (float(np.sqrt(np.nanmean(np.square(pull)))) for pull in (contact.point_pull, contact.added_pull))
-    return added / rest if rest > 0 else None
 
 
 def part_sag(plate: Plate, shapes: PlateShapes, trajectory: Trajectory, force: float) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupling.drives import moments, stroke_heights
-from coupling.steepest import sharp_points
+from coupling.extremes import sharp_points
 from coupling.stretch.corrections import Corrections
 from coupling.stretch.model import StretchModel
 from coupling.surface import surface_motion

@@ -9,8 +9,7 @@ from sweeps import DISC_PLATE, toml
 
 from active_surface.cli.program import main
 from coupling.case import CaseError, InputError, read_case
-from coupling.limits import largest_forces, limit_warnings
-from coupling.outlook import case_warnings, frequency_warnings
+from coupling.outlook import case_warnings, frequency_warnings, largest_forces, limit_warnings
 from coupling.scene import build_plate
 
 PLATE = DISC_PLATE + 'cell_size = "75 um"\n\n'

@@ -7,7 +7,7 @@ from sweeps import DISC
 from coupling import Case, InputError, read_case, run_case, shared_surface
 from coupling.case import write_case
 from coupling.drives import build_drives
-from coupling.limits import largest_forces, limit_warnings
+from coupling.outlook import largest_forces, limit_warnings
 from coupling.run import build_scene, build_surface
 from fem_plate import Plate, PlateSection
 from fem_plate.analytic import central_load

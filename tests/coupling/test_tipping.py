@@ -5,7 +5,7 @@ import pytest
 
 from coupling import build_friction, run_case
 from coupling.case import Case, CoulombCase, KogutEtsionCase, TableCase
-from coupling.tipping import tipping_of
+from coupling.part import tipping_of
 from particle import KogutEtsion
 
 MASS, SIZE, HEIGHT, G = 2e-9, 100e-6, 80e-6, 9.80665

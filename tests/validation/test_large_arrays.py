@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from coupling.display.surface import TRUNCATED_HEIGHT, deflections
-from coupling.steepest import steepest
+from coupling.extremes import steepest
 from fem_plate import PatchedShapes, Plate
 from fem_plate.arrays import patches
 from meshes import annulus, disc, polygon, rectangle

@@ -1,4 +1,4 @@
-"""The steepest and the highest places of a plate, of one with many actuators without looking everywhere."""
+"""Where a plate is steepest, highest and bent most; one with many actuators is not looked at everywhere."""
 
 from __future__ import annotations
 
@@ -8,14 +8,46 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 
-from fem_plate import Shapes
+from coupling.case import SAME_PLACE
+from coupling.drives import moments, stroke_heights
+from fem_plate import InfluenceShapes, MovingShapes, PatchedShapes, Shapes
 from fem_plate.elements import SingularCorner
+from particle import AnyDrive
 
 FloatArray = NDArray[np.float64]
 
 MOMENTS, ACTUATORS = 16, 16  # that are looked at closely: so many of each
 AROUND = 8  # points on each circle around one
 RADII = 0.1, 0.3, 0.5  # of circles, in distances to the nearest other actuator
+
+
+def extremes(
+    shapes: Shapes, drives: Sequence[AnyDrive], end: float, sharp: FloatArray, off: float
+) -> tuple[float, float, float | None]:
+    """The largest slope, deflection [m] and curvature [1/m] over the time asked for, wherever the run ended.
+
+    They are those at the mesh's points and on circles around the actuators, where the slope is largest. Curvatures are
+    principal ones, `off` [m] or farther from the sharp points (k, 2) [m], where they are infinite. Of very many
+    actuators, slope and deflection over the neighbourhood of those where they must be.
+    """
+    heights = stroke_heights(drives, moments(drives, end))
+    if isinstance(shapes, PatchedShapes):
+        return *steepest(shapes, heights), None
+    assert isinstance(shapes, InfluenceShapes | MovingShapes)
+    steep = np.concatenate([shapes.functions.space.points * shapes.size, _around(shapes)])
+    points = np.concatenate([steep, _rings(shapes, sharp, off)])
+    value, gradient, hessian = shapes.evaluate(points)
+    value, gradient = value[: len(steep)], gradient[: len(steep)]
+    slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
+    far = cKDTree(sharp).query(points)[0] >= off * (1 - SAME_PLACE)
+    rows = np.stack([hessian[far, :, 0, 0], hessian[far, :, 0, 1], hessian[far, :, 1, 1]])
+    curvature = max(float(_principal(*(rows @ h)).max()) for h in heights)
+    return slope, float(np.abs(heights @ value.T).max()), curvature
+
+
+def _principal(xx: FloatArray, xy: FloatArray, yy: FloatArray) -> FloatArray:
+    """The larger one of a symmetric tensor's two principal values, without its sign."""
+    return np.asarray(np.abs(xx + yy) / 2 + np.hypot((xx - yy) / 2, xy))
 
 
 def steepest(shapes: Shapes, heights: FloatArray) -> tuple[float, float]:
@@ -48,13 +80,13 @@ def steepest(shapes: Shapes, heights: FloatArray) -> tuple[float, float]:
     return largest, highest
 
 
-def around(shapes: Shapes) -> FloatArray:
+def _around(shapes: Shapes) -> FloatArray:
     """Points (n, 2) [m] on circles around all actuators, as small as the next actuator or the rim is near."""
     others = cKDTree(shapes.points).query(shapes.points, k=[2])[0][:, 0]  # inf where there is none
     return _circles(shapes, np.arange(len(shapes.points)), np.minimum(others, shapes.outline.gap(shapes.points)))
 
 
-def circles(shapes: Shapes, centres: FloatArray, radius: float) -> FloatArray:
+def _rings(shapes: Shapes, centres: FloatArray, radius: float) -> FloatArray:
     """Points (n, 2) [m] of the plate on circles of a radius [m] around centres (k, 2) [m]."""
     return _stars(shapes, centres, np.full(len(centres), radius), (1.0,))
 
