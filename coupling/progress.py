@@ -21,7 +21,6 @@ _now = time.monotonic  # s
 
 PATIENCE = 2.0  # s of silence on a terminal
 PERIOD = 30.0  # s between lines elsewhere
-PARTS = 100  # of what is done before pieces are counted
 COMPILING = "Compiling what this case needs for the first time (once, up to some minutes)"
 
 
@@ -34,7 +33,7 @@ def silent(stage: str) -> AbstractContextManager[ProgressCallback]:
     return nullcontext(no_progress)
 
 
-def doing(text: str, share: float) -> None:
+def doing(text: str, share: float = 0.0) -> None:
     """Say on the bars that are open what is being done, and how much of it is, at a point that knows none of them."""
     for bar in list(_open_bars):
         bar.show(text, share)
@@ -44,17 +43,25 @@ class _Bar:
     """A bar on the terminal's error stream after a while of silence; elsewhere a line there now and then."""
 
     def __init__(self, total: int | None = None) -> None:
+        from rich import progress as rich
         from rich.console import Console
-        from rich.progress import Progress as Bar
 
         console = Console(stderr=True)
         self._live = bool(sys.stderr) and sys.stderr.isatty() and not console.is_dumb_terminal
-        self._bar: Any = Bar(*self._columns(), console=console, transient=True)
-        self._task = self._bar.add_task("", total=total)
+        clock = [rich.TimeRemainingColumn(), "left"] if total is None else [rich.TimeElapsedColumn()]
+        columns = [rich.SpinnerColumn(), rich.BarColumn(bar_width=20), rich.MofNCompleteColumn(), *clock]
+        self._bar: Any = rich.Progress(*columns, "{task.description}", console=console, transient=True)
+        self._id = self._bar.add_task("", total=total)
         self._announcing, self._ended = ExitStack(), threading.Event()
 
-    def _columns(self) -> list[Any]:
-        raise NotImplementedError
+    @property
+    def task(self) -> Any:
+        """What is done, and of how much."""
+        return self._bar.tasks[0]
+
+    def show(self, text: str, share: float = 0.0) -> None:
+        """Show what is being done, and how much of it is."""
+        self._bar.update(self._id, description=f"{text}, {100 * share:.0f} %" if share else text)
 
     def _line(self) -> str:
         """What is done and what is left."""
@@ -78,10 +85,6 @@ class _Bar:
             while not self._ended.wait(PERIOD) and sys.stderr:
                 print(f"{_clock(_now() - self._since)}  {self._line()}", file=sys.stderr, flush=True)
 
-    def show(self, text: str, share: float) -> None:
-        """Show what is being done."""
-        self._bar.update(self._task, description=text)
-
     def _announce(self) -> None:
         if self._live:
             self._bar.console.print(COMPILING, highlight=False)
@@ -104,15 +107,7 @@ def _clock(seconds: float) -> str:
 class StageBar(_Bar):
     """A bar over known stages."""
 
-    def __init__(self, stages: int) -> None:
-        super().__init__(stages)
-        self._counts = False  # whether the stage has said how much of it is done
-
-    def _columns(self) -> list[Any]:
-        from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-        columns = [BarColumn(bar_width=20), MofNCompleteColumn(), TimeElapsedColumn()]
-        return [SpinnerColumn(), *columns, TextColumn("{task.description}")]
+    _counts = False  # whether the stage has said how much of it is done
 
     def __enter__(self) -> Progress:
         self._start()
@@ -120,23 +115,22 @@ class StageBar(_Bar):
 
     @contextmanager
     def _stage(self, stage: str) -> Iterator[ProgressCallback]:
-        bar, task = self._bar, self._task
-        bar.update(task, description=stage)
+        self.show(stage)
         self._counts = False
 
         def tell(done: int, of: int) -> None:
             self._counts = True
-            bar.update(task, description=f"{stage}: {done} of {of}")
+            self.show(f"{stage}: {done} of {of}")
 
         yield tell
-        bar.advance(task)
+        self._bar.advance(self._id)
 
     def _line(self) -> str:
         from common import unit_for
         from particle import under_way
 
-        task, path = self._bar.tasks[0], under_way()
-        line = f"{task.completed} of {task.total} stages done; {task.description}"
+        path = under_way()
+        line = f"{self.task.completed} of {self.task.total} stages done; {self.task.description}"
         if path is None or self._counts:
             return line
         unit = unit_for(path[1], "s")
@@ -150,41 +144,28 @@ class CountBar(_Bar):
     """
 
     def __init__(self, pieces: str) -> None:
+        super().__init__()
         self._pieces = pieces
         self._first: tuple[int, float] | None = None  # how many were done before, and when [s] counting began
-        super().__init__()
-
-    def _columns(self) -> list[Any]:
-        from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeRemainingColumn
-
-        columns = [BarColumn(bar_width=30), MofNCompleteColumn(), TextColumn("{task.description}")]
-        return [SpinnerColumn(), *columns, TimeRemainingColumn(), TextColumn("left")]
 
     def __enter__(self) -> ProgressCallback:
         self._start()
         return self._tell
 
-    def show(self, text: str, share: float) -> None:
-        """Show what is being done; before the first count also how much of it."""
-        done = {"completed": round(PARTS * share), "total": PARTS} if self._first is None else {}
-        self._bar.update(self._task, description=text, **done)
-
     def _tell(self, done: int, of: int) -> None:
         if self._first is None:
-            self._bar.reset(self._task, completed=done, total=of)
+            self._bar.reset(self._id, completed=done, total=of)
             self._first = done, _now()
-        speed = self._bar.tasks[0].speed
-        rate = f"{self._pieces}, {speed:.0f}/s" if speed else self._pieces
-        text = f"{self._pieces}; writing all" if done == of else rate
-        self._bar.update(self._task, completed=done, description=text)
+        rate = f"{self._pieces}, {self.task.speed:.0f}/s" if self.task.speed else self._pieces
+        self._bar.update(self._id, completed=done)
+        self.show(f"{self._pieces}; writing all" if done == of else rate)
 
     def _line(self) -> str:
-        task = self._bar.tasks[0]
+        task = self.task
         if self._first is None:
-            return f"no {self._pieces} yet" + (f"; {task.description}, {task.completed} %" if task.description else "")
+            return f"no {self._pieces} yet" + (f"; {task.description}" if task.description else "")
         (before, since), done = self._first, task.completed
         line = f"{done} of {task.total} {task.description}"
         if not before < done < task.total:
             return line
-        left = (task.total - done) * (_now() - since) / (done - before)
-        return f"{line}, about {_clock(left)} left"
+        return f"{line}, about {_clock((task.total - done) * (_now() - since) / (done - before))} left"

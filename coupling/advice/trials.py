@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from coupling.advice.setting import OWN, Setting, Trial
 from coupling.case import Case, PlateCase, friction_scales, more_plastic, ramped_case, with_index
 from coupling.part import build_part, friction_law
 from coupling.progress import doing, silent
@@ -41,6 +40,34 @@ TURNS: Final = 2  # of the fastest drive, that a trial run has at least
 TRIED: Final = 300  # of the shortest, that a trial run lasts at most
 RAMP: Final = 3.0  # cycles over which forces grow
 RADII, ANGLES = (0.25, 0.5), (0.3, 1.9, 3.4, 5.0)  # of other places around the nearest actuator: of its gap, rad
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A run with other drives, or from another place, that moved the part and kept it."""
+
+    frequency: float  # over the case's own
+    stroke: float
+    friction: float  # of what friction holds
+    place: tuple[float, float] | None  # m, where it began; None: at the case's start
+    distance: float  # m
+    duration: float  # s, at most that of the case
+    smallest_load: float  # N
+    plasticity_index: float | None = None  # of Kogut and Etsion's law; None: the case's own
+    ramp: float | None = None  # cycles over which forces grow that begin at once in the case; None: as there
+
+
+class Setting(NamedTuple):
+    """What a trial changes besides what its thresholds are of."""
+
+    stroke: float = 1.0  # over the case's own
+    friction: float = 1.0  # of what friction holds
+    plasticity: float | None = None  # its index; None: the case's own
+    ramp: float | None = None  # cycles, of forces that begin at once; None: the case's own
+    pulled: bool = True  # whether the plate may pull at the part where the law bears any load
+
+
+OWN: Final = Setting()
 
 
 class Trials:
@@ -162,7 +189,7 @@ class Trials:
         surface, run = self._surface(setting).scaled(frequency, stroke), self.case.run
         duration = min(run.duration, TRIED * float(surface.stroke_times.min(initial=run.duration)))
         self.count += 1
-        doing(f"Trial run {self.count}", 0.0)
+        doing(f"Trial run {self.count}")
         path = interruptible(simulate, surface, part, self._law(setting), duration, run.gravity, run.tolerance)
         loads = path.normal_force[path.state != State.FLIGHT]
         least = float(loads.min()) if len(loads) else 0.0

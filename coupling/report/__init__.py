@@ -1,7 +1,6 @@
 """The report of a run: what the device is, the lines that the command prints, and its warnings."""
 
 from coupling.report.device import device
-from coupling.report.lines import lines, trust
-from coupling.report.margins import LIFTS, PULLS, margin_lines
+from coupling.report.lines import LIFTS, PULLS, lines, margin_lines, trust
 from coupling.report.warnings import MAX_DEFLECTION, MAX_QUASI_STATIC_ERROR, warnings
 from coupling.report.wording import MICRO, in_percent, joined, percent, quantity, with_micro_signs

@@ -32,7 +32,7 @@ def make_ringing_model(
 
     Raises ValueError when a mode without damping resonates.
     """
-    doing("stretching plate: finding its modes", 0.0)
+    doing("stretching plate: finding its modes")
     large, section, reduction = model.large, model.large.plate.section, model.reduction
     assert section.density is not None
     shapes = HeldShapes(reduction, large.points, large.stiffness)

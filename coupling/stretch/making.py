@@ -77,7 +77,7 @@ class _Report:
 
     def begun(self) -> None:
         self._tell(0, PARTS)
-        doing("stretching plate: choosing its cells", 0.0)
+        doing("stretching plate: choosing its cells")
 
     def solved(self, solutions: int, error: float) -> None:
         """Report full solutions and the error that is left, over the largest w."""
