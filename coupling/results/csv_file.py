@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Iterator
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from coupling.files import whole_file
-from particle import ContactSamples, KogutEtsion, Samples, State, Trajectory
+from particle import KogutEtsion, Samples, State, Trajectory
 
-COLUMNS = (
-    *("time [s]", "x [m]", "y [m]", "z [m]", "vx [m/s]", "vy [m/s]", "state"),
-    *("normal force [N]", "friction force [N]"),
-)
-HEADER = ",".join(COLUMNS)
+HEADER = "time [s],x [m],y [m],z [m],vx [m/s],vy [m/s],state,normal force [N],friction force [N]"
 VECTORS = {"contact": "m", "centre": "m", "normal": "1", "friction": "N"}
-CONTACT_COLUMNS = tuple(f"{name} {axis} [{unit}]" for name, unit in VECTORS.items() for axis in "xyz")
-ROUGH_COLUMNS = ("separation [roughness]", "contact load [N]", "adhesion [N]")
+ROUGH = {"separation": "separation [roughness]", "contact_load": "contact load [N]", "adhesion": "adhesion [N]"}
 
 
 def write_csv(
@@ -67,13 +62,29 @@ def write_csv(
         raise ValueError(f"Input times of write_csv must be finite times in s; got {at[~np.isfinite(at)][0]}")
     at = np.concatenate([at, [event.time for event in trajectory.events]])
     at = np.unique(np.clip(at, trajectory.time[0], trajectory.time[-1]))
-    header, rows = HEADER, csv_rows(trajectory.at(at))
+    columns = columns_of(trajectory.at(at))
     if forces:
         contact = trajectory.contact_at(at, friction)
-        header = ",".join([HEADER, *CONTACT_COLUMNS, *(ROUGH_COLUMNS if friction else ())])
-        rows = (f"{row},{more}" for row, more in zip(rows, _contact_rows(contact, friction is not None), strict=True))
+        for name, unit in VECTORS.items():
+            x_y_z = zip("xyz", getattr(contact, name).T, strict=True)
+            columns |= {f"{name} {axis} [{unit}]": values for axis, values in x_y_z}
+        columns |= {label: getattr(contact, name) for name, label in ROUGH.items() if friction is not None}
+    return write_columns(columns, path)
+
+
+def columns_of(samples: Samples) -> dict[str, NDArray[Any]]:
+    """The columns (k,) of a file for samples, by their names."""
+    words = np.array([State(state).name.lower() for state in samples.state.tolist()])
+    columns = (samples.time, *samples.position.T, samples.height, *samples.velocity.T, words)
+    return dict(zip(HEADER.split(","), (*columns, samples.normal_force, samples.friction_force), strict=True))
+
+
+def write_columns(columns: Mapping[str, NDArray[Any]], path: Path) -> Path:
+    """Write columns (k,) of numbers, empty where they are nan, or words as a CSV file; return its path."""
+    rows = zip(*(values.tolist() for values in columns.values()), strict=True)
+    lines = (",".join("" if value != value else str(value) for value in row) for row in rows)
     with whole_file(path) as partial:
-        partial.write_text("\n".join([header, *rows, ""]), encoding="utf-8")
+        partial.write_text("\n".join([",".join(columns), *lines, ""]), encoding="utf-8")
     return path
 
 
@@ -87,23 +98,4 @@ def is_trajectory(path: Path) -> bool:
     """Whether `write_csv` wrote a file."""
     with path.open(encoding="utf-8", errors="replace") as file:
         header = file.readline().rstrip("\n")
-    return header == HEADER or header.startswith(f"{HEADER},{CONTACT_COLUMNS[0]},")
-
-
-def csv_rows(samples: Samples) -> Iterator[str]:
-    """Yield the lines of a file for samples, without its header."""
-    columns = (samples.time, *samples.position.T, samples.height, *samples.velocity.T)
-    words = [State(state).name.lower() for state in samples.state.tolist()]
-    forces = (samples.normal_force, samples.friction_force)
-    for *numbers, word, normal, friction in zip(
-        *(column.tolist() for column in columns), words, *(force.tolist() for force in forces), strict=True
-    ):
-        yield ",".join([*map(repr, numbers), word, repr(normal), repr(friction)])
-
-
-def _contact_rows(contact: ContactSamples, rough: bool) -> Iterator[str]:
-    columns = [getattr(contact, name) for name in VECTORS]
-    if rough:
-        columns += [contact.separation, contact.contact_load, contact.adhesion]
-    for numbers in np.column_stack(columns).tolist():
-        yield ",".join("" if math.isnan(number) else repr(number) for number in numbers)
+    return header == HEADER or header.startswith(f"{HEADER},contact x [m],")

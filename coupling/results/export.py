@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from coupling.files import check_room, whole_file
 from coupling.progress import ProgressCallback, no_progress
-from coupling.results.csv_file import HEADER, csv_rows, is_trajectory
+from coupling.results.csv_file import columns_of, is_trajectory, write_columns
 from coupling.results.saved import OF_PART, SavedRun
 from coupling.results.vtkhdf import GZIP, part_file, plate_file
 from particle import Samples
@@ -75,10 +75,7 @@ def _csv(saved: SavedRun, path: Path) -> Path:
         free = f"a folder in which {path.name} is free or a trajectory"
         raise ValueError(f"Input output must be {free}; got {path.parent}")
     last = np.append(np.diff(saved.rows.time) > 0, True)
-    with whole_file(path) as partial:
-        rows = csv_rows(Samples(*(column[last] for column in saved.rows)))
-        partial.write_text("\n".join([HEADER, *rows, ""]), encoding="utf-8")
-    return path
+    return write_columns(columns_of(Samples(*(column[last] for column in saved.rows))), path)
 
 
 def _plate_frames(saved: SavedRun) -> Iterator[Frame]:

@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import Any
 
 import h5py  # type: ignore[import-untyped]
 import numpy as np
@@ -77,7 +77,7 @@ class StepsFile:
     def add_arrays(self, group: str, arrays: Mapping[str, ArrayLike]) -> None:
         """Store arrays in the group `/active_surface/GROUP`, which has none of these names yet."""
         made, data = self._metadata.require_group(group), {name: np.asarray(array) for name, array in arrays.items()}
-        self._check_room(data)
+        self.check_room(data)
         for name, array in data.items():
             made.create_dataset(name, data=array, **(GZIP if array.size else {}))
 
@@ -90,14 +90,18 @@ class StepsFile:
         self._file.flush()
         self._flushed = time.monotonic()
 
-    def _append(self, times: ArrayLike, fields: Mapping[str, ArrayLike], points: ArrayLike | None = None) -> None:
-        """Write a step at a time () [s] or k at (k,), later than the last, with points (3,) or (k, 3) if these move.
+    def append(self, times: ArrayLike, position: ArrayLike | None = None, **fields: ArrayLike) -> None:
+        """Add the step at a time () [s], or k steps at times (k,), all with a first axis of k: much faster.
 
-        All steps have the same fields. Raises OSError, and writes nothing, where the disk has no room.
+        Times increase. Fields are in SI units; the first step fixes which there are. Integers and truth values are
+        stored as int64, float32 as it is, any other number as float64. Raises OSError, and writes nothing, where the
+        disk has no room.
+
+        position: (3,) [m], of the part; z is the surface's height.
         """
         new, first = np.atleast_1d(np.asarray(times, np.float64)), self.count
         arrays = {name: np.asarray(values) for name, values in fields.items()}
-        self._check_room(arrays)
+        self.check_room(arrays)
         steps = np.arange(first, first + len(new))
         for name, array in arrays.items():
             rows = array.reshape(len(new) * self._n_points, *array.shape[np.ndim(times) + len(self._shape) :])
@@ -109,91 +113,72 @@ class StepsFile:
             _write(self._steps["PointDataOffsets"][name], first, steps * self._n_points)
         for name, row in self._constants.items():
             _write(self._steps[name], first, np.repeat(row, len(steps), axis=0))
-        _write(self._steps["PointOffsets"], first, np.zeros_like(steps) if points is None else steps)
-        if points is not None:
-            _write(self._root["Points"], first, np.reshape(points, (-1, 3)))
+        _write(self._steps["PointOffsets"], first, np.zeros_like(steps) if position is None else steps)
+        if position is not None:
+            _write(self._root["Points"], first, np.reshape(position, (-1, 3)))
         self._times = np.concatenate([self._times, new])
         if time.monotonic() - self._flushed >= FLUSH_AFTER:
             self.flush()
 
-    def _check_room(self, arrays: Mapping[str, Any]) -> None:
+    def check_room(self, arrays: Mapping[str, Any]) -> None:
+        """Raise OSError where the disk has no room for arrays."""
         path, needed = Path(self._file.filename), sum(array.nbytes for array in arrays.values())
         check_room(path.parent, needed, f"; {path.name} has what was written before")
 
 
-class PlateFile(StepsFile):
-    """The open result file of the plate; `plate_file` makes it."""
-
-    def __init__(self, file: h5py.File, points: NDArray[np.float64], triangles: NDArray[np.int64]) -> None:
-        super().__init__(file, "UnstructuredGrid", shape=(len(points),), topologies=())
-        offsets = np.arange(0, triangles.size + 1, 3)
-        types = np.full(len(triangles), 5, np.uint8)  # VTK_TRIANGLE
-        mesh = {"Points": points, "Connectivity": triangles.ravel(), "Offsets": offsets, "Types": types}
-        self._check_room(mesh)
-        for name, data in mesh.items():
-            self._root.create_dataset(name, data=data, **GZIP)
-        self._root["NumberOfCells"] = [len(triangles)]
-        self._root["NumberOfConnectivityIds"] = [triangles.size]
-
-    def append(self, times: ArrayLike, *, deflection: ArrayLike, **fields: ArrayLike) -> None:
-        """Add the step at a time () [s]: the deflection (n,) [m], and any fields (n,) or (n, 3), in SI units.
-
-        Or k steps at times (k,), all with a first axis of k: much faster. The first step fixes the fields; times
-        increase. Integers and truth values are stored as int64, float32 as it is, any other number as float64.
-        Raises OSError, and writes nothing, where the disk has no room.
-        """
-        self._append(times, {"deflection": deflection, **fields})
-
-
-class PartFile(StepsFile):
-    """The open result file of the part; `part_file` makes it."""
-
-    def __init__(self, file: h5py.File) -> None:
-        super().__init__(file, "PolyData", shape=(), topologies=(4,))
-        growing(self._root, "Points", np.float64, (3,))
-        for name, n_cells in {"Vertices": 1, "Lines": 0, "Polygons": 0, "Strips": 0}.items():  # VTK wants all four
-            cells = self._root.create_group(name)
-            cells["NumberOfCells"] = cells["NumberOfConnectivityIds"] = [n_cells]
-            cells["Connectivity"] = np.arange(n_cells)
-            cells["Offsets"] = np.arange(n_cells + 1)
-
-    def append(self, times: ArrayLike, position: ArrayLike, **fields: ArrayLike) -> None:
-        """Add a step, or k: the position (3,) [m], z being the surface's height, and any fields () or (3,).
-
-        Times and fields are as in `PlateFile.append`.
-        """
-        self._append(times, fields, position)
-
-
 def plate_file(
     folder: str | Path, name: str, points: NDArray[np.float64], triangles: NDArray[np.int64], metadata: Metadata = NONE
-) -> AbstractContextManager[PlateFile]:
+) -> AbstractContextManager[StepsFile]:
     """Write `NAME.plate.vtkhdf` in an existing folder, replacing it when the `with` block ends well.
 
     `points` (n, 2) or (n, 3) [m] are at rest, with z = 0 if not given; `triangles` (m, 3) are their numbers from 0.
+    Fields have the shape (n,) or (n, 3) at each step.
 
     Raises OSError if the file cannot be written, BlockingIOError where another process writes it.
     """
-    in_space = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
-    return _written(lambda file: PlateFile(file, in_space, triangles), Path(folder), name, "plate", metadata)
+    mesh = {
+        "Points": np.pad(points, ((0, 0), (0, 3 - points.shape[1]))),
+        "Connectivity": triangles.ravel(),
+        "Offsets": np.arange(0, triangles.size + 1, 3),
+        "Types": np.full(len(triangles), 5, np.uint8),  # VTK_TRIANGLE
+    }
+
+    def lay_out(file: h5py.File) -> StepsFile:
+        plate = StepsFile(file, "UnstructuredGrid", shape=(len(points),), topologies=())
+        plate.check_room(mesh)
+        for key, data in mesh.items():
+            file["VTKHDF"].create_dataset(key, data=data, **GZIP)
+        file["VTKHDF/NumberOfCells"] = [len(triangles)]
+        file["VTKHDF/NumberOfConnectivityIds"] = [triangles.size]
+        return plate
+
+    return _written(lay_out, Path(folder), name, "plate", metadata)
 
 
-def part_file(folder: str | Path, name: str, metadata: Metadata = NONE) -> AbstractContextManager[PartFile]:
-    """Write `NAME.part.vtkhdf` in an existing folder; the rest is as in `plate_file`."""
-    return _written(PartFile, Path(folder), name, "part", metadata)
+def part_file(folder: str | Path, name: str, metadata: Metadata = NONE) -> AbstractContextManager[StepsFile]:
+    """Write `NAME.part.vtkhdf`, whose steps have a position and fields () or (3,); the rest is as in `plate_file`."""
 
+    def lay_out(file: h5py.File) -> StepsFile:
+        part = StepsFile(file, "PolyData", shape=(), topologies=(4,))
+        growing(file["VTKHDF"], "Points", np.float64, (3,))
+        for key, n_cells in {"Vertices": 1, "Lines": 0, "Polygons": 0, "Strips": 0}.items():  # VTK wants all four
+            cells = file["VTKHDF"].create_group(key)
+            cells["NumberOfCells"] = cells["NumberOfConnectivityIds"] = [n_cells]
+            cells["Connectivity"] = np.arange(n_cells)
+            cells["Offsets"] = np.arange(n_cells + 1)
+        return part
 
-AnyFile = TypeVar("AnyFile", bound=StepsFile)
+    return _written(lay_out, Path(folder), name, "part", metadata)
 
 
 @contextmanager
 def _written(
-    create: Callable[[h5py.File], AnyFile], folder: Path, name: str, kind: str, metadata: Metadata
-) -> Iterator[AnyFile]:
-    """Yield the file that `create` lays out under its partial name; give it the final name if all goes well."""
+    lay_out: Callable[[h5py.File], StepsFile], folder: Path, name: str, kind: str, metadata: Metadata
+) -> Iterator[StepsFile]:
+    """Yield the file that is laid out under its partial name; give it the final name if all goes well."""
     partial = folder / f"{name}.partial.{kind}.vtkhdf"
     with whole_file(folder / f"{name}.{kind}.vtkhdf", partial, keep=True), _opened(partial) as file:
-        result = create(file)
+        result = lay_out(file)
         result.add_metadata(metadata)
         try:
             yield result

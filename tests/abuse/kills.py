@@ -37,14 +37,14 @@ import os, time
 from coupling.results import vtkhdf
 def spied(name):
     plain = getattr(vtkhdf.StepsFile, name)
-    def call(self, *arguments):
+    def call(self, *arguments, **fields):
         begun = time.monotonic()
-        plain(self, *arguments)
-        kind, when = type(self).__name__[:-4].lower(), begun if name == "_append" else time.monotonic()
+        plain(self, *arguments, **fields)
+        kind, when = self._file.filename.split(".")[-2], begun if name == "append" else time.monotonic()
         os.write(1, f"{kind} {self.count} {name} {when}\\n".encode())
     setattr(vtkhdf.StepsFile, name, call)
 spied("flush")
-spied("_append")
+spied("append")
 from active_surface.cli.program import main
 main()
 """
@@ -66,7 +66,7 @@ class Report(NamedTuple):
 
     def is_lost(self, kind: str, found: dict[str, int]) -> bool:
         """Whether it is of a write of steps that a file of this kind lacks."""
-        return self.kind == kind and self.what == "_append" and self.steps > found[kind]
+        return self.kind == kind and self.what == "append" and self.steps > found[kind]
 
 
 class Kill(NamedTuple):
