@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import atexit
 import json
-import re
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
@@ -14,7 +13,6 @@ from xml.etree import ElementTree
 from coupling.case import Case, MeshCase, PlatformCase
 
 PATHS = ("mesh", "motion")  # keys of a plate that may name a file
-_HEAVY = re.compile(r"(<DataItem\b[^>]*>\s*)([^<>:]+)(?=:)")  # what an XDMF file names as holding its numbers
 
 
 class CaseRecord(NamedTuple):
@@ -59,11 +57,17 @@ def case_of(record: CaseRecord, name: str, source: str | None = None) -> Case:
 def _leads_elsewhere(xdmf: bytes, files: Mapping[str, bytes]) -> bool:
     """Whether an XDMF file names numbers that are in none of these files."""
     try:
-        items = list(ElementTree.fromstring(xdmf).iter("DataItem"))
+        root = ElementTree.fromstring(xdmf)
     except (ElementTree.ParseError, LookupError, ValueError):
         return False  # which nobody reads
-    named = [(item.get("Format"), (item.text or "").strip().partition(":")[0]) for item in items]
-    return any(form == "Binary" or (form == "HDF" and name not in files) for form, name in named)
+    binary = any(item.get("Format") == "Binary" for item in root.iter("DataItem"))
+    return binary or any(name not in files for _, name in _heavy(root))
+
+
+def _heavy(root: ElementTree.Element) -> Iterator[tuple[ElementTree.Element, str]]:
+    """The items of an XDMF file whose numbers are in an HDF5 file, and the name of that."""
+    items = (item for item in root.iter("DataItem") if item.get("Format") == "HDF")
+    return ((item, (item.text or "").partition(":")[0].strip()) for item in items)
 
 
 def files_of(case: Case) -> dict[str, bytes]:
@@ -79,19 +83,14 @@ def files_of(case: Case) -> dict[str, bytes]:
 
 def _with_heavy(path: Path) -> dict[str, bytes]:
     """An XDMF file and those that hold its numbers, which it names by the names that they get."""
-    kept: dict[Path, str] = {}
-    contents: dict[str, bytes] = {path.name: b""}
-
-    def renamed(match: re.Match[str]) -> str:
-        file = path.resolve().parent / match[2].strip()  # as meshio finds it
+    root, kept, contents = ElementTree.fromstring(path.read_bytes()), dict[Path, str](), {path.name: b""}
+    for item, name in _heavy(root):
+        file = path.resolve().parent / name  # as meshio finds it
         if file not in kept:
-            name = file.name if file.name not in contents else f"{len(kept)}.{file.name}"
-            kept[file], contents[name] = name, file.read_bytes()
-        return match[1] + kept[file]
-
-    text = _HEAVY.sub(renamed, path.read_bytes().decode("utf-8", "surrogateescape"))
-    contents[path.name] = text.encode("utf-8", "surrogateescape")
-    return contents
+            kept[file] = file.name if file.name not in contents else f"{len(kept)}.{file.name}"
+            contents[kept[file]] = file.read_bytes()
+        item.text = f"{kept[file]}:{(item.text or '').partition(':')[2]}"
+    return contents | {path.name: ElementTree.tostring(root)}
 
 
 def _kept_folder() -> str:

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import h5py
 import numpy as np
@@ -21,7 +20,7 @@ from coupling.files import check_room, whole_file
 from coupling.progress import ProgressCallback, no_progress
 from coupling.results.csv_file import columns_of, is_trajectory, write_columns
 from coupling.results.saved import OF_PART, SavedRun
-from coupling.results.vtkhdf import GZIP, part_file, plate_file
+from coupling.results.vtkhdf import GZIP, StepsFile, part_file, plate_file
 from particle import Samples
 
 FORMATS = ("pvd", "xdmf", "vtkhdf", "csv")
@@ -56,11 +55,16 @@ def export_run(
     if form == "vtkhdf" and folder.resolve() == saved.part_path.parent.resolve():
         raise ValueError(f"Input output must be another folder than that of the run's own files; got {folder}")
     folder.mkdir(parents=True, exist_ok=True)
-    frames = _counted(_plate_frames(saved), tell, len(saved.time))
+    frames = _plate_frames(saved, tell)
     if form == "vtkhdf":
-        return _plate_anew(saved, folder, frames), _part_anew(saved, folder)
+        return _anew(saved, folder, frames)
     if form == "csv":
-        return (_csv(saved, folder / f"{saved.name}.csv"),)
+        path = folder / f"{saved.name}.csv"
+        if path.is_file() and not is_trajectory(path):
+            free = f"a folder in which {path.name} is free or a trajectory"
+            raise ValueError(f"Input output must be {free}; got {folder}")
+        last = np.append(np.diff(saved.rows.time) > 0, True)  # each time once, at an event with the values from then on
+        return (write_columns(columns_of(Samples(*(column[last] for column in saved.rows))), path),)
     write = write_pvd if form == "pvd" else write_xdmf
     name = saved.name if saved.complete else f"{saved.name}.partial"  # as nothing in these files says so
     return (
@@ -69,30 +73,16 @@ def export_run(
     )
 
 
-def _csv(saved: SavedRun, path: Path) -> Path:
-    """The part's path at all rows of the integrator, each time once, at an event with the values from then on."""
-    if path.is_file() and not is_trajectory(path):
-        free = f"a folder in which {path.name} is free or a trajectory"
-        raise ValueError(f"Input output must be {free}; got {path.parent}")
-    last = np.append(np.diff(saved.rows.time) > 0, True)
-    return write_columns(columns_of(Samples(*(column[last] for column in saved.rows))), path)
-
-
-def _plate_frames(saved: SavedRun) -> Iterator[Frame]:
+def _plate_frames(saved: SavedRun, tell: ProgressCallback) -> Iterator[Frame]:
     points = np.pad(saved.points, ((0, 0), (0, 1)))
     for k, time in enumerate(saved.time.tolist()):
+        tell(k, len(saved.time))
         yield Frame(time, points, {name: saved.plate_field(name, k) for name in saved.plate_fields})
 
 
 def _part_frames(saved: SavedRun) -> Iterator[Frame]:
     for k, time in enumerate(saved.time.tolist()):
         yield Frame(time, saved.position[k : k + 1], {name: getattr(saved, name)[k : k + 1] for name in OF_PART})
-
-
-def _counted(frames: Iterator[Frame], tell: ProgressCallback, count: int) -> Iterator[Frame]:
-    for k, frame in enumerate(frames):
-        tell(k, count)
-        yield frame
 
 
 def write_pvd(folder: Path, name: str, kind: str, cells: NDArray[np.int64], frames: Iterator[Frame]) -> Path:
@@ -119,40 +109,39 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
     steps = ET.SubElement(
         ET.SubElement(root, "Domain"), "Grid", Name=name, GridType="Collection", CollectionType="Temporal"
     )
-    with _numbers(folder, name) as file:
-
-        def item(grid: ET.Element, element: str, what: dict[str, str], place: str, array: NDArray) -> None:
-            """An element of the grid whose numbers are an array, which is written unless its place has one."""
-            if place not in file:
-                file.create_dataset(place, data=array, **({"chunks": array.shape, **GZIP} if array.size > 1 else {}))
-            size = " ".join(map(str, array.shape))
-            form = {"Format": "HDF", "DataType": XDMF_TYPES[array.dtype.kind], "Precision": str(array.dtype.itemsize)}
-            data = ET.SubElement(ET.SubElement(grid, element, what), "DataItem", form, Dimensions=size)
-            data.text = f"{name}.h5:/{place}"
-
-        first: NDArray | None = None
-        for k, frame in enumerate(frames):
-            check_room(folder, sum(array.nbytes for array in (cells, frame.points, *frame.fields.values())))
-            first = frame.points if first is None else first
-            grid = ET.SubElement(steps, "Grid", Name=f"step {k}", GridType="Uniform")
-            ET.SubElement(grid, "Time", Value=repr(frame.time))
-            item(grid, "Topology", {"NumberOfElements": str(len(cells))} | XDMF_CELLS[kind], "cells", cells)
-            place = "0/points" if frame.points is first else f"{k}/points"
-            item(grid, "Geometry", {"GeometryType": "XYZ"}, place, frame.points)
-            for key, array in frame.fields.items():
-                form = "Scalar" if array.ndim == 1 else "Vector"
-                what = {"Name": key, "AttributeType": form, "Center": "Node"}
-                item(grid, "Attribute", what, f"{k}/{key}", array)
-    return _write_xml(root, folder / f"{name}.xdmf")
-
-
-@contextmanager
-def _numbers(folder: Path, name: str) -> Iterator[h5py.File]:
-    """NAME.h5 to write to; once whole it replaces the old one, and NAME.xdmf, which is of the old numbers, goes."""
     with whole_file(folder / f"{name}.h5") as partial:
         with h5py.File(partial, "w") as file:
-            yield file
-        (folder / f"{name}.xdmf").unlink(missing_ok=True)
+
+            def item(grid: ET.Element, element: str, what: dict[str, str], place: str, array: NDArray) -> None:
+                """An element of the grid whose numbers are an array, which is written unless its place has one."""
+                if place not in file:
+                    file.create_dataset(
+                        place, data=array, **({"chunks": array.shape, **GZIP} if array.size > 1 else {})
+                    )
+                size = " ".join(map(str, array.shape))
+                form = {
+                    "Format": "HDF",
+                    "DataType": XDMF_TYPES[array.dtype.kind],
+                    "Precision": str(array.dtype.itemsize),
+                }
+                data = ET.SubElement(ET.SubElement(grid, element, what), "DataItem", form, Dimensions=size)
+                data.text = f"{name}.h5:/{place}"
+
+            first: NDArray | None = None
+            for k, frame in enumerate(frames):
+                check_room(folder, sum(array.nbytes for array in (cells, frame.points, *frame.fields.values())))
+                first = frame.points if first is None else first
+                grid = ET.SubElement(steps, "Grid", Name=f"step {k}", GridType="Uniform")
+                ET.SubElement(grid, "Time", Value=repr(frame.time))
+                item(grid, "Topology", {"NumberOfElements": str(len(cells))} | XDMF_CELLS[kind], "cells", cells)
+                place = "0/points" if frame.points is first else f"{k}/points"
+                item(grid, "Geometry", {"GeometryType": "XYZ"}, place, frame.points)
+                for key, array in frame.fields.items():
+                    form = "Scalar" if array.ndim == 1 else "Vector"
+                    what = {"Name": key, "AttributeType": form, "Center": "Node"}
+                    item(grid, "Attribute", what, f"{k}/{key}", array)
+        (folder / f"{name}.xdmf").unlink(missing_ok=True)  # which is of the old numbers
+    return _write_xml(root, folder / f"{name}.xdmf")
 
 
 def _write_xml(root: ET.Element, path: Path) -> Path:
@@ -162,23 +151,19 @@ def _write_xml(root: ET.Element, path: Path) -> Path:
     return path
 
 
-def _plate_anew(saved: SavedRun, folder: Path, frames: Iterator[Frame]) -> Path:
+def _anew(saved: SavedRun, folder: Path, frames: Iterator[Frame]) -> tuple[Path, Path]:
+    """Both VTKHDF files, with all that those of the run hold."""
     with plate_file(folder, saved.name, saved.points, saved.triangles) as plate:
         _copy(saved.plate_path, plate)
         for frame in frames:
             plate.append(frame.time, **frame.fields)
-    return folder / f"{saved.name}.plate.vtkhdf"
-
-
-def _part_anew(saved: SavedRun, folder: Path) -> Path:
     with part_file(folder, saved.name) as part:
         _copy(saved.part_path, part)
-        for frame in _part_frames(saved):
-            part.append(frame.time, frame.points[0], **{name: array[0] for name, array in frame.fields.items()})
-    return folder / f"{saved.name}.part.vtkhdf"
+        part.append(saved.time, saved.position, **{name: getattr(saved, name) for name in OF_PART})
+    return folder / f"{saved.name}.plate.vtkhdf", folder / f"{saved.name}.part.vtkhdf"
 
 
-def _copy(path: Path, into: Any) -> None:
+def _copy(path: Path, into: StepsFile) -> None:
     """What a file holds beside its steps."""
     with h5py.File(path, "r") as file:
         ours = file["active_surface"]
