@@ -28,6 +28,7 @@ from particle.friction import Contact
 FloatArray = NDArray[np.float64]
 
 PER_STROKE: Final = 24  # moments in the shortest stroke
+LOSSES: Final = (EventKind.DETACHES, EventKind.OVERLOADS, EventKind.LEAVES_PLATE)  # that end a path
 MAX_NAMED: Final = 1000  # events whose actuators are sought
 
 

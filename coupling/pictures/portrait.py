@@ -13,7 +13,7 @@ from common import unit_for
 from coupling.case import Case
 from coupling.display import most_deflected, moving_heights
 from coupling.drives import travel
-from coupling.margins import MarginCurves, Margins
+from coupling.margins import LOSSES, MarginCurves, Margins
 from coupling.pictures.plate import Relief, relief_of
 from particle import AnyDrive, Event, EventKind, Rows, Samples
 
@@ -27,7 +27,6 @@ FloatArray = NDArray[np.float64]
 SAMPLES, MAX_SAMPLES = 4000, 100_000
 PER_CYCLE = 24  # samples, of the fastest drive
 MAX_DRIVES = 3  # drawn; of more, those that the margins name, or the one nearest to the start
-LOSSES = (EventKind.DETACHES, EventKind.OVERLOADS, EventKind.LEAVES_PLATE)
 BATCH = 64  # times whose deflections are computed together
 
 

@@ -15,11 +15,12 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
 from common import Drawing, Unit, draw, figure_of, label_places, unit_for
+from coupling.margins import LOSSES
 from coupling.pictures.events import MARKS, draw_events
 from coupling.pictures.figure import map_axes, put_keys, put_title, save_picture
 from coupling.pictures.path import draw_path, is_visible, path_window
 from coupling.pictures.plate import AXES_WIDTH, draw_plate, draw_window, join
-from coupling.pictures.portrait import LOSSES, Portrait, portrait_of
+from coupling.pictures.portrait import Portrait, portrait_of
 from coupling.pictures.time import Curves, Span, curves_of, draw_over_time
 from coupling.result import Result
 from particle import HALO, shade_keys

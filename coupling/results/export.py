@@ -115,15 +115,10 @@ def write_xdmf(folder: Path, name: str, kind: str, cells: NDArray[np.int64], fra
             def item(grid: ET.Element, element: str, what: dict[str, str], place: str, array: NDArray) -> None:
                 """An element of the grid whose numbers are an array, which is written unless its place has one."""
                 if place not in file:
-                    file.create_dataset(
-                        place, data=array, **({"chunks": array.shape, **GZIP} if array.size > 1 else {})
-                    )
-                size = " ".join(map(str, array.shape))
-                form = {
-                    "Format": "HDF",
-                    "DataType": XDMF_TYPES[array.dtype.kind],
-                    "Precision": str(array.dtype.itemsize),
-                }
+                    packed = {"chunks": array.shape, **GZIP} if array.size > 1 else {}
+                    file.create_dataset(place, data=array, **packed)
+                size, kind_of_number = " ".join(map(str, array.shape)), XDMF_TYPES[array.dtype.kind]
+                form = {"Format": "HDF", "DataType": kind_of_number, "Precision": str(array.dtype.itemsize)}
                 data = ET.SubElement(ET.SubElement(grid, element, what), "DataItem", form, Dimensions=size)
                 data.text = f"{name}.h5:/{place}"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
 from pathlib import Path
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from common import DEADLY, check_hdf5, survives
 from coupling.case import Case
-from coupling.margins import MarginCurves
+from coupling.margins import LOSSES, MarginCurves
 from coupling.results.case_record import CaseRecord, case_of
 from coupling.results.opening import (
     ENDINGS,
@@ -43,9 +43,9 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+TIMES = "VTKHDF/Steps/Values"
 EVENT_KIND, EVENT_NUMBERS, EVENT_PLACE = "kind", ("time", "speed", "load"), "position"
 OF_PART = ("velocity", "state", "normal_force", "friction_force")
-LOSSES = (EventKind.DETACHES, EventKind.LEAVES_PLATE, EventKind.OVERLOADS)
 LOST = tuple(outcome.value for outcome in (Outcome.DETACHED, Outcome.LEFT_PLATE, Outcome.OVERLOADED))
 
 
@@ -179,7 +179,7 @@ def read_run(path: str | os.PathLike[str]) -> SavedRun:
         with readable(paths["part"], paths["part"]):
             run = _read(part, surface, paths, steps[fewest])
             _check(run, steps[fewest])
-            return replace(run, complete=run.complete and bool(run.time[-1] >= run.summary["end_time"]))
+            return run
 
 
 def _surface(plate: h5py.File) -> dict[str, Any]:
@@ -194,11 +194,13 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
     ours, fields, points = part["active_surface"], part["VTKHDF/PointData"], surface["points"]
     rows = Samples(**{name: ours["rows"][name][()] for name in Samples._fields})
     columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE))
+    texts, time = {key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")}, part[TIMES][:k]
+    renamed = not any(split(path)[2] for path in paths.values())
     return SavedRun(
         name=split(paths["plate"])[0],
-        complete=not any(split(path)[2] for path in paths.values()),
-        **{key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")},
-        time=part["VTKHDF/Steps/Values"][:k],
+        complete=renamed and bool(time[-1] >= texts["summary"]["end_time"]),
+        **texts,
+        time=time,
         **surface,
         actuators=points[: checked_count("actuators", ours.attrs["actuators"], len(points))],
         position=part["VTKHDF/Points"][:k],
