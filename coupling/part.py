@@ -53,8 +53,8 @@ def build_part(case: Case, position: tuple[float, float] | None = None) -> Micro
     return Micropart(p.mass, position or p.position, p.velocity, p.squeeze, p.centre_height)
 
 
-def tipping_of(case: Case, trajectory: Trajectory, friction: Contact, times: FloatArray) -> float | None:
-    """The largest shift of the centre of pressure at times (k,) [s], over half the part's size; None: size not given.
+def tipping_of(case: Case, samples: ContactSamples, friction: Contact) -> float | None:
+    """The largest shift of the centre of pressure over half the part's size, at some moments; None: size not given.
 
     Friction F on the face below a centre of mass at height h over it has the moment F h. What presses on the face, N +
     adhesion, takes it up by its shift s = F h / (N + adhesion); beyond s = size / 2 the part turns about its edge.
@@ -64,7 +64,6 @@ def tipping_of(case: Case, trajectory: Trajectory, friction: Contact, times: Flo
         return None
     if case.part.centre_height == 0:
         return 0.0
-    samples = trajectory.contact_at(times)
     pressing = pressing_force(samples.normal_force, friction)
     touching = pressing > 0  # neither in flight nor at pull-off, where friction ends as well
     forces = np.linalg.norm(samples.friction[touching], axis=1)

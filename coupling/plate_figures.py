@@ -71,9 +71,7 @@ class PlateFigures:
     can_vibrate: bool  # likewise with inertia
     largest_slope: float
     largest_strain: float | None  # of either face, in linear theory by bending and tension; None: too many actuators
-    top_face_share: (
-        float | None
-    )  # what the top face and the centre of mass add to the pull on the part, over the rest; None: there is none
+    top_face_share: float | None  # what top face and centre of mass add to the part's pull over the rest; None: no rest
     tipping: float | None  # largest shift of the pressure centre over half the part's size; None: size not given
     tips: bool  # whether it is more than 1, and the friction law states the adhesion
     first_frequency: float | None  # Hz, of the plate with its actuators held; None: no density given
@@ -88,22 +86,21 @@ class PlateFigures:
 
 def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, friction: Contact) -> PlateFigures:
     """The figures of a plate under its drives and a part's path over it."""
-    plate, shapes, drives, surface = scene.plate, scene.shapes, scene.lifts, scene.surface
-    stretch = scene.stretch
+    plate, shapes, drives, surface, stretch = scene.plate, scene.shapes, scene.lifts, scene.surface, scene.stretch
+    thickness = plate.section.thickness
     if stretch is None:
         moving = scene.moving_shapes, scene.moving_drives
         sharp = sharp_points(plate.singular_corners, shapes.points)
-        slope, deflection, curvature = extremes(*moving, case.run.duration, sharp, plate.section.thickness / 2)
-        strain = None if curvature is None else plate.section.thickness / 2 * curvature + _residual_strain(plate)
+        slope, deflection, curvature = extremes(*moving, case.run.duration, sharp, thickness / 2)
+        strain = None if curvature is None else thickness / 2 * curvature + _residual_strain(plate)
     else:
         deflection, slope, strain = stretch.extremes
-    thickness = plate.section.thickness
     over_thickness = deflection / thickness
-    times = moments(drives, float(trajectory.time[-1]))
-    contact = trajectory.contact_at(times)
-    tipping = tipping_of(case, trajectory, friction, times)
+    contact = trajectory.contact_at(moments(drives, float(trajectory.time[-1])))
+    tipping = tipping_of(case, contact, friction)
     first = _first_frequency(plate, shapes)
     driven = [drive for drive in drives if travel(drive) > 0] or drives
+    rates = None if first is None else _range([drive.frequency / first for drive in driven])
     rings = not scene.has_inertia and bool((surface.drives.jump[: len(drives), :2] > 0).any())
     strokes = None if first is None else _range([1 / drive.stroke_time / first for drive in driven])
     return PlateFigures(
@@ -125,8 +122,8 @@ def plate_figures(case: Case, scene: PlateScene, trajectory: Trajectory, frictio
         tipping=tipping,
         tips=tipping is not None and tipping > 1 and states_adhesion(friction),
         first_frequency=first,
-        drive_over_first=None if first is None else max(drive.frequency for drive in driven) / first,
-        drives_over_first=None if first is None else _range([drive.frequency / first for drive in driven]),
+        drive_over_first=None if rates is None else rates[1],
+        drives_over_first=rates,
         strokes_over_first=strokes,
         plate_rings=rings,
         quasi_static_error=None if scene.has_inertia or rings or strokes is None else QUASI_STATIC_ERROR * strokes[1],

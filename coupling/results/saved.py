@@ -240,12 +240,13 @@ def _pair(path: Path) -> dict[str, Path]:
     for one in KINDS:
         both = [path] if one == kind else [path.with_name(f"{name}{part}.{one}{SUFFIX}") for part in ("", PARTIAL)]
         found[one] = [file for file in both if file.is_file()]
-        if not found[one] and kind is None and not any(found.values()) and (other := described(path)):
+    if missing := [one for one in KINDS if not found[one]]:
+        if kind is None and not any(found.values()) and (other := described(path)):
             raise ValueError(f"{EXPECTED}; got {path}, {other}")
-        if not found[one] and (kind in (None, one) or path.is_file()):
-            beside = "" if kind in (None, one) else ", the other file of this run"
-            like = "" if beside else meant(path.with_name(name))
-            raise ValueError(f"{EXPECTED}; got {path}, but there is no {both[0]}{beside}{like}")
+        one = kind if kind in missing else missing[0]
+        file = path if one == kind else path.with_name(f"{name}.{one}{SUFFIX}")
+        beside = meant(path.with_name(name)) if kind in (None, one) else ", the other file of this run"
+        raise ValueError(f"{EXPECTED}; got {path}, but there is no {file}{beside}")
     for plate, part in product(*found.values()):
         if _run(plate, "plate") == _run(part, "part"):
             return {"plate": plate, "part": part}

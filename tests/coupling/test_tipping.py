@@ -30,7 +30,7 @@ def on_a_platform(friction, **part):
 
 def tipping(case):
     result = run_case(case)
-    return tipping_of(case, result.trajectory, build_friction(case), np.linspace(0, 0.02, 401))
+    return tipping_of(case, result.trajectory.contact_at(np.linspace(0, 0.02, 401)), build_friction(case))
 
 
 @pytest.mark.parametrize("law", LAWS)
