@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import UNREADABLE
-from coupling.case import parse
 from coupling.environment import versions
 from coupling.suggestion import near
 
@@ -26,15 +25,6 @@ KINDS = {"plate": "UnstructuredGrid", "part": "PolyData"}  # and the type of the
 ENDINGS = tuple(f"{part}.{kind}{SUFFIX}" for part in ("", PARTIAL) for kind in KINDS)
 FINITE = ("points", "time", "position")
 MAX_NAMES = 3  # of results in a folder
-SHOWN = "`active-surface view` and `active-surface plot` show"
-OTHERS = {
-    ".toml": "a case file: name the result, such as results/{name} after `active-surface run`",
-    "study": f"a study file: it is of a sweep, whose result {SHOWN}",
-    "aim": "an aim file: name the result of the case file that `active-surface aim` writes",
-    ".vtkhdf": "whose name is no result's: those end in .plate.vtkhdf and .part.vtkhdf",
-    **dict.fromkeys((".msh", ".vtu", ".xdmf"), "which is a mesh: name the result of a case that has it"),
-    ".nc": f"which is of a sweep: {SHOWN} it",
-}
 
 
 @contextmanager
@@ -126,15 +116,11 @@ def described(path: Path) -> str | None:
         return f"a folder: name a result in it: {some}" if names else "a folder, in which there is no result of a run"
     if not path.is_file():
         return None
-    try:
-        tables = parse(path).tables if path.suffix == ".toml" else {}
-    except ValueError:  # no TOML
-        tables = {}
-    kind = next((table for table in ("study", "aim") if table in tables), path.suffix)
-    if kind in OTHERS:
-        return OTHERS[kind].format(name=path.stem)
-    beside = path.stem in _names(path.parent)
-    return f"which is beside a result: name {path.with_suffix('')}" if beside else "which is another file"
+    if path.stem in _names(path.parent):
+        return f"which is beside a result: name {path.with_suffix('')}"
+    if path.suffix == ".toml":
+        return f"which is input: name its result, such as results/{path.stem} after `active-surface run`"
+    return f"which is another file: those of a run end in {ENDINGS[0]} and {ENDINGS[1]}"
 
 
 def meant(path: Path) -> str:

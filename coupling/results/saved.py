@@ -195,10 +195,10 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
     rows = Samples(**{name: ours["rows"][name][()] for name in Samples._fields})
     columns = (ours["events"][name][()].tolist() for name in (EVENT_KIND, *EVENT_NUMBERS, EVENT_PLACE))
     texts, time = {key: json.loads(ours.attrs[key]) for key in ("summary", "versions", "units")}, part[TIMES][:k]
-    renamed = not any(split(path)[2] for path in paths.values())
+    end, renamed = summary_of(texts["summary"]).end_time, not any(split(path)[2] for path in paths.values())
     return SavedRun(
         name=split(paths["plate"])[0],
-        complete=renamed and bool(time[-1] >= texts["summary"]["end_time"]),
+        complete=renamed and bool(time[-1] >= end),
         **texts,
         time=time,
         **surface,
@@ -219,7 +219,6 @@ def _read(part: h5py.File, surface: dict[str, Any], paths: dict[str, Path], k: i
 
 def _check(run: SavedRun, k: int) -> None:
     """Raises ValueError where what was read of a part over k steps does not fit together."""
-    summary_of(run.summary)
     of_each = dict.fromkeys(("time", "state", "normal_force", "friction_force"), (k,))
     check_numbers("the part", vars(run), {**of_each, "position": (k, 3), "velocity": (k, 3)})
     for group, one in (("rows", run.rows), ("margins", run.margins)):

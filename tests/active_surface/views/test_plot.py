@@ -257,11 +257,10 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
         folder / "cas": f"which is no file; did you mean {folder / 'case'}?",
         folder: f"a folder: name a result in it: {folder / 'case'}",
         tmp_path / "text.nc": "which is another file",
-        tmp_path / "other.vtkhdf": "whose name is no result's: those end in .plate.vtkhdf and .part.vtkhdf",
+        tmp_path / "other.vtkhdf": "which is another file: those of a run end in .plate.vtkhdf and .part.vtkhdf",
         folder / "case.png": f"which is beside a result: name {folder / 'case'}",
-        folder / "one.toml": "a study file: it is of a sweep, whose result `active-surface view` and "
-        "`active-surface plot` show",
-        folder / "case.toml": "a case file: name the result, such as results/case after `active-surface run`",
+        folder / "one.toml": "which is input: name its result, such as results/one after `active-surface run`",
+        folder / "case.toml": f"which is beside a result: name {folder / 'case'}",
     }
     for path, said in wrong.items():
         done = CliRunner().invoke(main, ["plot", str(path), "-o", str(tmp_path / "new")])

@@ -186,21 +186,13 @@ def test_what_is_named_in_place_of_a_result_is_described(folder):
     assert refused(folder / "runn").endswith(f"did you mean {folder / 'run'}?")
     (folder / "empty").mkdir()
     (folder / "x.toml").write_text("[plate]\n")
-    (folder / "aim.toml").write_text("[aim]\n")
-    (folder / "broken.toml").write_text("[no TOML")
-    (folder / "x.txt").write_text("mine")
-    (folder / "x.msh").write_text("mine")
-    shutil.copy(folder / "run.part.vtkhdf", folder / "x.vtkhdf")
+    (folder / "y.txt").write_text("mine")
     assert refused(folder / "empty").endswith("empty, a folder, in which there is no result of a run")
     assert refused(folder / "x.toml").endswith(
-        "x.toml, a case file: name the result, such as results/x after `active-surface run`"
+        "x.toml, which is input: name its result, such as results/x after `active-surface run`"
     )
-    written = "an aim file: name the result of the case file that `active-surface aim` writes"
-    assert refused(folder / "aim.toml").endswith(written) and "name the result" in refused(folder / "broken.toml")
-    assert refused(folder / "x.txt").endswith("x.txt, which is another file")
-    assert refused(folder / "x.msh").endswith("x.msh, which is a mesh: name the result of a case that has it")
-    assert "x.vtkhdf, whose name is no result's: those end in .plate.vtkhdf and .part.vtkhdf" in refused(
-        folder / "x.vtkhdf"
+    assert refused(folder / "y.txt").endswith(
+        "y.txt, which is another file: those of a run end in .plate.vtkhdf and .part.vtkhdf"
     )
     for name in "abc":
         for kind in ("plate", "part"):
