@@ -75,18 +75,16 @@ def check_room(folder: Path, needed: int, kept: str = "") -> None:
     kept: what to say of what is there already.
     """
     needed += SPARE
-    try:
-        if (free := shutil.disk_usage(folder).free) < needed:
-            raise OSError(errno.ENOSPC, f"{free / 1e6:.1f} MB are free")
-        if hasattr(os, "posix_fallocate"):
+    text = f"{folder}: the results take {needed / 1e6:.1f} MB"
+    if (free := shutil.disk_usage(folder).free) < needed:
+        raise OSError(f"{text}, and {free / 1e6:.1f} MB are free{kept}")
+    if hasattr(os, "posix_fallocate"):
+        try:
             with tempfile.TemporaryFile(dir=folder) as file:  # which meets quotas and limits of files as well
                 os.posix_fallocate(file.fileno(), 0, min(needed, TRIED))
-    except OSError as error:
-        if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
-            text = f"{folder}: the results take {needed / 1e6:.1f} MB: {why(error)}{kept}"
-            raise OSError(text) from error
-        if error.errno not in (errno.EOPNOTSUPP, errno.EINVAL, errno.ENOSYS):  # of disks that reserve nothing
-            raise
+        except OSError as error:
+            if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):  # others are of disks that reserve nothing
+                raise OSError(f"{text}: {why(error)}{kept}") from error
 
 
 @contextmanager

@@ -19,7 +19,7 @@ from coupling.part import build_friction
 from coupling.progress import ProgressCallback, no_progress
 from coupling.result import Result
 from coupling.results.case_record import CaseRecord
-from coupling.results.csv_file import check_csv, is_trajectory, write_csv
+from coupling.results.csv_file import ROUGH, VECTORS, check_csv, is_trajectory, write_csv
 from coupling.results.vtkhdf import part_file, plate_file
 from coupling.surface import check_surface, is_surface, write_surface
 from particle import KogutEtsion, Samples, Trajectory
@@ -128,9 +128,7 @@ def write_results(
 def _contact_fields(trajectory: Trajectory, times: FloatArray, friction: KogutEtsion | None) -> dict[str, FloatArray]:
     """The fields of the contact at times (k,): vectors (k, 3), and for a rough contact numbers (k,), 0 in flight."""
     contact = trajectory.contact_at(times, friction)
-    names = ["contact", "centre", "normal", "friction"]
-    names += ["separation", "contact_load", "adhesion"] if friction else []
-    return {name: np.nan_to_num(getattr(contact, name)) for name in names}
+    return {name: np.nan_to_num(getattr(contact, name)) for name in (*VECTORS, *(ROUGH if friction else ()))}
 
 
 def _fields(

@@ -175,7 +175,7 @@ def test_a_full_disk_is_told_before_the_results_are_written_and_chunks_are_kept(
         patch.setattr(shutil, "disk_usage", lambda folder: usage._replace(free=1000))
         done = swept(tmp_path)
     assert done.exit_code == 2
-    assert f"{tmp_path / 'out'}: the results take 1.0 MB, and 0.0 MB are free; finished chunks are kept" in done.output
+    assert f"{tmp_path / 'out'}: the results take 3.1 MB, and 0.0 MB are free; finished chunks are kept" in done.output
     assert len(list((tmp_path / "out").rglob("*.chunk"))) == 1 and not list((tmp_path / "out").glob("*.nc"))
     monkeypatch.setattr(Engine, "records", None)
     assert swept(tmp_path).exit_code == 0
