@@ -18,11 +18,11 @@ from coupling.vibration import Vibration, VibrationModel, always_running
 from particle import AnyDrive, SurfaceMotion
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class VibratingSurface(ActuatedSurface):
     """The moving surface of a plate with inertia."""
 
-    model: VibrationModel | None = None
+    model: VibrationModel
 
     @staticmethod
     def under(
@@ -34,7 +34,6 @@ class VibratingSurface(ActuatedSurface):
 
     def until(self, end: float) -> VibratingSurface:
         """The same surface, for drives up to another end [s]."""
-        assert self.model is not None
         return replace(self, model=replace(self.model, end=end))
 
     def driven_by(self, drives: Sequence[AnyDrive], in_plane_drives: Sequence[AnyDrive] = ()) -> SurfaceMotion:
@@ -42,19 +41,18 @@ class VibratingSurface(ActuatedSurface):
 
         Also ValueError where a mode without damping resonates in the steady state.
         """
-        assert self.model is not None
         if wrong := self.drive_faults({"drives": drives}):
             raise ValueError("; ".join(wrong))
         lifts = [always_running(drive) for drive in drives] if self.model.steady else drives
         return self.moved_by([*lifts, *self.model.modal_drives(lifts)])
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class StretchedSurface(ActuatedSurface):
     """The moving surface of a plate that stretches."""
 
-    model: StretchModel | None = None
-    end: float = 0.0  # s, of the time that is needed
+    model: StretchModel
+    end: float  # s, of the time that is needed
 
     _lock: Lock = field(default_factory=Lock)  # of the response
 
@@ -75,7 +73,6 @@ class StretchedSurface(ActuatedSurface):
 
         Also ValueError where these pass the heights that its model is good for, or find no equilibrium.
         """
-        assert self.model is not None
         if wrong := self.drive_faults({"drives": drives}) or self._strokes_beyond(drives):
             raise ValueError("; ".join(wrong))
         lifts = [always_running(drive) for drive in drives] if self.model.steady else drives
@@ -85,12 +82,10 @@ class StretchedSurface(ActuatedSurface):
     @property
     def _response(self) -> Response | None:
         """What the plate answers to heights, found once for all drives."""
-        assert self.model is not None
         with self._lock:
             return self.model.response
 
     def _strokes_beyond(self, drives: Sequence[AnyDrive]) -> list[str]:
-        assert self.model is not None
         low, high = self.model.heights.min(axis=0), self.model.heights.max(axis=0)
         room, wrong = room_beyond(low, high), []
         for k, drive in enumerate(drives):
