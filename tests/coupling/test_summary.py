@@ -1,6 +1,7 @@
 """The summary of runs with springs, forces and slow and fast drives."""
 
 import json
+import math
 from contextlib import contextmanager
 from dataclasses import replace
 from types import SimpleNamespace
@@ -315,3 +316,13 @@ def test_a_part_on_an_actuator_sags_as_its_spring_yields(truncation):
     spring = plate.influence([[0.0, 0.0]], 1.0)
     assert part_sag(plate, spring, beside, weight) == pytest.approx(weight / (of_plate + 1), rel=1e-3)
     assert weight / (of_plate + 1) == pytest.approx(1.818e-11, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["linear", "stretching", "vibrating", "platform"])
+def test_a_summary_is_read_back_from_its_json(ran, kind):
+    summary = replace(ran(kind).summary, path_error=math.inf, gravity=(0.0, 1.0, -9.81))
+    figures = json.loads(json.dumps(summary.as_dict()))
+    assert summary_of(dict(reversed(figures.items()))) == summary
+    assert math.isnan(summary_of(figures | {"energy_balance": math.nan}).energy_balance)
+    with pytest.raises(ValueError, match="the summary has no valid slips, margins, as that of another version may"):
+        summary_of({**figures, "slips": "many", "margins": {"slip": 3}})

@@ -59,6 +59,11 @@ def test_a_run_is_finished_though_its_picture_cannot_be_drawn(tmp_path, monkeypa
     assert not list(tmp_path.glob("*.png")) and read_run(tmp_path / "run").complete
 
 
+def test_a_picture_is_left_out_on_request(tmp_path):
+    files = run_case(shaken(), tmp_path, picture=False).files
+    assert [file.name for file in files] == ["run.plate.vtkhdf", "run.part.vtkhdf"] and not [*tmp_path.glob("*.png")]
+
+
 @pytest.mark.slow
 def test_a_run_leaves_nothing_of_an_older_one_beside_it(tmp_path):
     run_case(shaken(), tmp_path, csv=True, save_surface=True)
