@@ -57,9 +57,7 @@ class Summary:
     same_events: bool  # whether that run has the same kinds of events in the same order
     path_resolution: float  # m, the tolerance of one step
     margins: Margins
-    thresholds: (
-        Thresholds | None
-    )  # of a part that hardly moved or was lost; None also where no factor scales its drives
+    thresholds: Thresholds | None  # of a part that hardly moved or was lost, where a factor scales its drives
     frames_per_cycle: float | None  # steps in files to a cycle of the fastest drive; None: measured, or nothing moves
 
     def as_dict(self) -> dict[str, Any]:
