@@ -156,8 +156,8 @@ def plate_case(duration=1e-3, limit=1e-9, strokes=(5e-5, 4e-5)):
 @pytest.mark.compiled
 def test_a_short_path_is_drawn_in_a_window_with_keys_for_what_is_there(tmp_path):
     figure = drawn(plate_case(), tmp_path)
-    assert figure.axes[0].get_title() == "The plate at 0.3333 ms, when it is deflected most"
-    assert figure.axes[1].get_title() == "Around the path, also at 0.3333 ms"
+    assert figure.axes[0].get_title() == "The plate at 0.6869 ms, when it is deflected most"
+    assert figure.axes[1].get_title() == "Around the path, also at 0.6869 ms"
     assert texts(figure)[:1] == ["path"] and "actuator" in texts(figure) and "in flight" not in texts(figure)
     map_axes, window = figure.axes[:2]
     path = next(line for line in window.lines if line.get_label() == "path").get_xydata()
