@@ -51,7 +51,7 @@ from .shared import (
     shared_surface as shared_surface,
 )
 from .solved_plates import SolvedPlates as SolvedPlates
-from .suggestion import alike as alike, near as near, same_values as same_values
+from .suggestion import near as near
 from .margins import Margin as Margin
 from .thresholds import FAR as FAR
 from .summary import PlateSummary as PlateSummary, Summary as Summary, summary_of as summary_of

@@ -107,7 +107,7 @@ def _surfaces(cases: Sequence[Case]) -> list[SurfaceMotion]:
     built: list[tuple[dict[str, Any], SurfaceMotion]] = []
     found = []
     for case in cases:
-        tables = {key: table for key, table in plain_case(case).items() if key not in (*FREE, "name", "source")}
+        tables = {key: table for key, table in plain_case(case).items() if key not in FREE}
         surface = next((surface for known, surface in built if known == tables), None)
         if surface is None:
             surface = interruptible(build_surface, case)

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from active_surface.arrays import FloatArray
-from coupling.case import Case, Field, PartCase, find_field, plain_case, put_value, quoted
+from coupling.case import Case, Field, find_field, quoted
 
 FACTOR: Final = 10.0  # either way, of usual bounds
 FREE: Final = ("part", "friction")  # tables whose fields one moving surface serves
@@ -139,9 +139,5 @@ def _allowed(field: Field, value: float) -> bool:
 
 def case_with(case: Case, parameters: Sequence[Parameter], shares: FloatArray) -> Case:
     """The case with parameters at shares (n,) of their bounds; ValueError where its tables contradict."""
-    tables: Any = {name: table for name, table in plain_case(case).items() if name in FREE}
-    for parameter, share in zip(parameters, shares, strict=True):
-        for location in parameter.field.locations:
-            tables = put_value(tables, location, float(parameter.value(share)))
-    part, friction = PartCase(**tables["part"]), type(case.friction)(**tables["friction"])
-    return case.model_copy(update={"part": part, "friction": friction, "source": None})
+    changes = {one.field.path: float(one.value(share)) for one, share in zip(parameters, shares, strict=True)}
+    return case.vary(changes)

@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+
+from pydantic import ValidationError
 
 from active_surface.steering.route import Route
 from active_surface.steering.tables import AimTable, AimTables, Settings
-from active_surface.steering.task import Mistake, Task, misplaced, mistakes
+from active_surface.steering.task import Task, mistakes
 from coupling.case import (
     UNITS_REQUIRED,
     Case,
     CaseError,
+    Faults,
     Quantity,
-    errors_of,
+    mistakes_of,
     parse,
     quoted,
     read_case,
     read_columns,
-    right_value,
     unreadable,
-    validate,
 )
 
 Place = tuple[float, float]
@@ -102,44 +102,27 @@ def read_settings(path: str | os.PathLike[str], aims: bool) -> tuple[Case, Setti
 
     aims: whether its target counts.
     """
-    file = parse(path, lenient=True).as_meant(AimTables)
+    file = parse(path)
     if "aim" not in file.tables:
         return read_case(path), Settings(), None
-    tables, errors = validate(AimTables, file.tables, UNITS_REQUIRED)
-    table: AimTable | None = tables.aim if tables else None
-    written = file.tables["aim"] if isinstance(file.tables["aim"], dict) else {}
-    case, wrong = _case(Path(path), written)
-    if case and table:
-        wrong += mistakes(case, table, table.target if aims else None)
-    elif case:
-        # What depends on the target depends on the other keys, too, of which some are wrong.
-        wrong += mistakes(case, _right(written), None)
-        place = right_value(AimTable, "target", written, UNITS_REQUIRED) if aims else None
-        wrong += [("target", message) for message in misplaced(case, place)] if place else []
-    errors += errors_of((("aim", key), message) for key, message in wrong)
-    if errors or file.misread:
-        raise file.error(errors, AimTables)
-    assert case and table
+    try:
+        table = AimTables.model_validate(file.tables, context=UNITS_REQUIRED).aim
+        case = _case(Path(path), table)
+        if wrong := list(mistakes(case, table, table.target if aims else None)):
+            raise Faults((("aim", key), message) for key, message in wrong)
+    except (ValidationError, Faults) as error:
+        raise file.error(mistakes_of(error, AimTables, file.tables)) from None
     own = {key: getattr(table, key) for key in Settings.model_fields}
     return case, Settings.model_construct(**own), table.target
 
 
-def _case(path: Path, table: Mapping[str, Any]) -> tuple[Case | None, list[Mistake]]:
-    """The case that an aim file names, and what is wrong with it."""
-    name = right_value(AimTable, "case", table, UNITS_REQUIRED)
-    if name is None:
-        return None, []
+def _case(path: Path, table: AimTable) -> Case:
+    """The case that an aim file names; raises Faults where it is wrong."""
     try:
-        return read_case(path.parent / name), []
+        return read_case(path.parent / table.case)
     except CaseError as error:
-        return None, [("case", "must be the file of a case; " + str(error).replace("\n", "\n    "))]
-
-
-def _right(table: Mapping[str, Any]) -> Settings:
-    """The settings of a table in which anything may be wrong, without what is; strokes count as given even then."""
-    valid = {key: right_value(AimTable, key, table, UNITS_REQUIRED) for key in Settings.model_fields}
-    known = {key: value for key, value in valid.items() if value is not None}
-    return Settings.model_construct(**({"stroke": (0.0, 0.0)} if "stroke" in table else {}) | known)
+        message = "must be the file of a case; " + str(error).replace("\n", "\n    ")
+        raise Faults([(("aim", "case"), message)]) from None
 
 
 def read_place(text: str, option: str) -> Place:

@@ -164,7 +164,7 @@ def misplaced(case: Case, target: tuple[float, float]) -> Iterator[str]:
     (gap,) = gaps(mesh, [target])
     room = (case.footprint or 0.0) / math.sqrt(2)
     if gap <= least:
-        yield must_be_inside(gap, least, mesh)
+        yield must_be_inside(gap, mesh)
     elif gap < room:
         yield (
             f"must be at least {length_text(room)} inside the rim, half of the part's diagonal, for the part to fit; "

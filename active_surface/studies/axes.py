@@ -10,18 +10,17 @@ from active_surface.studies.axis import Axis, counted, spaced
 from active_surface.studies.points_file import PointsFile, tables_of
 from active_surface.studies.variants import is_deep
 from coupling import near
-from coupling.case import WRONG, Case, Field, Location, Mistake, Value, find_field, lattice_of, quoted
+from coupling.case import Case, Field, Location, Mistake, Value, find_field, lattice_of, quoted
 
 
 class Axes:
-    """The axes that tables are right about, and the mistakes in the others.
+    """The axes of a study, and what is wrong with them.
 
-    tables: the values of each by key, WRONG for those that are not valid by themselves.
-    file: of points, which has the values.
+    tables: the values of each by key.  file: of points, which has the values.
     """
 
     def __init__(
-        self, case: Case | None, tables: Sequence[Mapping[str, Any]], sampling: Any, file: PointsFile | None = None
+        self, case: Case, tables: Sequence[Mapping[str, Any]], sampling: Any, file: PointsFile | None = None
     ) -> None:
         self.mistakes: list[Mistake] = []
         self._sampling, self._file = sampling, file
@@ -29,38 +28,30 @@ class Axes:
         own = len(tables)
         if file:
             tables = tables_of(file, tables)
-        self._lattice = lattice_of(case) if case else (None, 0)
+        self._lattice = lattice_of(case)
         self._fields: list[tuple[int, str, Field]] = []
-        per_table = [self._axis(case, k, table) for k, table in enumerate(tables)] if case else []
-        self.whole = bool(per_table) and None not in per_table
-        axes = [(k, axis) for k, axis in enumerate(per_table) if axis]
+        axes = [(k, axis) for k, table in enumerate(tables) if (axis := self._axis(case, k, table))]
         self.mistakes += [*self._doubled(), *_unlike(axes, sampling)]
         if file:
             self.mistakes = [_of_column(mistake, own, tables, file) for mistake in self.mistakes]
             wrong = [*file.mistakes, *file.by_line(self._wrong_cells)]
             self.mistakes += [(("study", "points"), message) for message in wrong]
         # What the plate depends on varies slowest: points that follow each other share it.
-        self.axes = tuple(sorted((axis for _, axis in axes), key=lambda axis: not (case and is_deep(case, axis))))
+        self.axes = tuple(sorted((axis for _, axis in axes), key=lambda axis: not is_deep(case, axis)))
 
     def _axis(self, case: Case, k: int, table: Mapping[str, Any]) -> Axis | None:
-        if table["field"] is WRONG:
-            return None
         try:
             field = find_field(case, self._lattice[0], table["field"])
         except ValueError as error:
             self.mistakes.append((("axes", k, "field"), str(error)))
             return None
-        self._fields.append((k, table["name"] if isinstance(table["name"], str) else field.path, field))
+        self._fields.append((k, table["name"] or field.path, field))
         if self._file:
             return self._from_file(self._file, k, field, table)
         key = "values" if table["values"] is not None else "range"
-        if table[key] is None or table[key] is WRONG:
-            return None
         values, wrong = _read(field, table[key])
         if wrong:
             self.mistakes += [(("axes", k, key, place), message) for place, message in wrong]
-        elif WRONG in table.values():
-            return None
         elif mistakes := list(self._misfits(field, key, values, table)):
             self.mistakes += [(("axes", k, at), message) for at, message in mistakes]
         else:
@@ -75,7 +66,7 @@ class Axes:
             return None
         values, wrong = file.read(field, table["values"])
         self._wrong_cells += wrong
-        return None if wrong or WRONG in table.values() else Axis(table["name"] or field.path, field, tuple(values))
+        return None if wrong else Axis(table["name"] or field.path, field, tuple(values))
 
     def _made(self, field: Field, key: str, values: list[Any], table: Mapping[str, Any]) -> Axis:
         name, logarithmic = table["name"] or field.path, table["spacing"] == "logarithmic"
@@ -101,7 +92,7 @@ class Axes:
             yield "range", "must have a last value that differs from the first"
         elif table["spacing"] == "logarithmic" and not (values[0] > 0 and values[1] > 0):
             yield "range", 'must have values above 0 with spacing = "logarithmic"'
-        if not drawn and self._sampling is not WRONG and table["count"] is None:
+        if not drawn and table["count"] is None:
             yield "count", f'is missing; with sampling = "{self._sampling}" a range needs a count of values'
         if drawn and table["count"] is not None:
             yield "count", f'must not be given with sampling = "{self._sampling}", which draws from all of a range'

@@ -10,7 +10,6 @@ from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
-from pydantic import ValidationError
 from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import IntArray
@@ -20,7 +19,7 @@ from active_surface.studies.refusal import case_faults, contact_of, mistakes_of,
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Base, Variants
 from coupling import build_drives, build_part, shared_surface, silent
-from coupling.case import Case, PlatformCase, RunCase
+from coupling.case import Case, InputError, PlatformCase, RunCase
 from coupling.scene import platform_scene
 from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
 from particle.friction import Contact
@@ -122,7 +121,7 @@ class Engine:
         for row, values in enumerate(points.values(numbers)):
             try:
                 case, base = self.variants.at(values)
-            except ValidationError as error:
+            except InputError as error:
                 wrong[row] = mistakes_of(error)
             except ArithmeticError as error:
                 wrong[row] = [f"its case cannot be made: {error}"]

@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+from pydantic import ValidationError
 
 from active_surface.studies.axes import Axes
 from active_surface.studies.points import Points
 from active_surface.studies.points_file import read_points_file
 from active_surface.studies.refusal import all_refused
 from active_surface.studies.study import Study
-from active_surface.studies.tables import MAX_PATHS, AxisTable, StudyTable, StudyTables
-from coupling.case import (
-    UNITS_REQUIRED,
-    WRONG,
-    Case,
-    CaseError,
-    Location,
-    Mistake,
-    errors_of,
-    parse,
-    read_case,
-    validate,
-)
+from active_surface.studies.tables import MAX_PATHS, StudyTables
+from coupling.case import UNITS_REQUIRED, Case, CaseError, Faults, Mistake, mistakes_of, parse, read_case
 
 
 def read_study(
@@ -52,76 +42,46 @@ def read_study(
     CaseError
         The file cannot be read or has mistakes; has every one.
     """
-    file = parse(path, lenient=True).as_meant(StudyTables)
-    tables, errors = validate(StudyTables, _with_axes(file.tables), UNITS_REQUIRED)
-    threshold = tables.map.threshold if tables else None
-    study, mistakes = _study(Path(path), file.text, file.tables, case, points)
-    if study and threshold and (message := _undrawn(study.points)):
-        mistakes.append((("map", "threshold"), message))
-    if study and not errors and not mistakes and not file.misread and (message := all_refused(study)):
-        mistakes = [(("axes",), message)]
-    errors += errors_of(mistakes)
-    if errors or file.misread:
-        raise file.error(errors, StudyTables)
-    assert study
-    return replace(study, threshold=threshold)
+    file = parse(path)
+    try:
+        tables = StudyTables.model_validate(_with_axes(file.tables), context=UNITS_REQUIRED)
+        return _study(Path(path), file.text, tables, case, points)
+    except (ValidationError, Faults) as error:
+        raise file.error(mistakes_of(error, StudyTables, file.tables)) from None
 
 
 def _study(
-    path: Path, text: str, data: Mapping[str, Any], case: Case | None, points_path: str | os.PathLike[str] | None
-) -> tuple[Study | None, list[Mistake]]:
-    """The study, None where it is not known, and what is wrong with it beyond each table by itself."""
-    table = data.get("study")
-    entries = StudyTable.values_of(table if isinstance(table, dict) else {}, UNITS_REQUIRED)
-    mistakes: list[Mistake] = []
+    path: Path, text: str, tables: StudyTables, case: Case | None, points_path: str | os.PathLike[str] | None
+) -> Study:
+    """The study; raises Faults with what is wrong with it beyond its tables by themselves."""
+    own = tables.study
     if case is None:
-        case, mistakes = _case(path, entries["case"])
-    written = data.get("axes")
-    tables = [table for table in written if isinstance(table, dict)] if isinstance(written, list) else []
-    keyed = [AxisTable.values_of(table, UNITS_REQUIRED) for table in tables]
-    file = None
-    if isinstance(entries["points"], str):
-        file = read_points_file(Path(points_path or path.parent / entries["points"]))
-        entries = {**entries, "sampling": "list"}
-    if file:
-        mistakes += _with_file(tables)
-    elif written == []:
-        mistakes.append((("axes",), "must be at least one table, written [[axes]]; got none"))
-    axes = Axes(case, keyed, entries["sampling"], file)
-    mistakes += axes.mistakes
-    if case is None or not axes.whole or WRONG in entries.values():
-        return None, mistakes
-    points = Points(
-        axes.axes,
-        entries["sampling"],
-        0 if file else entries["points"] or 0,
-        entries["repeats"],
-        entries["jitter"],
-        entries["seed"],
-    )
-    if len(points) > MAX_PATHS:
-        mistakes.append((("axes",), f"must make at most {MAX_PATHS} paths; got {len(points)}"))
-    return Study(case, points, path.stem, text), mistakes
-
-
-def _with_file(tables: Sequence[Mapping[str, Any]]) -> Iterator[Mistake]:
-    """What axes must not have beside a file of points."""
-    for k, table in enumerate(tables):
-        for key in ("values", "range", "count", "spacing"):
-            if key in table:
-                yield ("axes", k, key), "must not be given with a file of points, which has the values"
+        case = _case(path, own.case)
+    file, sampling = None, own.sampling
+    if isinstance(own.points, str):
+        file, sampling = read_points_file(Path(points_path or path.parent / own.points)), "list"
+    axes = Axes(case, [dict(axis) for axis in tables.axes], sampling, file)
+    mistakes: list[Mistake] = axes.mistakes
+    if not mistakes:
+        count = own.points if isinstance(own.points, int) else 0
+        points = Points(axes.axes, sampling, count, own.repeats, own.jitter, own.seed)
+        study = Study(case, points, path.stem, text, threshold=tables.map.threshold)
+        if len(points) > MAX_PATHS:
+            mistakes.append((("axes",), f"must make at most {MAX_PATHS} paths; got {len(points)}"))
+        elif tables.map.threshold and (message := _undrawn(points)):
+            mistakes.append((("map", "threshold"), message))
+        elif message := all_refused(study):
+            mistakes.append((("axes",), message))
+    if mistakes:
+        raise Faults(mistakes)
+    return study
 
 
 def _with_axes(tables: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The tables of a study, whose axes have something as values where a file of points has these."""
-    study, axes = tables.get("study"), tables.get("axes", [])
-    if not isinstance(study, dict) or not isinstance(study.get("points"), str) or not isinstance(axes, list):
-        return tables
-    filled = [
-        {"values": [study["points"]], **axis} if isinstance(axis, dict) and "range" not in axis else axis
-        for axis in axes
-    ]
-    return {**tables, "axes": filled}
+    """The tables of a study, which needs no axes beside a file of points."""
+    study = tables.get("study")
+    file = isinstance(study, dict) and isinstance(study.get("points"), str)
+    return {"axes": [], **tables} if file else tables
 
 
 def _undrawn(points: Points) -> str:
@@ -132,15 +92,14 @@ def _undrawn(points: Points) -> str:
     return f"must not be given with texts along the second axis, {last.name}" if last.field.kind == "text" else ""
 
 
-def _case(path: Path, name: Any) -> tuple[Case | None, list[Mistake]]:
-    """The base case, and what is wrong with it."""
-    where: Location = ("study", "case")
-    if name is WRONG:
-        return None, []
+def _case(path: Path, name: str) -> Case:
+    """The base case; raises Faults where it cannot be swept."""
     try:
         case = read_case(path.parent / name)
     except CaseError as error:
-        return None, [(where, "must be the file of a case; " + str(error).replace("\n", "\n    "))]
+        message = "must be the file of a case; " + str(error).replace("\n", "\n    ")
+        raise Faults([(("study", "case"), message)]) from None
     if case.run.scheme != "events":
-        return case, [(where, f'must have run.scheme = "events", by which sweeps go; got "{case.run.scheme}"')]
-    return case, []
+        message = f'must have run.scheme = "events", by which sweeps go; got "{case.run.scheme}"'
+        raise Faults([(("study", "case"), message)])
+    return case

@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from pydantic import ValidationError
-
 from active_surface.arrays import FloatArray
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Variants
@@ -14,16 +12,11 @@ from coupling import friction_law
 from coupling.case import (
     SAME_PLACE,
     Case,
-    CaseTables,
     FrictionCase,
+    InputError,
     PlateCase,
-    cycles_fault,
     gaps,
     half_size,
-    in_file,
-    location_text,
-    message_of,
-    mistakes_in,
     must_be_inside,
 )
 from particle.friction import Contact
@@ -51,24 +44,21 @@ def refusals(study: Study, variants: Variants, k: int) -> list[str]:
     (values,) = study.points.values([k])
     try:
         case, base = variants.at(values)
-        start = study.points.displacements([k])[0] + case.part.position
-    except ValidationError as error:
+    except InputError as error:
         return mistakes_of(error)
+    start = study.points.displacements([k])[0] + case.part.position
     return start_faults(base.case, start[None])[0] + case_faults(case)
 
 
 def case_faults(case: Case) -> list[str]:
-    """What is wrong with a case beside its tables and its start."""
-    faults = cycles_fault(case.plate, case.actuators, case.run.duration), contact_of(case.friction)
-    return [fault for fault in faults if isinstance(fault, str) and fault]
+    """What is wrong with the friction law of a case, whose tables are right."""
+    law = contact_of(case.friction)
+    return [law] if isinstance(law, str) else []
 
 
-def mistakes_of(error: ValidationError) -> list[str]:
-    """What is wrong with the tables of a case."""
-    return [
-        f"{location_text(in_file(detail, CaseTables))} {message_of(detail, detail['input'], CaseTables)}"
-        for detail in mistakes_in(error.errors())
-    ]
+def mistakes_of(error: InputError) -> list[str]:
+    """What is wrong with a case."""
+    return [f"{field} {message}" for field, message in error.problems]
 
 
 @lru_cache(LAWS)
@@ -89,6 +79,6 @@ def start_faults(case: Case, starts: FloatArray) -> list[list[str]]:
     mesh = case.plate.coarse_mesh
     least = SAME_PLACE * half_size(mesh)
     return [
-        [] if gap > least else [f"part.position {must_be_inside(gap, least, mesh)}"]
+        [] if gap > least else [f"part.position {must_be_inside(gap, mesh)}"]
         for gap in gaps(mesh, [(x, y) for x, y in starts.tolist()])
     ]

@@ -12,7 +12,7 @@ from active_surface.studies.points import Sampling
 from active_surface.studies.points_file import ENDINGS
 from active_surface.studies.record import COLUMNS
 from active_surface.studies.threshold import Threshold, read_threshold
-from coupling.case import WRONG, Contradictions, KeyedTable, Length, Table, quoted
+from coupling.case import Contradictions, Expected, Length, Table, quoted
 
 MAX_PATHS, MAX_VALUES = 1_000_000_000, 1_000_000
 
@@ -33,18 +33,6 @@ def _two(value: object) -> object:
     return value
 
 
-class _FileName:
-    expected = 'the name of a case file such as "two_actuators.toml"'
-
-
-class _HowMany:
-    expected = 'a whole number, or a file of points such as "points.csv"'
-
-
-class _FieldPath:
-    expected = 'the path of a field such as "actuators.0.frequency"'
-
-
 def _name(value: object) -> object:
     if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z][\w.*-]*", value) or value in TAKEN:
         rule = "a letter, followed by letters, digits or any of _ . * -, and none of the results' own names"
@@ -61,17 +49,18 @@ def _points(value: object) -> object:
     raise ValueError(f'must be {numbers}, or a file of points such as "points.csv"; got {quoted(value)}')
 
 
+_HOW_MANY = 'a whole number, or a file of points such as "points.csv"'
 _POINTS_SCHEMA = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_PATHS}, {"type": "string"}]}
 
 
-class StudyTable(KeyedTable):
+class StudyTable(Table):
     """What is swept, and how points are chosen; jitter in m."""
 
-    case: Annotated[StrictStr, _FileName()] = Field(examples=["one_actuator.toml"])
+    case: Annotated[StrictStr, Expected('the name of a case file such as "two_actuators.toml"')] = Field(examples=["one_actuator.toml"])
     """The base case, a file beside the study's."""
     sampling: Sampling = "grid"
     """How points are chosen: all of a grid, one for each entry of lists, or drawn."""
-    points: Annotated[int | str, PlainValidator(_points), _HowMany(), WithJsonSchema(_POINTS_SCHEMA)] | None = Field(
+    points: Annotated[int | str, PlainValidator(_points), Expected(_HOW_MANY), WithJsonSchema(_POINTS_SCHEMA)] | None = Field(
         default=None, examples=[1000]
     )
     """How many, of random and Sobol ones; or the file that has them, beside the study's."""
@@ -86,21 +75,24 @@ class StudyTable(KeyedTable):
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         sampling = given.get("sampling", "grid")
         if isinstance(given.get("points"), str):
-            if given.get("sampling", "list") not in ("list", WRONG):
+            if given.get("sampling", "list") != "list":
                 yield "sampling", f'must be "list" or left out with a file of points; got "{sampling}"'
             sampling = "list"
         elif sampling in ("grid", "list") and "points" in given:
             yield "points", f'must not be given with sampling = "{sampling}", whose axes tell the points'
         if sampling in ("random", "sobol") and "points" not in given:
             yield "points", f'is missing; with sampling = "{sampling}" it must be a whole number'
-        if given.get("repeats", 1) not in (1, WRONG) and given.get("jitter", 0.0) == 0.0:
+        if given.get("repeats", 1) != 1 and given.get("jitter", 0.0) == 0.0:
             yield "repeats", 'must not be given without a jitter such as "1 um": the paths would all be the same'
 
 
-class AxisTable(KeyedTable):
-    """An axis: the path of a `field` of the case, and its `values`, or their `range` and `count`."""
+class AxisTable(Table):
+    """An axis: the path of a `field` of the case, and its `values`, or their `range` and `count`.
 
-    field: Annotated[StrictStr, _FieldPath()] = Field(examples=["actuators.*.frequency"])
+    Beside a file of points it has none of these.
+    """
+
+    field: Annotated[StrictStr, Expected('the path of a field such as "actuators.0.frequency"')] = Field(examples=["actuators.*.frequency"])
     """The field of the case that is varied; * stands for every actuator."""
     name: Annotated[str, BeforeValidator(_name)] | None = Field(default=None, examples=["frequency"])
     """The axis's name in the results; without it the field's."""
@@ -121,8 +113,6 @@ class AxisTable(KeyedTable):
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         if "values" in given and "range" in given:
             yield "range", "must not be given with values"
-        elif "values" not in given and "range" not in given:
-            yield "values", "is missing; it must be a list of values, or have range and count in its place"
         for key in ("count", "spacing"):
             if key in given and "values" in given and "range" not in given:
                 yield key, "must not be given with values; it belongs to a range"
@@ -157,3 +147,17 @@ class StudyTables(Table):
     """The axes, one table each; none are needed beside a file of points."""
     map: MapTable = MapTable()
     """The picture."""
+
+    @classmethod
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        file = isinstance(given["study"].points, str)
+        for k, axis in enumerate(given["axes"]):
+            if file:
+                for key in ("values", "range", "count"):
+                    if getattr(axis, key) is not None:
+                        yield ("axes", k, key), "must not be given with a file of points, which has the values"
+            elif axis.values is None and axis.range is None:
+                wanted = "a list of values, or have range and count in its place"
+                yield ("axes", k, "values"), f"is missing; it must be {wanted}"
+        if not file and not given["axes"]:
+            yield "axes", "must be at least one table, written [[axes]]; got none"

@@ -14,7 +14,7 @@ from coupling.case.actuators import (
 )
 from coupling.case.case import Case, read_case
 from coupling.case.checks import MAX_STRETCHING, MAX_VIBRATING, common_period, cycles_fault
-from coupling.case.field import Field, Value, find_field
+from coupling.case.fields import Field, Value, find_field, lattice_of, plain_case, put_value
 from coupling.case.friction import (
     AnyFriction,
     ConstantCase,
@@ -24,8 +24,6 @@ from coupling.case.friction import (
     TableCase,
     has_known_law,
 )
-from coupling.case.mistakes import InputError, Location, Mistake, in_file, location_text, message_of, mistakes_in
-from coupling.case.parsing import CaseError, Problem, parse, unfit_name
 from coupling.case.plates import (
     INERTIA,
     RATES,
@@ -40,6 +38,7 @@ from coupling.case.plates import (
     PolygonCase,
     RectangleCase,
     RegularPolygonCase,
+    ShapeCase,
 )
 from coupling.case.scaled import (
     friction_scales,
@@ -50,12 +49,14 @@ from coupling.case.scaled import (
     scaled_friction,
     with_index,
 )
-from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, errors_of, right_value, validate
+from coupling.case.table import Contradictions, Faults, InputError, Location, Mistake, Table, location_text, mistakes_of
 from coupling.case.tables import CaseTables, PartCase, RunCase
+from coupling.case.toml_file import CaseError, Problem, parse, unfit_name
 from coupling.case.values import (
     AXES,
     UNITS_REQUIRED,
     Directed,
+    Expected,
     Frequency,
     Length,
     Point,
@@ -70,5 +71,4 @@ from coupling.case.values import (
     read_columns,
     unreadable,
 )
-from coupling.case.variation import lattice_of, plain_case, put_value
 from coupling.case.writing import json_schema, template, write_case, write_edited

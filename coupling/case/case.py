@@ -3,8 +3,6 @@
 Every quantity is stored as a float in SI units, and every position as (x, y) from the centre of the plate. Built in
 Python, a float is taken as SI and text with a unit is converted; in a file every quantity must state its unit.
 Python gets an `InputError` for wrong values, and from `read_case` a `CaseError`; both are a ValueError.
-
-A case is made in three steps: parse (`toml_file`), check (`check`), build (`_built`).
 """
 
 from __future__ import annotations
@@ -18,14 +16,13 @@ from typing import TYPE_CHECKING, Any, Self
 from pydantic import ValidationError, model_validator
 
 from common import draw, notebook_html
-from coupling.case.checks import MAY_MOVE, Checked, check
-from coupling.case.field import locations_of
-from coupling.case.friction import KogutEtsionCase, TableCase
-from coupling.case.mistakes import InputError
-from coupling.case.parsing import parse
+from coupling.case.checks import build
+from coupling.case.fields import given_in, lattice_of, locations_of, put_value
+from coupling.case.friction import KogutEtsionCase
+from coupling.case.table import Faults, InputError, mistakes_of
 from coupling.case.tables import CaseTables
+from coupling.case.toml_file import parse
 from coupling.case.values import UNITS_REQUIRED
-from coupling.case.variation import lattice_of, plain_case, put_value
 
 if TYPE_CHECKING:
     from common import Axes, Figure
@@ -43,14 +40,12 @@ class Case(CaseTables):
 
     @model_validator(mode="before")
     @classmethod
-    def _checked_and_built(cls, data: Any) -> Any:
+    def _built(cls, data: Any) -> Any:
         if not isinstance(data, dict):
             return data
         own = {key: data[key] for key in ("name", "source") if key in data}
-        checked = check({key: value for key, value in data.items() if key not in own})
-        if checked.errors:
-            raise ValidationError.from_exception_data(cls.__name__, checked.errors)
-        return _built(checked) | own
+        tables = {key: value for key, value in data.items() if key not in own}
+        return build(CaseTables.model_validate(_with_actuators(tables))) | own
 
     def vary(self, changes: Mapping[str, Any], name: str | None = None) -> Self:
         """The same case with other values in some fields.
@@ -75,22 +70,21 @@ class Case(CaseTables):
             Names every place that is no field and every wrong value. After `lattice` is varied once its actuators are
             those of the case, and there is no `lattice` any more.
         """
-        lattice, alone = lattice_of(self)
-        tables = plain_case(self)
-        anew = any(path.split(".")[0] == "lattice" for path in changes) and lattice is not None
-        if anew:
-            tables |= {"lattice": lattice, "actuators": tables["actuators"][:alone]}
+        tables: dict[str, Any] = {key: getattr(self, key) for key in CaseTables.model_fields}
+        lattice, alone = None, len(self.actuators)
+        if any(path.split(".")[0] == "lattice" for path in changes):
+            lattice, alone = lattice_of(self)
+        if lattice:
+            tables |= {"lattice": lattice, "actuators": self.actuators[:alone]}
         problems: list[tuple[str, str]] = []
         for path, value in changes.items():
             try:
-                locations = locations_of(self, lattice, path)
-                if anew and any(at[0] == "actuators" and int(at[1]) >= alone for at in locations if len(at) > 1):
-                    raise ValueError(f"must not vary actuators from {alone} on: a change of the lattice makes them")
+                for location in locations_of(self, lattice, path):
+                    if location[0] == "actuators" and len(location) > 1 and int(location[1]) >= alone:
+                        raise ValueError(f"must not vary actuators from {alone} on: a change of the lattice makes them")
+                    tables = put_value(tables, location, value)
             except ValueError as error:
                 problems.append((path, str(error)))
-            else:
-                for location in locations:
-                    tables = put_value(tables, location, value)
         try:
             made = type(self)(**tables, name=self.name if name is None else name)
         except InputError as error:
@@ -127,17 +121,16 @@ def read_case(path: str | os.PathLike[str], may_move: bool = False) -> Case:
     may_move: accept that supports and actuators leave the plate free to move as a whole. Such a case does not run, but
     has frequency responses.
     """
-    file = parse(path, lenient=True).as_meant(CaseTables)
-    checked = check(file.tables, UNITS_REQUIRED | {"folder": Path(path).absolute().parent, MAY_MOVE: may_move})
-    if checked.errors or file.misread:
-        raise file.error(checked.errors, CaseTables)
-    return Case.model_construct(**_built(checked), name=Path(path).stem, source=file.text)
+    file = parse(path)
+    context = UNITS_REQUIRED | {"folder": Path(path).absolute().parent}
+    try:
+        built = build(CaseTables.model_validate(_with_actuators(file.tables), context=context), may_move)
+    except (ValidationError, Faults) as error:
+        raise file.error(mistakes_of(error, CaseTables, file.tables)) from None
+    return Case.model_construct(**built, name=Path(path).stem, source=file.text)
 
 
-def _built(checked: Checked) -> dict[str, Any]:
-    """The tables of a case from those of a file without a mistake."""
-    tables = dict(checked.tables or ())
-    if checked.points is not None and isinstance(tables["friction"], TableCase):
-        tables["friction"] = tables["friction"].model_copy(update={**checked.points, "file": None})
-    del tables["lattice"]
-    return tables | {"actuators": tables["actuators"] + checked.lattice}
+def _with_actuators(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a case, which need no actuators beside a lattice or a platform."""
+    platform = isinstance(plate := given_in(tables.get("plate")), Mapping) and plate.get("shape") == "platform"
+    return ({"actuators": ()} if platform or tables.get("lattice") is not None else {}) | dict(tables)

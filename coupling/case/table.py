@@ -1,31 +1,63 @@
-"""Table: what a table of a file may hold, in SI units; a KeyedTable has keys that depend on each other."""
+"""Tables of a file as pydantic models in SI units, and their mistakes in the words of the file.
+
+A table whose keys depend on each other yields its `contradictions` once each key is right by itself.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, Self, get_args, get_origin
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    ModelWrapValidatorHandler,
-    ValidationError,
-    ValidationInfo,
-    model_validator,
-)
+from pydantic import BaseModel, ConfigDict, Tag, ValidationError, ValidationInfo, model_validator
+from pydantic.fields import FieldInfo
 
-from coupling.case.mistakes import Location, Mistake, input_error, meaning_of, why_wrong
-from coupling.case.values import adapter, parts_of
+from coupling.case.values import marks_of, parts_of, quoted
+from coupling.suggestion import near
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
 else:
     ModelMetaclass = type(BaseModel)
 
-WRONG: Final = object()
-"""Stands for a value that is not valid."""
+Location = tuple[int | str, ...]
+"""The keys, and indices from 0, that lead to a value in a file."""
+Mistake = tuple[Location, str]
+"""Where a mistake is, and what is wrong there."""
+Contradictions = Iterator[tuple[str | Location, str]]
+"""A key, or the location of an item in its value, and what is wrong with it."""
 
-Contradictions = Iterator[tuple[str, str]]
+RULES: Final = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "finite_number": "a finite number",
+    "string_type": "text",
+    "bool_type": "true or false",
+    "greater_than": "greater than {gt:.4g}",
+    "greater_than_equal": "at least {ge:.4g}",
+    "less_than": "less than {lt:.4g}",
+    "less_than_equal": "at most {le:.4g}",
+}
+"""What a value must be, by the type of pydantic's error."""
+
+
+class Faults(ValueError):
+    """Mistakes in places at or below the one where it is raised."""
+
+    def __init__(self, mistakes: Iterable[Mistake]) -> None:
+        self.mistakes = list(mistakes)
+        super().__init__(self.mistakes)
+
+
+class InputError(ValueError):
+    """`problems` has each field of the table `owner` that is wrong, and what is wrong with it."""
+
+    def __init__(self, owner: str, problems: list[tuple[str, str]]) -> None:
+        super().__init__(owner, problems)
+        self.owner, self.problems = owner, problems
+
+    def __str__(self) -> str:
+        return "\n".join(f"Input {field} of {self.owner} {message}" for field, message in self.problems)
 
 
 class _Refusing(ModelMetaclass):
@@ -35,7 +67,9 @@ class _Refusing(ModelMetaclass):
         try:
             return super().__call__(*arguments, **values)
         except ValidationError as error:
-            raise input_error(cls, error, values) from None
+            model: Any = cls
+            problems = [(location_text(at), message) for at, message in mistakes_of(error, model, values)]
+            raise InputError(cls.__name__, problems) from None
 
 
 class Table(BaseModel, metaclass=_Refusing):
@@ -46,110 +80,162 @@ class Table(BaseModel, metaclass=_Refusing):
     whole_file: ClassVar[bool] = False
     """Whether it is all that a file holds."""
 
-
-class KeyedTable(Table):
-    """A table whose keys depend on each other: `contradictions` are reported whatever else is wrong."""
-
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         """Yield each key that does not go with the others, or is missing because of them, and why.
 
-        given: the values by their keys; WRONG for those that are not valid.
+        given: the values that are stated, by their keys; each is right by itself.
         """
         yield from ()
 
-    @model_validator(mode="wrap")
-    @classmethod
-    def _check_keys(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
-        def mistakes(reported: set[Location]) -> Iterator[Mistake]:
-            for key, message in cls.contradictions(cls._given(data, info.context)):
-                if (key,) not in reported and (key in data or message.startswith("is missing")):
-                    yield (key,), message
+    @model_validator(mode="after")
+    def _consistent(self, info: ValidationInfo) -> Self:
+        # In Python a default may be stated, as in the dump of a case that is made again.
+        given = {
+            key: value
+            for key in self.model_fields_set
+            if (value := getattr(self, key)) is not None and (info.context or value != self._default(key))
+        }
+        found = self.contradictions(given)
+        if wrong := [((at,) if isinstance(at, str) else at, message) for at, message in found]:
+            raise Faults(wrong)
+        return self
 
-        return validate_with(cls, handler, data, mistakes)
-
-    @classmethod
-    def values_of(cls, table: Any, context: Any) -> Mapping[str, Any]:
-        """The values by key of a table, or of a dict in which anything may be wrong.
-
-        WRONG for each key that is not valid, is lacking, or may be meant by a misspelt one.
-        """
-        if isinstance(table, cls):
-            return dict(table)
-        fields = cls.model_fields.items()
-        defaults = {key: WRONG if field.is_required() else field.default for key, field in fields}
-        return defaults | cls._given(table, context)
-
-    @classmethod
-    def _given(cls, data: Mapping[str, Any], context: Any) -> dict[str, Any]:
-        given: dict[str, Any] = {}
-        for key, value in data.items():
-            if key not in cls.model_fields:
-                # A misspelt key is a mistake already; the key that is meant is not missing as well.
-                meant = meaning_of(str(key), data, cls.model_fields, why_wrong(cls, context))
-                given |= dict.fromkeys((name for name in meant.keys if name not in data), WRONG) if meant else {}
-            elif value is not None:
-                try:
-                    valid = adapter(cls, key).validate_python(value, context=context)
-                except ValidationError:
-                    valid = WRONG
-                # In Python a default may be stated, as in the dump of a case that is made again.
-                default = cls.model_fields[key].get_default(call_default_factory=True, validated_data=dict(data))
-                if context or valid != default:
-                    given[key] = valid
-        return given
+    def _default(self, key: str) -> Any:
+        return type(self).model_fields[key].get_default(call_default_factory=True, validated_data=dict(self))
 
 
-def right_value(model: type[BaseModel], key: str, table: Any, context: Any, missing: Any = None) -> Any:
-    """The value of a key in a table that may be wrong elsewhere; None where it is wrong, `missing` where it is absent.
+def tag(name: str) -> str:
+    """A name of one of several tables or values that a field may have, which locations of errors are free of."""
+    return f"<{name}>"
 
-    table: a model, or what stands in its place.
+
+def named(key: str, names: Iterable[str], instead: str = "") -> Callable[[Any], Any]:
+    """What checks that a table says by a key which of several kinds it is; instead: of what may stand in its place."""
+    choices = one_of(names := list(names))
+
+    def check(table: Any) -> Any:
+        if not isinstance(table, Mapping):
+            return table
+        if key not in table and not (instead and instead in table):
+            other = f", or have {instead} in its place" if instead else ""
+            raise Faults([((key,), f"is missing; it must be {choices}{other}")])
+        if key in table and table[key] not in names:
+            raise Faults([((key,), f"must be {choices}; got {quoted(table[key])}{_meant(table[key], names)}")])
+        return table
+
+    return check
+
+
+def mistakes_of(error: ValidationError | Faults, root: type[BaseModel], tables: Any = None) -> list[Mistake]:
+    """The mistakes in tables of a model, without the keys that are missing because they are misspelt.
+
+    tables: as they are written, to say what each value was.
     """
-    if isinstance(table, BaseModel):
-        return getattr(table, key, missing)
-    if not isinstance(table, Mapping) or key not in table:
-        return missing
-    try:
-        return adapter(model, key).validate_python(table[key], context=context)
-    except ValidationError:
-        return None
+    if isinstance(error, Faults):
+        return error.mistakes
+    mistakes: list[Mistake] = []
+    misspelt: set[Location] = set()
+    for detail in error.errors():
+        inner = detail.get("ctx", {}).get("error")
+        at = tuple(key for key in detail["loc"] if not (isinstance(key, str) and re.fullmatch("<.*>", key)))
+        if isinstance(inner, Faults | ValidationError):
+            mistakes += [((*at, *below), message) for below, message in mistakes_of(inner, root, value_at(tables, at))]
+        elif detail["type"] != "default_factory_not_called":  # it depends on a field that is wrong
+            written = value_at(tables, at)
+            mistakes.append((at, _message(detail, detail["input"] if written is None else written, root)))
+        if detail["type"] == "extra_forbidden":
+            misspelt.add((*at[:-1], near(str(at[-1]), _owner(detail["loc"], root).model_fields) or ""))
+    if ("lattice",) in misspelt:
+        misspelt.add(("actuators",))
+    return [one for one in mistakes if not (one[0] in misspelt and one[1].startswith("is missing"))]
 
 
-def validate(model: type[Table], data: Any, context: Any) -> tuple[Any, list[Any]]:
-    """The tables that data make, None where they are wrong, and pydantic's errors about them."""
-    try:
-        return model.model_validate(data, context=context), []
-    except ValidationError as error:
-        return None, list(error.errors())
+def value_at(tables: Any, location: Location) -> Any:
+    """What stands at a location in plain tables; None where nothing does."""
+    for key in location:
+        try:
+            tables = tables[key]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return tables
 
 
-def validate_with(
-    model: type[BaseModel], handler: Any, data: Any, mistakes: Callable[[set[Location]], Iterable[Mistake]]
-) -> Any:
-    """The table that a model's validation makes of data; raises ValidationError with its errors and further mistakes.
+def location_text(location: Location) -> str:
+    """The name of the field at a location, which counts from 0: actuators[0].stroke."""
+    return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in location).lstrip(".")
 
-    mistakes: yields those in a dict; it gets the locations of the errors.
-    """
-    if not isinstance(data, dict):
-        return handler(data)
-    table: Any = None
-    errors: list[Any] = []
-    try:
-        table = handler(data)
-    except ValidationError as error:
-        errors += error.errors()
-    errors += errors_of(mistakes({error["loc"] for error in errors}))
-    if errors:
-        raise ValidationError.from_exception_data(model.__name__, errors)
+
+def one_of(choices: Iterable[str]) -> str:
+    """Choices in quotes, joined by commas and "or"."""
+    *others, last = (f'"{choice}"' for choice in choices)
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def _meant(value: object, choices: Iterable[str]) -> str:
+    meant = near(value, choices) if isinstance(value, str) else None
+    return f'; did you mean "{meant}"?' if meant else ""
+
+
+def _message(detail: Any, value: Any, root: type[BaseModel]) -> str:
+    """What is wrong with a value, from one of pydantic's errors."""
+    kind, location, limits = detail["type"], detail["loc"], detail.get("ctx", {})
+    got = f"; got {quoted(value)}"
+    header = header_of(location, root) if root.__dict__.get("whole_file") or len(location) > 1 else ""
+    if kind == "value_error":
+        return str(limits["error"])
+    if kind == "missing":
+        field = _owner(location, root).model_fields[location[-1]]
+        wanted = f"a table, written {header}" if tables_in(field.annotation) else expected_of(field)
+        return f"is missing; it must be {wanted}"
+    if kind == "extra_forbidden":
+        return f"is not known; {_instead(location, root)}"
+    if kind == "literal_error":
+        choices = re.findall("'([^']*)'", limits["expected"])
+        return f"must be {one_of(choices)}{got}{_meant(value, choices)}"
+    if kind == "tuple_type" and header.startswith("[["):
+        return f"must be written {header}, in double brackets, once for each{got}"
+    if kind in ("model_type", "model_attributes_type"):
+        return f"must be a table, written {header}{got}"
+    return f"must be {RULES.get(kind, 'different').format(**limits)}{got}"
+
+
+def _instead(location: tuple[Any, ...], root: type[BaseModel]) -> str:
+    """What to write in place of a key that is not known."""
+    key, owner = str(location[-1]), _owner(location, root)
+    if meant := near(key, owner.model_fields):
+        return f"did you mean {meant}?"
+    for name, field in root.model_fields.items():
+        if any(key in table.model_fields for table in tables_in(field.annotation)):
+            return f"it belongs to {header_of((name,), root)}"
+    if owner is root and tables_in(next(iter(root.model_fields.values())).annotation):
+        return "the file has " + ", ".join(header_of((name,), root) for name in root.model_fields)
+    return f"{header_of(location[:-1], root)} has {', '.join(owner.model_fields)}".lstrip()
+
+
+def _owner(location: tuple[Any, ...], root: type[BaseModel]) -> type[BaseModel]:
+    """The table that has, or should have, the last key of a location, which has pydantic's tags in it."""
+    table, annotation = root, None
+    for key in location[:-1]:
+        if isinstance(key, str) and key in table.model_fields:
+            annotation = table.model_fields[key].rebuild_annotation()
+            table = next(iter(tables_in(annotation)), table)
+        elif annotation is not None and isinstance(key, str):
+            tagged = [part for part in parts_of(annotation) if Tag(key) in getattr(part, "__metadata__", ())]
+            table = next((inner for part in tagged for inner in tables_in(part)), table)
     return table
 
 
-def errors_of(mistakes: Iterable[Mistake]) -> list[Any]:
-    """Mistakes in the form of pydantic's errors."""
-    return [
-        {"type": "value_error", "loc": location, "input": None, "ctx": {"error": ValueError(message)}}
-        for location, message in mistakes
-    ]
+def header_of(location: tuple[Any, ...], root: type[BaseModel]) -> str:
+    """How the table is written that is at a location, or that has the value there."""
+    names, several = [], False
+    for n, key in enumerate(location):
+        field = _owner((*location[:n], ""), root).model_fields.get(key) if isinstance(key, str) else None
+        if field and tables_in(field.annotation):
+            names.append(key)
+            several = any(get_origin(part) is tuple for part in parts_of(field.annotation))
+    name = ".".join(names)
+    return f"[[{name}]]" if several else f"[{name}]" if name else ""
 
 
 def tables_in(annotation: object) -> list[type[Table]]:
@@ -163,3 +249,14 @@ def all_tables(table: type[Table]) -> Iterator[type[Table]]:
     for field in table.model_fields.values():
         for inner in tables_in(field.annotation):
             yield from all_tables(inner)
+
+
+def expected_of(field: FieldInfo) -> str:
+    """What a value of a field must be, in words."""
+    annotation = field.rebuild_annotation()
+    if wanted := next((str(mark.expected) for mark in marks_of(annotation) if hasattr(mark, "expected")), ""):
+        return wanted
+    kinds = parts_of(annotation)
+    choices = next((get_args(kind) for kind in kinds if get_origin(kind) is Literal), ())
+    words = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
+    return one_of(choices) if choices else next((word for kind, word in words.items() if kind in kinds), "a value")

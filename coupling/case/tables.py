@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field, StrictFloat, StrictInt
 from coupling.case.actuators import ActuatorCase, LatticeCase
 from coupling.case.friction import AnyFriction
 from coupling.case.plates import AnyPlate
-from coupling.case.table import WRONG, Contradictions, KeyedTable, Table
+from coupling.case.table import Contradictions, Table
 from coupling.case.values import Force, Gravity, Length, Mass, Point, PositiveLength, PositiveTime, Velocity
 
 MAX_STEPS: Final = 100_000_000  # of a fixed scheme
@@ -33,7 +33,7 @@ class PartCase(Table):
     """How high its centre of mass stands above the surface that it lies on."""
 
 
-class RunCase(KeyedTable):
+class RunCase(Table):
     """The run, in s and m/s^2."""
 
     duration: PositiveTime = Field(gt=0, examples=["50 ms"])
@@ -57,15 +57,13 @@ class RunCase(KeyedTable):
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
-        scheme, step, duration = given.get("scheme", "events"), given.get("time_step"), given.get("duration", WRONG)
-        if "time_step" in given and scheme == "events":
+        scheme, step, duration = given.get("scheme", "events"), given.get("time_step"), given["duration"]
+        if step is not None and scheme == "events":
             yield "time_step", 'must not be given with scheme = "events", which chooses its steps by the tolerance'
-        elif isinstance(step, float) and duration is not WRONG:
-            # Half of it is run as well, as a check of the path.
+        elif step is not None and not 2 * duration / MAX_STEPS <= step <= duration / 10:  # half of it is run as well
             least, most = 2 * duration / MAX_STEPS, duration / 10
-            if not least <= step <= most:
-                yield "time_step", f"must be from {least:g} s to {most:g} s in this run; got {step:g} s"
-        if given.get("after_detachment") == "fly" and scheme not in ("events", WRONG):
+            yield "time_step", f"must be from {least:g} s to {most:g} s in this run; got {step:g} s"
+        if given.get("after_detachment") == "fly" and scheme != "events":
             message = f'must be "stop" with scheme = "{scheme}"; only "events" follows flights'
             yield "after_detachment", message
 

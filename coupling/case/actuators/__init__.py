@@ -1,15 +1,13 @@
 """Actuators: where each one is and how it is driven, one by one or as a lattice."""
 
-from coupling.case.actuators.drive import ENDLESS, MIN_SPACING, ActuatorCase, DriveCase, SegmentCase
-from coupling.case.actuators.heights import amplitude
-from coupling.case.actuators.lattice import LatticeCase
-from coupling.case.actuators.lattice_places import (
+from coupling.case.actuators.drive import ENDLESS, MIN_SPACING, ActuatorCase, DriveCase, SegmentCase, amplitude
+from coupling.case.actuators.lattice import (
     SAME_PLACE,
+    LatticeCase,
     Place,
-    Stand,
+    actuators_of,
     gaps,
     half_size,
     must_be_inside,
     outside,
-    shared_places,
 )

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from itertools import accumulate
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, StrictFloat, StrictInt
-from pydantic_core import CoreSchema, core_schema
+from pydantic import AfterValidator, Field, PlainValidator, StrictFloat, StrictInt, WithJsonSchema, WrapValidator
 
-from coupling.case.actuators.heights import heights_of, limit_faults
-from coupling.case.table import WRONG, Contradictions, KeyedTable
+from coupling.case.table import Contradictions, Table
 from coupling.case.values import (
     Angle,
+    Expected,
     Force,
     Frequency,
     Length,
@@ -21,6 +20,7 @@ from coupling.case.values import (
     PositiveLength,
     Stiffness,
     Time,
+    length_text,
     quoted,
 )
 
@@ -29,71 +29,38 @@ MAX_PASSES: Final = 1_000_000_000
 MAX_CYCLES: Final = 1_000_000  # of segments
 """Cycles, or repeats, of a drive."""
 MIN_SPACING: Final = 1e-12  # of points of a table, over its whole time
+SHORTEST_RAMP, LONGEST_RAMP = 0.01, 1000
+_SLACK: Final = 1 + 1e-9  # for limits that are met exactly
+_RAMP: Final = f"0, or a number of cycles from {SHORTEST_RAMP} to {LONGEST_RAMP}"
+_REPEATS: Final = f'a whole number from 1 to {MAX_PASSES}, or "{ENDLESS}"'
+_POINTS: Final = 'two or more points, each a time and a height, such as [["0 ms", "0 um"], ["1 ms", "50 um"]]'
 
 
-@dataclass(frozen=True)
-class _Passes:
-    """Marks how often a table or schedule is run through."""
-
-    expected = f'a whole number of at least 1, or "{ENDLESS}"'
-
-    def validate(self, value: object) -> object:
-        if value == ENDLESS or (isinstance(value, int) and not isinstance(value, bool) and value >= 1):
-            if isinstance(value, int) and value > MAX_PASSES:
-                raise ValueError(f'must be at most {MAX_PASSES}, or "{ENDLESS}"; got {quoted(value)}')
-            return value
-        raise ValueError(f"must be {self.expected}; got {quoted(value)}")
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.validate)
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_PASSES}, {"const": ENDLESS}]}
+def _repeats(value: object) -> object:
+    if value == ENDLESS or (isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= MAX_PASSES):
+        return value
+    raise ValueError(f"must be {_REPEATS}; got {quoted(value)}")
 
 
-@dataclass(frozen=True)
-class _Points:
-    """Marks a tuple as points in time: at each a time and a height, the times increasing from 0."""
-
-    expected = 'two or more points, each a time and a height, such as [["0 ms", "0 um"], ["1 ms", "50 um"]]'
-
-    def validate(self, value: object, handler: Any) -> object:
-        if not isinstance(value, (list, tuple)) or len(value) < 2 or not all(map(_is_pair, value)):
-            raise ValueError(f"must be {self.expected}; got {quoted(value)}")
-        points = handler(value)
-        times = [time for time, _ in points]
-        if times[0] != 0:
-            raise ValueError(f"must begin at the time 0; got {quoted(value[0][0])}; a delay is a key of its own")
-        closest = MIN_SPACING * max(times)
-        for k in range(1, len(times)):
-            if times[k] - times[k - 1] <= closest:
-                raise ValueError(
-                    f"must have increasing times; got {quoted(value[k][0])} after {quoted(value[k - 1][0])}"
-                )
-        return points
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
+def _ramp(value: float) -> float:
+    if value == 0 or SHORTEST_RAMP <= value <= LONGEST_RAMP:
+        return value
+    raise ValueError(f"must be {_RAMP}; got {quoted(value)}")
 
 
-@dataclass(frozen=True)
-class _Ramp:
-    """Marks a number of cycles over which a wave grows."""
-
-    shortest: ClassVar[float] = 0.01
-    longest: ClassVar[float] = 1000
-    expected: ClassVar[str] = f"0, or a number of cycles from {shortest} to {longest}"
-
-    def validate(self, value: float) -> float:
-        if value == 0 or self.shortest <= value <= self.longest:
-            return value
-        raise ValueError(f"must be {self.expected}; got {quoted(value)}")
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_after_validator_function(self.validate, handler(source))
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return {"type": "number", "minimum": 0, "maximum": self.longest}
+def _points(value: object, handler: Any) -> object:
+    """Points in time, whose times increase from 0."""
+    if not isinstance(value, (list, tuple)) or len(value) < 2 or not all(map(_is_pair, value)):
+        raise ValueError(f"must be {_POINTS}; got {quoted(value)}")
+    points = handler(value)
+    times = [time for time, _ in points]
+    if times[0] != 0:
+        raise ValueError(f"must begin at the time 0; got {quoted(value[0][0])}; a delay is a key of its own")
+    closest = MIN_SPACING * max(times)
+    for k in range(1, len(times)):
+        if times[k] - times[k - 1] <= closest:
+            raise ValueError(f"must have increasing times; got {quoted(value[k][0])} after {quoted(value[k - 1][0])}")
+    return points
 
 
 def _is_pair(value: object) -> bool:
@@ -101,12 +68,13 @@ def _is_pair(value: object) -> bool:
 
 
 Cycle = Literal["up-down", "up", "sine", "cosine"]
-Ramp = Annotated[StrictFloat, _Ramp()]
-Points = Annotated[tuple[tuple[Time, Length], ...], _Points()]
-Repeats = Annotated[int | Literal["endless"], _Passes()]
+Ramp = Annotated[StrictFloat, AfterValidator(_ramp), Expected(_RAMP)]
+Points = Annotated[tuple[tuple[Time, Length], ...], WrapValidator(_points), Expected(_POINTS)]
+_PASSES: Final = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_PASSES}, {"const": ENDLESS}]}
+Repeats = Annotated[int | Literal["endless"], PlainValidator(_repeats), Expected(_REPEATS), WithJsonSchema(_PASSES)]
 
 
-class SegmentCase(KeyedTable):
+class SegmentCase(Table):
     """A part of a schedule, in m, Hz and s; a hold has only a `dwell`."""
 
     stroke: Length | None = Field(default=None, examples=["50 um"])
@@ -122,8 +90,6 @@ class SegmentCase(KeyedTable):
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
-        if given.get("cycle") == WRONG:
-            return
         if given.get("cycle") != "hold":
             if "stroke" not in given:
                 yield "stroke", 'is missing; it must be a length such as "150 um"'
@@ -139,14 +105,13 @@ class SegmentCase(KeyedTable):
             yield "dwell", 'must be greater than 0 with cycle = "hold"; got 0 s'
 
 
-class Driven(KeyedTable):
+class Driven(Table):
     """A table with the keys of a drive: which of them go together."""
 
     owner: ClassVar[str] = "a drive"
     drivers: ClassVar[tuple[str, ...]] = ("stroke", "table", "segments")
     in_place: ClassVar[str] = "a table or segments"
     """What a stroke may be replaced by, in words."""
-    segments_table: ClassVar[str] = "[[segments]]"
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -187,7 +152,7 @@ class Driven(KeyedTable):
         ramp, cycles = given.get("ramp", 0.0), given.get("cycles")
         if "ramp" in given and cycle in ("up-down", "up"):
             yield "ramp", f'must not be given with cycle = "{cycle}"; only a "sine" and a "cosine" grow'
-        elif isinstance(ramp, float | int) and isinstance(cycles, int) and 2 * ramp > cycles:
+        elif cycles is not None and 2 * ramp > cycles:
             why = f"half of cycles, {cycles / 2:g}: the wave grows over the first cycles and decays over the last"
             yield "ramp", f"must be at most {why}; got {ramp:g}"
 
@@ -199,13 +164,13 @@ class Driven(KeyedTable):
             if key in given:
                 yield key, f"must not be given with {_NAMED[driver]}, {why}"
         if driver == "segments" and given["segments"] == ():
-            yield "segments", f"must be at least one table, written {cls.segments_table}; got none"
-        if driver == "segments" and isinstance(given["segments"], tuple):
-            count = sum(one.cycles for one in given["segments"] if isinstance(one, SegmentCase))
+            yield "segments", "must be at least one table; got none"
+        if driver == "segments":
+            count = sum(one.cycles for one in given["segments"])
             if count > MAX_CYCLES:
                 yield "segments", f"must have at most {MAX_CYCLES} cycles together; got {count}"
-        heights = heights_of(given[driver])
-        if given.get("repeats", 1) != 1 and heights and abs(heights[-1] - heights[0]) > 1e-12 * max(map(abs, heights)):
+        heights = _heights(given[driver])
+        if given.get("repeats", 1) != 1 and abs(heights[-1] - heights[0]) > 1e-12 * max(map(abs, heights)):
             ends = "whose last height is not its first" if driver == "table" else "which do not end at height 0"
             yield "repeats", f"must not be given with {_NAMED[driver]} {ends}"
 
@@ -237,7 +202,7 @@ class DriveCase(Driven):
     """The rest before all this."""
 
 
-class _Place(KeyedTable):
+class _Place(Table):
     position: Point = Field(examples=[["0 um", "0 um"]])
     """Where it stands, inside the rim."""
     force: Force | None = Field(default=None, examples=["1 mN"])
@@ -256,7 +221,6 @@ class ActuatorCase(DriveCase, _Place):
     owner: ClassVar[str] = "an actuator"
     drivers: ClassVar[tuple[str, ...]] = ("stroke", "force", "table", "segments")
     in_place: ClassVar[str] = 'a force such as "1 mN", a table or segments'
-    segments_table: ClassVar[str] = "[[actuators.segments]]"
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
@@ -265,3 +229,41 @@ class ActuatorCase(DriveCase, _Place):
 
 
 _NAMED: Final = {"stroke": "a stroke", "force": "a force", "table": "a table", "segments": "segments"}
+
+
+def _heights(motion: Sequence[Any]) -> list[float]:
+    """The heights [m] at the points of a table or after the segments of a schedule."""
+    if motion and isinstance(motion[0], tuple):
+        return [height for _, height in motion]
+    return list(accumulate((s.cycles * (s.stroke or 0.0) if s.cycle == "up" else 0.0 for s in motion), initial=0.0))
+
+
+def amplitude(drive: Any) -> float:
+    """The stroke [m] of a drive, its force [N], or the height [m] furthest from 0 that it goes to."""
+    return _farthest(drive.table, drive.segments, drive.stroke) or getattr(drive, "force", None) or 0.0
+
+
+def _farthest(table: Any, segments: Any, stroke: float | None) -> float:
+    """The height [m] furthest from 0 of a table, a schedule or a stroke."""
+    if table:
+        return max(_heights(table), key=abs)
+    if segments:
+        before = _heights(segments)
+        tops = [height + (s.stroke or 0.0) for height, s in zip(before, segments, strict=False)]
+        return max(before + tops, key=abs)
+    return stroke or 0.0
+
+
+def limit_faults(given: Mapping[str, Any]) -> Contradictions:
+    """Yield each key of an actuator's drive that asks for more than max_stroke or max_force, and why.
+
+    given: valid values by their keys, None for what is not given.
+    """
+    motions = {key: given.get(key) for key in ("table", "segments", "stroke")}
+    limit, force, largest = given.get("max_stroke"), given.get("force"), given.get("max_force")
+    key = next((key for key, motion in motions.items() if motion is not None), "")
+    if limit is not None and key and abs(farthest := _farthest(*motions.values())) > _SLACK * limit:
+        must = "must be" if key == "stroke" else "must have heights of"
+        yield key, f"{must} at most max_stroke, {length_text(limit)}, up or down; got {length_text(farthest)}"
+    if largest is not None and force is not None and abs(force) > _SLACK * largest:
+        yield "force", f"must be at most max_force, {largest:g} N, up or down; got {force:g} N"

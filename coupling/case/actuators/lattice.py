@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Final, Literal
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, NamedTuple
 
-from pydantic import Field, GetCoreSchemaHandler, StrictInt, ValidationError, ValidatorFunctionWrapHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import AfterValidator, Field, StrictInt, ValidationError
 
-from coupling.case.actuators.drive import MAX_PASSES, ActuatorCase, Cycle, Driven, Points, Ramp, Repeats, SegmentCase
-from coupling.case.mistakes import RULES
-from coupling.case.table import WRONG, Contradictions
+from coupling.case.actuators.drive import (
+    MAX_PASSES,
+    ActuatorCase,
+    Cycle,
+    Driven,
+    Points,
+    Ramp,
+    Repeats,
+    SegmentCase,
+    limit_faults,
+)
+from coupling.case.table import RULES, Contradictions, Faults
 from coupling.case.values import (
+    DIMENSIONS,
     RANGES,
+    UNITS_REQUIRED,
     Amount,
     Choice,
     Condition,
@@ -25,9 +35,17 @@ from coupling.case.values import (
     PositiveLength,
     Quantity,
     adapter,
+    length_text,
     quoted,
 )
 
+if TYPE_CHECKING:
+    from meshes import PlateMesh
+
+Place = tuple[float, float]
+
+SAME_PLACE: Final = 1e-9
+"""Places closer than this fraction of half the plate's longer side count as one."""
 MAX_PLACES: Final = 100_000  # actuators
 AMOUNTS: Final = {
     "stroke": Amount("m", "150 um"),
@@ -43,47 +61,10 @@ SHARED: Final = ("cycle", "cycles", "ramp", "table", "segments", "repeats", "max
 """Its keys that are the same for all."""
 
 
-def broken_rule(key: str, value: float) -> str:
-    """What a value of a key of AMOUNTS must be in an actuator, in words; "" where it is that."""
-    try:
-        adapter(ActuatorCase, key).validate_python(value)
-    except ValidationError as error:
-        detail: Any = error.errors()[0]
-        if detail["type"] == "value_error":
-            least, most = RANGES[AMOUNTS[key].unit]
-            return f"from {least:g} to {most:g} {AMOUNTS[key].unit}"
-        return RULES[detail["type"]].format(**detail.get("ctx", {}))
-    return ""
-
-
-@dataclass(frozen=True)
-class _Ruled:
-    """Marks an amount to which the rule for a key of an actuator applies; that of a formula is looked at elsewhere."""
-
-    key: str
-
-    def validate(self, value: object, handler: ValidatorFunctionWrapHandler) -> object:
-        amount = handler(value)
-        if isinstance(amount, float) and (rule := broken_rule(self.key, amount)):
-            raise ValueError(f"must be {rule}; got {quoted(value)}")
-        return amount
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
-
-
-@dataclass(frozen=True)
-class _Apart:
-    """Marks a distance, or one along each axis, that is greater than 0."""
-
-    def validate(self, value: object, handler: ValidatorFunctionWrapHandler) -> object:
-        pitch = handler(value)
-        if any(length <= 0 for length in (pitch if isinstance(pitch, tuple) else (pitch,))):
-            raise ValueError(f"must be greater than 0; got {quoted(value)}")
-        return pitch
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_wrap_validator_function(self.validate, handler(source))
+def _apart(pitch: Any) -> Any:
+    if min(pitch if isinstance(pitch, tuple) else (pitch,)) <= 0:
+        raise ValueError(f"must be greater than 0; got {quoted(pitch)}")
+    return pitch
 
 
 class LatticeCase(Driven):
@@ -99,14 +80,13 @@ class LatticeCase(Driven):
     owner: ClassVar[str] = ActuatorCase.owner
     drivers: ClassVar[tuple[str, ...]] = ActuatorCase.drivers
     in_place: ClassVar[str] = ActuatorCase.in_place
-    segments_table: ClassVar[str] = "[[lattice.segments]]"
 
     rows: StrictInt = Field(ge=1, examples=[3])
     """How many rows there are, along y."""
     columns: StrictInt = Field(ge=1, examples=[3])
     """How many columns there are, along x."""
-    pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um"), "xy"), _Apart()] = Field(
-        examples=["100 um"]
+    pitch: Annotated[float | tuple[float, float], Directed(Quantity("m", "150 um"), "xy"), AfterValidator(_apart)] = (
+        Field(examples=["100 um"])
     )
     """The distance of neighbours, or two: along x and along y; in a hexagonal lattice one."""
     centre: Point = (0.0, 0.0)
@@ -117,25 +97,21 @@ class LatticeCase(Driven):
     """Actuators nearer than this to the rim, or beyond it, are left out; without it they are a mistake."""
     where: Annotated[Condition, Choice()] | None = Field(default=None, examples=["not (row == 1 and column == 1)"])
     """An expression of row, column, x and y that is true where there is an actuator."""
-    force: Annotated[float | Formula, AMOUNTS["force"], _Ruled("force")] | None = Field(default=None, examples=["1 mN"])
+    force: Annotated[float | Formula, AMOUNTS["force"]] | None = Field(default=None, examples=["1 mN"])
     """As of an actuator, or an expression and its unit."""
-    stiffness: Annotated[float | Formula, AMOUNTS["stiffness"], _Ruled("stiffness")] | None = None
+    stiffness: Annotated[float | Formula, AMOUNTS["stiffness"]] | None = None
     """As of an actuator, or an expression and its unit."""
-    stroke: Annotated[float | Formula, AMOUNTS["stroke"], _Ruled("stroke")] | None = Field(
-        default=None, examples=["5 um"]
-    )
+    stroke: Annotated[float | Formula, AMOUNTS["stroke"]] | None = Field(default=None, examples=["5 um"])
     """As of an actuator, or an expression and its unit."""
-    frequency: Annotated[float | Formula, AMOUNTS["frequency"], _Ruled("frequency")] | None = None
+    frequency: Annotated[float | Formula, AMOUNTS["frequency"]] | None = None
     """As of an actuator, or an expression and its unit."""
     cycle: Cycle = "up-down"
     """As of an actuator, the same for all."""
     cycles: StrictInt | None = Field(default=None, ge=1, le=MAX_PASSES, examples=[5])
     """As of an actuator, the same for all."""
-    dwell: Annotated[float | Formula, AMOUNTS["dwell"], _Ruled("dwell")] = 0.0
+    dwell: Annotated[float | Formula, AMOUNTS["dwell"]] = 0.0
     """As of an actuator, or an expression and its unit."""
-    phase: Annotated[float | Formula, AMOUNTS["phase"], _Ruled("phase")] = Field(
-        default=0.0, examples=["60 * column deg"]
-    )
+    phase: Annotated[float | Formula, AMOUNTS["phase"]] = Field(default=0.0, examples=["60 * column deg"])
     """As of an actuator, or an expression and its unit: a wave over the lattice."""
     ramp: Ramp = Field(default=0.0, examples=[3])
     """As of an actuator, the same for all."""
@@ -149,24 +125,170 @@ class LatticeCase(Driven):
     """As of an actuator, the same for all."""
     max_force: PositiveForce | None = Field(default=None, gt=0, examples=["100 mN"])
     """As of an actuator, the same for all."""
-    delay: Annotated[float | Formula, AMOUNTS["delay"], _Ruled("delay")] = Field(
-        default=0.0, examples=["0.05 * (row + column) ms"]
-    )
+    delay: Annotated[float | Formula, AMOUNTS["delay"]] = Field(default=0.0, examples=["0.05 * (row + column) ms"])
     """As of an actuator, or an expression and its unit."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         yield from super().contradictions(given)
-        if given.get("kind") == "hexagonal" and isinstance(given.get("pitch"), tuple):
+        if given.get("kind") == "hexagonal" and isinstance(given["pitch"], tuple):
             yield "pitch", 'must be one length with kind = "hexagonal", in which all neighbours are as far apart'
-        counts = {key: count for key in ("rows", "columns") if (count := given.get(key, WRONG)) != WRONG}
-        if counts and size(counts) > MAX_PLACES:
-            key, *other = sorted(counts, key=counts.__getitem__, reverse=True)
-            beside = f" with {other[0]} = {counts[other[0]]}" if other else ""
-            yield key, f"must make at most {MAX_PLACES} actuators{beside}; got {counts[key]}"
+        count = given["rows"] * given["columns"]
+        if count > MAX_PLACES:
+            longer = max(("rows", "columns"), key=given.__getitem__)
+            yield longer, f"must make at most {MAX_PLACES} actuators together with the other; got {count}"
+        for key in AMOUNTS.keys() & given.keys():
+            if isinstance(given[key], float) and (rule := _broken_rule(key, given[key])):
+                yield key, f"must be {rule}; got {given[key]:g} {AMOUNTS[key].unit}"
+
+    def spots(self) -> list[Spot]:
+        """All its places, row by row from the lowest, each from the left."""
+        hexagonal = self.kind == "hexagonal"
+        pitch = self.pitch
+        along = math.sqrt(0.75) if hexagonal else 1.0  # pitches
+        across, along = pitch if isinstance(pitch, tuple) else (pitch, pitch * along)
+        spots = []
+        for row in range(self.rows):
+            moved = 0.5 if hexagonal and (row - (self.rows - 1) // 2) % 2 else 0.0  # in pitches
+            y = self.centre[1] + (row - (self.rows - 1) / 2) * along
+            for column in range(self.columns):
+                spots.append(Spot(row, column, self.centre[0] + (moved + column - (self.columns - 1) / 2) * across, y))
+        return spots
+
+    def names_at(self, spot: Spot) -> dict[str, float]:
+        """The values that names in formulas have at a place."""
+        row, column, x, y = spot
+        whole = {"pi": math.pi, "rows": float(self.rows), "columns": float(self.columns)}
+        return {**whole, "row": float(row), "column": float(column), "x": x, "y": y}
 
 
-def size(values: Mapping[str, Any]) -> int:
-    """How many places a lattice has; rows or columns that are not known count as one."""
-    rows, columns = (values.get(key, WRONG) for key in ("rows", "columns"))
-    return (1 if rows is WRONG else rows) * (1 if columns is WRONG else columns)
+class Spot(NamedTuple):
+    """A place in a lattice: row and column from 0, and x and y in m."""
+
+    row: int
+    column: int
+    x: float
+    y: float
+
+    def __str__(self) -> str:
+        return f"row {self.row}, column {self.column}"
+
+
+def actuators_of(lattice: LatticeCase, mesh: PlateMesh) -> tuple[ActuatorCase, ...]:
+    """The actuators of a lattice under a plate; raises Faults with what is wrong with them."""
+    spots = _standing(lattice, mesh)
+    columns: dict[str, list[Any]] = {}
+    wrong = []
+    for key in AMOUNTS:
+        try:
+            columns[key] = _values(key, lattice, spots)
+        except ValueError as error:
+            wrong.append((("lattice", key), str(error)))
+    if wrong:
+        raise Faults(wrong)
+    same = {key: getattr(lattice, key) for key in SHARED}
+    if same["max_stroke"] is not None or same["max_force"] is not None:
+        for k, spot in enumerate(spots):
+            for at, message in limit_faults({**same, "stroke": columns["stroke"][k], "force": columns["force"][k]}):
+                raise Faults([(("lattice", str(at)), f"{message} at {spot}")])
+    # All values are valid: to check them once more would take longer than the rest.
+    return tuple(
+        ActuatorCase.model_construct(position=(spot.x, spot.y), **same, **dict(zip(columns, column, strict=True)))
+        for spot, column in zip(spots, zip(*columns.values(), strict=True), strict=True)
+    )
+
+
+def _standing(lattice: LatticeCase, mesh: PlateMesh) -> Sequence[Spot]:
+    """The places that are not left out; raises Faults where one is not inside the rim, or none is left."""
+    spots = lattice.spots()
+    standing = list(zip(spots, gaps(mesh, [(spot.x, spot.y) for spot in spots]), strict=True))
+    if lattice.margin is not None:
+        needed = max(lattice.margin - SAME_PLACE * half_size(mesh), mesh.least_gap)
+        standing = [(spot, gap) for spot, gap in standing if gap > needed]
+        if not standing:
+            raise Faults([(("lattice", "margin"), "leaves no actuator on the plate")])
+    if lattice.where is not None:
+        standing = [(spot, gap) for spot, gap in standing if _is_true(lattice.where, lattice, spot)]
+        if not standing:
+            must = f"must be true for one actuator or more; {quoted(lattice.where.text)} is true for none"
+            raise Faults([(("lattice", "where"), must)])
+    if beyond := [(spot, gap) for spot, gap in standing if gap <= mesh.least_gap]:
+        (spot, gap), *more = beyond
+        also = f", and {len(more)} more are not inside either" if more else ""
+        inside, at = _inside(gap, mesh)
+        message = f"must have all its actuators {inside}; {spot} is {at}{also}; a margin leaves them out"
+        raise Faults([(("lattice",), message)])
+    return [spot for spot, _ in standing]
+
+
+def _is_true(where: Condition, lattice: LatticeCase, spot: Spot) -> bool:
+    try:
+        return where.holds(lattice.names_at(spot))
+    except ValueError as error:
+        message = f"must be true or false for each actuator; {quoted(where.text)} {error} at {spot}"
+        raise Faults([(("lattice", "where"), message)]) from None
+
+
+def _values(key: str, lattice: LatticeCase, spots: Sequence[Spot]) -> list[float | None]:
+    """The values of a key at places; ValueError, which names the first place where there is none."""
+    amount = getattr(lattice, key)
+    if not isinstance(amount, Formula):
+        return [amount] * len(spots)
+    found: list[float | None] = []
+    for spot in spots:
+        try:
+            value = amount.value(lattice.names_at(spot))
+        except ValueError as error:
+            rule = f"must be {DIMENSIONS[AMOUNTS[key].unit]} for each actuator"
+            raise ValueError(f"{rule}; {quoted(amount.text)} {error} at {spot}") from None
+        if rule := _broken_rule(key, value):
+            got = f"{quoted(amount.text)} is {value / amount.scale:g} {amount.unit} at {spot}"
+            raise ValueError(f"must be {rule} for each actuator; {got}")
+        found.append(value)
+    return found
+
+
+def _broken_rule(key: str, value: float) -> str:
+    """What a value of a key of AMOUNTS must be in an actuator, in words; "" where it is that."""
+    try:
+        adapter(ActuatorCase, key).validate_python(value)
+    except ValidationError as error:
+        detail: Any = error.errors()[0]
+        if detail["type"] == "value_error":
+            least, most = RANGES[AMOUNTS[key].unit]
+            return f"from {least:g} to {most:g} {AMOUNTS[key].unit}"
+        return RULES[detail["type"]].format(**detail.get("ctx", {}))
+    return ""
+
+
+def outside(lattice: Mapping[str, Any], places: Sequence[Place]) -> str:
+    """The condition of a lattice, as a file has it, that leaves some of its places out as well."""
+    read = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
+    spots = {(spot.x, spot.y): spot for spot in read.spots()}
+    several = [key for key in ("row", "column") if lattice[f"{key}s"] > 1]
+    left = [" or ".join(f"{key} != {getattr(spots[place], key)}" for key in several) for place in places]
+    parts = [*([lattice["where"]] if "where" in lattice else []), *left]
+    return " and ".join(f"({part})" for part in parts) if len(parts) > 1 else "".join(parts)
+
+
+def half_size(mesh: PlateMesh) -> float:
+    """Half of the plate's longer side [m]."""
+    return float((mesh.outline.box[1] - mesh.outline.box[0]).max()) / 2
+
+
+def gaps(mesh: PlateMesh, places: Sequence[Place]) -> list[float]:
+    """How far inside the rim places are [m], negative beyond it."""
+    return mesh.outline.gap(places).tolist() if places else []
+
+
+def must_be_inside(gap: float, mesh: PlateMesh) -> str:
+    """What is wrong with a place so far inside the rim [m], where more is needed."""
+    inside, at = _inside(gap, mesh)
+    return f"must be {inside}; got a point {at}"
+
+
+def _inside(gap: float, mesh: PlateMesh) -> tuple[str, str]:
+    same = SAME_PLACE * half_size(mesh)
+    if gap > same:
+        return f"more than {length_text(mesh.least_gap)} inside the rim", f"{length_text(gap)} inside it"
+    return "inside the rim", f"{length_text(-gap)} beyond it" if gap < -same else "on it"

@@ -1,6 +1,5 @@
-"""Checks: whether the tables of a case go together."""
+"""Checking: what the tables of a case ask of each other, once each is right by itself."""
 
-from coupling.case.checks.check import Checked, check
+from coupling.case.checks.check import MAY_MOVE, build
 from coupling.case.checks.cycles import cycles_fault
-from coupling.case.checks.parts import MAY_MOVE
 from coupling.case.checks.theories import MAX_STRETCHING, MAX_VIBRATING, common_period

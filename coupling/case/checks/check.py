@@ -1,89 +1,151 @@
-"""Checking: every mistake in the tables of a case at once, each file that they name read once."""
+"""Check the tables of a case against each other, and build the case's actuators and friction from them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
-from coupling.case.actuators import ActuatorCase
-from coupling.case.checks.cycles import check_cycles
-from coupling.case.checks.kinds import with_meant_kinds
-from coupling.case.checks.parts import Parts
-from coupling.case.checks.places import check_places, mesh_of, stand_of
-from coupling.case.friction import Points, TableCase, read_points
-from coupling.case.mistakes import Mistake
-from coupling.case.plates import PLATFORM, PlatformCase, kind, outline_of, platform_of
-from coupling.case.table import errors_of, right_value, validate
-from coupling.case.tables import CaseTables, RunCase
+from coupling.case.actuators import SAME_PLACE, ActuatorCase, Place, actuators_of, gaps, half_size, must_be_inside
+from coupling.case.checks.cycles import cycles_fault
+from coupling.case.checks.theories import check_theory
+from coupling.case.friction import TableCase
+from coupling.case.plates import PLATFORM, PlateCase, PlatformCase, ShapeCase
+from coupling.case.table import Faults, Location, Mistake, location_text
+from coupling.case.tables import CaseTables
+from coupling.case.values import length_text, unreadable
+from coupling.suggestion import near
 
+if TYPE_CHECKING:
+    from meshes import PlateMesh
 
-class Checked(NamedTuple):
-    """What the tables of a case are."""
-
-    tables: CaseTables | None  # None where a field is wrong
-    points: Points | None  # of a measured friction law, from its file
-    lattice: tuple[ActuatorCase, ...]  # what the lattice stands for
-    errors: list[Any]  # all mistakes, in the form of pydantic's errors
+MAY_MOVE: Final = "may_move"
+"""The key of a context in which supports and actuators may leave a plate free to move as a whole."""
 
 
-def check(written: Mapping[str, Any], context: Any = None) -> Checked:
-    """Check the tables of a case, in plain values or as models.
+def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:
+    """The tables of a case: a lattice becomes actuators, and the points in the file of a friction law are read.
 
-    context: UNITS_REQUIRED for those of a file, with its `folder`, where other files are.
+    may_move: accept that supports and actuators leave the plate free to move as a whole.
+    Raises Faults with every mistake.
     """
-    written, in_kinds = with_meant_kinds(written)
-    if kind(written.get("plate")) == PLATFORM or written.get("lattice") is not None:
-        written = {"actuators": ()} | written
-    tables, errors = validate(CaseTables, dict(written), context)
-    parts = Parts(dict(tables) if tables else written, written, context)
-    points, in_points = _friction_points(parts)
-    lattice, misplaced = _places(parts, errors)
-    misplaced += check_cycles(parts, lattice)
-    reported = {error["loc"] for error in errors}
-    errors += errors_of(mistake for mistake in (*in_kinds, *in_points, *misplaced) if mistake[0] not in reported)
-    return Checked(tables, points, lattice, errors)
-
-
-def _friction_points(parts: Parts) -> tuple[Points | None, list[Mistake]]:
-    """The points in the file of a measured friction law, if it has one, and what is wrong with that."""
-    law = parts.tables.get("friction")
-    if not isinstance(law, TableCase) and not (isinstance(law, dict) and law.get("model") == "table"):
-        return None, []
-    file = right_value(TableCase, "file", law, parts.context)
-    if file is None:
-        return None, []
-    points, wrong = read_points(Path(file))
-    return points, [(("friction", "table", "file"), message) for message in wrong]
-
-
-def _places(parts: Parts, errors: list[Any]) -> tuple[tuple[ActuatorCase, ...], list[Mistake]]:
-    """The actuators of the lattice, none where it is wrong, and what does not fit the plate or platform."""
-    plate = parts.tables.get("plate")
-    platform = platform_of(plate, parts.context)
-    if platform:
-        return (), _on_platform(parts, platform)
     mistakes: list[Mistake] = []
-    if parts.tables.get("actuators") in ((), []) and parts.tables.get("lattice") is None:
-        mistakes.append((("actuators",), "must be at least one table, written [[actuators]]; got none"))
-    in_plate = [error["loc"] for error in errors if error["loc"][0] == "plate"]  # then the kind of plate, and the key
-    outline = outline_of(plate, {location[2] for location in in_plate if len(location) > 2}, parts.context)
-    mesh, wrong = mesh_of(outline) if outline else (None, [])
-    mistakes += wrong
-    stand = stand_of(parts, mesh)
-    mistakes += stand.mistakes if stand else []
-    if outline and mesh:
-        mistakes += check_places(parts, outline, mesh, stand)
-    return (stand.actuators if stand else ()), mistakes
+    made, friction = tables.actuators, tables.friction
+    try:
+        if isinstance(friction, TableCase):
+            friction = friction.with_points()
+    except Faults as error:
+        mistakes += error.mistakes
+    plate = tables.plate
+    if isinstance(plate, PlatformCase):
+        mistakes += _platform(tables, plate)
+    else:
+        try:
+            mesh = _mesh_of(plate)
+            made += actuators_of(tables.lattice, mesh) if tables.lattice else ()
+            mistakes += _places(tables, plate, mesh, made)
+            mistakes += check_theory(plate, tables.run, made, len(tables.actuators))
+            if not may_move:
+                mistakes += _held(plate, mesh, made)
+        except Faults as error:
+            mistakes += error.mistakes
+    if wrong := cycles_fault(plate, made, tables.run.duration):
+        mistakes.append((("run", "duration"), wrong))
+    if mistakes:
+        raise Faults(mistakes)
+    return {**dict(tables), "actuators": made, "friction": friction, "lattice": None}
 
 
-def _on_platform(parts: Parts, platform: PlatformCase) -> list[Mistake]:
-    mistakes: list[Mistake] = [
-        ((key,), f"must not be given with {PLATFORM}, which moves as a whole")
-        for key, absent in (("actuators", ((), [])), ("lattice", (None,)))
-        if parts.tables.get(key) not in absent
-    ]
-    run = parts.tables.get("run")
-    if right_value(RunCase, "start", run, parts.context) == "steady":
-        mistakes.append((("run", "start"), f'must be "rest" with {PLATFORM}, which does not vibrate; got "steady"'))
-    return mistakes + list(platform.mistakes(right_value(RunCase, "duration", run, parts.context)))
+def _platform(tables: CaseTables, platform: PlatformCase) -> Iterator[Mistake]:
+    for key in ("actuators", "lattice"):
+        if getattr(tables, key):
+            yield (key,), f"must not be given with {PLATFORM}, which moves as a whole"
+    if tables.run.start == "steady":
+        yield ("run", "start"), f'must be "rest" with {PLATFORM}, which does not vibrate; got "steady"'
+    yield from platform.mistakes(tables.run.duration)
+
+
+def _mesh_of(plate: PlateCase) -> PlateMesh:
+    """The mesh for a plate's outline; raises Faults where there is none."""
+    try:
+        return plate.coarse_mesh
+    except OSError as error:
+        wrong = [unreadable(Path(str(error.filename)).name, error)]
+    except ValueError as error:
+        wrong = [
+            re.sub(r"^Input \w+ of \w+ ", "", text).replace("\n  ", " ", 1).replace("\n  ", "; ")
+            for text in re.split(r"\n(?=Input )", str(error))
+        ]
+    raise Faults((("plate", plate.outlined_by), message) for message in wrong)
+
+
+def _places(tables: CaseTables, plate: PlateCase, mesh: PlateMesh, made: Sequence[ActuatorCase]) -> Iterator[Mistake]:
+    """Yield what does not fit the plate's outline: names of boundaries, cells, actuators and part."""
+    names = list(mesh.boundaries)
+    for key in ("supports", "in_plane_supports"):
+        supports = getattr(plate, key)
+        for name in supports if isinstance(supports, dict) else ():
+            if name not in names:
+                meant = near(name, names)
+                hint = f"did you mean {meant}? It" if meant else "it"
+                yield ("plate", key, name), f"is no boundary of the plate; {hint} has {', '.join(names)}"
+    free = [name for name, support in plate.supports_of(names).items() if support == "free"]
+    if plate.tension and free:
+        rims = f"{' and '.join(free)} {'is' if len(free) == 1 else 'are'} free"
+        rule = "must be 0 if a boundary is free (a free edge carries no tension)"
+        yield ("plate", "tension"), f"{rule}; got {plate.tension:g} N/m, and {rims}"
+    if isinstance(plate, ShapeCase) and plate.cell_size is not None:
+        least, most, got = plate.min_cell_size, plate.measures[0] / 2, f"; got {length_text(plate.cell_size)}"
+        if plate.cell_size < least:
+            yield ("plate", "cell_size"), f"must be at least {length_text(least)}{got}"
+        if plate.cell_size > most * (1 + SAME_PLACE):
+            limit = f"half of the plate's smallest width, {length_text(most)}"
+            yield ("plate", "cell_size"), f"must not exceed {limit}{got}"
+    alone = len(tables.actuators)
+    if not made:
+        yield ("actuators",), "must be at least one table, written [[actuators]]; got none"
+    places: dict[Location, Place] = {("actuators", k, "position"): one.position for k, one in enumerate(made)}
+    places |= {("part", "position"): tables.part.position}
+    least = SAME_PLACE * half_size(mesh)
+    for at, gap in zip(places, gaps(mesh, list(places.values())), strict=True):
+        if gap <= (least if at[0] == "part" else mesh.least_gap):
+            yield at, must_be_inside(gap, mesh)
+    for one, other in _shared(list(places.values())[:-1], least):
+        first, second = (location_text(("actuators", k, "position")) for k in (one, other))
+        if one >= alone:
+            yield ("lattice", "pitch"), f"must keep the actuators apart; {first} and {second} are at the same point"
+            return
+        if other >= alone:
+            yield ("actuators", one, "position"), "must differ from that of an actuator of the lattice"
+        else:
+            yield ("actuators", other, "position"), f"must differ from {first}; got the same point"
+
+
+def _shared(places: Sequence[Place], least: float) -> Iterator[tuple[int, int]]:
+    """Yield each place that is nearer than `least` [m] to an earlier one, after that."""
+    cells: dict[Place, list[int]] = {}
+    for k, (x, y) in enumerate(places):
+        column, row = x // least, y // least
+        around = [(column + i, row + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        near = (one for cell in around for one in cells.get(cell, ()) if math.dist(places[one], (x, y)) < least)
+        if (one := next(near, None)) is None:
+            cells.setdefault((column, row), []).append(k)
+        else:
+            yield one, k
+
+
+def _held(plate: PlateCase, mesh: PlateMesh, made: Sequence[ActuatorCase]) -> Iterator[Mistake]:
+    """Yield that nothing keeps the plate from moving as a whole, w = a + b x + c y."""
+    supports = plate.supports_of(list(mesh.boundaries))
+    if plate.foundation > 0 or "clamped" in supports.values():
+        return
+    held = [one.position for one in made if one.force is None]
+    rims = [mesh.boundaries[name].ravel() for name, support in supports.items() if support == "simply-supported"]
+    if not mesh.spans([*held, *(place for rim in rims for place in mesh.points[rim].tolist())]):
+        needed = "fix a boundary, or use three actuators with strokes that are not in line"
+        yield ("plate", "supports"), f"must not leave the plate free to move as a whole: {needed}"
+    if plate.theory == "von-karman" and not rims and len(held) == 3 == len(made):
+        same = "which tilt it without bending it; both theories are the same there"
+        yield ("plate", "theory"), f'must be "linear" on a free plate with three actuators, {same}'

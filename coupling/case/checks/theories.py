@@ -1,117 +1,59 @@
-"""Checking: whether a plate's theory goes with the actuators and the run."""
+"""Check that a plate's theory goes with the actuators and the run."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+import sys
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import Any, Final
+from typing import Final
 
-from coupling.case.actuators import ENDLESS, ActuatorCase, LatticeCase
-from coupling.case.checks.parts import Parts
-from coupling.case.mistakes import Location, Mistake
+from coupling.case.actuators import ENDLESS, ActuatorCase
 from coupling.case.plates import INERTIA, VON_KARMAN, PlateCase
-from coupling.case.table import right_value
+from coupling.case.table import Location, Mistake
 from coupling.case.tables import RunCase
 
 MAX_STRETCHING: Final = 200
 """Actuators of a plate that stretches."""
 MAX_VIBRATING: Final = 250
-"""Actuators of a plate with inertia."""
-MAX_PRESSED: Final = 250
-"""Actuators of a plate under pressure."""
-MAX_GENERAL: Final = 250
-"""Actuators of a plate on a foundation, or of a wafer under a tension."""
+"""Actuators of a plate with inertia, under a pressure, on a foundation, or of a wafer under a tension."""
 STEADY: Final = 'start = "steady"'
 MAX_CYCLES: Final = 1000  # of one drive in the common period
-ROUNDING: Final = 1e-11  # of a period, as of one that is written with twelve digits
+ROUNDING: Final = 4 * sys.float_info.epsilon
 
 
-def check_theory(parts: Parts, count: int) -> Iterator[Mistake]:
-    """Yield what a plate with so many actuators does not go with."""
-    plate, run = parts.tables["plate"], parts.tables.get("run")
-    if right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
-        yield from _stretching(right_value(RunCase, "scheme", run, parts.context), count)
-        if tension := right_value(PlateCase, "tension", plate, parts.context):
-            yield (
-                ("plate", "tension"),
-                f"must be 0 with {VON_KARMAN}, whose mid-plane has no stress at rest; got {tension:g} N/m",
-            )
-    yield from _pressure(plate, parts.context, count)
-    yield from _foundation(plate, parts.context, count)
-    inertia = right_value(PlateCase, "inertia", plate, parts.context, False)
-    if inertia and count > MAX_VIBRATING:
-        yield (
-            ("plate", "inertia"),
-            f"must be false with more than {MAX_VIBRATING} actuators, as their modes are those of one whole plate; got "
-            f"{count}; a piece of the array with {MAX_VIBRATING} can vibrate",
-        )
-    if right_value(RunCase, "start", run, parts.context) == "steady":
-        if inertia is False:
-            yield ("run", "start"), f"must not be given without {INERTIA} in [plate]; only then do vibrations build up"
-        yield from _ending(parts)
-        if inertia and right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
-            yield from _aperiodic(parts)
-        damping = right_value(PlateCase, "damping", plate, parts.context)
-        undamped = min(ratio for _, ratio in damping) == 0 if isinstance(damping, tuple) else damping == 0
-        if inertia and undamped and right_value(PlateCase, "theory", plate, parts.context) == "von-karman":
-            yield (
-                ("plate", "damping"),
-                f"must be a positive ratio such as 0.02 with {VON_KARMAN} and {STEADY}, as the steady state is what is "
-                "left when all ringing has decayed",
-            )
-
-
-def _pressure(plate: Any, context: Any, count: int) -> Iterator[Mistake]:
-    """Yield that a plate's theory, or so many actuators, leave no room for its pressure."""
-    pressure = right_value(PlateCase, "pressure", plate, context, 0.0)
-    if not pressure:
+def check_theory(plate: PlateCase, run: RunCase, made: Sequence[ActuatorCase], alone: int) -> Iterator[Mistake]:
+    """Yield what a plate does not go with; alone: how many actuators are not of the lattice."""
+    stretches, count = plate.theory == "von-karman", len(made)
+    if stretches:
+        if run.scheme == "paper":
+            moves = "whose mid-plane also moves in its plane"
+            yield ("run", "scheme"), f'must be "events" or "fixed" with {VON_KARMAN}, {moves}; got "paper"'
+        for key, unit in (("tension", "N/m"), ("pressure", "Pa"), ("foundation", "N/m^3")):
+            if value := getattr(plate, key):
+                yield ("plate", key), f"must be 0 with {VON_KARMAN}; got {value:g} {unit}; leave out one of the two"
+    general = [
+        ("theory", '"linear"', stretches, MAX_STRETCHING),
+        ("inertia", "false", plate.inertia, MAX_VIBRATING),
+        ("pressure", "0", plate.pressure, MAX_VIBRATING),
+        ("foundation", "0", plate.foundation, MAX_VIBRATING),
+        ("tension", "0 with a wafer", plate.wafer and plate.tension, MAX_VIBRATING),
+    ]
+    for key, instead, has, most in general:
+        if has and count > most:
+            piece = f"as it needs one model of the whole plate; got {count}; use a piece of the array"
+            yield ("plate", key), f"must be {instead} with more than {most} actuators, {piece}"
+    if run.start != "steady":
         return
-    if right_value(PlateCase, "theory", plate, context) == "von-karman":
-        yield (
-            ("plate", "pressure"),
-            f"must be 0 with {VON_KARMAN}, whose reduced model knows strokes and forces of actuators only; got "
-            f"{pressure:g} Pa; leave out pressure or theory",
-        )
-    if count > MAX_PRESSED:
-        yield (
-            ("plate", "pressure"),
-            f"must be 0 with more than {MAX_PRESSED} actuators, as their shapes are found on patches and a pressure "
-            f"bends the whole plate; got {pressure:g} Pa and {count}; a piece of the array with {MAX_PRESSED} can bear "
-            "one",
-        )
-
-
-def _foundation(plate: Any, context: Any, count: int) -> Iterator[Mistake]:
-    """Yield that a plate's theory, or so many actuators, rule out its foundation, or a wafer's tension."""
-    foundation, tension, wafer = (
-        right_value(PlateCase, key, plate, context, missing)
-        for key, missing in (("foundation", 0.0), ("tension", 0.0), ("wafer", None))
-    )
-    if foundation and right_value(PlateCase, "theory", plate, context) == "von-karman":
-        yield ("plate", "foundation"), f"must be 0 with {VON_KARMAN}; got {foundation:g} N/m^3; leave out one of them"
-    for key, value, of in (("foundation", foundation, ""), ("tension", wafer and tension, " with a wafer")):
-        if value and count > MAX_GENERAL:
-            yield (
-                ("plate", key),
-                f"must be 0{of} with more than {MAX_GENERAL} actuators, as their shapes are found on patches; got "
-                f"{value:g} {'N/m^3' if key == 'foundation' else 'N/m'} and {count}; a piece of the array with "
-                f"{MAX_GENERAL} can have one",
-            )
-
-
-def _stretching(scheme: str | None, count: int) -> Iterator[Mistake]:
-    if count > MAX_STRETCHING:
-        yield (
-            ("plate", "theory"),
-            f'must be "linear" with more than {MAX_STRETCHING} actuators, as a plate that stretches is solved in one '
-            f"dense model of all of them; got {count}; a piece of the array with {MAX_STRETCHING} can stretch",
-        )
-    if scheme == "paper":
-        yield (
-            ("run", "scheme"),
-            f'must be "events" or "fixed" with {VON_KARMAN}, whose mid-plane also moves in its plane; got "paper"',
-        )
+    if not plate.inertia:
+        yield ("run", "start"), f"must not be given without {INERTIA} in [plate]; only then do vibrations build up"
+    yield from _endless(made, alone)
+    if plate.inertia and stretches:
+        yield from _periodic(made, alone)
+        damping = plate.damping
+        if (damping if isinstance(damping, float) else min(ratio for _, ratio in damping)) == 0:
+            rings = "as the steady state is what is left when all ringing has decayed"
+            yield ("plate", "damping"), f"must be a positive ratio with {VON_KARMAN} and {STEADY}, {rings}"
 
 
 def common_period(one: float | None, other: float) -> float:
@@ -126,48 +68,34 @@ def common_period(one: float | None, other: float) -> float:
     return shared if abs(shared - cycles[0] * other) <= ROUNDING * shared else math.inf
 
 
-def _aperiodic(parts: Parts) -> Iterator[Mistake]:
-    """Yield the drive of one frequency with which those before it have no common period."""
+def _location(k: int, alone: int, key: str) -> Location:
+    return ("actuators", k, key) if k < alone else ("lattice", key)
+
+
+def _periodic(made: Sequence[ActuatorCase], alone: int) -> Iterator[Mistake]:
+    """Yield the first drive with which those before it have no common period."""
     period: float | None = None
-    for location, values in _driven(parts):
-        frequency, dwell = values["frequency"], values["dwell"]
-        still = values["stroke"] == 0 or values["force"] == 0
-        if not isinstance(frequency, float) or not isinstance(dwell, float) or still:
+    for k, one in enumerate(made):
+        if one.frequency is None or one.stroke == 0 or one.force == 0:
             continue
-        own = 1 / frequency + (2 * dwell if values["cycle"] == "up-down" else 0.0)
+        own = 1 / one.frequency + (2 * one.dwell if one.cycle == "up-down" else 0.0)
         if math.isinf(shared := common_period(period, own)):
-            yield (
-                (*location, "frequency"),
-                f"must have a common period with the drives before it, with {VON_KARMAN} and {STEADY}; got a period of "
-                f"{own * 1e3:.7g} ms, and {(period or 0.0) * 1e3:.7g} ms of those; take frequencies in a ratio of "
-                "small whole numbers",
-            )
+            got = f"got a period of {own * 1e3:.15g} ms, and {(period or 0.0) * 1e3:.15g} ms before"
+            must = f"must have a common period with the drives before it, with {VON_KARMAN} and {STEADY}"
+            yield _location(k, alone, "frequency"), f"{must}; {got}; use frequencies in a ratio of small whole numbers"
             return
         period = shared
 
 
-def _driven(parts: Parts) -> list[tuple[Location, Mapping[str, Any]]]:
-    """The values of all actuators, and of the lattice as one."""
-    driven: list[tuple[Location, Mapping[str, Any]]] = [
-        (("actuators", index), ActuatorCase.values_of(value, parts.context))
-        for index, (value, _) in enumerate(parts.items("actuators"))
-        if isinstance(value, (dict, ActuatorCase))
-    ]
-    lattice = parts.tables.get("lattice")
-    if isinstance(lattice, (dict, LatticeCase)):
-        driven.append((("lattice",), LatticeCase.values_of(lattice, parts.context)))
-    return driven
-
-
-def _ending(parts: Parts) -> Iterator[Mistake]:
-    """Yield the drives that end, or grow, and so have no steady state."""
-    for location, values in _driven(parts):
-        if values["cycle"] == "up":
-            yield (*location, "cycle"), f'must not be "up" with {STEADY} in [run], which takes a drive without end'
-        if isinstance(values["cycles"], int):
-            yield (*location, "cycles"), f"must not be given with {STEADY} in [run], which takes a drive without end"
-        if any(isinstance(values[key], tuple) for key in ("table", "segments")) and isinstance(values["repeats"], int):
-            message = f'must be "{ENDLESS}" with {STEADY} in [run], which takes a drive without end'
-            yield (*location, "repeats"), message
-        if isinstance(values["ramp"], float) and values["ramp"] > 0:
-            yield (*location, "ramp"), f"must not be given with {STEADY} in [run], in which no drive begins"
+def _endless(made: Sequence[ActuatorCase], alone: int) -> Iterator[Mistake]:
+    """Yield the drives that end, or grow, and so have no steady state; of a lattice its first."""
+    why = f"with {STEADY} in [run], which takes a drive without end"
+    for k, one in enumerate(made[: alone + 1]):
+        if one.cycle == "up":
+            yield _location(k, alone, "cycle"), f'must not be "up" {why}'
+        if one.cycles is not None:
+            yield _location(k, alone, "cycles"), f"must not be given {why}"
+        if (one.table or one.segments) and one.repeats != ENDLESS:
+            yield _location(k, alone, "repeats"), f'must be "{ENDLESS}" {why}'
+        if one.ramp > 0:
+            yield _location(k, alone, "ramp"), f"must not be given {why}"

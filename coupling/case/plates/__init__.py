@@ -1,10 +1,11 @@
-"""Plates: what the part moves over, a plate of some shape or a rigid platform."""
+"""Plates and platforms: shape, material, supports, motion."""
 
-from coupling.case.plates.any_plate import PLATES, PLATFORM, AnyPlate, ShapelessCase, kind, outline_of
 from coupling.case.plates.plate import INERTIA, VON_KARMAN, PlateCase
-from coupling.case.plates.platform import RATES, AxisCase, MotionCase, PlatformCase, platform_of
+from coupling.case.plates.platform import RATES, AxisCase, MotionCase, PlatformCase
 from coupling.case.plates.shapes import (
+    PLATFORM,
     AnnulusCase,
+    AnyPlate,
     DiscCase,
     EllipseCase,
     MeshCase,

@@ -7,26 +7,22 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import (
-    Discriminator,
-    Field,
-    StrictBool,
-    StrictFloat,
-    Tag,
-    field_validator,
-)
+from pydantic import Discriminator, Field, PlainValidator, StrictBool, StrictFloat, Tag, ValidationInfo, field_validator
 
-from coupling.case.plates.damping import DampingRatios
-from coupling.case.table import Contradictions, KeyedTable
+from coupling.case.table import Contradictions, Table, tag
 from coupling.case.values import (
     Angle,
     Density,
+    Expected,
     Foundation,
+    Frequency,
     LoadPressure,
     PositiveLength,
     PositivePressure,
     Pressure,
+    Quantity,
     Tension,
+    quoted,
 )
 
 if TYPE_CHECKING:
@@ -42,19 +38,45 @@ SILICON: Final = (165.7e9, 63.9e9, 79.6e9)
 CONSTANTS: Final = ("c11", "c12", "c44")
 
 SupportName = Literal["clamped", "simply-supported", "free"]
-ONE_SUPPORT, SUPPORT_OF_EACH = "one support", "a support of each boundary"
-Supports = Annotated[
-    Annotated[SupportName, Tag(ONE_SUPPORT)] | Annotated[dict[str, SupportName], Tag(SUPPORT_OF_EACH)],
-    Discriminator(lambda value: SUPPORT_OF_EACH if isinstance(value, dict) else ONE_SUPPORT),
-]
 InPlaneName = Literal["immovable", "movable"]
+_ONE, _EACH = tag("one"), tag("each")
+_ONE_OR_EACH: Final = Discriminator(lambda value: _EACH if isinstance(value, dict) else _ONE)
+Supports = Annotated[
+    Annotated[SupportName, Tag(_ONE)] | Annotated[dict[str, SupportName], Tag(_EACH)],
+    _ONE_OR_EACH,
+]
 InPlaneSupports = Annotated[
-    Annotated[InPlaneName, Tag(ONE_SUPPORT)] | Annotated[dict[str, InPlaneName], Tag(SUPPORT_OF_EACH)],
-    Discriminator(lambda value: SUPPORT_OF_EACH if isinstance(value, dict) else ONE_SUPPORT),
+    Annotated[InPlaneName, Tag(_ONE)] | Annotated[dict[str, InPlaneName], Tag(_EACH)],
+    _ONE_OR_EACH,
 ]
 
+_RATIOS: Final = Expected(
+    'a ratio from 0 to below 1, or pairs of a frequency and a ratio, such as [["20 kHz", 0.02], ["80 kHz", 0.01]]'
+)
+_FREQUENCY: Final = Quantity("Hz", "300 Hz")
 
-class PlateCase(KeyedTable, ABC):
+
+def _ratios(value: object, info: ValidationInfo) -> float | tuple[tuple[float, float], ...]:
+    """A damping ratio, or pairs of a frequency and the ratio there."""
+    if _is_ratio(value):
+        return float(value)  # type: ignore[arg-type]
+    pairs = value if isinstance(value, (list, tuple)) else ()
+    if not pairs or not all(isinstance(one, (list, tuple)) and len(one) == 2 and _is_ratio(one[1]) for one in pairs):
+        raise ValueError(f"must be {_RATIOS.expected}; got {quoted(value)}")
+    found = tuple((_FREQUENCY.validate(frequency, info), float(ratio)) for frequency, ratio in pairs)
+    if any(high <= low for (low, _), (high, _) in zip(((0.0, 0.0), *found), found, strict=False)):
+        raise ValueError(f"must have increasing, positive frequencies; got {quoted(value)}")
+    return found
+
+
+def _is_ratio(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1
+
+
+DampingRatios = Annotated[float | tuple[tuple[Frequency, float], ...], PlainValidator(_ratios, float | list), _RATIOS]
+
+
+class PlateCase(Table, ABC):
     """The plate, in m, Pa and kg/m^3."""
 
     outlined_by: ClassVar[str] = "shape"
@@ -109,9 +131,9 @@ class PlateCase(KeyedTable, ABC):
             yield "in_plane_supports", f"must not be given without {VON_KARMAN}; a linear plate does not stretch"
         yield from _material(given)
         inertia = given.get("inertia", False)
-        if inertia is True and "density" not in given:
+        if inertia and "density" not in given:
             yield "density", f'is missing; with {INERTIA} it must be a density such as "2330 kg/m^3"'
-        if "damping" in given and inertia is False:
+        if "damping" in given and not inertia:
             yield "damping", f"must not be given without {INERTIA}; a plate without mass does not vibrate"
 
     @abstractmethod
@@ -156,7 +178,7 @@ def _material(given: Mapping[str, Any]) -> Contradictions:
         for name in CONSTANTS:
             if name not in given:
                 yield name, "is missing; a crystal that is not silicon has three constants, pressures such as 128 GPa"
-    elif all(isinstance(value, float) for value in constants):
+    else:
         c11, c12, _ = constants
         if not (c11 > abs(c12) and c11 + 2 * c12 > 0):
             first = next((name for name in CONSTANTS[:2] if name in given), "wafer")

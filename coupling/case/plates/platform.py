@@ -10,8 +10,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, NamedTuple
 from pydantic import Discriminator, Field, Tag
 
 from coupling.case.actuators import MIN_SPACING, DriveCase
-from coupling.case.mistakes import Mistake
-from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, right_value
+from coupling.case.table import Contradictions, Mistake, Table, tag
 from coupling.case.values import (
     AXES,
     Columns,
@@ -24,7 +23,7 @@ from coupling.case.values import (
     unreadable,
 )
 
-FROM_FILE, BY_DRIVES = "a motion from a file", "a motion by drives"
+_FROM_FILE, _BY_DRIVES = tag("file"), tag("drives")
 HEADER: Final = "time [ms], x [um], z [um]"
 RATES: Final = {axis: (f"v{axis}", f"a{axis}") for axis in AXES}  # the columns of velocity and acceleration
 QUANTITIES: Final = (
@@ -48,7 +47,6 @@ class AxisCase(DriveCase):
     """What moves a platform along one axis."""
 
     owner: ClassVar[str] = "an axis"
-    segments_table: ClassVar[str] = "[[plate.motion.x.segments]]"
 
 
 class MotionCase(Table):
@@ -62,15 +60,15 @@ class MotionCase(Table):
     """The drive along z."""
 
 
-class PlatformCase(KeyedTable):
+class PlatformCase(Table):
     """A flat rigid surface without end; without a motion it stands still."""
 
     shape: Literal["platform"]
     """No plate, but a flat rigid surface without end that moves as a whole."""
     motion: (
         Annotated[
-            Annotated[FileBeside, Tag(FROM_FILE)] | Annotated[MotionCase, Tag(BY_DRIVES)],
-            Discriminator(lambda value: FROM_FILE if isinstance(value, str) else BY_DRIVES),
+            Annotated[FileBeside, Tag(_FROM_FILE)] | Annotated[MotionCase, Tag(_BY_DRIVES)],
+            Discriminator(lambda value: _FROM_FILE if isinstance(value, str) else _BY_DRIVES),
         ]
         | None
     ) = Field(default=None, examples=["shaker.csv"])
@@ -80,8 +78,7 @@ class PlatformCase(KeyedTable):
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
-        motion = given.get("motion")
-        if "smoothing" in given and motion is not WRONG and not isinstance(motion, str):
+        if "smoothing" in given and not isinstance(given.get("motion"), str):
             yield "smoothing", 'must not be given without motion = "file.csv", the noise of whose positions it is'
 
     @cached_property
@@ -100,8 +97,8 @@ class PlatformCase(KeyedTable):
         times = columns.pop("time")
         return Measured(tuple(time - times[0] for time in times), columns, file.ignored), []
 
-    def mistakes(self, duration: float | None) -> Iterator[Mistake]:
-        """Yield where its motion is wrong, and why, for a run of a duration [s], None where that is wrong itself."""
+    def mistakes(self, duration: float) -> Iterator[Mistake]:
+        """Yield where its motion is wrong, and why, for a run of a duration [s]."""
         where = ("plate", "motion")
         try:
             measured, mistakes = self.read_motion
@@ -110,7 +107,7 @@ class PlatformCase(KeyedTable):
             return
         for mistake in mistakes:
             yield where, f"in {Path(str(self.motion)).name}: {mistake}"
-        if measured and duration is not None and duration > measured.time[-1] * (1 + MIN_SPACING):
+        if measured and duration > measured.time[-1] * (1 + MIN_SPACING):
             message = f"must not exceed the measured motion's, {measured.time[-1]:g} s; got {duration:g} s"
             yield ("run", "duration"), message
 
@@ -129,13 +126,3 @@ def _mistakes(file: MeasuredColumns) -> Iterator[str]:
     late = [k for k in range(1, len(times)) if times[k] - times[k - 1] <= closest]
     rule = "must have a later time than the row before"
     yield from first_of([f"line {file.lines[k]} {rule}; got {times[k]:g} s after {times[k - 1]:g} s" for k in late])
-
-
-def platform_of(plate: Any, context: Any) -> PlatformCase | None:
-    """The platform as far as its measured motion goes, whatever else is wrong with it; None for what has none."""
-    if isinstance(plate, PlatformCase):
-        return plate
-    if isinstance(plate, dict) and plate.get("shape") == "platform":
-        motion = right_value(PlatformCase, "motion", plate, context)
-        return PlatformCase.model_construct(motion=motion if isinstance(motion, str) else None)
-    return None

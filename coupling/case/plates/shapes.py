@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import errno
 import math
-import os
 from abc import abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import Field, GetCoreSchemaHandler, StrictInt, StrictStr, field_validator
-from pydantic_core import CoreSchema, core_schema
+from pydantic import BeforeValidator, Discriminator, Field, StrictInt, StrictStr, Tag
 
 from coupling.case.plates.plate import PlateCase
-from coupling.case.table import Contradictions
-from coupling.case.values import Angle, FileBeside, Point, PositiveLength, length_text, quoted
+from coupling.case.plates.platform import PlatformCase
+from coupling.case.table import Contradictions, named, tag
+from coupling.case.values import Angle, Expected, FileBeside, Point, PositiveLength, length_text, quoted
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
@@ -54,7 +51,7 @@ class ShapeCase(PlateCase):
         if not area <= MAX_SLENDER * width**2:
             times = f"it is {area / width**2:.4g} times as long as wide" if width > 0 else "it has no width"
             raise ValueError(f"must be of a plate at most {MAX_SLENDER:g} times as long as wide; {times}")
-        return self.mesh_of(width / 2)
+        return _coarse(type(self), (("shape", self.shape), *self._own().items()), width / 2)  # type: ignore[attr-defined]
 
     @property
     def min_cell_size(self) -> float:
@@ -65,8 +62,18 @@ class ShapeCase(PlateCase):
         """The mesh with cells of a size [m]."""
         import meshes  # Here, because reading a case is to be quick.
 
+        return getattr(meshes, self.shape)(*self._own().values(), cell_size)  # type: ignore[attr-defined]
+
+    def _own(self) -> dict[str, Any]:
+        """The keys and values that shape it."""
         own = [key for key in type(self).model_fields if key not in ShapeCase.model_fields and key != "shape"]
-        return getattr(meshes, self.shape)(*(getattr(self, key) for key in own), cell_size)  # type: ignore[attr-defined]
+        return {key: getattr(self, key) for key in own}
+
+
+@lru_cache(16)
+def _coarse(shape: type[ShapeCase], own: tuple[tuple[str, Any], ...], cell_size: float) -> PlateMesh:
+    """The mesh of a shape, kept for plates that differ in other keys only."""
+    return shape.model_construct(**dict(own)).mesh_of(cell_size)
 
 
 class DiscCase(ShapeCase):
@@ -110,8 +117,8 @@ class AnnulusCase(ShapeCase):
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         yield from super().contradictions(given)
-        inner, outer = given.get("inner_radius"), given.get("outer_radius")
-        if isinstance(inner, float) and isinstance(outer, float) and outer <= inner:
+        inner, outer = given["inner_radius"], given["outer_radius"]
+        if outer <= inner:
             yield "outer_radius", f"must exceed inner_radius, {length_text(inner)}; got {length_text(outer)}"
 
     @property
@@ -134,20 +141,19 @@ class EllipseCase(ShapeCase):
         return 2 * min(self.semi_axis_x, self.semi_axis_y), math.pi * self.semi_axis_x * self.semi_axis_y
 
 
-@dataclass(frozen=True)
-class _Corners:
-    """Marks a tuple as the corners of a polygon."""
+_POINTS: Final = 'three points or more, such as [["0 um", "0 um"], ["2 um", "0 um"], ["0 um", "1 um"]]'
 
-    points: ClassVar[str] = 'three points or more, such as [["0 um", "0 um"], ["2 um", "0 um"], ["0 um", "1 um"]]'
-    expected: ClassVar[str] = points + ", or have a number of sides and a radius in their place"
 
-    def validate(self, corners: object) -> object:
-        if not isinstance(corners, (list, tuple)) or len(corners) < 3:
-            raise ValueError(f"must be {self.points}; got {quoted(corners)}")
-        return corners
+def _corners(corners: object) -> object:
+    if not isinstance(corners, (list, tuple)) or len(corners) < 3:
+        raise ValueError(f"must be {_POINTS}; got {quoted(corners)}")
+    return corners
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self.validate, handler(source))
+
+def _side_names(sides: object) -> object:
+    if not isinstance(sides, (list, tuple)):
+        raise ValueError(f"must be a list of names, one a side; got {quoted(sides)}")
+    return sides
 
 
 class PolygonCase(ShapeCase):
@@ -157,25 +163,22 @@ class PolygonCase(ShapeCase):
 
     shape: Literal["polygon"]
     """A polygon, which may turn inwards; its boundary is rim, or by sides."""
-    corners: Annotated[tuple[Point, ...], _Corners()] = Field(
-        examples=[[["-300 um", "-300 um"], ["300 um", "-300 um"], ["0 um", "300 um"]]]
-    )
+    corners: Annotated[
+        tuple[Point, ...],
+        BeforeValidator(_corners),
+        Expected(f"{_POINTS}, or have a number of sides and a radius in their place"),
+    ] = Field(examples=[[["-300 um", "-300 um"], ["300 um", "-300 um"], ["0 um", "300 um"]]])
     """Its corners, three or more, in either sense."""
-    sides: tuple[StrictStr, ...] | None = Field(default=None, examples=[["base", "flank", "flank"]])
+    sides: Annotated[tuple[StrictStr, ...], BeforeValidator(_side_names)] | None = Field(
+        default=None, examples=[["base", "flank", "flank"]]
+    )
     """A name for each side, the first from the first corner to the second; sides of one name are one boundary."""
-
-    @field_validator("sides", mode="before")
-    @classmethod
-    def _names(cls, sides: Any) -> Any:
-        if not isinstance(sides, (list, tuple)):
-            raise ValueError(f"must be a list of names, one a side; got {quoted(sides)}")
-        return sides
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
         yield from super().contradictions(given)
-        corners, sides = given.get("corners"), given.get("sides")
-        if isinstance(corners, tuple) and isinstance(sides, tuple) and len(sides) != len(corners):
+        corners, sides = given["corners"], given.get("sides")
+        if sides is not None and len(sides) != len(corners):
             yield "sides", f"must be {len(corners)} names, one a side; got {quoted(sides)}"
 
     @property
@@ -228,9 +231,38 @@ class MeshCase(PlateCase):
     def coarse_mesh(self) -> PlateMesh:
         import meshes
 
-        if not os.path.exists(self.mesh):  # told as for other files, with what may be meant
-            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self.mesh)
         return meshes.read(self.mesh, self.mesh_unit)
 
     def build_mesh(self) -> PlateMesh:
         return self.coarse_mesh  # the file is read once, with the case
+
+
+PLATFORM: Final = 'shape = "platform"'
+_SHAPES: Final = {
+    "disc": DiscCase, "rectangle": RectangleCase, "annulus": AnnulusCase, "ellipse": EllipseCase,
+    "polygon": PolygonCase, "regular": RegularPolygonCase, "platform": PlatformCase, "mesh": MeshCase,
+}  # fmt: skip
+
+
+def _kind(plate: Any) -> str:
+    """The tag of a plate, given as a table or as a model."""
+    if not isinstance(plate, Mapping):
+        return next((tag(name) for name, model in _SHAPES.items() if isinstance(plate, model)), tag("disc"))
+    regular = "corners" not in plate and ("radius" in plate or isinstance(plate.get("sides"), int))
+    name = plate.get("shape", "mesh")
+    return tag("regular" if name == "polygon" and regular else name)
+
+
+AnyPlate = Annotated[
+    Annotated[DiscCase, Tag(tag("disc"))]
+    | Annotated[RectangleCase, Tag(tag("rectangle"))]
+    | Annotated[AnnulusCase, Tag(tag("annulus"))]
+    | Annotated[EllipseCase, Tag(tag("ellipse"))]
+    | Annotated[PolygonCase, Tag(tag("polygon"))]
+    | Annotated[RegularPolygonCase, Tag(tag("regular"))]
+    | Annotated[PlatformCase, Tag(tag("platform"))]
+    | Annotated[MeshCase, Tag(tag("mesh"))],
+    Discriminator(_kind),
+    BeforeValidator(named("shape", ("disc", "rectangle", "annulus", "ellipse", "polygon", "platform"), "mesh")),
+]
+"""What a case may have for a plate: one of the plates, or a platform."""

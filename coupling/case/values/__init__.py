@@ -1,6 +1,5 @@
 """What a field of a file may hold: quantities with units, formulas, and columns of numbers in CSV files."""
 
-from coupling.case.values.annotations import adapter, of_kind, parts_of, quantity_of
 from coupling.case.values.csv_columns import (
     Columns,
     MeasuredColumns,
@@ -11,15 +10,13 @@ from coupling.case.values.csv_columns import (
     read_rows,
     unreadable,
 )
-from coupling.case.values.dimensions import DIMENSIONS, RANGES
-from coupling.case.values.expression import LONGEST
 from coupling.case.values.formula import Amount, Choice, Condition, Formula, unit_of
 from coupling.case.values.quantities import (
     AXES,
     Angle,
-    Area,
     Density,
     Directed,
+    Expected,
     FileBeside,
     Force,
     Foundation,
@@ -40,15 +37,19 @@ from coupling.case.values.quantities import (
     Tension,
     Time,
     Velocity,
+    adapter,
+    marks_of,
+    of_kind,
+    parts_of,
+    quantity_of,
 )
 from coupling.case.values.units import (
-    POSITIVE,
+    DIMENSIONS,
+    LONGEST,
+    RANGES,
     UNITS_REQUIRED,
-    WRITTEN,
     Quantity,
     length_text,
-    number_and_unit,
     prefixed,
     quoted,
-    written_unit,
 )

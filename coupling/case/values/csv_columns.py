@@ -16,8 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from coupling.case.values.dimensions import DIMENSIONS
-from coupling.case.values.units import Quantity, quoted
+from coupling.case.values.units import DIMENSIONS, Quantity, quoted
 from coupling.files import MAX_NUMBERS, contents, why
 from coupling.suggestion import near, near_file
 
@@ -121,12 +120,13 @@ def _known_name(cell: str, known: Mapping[str, Quantity]) -> str:
 
 
 def read_columns(
-    path: Path, known: Mapping[str, Quantity], needed: Sequence[Sequence[str]], example: str
+    path: Path, known: Mapping[str, Quantity], needed: Sequence[Sequence[str]], example: str, exact: bool = False
 ) -> MeasuredColumns:
     """The columns of a file, and what is wrong with it, by its lines. Columns of other names are ignored.
 
     known: the quantity of each column that there may be.  needed: groups of names, one of each of which must be there.
-    example: a header, for messages.  Raises as `read_rows`.
+    example: a header, for messages.  exact: convert each number as a decimal, to the bit as in a case file, which is
+    slow.  Raises as `read_rows`.
     """
     read = read_rows(path, example)
     if isinstance(read, str):
@@ -137,27 +137,27 @@ def read_columns(
         message = f'line {line} must be a header such as "{example}"; got {quoted(", ".join(header))}'
         return MeasuredColumns({}, (), [message])
     columns, ignored, mistakes = _header(header, known)
-    meant = {like for cell in header if (like := near(name_and_unit(cell)[0], known))}
+    there = {name for name, *_ in columns}
     got = quoted(", ".join(read.header))
     mistakes += [
-        f'must have a column {_either(names)}, as in "{example}"; got {got}' for names in needed if not meant & {*names}
+        f'must have a column {_either(names)}, as in "{example}"; got {got}' for names in needed if not there & {*names}
     ]
     if mistakes:
         return MeasuredColumns({}, (), [f"line {line} {mistake}" for mistake in mistakes])
     wrong = list(read.mistakes)
     values: list[list[float]] = [[] for _ in header]
-    measured = [k for k, (name, _) in enumerate(columns) if name not in ignored and name != "time"]
+    measured = [k for k, (name, *_) in enumerate(columns) if name not in ignored and name != "time"]
     rows = [row for row in read.rows if any(row[1][k].lower() not in ("", "nan") for k in measured)]
     for number, cells in rows:
-        for (name, factor), cell, column in zip(columns, cells, values, strict=True):
+        for (name, unit, factor), cell, column in zip(columns, cells, values, strict=True):
             value = _number(cell)
             if name in ignored:
                 continue
             if value is None:
                 wrong.append((number, f"must have a finite number as {name}; got {quoted(cell)}"))
             else:
-                column.append(value * factor)
-    filled = {name: tuple(column) for (name, _), column in zip(columns, values, strict=True) if name not in ignored}
+                column.append(known[name].value_of(cell, cell, unit) if exact else value * factor)
+    filled = {name: tuple(column) for (name, *_), column in zip(columns, values, strict=True) if name not in ignored}
     lost = len(read.rows) - len(rows)
     return MeasuredColumns(filled, tuple(number for number, _ in rows), first_of(by_line(wrong)), ignored, lost)
 
@@ -184,12 +184,12 @@ def first_of(mistakes: Sequence[str]) -> list[str]:
 
 def _header(
     header: Sequence[str], known: Mapping[str, Quantity]
-) -> tuple[list[tuple[str, float]], tuple[str, ...], list[str]]:
-    """Each column's name and how much in SI units one of its unit is, those ignored, and what is wrong with the header.
+) -> tuple[list[tuple[str, str, float]], tuple[str, ...], list[str]]:
+    """Each column's name, unit and how much in SI units one of that is; those ignored, and what is wrong with others.
 
     A name that looks like one that is known, and is missing, is a mistake.
     """
-    columns: list[tuple[str, float]] = []
+    columns: list[tuple[str, str, float]] = []
     ignored, mistakes = [], []
     there = {name_and_unit(cell)[0] for cell in header}
     for cell in header:
@@ -197,22 +197,19 @@ def _header(
         if name not in known:
             if (like := near(name, known)) and like not in there:
                 mistakes.append(f"has a column {quoted(cell)} that is not known; did you mean {like}?")
-            columns.append((cell, math.nan))
+            columns.append((cell, "", math.nan))
             ignored.append(cell)
             continue
-        if any(name == other for other, _ in columns):
+        if any(name == other for other, *_ in columns):
             mistakes.append(f"has two columns {name}")
-        quantity = known[name]
-        columns.append((name, math.nan))
-        if not unit:
-            mistakes.append(f'must give the unit of {name}, as in "{name} [{quantity.example.split()[-1]}]"')
-            continue
+        quantity, factor = known[name], math.nan
         try:
-            columns[-1] = name, quantity.parse(f"1 {unit}")
-        except ValueError as error:
-            reason = str(error).partition(f'got "1 {unit}"')[2].replace('"1 ', '"')
-            kind = DIMENSIONS[quantity.unit].partition(" ")[2]
-            mistakes.append(f"must give {name} in a unit of {kind}; got [{unit}]{reason}")
+            factor = quantity.parse(f"1 {unit or ''}")
+        except ValueError:
+            of = f"a unit of {DIMENSIONS[quantity.unit].partition(' ')[2]}"
+            got = f"; got [{unit}]" if unit else ""
+            mistakes.append(f'must give {name} in {of}, as in "{name} [{quantity.example.split()[-1]}]"{got}')
+        columns.append((name, unit or "", factor))
     return columns, tuple(ignored), mistakes
 
 

@@ -1,22 +1,132 @@
-"""Formulas: an expression followed by a unit, "0.05 * (row + column) ms", or one that is true or false, "row > 2"."""
+"""Formulas of an actuator's place in a lattice: "0.05 * (row + column) ms", or one that is true or false, "row > 2".
+
+They are evaluated by simpleeval, with no more than the names, operators and functions below, so they can do no harm.
+"""
 
 from __future__ import annotations
 
+import ast
 import math
+import operator
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
+from simpleeval import InvalidExpression, SimpleEval
 
-from coupling.case.values.expression import KEYWORDS, NAMES, Expression, parse, split, unreadable
 from coupling.case.values.units import Quantity, quoted
+from coupling.suggestion import near
 
-FORMULA: Final = "an expression and its unit"
-CONDITION: Final = "an expression that is true or false"
-EXAMPLE: Final = '"hypot(x, y) > 100e-6"'  # of a condition
+NAMES: Final = ("row", "column", "rows", "columns", "x", "y", "pi")
+_OF_ONE: Final = ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "floor")
+FUNCTIONS: Final[dict[str, Callable[..., float]]] = {
+    **{name: getattr(math, name) for name in (*_OF_ONE, "atan2", "log", "hypot")},
+    **{"abs": abs, "min": min, "max": max},
+}
+_LONGEST: Final = 500  # characters
+_OPERATORS: Final[dict[type[ast.AST], Callable[..., Any]]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.FloorDiv: operator.floordiv,
+    ast.Mod: operator.mod,
+    ast.Pow: math.pow,  # of floats, so that a huge power is refused at once
+    ast.UAdd: operator.pos,
+    ast.USub: operator.neg,
+    ast.Not: operator.not_,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+}
+_NODES: Final = (
+    *(ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp),
+    *(ast.Call, ast.Name, ast.Constant),
+)
+_KEYWORDS: Final = ("if", "else", "and", "or", "not")
+_WORD: Final = re.compile(
+    r"\s*(?:(?P<number>(?:[0-9][0-9_]*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
+    r"|(?P<name>[^\W\d]\w*)|(?P<sign>\*\*|//|[<>=!]=|[-+*/%(),<>]))"
+)
+
+
+@dataclass(frozen=True)
+class Expression:
+    """An expression of the NAMES; ValueError where it is none."""
+
+    source: str
+
+    def __post_init__(self) -> None:
+        try:
+            if len(self.source) > _LONGEST:
+                raise ValueError(f"it is longer than {_LONGEST} characters")
+            for node in ast.walk(self._tree):
+                if isinstance(node, ast.Name) and node.id not in (*NAMES, *FUNCTIONS):
+                    raise ValueError(f"there is no {_unknown(node.id)}")
+        except (RecursionError, MemoryError):
+            raise ValueError("it is nested too deeply") from None
+        except SyntaxError:
+            raise ValueError("the expression is not complete, or has a sign that means nothing") from None
+
+    def evaluate(self, names: Mapping[str, float]) -> float | bool:
+        """The value where the NAMES have these values; ValueError, saying why, when there is none."""
+        self._evaluator.names = names
+        try:
+            value = self._evaluator.eval(self.source, self._tree)
+            return value if isinstance(value, bool) else float(value)
+        except (ZeroDivisionError, OverflowError):
+            raise ValueError("divides by zero, or is too large") from None
+        except RecursionError:
+            raise ValueError("is nested too deeply") from None
+        except (InvalidExpression, TypeError):
+            raise ValueError("must have numbers, names, operators and functions of numbers only") from None
+        except ValueError:  # What `math` says differs between versions of Python.
+            raise ValueError("has no real value") from None
+
+    @cached_property
+    def _tree(self) -> ast.AST:
+        return ast.parse(self.source, mode="eval").body
+
+    @cached_property
+    def _evaluator(self) -> SimpleEval:
+        evaluator = SimpleEval(_OPERATORS, FUNCTIONS, {})
+        evaluator.nodes = {node: evaluator.nodes[node] for node in _NODES}
+        return evaluator
+
+
+def _unknown(name: str) -> str:
+    if name in ("t", "time"):
+        return f"{name}: an expression is constant in time, one value for each actuator"
+    meant = near(name, known := (*NAMES, *FUNCTIONS))
+    return f"{name}; " + (f"did you mean {meant}?" if meant else f"there are {', '.join(known)}")
+
+
+def split(text: str) -> tuple[str, str]:
+    """The expression that a text begins with, and the rest: all from where no operator joins two words."""
+    words: list[str] = []
+    place, ended, called = 0, False, False
+    while match := _WORD.match(text, place):
+        word = match[match.lastgroup or 0]
+        begins = match.lastgroup == "number" or (match.lastgroup == "name" and word not in _KEYWORDS) or word == "("
+        if ended and begins and not (word == "(" and called):
+            break
+        ended = (begins and word != "(") or word == ")"
+        called = match.lastgroup == "name" and ended
+        words.append(word)
+        place = match.end()
+    return " ".join(words), text[place:].strip()
+
+
+def unit_of(text: str) -> str:
+    """The unit that a quantity or formula ends with."""
+    return split(text)[1]
 
 
 @dataclass(frozen=True)
@@ -36,10 +146,6 @@ class Formula:
         if not math.isfinite(value * self.scale):
             raise ValueError("is not finite")
         return value * self.scale
-
-    def text_of(self, value: float) -> str:
-        """A value in SI units as text in this unit."""
-        return f"{value / self.scale:g} {self.unit}"
 
 
 @dataclass(frozen=True)
@@ -64,32 +170,24 @@ class Amount(Quantity):
     @property
     def expected(self) -> str:
         """What a value must be, in words: a length such as "150 um" or "2 * (row + column) um"."""
-        return f'{super().expected} or "2 * (row + column) {self._unit}"'
-
-    @property
-    def _unit(self) -> str:
-        return self.example.split()[-1]
+        return f'{super().expected} or "2 * (row + column) {self.example.split()[-1]}"'
 
     def parse(self, text: str) -> float | Formula:  # type: ignore[override]
         """The quantity or formula that a text states; ValueError unless it is one, of this dimension."""
-        words, rest = _words(text, FORMULA)
-        digits = words[-1:] and words[-1][0] in "0123456789."
+        source, unit = split(text)
+        if re.fullmatch(r"[+-]?\s*[\d._eE+-]*", source):
+            return super().parse(text)
         try:
-            if not words or (digits and len(words) == 1) or (digits and len(words) == 2 and words[0] in ("+", "-")):
-                return super().parse(text)
-            expression = _parsed(text, words, FORMULA)
-            return Formula(text, expression, rest, self.value_of(text, "1", rest))
-        except ValueError:
-            reason = unreadable(rest) if rest else ""
-            if not reason and re.search(rf"\b({'|'.join((*KEYWORDS, *NAMES))})\b", rest):
-                example = f"(5 if row > 2 else 3) {self._unit}"
-                reason = f"the unit must come once, at the end, as in {quoted(example)}"
-            if not reason:
-                raise
-            raise _refusal(text, reason, FORMULA) from None
+            return Formula(text, Expression(source), unit, self.value_of(text, "1", unit))
+        except ValueError as error:
+            reason = str(error).partition(f"got {quoted(text)}")[2] or f": {error}"
+            rule = "an expression and, once at its end, a unit"
+            raise ValueError(f"must be {rule}; got {quoted(text)}{reason}") from None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self.validate)
+        return core_schema.with_info_plain_validator_function(
+            lambda value, info: value if isinstance(value, Formula) else self.validate(value, info)
+        )
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"type": "string", "examples": [self.example]}
@@ -99,45 +197,22 @@ class Amount(Quantity):
 class Choice:
     """Marks a `Condition`."""
 
-    expected = f"{CONDITION}, such as {EXAMPLE}"
+    expected = 'an expression that is true or false, such as "hypot(x, y) > 100e-6"'
 
     def validate(self, value: object) -> Condition:
         """The condition that a text states; ValueError unless it is one."""
         if isinstance(value, Condition):
             return value
-        if not isinstance(value, str) or not value.strip():
-            raise ValueError(f"must be {self.expected}; got {quoted(value)}")
-        words, rest = _words(value, CONDITION)
-        if rest:
-            no_unit = f'"{rest}" is too much; it has no unit, x and y are in metres, as in {EXAMPLE}'
-            raise _refusal(value, unreadable(rest) or no_unit, CONDITION)
-        return Condition(value, _parsed(value, words, CONDITION))
+        try:
+            source, rest = split(value) if isinstance(value, str) else ("", "")
+            if rest:
+                raise ValueError(f'"{rest}" is too much; it has no unit, x and y are in metres')
+            return Condition(str(value), Expression(source))
+        except ValueError as error:
+            raise ValueError(f"must be {self.expected}; got {quoted(value)}: {error}") from None
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.validate)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"type": "string"}
-
-
-def unit_of(text: str) -> str:
-    """The unit that a quantity or formula ends with."""
-    return split(text)[1]
-
-
-def _words(text: str, expected: str) -> tuple[list[str], str]:
-    try:
-        return split(text)
-    except ValueError as error:
-        raise _refusal(text, str(error), expected) from None
-
-
-def _parsed(text: str, words: list[str], expected: str) -> Expression:
-    try:
-        return parse(words)
-    except ValueError as error:
-        raise _refusal(text, str(error), expected) from None
-
-
-def _refusal(text: str, reason: str, expected: str) -> ValueError:
-    return ValueError(f"must be {expected}; got {quoted(text)}: {reason}")

@@ -1,24 +1,38 @@
-"""Marks of pydantic fields that are quantities, and the types of such fields.
+"""Types of fields that are quantities, and what an annotation says of a field.
 
-Each alias at the end (`Length`, `Time`, ...) is a float to a type checker. As the type of a pydantic field it also
-accepts text with a unit of the right dimension. A number without a unit is taken as SI, or refused where the
-validation context is `UNITS_REQUIRED`, as it is for files.
+Each alias (`Length`, `Time`, ...) is a float to a type checker. As the type of a pydantic field it also accepts text
+with a unit of the right dimension. A number without a unit is taken as SI, or refused where the validation context is
+`UNITS_REQUIRED`, as it is for files.
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, NamedTuple, get_args, get_origin
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, StrictStr, ValidationInfo
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    StrictStr,
+    TypeAdapter,
+    ValidationInfo,
+)
 from pydantic_core import CoreSchema, core_schema
 
 from coupling.case.values.units import Quantity, quoted
 
 AXES: Final = ("x", "y", "z")
 _COUNTS: Final = {2: "two", 3: "three"}
+
+
+class Expected(NamedTuple):
+    """Marks a field with what its value must be, in words."""
+
+    expected: str
 
 
 @dataclass(frozen=True)
@@ -36,23 +50,11 @@ class Pair:
     def validate(self, value: object) -> object:
         """Return `value`; ValueError unless it is a list or tuple of two."""
         if not isinstance(value, (list, tuple)) or len(value) != 2:
-            both = _both(value)
-            instead = f"; write {quoted(both)}" if both else ""
-            raise ValueError(f"must be {self.expected}; got {quoted(value)}{instead}")
+            raise ValueError(f"must be {self.expected}; got {quoted(value)}")
         return value
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_before_validator_function(self.validate, handler(source))
-
-
-def _both(value: object) -> list[object] | None:
-    """The two that are meant by a table of x and y, or by one text; None: it is no such thing."""
-    if isinstance(value, dict) and {*value} == {"x", "y"}:
-        return [value["x"], value["y"]]
-    if isinstance(value, str) and re.fullmatch(r"[+-]?0+(\.0*)?\s*[^\W\d][^,;]*", value.strip()):
-        return [value, value]
-    parts = re.split(r"[,;]\s*", value.strip("()[] \t")) if isinstance(value, str) else []
-    return [*parts] if len(parts) == 2 and all(map(re.compile(r".*\d\s*[^\W\d].*").fullmatch, parts)) else None
 
 
 @dataclass(frozen=True)
@@ -69,20 +71,12 @@ class Directed:
         return f"{self.quantity.expected}, or {_COUNTS[len(self.axes)]}, along {along}"
 
     def validate(self, value: object, info: ValidationInfo) -> object:
-        """Return the value in SI units; ValueError for what is neither one nor one an axis, or wrong by itself."""
+        """Return the value in SI units; ValueError for what is neither one nor one an axis."""
         if not isinstance(value, (list, tuple)):
             return self.quantity.validate(value, info)
         if len(value) != len(self.axes):
             raise ValueError(f"must be {self.expected}; got {quoted(value)}")
-        parts, wrong = [], []
-        for name, part in zip(self.axes, value, strict=True):
-            try:
-                parts.append(self.quantity.validate(part, info))
-            except ValueError as error:
-                wrong.append(f"its {name} {error}")
-        if wrong:
-            raise ValueError("is wrong: " + "; ".join(wrong))
-        return tuple(parts)
+        return tuple(self.quantity.validate(part, info) for part in value)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(self.validate)
@@ -92,24 +86,16 @@ class Directed:
         return {"anyOf": [one, {"type": "array", "items": one, "minItems": count, "maxItems": count}]}
 
 
-@dataclass(frozen=True)
-class _Beside:
-    """Marks the name of a file that lies beside the one that names it; it becomes a path."""
-
-    def validate(self, name: str, info: ValidationInfo) -> str:
-        return str(Path((info.context or {}).get("folder", ""), name))
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_after_validator_function(self.validate, handler(source))
+def _beside(name: str, info: ValidationInfo) -> str:
+    """The path of a file that lies beside the one that names it."""
+    return str(Path((info.context or {}).get("folder", ""), name))
 
 
 Length = Annotated[float, Quantity("m", "150 um")]
-Area = Annotated[float, Quantity("m^2", "1e4 um^2")]
 Time = Annotated[float, Quantity("s", "50 ms")]
 Angle = Annotated[float, Quantity("rad", "90 deg")]
 Frequency = Annotated[float, Quantity("Hz", "300 Hz", positive=True)]
 Speed = Annotated[float, Quantity("m/s", "0.1 m/s")]
-Acceleration = Annotated[float, Quantity("m/s^2", "9.80665 m/s^2")]
 Gravity = Annotated[float | tuple[float, float, float], Directed(Quantity("m/s^2", "9.80665 m/s^2"))]
 Mass = Annotated[float, Quantity("kg", "2e-9 kg", positive=True)]
 Density = Annotated[float, Quantity("kg/m^3", "2330 kg/m^3", positive=True)]
@@ -127,4 +113,32 @@ PositiveForce = Annotated[float, Quantity("N", "2 uN", positive=True)]
 PositivePressure = Annotated[float, Quantity("Pa", "169 GPa", positive=True)]
 Point = Annotated[tuple[Length, Length], Pair("lengths", "100 um")]
 Velocity = Annotated[tuple[Speed, Speed], Pair("velocities", "0 m/s")]
-FileBeside = Annotated[StrictStr, _Beside()]
+FileBeside = Annotated[StrictStr, AfterValidator(_beside)]
+
+
+def parts_of(annotation: Any, lists: bool = True) -> list[Any]:
+    """An annotation and all that it is made of; lists: what is in lists, too."""
+    inner = get_args(annotation) if lists or get_origin(annotation) is not tuple else ()
+    return [annotation, *(part for one in inner for part in parts_of(one, lists))]
+
+
+def of_kind(annotation: Any, kind: type) -> Any:
+    """The first part of an annotation that is a generic of a kind, such as tuple."""
+    return next(part for part in parts_of(annotation) if get_origin(part) is kind)
+
+
+def marks_of(annotation: Any, lists: bool = True) -> list[Any]:
+    """What marks an annotation and its parts."""
+    return [mark for part in parts_of(annotation, lists) for mark in getattr(part, "__metadata__", ())]
+
+
+def quantity_of(annotation: Any, lists: bool = True) -> Quantity | None:
+    """What marks a number, or several of one kind, as a quantity; lists: also where it is in a list."""
+    marks = [mark.quantity if isinstance(mark, Directed) else mark for mark in marks_of(annotation, lists)]
+    return next((mark for mark in marks if isinstance(mark, Quantity)), None)
+
+
+@cache
+def adapter(model: type[BaseModel], key: str) -> TypeAdapter[Any]:
+    """What validates one field of a table by itself."""
+    return TypeAdapter(model.model_fields[key].rebuild_annotation())

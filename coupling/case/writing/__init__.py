@@ -1,6 +1,5 @@
-"""Writing: a case as text, templates and the JSON schema of files."""
+"""Writing: a case as text, edited in place, and the template and JSON schema of files."""
 
 from coupling.case.writing.edit import write_edited
-from coupling.case.writing.schema import json_schema
-from coupling.case.writing.templates import template
+from coupling.case.writing.template import json_schema, template
 from coupling.case.writing.text import write_case

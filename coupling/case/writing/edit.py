@@ -11,14 +11,13 @@ from typing import Any, Final
 
 from coupling.case.actuators import ActuatorCase, LatticeCase, outside
 from coupling.case.case import Case, read_case
-from coupling.case.mistakes import Location
-from coupling.case.parsing import CaseError
+from coupling.case.fields import lattice_of
 from coupling.case.scaled import rounded
-from coupling.case.table import Table
+from coupling.case.table import Location, Table
+from coupling.case.toml_file import CaseError
+from coupling.case.toml_text import TomlText
 from coupling.case.values import LONGEST
-from coupling.case.variation import lattice_of
 from coupling.case.writing.text import block, case_text, commented, items_of, write_case, written
-from coupling.case.writing.toml_text import TomlText
 from coupling.files import whole_file
 
 Actuators = tuple[ActuatorCase, ...]

@@ -101,7 +101,7 @@ def written(value: Any, annotation: Any, like: Any = None, marks: Sequence[Any] 
         alike = like if isinstance(like, list) and len(like) == len(value) else [like] * len(value)
         items = zip(items_of(value, annotation), alike, strict=True)
         return "[" + ", ".join(written(item, kind, one, marks) for (item, kind, marks), one in items) + "]"
-    quantity = quantity_of(annotation, [], alone=True) or quantity_of(None, [*marks])
+    quantity = quantity_of(annotation, lists=False) or next(iter(marks), None)
     if quantity is None or not isinstance(value, float):
         whole = isinstance(value, float) and isinstance(like, int) and value.is_integer()
         return json.dumps(int(value) if whole else value, ensure_ascii=False)
@@ -112,7 +112,7 @@ def items_of(value: tuple[Any, ...], annotation: Any) -> Iterator[tuple[Any, Any
     """Yield each item of a list, its annotation, and the marks of all; annotation: of the list."""
     types = get_args(of_kind(annotation, tuple))
     kinds = [types[0]] * len(value) if types[-1] is Ellipsis else types
-    marks = [mark for mark in [quantity_of(annotation, [], alone=True)] if mark]
+    marks = [mark for mark in [quantity_of(annotation, lists=False)] if mark]
     for item, kind in zip(value, kinds, strict=True):
         yield item, kind, marks
 

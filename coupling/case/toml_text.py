@@ -1,4 +1,4 @@
-"""A text in TOML whose values change while all else stays as somebody wrote it, to the byte."""
+"""A text in TOML: the line of each key, and edits that leave all else as somebody wrote it, to the byte."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ import tomllib
 from collections import Counter
 from typing import Any, Final, NamedTuple
 
-from coupling.case.mistakes import Location
-from coupling.case.parsing import table_opened
-from coupling.case.variation import value_at
+from coupling.case.table import Location, value_at
 
 _TEXT: Final = r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:\\.|[^"\\])*"|\'[^\']*\''
 _NAME: Final = rf"(?:{_TEXT}|[\w-]+)"
@@ -51,6 +49,16 @@ class TomlText:
         """What the text had at a location; None: nothing."""
         return value_at(self.tables, location)
 
+    def lines(self) -> dict[Location, int]:
+        """The line of each header, and of each key with all of its value."""
+        lines: dict[Location, int] = {}
+        number, last = 1, 0
+        for location, start, _ in self.statements:
+            number, last = number + self._text.count("\n", last, start), start
+            for depth in range(1, len(location) + 1):
+                lines.setdefault(location[:depth], number)
+        return lines
+
     def put(self, location: Location, value: str) -> None:
         """Give a key or an item of a list a value, as TOML."""
         if location in self._values:
@@ -89,7 +97,7 @@ class TomlText:
             head = text[start:at]
             if text[at] == "[":
                 header = _found(_HEADER, text, at)
-                table, at = table_opened(tomllib.loads(header[0]), counts), header.end()
+                table, at = _opened(tomllib.loads(header[0]), counts), header.end()
             else:
                 names, at = self._pair(table, at)
             at = _found(_LINE, text, at).end()
@@ -135,6 +143,21 @@ class TomlText:
 
     def _past_space(self, at: int) -> int:
         return _found(_SPACE, self._text, at).end()
+
+
+def _opened(header: dict[str, Any], counts: Counter[Location]) -> Location:
+    """The table that a header opens; `counts` has how many tables each [[array]] has so far."""
+    location: Location = ()
+    while header:
+        ((key, content),) = header.items()
+        location += (key,)
+        if isinstance(content, list):
+            counts[location] += 1
+            content = content[0]
+        if counts[location]:
+            location += (counts[location] - 1,)
+        header = content
+    return location
 
 
 def _found(pattern: re.Pattern[str], text: str, at: int) -> re.Match[str]:

@@ -1,18 +1,18 @@
-"""The template of a file: every table and field, with what it is, what it must be, and its default."""
+"""What a file may have: its JSON schema, and a template with every table and field."""
 
 from __future__ import annotations
 
 import json
 import re
 import textwrap
-from collections.abc import Iterator, Sequence
-from typing import Any, Final, get_args, get_origin
+from collections.abc import Iterator
+from typing import Any, Final, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
+from pydantic.json_schema import GenerateJsonSchema
 
-from coupling.case.mistakes import RULES, one_of
-from coupling.case.table import WRONG, KeyedTable, Table, tables_in
-from coupling.case.values import parts_of
+from coupling.case.table import RULES, Table, expected_of, tables_in
+from coupling.case.values import marks_of, parts_of
 from coupling.case.writing.text import written
 
 HEAD: Final = """\
@@ -21,6 +21,25 @@ HEAD: Final = """\
 """
 WIDTH: Final = 110
 _BOUNDS: Final = {"gt": "greater_than", "ge": "greater_than_equal", "lt": "less_than", "le": "less_than_equal"}
+
+
+class _Schema(GenerateJsonSchema):
+    """Leaves out defaults, which Python has in SI units, and null, which TOML does not have."""
+
+    def default_schema(self, schema: Any) -> dict[str, Any]:
+        return self.generate_inner(schema["schema"])
+
+    def nullable_schema(self, schema: Any) -> dict[str, Any]:
+        return self.generate_inner(schema["schema"])
+
+
+def json_schema(model: type[Table], title: str) -> dict[str, Any]:
+    """The schema of a file whose tables are the fields of a model; descriptions are the texts below the fields.
+
+    Units and what depends on other fields are left to `active-surface check`.
+    """
+    schema = model.model_json_schema(schema_generator=_Schema)
+    return {"$schema": GenerateJsonSchema.schema_dialect} | schema | {"title": title}
 
 
 def template(model: type[Table]) -> str:
@@ -38,7 +57,7 @@ class _Template:
 
     def blocks(self) -> Iterator[str]:
         for key, field in self._model.model_fields.items():
-            first, *others = [table for table in tables_in(field.annotation) if table.model_config["extra"] == "forbid"]
+            first, *others = tables_in(field.annotation)
             mark = "" if field.is_required() else "#"
             lines = [*_comment(field.description), mark + _header(key, field), *self._fields(first, mark)]
             for other in others:
@@ -55,11 +74,11 @@ class _Template:
         """
         needed, known = _needed(table), beside.model_fields if beside else {}
         for key, field in sorted(table.model_fields.items(), key=lambda one: not _names(one[1])):
-            told = key in known and known[key].description == field.description and not _names(field)
-            if told or (short and key not in needed) or _tables_only(field):
+            stands = key in known and known[key].description == field.description and not _names(field)
+            if stands or (short and key not in needed) or _tables_only(field):
                 continue
-            how = "Required" if key in needed else _without(field)
-            yield from _comment(f"{field.description} {how}: {_wanted(field)}.")
+            default = f"Optional, by default {_value(field)}" if _has_default(field) else "Optional"
+            yield from _comment(f"{field.description} {'Required' if key in needed else default}: {_wanted(field)}.")
             yield f"{mark if key in needed else '#'}{key} = {_value(field)}"
 
     def _inner(self, name: str, table: type[Table], short: bool = False) -> Iterator[str]:
@@ -76,13 +95,16 @@ class _Template:
 
 def _needed(table: type[Table]) -> set[str]:
     """The fields that must be given, and the first choice where one of several must."""
-    needed = {key: WRONG for key, field in table.model_fields.items() if field.is_required() or _names(field)}
-    while issubclass(table, KeyedTable):
-        missing = [key for key, message in table.contradictions(needed) if message.startswith("is missing")]
-        if not missing:
-            break
-        needed |= dict.fromkeys(missing, WRONG)
-    return set(needed)
+    needed = {key for key, field in table.model_fields.items() if field.is_required() or _names(field)}
+    while missing := [str(at) for at, message in _contradictions(table, needed) if message.startswith("is missing")]:
+        needed |= {*missing}
+    return needed
+
+
+def _contradictions(table: type[Table], keys: set[str]) -> list[tuple[Any, str]]:
+    """What is wrong where only some keys are given, each with its example or default."""
+    fields = table.model_fields
+    return list(table.contradictions({key: json.loads(_value(fields[key])) for key in keys if key in fields}))
 
 
 def _names(field: FieldInfo) -> bool:
@@ -90,18 +112,8 @@ def _names(field: FieldInfo) -> bool:
     return (
         get_origin(field.annotation) is not None
         and len(get_args(field.annotation)) == 1
-        and not _marks(field.metadata, field.annotation)
+        and not marks_of(field.rebuild_annotation())
     )
-
-
-def _wanted_by(metadata: Sequence[Any], annotation: Any) -> list[str]:
-    """What marks want of a value, those of the whole before those of its parts."""
-    return [str(mark.expected) for mark in _marks(metadata, annotation) if hasattr(mark, "expected")]
-
-
-def _marks(metadata: Sequence[Any], annotation: Any) -> list[Any]:
-    """What marks an annotation and its parts."""
-    return [*metadata, *(mark for part in parts_of(annotation) for mark in getattr(part, "__metadata__", ()))]
 
 
 def _tables_only(field: FieldInfo) -> bool:
@@ -121,32 +133,19 @@ def _comment(text: str | None) -> list[str]:
     return [line.replace("\0", " ") for line in lines]
 
 
-def _without(field: FieldInfo) -> str:
-    """What becomes of a field that is left out."""
-    return f"Optional, by default {_value(field)}" if _has_default(field) else "Optional"
-
-
 def _has_default(field: FieldInfo) -> bool:
     return not field.is_required() and field.default is not None and field.default_factory is None
 
 
 def _wanted(field: FieldInfo) -> str:
     """What a value must be, in words."""
-    kinds, marks = parts_of(field.annotation), _wanted_by(field.metadata, field.annotation)
-    item = next((get_args(kind)[0] for kind in kinds if get_origin(kind) is tuple and kind.__args__[-1] is ...), None)
-    of_items = item is not None and marks == _wanted_by([], item)
-    choices = next((get_args(kind) for kind in kinds if str(get_origin(kind)) == "typing.Literal"), ())
-    words = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
-    plain = next((word for kind, word in words.items() if kind in kinds), "a value")
-    word = marks[0] if marks else one_of(choices) if choices else plain
-    word = f"a list, each item {word}" if of_items else word
     bounds = [
         RULES[rule].format(**{name: bound})
         for name, rule in _BOUNDS.items()
         for mark in field.metadata
         if (bound := getattr(mark, name, None)) is not None
     ]
-    return ", ".join([word, *bounds])
+    return ", ".join([expected_of(field), *bounds])
 
 
 def _value(field: FieldInfo) -> str:
@@ -157,12 +156,7 @@ def _value(field: FieldInfo) -> str:
     if field.examples:
         example = field.examples[0]
         return written(example, annotation) if isinstance(example, dict) else json.dumps(example, ensure_ascii=False)
-    for mark in _marks(field.metadata, field.annotation):
-        if hasattr(mark, "example"):
-            return _example(mark)
-    kind = next(kind for kind in parts_of(annotation) if str(get_origin(kind)) == "typing.Literal")
-    return json.dumps(get_args(kind)[0])
-
-
-def _example(mark: Any) -> str:
-    return json.dumps(mark.example) if not mark.example.startswith("[") else str(mark.example)
+    for mark in marks_of(annotation):
+        if example := getattr(mark, "example", None):
+            return example if example.startswith("[") else json.dumps(example)
+    return json.dumps(get_args(next(kind for kind in parts_of(annotation) if get_origin(kind) is Literal))[0])

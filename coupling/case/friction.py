@@ -1,32 +1,40 @@
-"""The `[friction]` table of a case file: which law, and its parameters."""
+"""The `[friction]` table of a case file: which law, and its parameters or measured points."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal, Self
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal, Self
 
-from pydantic import (
-    Field,
-    ModelWrapValidatorHandler,
-    StrictFloat,
-    ValidationInfo,
-    model_validator,
+from pydantic import BeforeValidator, Discriminator, Field, StrictFloat, Tag
+
+from coupling.case.table import Contradictions, Faults, Table, named, tag
+from coupling.case.values import (
+    Expected,
+    FileBeside,
+    Force,
+    PositiveArea,
+    PositiveLength,
+    PositivePressure,
+    Quantity,
+    SurfaceEnergy,
+    by_line,
+    quoted,
+    read_columns,
+    unreadable,
 )
-
-from coupling.case.friction import points
-from coupling.case.mistakes import Location, Mistake
-from coupling.case.table import WRONG, Contradictions, KeyedTable, Table, validate_with
-from coupling.case.values import FileBeside, Force, PositiveArea, PositiveLength, PositivePressure, SurfaceEnergy
-from particle import PAPER_PLASTICITY_INDEX
+from particle import PAPER_PLASTICITY_INDEX, point_mistakes
 from particle import KogutEtsionInput as Default
+
+_SEVERAL: Final = Expected('a list of forces such as ["-1 uN", "0 N", "5 uN"]')
 
 
 def _plasticity_index(data: dict[str, Any]) -> float:
     return PAPER_PLASTICITY_INDEX if data.get("preset") == "paper" else Default.plasticity_index
 
 
-class KogutEtsionCase(KeyedTable):
+class KogutEtsionCase(Table):
     """Friction of rough surfaces with adhesion, after Kogut and Etsion, in m, m^2, Pa and J/m^2."""
 
     model: Literal["kogut-etsion"] = "kogut-etsion"
@@ -62,7 +70,7 @@ class KogutEtsionCase(KeyedTable):
                 "plasticity_index",
                 f'must not be given with preset = "paper", which sets it to {PAPER_PLASTICITY_INDEX}',
             )
-        if given.get("coefficients", "printed") not in ("printed", WRONG):
+        if given.get("coefficients", "printed") != "printed":
             only = f'which is for those coefficients only; got "{given["coefficients"]}"'
             yield "coefficients", f'must be "printed" with preset = "paper", {only}'
 
@@ -76,7 +84,7 @@ class ConstantCase(Table):
     """The largest friction force."""
 
 
-class CoulombCase(KeyedTable):
+class CoulombCase(Table):
     """Friction in proportion to the normal force and `adhesion`, in N; `static_coefficient` is for a part at rest."""
 
     model: Literal["coulomb"] = "coulomb"
@@ -90,13 +98,22 @@ class CoulombCase(KeyedTable):
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
-        sliding, static = given.get("coefficient"), given.get("static_coefficient")
-        if not isinstance(sliding, float) or not isinstance(static, float):
+        sliding, static = given["coefficient"], given.get("static_coefficient")
+        if static is None:
             return
         if static < sliding:
             yield "static_coefficient", f"must be at least coefficient, {sliding:g}; got {static:g}"
         elif sliding == 0:
             yield "static_coefficient", f"must not be given with coefficient = 0; got {static:g}"
+
+
+def _several(value: object) -> object:
+    if not isinstance(value, (list, tuple)):
+        raise ValueError(f"must be {_SEVERAL.expected}; got {quoted(value)}")
+    return value
+
+
+Forces = Annotated[tuple[Force, ...], BeforeValidator(_several), _SEVERAL]
 
 
 class TableCase(Table):
@@ -107,22 +124,48 @@ class TableCase(Table):
 
     model: Literal["table"] = "table"
     """The law: as measured at points."""
-    loads: points.Forces | None = Field(default=None, examples=[["-1 uN", "0 uN", "2 uN", "5 uN"]])
+    loads: Forces | None = Field(default=None, examples=[["-1 uN", "0 uN", "2 uN", "5 uN"]])
     """Net loads, increasing; the first is minus the pull-off force."""
-    limits: points.Forces | None = Field(default=None, examples=[["4 nN", "18 nN", "35 nN", "52 nN"]])
+    limits: Forces | None = Field(default=None, examples=[["4 nN", "18 nN", "35 nN", "52 nN"]])
     """The largest friction force at each load; it does not fall."""
     static_ratio: StrictFloat = Field(default=1.0, ge=1, le=1e6)
     """The limit at rest over that of sliding."""
     file: FileBeside | None = Field(default=None, examples=["friction.csv"])
     """A CSV file with a column of each, in place of the two lists, beside the case file."""
 
-    @model_validator(mode="wrap")
     @classmethod
-    def _check_points(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
-        def mistakes(reported: set[Location]) -> Iterator[Mistake]:
-            return points.mistakes(data, info.context)
+    def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:
+        if "file" in given:
+            for name in {"loads", "limits"} & given.keys():
+                yield name, "must not be given with a file, which has the points"
+        elif "loads" not in given:
+            yield "loads", f'is missing; it must be {_SEVERAL.expected}, or have file = "friction.csv" in its place'
+        elif "limits" not in given:
+            yield "limits", "is missing; it must be as many forces as the loads"
+        else:
+            for name, point, message in point_mistakes(given["loads"], given["limits"]):
+                yield name if point is None else (name, point), message
 
-        return validate_with(cls, handler, data, mistakes)
+    def with_points(self) -> Self:
+        """The law with the points of its file, if it has one; raises Faults with what is wrong there, by lines."""
+        if self.file is None:
+            return self
+        path, force = Path(self.file), Quantity("N", "2 uN")
+        try:
+            known = {"load": force, "limit": force}
+            read = read_columns(path, known, [["load"], ["limit"]], "load [uN], limit [nN]", exact=True)
+            wrong = [f"in {path.name}: {message}" for message in read.mistakes]
+        except (OSError, ValueError) as error:
+            wrong = [unreadable(path.name, error)]
+        if not wrong:
+            loads, limits = read.columns["load"], read.columns["limit"]
+            faults = list(point_mistakes(loads, limits))
+            wrong = [f"in {path.name}: has too few points; {one} {text}" for one, at, text in faults if at is None]
+            lined = [(read.lines[at], f"{one[:-1]} {text}") for one, at, text in faults if at is not None]
+            wrong = wrong or [f"in {path.name}: {message}" for message in by_line(lined)]
+        if wrong:
+            raise Faults((("friction", "file"), message) for message in wrong)
+        return self.model_copy(update={"loads": loads, "limits": limits, "file": None})
 
 
 def has_known_law(friction: FrictionCase) -> bool:
@@ -133,5 +176,19 @@ def has_known_law(friction: FrictionCase) -> bool:
     return friction == KogutEtsionCase(preset=friction.preset).model_copy(update={"plasticity_index": index})
 
 
+_LAWS: Final = {"kogut-etsion": KogutEtsionCase, "constant": ConstantCase, "coulomb": CoulombCase, "table": TableCase}
+
+
+def _law(friction: Any) -> str:
+    return tag(friction["model"] if isinstance(friction, Mapping) else getattr(friction, "model", "constant"))
+
+
 FrictionCase = KogutEtsionCase | ConstantCase | CoulombCase | TableCase
-AnyFriction = Annotated[FrictionCase, Field(discriminator="model")]
+AnyFriction = Annotated[
+    Annotated[KogutEtsionCase, Tag(tag("kogut-etsion"))]
+    | Annotated[ConstantCase, Tag(tag("constant"))]
+    | Annotated[CoulombCase, Tag(tag("coulomb"))]
+    | Annotated[TableCase, Tag(tag("table"))],
+    Discriminator(_law),
+    BeforeValidator(named("model", _LAWS)),
+]

@@ -1,0 +1,225 @@
+"""Fields of a case by their paths, such as `actuators.*.stroke`, and cases with other values in them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, NamedTuple, get_args, get_origin
+
+from pydantic import TypeAdapter, ValidationError
+
+from coupling.case.actuators import LatticeCase
+from coupling.case.table import Location, Table, location_text, mistakes_of, tables_in
+from coupling.case.tables import CaseTables
+from coupling.case.values import UNITS_REQUIRED, Directed, marks_of, of_kind, parts_of, quantity_of, quoted
+from coupling.suggestion import near
+
+if TYPE_CHECKING:
+    from coupling.case.case import Case
+
+Value = float | int | str
+
+ALL: Final = "*"
+ONE_RUN: Final = ("scheme", "frames", "time_step")
+"""Keys of [run] that say nothing to a sweep: it locates events, and writes no frames."""
+KINDS: Final = ("model", "shape")  # say which table it is, also where Python's class does
+FIXED: Final = {"plate.mesh": "names a file", "plate.motion": "names a file", "friction.file": "names a file"} | (
+    dict.fromkeys(("plate.shape", "friction.model"), "selects which other keys exist")
+)
+"""Fields that cannot be varied, and why."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field by its path, such as `actuators.*.stroke`; indices count from 0, and * stands for all of them."""
+
+    path: str
+    locations: tuple[Location, ...]  # of each that takes the value
+    unit: str  # in SI; "1" of a plain number, "" of a text
+    kind: Literal["number", "whole", "text"]
+    reader: TypeAdapter[Any]
+    base: Value | None = None  # what the case has there; None: nothing, no single value, or not the same everywhere
+
+    def read(self, value: object, in_si: bool = False) -> Value:
+        """A value as a study has it, in SI units; ValueError, saying what is wrong with it.
+
+        in_si: whether numbers without a unit are in SI units, not wrong.
+        """
+        try:
+            read: Any = self.reader.validate_python(value, context=None if in_si else UNITS_REQUIRED)
+        except ValidationError as error:
+            raise ValueError("; ".join(message for _, message in mistakes_of(error, CaseTables))) from None
+        if self.kind == "text" and isinstance(value, str):
+            return value  # also where it is read as an expression
+        if isinstance(read, bool):
+            return str(read).lower()
+        types = {"number": (int, float), "whole": (int,), "text": (str,)}[self.kind]
+        if not isinstance(read, types):
+            name = {"number": "number", "whole": "whole number", "text": "text"}[self.kind]
+            raise ValueError(f"must be one {name}; got {quoted(value)}")
+        return float(read) if self.kind == "number" else read
+
+
+class _End(NamedTuple):
+    """Where a path leads to: what is there, and the annotation of its field, marks included."""
+
+    location: Location
+    value: Any
+    annotation: Any
+
+
+def find_field(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Field:
+    """The field of a case at a path; ValueError, which says what there is, when there is none.
+
+    lattice: the [lattice] of the case's file, whose actuators the case has by now.
+    """
+    if "[" in path:
+        dotted = re.sub(r"\[([\d*]+)\]", r".\1", path)
+        raise ValueError(f"must be a field of the case; got {path}; write {dotted}")
+    if path.startswith("run.") and path[4:] in ONE_RUN:
+        raise ValueError(f"must be a field that changes a path; got {path}, which a sweep does not use")
+    if path in FIXED:
+        raise ValueError(f"cannot be varied: {path} {FIXED[path]}")
+    ends = list(_ends(case, lattice, path))
+    kind, annotation = _kind(ends[0].annotation), ends[0].annotation
+    if kind is None and type(ends[0].value) in (str, float):  # one support of several, or one damping ratio
+        kind = "text" if isinstance(ends[0].value, str) else "number"
+    if kind is None:
+        raise ValueError(f"must be a single value; got {path}, which is a list or table; name one in it")
+    quantity = quantity_of(annotation, lists=_kind(annotation) is not None)
+    unit = quantity.unit if quantity else "" if kind == "text" else "1"
+    first = ends[0].value
+    same = all(end.value == first for end in ends) and isinstance(first, (int, float, str))
+    base = None if not same else str(first).lower() if isinstance(first, bool) else first
+    base = float(base) if kind == "number" and base is not None else base
+    return Field(path, tuple(end.location for end in ends), unit, kind, _reader(annotation), base)
+
+
+@cache
+def _reader(annotation: Any) -> TypeAdapter[Any]:
+    return TypeAdapter(annotation)
+
+
+def locations_of(case: Case, lattice: Mapping[str, Any] | None, path: str) -> list[Location]:
+    """Where the values are that a path stands for, single ones, lists or tables; raises as `find_field` does."""
+    return [end.location for end in _ends(case, lattice, path)]
+
+
+def _ends(case: Case, lattice: Mapping[str, Any] | None, path: str) -> Iterator[_End]:
+    """Yield where a path leads to."""
+    first, *rest = path.split(".")
+    if first not in CaseTables.model_fields:
+        inner = _inner(first, case)
+        meant = f"did you mean {' or '.join(inner)}?" if inner else _known(first, CaseTables.model_fields)
+        raise ValueError(f"must be a field of the case; the case has no {first or quoted(first)}; {meant}")
+    value = getattr(case, first)
+    if first == "lattice":
+        if not lattice:
+            raise ValueError("must be a field of the case; it has no [lattice]")
+        value = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
+    yield from _below(_End((first,), value, CaseTables.model_fields[first].rebuild_annotation()), rest)
+
+
+def _below(end: _End, keys: list[str]) -> Iterator[_End]:
+    """Yield where keys lead to from a value."""
+    if not keys:
+        yield end
+        return
+    key, *rest = keys
+    name, value = location_text(end.location), end.value
+    if isinstance(value, Table | dict):
+        fields: Mapping[str, Any] = value if isinstance(value, dict) else type(value).model_fields
+        if key not in fields:
+            raise ValueError(f"must be a field of the case; {name} has no {key or quoted(key)}; {_known(key, fields)}")
+        if isinstance(value, dict):
+            inner = _End((*end.location, key), value[key], get_args(of_kind(end.annotation, dict))[1])
+        else:
+            inner = _End((*end.location, key), getattr(value, key), fields[key].rebuild_annotation())
+        yield from _below(inner, rest)
+        return
+    if not isinstance(value, tuple) or not value:
+        has = "is not given" if value is None else "is empty" if value == () else "is a single value"
+        raise ValueError(f"must be a field of the case; its {name} {has}")
+    if key != ALL and not (key.isdecimal() and int(key) < len(value)):
+        counted = f"are counted from 0 to {len(value) - 1}, * for all"
+        raise ValueError(f"must be a field of the case; its {name} {counted}; got {key}")
+    types = get_args(of_kind(end.annotation, tuple))
+    for index in range(len(value)) if key == ALL else [int(key)]:
+        item = types[0] if types[-1:] == (...,) else types[index]
+        # A mark of the whole holds for items without their own, as for the accelerations along three axes.
+        marked = quantity_of(end.annotation)
+        if marked and not quantity_of(item) and not tables_in(item):
+            item = Annotated[item, marked]
+        yield from _below(_End((*end.location, index), value[index], item), rest)
+
+
+def _inner(key: str, case: Case) -> list[str]:
+    """The paths of a field of this name in the tables of a case."""
+    paths = []
+    for name in CaseTables.model_fields:
+        value = getattr(case, name)
+        table = value[0] if isinstance(value, tuple) and value else value
+        if isinstance(table, Table) and key in type(table).model_fields:
+            paths.append(f"{name}.{key}" if table is value else f"{name}.*.{key}")
+    return paths
+
+
+def _known(key: str, known: Mapping[str, Any]) -> str:
+    meant = near(key, known)
+    return f"did you mean {meant}?" if meant else f"it has {', '.join(known)}"
+
+
+def _kind(annotation: Any) -> Literal["number", "whole", "text"] | None:
+    """What a value is; None where it is several."""
+    parts = parts_of(annotation)
+    if any(isinstance(mark, Directed) for mark in marks_of(annotation)):
+        return "number"
+    if tables_in(annotation) or any(get_origin(part) in (tuple, dict) for part in parts):
+        return None
+    return "number" if float in parts else "whole" if int in parts else "text"
+
+
+def plain_case(case: Case) -> dict[str, Any]:
+    """The tables of a case as dicts of SI values."""
+    return {key: _plain(getattr(case, key)) for key in CaseTables.model_fields if getattr(case, key) is not None}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(map(_plain, value))
+    return {key: _plain(item) for key, item in given_in(value).items()} if isinstance(value, Table) else value
+
+
+def given_in(value: Any) -> Any:
+    """A table as a dict of what was given in it, and all else as it is."""
+    if not isinstance(value, Table):
+        return value
+    fields = type(value).model_fields
+    return {
+        key: item
+        for key in fields
+        if (item := getattr(value, key)) is not None
+        and (key in value.model_fields_set or key in KINDS or fields[key].default is None or isinstance(item, tuple))
+    }
+
+
+def lattice_of(case: Case) -> tuple[dict[str, Any] | None, int]:
+    """The [lattice] in the text of a case, and how many actuators are given beside it one by one."""
+    written = tomllib.loads(case.source) if case.source else {}
+    # Beside a lattice that is written none need be, and those of the case are the lattice's.
+    return written.get("lattice"), len(written.get("actuators", () if "lattice" in written else case.actuators))
+
+
+def put_value(value: Any, location: Location, new: Any) -> Any:
+    """The same tables with another value at a location."""
+    if not location:
+        return new
+    key, *rest = location
+    if isinstance(value, (tuple, list)):
+        index = int(key)
+        return (*value[:index], put_value(value[index], tuple(rest), new), *value[index + 1 :])
+    table = given_in(value)
+    return {**table, key: put_value(table.get(key), tuple(rest), new)}
