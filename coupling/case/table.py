@@ -9,7 +9,15 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, Self, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, Tag, ValidationError, ValidationInfo, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    ModelWrapValidatorHandler,
+    Tag,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 
 from coupling.case.values import marks_of, parts_of, quoted
@@ -88,15 +96,19 @@ class Table(BaseModel, metaclass=_Refusing):
         """
         yield from ()
 
-    @model_validator(mode="after")
-    def _consistent(self, info: ValidationInfo) -> Self:
+    @model_validator(mode="wrap")
+    @classmethod
+    def _consistent(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+        self = handler(data)
+        if self is data:  # a table already, which is right
+            return self
         # In Python a default may be stated, as in the dump of a case that is made again.
         given = {
             key: value
             for key in self.model_fields_set
             if (value := getattr(self, key)) is not None and (info.context or value != self._default(key))
         }
-        found = self.contradictions(given)
+        found = cls.contradictions(given)
         if wrong := [((at,) if isinstance(at, str) else at, message) for at, message in found]:
             raise Faults(wrong)
         return self
