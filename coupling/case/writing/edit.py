@@ -7,7 +7,7 @@ import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from coupling.case.actuators import ActuatorCase, LatticeCase, outside
 from coupling.case.case import Case, read_case
@@ -17,12 +17,10 @@ from coupling.case.table import Location, Table
 from coupling.case.toml_file import CaseError
 from coupling.case.toml_text import TomlText
 from coupling.case.values import LONGEST
-from coupling.case.writing.text import block, case_text, commented, items_of, write_case, written
+from coupling.case.writing.text import FILES, block, case_text, commented, items_of, write_case, written
 from coupling.files import whole_file
 
 Actuators = tuple[ActuatorCase, ...]
-FILES: Final = (("plate", "mesh"), ("plate", "motion"), ("friction", "file"))
-"""Fields that may name a file, which is counted from the case file's folder."""
 
 
 class _Rewritten(Exception):

@@ -21,7 +21,7 @@ from coupling.files import whole_file
 PREFIXED: Final = {"m": ("um", 6), "s": ("ms", 3), "N": ("uN", 6), "Pa": ("GPa", -9)}
 """What is written in place of an SI unit, and how many powers of ten smaller it is."""
 SMALLEST, LARGEST = Decimal("1e-4"), Decimal("1e6")  # numbers that are written without a power of ten
-FILES: Final = (("plate", "mesh"), ("plate", "motion"))
+FILES: Final = (("plate", "mesh"), ("plate", "motion"), ("friction", "file"))
 """Fields that may name a file, which is counted from the case file's folder."""
 
 
