@@ -114,7 +114,7 @@ def kind_of(file: Path, otherwise: str = "case") -> str:
     """Which of the KINDS of files it is, as far as its tables show it; CaseError where it has none."""
     from coupling.case import parse
 
-    tables = parse(file, lenient=True).tables
+    tables = parse(file).tables
     found = {TABLES[table] for table in tables if table in TABLES}
     meant = {TABLES[table] for one in tables if (table := near(one, TABLES))}
     return next((kind for kind in KINDS if kind in (found or meant)), otherwise)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Self
 from pydantic import ValidationError, model_validator
 
 from common import draw, notebook_html
+from coupling.case.actuators import LatticeCase
 from coupling.case.checks import build
 from coupling.case.fields import given_in, lattice_of, locations_of, put_value
 from coupling.case.friction import KogutEtsionCase
@@ -75,7 +76,8 @@ class Case(CaseTables):
         if any(path.split(".")[0] == "lattice" for path in changes):
             lattice, alone = lattice_of(self)
         if lattice:
-            tables |= {"lattice": lattice, "actuators": self.actuators[:alone]}
+            read = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
+            tables |= {"lattice": read, "actuators": self.actuators[:alone]}
         problems: list[tuple[str, str]] = []
         for path, value in changes.items():
             try:

@@ -51,7 +51,7 @@ class Field:
         try:
             read: Any = self.reader.validate_python(value, context=None if in_si else UNITS_REQUIRED)
         except ValidationError as error:
-            raise ValueError("; ".join(message for _, message in mistakes_of(error, CaseTables))) from None
+            raise ValueError("; ".join(message for _, message in mistakes_of(error, CaseTables, value))) from None
         if self.kind == "text" and isinstance(value, str):
             return value  # also where it is read as an expression
         if isinstance(read, bool):

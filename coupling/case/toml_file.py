@@ -17,6 +17,7 @@ from coupling.files import MAX_TEXT, contents, control_in, why
 from coupling.suggestion import near_file
 
 MAX_NAME: Final = 200  # bytes, so that there is room for the endings of results
+_HDF5: Final = b"\x89HDF"
 MAX_DEPTH: Final = 20  # tables and lists inside each other
 
 
@@ -71,8 +72,9 @@ def parse(path: str | os.PathLike[str]) -> TomlFile:
     line: int | None = None
     try:
         data = contents(path, MAX_TEXT)
-        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\0" in data[:1000]:
-            raise CaseError(name, [Problem(None, "", "is not text in UTF-8, as a case, study or aim is")])
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE, _HDF5)) or b"\0" in data[:1000]:
+            shown = f"; `active-surface view {name}` shows a result" if data.startswith(_HDF5) else ""
+            raise CaseError(name, [Problem(None, "", f"is not text in UTF-8, as a case, study or aim is{shown}")])
         text = data.decode("utf-8-sig")
         if unfit := unfit_name(Path(path).stem):
             raise CaseError(name, [Problem(None, "", unfit)])
@@ -82,6 +84,8 @@ def parse(path: str | os.PathLike[str]) -> TomlFile:
     except FileNotFoundError as error:
         meant = near_file(Path(path))
         message = f"cannot be read: {why(error)}" + (f"; did you mean {meant}?" if meant else "")
+    except IsADirectoryError:
+        message = "is a folder; name a file in it"
     except OSError as error:
         message = f"cannot be read: {why(error)}"
     except UnicodeDecodeError as error:
@@ -93,12 +97,14 @@ def parse(path: str | os.PathLike[str]) -> TomlFile:
         reason, _, place = str(error).rpartition(" (at ")
         at = re.match(r"line (\d+)", place)
         line = int(at[1]) if at else text.rstrip().count("\n") + 1 if reason else None
-        message = f"is not valid TOML: {reason or error}" + _hint(text, line)
+        message = f"is not valid TOML: {reason or 'a number has too many digits'}" + _hint(text, line, reason)
     raise CaseError(name, [Problem(line, "", message)]) from None
 
 
-def _hint(text: str, line: int | None) -> str:
-    """What is most often wrong where a value is not valid: it has a unit, and no quotes."""
+def _hint(text: str, line: int | None, reason: str) -> str:
+    """What is most often wrong there: a table in single brackets, or a value with a unit and no quotes."""
+    if "twice" in reason and "Cannot declare" in reason:
+        return "; a table that comes again needs double brackets, as [[actuators]]"
     bare = re.search(r"=\s*([+-]?[\d.]+\s*[A-Za-z][\w/^*]*)\s*(?:#.*)?$", text.split("\n")[(line or 1) - 1])
     return f'; a value with a unit needs quotes: "{bare[1]}"' if bare else ""
 

@@ -44,11 +44,7 @@ def refused(*words: str) -> str:
         ("exmaples/transprot.toml", "examples/transport.toml"),
         ("examples/transport", "examples/transport.toml"),
         ("examples/transport.tmol", "examples/transport.toml"),
-        ("transport.toml", "examples/transport.toml"),
-        ("transport", "examples/transport.toml"),
-        ("moderate.toml", "examples/studies/moderate.toml"),
         ("examples/two_actuator.toml", "examples/two_actuators.toml"),
-        ("examples/moderate.toml", "examples/studies/moderate.toml"),
         ("examples/studies/moderat", "examples/studies/moderate.toml"),
         ("elsewhere/nothing.toml", None),
         ("zebra.toml", None),
@@ -63,35 +59,24 @@ def test_a_file_that_is_not_there_leads_to_the_one_that_is_meant(folder: Path, w
 
 
 OTHERS = [
-    ("first.plate.vtkhdf", b"\x89HDF\r\n\x1a\n", "`active-surface view first.plate.vtkhdf` shows it"),
-    ("first.surface.h5", b"\x89HDF\r\n\x1a\n", "is the moving surface of a run"),
-    ("first.h5", b"\x89HDF\r\n\x1a\n", "is an HDF5 file"),
-    ("first.toml", b"\x89HDF\r\n\x1a\n", "is an HDF5 file"),
-    ("sweep.nc", b"\x89HDF\r\n\x1a\n", "`active-surface view sweep.nc` shows a sweep"),
-    ("points.csv", b"load [uN], limit [nN]\n", 'a case names it, file = "points.csv" in [friction]'),
-    ("plate.msh", b"$MeshFormat\n", 'is a mesh; a case names it, mesh = "plate.msh" in [plate]'),
-    ("plate.geo", b"Point(1) = {0, 0};\n", "`gmsh -2 plate.geo` makes the mesh"),
-    ("first.png", b"\x89PNG", "is a picture"),
-    ("case.yaml", b"plate: disc\n", "is no TOML"),
-    ("empty.toml", b" \n\n", "is empty; `active-surface schema --template > empty.toml` writes a case"),
-    ("wide.toml", GOOD.encode("utf-16"), "is UTF-16 text; save it as UTF-8"),
+    ("first.plate.vtkhdf", b"\x89HDF\r\n\x1a\n", "; `active-surface view first.plate.vtkhdf` shows a result"),
+    ("points.csv", b"load [uN], limit [nN]\n", "is not valid TOML"),
+    ("wide.toml", GOOD.encode("utf-16"), "is not text in UTF-8, as a case, study or aim is"),
     ("latin.toml", "# 5 µm\n".encode("latin-1"), "is not UTF-8 text; got the byte 0xb5; save it as UTF-8"),
-    ("zipped.toml", b"PK\x03\x04\0\0", "is no text"),
+    ("zipped.toml", b"PK\x03\x04\0\0", "is not text"),
 ]
 
 
 @pytest.mark.parametrize("command", ["check", "run", "feasibility", "response"])
 def test_another_file_is_named_as_what_it_is(folder: Path, command: str) -> None:
-    for name, content, said in OTHERS if command == "check" else OTHERS[::5]:
+    for name, content, said in OTHERS if command == "check" else OTHERS[:1]:
         (folder / name).write_bytes(content)
         message = refused(command, name)
         assert message.startswith(f"{name}: 1 mistake\n") and said in message and len(message.splitlines()) == 2
 
 
-def test_a_folder_names_a_file_in_it(folder: Path) -> None:
-    (folder / "none").mkdir()
-    assert refused("run", "examples").endswith("is a folder; name a file in it, such as examples/one_actuator.toml\n")
-    assert refused("run", "none").endswith("is a folder\n")
+def test_a_folder_is_no_case(folder: Path) -> None:
+    assert refused("run", "examples").endswith("is a folder; name a file in it\n")
 
 
 def test_a_byte_order_mark_and_tabs_are_no_mistake(folder: Path) -> None:
@@ -105,7 +90,7 @@ def test_a_byte_order_mark_and_tabs_are_no_mistake(folder: Path) -> None:
         (["examples/transport.toml"], "is a case; write active-surface run examples/transport.toml"),
         (["examples/studies/starts.toml"], "is a study; write active-surface sweep examples/studies/starts.toml"),
         (["examples/aims/to_target.toml"], "is an aim; write active-surface aim examples/aims/to_target.toml"),
-        (["examples"], "is a folder; name a file in it, such as examples/one_actuator.toml"),
+        (["examples"], "is a folder; name a file in it"),
         (["run", "examples/studies/starts.toml"], "a study; write active-surface sweep examples/studies/starts.toml"),
         (["run", "examples/aims/to_target.toml"], "an aim; write active-surface aim examples/aims/to_target.toml"),
         (["sweep", "examples/transport.toml"], "a case; write active-surface run examples/transport.toml"),

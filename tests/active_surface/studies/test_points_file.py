@@ -70,7 +70,7 @@ def test_whole_numbers_and_truths_may_be_written_as_tables_have_them(tmp_path):
         (NAMED, "frequncy\n1\n", ["axes[0].field must be", 'column "frequncy" is not known; did you mean frequency?']),
         (NAMED, ",frequency\n0,1\n", ["line 1 has a column without a name"]),
         (NAMED, "frequency,frequency\n1,2\n", ['line 1 has two columns "frequency"']),
-        (STUDY, "friction.model\ncoulomb\n", ['column "friction.model" must be a field that can be varied']),
+        (STUDY, "friction.model\ncoulomb\n", ['column "friction.model" cannot be varied']),
         (STUDY, "part.mass [um]\n1\n", ['line 2 part.mass must be a mass such as "2e-9 kg"; got "1 um", a length']),
         (STUDY, "part.mass [kg]\n1 kg\n", ["line 2 part.mass must be a number, as the column is in kg"]),
         (
@@ -102,7 +102,8 @@ def test_all_mistakes_of_a_file_are_reported_with_their_lines(tmp_path, text, ro
 
 
 def test_a_file_of_points_leaves_no_room_for_other_ways_to_choose_them(tmp_path):
-    found = mistakes(tmp_path, 'sampling = "sobol"\n' + NAMED + 'values = ["1 Hz"]\n', "frequency\n100\n")
+    found = mistakes(tmp_path, 'sampling = "sobol"\n' + NAMED, "frequency\n100\n")
+    found += mistakes(tmp_path, NAMED + 'values = ["1 Hz"]\n', "frequency\n100\n")
     assert 'study.sampling must be "list" or left out with a file of points; got "sobol"' in found
     assert "axes[0].values must not be given with a file of points, which has the values" in found
     assert mistakes(tmp_path, 'points = "points.txt"\n' + LISTED[LISTED.index("[[") :], "")[0].startswith(

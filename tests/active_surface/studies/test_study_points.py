@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pydantic import ValidationError
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from active_surface.studies import read_study
 from active_surface.studies.axis import spaced
 from active_surface.studies.stored import slabs
 from active_surface.studies.variants import Variants
-from coupling import read_case
+from coupling import InputError, read_case
 
 TWO = """\
 [[axes]]
@@ -148,7 +147,7 @@ def test_a_contradiction_at_one_point_is_found_there(tmp_path):
     variants = Variants(study.case, study.points.axes)
     for values in study.points.values(range(4)):
         if values == (0.3, 0.2):
-            with pytest.raises(ValidationError, match="must be at least coefficient"):
+            with pytest.raises(InputError, match="must be at least coefficient"):
                 variants.at(values)
         else:
             assert variants.at(values)[0].friction.coefficient == values[0]

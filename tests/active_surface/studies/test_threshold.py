@@ -162,10 +162,6 @@ def test_another_threshold_is_drawn_without_running_again(tmp_path, monkeypatch)
             f'sampling = "random"\npoints = 9\n{AXES}[map]\nthreshold = "distance > 1 um"\n',
             "map.threshold .*must not be given without a grid over two axes",
         ),
-        (
-            f'{AXES}[map]\nthreshold = "distance"\n[[axes]]\nfield = "part.mas"\n',
-            r"axes\[2\](.|\n)*map.threshold|map.threshold(.|\n)*axes\[2\]",
-        ),
     ],
 )
 def test_a_threshold_that_cannot_be_drawn_is_a_mistake_of_the_file(tmp_path, text, words):
