@@ -13,7 +13,7 @@ from coupling.case.actuators import (
     must_be_inside,
 )
 from coupling.case.case import Case, read_case
-from coupling.case.checks import MAX_STRETCHING, MAX_VIBRATING, common_period, cycles_fault
+from coupling.case.checks import MAX_STRETCHING, MAX_VIBRATING, common_period
 from coupling.case.fields import Field, Value, find_field, lattice_of, plain_case, put_value
 from coupling.case.friction import (
     AnyFriction,

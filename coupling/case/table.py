@@ -193,7 +193,7 @@ def _message(detail: Any, value: Any, root: type[BaseModel]) -> str:
     """What is wrong with a value, from one of pydantic's errors."""
     kind, location, limits = detail["type"], detail["loc"], detail.get("ctx", {})
     got = f"; got {quoted(value)}"
-    header = header_of(location, root) if root.__dict__.get("whole_file") or len(location) > 1 else ""
+    header = header_of(location, root)
     if kind == "value_error":
         return str(limits["error"])
     if kind == "missing":
@@ -218,9 +218,9 @@ def _instead(location: tuple[Any, ...], root: type[BaseModel]) -> str:
     if meant := near(key, owner.model_fields):
         return f"did you mean {meant}?"
     for name, field in root.model_fields.items():
-        if any(key in table.model_fields for table in tables_in(field.annotation)):
+        if name != location[0] and any(key in table.model_fields for table in tables_in(field.annotation)):
             return f"it belongs to {header_of((name,), root)}"
-    if owner is root and tables_in(next(iter(root.model_fields.values())).annotation):
+    if owner is root and len(location) == 1 and getattr(root, "whole_file", False):
         return "the file has " + ", ".join(header_of((name,), root) for name in root.model_fields)
     return f"{header_of(location[:-1], root)} has {', '.join(owner.model_fields)}".lstrip()
 

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from coupling.case.actuators import SAME_PLACE, ActuatorCase, Place, actuators_of, gaps, half_size, must_be_inside
-from coupling.case.checks.cycles import cycles_fault
-from coupling.case.checks.theories import check_theory
+from coupling.case.checks.theories import check_theory, cycles_fault
 from coupling.case.friction import TableCase
 from coupling.case.plates import PLATFORM, PlateCase, PlatformCase, ShapeCase
 from coupling.case.table import Faults, Location, Mistake, location_text

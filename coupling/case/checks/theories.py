@@ -1,16 +1,16 @@
-"""Check that a plate's theory goes with the actuators and the run."""
+"""Check that a plate's theory and the drives of a case go with the run."""
 
 from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from typing import Final
+from typing import Any, Final
 
 from coupling.case.actuators import ENDLESS, ActuatorCase
 from coupling.case.plates import INERTIA, VON_KARMAN, PlateCase
-from coupling.case.table import Location, Mistake
+from coupling.case.table import Location, Mistake, Table
 from coupling.case.tables import RunCase
 
 MAX_STRETCHING: Final = 200
@@ -18,7 +18,9 @@ MAX_STRETCHING: Final = 200
 MAX_VIBRATING: Final = 250
 """Actuators of a plate with inertia, under a pressure, on a foundation, or of a wafer under a tension."""
 STEADY: Final = 'start = "steady"'
-MAX_CYCLES: Final = 1000  # of one drive in the common period
+MAX_PERIODS: Final = 1000  # of one drive in the common period
+MAX_CYCLES: Final = 100_000  # of one drive: a part that slips all the while takes minutes and up to 3 GB
+MAX_TOGETHER: Final = 10_000_000  # of all drives
 ROUNDING: Final = 4 * sys.float_info.epsilon
 
 
@@ -57,12 +59,12 @@ def check_theory(plate: PlateCase, run: RunCase, made: Sequence[ActuatorCase], a
 
 
 def common_period(one: float | None, other: float) -> float:
-    """The shortest whole multiple of both periods [s], to rounding; inf: there is none of up to MAX_CYCLES of each."""
+    """The shortest whole multiple of both periods [s], to rounding; inf: there is none of up to MAX_PERIODS of each."""
     if one is None:
         return other
-    ratio = Fraction(one / other).limit_denominator(MAX_CYCLES)
+    ratio = Fraction(one / other).limit_denominator(MAX_PERIODS)
     cycles = float(ratio.numerator), float(ratio.denominator)
-    if min(cycles) < 1 or max(cycles) > MAX_CYCLES:
+    if min(cycles) < 1 or max(cycles) > MAX_PERIODS:
         return math.inf
     shared = cycles[1] * one
     return shared if abs(shared - cycles[0] * other) <= ROUNDING * shared else math.inf
@@ -99,3 +101,41 @@ def _endless(made: Sequence[ActuatorCase], alone: int) -> Iterator[Mistake]:
             yield _location(k, alone, "repeats"), f'must be "{ENDLESS}" {why}'
         if one.ramp > 0:
             yield _location(k, alone, "ramp"), f"must not be given {why}"
+
+
+def cycles_fault(plate: Table, actuators: Iterable[Any], duration: float) -> str:
+    """What is wrong with a duration [s] in which drives make more strokes than can be followed; "": nothing."""
+    motion = getattr(plate, "motion", None)
+    axes = [drive for _, drive in motion if drive is not None] if isinstance(motion, Table) else []
+    counts = [_cycles(drive, duration) for drive in (*actuators, *axes)]
+    for count, most, of in (
+        (max(counts, default=0.0), MAX_CYCLES, "each drive"),
+        (sum(counts), MAX_TOGETHER, "all drives together"),
+    ):
+        if count > most:
+            return f"must have at most {most} cycles, or points, of {of}; got {count:.3g} in {duration:g} s"
+    return ""
+
+
+def _cycles(drive: Any, duration: float) -> float:
+    """How many cycles, or points, a drive runs through in a time [s]."""
+    if drive.table:
+        return _in_passes([(drive.table[-1][0], len(drive.table))], drive.repeats, duration)
+    if drive.segments:
+        pieces = [(s.cycles * (1 / s.frequency if s.frequency else s.dwell), s.cycles) for s in drive.segments]
+        return _in_passes(pieces, drive.repeats, duration)
+    if drive.cycle == "up":
+        return 0.0
+    return min(duration * drive.frequency, math.inf if drive.cycles is None else drive.cycles)
+
+
+def _in_passes(pieces: list[tuple[float, int]], repeats: Any, duration: float) -> float:
+    """How many cycles there are in a time [s] of pieces, each some time with some cycles, that are repeated."""
+    total = sum(time for time, _ in pieces)
+    passes = min(math.inf if repeats == ENDLESS else repeats, duration / total if total > 0 else 1.0)
+    left = (passes - passes // 1) * total
+    count = passes // 1 * sum(cycles for _, cycles in pieces)
+    for time, cycles in pieces:
+        count += cycles * min(1.0, left / time) if time > 0 else 0.0
+        left = max(0.0, left - time)
+    return count
