@@ -193,7 +193,7 @@ def _message(detail: Any, value: Any, root: type[BaseModel]) -> str:
     """What is wrong with a value, from one of pydantic's errors."""
     kind, location, limits = detail["type"], detail["loc"], detail.get("ctx", {})
     got = f"; got {quoted(value)}"
-    header = header_of(location, root)
+    header = header_of(location, root) if getattr(root, "whole_file", False) or len(location) > 1 else ""
     if kind == "value_error":
         return str(limits["error"])
     if kind == "missing":
@@ -218,11 +218,16 @@ def _instead(location: tuple[Any, ...], root: type[BaseModel]) -> str:
     if meant := near(key, owner.model_fields):
         return f"did you mean {meant}?"
     for name, field in root.model_fields.items():
-        if name != location[0] and any(key in table.model_fields for table in tables_in(field.annotation)):
-            return f"it belongs to {header_of((name,), root)}"
-    if owner is root and len(location) == 1 and getattr(root, "whole_file", False):
-        return "the file has " + ", ".join(header_of((name,), root) for name in root.model_fields)
-    return f"{header_of(location[:-1], root)} has {', '.join(owner.model_fields)}".lstrip()
+        tables = tables_in(field.annotation)
+        if others := [table.model_fields for table in tables if key in table.model_fields]:
+            if owner not in tables:
+                return f"it belongs to {header_of((name,), root)}"
+            kinds = [(kind, one[kind]) for one in others for kind in ("shape", "model") if kind in one]
+            with_these = dict.fromkeys(f'{kind} = "{get_args(field.annotation)[0]}"' for kind, field in kinds)
+            return f"it goes with {' or '.join(with_these)}"
+    if owner is root and tables_in(next(iter(root.model_fields.values())).annotation):
+        return "the file has " + ", ".join(filter(None, (header_of((name,), root) for name in root.model_fields)))
+    return f"{header_of(location[:-1], root) or 'it'} has {', '.join(owner.model_fields)}"
 
 
 def _owner(location: tuple[Any, ...], root: type[BaseModel]) -> type[BaseModel]:
