@@ -97,14 +97,18 @@ def parse(path: str | os.PathLike[str]) -> TomlFile:
         reason, _, place = str(error).rpartition(" (at ")
         at = re.match(r"line (\d+)", place)
         line = int(at[1]) if at else text.rstrip().count("\n") + 1 if reason else None
-        message = f"is not valid TOML: {reason or 'a number has too many digits'}" + _hint(text, line, reason)
+        message = "is not valid TOML: " + _sentence(reason or str(error)) + _hint(text, line)
     raise CaseError(name, [Problem(line, "", message)]) from None
 
 
-def _hint(text: str, line: int | None, reason: str) -> str:
-    """What is most often wrong there: a table in single brackets, or a value with a unit and no quotes."""
-    if "twice" in reason and "Cannot declare" in reason:
-        return "; a table that comes again needs double brackets, as [[actuators]]"
+def _sentence(reason: str) -> str:
+    """What tomllib says, to follow a colon, with names of tables as they are written: [a.b] and not ('a', 'b')."""
+    named = re.sub(r"\('(.*?)',?\)", lambda found: "[" + found[1].replace("', '", ".") + "]", reason)
+    return named[:1].lower() + named[1:]
+
+
+def _hint(text: str, line: int | None) -> str:
+    """What is most often wrong where a value is not valid: it has a unit, and no quotes."""
     bare = re.search(r"=\s*([+-]?[\d.]+\s*[A-Za-z][\w/^*]*)\s*(?:#.*)?$", text.split("\n")[(line or 1) - 1])
     return f'; a value with a unit needs quotes: "{bare[1]}"' if bare else ""
 
