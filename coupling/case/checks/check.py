@@ -44,9 +44,9 @@ def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:
         try:
             mesh = _mesh_of(plate)
             made += actuators_of(tables.lattice, mesh) if tables.lattice else ()
-            mistakes += _places(tables, plate, mesh, made)
+            mistakes += (misplaced := list(_places(tables, plate, mesh, made)))
             mistakes += check_theory(plate, tables.run, made, len(tables.actuators))
-            if not may_move:
+            if not (may_move or misplaced):
                 mistakes += _held(plate, mesh, made)
         except Faults as error:
             mistakes += error.mistakes

@@ -49,9 +49,9 @@ class ShapeCase(PlateCase):
     def coarse_mesh(self) -> PlateMesh:
         width, area = self.measures
         if not area <= MAX_SLENDER * width**2:
-            times = f"it is {area / width**2:.4g} times as long as wide" if width > 0 else "it has no width"
-            raise ValueError(f"must be of a plate at most {MAX_SLENDER:g} times as long as wide; {times}")
-        return _coarse(type(self), (("shape", self.shape), *self._own().items()), width / 2)  # type: ignore[attr-defined]
+            raise ValueError(f"must be at most {MAX_SLENDER:g} times as long as wide; got {area / width**2:.4g} times")
+        own = ("shape", self.shape), *self._own().items()  # type: ignore[attr-defined]
+        return _coarse(type(self), own, width / 2 or 1.0)  # without a width the corners are wrong, which the mesh says
 
     @property
     def min_cell_size(self) -> float:
