@@ -62,8 +62,8 @@ SHARED: Final = ("cycle", "cycles", "ramp", "table", "segments", "repeats", "max
 
 
 def _apart(pitch: Any) -> Any:
-    if min(pitch if isinstance(pitch, tuple) else (pitch,)) <= 0:
-        raise ValueError(f"must be greater than 0; got {quoted(pitch)}")
+    if (least := min(pitch if isinstance(pitch, tuple) else (pitch,))) <= 0:
+        raise ValueError(f"must be greater than 0; got {length_text(least)}")
     return pitch
 
 
@@ -135,8 +135,8 @@ class LatticeCase(Driven):
             yield "pitch", 'must be one length with kind = "hexagonal", in which all neighbours are as far apart'
         count = given["rows"] * given["columns"]
         if count > MAX_PLACES:
-            longer = max(("rows", "columns"), key=given.__getitem__)
-            yield longer, f"must make at most {MAX_PLACES} actuators together with the other; got {count}"
+            shorter, longer = sorted(("rows", "columns"), key=given.__getitem__)
+            yield longer, f"must make at most {MAX_PLACES} actuators with {shorter} = {given[shorter]}; got {count}"
         for key in AMOUNTS.keys() & given.keys():
             if isinstance(given[key], float) and (rule := _broken_rule(key, given[key])):
                 yield key, f"must be {rule}; got {given[key]:g} {AMOUNTS[key].unit}"

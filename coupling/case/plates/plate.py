@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import Discriminator, Field, PlainValidator, StrictBool, StrictFloat, Tag, ValidationInfo, field_validator
 
-from coupling.case.table import Contradictions, Table, tag
+from coupling.case.table import Contradictions, Faults, Table, tag
 from coupling.case.values import (
     Angle,
     Density,
@@ -63,10 +63,17 @@ def _ratios(value: object, info: ValidationInfo) -> float | tuple[tuple[float, f
     pairs = value if isinstance(value, (list, tuple)) else ()
     if not pairs or not all(isinstance(one, (list, tuple)) and len(one) == 2 and _is_ratio(one[1]) for one in pairs):
         raise ValueError(f"must be {_RATIOS.expected}; got {quoted(value)}")
-    found = tuple((_FREQUENCY.validate(frequency, info), float(ratio)) for frequency, ratio in pairs)
+    found = tuple((_frequency(k, pair[0], info), float(pair[1])) for k, pair in enumerate(pairs))
     if any(high <= low for (low, _), (high, _) in zip(((0.0, 0.0), *found), found, strict=False)):
         raise ValueError(f"must have increasing, positive frequencies; got {quoted(value)}")
     return found
+
+
+def _frequency(k: int, value: object, info: ValidationInfo) -> float:
+    try:
+        return _FREQUENCY.validate(value, info)
+    except ValueError as error:
+        raise Faults([((k, 0), str(error))]) from None
 
 
 def _is_ratio(value: object) -> bool:

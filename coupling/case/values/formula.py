@@ -81,8 +81,10 @@ class Expression:
         try:
             value = self._evaluator.eval(self.source, self._tree)
             return value if isinstance(value, bool) else float(value)
-        except (ZeroDivisionError, OverflowError):
-            raise ValueError("divides by zero, or is too large") from None
+        except ZeroDivisionError:
+            raise ValueError("divides by zero") from None
+        except OverflowError:
+            raise ValueError("is too large") from None
         except RecursionError:
             raise ValueError("is nested too deeply") from None
         except (InvalidExpression, TypeError):

@@ -120,7 +120,7 @@ class Quantity:
             hint = f"; did you mean {meant}?" if meant else ""
             raise self.refusal(text, f', but there is no unit "{unit}"{hint}')
         if known != _root_of(self.unit):
-            si = next((si for si in DIMENSIONS if _root_of(si) == known), "")
+            si = unit if unit in DIMENSIONS else next((si for si in DIMENSIONS if _root_of(si) == known), "")
             raise self.refusal(text, f", {DIMENSIONS[si] if si else f'a quantity in {known:~}'}")
         return float(_registry().Quantity(Decimal(number), unit).m_as(self.unit))
 
