@@ -97,7 +97,7 @@ def parse(path: str | os.PathLike[str]) -> TomlFile:
         reason, _, place = str(error).rpartition(" (at ")
         at = re.match(r"line (\d+)", place)
         line = int(at[1]) if at else text.rstrip().count("\n") + 1 if reason else None
-        message = "is not valid TOML: " + _sentence(reason or str(error)) + _hint(text, line)
+        message = "is not valid TOML: " + _sentence(reason or "a number has too many digits") + _hint(text, line)
     raise CaseError(name, [Problem(line, "", message)]) from None
 
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from case_files import plate, python_case
+from case_files import answered_otherwise, plate, python_case
 from click.testing import CliRunner
-from mistakes import answered_otherwise
 from sweeps import DISC_PLATE, toml
 
 from active_surface.cli.program import main

@@ -2,225 +2,362 @@
 
 from __future__ import annotations
 
+import json
+import os
 import pickle
+import re
 import subprocess
 import sys
+import tomllib
+from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
 import pytest
-from case_files import ACTUATOR, DURATION, FRICTION, GOOD, PART, POISSON, RADIUS, STROKE, changed, problems, read
-from mistakes import answered_otherwise
+from case_files import (
+    GOOD,
+    JARGON,
+    REST,
+    TEXTS,
+    changed,
+    answered_otherwise,
+    plate,
+    problems,
+    python_case,
+    read,
+    text,
+)
+from click.testing import CliRunner
 
-from coupling.case import CaseError, Problem, read_case
+from active_surface.cli.program import main
+from coupling.case import (
+    ActuatorCase,
+    CaseError,
+    CaseTables,
+    CoulombCase,
+    InputError,
+    LatticeCase,
+    MeshCase,
+    PartCase,
+    Problem,
+    json_schema,
+    parse,
+    read_case,
+)
+from coupling.suggestion import near
+
+ROOT = Path(__file__).parents[3]
+BROKEN = sorted((ROOT / "tests/broken").glob("*.toml"))
+BEYOND_A_SCHEMA = {"contradictions", "formulas", "measured_points", "outside"}
+"""Of these it finds some mistakes at most: they depend on other fields, other files or the plate."""
 
 
-def test_five_mistakes_at_once(tmp_path: Path) -> None:
-    text = changed(
-        (RADIUS, 'raduis = "300 um"'),
-        (POISSON, "poisson_ratio = 0.5"),
-        (STROKE, 'stroke = "150 Hz"'),
-        ("cycles = 5", "cycles = 5.0"),
-        ("[run]\n" + DURATION, ""),
-    )
-    with pytest.raises(CaseError) as caught:
-        read(tmp_path, text)
-    assert str(caught.value) == (
-        f"{tmp_path}/test.toml: 5 mistakes\n"
+def test_each_mistake_is_named_with_its_line_and_nothing_else_is(tmp_path: Path) -> None:
+    table = Path(__file__).with_name("mistakes.txt").read_text()
+    assert answered_otherwise(table, partial(problems, tmp_path), **TEXTS) == []
+
+
+def test_the_message_is_word_for_word_as_written_beside_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And so is that in the documents; every line that is named has the field, and JSON has the same mistakes."""
+    page = (ROOT / "docs/messages.md").read_text()
+    assert len(BROKEN) == 12
+    for path in BROKEN:
+        monkeypatch.chdir(path.parent)
+        done = CliRunner().invoke(main, ["check", path.name])
+        said = path.with_suffix(".txt").read_text()
+        assert (done.exit_code, done.stdout, done.stderr) == (2, "", said)
+        assert said in page and f"(../tests/broken/{path.name})" in page
+        lines = path.read_text().splitlines()
+        for number, field in re.findall(r"(?m)^  line (\d+) +([\w.\[\]]+) (?:must|is not known)", said):
+            assert field.split(".")[-1].partition("[")[0] in lines[int(number) - 1]
+        done = CliRunner().invoke(main, ["check", path.name, "--json"])
+        assert (done.exit_code, done.stderr) == (2, "")
+        mistakes = json.loads(done.stdout)["mistakes"]
+        assert f"{len(mistakes)} mistake" in said
+        for mistake in mistakes:
+            assert f"{mistake['field']} {mistake['message']}".strip() in said and mistake["file"] == path.name
+            assert mistake["line"] is None or f"line {mistake['line']} " in said
+
+
+def test_the_schema_refuses_them_where_it_can() -> None:
+    checker = pytest.importorskip("jsonschema").Draft202012Validator(json_schema(CaseTables, "A case"))
+    for path in BROKEN:
+        with suppress(tomllib.TOMLDecodeError):
+            wrong = list(checker.iter_errors(tomllib.loads(path.read_text())))
+            assert wrong or path.stem in BEYOND_A_SCHEMA
+
+
+WRONG_KEYS = (
+    ('radius = "300 um"', 'raduis = "300 um"'),
+    ("poisson_ratio = 0.3", "poisson_ratio = 0.5"),
+    ('stroke = "150 um"', 'stroke = "150 Hz"\ndwell = "1 ms"\ncycle = "sine"'),
+    ("cycles = 5", "cycles = 5.0"),
+    ('[run]\nduration = "50 ms"', ""),
+)
+ROUNDS = [
+    (
+        WRONG_KEYS,
         "  the file  run is missing; it must be a table, written [run]\n"
         "  line 3    plate.raduis is not known; did you mean radius?\n"
         "  line 5    plate.poisson_ratio must be less than 0.5; got 0.5\n"
         '  line 10   actuators[0].stroke must be a length such as "150 um"; got "150 Hz", a frequency\n'
-        "  line 20   actuators[1].cycles must be a whole number; got 5.0"
+        "  line 22   actuators[1].cycles must be a whole number; got 5.0",
+    ),
+    # What depends on several keys of a table is said once each of these is right, whatever other tables have.
+    (
+        (*WRONG_KEYS[:2], ('stroke = "150 um"', 'stroke = "150 um"\ndwell = "1 ms"\ncycle = "sine"')),
+        "  line 3   plate.raduis is not known; did you mean radius?\n"
+        "  line 5   plate.poisson_ratio must be less than 0.5; got 0.5\n"
+        '  line 11  actuators[0].dwell must not be given with cycle = "sine"; it is the rest after each stroke of '
+        '"up-down"',
+    ),
+    # What depends on several tables is said once all of them are right.
+    (
+        (('"0.15 mm"', '"0.4 mm"'), ('["100 um", "100 um"]', '["0 um", "-1 mm"]'), ("[run]", '[run]\nstart = "steady"')),
+        "  line 14  actuators[1].position must be inside the rim; got a point 100 um beyond it\n"
+        '  line 20  actuators[1].cycles must not be given with start = "steady" in [run], which takes a drive without '
+        "end\n"
+        "  line 25  part.position must be inside the rim; got a point 700 um beyond it\n"
+        "  line 31  run.start must not be given without inertia = true in [plate]; only then do vibrations build up",
+    ),
+]
+
+
+@pytest.mark.parametrize(("changes", "said"), ROUNDS)
+def test_all_that_can_be_said_is_said_at_once(
+    tmp_path: Path, changes: tuple[tuple[str, str], ...], said: str
+) -> None:
+    with pytest.raises(CaseError) as caught:
+        read(tmp_path, changed(*changes))
+    count = said.count("\n") + 1
+    assert str(caught.value) == f"{tmp_path}/test.toml: {count} mistakes\n{said}"
+    assert "".join(f" {field} {message}" for _, field, message in map(parts, caught.value.problems)) == re.sub(
+        r"\n?  (the file|line \d+) +", " ", said
     )
-    assert caught.value.problems[3] == Problem(
-        10, "actuators[0].stroke", 'must be a length such as "150 um"; got "150 Hz", a frequency'
-    )
 
 
-ROOT = Path(__file__).parents[3]
-BROKEN = r"""
-stroke = "150 um" ->  => line 8  actuators[0].stroke is missing; it must be a length such as "150 um"
-shape = "disc" ->  => line 1  plate.shape is missing; it must be "disc", "rectangle", "annulus", "ellipse", "polygon" or
-poisson_ratio = 0.3 ->  => line 1  plate.poisson_ratio is missing; it must be a number
-position = ["100 um", "100 um"] ->  => two lengths, x and y, such as ["100 um", "100 um"]
-[part] -> [prat] => line 23  prat is not known; did you mean part?
-[plate] -> name = "x"\n[plate] => line 1  name is not known; a remark is a comment, which begins with #; write # x
-stroke = "150 um" ++ colour = 1 => line 11  actuators[0].colour is not known; [[actuators]] has position, 
-[plate] -> [[plate]] => line 1  plate must be a table, written [plate]; got a list of tables
-radius = "300 um" -> [plate.radius] => plate.radius must be a length such as "150 um"; got a table
-0.3 -> "0.3" => line 5  plate.poisson_ratio must be a number; got "0.3", in quotes
-0.3 -> true => plate.poisson_ratio must be a number; got true
-0.3 -> nan => plate.poisson_ratio must be a finite number; got nan
-0.3 -> -0.1 => plate.poisson_ratio must be at least 0; got -0.1
-cycles = 5 -> cycles = 0 => actuators[1].cycles must be at least 1; got 0
-cycles = 5 -> cycles = true => actuators[1].cycles must be a whole number; got true
-cycles = 5 ++ cycle = "up" => line 20  actuators[1].cycles must not be given with cycle = "up"
-cycles = 5 -> cycle = "down" => actuators[1].cycle must be "up-down", "up", "sine" or "cosine"; got "down"
-"disc" -> "square" => line 2  plate.shape must be "disc", "rectangle", "annulus", "ellipse", "polygon" or "platform"; go
-"300 Hz" -> "0 Hz" => actuators[0].frequency must be greater than 0; got "0 Hz"
-"1 ms" -> "-1 ms" => actuators[1].delay must be at least 0; got "-1 ms"
-"300 um" -> "-3 um" => plate.radius must be greater than 0; got "-3 um"
-radius = "300 um" ++ cell_size = "301 um" => plate.cell_size must not exceed half of the plate's smallest width, 300 um;
-+ tolerance = 0.1 => line 32  run.tolerance must be at most 0.01; got 0.1
-+ frames = 1 => run.frames must be at least 2; got 1
-["100 um", "100 um"] -> "100 um" => line 25  part.position must be two lengths, x and y, such as
-["100 um", "100 um"] -> ["1 um"] => such as ["100 um", "100 um"]; got ["1 um"]
-["100 um", "100 um"] -> ["1 um", "2 um", "3 um"] => got ["1 um", "2 um", "3 um"]
-["100 um", "100 um"] -> ["1 um", 2] => part.position[1] must be a length such as "150 um"; got 2, which has no unit
-"0.15 mm" -> "0.15 ms" => line 14  actuators[1].position[0] must be a length
-position = ["100 um", "100 um"] ++ velocity = 0 => part.velocity must be two velocities, x and y, such as ["0 m/s", "0 m
-["100 um", "100 um"] -> ["300 um", "0 um"] => part.position must be inside the rim; got a point on it
-"0.15 mm" -> "-0.3 mm" => line 14  actuators[1].position must be inside the rim; got a point on it
-"0.15 mm" -> "0 m" => line 14  actuators[1].position must differ from actuators[0].position; got the same
-model = "kogut-etsion" ->  => line 27  friction.model is missing; it must be "kogut-etsion", "constant", "coulomb" or "t
-"kogut-etsion" -> 3 => line 28  friction.model must be "kogut-etsion", "constant", "coulomb" or "table"; got 3
-[friction] -> [[friction]] => line 27  friction must be a table, written [friction]; got a list of tables
-"kogut-etsion" -> "constant" => line 27  friction.limit is missing; it must be a force such as "2 uN"
-model = "kogut-etsion" ++ limit = "1 N" => line 29  friction.limit is not known; it goes with model = "constant"
-model = "kogut-etsion" ++ rougness = 1 => line 29  friction.rougness is not known; did you mean roughness?
-model = "kogut-etsion" ++ asperity_beta = 0.01 => friction.asperity_beta must be greater than 0.01928; got 0.01
-model = "kogut-etsion" ++ adhesion_energy = "0 J/m^2" => friction.adhesion_energy must be greater than 0
-model = "kogut-etsion" ++ preset = "papers" => friction.preset must be "paper"; got "papers"
-model = "kogut-etsion" ++ preset = "paper"\nplasticity_index = 2.5 => line 30  friction.plasticity_index must not be giv
-model = "kogut-etsion" ++ coefficients = "unrounded"\npreset = "paper" => line 29  friction.coefficients must be "printe
-"kogut-etsion" -> "coulomb"\ncoefficient = 0.3\nstatic_coefficient = 0.2 => friction.static_coefficient must be at least
-"300 um" -> 300 um => line 3  is not valid TOML: a value with a unit needs quotes; write radius = "300 um"
-"300 um" -> "300 um => line 3  is not valid TOML: a text lacks its closing quote
-radius = "300 um" ++ radius = "300 um" => line 4  is not valid TOML: this is given twice
-[part] -> [plate] => line 23  is not valid TOML: cannot declare [plate] twice
-[[actuators]]  # -> [actuators]  # => line 13  actuators must be written [[actuators]], in double brackets
-"""
+def parts(problem: Problem) -> tuple[int | None, str, str]:
+    return problem.line, problem.field, problem.message
 
 
-def test_each_kind_of_mistake(tmp_path: Path) -> None:
-    assert answered_otherwise(BROKEN, partial(problems, tmp_path), good=GOOD) == []
-
-
-def test_places_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
-    text = changed(
-        ("[plate]\n", '[plate]\ndensity = "1 s"\n'),
-        (ACTUATOR, 'position = ["0.4 mm", "0 um"]\nspeed = 3\n'),
-        ('"0.15 mm"', '"0.4 mm"'),
-        (PART, 'position = ["0 um", "-1 mm"]'),
-        ('mass = "2e-9 kg"\n', ""),
-    )
-    outside = "must be inside the rim; got a point"
-    assert problems(tmp_path, text) == [
-        'line 2   plate.density must be a density such as "2330 kg/m^3"; got "1 s", a time',
-        f"line 10  actuators[0].position {outside} 0.1 mm beyond it",
-        "line 11  actuators[0].speed is not known; "
-        "[[actuators]] has position, force, stiffness, max_stroke, max_force, stroke, frequency, cycle, cycles, dwell, "
-        "phase, ramp, "
-        "table, segments, repeats, delay",
-        f"line 16  actuators[1].position {outside} 0.1 mm beyond it",
-        "line 16  actuators[1].position must differ from actuators[0].position; got the same point",
-        'line 25  part.mass is missing; it must be a mass such as "2e-9 kg"',
-        f"line 26  part.position {outside} 700 um beyond it",
-    ]
-
-
-def test_keys_of_the_friction_table_are_checked_whatever_else_is_wrong(tmp_path: Path) -> None:
-    table = FRICTION + '\npreset = "paper"\nroughness = 3\nplasticity_index = 2\ncoefficients = "unrounded"'
-    lines = [line.split()[:3] for line in problems(tmp_path, changed((FRICTION, table)))]
-    assert lines == [
-        ["line", "30", "friction.roughness"],
-        ["line", "31", "friction.plasticity_index"],
-        ["line", "32", "friction.coefficients"],
-    ]
-
-
-def test_missing_tables(tmp_path: Path) -> None:
+def test_a_file_without_tables_lacks_each(tmp_path: Path) -> None:
+    headers = ["[plate]", "[[actuators]]", "[part]", "[friction]", "[run]"]
     assert problems(tmp_path, "# nothing\n") == [
-        f"the file  {name} is missing; it must be a table, written {header}"
-        for name, header in [
-            ("plate", "[plate]"),
-            ("actuators", "[[actuators]]"),
-            ("part", "[part]"),
-            ("friction", "[friction]"),
-            ("run", "[run]"),
-        ]
+        f"0 {header.strip('[]')} is missing; it must be a table, written {header}" for header in headers
     ]
 
 
-def test_no_actuators(tmp_path: Path) -> None:
-    text = "actuators = []\n" + GOOD[: GOOD.index("[[")] + GOOD[GOOD.index("[part]") :]
-    assert problems(tmp_path, text) == ["line 1  actuators must be at least one table, written [[actuators]]; got none"]
-
-
-@pytest.mark.parametrize("count", [1, 2])
-def test_actuators_in_single_brackets(tmp_path: Path, count: int) -> None:
-    text = GOOD.replace("[[actuators]]", "[actuators]")
-    if count == 1:
-        text = text[: text.rindex("[actuators]")] + text[text.index("[part]") :]
-    assert problems(tmp_path, text) == [
-        "line 8  actuators must be written [[actuators]], in double brackets, once for each actuator; got [actuators]"
-    ]
-
-
-def test_lines_of_dotted_keys_and_inline_tables(tmp_path: Path) -> None:
-    text = (
-        '# a case\nplate.radius = "3 Hz"\n"plate"."shape" = "x"\npart = { mass = "1 s" }\n'
-        'actuators = [{ stroke = "1 s" }]\n[run]\nduration = """\n[plate]\n"""\n  # tab\n  frames = 1\n'
+def test_lines_are_right_beside_dotted_keys_inline_tables_and_texts_with_brackets(tmp_path: Path) -> None:
+    content = (
+        '# a case\nplate.radius = "3 Hz"\n"plate"."shape" = "x"\npart = { mass = "1 s", size = """\n[" """ }\n'
+        'actuators = [{ stroke = "[1"  },  # "]\n{ cycles = 0 }]\n[run]\nduration = \'\'\'\n#{\n[plate]\n\'\'\'\n'
+        "  # tab\n  frames = 1\n"
     )
-    found = {line.split()[2]: int(line.split()[1]) for line in problems(tmp_path, text) if line.startswith("line")}
-    assert found["plate.thickness"] == 2
-    assert found["plate.shape"] == 3
-    assert found["part.mass"] == found["part.position"] == 4
-    assert found["actuators[0].stroke"] == 5
-    assert found["run.duration"] == 7
-    assert found["run.frames"] == 11
-
-
-def test_unreadable_files(tmp_path: Path) -> None:
-    with pytest.raises(CaseError) as caught:
-        read_case(tmp_path / "none.toml")
-    assert (
-        str(caught.value) == f"{tmp_path}/none.toml: 1 mistake\n  the file  cannot be read: no such file or directory"
-    )
-    with pytest.raises(CaseError, match="is a folder"):
-        read_case(str(tmp_path))
-    (tmp_path / "latin.toml").write_bytes('[plate]\nradius = "300 µm"\n'.encode("latin-1"))
-    with pytest.raises(CaseError, match="line 2  is not UTF-8 text; got the byte 0xb5"):
-        read_case(tmp_path / "latin.toml")
-
-
-def test_case_error_survives_pickling(tmp_path: Path) -> None:
-    with pytest.raises(CaseError) as caught:
-        read(tmp_path, "")
-    again = pickle.loads(pickle.dumps(caught.value))
-    assert str(again) == str(caught.value)
-    assert again.problems == caught.value.problems
-
-
-@pytest.mark.parametrize(
-    ("where", "text"),
-    [
-        ("friction.file", changed((FRICTION, 'model = "table"\nfile = "a\\u0000"'))),
-        ("plate.motion", '[plate]\nshape = "platform"\nmotion = "a\\u0000"\n' + GOOD[GOOD.index("[part]") :]),
-    ],
-)
-def test_a_null_byte_in_the_name_of_a_file_is_told_where_it_is(tmp_path: Path, where: str, text: str) -> None:
-    (told,) = problems(tmp_path, text)
-    assert f" {where} must be a file that can be read" in told and told.endswith("null character in it")
+    found = {line.split()[1]: int(line.split()[0]) for line in problems(tmp_path, content)}
+    assert found == {
+        **{"friction": 0, "plate.shape": 3, "part.mass": 4, "part.size": 4, "part.position": 4},
+        **{"actuators[0].stroke": 6, "actuators[0].position": 6, "actuators[1].position": 6, "actuators[1].cycles": 6},
+        **{"run.duration": 9, "run.frames": 14},
+    }
 
 
 def test_a_mistake_in_5000_rows_is_reported_with_its_line(tmp_path: Path) -> None:
     rows = "".join(f'["{k} ms", "{k} um"],\n' for k in range(5000))
-    text = changed((STROKE + '\nfrequency = "300 Hz"', f'table = [\n{rows}["9 s", 3]]'))
-    (problem,) = problems(tmp_path, text)
-    assert problem.startswith("line 10 ") and "actuators[0].table[5000][1] must be" in problem
+    wrong = changed(('stroke = "150 um"\nfrequency = "300 Hz"', f'table = [\n{rows}["9 s", 3]]'))
+    (problem,) = problems(tmp_path, wrong)
+    assert problem.startswith("10 actuators[0].table[5000][1] must be")
 
 
-def test_lines_are_right_beside_texts_with_brackets_and_comments(tmp_path: Path) -> None:
-    text = changed(
-        (STROKE, 'stroke = "[1"  # "]'),
-        ("[part]", '[part]\nsize = """\n[\\""" '.replace('\\"""', '"""')),
-        ('duration = "50 ms"', "duration = '''\n#{'''"),
+def test_a_file_of_windows_has_the_same_lines(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_bytes(("\ufeff" + GOOD.replace("\n", "\r\n")).encode())
+    assert read_case(tmp_path / "case.toml").part.mass == 2e-9
+    (tmp_path / "case.toml").write_bytes(GOOD.replace("\n", "\r\n").replace('"50 ms"', "50").encode())
+    with pytest.raises(CaseError, match="line 31  run.duration"):
+        read_case(tmp_path / "case.toml")
+
+
+def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+    contents: dict[str, tuple[bytes, str]] = {
+        "test.toml": (b"", "run is missing"),
+        "latin.toml": ('[plate]\nradius = "300 µm"\n'.encode("latin-1"), "line 2  is not UTF-8 text; got the byte 0xb5"),
+        "wide.toml": (GOOD.encode("utf-16"), "the file  is not text in UTF-8"),
+        "binary.toml": (b"a = 1\0", "the file  is not text in UTF-8"),
+        "long" * 51: (b"", "must have a name of at most 200 bytes"),
+        "new\nline.toml": (b"", "must have a name that can be printed, .*; got U\\+000A in it"),
+        "large.toml": (b" " * (2**24 + 1), "cannot be read: it has more than 16 MiB, the most that is read"),
+    }
+    for name, (data, said) in contents.items():
+        (tmp_path / name).write_bytes(data)
+        with pytest.raises(CaseError, match=said):
+            read_case(tmp_path / name)
+    for path, said in {
+        "none.toml": "the file  cannot be read: no such file or directory$",
+        "tset.toml": rf"no such file or directory; did you mean {tmp_path}/test.toml\?$",
+        "": "cannot be read: is a (directory|folder)$",
+        "a\0b": "cannot be read: its name has a null character in it$",
+    }.items():
+        with pytest.raises(CaseError, match=said):
+            read_case(tmp_path / path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_pipe_or_a_device_is_no_file(tmp_path: Path) -> None:
+    for name in ("pipe.csv", "pipe.toml"):
+        os.mkfifo(tmp_path / name)
+    with pytest.raises(CaseError, match="it is a pipe or a device, not a file"):
+        read_case(tmp_path / "pipe.toml")
+    for name in ("pipe.csv", "/dev/zero"):
+        found = problems(tmp_path, f'{TEXTS["platform"]}motion = "{name}"\n')
+        assert "it is a pipe or a device, not a file" in found[0]
+
+
+BRACKETS = "[" * 60
+PAIRS = ", ".join('["0.0 ms", "0.5 um"]' for _ in range(40))
+POINTS = ", ".join(f'["{k} ms", "{k % 7} um"]' for k in range(3000))
+DEEP = "must not have tables or lists nested more than 20 deep"
+
+
+@pytest.mark.parametrize(
+    ("line", "wrong"),
+    [
+        ("a = " + "[" * 5000 + "]" * 5000, DEEP),
+        (".".join("a" * 3000) + " = 1", DEEP),
+        ("[" + ".".join("a" * 3000) + "]", DEEP),
+        ("a = " + "1" * 5000, "is not valid TOML: a number has too many digits"),
+        (f'table = [{POINTS}, ["3000 ms]]', "is not valid TOML: "),
+        (f"table = [{POINTS}$]", "is not valid TOML: "),
+        (f'table = [{POINTS}, ["3000 ms" "1 um"]]', "is not valid TOML: "),
+    ],
+    ids=["lists", "keys", "tables", "digits", "text", "list", "comma"],
+)
+def test_texts_that_would_take_without_end(tmp_path: Path, line: str, wrong: str) -> None:
+    (tmp_path / "case.toml").write_text(f"# {BRACKETS} 12\n[plate]\nb = [{PAIRS}]\n{line}\n\nc = [{PAIRS}] # {BRACKETS}")
+    with pytest.raises(CaseError) as caught:
+        parse(tmp_path / "case.toml")
+    (problem,) = caught.value.problems
+    assert problem.message.startswith(wrong)
+    assert problem.line == (4 if line.startswith("table") else None)
+
+
+def test_meshes_are_refused_with_all_that_is_wrong(tmp_path: Path) -> None:
+    nodes, cells = "3\n1 0 0 0\n2 400 0 0\n3 0 400 9\n", "1\n1 2 2 0 1 1 2 3\n"
+    (tmp_path / "mesh.msh").write_text(
+        f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n{cells}$EndElements\n"
     )
-    lines = [int(problem.split()[1]) for problem in problems(tmp_path, text)]
-    at = [text[: text.index(start)].count("\n") + 1 for start in ('stroke = "[1"', "size =", "duration =")]
-    assert lines == at
+    (tmp_path / "d.msh").mkdir()
+    for name, said in {
+        "mesh.msh": "must be a plane mesh of triangles with named boundaries; .*mesh.msh has 1 point off the plane of "
+        r"the others, at \(0, 400, 9\); an unnamed boundary: 3 edges",
+        "nowhere.msh": "must be .*no .*nowhere.msh",
+        "d.msh": "must be .*d.msh",
+        Path(__file__).as_posix(): "must be a .msh file of gmsh, a .vtu or",
+    }.items():
+        (problem,) = problems(tmp_path, text(f'mesh = "{name}"', "200 um, 60 um"))
+        assert re.match(f"2 plate.mesh {said}", problem), problem
+
+
+IN_PYTHON: list[tuple[Callable[[], object], str]] = [
+    (lambda: plate(radius=None), 'radius of DiscCase must be a length such as "150 um"; got None'),
+    (lambda: plate(radius=float("nan")), 'radius of DiscCase must be a length such as "150 um"; got nan, which is not'),
+    (lambda: plate(radius=-1.0), "radius of DiscCase must be greater than 0; got -1.0"),
+    (lambda: plate(hue=1), "hue of DiscCase is not known; it has supports, theory"),
+    (lambda: MeshCase(mesh="a", thickness=1.0), "youngs_modulus of MeshCase is missing"),
+    (lambda: CoulombCase(mu=0.3), "mu of CoulombCase is not known; did you mean coefficient?"),
+    (lambda: PartCase(mass=-1, position=3), "mass of PartCase must be greater than 0; got -1"),
+    (lambda: ActuatorCase(position=(0, 0), table=[[0, 0], [1, 1]], ramp=2), "ramp of ActuatorCase must not be given"),
+    (lambda: LatticeCase(rows=1, columns=2, pitch=1.0, stroke="t um", frequency=1), "stroke of LatticeCase must be an"),
+    (lambda: python_case(run=3), "run of Case must be a table, written [run]; got 3"),
+    (lambda: python_case(actuators=3), "actuators of Case must be written [[actuators]], in double brackets, once for"),
+    (lambda: python_case(hue=1), "hue of Case is not known; the file has [plate], [[actuators]], [lattice], [part], ["),
+    (lambda: python_case(name=1), "name of Case must be text; got 1"),
+    (lambda: python_case(run={"duration": -1}), "run.duration of Case must be greater than 0; got -1"),
+    (
+        lambda: python_case(actuators=[ActuatorCase(position=(1, 0), stroke=0, frequency=1)]),
+        "actuators[0].position of Case must be inside the rim; got a point 999700 um beyond it",
+    ),
+    (
+        lambda: python_case(plate={"shape": "dics"}, part={"mass": "3 s", "positon": 3}, friction={"model": "colomb"}),
+        'plate.shape of Case must be "disc", "rectangle", "annulus", "ellipse", "polygon" or "platform"; got "dics"; '
+        'did you mean "disc"?\n'
+        'Input part.mass of Case must be a mass such as "2e-9 kg"; got "3 s", a time\n'
+        "Input part.positon of Case is not known; did you mean position?\n"
+        'Input friction.model of Case must be "kogut-etsion", "constant", "coulomb" or "table"; got "colomb"; did you '
+        'mean "coulomb"?',
+    ),
+    (lambda: python_case().vary({"part.mas": 1}), "part.mas of Case must be a field of the case; part has no mas; did"),
+    (lambda: python_case().vary({"run": 3}), "run of Case must be a table, written [run]; got 3"),
+    (lambda: python_case().vary({"lattice.rows": 3}), "lattice.rows of Case must be a field of the case; it has no [la"),
+    (lambda: python_case().vary({"actuators.1.stroke": 3}), "actuators.1.stroke of Case must be a field of the case; it"),
+    (
+        lambda: python_case().vary({"actuators.*.strok": 1, "part.mass": "-1 g"}),
+        "actuators.*.strok of Case must be a field of the case; actuators[0] has no strok; did you mean stroke?\n"
+        'Input part.mass of Case must be greater than 0; got "-1 g"',
+    ),
+]
+
+
+@pytest.mark.parametrize(("make", "said"), IN_PYTHON, ids=[said.split(" ")[0] for _, said in IN_PYTHON])
+def test_python_is_answered_in_the_words_of_files(make: Callable[[], object], said: str) -> None:
+    with pytest.raises(InputError) as caught:
+        make()
+    assert str(caught.value).startswith(f"Input {said}")
+    assert not JARGON.search(str(caught.value).replace("None", ""))
+    assert len(caught.value.problems) == str(caught.value).count("Input ")
+
+
+def test_errors_survive_pickling(tmp_path: Path) -> None:
+    with pytest.raises(CaseError) as caught:
+        read(tmp_path, "")
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert str(again) == str(caught.value) and again.problems == caught.value.problems
+    with pytest.raises(InputError) as refused:
+        PartCase(mass=-1, position=3)
+    assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("word", "known", "meant"),
+    [
+        ("circle", ["disc", "rectangle", "polygon"], "disc"),
+        ("Fixed", ["clamped", "simply-supported", "free"], "clamped"),
+        ("freq", ["force", "frequency"], "frequency"),
+        ("E", ["youngs_modulus", "c11"], "youngs_modulus"),
+        ("t", ["thickness", "duration"], "thickness"),
+        ("d", ["thickness", "delay"], None),
+        ("raduis", ["radius", "thickness"], "radius"),
+        ("xylophone", ["radius", "thickness"], None),
+    ],
+)
+def test_near_prefers_what_a_word_means_to_how_it_is_spelt(word: str, known: list[str], meant: str | None) -> None:
+    assert near(word, known) == meant
+
+
+def test_commands_refuse_with_exit_code_2_and_leave_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "test.toml"
+    wrong = {
+        changed(("poisson_ratio = 0.3", "poisson_ratio = 0.5")): "plate.poisson_ratio must be less than 0.5",
+        changed(('"kogut-etsion"', '"kogut-etsion"\nadhesion_energy = "1e3 J/m^2"')): "Inputs of KogutEtsion must give",
+        changed(('"kogut-etsion"', '"kogut-etsion"\nplasticity_index = 50.0')): "Inputs of KogutEtsion must give a pull",
+    }
+    for content, said in wrong.items():
+        file.write_text(content)
+        for command in ("run", "check"):
+            done = CliRunner().invoke(main, [command, str(file)])
+            assert done.exit_code == 2 and isinstance(done.exception, SystemExit)
+            assert said in done.output and "Traceback" not in done.output
+    assert list(tmp_path.iterdir()) == [file]
+    file.write_text(GOOD)
+    done = CliRunner().invoke(main, ["response", str(file)])
+    assert done.exit_code == 2 and "  plate.density must be given; got none" in done.output
+
+
+def test_a_plate_may_move_where_that_is_asked_for(tmp_path: Path) -> None:
+    (tmp_path / "free.toml").write_text(text("rectangle", plate='supports = "free"'))
+    assert read_case(tmp_path / "free.toml", may_move=True).plate.supports == "free"
+    (tmp_path / "free.toml").write_text(text("rectangle", "3 mm, 0 um", plate='supports = "free"'))
+    with pytest.raises(CaseError, match="1 mistake\n.*position must be inside the rim"):
+        read_case(tmp_path / "free.toml", may_move=True)
 
 
 def test_a_good_case_is_checked_without_numerics_or_pictures() -> None:
