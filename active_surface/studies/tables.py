@@ -92,6 +92,8 @@ class AxisTable(Table):
     Beside a file of points it has none of these.
     """
 
+    in_template: ClassVar[tuple[str, ...]] = ("values",)
+
     field: Annotated[StrictStr, Expected('the path of a field such as "actuators.0.frequency"')] = Field(examples=["actuators.*.frequency"])
     """The field of the case that is varied; * stands for every actuator."""
     name: Annotated[str, BeforeValidator(_name)] | None = Field(default=None, examples=["frequency"])

@@ -87,6 +87,8 @@ class Table(BaseModel, metaclass=_Refusing):
 
     whole_file: ClassVar[bool] = False
     """Whether it is all that a file holds."""
+    in_template: ClassVar[tuple[str, ...]] = ()
+    """Keys that a template states although a table may do without them."""
 
     @classmethod
     def contradictions(cls, given: Mapping[str, Any]) -> Contradictions:

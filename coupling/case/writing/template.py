@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import GenerateJsonSchema
 
 from coupling.case.table import RULES, Table, expected_of, tables_in
-from coupling.case.values import marks_of, parts_of
+from coupling.case.values import adapter, marks_of, parts_of
 from coupling.case.writing.text import written
 
 HEAD: Final = """\
@@ -96,6 +96,7 @@ class _Template:
 def _needed(table: type[Table]) -> set[str]:
     """The fields that must be given, and the first choice where one of several must."""
     needed = {key for key, field in table.model_fields.items() if field.is_required() or _names(field)}
+    needed |= {*table.in_template}
     while missing := [str(at) for at, message in _contradictions(table, needed) if message.startswith("is missing")]:
         needed |= {*missing}
     return needed
@@ -104,7 +105,8 @@ def _needed(table: type[Table]) -> set[str]:
 def _contradictions(table: type[Table], keys: set[str]) -> list[tuple[Any, str]]:
     """What is wrong where only some keys are given, each with its example or default."""
     fields = table.model_fields
-    return list(table.contradictions({key: json.loads(_value(fields[key])) for key in keys if key in fields}))
+    values = {key: json.loads(_value(fields[key])) for key in keys if key in fields}
+    return list(table.contradictions({key: adapter(table, key).validate_python(one) for key, one in values.items()}))
 
 
 def _names(field: FieldInfo) -> bool:
