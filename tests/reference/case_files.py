@@ -194,7 +194,7 @@ def plate(**changes: Any) -> DiscCase:
 
 
 def python_case(**changes: Any) -> Case:
-    """A case made in Python; with a lattice it has no other actuators."""
+    """A case made in Python; with a lattice or platform it has no other actuators."""
     values = {
         "plate": plate(),
         "actuators": [{"position": ("0 um", 1e-6), "stroke": "150 um", "frequency": 300}],
@@ -202,6 +202,6 @@ def python_case(**changes: Any) -> Case:
         "friction": CoulombCase(coefficient=0.3),
         "run": {"duration": "50 ms"},
     }
-    if "lattice" in changes:
+    if "lattice" in changes or dict(changes.get("plate", ())).get("shape") == "platform":
         del values["actuators"]
     return Case(**{**values, **changes})

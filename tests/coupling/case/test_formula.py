@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coupling.case.values.expression import FUNCTIONS, LONGEST, NAMES
-from coupling.case.values.formula import Amount, Choice, Condition, Formula
+from coupling.case.values.formula import FUNCTIONS, NAMES, Amount, Choice, Condition, Formula
 
 TIME = Amount("s", "50 ms")
 PLACE = {"row": 2.0, "column": 3.0, "rows": 5.0, "columns": 7.0, "x": 1e-4, "y": -2e-4, "pi": math.pi}
@@ -45,57 +44,44 @@ def test_a_number_and_a_unit_stay_a_number(text, value):
     assert TIME.parse(text) == value
 
 
-CAUSES = [
-    ("5 ms if row > 2 else 3 ms", 'the unit must come once, at the end, as in "(5 if row'),
-    ("row^2 ms", "a power is written **"),
-    ("(" * 201 + "row" + ")" * 201 + " ms", "it is nested too deeply; fewer brackets and signs are needed"),
-    ("(row ms", "the expression is not complete; a number, name, operator or bracket is missing"),
-    ("sqrt(row, 2) ms", "sqrt takes 1 number; it has 2"),
-    ("log() ms", "log takes 1 or 2 numbers; it has 0"),
-    ("min(row) ms", "min takes 2 or more numbers; it has 1"),
-    ("max(*row) ms", "max takes 2 or more"),
-    ("max(*row, 2) ms", "it must have numbers, names, operators and functions only"),
-    ("sqrt + 1 ms", "sqrt is a function, written sqrt(...)"),
-    ("sine(row) ms", "there is no function sine; did you mean sin?"),
-    (
-        "round(row) ms",
-        "there is no function round; there are sqrt, sin, cos, tan, asin, acos, atan, exp, floor, atan2,",
-    ),
-    ("arctan2(y, x) ms", "did you mean atan2?"),
-    ("pi(2) ms", "pi is no function"),
-    ("atan2(y) ms", "atan2 takes 2 numbers; it has 1"),
-    ("t * 5 ms", "there is no t: an expression is constant in time"),
-    ("r * 5 ms", "there is no r; there are row, column, rows, columns, x, y, pi"),
-    ("5 if row ms", "an else is missing"),
-    ("5 ms * row", "the unit must come once, at the end"),
-    ("5 ms + row ms", "the unit must come once, at the end"),
-    ("(1, 2) ms", "it must have numbers, names, operators and functions only"),
-    ("True * row ms", "it must have numbers, names, operators and functions only"),
-    ("row + 'a' ms", "means nothing"),
-    ("row.__class__ ms", "an operator such as * is missing"),
-    ("row[0] ms", '"[" means nothing'),
-    ("row " + "+ row " * LONGEST + "ms", f"longer than {LONGEST} characters"),
-    ("(" * 300 + "row" + ")" * 300 + " ms", ""),
+REFUSED = [
+    ("row^2 ms", "there is no unit"),
+    ("(" * 300 + "row" + ")" * 300 + " ms", ": it is longer than 500 characters"),
+    ("(row ms", ": the expression is not complete, or has a sign that means nothing"),
+    ("sine(row) ms", ": there is no sine; did you mean sin?"),
+    ("arctan2(y, x) ms", ": there is no arctan2; did you mean atan2?"),
+    ("round(row) ms", ": there is no round; there are row, column, rows, columns, x, y, pi, sqrt, sin, cos, tan,"),
+    ("t * 5 ms", ": there is no t: an expression is constant in time"),
+    ("r * 5 ms", ": there is no r; "),
+    ("row", ", which has no unit"),
+    ("2 * row um", ", a length"),
+    ("row - row mss", 'there is no unit "mss"; did you mean ms?'),
+    ("5 ms * row", "there is no unit"),
+    ("row.__class__ ms", "there is no unit"),
+    ("row[0] ms", "there is no unit"),
+    ("row " + "+ row " * 500 + "ms", ": it is longer than 500 characters"),
+]
+NO_VALUE = [
+    ("sqrt(row, 2) ms", "has a function of too few or too many values, or what is no number"),
+    ("min(row) ms", "has a function"),
+    ("sqrt + 1 ms", "has a function"),
+    ("pi(2) ms", "has a function"),
+    ("(1, 2) ms", "has a function"),
+    ("1 / (row - 2) ms", "divides by zero"),
+    ("log(row - 2) ms", "has no real value"),
+    ("exp(1000) ms", "is too large"),
+    ("1e300 * 1e300 ms", "is not finite"),
+    ("row > 1 ms", "is a comparison and not a number"),
 ]
 
 
-def test_the_cause_comes_first_where_they_say_what_they_must_not():
-    for text, cause in CAUSES:
-        with pytest.raises(ValueError, match=r'^must be an expression.*; got ".*: ') as caught:
-            TIME.parse(text)
-        assert cause in str(caught.value)
-        assert len(str(caught.value)) < 190
-
-
-@pytest.mark.parametrize(
-    ("text", "reason"), [("row", "has no unit"), ("2 * row um", "a length"), ("row - row mss", "ms")]
-)
-def test_a_wrong_unit_is_answered_with_both_kinds_of_right_ones(text, reason):
-    with pytest.raises(
-        ValueError, match=r'^must be a time such as "50 ms" or "2 \* \(row \+ column\) ms"; got'
-    ) as caught:
-        TIME.parse(text)
-    assert reason in str(caught.value)
+def test_what_is_no_formula_or_has_no_value_is_refused_with_the_cause():
+    wrong = []
+    for text, cause in [*REFUSED, *NO_VALUE]:
+        with pytest.raises(ValueError, match="^must be an expression|^must be a time|^[a-z ,]+$") as caught:
+            TIME.parse(text).value(PLACE)
+        wrong += [(text, str(caught.value))] * (cause not in str(caught.value))
+    assert wrong == []
 
 
 @pytest.mark.parametrize(
@@ -118,18 +104,17 @@ def test_conditions_hold_or_do_not(text, truth):
     [
         ("hypot(x, y) > 100 um", '"um" is too much; it has no unit, x and y are in metres'),
         ("rwo > 2", "there is no rwo; did you mean row?"),
-        ("row = 2", '"=" means nothing'),
+        ("row = 2", '"= 2" is too much'),
         ("row >", "not complete"),
-        ("True", "it must have numbers, names, operators and functions only"),
-        ("row > 2 and open('x')", "means nothing"),
-        ("row " + "+ row " * LONGEST, f"longer than {LONGEST} characters"),
+        ("row > 2 and open('x')", "is too much"),
+        ("row " + "+ row " * 500, "longer than 500 characters"),
         ("", "must be an expression that is true or false"),
         (True, "must be an expression that is true or false"),
         (["row > 2"], "must be an expression that is true or false"),
     ],
 )
 def test_what_is_no_condition(text, cause):
-    with pytest.raises(ValueError, match=r"^(cannot be|must be an expression) ") as caught:
+    with pytest.raises(ValueError, match="^must be an expression ") as caught:
         Choice().validate(text)
     assert cause in str(caught.value)
 
@@ -189,8 +174,6 @@ def test_any_expression_gives_a_finite_number_or_the_clear_error(expression):
     outcome(f"{expression} ms")
 
 
-@pytest.mark.parametrize(
-    ("text", "value"), [("9**9**9**9 ms", None), ("-" * 400 + "row ms", 2e-3), ("row" + "**9" * 100 + " ms", None)]
-)
-def test_towers_of_powers_and_of_signs_end(text, value):
-    assert outcome(text) == value
+@pytest.mark.parametrize("text", ["9**9**9**9 ms", "-" * 499 + "1/0 ms", "row" + "**9" * 100 + " ms"])
+def test_towers_of_powers_and_of_signs_end(text):
+    assert outcome(text) is None

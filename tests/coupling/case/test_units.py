@@ -9,7 +9,7 @@ from itertools import product
 from pathlib import Path
 
 import pytest
-from case_files import STROKE, changed, problems
+from case_files import changed, problems
 
 from coupling.case import Quantity
 from coupling.case.values import RANGES, units
@@ -19,25 +19,25 @@ LENGTHS = """
 "20 degC" => , a temperature
 "5 K*m" => , a quantity in K * m
 "50 %" => , a plain number
-"150 umm" => , but there is no unit "umm"; did you mean "150 um" or "150 mm"?
-"150 UM" => , but there is no unit "UM"; did you mean "150 um"?
-"5 frobs/umm" => , but there is no unit "frobs"
+"150 umm" => , but there is no unit "umm"; did you mean um?
+"150 UM" => , but there is no unit "UM"; did you mean um?
+"5 frobs/umm" => , but there is no unit "frobs/umm"
 "150" => , which has no unit
 150 => , which has no unit
-0 => , which has no unit; write "0 um"
+0 => , which has no unit
 nan => , which has no unit
 "nan um" => , which is not finite
 "-inf um" => , which is not finite
 "1e999 um" => , which is not finite
 "1e308 km" => , which is not finite
-"1,5 mm" => ; write decimals with a point: "1.5 mm"
+"1,5 mm" => ; write decimals with a point
 "" => , which is not a number and a unit
 "um" => , which is not a number and a unit
 "far away" => , which is not a number and a unit
-"−5 um" => ; did you mean "-5 um"?
+"−5 um" => , which is not a number and a unit
 "5 um; 3" => , which is not a number and a unit
-"5 (um" => , which is not a number and a unit
-"1/300 um" => , which is not a number and a unit
+"5 (um" => , but there is no unit "(um"; did you mean um?
+"1/300 um" => , but there is no unit "/300 um"
 true =>
 ["1 um"] =>
 1979-05-27 =>
@@ -47,24 +47,22 @@ true =>
 def test_wrong_lengths(tmp_path: Path) -> None:
     for line in LENGTHS.strip().splitlines():
         value, _, reason = line.partition(" =>")
-        found = problems(tmp_path, changed((STROKE, f"stroke = {value}")))
+        found = problems(tmp_path, changed(('stroke = "150 um"', f"stroke = {value}")))
         reason = reason.removeprefix(" ")
-        assert found == [f'line 10  actuators[0].stroke must be a length such as "150 um"; got {value}{reason}']
-
-
-def test_an_angular_velocity_is_not_a_frequency(tmp_path: Path) -> None:
-    (found,) = problems(tmp_path, changed(('"300 Hz"', '"60 rpm"')))
-    assert found.endswith('got "60 rpm", an angular velocity; in cycles that is "1 Hz"')
+        assert found == [f'10 actuators[0].stroke must be a length such as "150 um"; got {value}{reason}']
 
 
 def test_units() -> None:
     values = {
         "m": {"150um": 150e-6, " .5 µm ": 0.5e-6, "1_000 nm": 1e-6, "+1 in": 0.0254},
         "m^2": {"1e4 um²": 1e-8},
+        "s": {"2 min": 120},
         "Hz": {"300 1/s": 300},
         "m/s": {"5 m·s⁻¹": 5},
         "J/m^2": {"50 mN/m": 0.05},
-        "kg/m^3": {"2.33 g / cm**3": 2330},
+        "kg/m^3": {"2.33 g / cm**3": 2330, "2.33 g/cm^3": 2330},
+        "rad": {"90 deg": 1.5707963267948966, "-0.25 turn": -1.5707963267948966, "1.5 rad": 1.5}
+        | {"90°": 1.5707963267948966, "100 grad": 1.5707963267948966, "500 mrad": 0.5},
     }
     for unit, texts in values.items():
         assert {text: Quantity(unit, "").parse(text) for text in texts} == pytest.approx(texts, rel=1e-15)
@@ -75,14 +73,12 @@ def test_prefixed_units_and_those_of_si_are_those_of_pint() -> None:
     for prefix, (base, its) in product(units._PREFIXES, units._PREFIXED_BASES.items()):
         si, unit = units.prefixed(prefix + base)[0], prefix + base
         quantity = Quantity(si, "")
-        pairs = [
-            (quantity.value_of("", number, unit), quantity._convert_by_pint("", number, unit))
-            for number in ("1", "0.3", "123456.789e-3")
-        ]
-        wrong += [unit] * (si != its or not quantity._fits(unit) or any(one != other for one, other in pairs))
+        numbers = ("1", "0.3", "123456.789e-3")
+        pairs = [(quantity.value_of("", n, unit), quantity._by_pint("", n, unit)) for n in numbers]
+        wrong += [unit] * (si != its or any(one != other for one, other in pairs))
     for unit in units.DIMENSIONS:
         quantity = Quantity(unit, "")
-        wrong += [unit] * (not quantity.parse(f"0.1 {unit}") == quantity._convert_by_pint("", "0.1", unit) == 0.1)
+        wrong += [unit] * (not quantity.parse(f"0.1 {unit}") == quantity._by_pint("", "0.1", unit) == 0.1)
     assert wrong == []
 
 
@@ -99,7 +95,7 @@ def test_no_quantity_is_larger_or_smaller_than_anything_here() -> None:
 
 @pytest.mark.parametrize("text", ["1 " + "m" * 100_000, "1" * 100_000 + " m", "1 " + "kg*" * 40_000 + "m"], ids=len)
 def test_long_texts_are_refused_at_once(text: str) -> None:
-    with pytest.raises(ValueError, match="which is longer than 200 characters"):
+    with pytest.raises(ValueError, match=r"\.\.\., which is not a number and a unit"):
         Quantity("m", "150 um").parse(text)
 
 
@@ -113,7 +109,7 @@ def test_import_does_not_load_pint() -> None:
     assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[3]).returncode == 0
 
 
-@pytest.mark.parametrize("text", ["2 kg0", "2 kg^0", "2 g**0"])
-def test_a_unit_that_pint_cannot_take_apart_is_refused(text: str) -> None:
+@pytest.mark.parametrize("text", ["2 kg0", "2 kg^0", "2 g**0", "2 gr", "2 Grad"])
+def test_units_that_pint_misreads_or_cannot_take_apart_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match="must be a mass"):
         Quantity("kg", "a mass").parse(text)
