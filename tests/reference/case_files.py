@@ -103,6 +103,7 @@ def text(shape: str, *places: str, plate: str = "", drive: str = DRIVE, part: st
 TEXTS = {
     "good": GOOD,
     **{shape: text(shape, plate="#") for shape in SHAPES},
+    "frame": FRAME,
     "drive": ONE,
     "stroke": ONE + DRIVE,
     "table": ONE + TABLE,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from pathlib import Path
 
 import numpy as np
@@ -157,6 +158,7 @@ def test_the_lattice_of_a_file_is_varied_until_its_actuators_are_those_of_the_ca
 def test_damping_is_a_ratio_or_pairs(tmp_path: Path, written: str, damping: object) -> None:
     case = read(tmp_path, TEXTS["vibrating"].replace("inertia = true", f"inertia = true\ndamping = {written}"))
     assert case.plate.inertia is True and case.plate.damping == damping
+    assert read(tmp_path, TEXTS["vibrating"] + 'start = "steady"\n').run.start == "steady"
 
 
 def test_a_table_of_damping_goes_on_beyond_its_ends() -> None:
@@ -165,19 +167,24 @@ def test_a_table_of_damping_goes_on_beyond_its_ends() -> None:
     assert ratios == pytest.approx([0.02, 0.02, 0.015, 0.01, 0.01], rel=1e-12)
 
 
-def test_a_single_damping_ratio_is_a_field_that_can_be_varied() -> None:
+def test_a_field_is_found_by_its_path() -> None:
     vibrating = python_case(plate=plate(density="2330 kg/m^3", inertia=True))
     field = find_field(vibrating, None, "plate.damping")
     assert (field.kind, field.unit, field.base) == ("number", "1", 0.02) and field.read(0.05) == 0.05
     with pytest.raises(ValueError, match="a ratio from 0 to below 1"):
         field.read(1.5)
     pairs = python_case(plate=plate(density="2330 kg/m^3", inertia=True, damping=[["20 kHz", 0.02], ["80 kHz", 0.01]]))
-    with pytest.raises(ValueError, match="must be a single value; got plate.damping"):
-        find_field(pairs, None, "plate.damping")
-
-
-def test_a_steady_state_takes_inertia_and_drives_without_end(tmp_path: Path) -> None:
-    assert read(tmp_path, TEXTS["vibrating"] + 'start = "steady"\n').run.start == "steady"
+    for path, said in {
+        "plate.damping": "must be a single value; got plate.damping, which is a list or table; name one in it",
+        "plate.shape": "cannot be varied: plate.shape selects which other keys exist",
+        "actuators[0].stroke": "got actuators[0].stroke; write actuators.0.stroke",
+        "run.frames": "which a sweep does not use",
+        "stroke": "the case has no stroke; did you mean actuators.*.stroke?",
+        "lattice.rows": "it has no [lattice]",
+        "part.size.x": "its part.size is not given",
+    }.items():
+        with pytest.raises(ValueError, match=re.escape(said)):
+            find_field(pairs, None, path)
 
 
 @pytest.mark.parametrize(

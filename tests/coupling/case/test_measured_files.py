@@ -105,7 +105,7 @@ def test_a_motion_must_last_as_long_as_the_run(tmp_path):
     assert read(tmp_path, FILE).run.duration == 4e-3
     (tmp_path / "shaker.csv").write_text(HEADER + "".join(ROWS.splitlines(keepends=True)[:8]))
     assert problems(tmp_path, FILE + FRAME) == [
-        "11 run.duration must not exceed the measured motion's, 0.0035 s; got 0.004 s"
+        "12 run.duration must not exceed the measured motion's, 0.0035 s; got 0.004 s"
     ]
 
 
