@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+
 from active_surface.arrays import FloatArray
 from active_surface.studies.study import Study
 from active_surface.studies.variants import Variants

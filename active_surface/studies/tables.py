@@ -49,20 +49,21 @@ def _points(value: object) -> object:
     raise ValueError(f'must be {numbers}, or a file of points such as "points.csv"; got {quoted(value)}')
 
 
-_HOW_MANY = 'a whole number, or a file of points such as "points.csv"'
+_CASE_FILE = Expected('the name of a case file such as "two_actuators.toml"')
+_FIELD_PATH = Expected('the path of a field such as "actuators.0.frequency"')
+_HOW_MANY = Expected('a whole number, or a file of points such as "points.csv"')
 _POINTS_SCHEMA = {"anyOf": [{"type": "integer", "minimum": 1, "maximum": MAX_PATHS}, {"type": "string"}]}
+PointsOrFile = Annotated[int | str, PlainValidator(_points), _HOW_MANY, WithJsonSchema(_POINTS_SCHEMA)]
 
 
 class StudyTable(Table):
     """What is swept, and how points are chosen; jitter in m."""
 
-    case: Annotated[StrictStr, Expected('the name of a case file such as "two_actuators.toml"')] = Field(examples=["one_actuator.toml"])
+    case: Annotated[StrictStr, _CASE_FILE] = Field(examples=["one_actuator.toml"])
     """The base case, a file beside the study's."""
     sampling: Sampling = "grid"
     """How points are chosen: all of a grid, one for each entry of lists, or drawn."""
-    points: Annotated[int | str, PlainValidator(_points), Expected(_HOW_MANY), WithJsonSchema(_POINTS_SCHEMA)] | None = Field(
-        default=None, examples=[1000]
-    )
+    points: PointsOrFile | None = Field(default=None, examples=[1000])
     """How many, of random and Sobol ones; or the file that has them, beside the study's."""
     repeats: StrictInt = Field(default=1, ge=1, le=1_000_000, examples=[10])
     """How many paths there are of each point."""
@@ -94,7 +95,7 @@ class AxisTable(Table):
 
     in_template: ClassVar[tuple[str, ...]] = ("values",)
 
-    field: Annotated[StrictStr, Expected('the path of a field such as "actuators.0.frequency"')] = Field(examples=["actuators.*.frequency"])
+    field: Annotated[StrictStr, _FIELD_PATH] = Field(examples=["actuators.*.frequency"])
     """The field of the case that is varied; * stands for every actuator."""
     name: Annotated[str, BeforeValidator(_name)] | None = Field(default=None, examples=["frequency"])
     """The axis's name in the results; without it the field's."""

@@ -56,8 +56,11 @@ class Variants:
     def at(self, values: Values) -> tuple[Case, Base]:
         """The case at a point, and the one that it shares its shapes with; raises InputError when there is none."""
         base = self.base(self.deep(values))
-        pairs = [(axis, value) for k, (axis, value) in enumerate(zip(self._axes, values, strict=True))
-                 if k not in self._deep_places]
+        pairs = [
+            (axis, value)
+            for k, (axis, value) in enumerate(zip(self._axes, values, strict=True))
+            if k not in self._deep_places
+        ]
         return (base.case.vary({axis.field.path: value for axis, value in pairs}) if pairs else base.case), base
 
     def _base(self, deep: Values) -> Base:

@@ -97,7 +97,9 @@ def parse(path: str | os.PathLike[str]) -> TomlFile:
         reason, _, place = str(error).rpartition(" (at ")
         at = re.match(r"line (\d+)", place)
         line = int(at[1]) if at else text.rstrip().count("\n") + 1 if reason else None
-        message = "is not valid TOML: " + _sentence(reason or "a number has too many digits") + _hint(text, line)
+        message = (
+            "is not valid TOML: " + _sentence(reason or "a number has too many digits") + _hint(text, line, reason)
+        )
     raise CaseError(name, [Problem(line, "", message)]) from None
 
 
@@ -107,8 +109,10 @@ def _sentence(reason: str) -> str:
     return named[:1].lower() + named[1:]
 
 
-def _hint(text: str, line: int | None) -> str:
-    """What is most often wrong where a value is not valid: it has a unit, and no quotes."""
+def _hint(text: str, line: int | None, reason: str) -> str:
+    """What is most often wrong there: a table in single brackets, or a value with a unit and no quotes."""
+    if reason.startswith("Cannot declare") and "twice" in reason:
+        return "; a table that comes again needs double brackets, as [[actuators]]"
     bare = re.search(r"=\s*([+-]?[\d.]+\s*[A-Za-z][\w/^*]*)\s*(?:#.*)?$", text.split("\n")[(line or 1) - 1])
     return f'; a value with a unit needs quotes: "{bare[1]}"' if bare else ""
 

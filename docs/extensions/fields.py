@@ -23,6 +23,7 @@ PLAIN = {
     "FileBeside": "str",
     "Count": "int",
     "Repeats": "int | str",
+    "PointsOrFile": "int | str",
 }
 SHAPES = {
     "Point": ("tuple[float, float]", "m"),

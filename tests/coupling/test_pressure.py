@@ -136,9 +136,7 @@ def test_the_text_of_a_case_has_its_pressure_in_pascal(tmp_path):
 
 def test_large_arrays_take_none():
     many = {"rows": 16, "columns": 16, "pitch": 20e-6, "frequency": 300.0, "stroke": 1e-6}
-    with pytest.raises(
-        InputError, match=r"plate.pressure of Case must be 0 with more than 250 actuators.* got 256"
-    ):
+    with pytest.raises(InputError, match=r"plate.pressure of Case must be 0 with more than 250 actuators.* got 256"):
         Case(
             plate=PLATE | {"pressure": 100.0},
             lattice=many,

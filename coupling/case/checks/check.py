@@ -112,9 +112,12 @@ def _places(tables: CaseTables, plate: PlateCase, mesh: PlateMesh, made: Sequenc
         if gap <= (least if at[0] == "part" else mesh.least_gap):
             yield at, must_be_inside(gap, mesh)
     for one, other in _shared(list(places.values())[:-1], least):
-        first, second = (location_text(("actuators", k, "position")) for k in (one, other))
+        first = location_text(("actuators", one, "position"))
         if one >= alone:
-            yield ("lattice", "pitch"), f"must keep the actuators apart; {first} and {second} are at the same point"
+            yield (
+                ("lattice", "pitch"),
+                f"must keep the actuators apart; numbers {one} and {other} are at one point",
+            )
             return
         if other >= alone:
             yield ("actuators", one, "position"), "must differ from that of an actuator of the lattice"

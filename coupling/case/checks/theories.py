@@ -82,7 +82,7 @@ def _periodic(made: Sequence[ActuatorCase], alone: int) -> Iterator[Mistake]:
             continue
         own = 1 / one.frequency + (2 * one.dwell if one.cycle == "up-down" else 0.0)
         if math.isinf(shared := common_period(period, own)):
-            got = f"got a period of {own * 1e3:.7g} ms, and {(period or 0.0) * 1e3:.7g} ms before"
+            got = f"got a period of {own * 1e3:.15g} ms, and {(period or 0.0) * 1e3:.15g} ms before"
             must = f"must have a common period with the drives before it, with {VON_KARMAN} and {STEADY}"
             yield _location(k, alone, "frequency"), f"{must}; {got}; use frequencies in a ratio of small whole numbers"
             return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from abc import abstractmethod
 from collections.abc import Mapping
 from functools import cached_property, lru_cache
@@ -231,6 +232,7 @@ class MeshCase(PlateCase):
     def coarse_mesh(self) -> PlateMesh:
         import meshes
 
+        os.stat(self.mesh)  # raises FileNotFoundError as for other files, with the name
         return meshes.read(self.mesh, self.mesh_unit)
 
     def build_mesh(self) -> PlateMesh:

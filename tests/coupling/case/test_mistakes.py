@@ -179,7 +179,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     for path, said in {
         "none.toml": "the file  cannot be read: no such file or directory$",
         "tset.toml": rf"no such file or directory; did you mean {tmp_path}/test.toml\?$",
-        "": "cannot be read: is a (directory|folder)$",
+        "": "is a folder; name a file in it$",
         "a\0b": "cannot be read: its name has a null character in it$",
     }.items():
         with pytest.raises(CaseError, match=said):
@@ -236,7 +236,7 @@ def test_meshes_are_refused_with_all_that_is_wrong(tmp_path: Path) -> None:
     for name, said in {
         "mesh.msh": "must be a plane mesh of triangles with named boundaries; .*mesh.msh has 1 point off the plane of "
         r"the others, at \(0, 400, 9\); an unnamed boundary: 3 edges",
-        "nowhere.msh": "must be .*no .*nowhere.msh",
+        "nowhere.msh": "must be a file that can be read; got "nowhere.msh"",
         "d.msh": "must be .*d.msh",
         Path(__file__).as_posix(): "must be a .msh file of gmsh, a .vtu or",
     }.items():

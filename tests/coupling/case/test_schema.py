@@ -130,5 +130,5 @@ def test_a_template_says_what_a_field_is_without_being_given() -> None:
 def test_a_schema_refuses_broken_files_but_for_what_depends_on_other_fields_files_or_the_plate() -> None:
     for path in sorted((EXAMPLES.parent / "tests/broken").glob("*.toml")):
         with suppress(tomllib.TOMLDecodeError):
-            wrong = list(checker(CASE).iter_errors(tomllib.loads(path.read_text())))
+            wrong = list(checker("case").iter_errors(tomllib.loads(path.read_text())))
             assert wrong or path.stem in {"contradictions", "formulas", "measured_points", "outside"}
