@@ -236,7 +236,7 @@ def test_meshes_are_refused_with_all_that_is_wrong(tmp_path: Path) -> None:
     for name, said in {
         "mesh.msh": "must be a plane mesh of triangles with named boundaries; .*mesh.msh has 1 point off the plane of "
         r"the others, at \(0, 400, 9\); an unnamed boundary: 3 edges",
-        "nowhere.msh": "must be a file that can be read; got "nowhere.msh"",
+        "nowhere.msh": 'must be a file that can be read; got "nowhere.msh"',
         "d.msh": "must be .*d.msh",
         Path(__file__).as_posix(): "must be a .msh file of gmsh, a .vtu or",
     }.items():
