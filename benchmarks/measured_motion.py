@@ -2,8 +2,8 @@
 
 `python benchmarks/measured_motion.py [SEEDS]` prints the tables of docs/howto/measured-motion.md: the error of the end
 with the smoothing that the program chooses, with the best one for all seeds (sought knowing the truth), and with a
-spline through every sample; then how many impacts are found, and how often motions without impacts get a jump. With
---picture FILE it draws one such motion instead.
+spline through every sample; then how many impacts are found, what the search for them gains where a blow takes some
+time, and how often motions without impacts get a jump. With --picture FILE it draws one such motion instead.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from scipy.interpolate import make_interp_spline
 
 from coupling.measured import fit_motion
 from coupling.measured.fit import _drive, found_motion
-from coupling.measured.series import smoothed
+from coupling.measured.series import NO_KICKS, series_of, smoothed
+from coupling.measured.smoothing import chosen
 from particle import AnyDrive, CoulombAdhesion, HermiteDrive, Micropart, platform_surface, simulate
 from particle.drives import QuinticDrive, Segments
 
@@ -26,7 +27,7 @@ FloatArray = NDArray[np.float64]
 
 RATE, DURATION = 960, 1.0  # samples a second, s
 NOISES = (2e-6, 5e-6, 10e-6, 20e-6, 40e-6)  # m
-AMPLITUDE, IMPACTS = 1e-3, 10  # m; in the second
+AMPLITUDE, IMPACTS, BLOWS = 1e-3, 10, 24  # m; in the second; that stand for one that takes some time
 STAND, DAMPING = 2 * np.pi * 25.0, 0.1  # rad/s, of the stand that impacts set swinging
 MASS, SQUEEZE, FRICTION = 2e-9, 1e-8, 0.6  # kg, N: friction bears 8.9 m/s^2
 FACTORS = 10.0 ** np.arange(-3.0, 3.01, 0.5)  # of the roughness chosen
@@ -43,11 +44,17 @@ class Shaker:
     sizes: FloatArray  # (k,) m/s
 
     @classmethod
-    def of(cls, seed: int) -> Shaker:
+    def of(cls, seed: int, lasting: float = 0.0) -> Shaker:
+        """One whose blows last some time [s]: BLOWS small impacts each, as many as a half sine has in each part of it."""
         rng = np.random.default_rng(seed)
         times = np.sort(rng.uniform(0.03, DURATION - 0.03, IMPACTS))
         sizes = rng.choice([-1, 1], IMPACTS) * rng.uniform(0.1, 0.4, IMPACTS)
-        return cls(rng.uniform(20, 50), rng.uniform(0, 2 * np.pi), times, sizes)
+        frequency, phase = rng.uniform(20, 50), rng.uniform(0, 2 * np.pi)
+        if lasting:
+            share = np.arccos(1 - 2 * (np.arange(BLOWS) + 0.5) / BLOWS) / np.pi
+            spread = (times[:, None] + lasting * share).ravel()
+            times, sizes = spread[order := np.argsort(spread)], np.repeat(sizes / BLOWS, BLOWS)[order]
+        return cls(frequency, phase, times, sizes)
 
     def __call__(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Position, velocity and acceleration at times (n,)."""
@@ -101,6 +108,21 @@ def errors(noise: float, seeds: Sequence[int]) -> tuple[FloatArray, FloatArray, 
     return np.array(chosen), np.array(by_factor), np.array(through), found, false
 
 
+def gains(noise: float, lasting: float, seeds: Sequence[int]) -> tuple[float, float]:
+    """The mean error of the end [m] with the search for impacts and without it, where blows last some time [s]."""
+    found = []
+    for seed in seeds:
+        shaker = Shaker.of(seed, lasting)
+        truth = end(shaker.drive())
+        samples = shaker(TIMES)[0] + np.random.default_rng(seed + 1000).normal(0, noise, len(TIMES))
+        searched = found_motion(TIMES, [samples, None, None])
+        series, roughness = chosen(series_of(TIMES, [samples, None, None]), NO_KICKS)
+        fits = (searched, (series, NO_KICKS, roughness))
+        found.append([abs(end(_drive(fit[0], smoothed(*fit))) - truth) for fit in fits])
+    with_search, without = np.mean(found, axis=0)
+    return float(with_search), float(without)
+
+
 def interval(chosen: FloatArray, by_factor: FloatArray) -> tuple[float, float]:
     """What 95 % of the ratios of medians lie between, by the bootstrap over motions, each with its own best factor."""
     rng, ratios = np.random.default_rng(0), []
@@ -144,6 +166,12 @@ def main(seeds: int) -> None:
         cells += [f"{1e6 * np.median(through):.0f} um", f"{found} of {seeds * IMPACTS}", str(false)]
         cells.append("{:.2f} to {:.2f}".format(*interval(chosen, by_factor)))
         print("| " + " | ".join(cells) + " |", flush=True)
+    print("\n| noise | a blow lasts | mean error with the search | without it |")
+    for noise in (2e-6, 10e-6):
+        for lasting in (0.0, 1e-3, 2e-3, 3e-3, 4e-3):
+            with_search, without = gains(noise, lasting, range(seeds))
+            cells = f"{1e6 * noise:.0f} um | {1e3 * lasting:.0f} ms | {1e6 * with_search:.0f} um | {1e6 * without:.0f} um"
+            print(f"| {cells} |", flush=True)
     print("\n| motion of 1 mm without impacts | noise | series with a jump |")
     for name, motion in SMOOTH.items():
         for noise in (2e-6, 10e-6, 40e-6):
