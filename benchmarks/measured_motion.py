@@ -45,7 +45,7 @@ class Shaker:
 
     @classmethod
     def of(cls, seed: int, lasting: float = 0.0) -> Shaker:
-        """One whose blows last some time [s]: BLOWS small impacts each, as many as a half sine has in each part of it."""
+        """One whose blows last some time [s]: each is BLOWS small impacts, spread as a half sine."""
         rng = np.random.default_rng(seed)
         times = np.sort(rng.uniform(0.03, DURATION - 0.03, IMPACTS))
         sizes = rng.choice([-1, 1], IMPACTS) * rng.uniform(0.1, 0.4, IMPACTS)
@@ -170,8 +170,8 @@ def main(seeds: int) -> None:
     for noise in (2e-6, 10e-6):
         for lasting in (0.0, 1e-3, 2e-3, 3e-3, 4e-3):
             with_search, without = gains(noise, lasting, range(seeds))
-            cells = f"{1e6 * noise:.0f} um | {1e3 * lasting:.0f} ms | {1e6 * with_search:.0f} um | {1e6 * without:.0f} um"
-            print(f"| {cells} |", flush=True)
+            errors_of = f"{1e6 * with_search:.0f} um | {1e6 * without:.0f} um"
+            print(f"| {1e6 * noise:.0f} um | {1e3 * lasting:.0f} ms | {errors_of} |", flush=True)
     print("\n| motion of 1 mm without impacts | noise | series with a jump |")
     for name, motion in SMOOTH.items():
         for noise in (2e-6, 10e-6, 40e-6):
