@@ -168,7 +168,7 @@ def test_bars_read_what_is_being_done(model, large, tmp_path, monkeypatch):
     monkeypatch.setenv(FOLDER, str(tmp_path))
     monkeypatch.setattr("coupling.stretch.making.reduce", solved)
     heard = []
-    monkeypatch.setattr("coupling.stretch.making.doing", lambda text, share: heard.append((text, share)))
+    monkeypatch.setattr("coupling.stretch.making.doing", lambda text, share=0.0: heard.append((text, share)))
     model_of(large)
     assert heard == [
         ("stretching plate: choosing its cells", 0.0),
