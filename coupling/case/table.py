@@ -177,7 +177,8 @@ def value_at(tables: Any, location: Location) -> Any:
 
 def location_text(location: Location) -> str:
     """The name of the field at a location, which counts from 0: actuators[0].stroke."""
-    return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in location).lstrip(".")
+    named = (key if isinstance(key, int) or re.fullmatch(r"[\w-]+", key) else quoted(key) for key in location)
+    return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in named).lstrip(".")
 
 
 def one_of(choices: Iterable[str]) -> str:
