@@ -14,9 +14,8 @@ from coupling.case.actuators import (
 )
 from coupling.case.case import Case, read_case
 from coupling.case.checks import MAX_STRETCHING, MAX_VIBRATING, common_period
-from coupling.case.fields import Field, Value, find_field, lattice_of, plain_case, put_value
+from coupling.case.fields import Field, Value, find_field, lattice_of, plain_case
 from coupling.case.friction import (
-    AnyFriction,
     ConstantCase,
     CoulombCase,
     FrictionCase,
@@ -49,24 +48,19 @@ from coupling.case.scaled import (
     scaled_friction,
     with_index,
 )
-from coupling.case.table import Contradictions, Faults, InputError, Location, Mistake, Table, location_text, mistakes_of
+from coupling.case.table import Contradictions, Faults, InputError, Location, Mistake, Table, mistakes_of
 from coupling.case.tables import CaseTables, PartCase, RunCase
 from coupling.case.toml_file import CaseError, Problem, parse, unfit_name
 from coupling.case.values import (
     AXES,
     UNITS_REQUIRED,
-    Directed,
     Expected,
     Frequency,
     Length,
     Point,
     Quantity,
     Time,
-    adapter,
     length_text,
-    of_kind,
-    parts_of,
-    quantity_of,
     quoted,
     read_columns,
     unreadable,

@@ -77,18 +77,24 @@ class Case(CaseTables):
             lattice, alone = lattice_of(self)
         if lattice:
             read = LatticeCase.model_validate(lattice, context=UNITS_REQUIRED)
-            tables |= {"lattice": read, "actuators": self.actuators[:alone]}
+            tables["lattice"] = read
+        actuators: Any = list(self.actuators[:alone])
         problems: list[tuple[str, str]] = []
         for path, value in changes.items():
             try:
                 for location in locations_of(self, lattice, path):
                     if location[0] == "actuators" and len(location) > 1 and int(location[1]) >= alone:
                         raise ValueError(f"must not vary actuators from {alone} on: a change of the lattice makes them")
-                    tables = put_value(tables, location, value)
+                    if location[0] != "actuators":
+                        tables = put_value(tables, location, value)
+                    elif len(location) == 1:
+                        actuators = list(value) if isinstance(value, (list, tuple)) else value
+                    else:
+                        actuators[int(location[1])] = put_value(actuators[int(location[1])], location[2:], value)
             except ValueError as error:
                 problems.append((path, str(error)))
         try:
-            made = type(self)(**tables, name=self.name if name is None else name)
+            made = type(self)(**tables | {"actuators": actuators}, name=self.name if name is None else name)
         except InputError as error:
             problems += error.problems
         if problems:

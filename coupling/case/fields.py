@@ -150,7 +150,7 @@ def _below(end: _End, keys: list[str]) -> Iterator[_End]:
     for index in range(len(value)) if key == ALL else [int(key)]:
         item = types[0] if types[-1:] == (...,) else types[index]
         # A mark of the whole holds for items without their own, as for the accelerations along three axes.
-        marked = quantity_of(end.annotation)
+        marked = quantity_of(end.annotation, lists=False)
         if marked and not quantity_of(item) and not tables_in(item):
             item = Annotated[item, marked]
         yield from _below(_End((*end.location, index), value[index], item), rest)

@@ -49,6 +49,9 @@ RULES: Final = {
 """What a value must be, by the type of pydantic's error."""
 
 
+_TAG: Final = "\ue000"  # a character that no key has
+
+
 class Faults(ValueError):
     """Mistakes in places at or below the one where it is raised."""
 
@@ -116,12 +119,17 @@ class Table(BaseModel, metaclass=_Refusing):
         return self
 
     def _default(self, key: str) -> Any:
-        return type(self).model_fields[key].get_default(call_default_factory=True, validated_data=dict(self))
+        field = type(self).model_fields[key]
+        return (
+            field.get_default(call_default_factory=True, validated_data=dict(self))
+            if field.default_factory
+            else field.default
+        )
 
 
 def tag(name: str) -> str:
     """A name of one of several tables or values that a field may have, which locations of errors are free of."""
-    return f"<{name}>"
+    return f"{_TAG}{name}"
 
 
 def named(key: str, names: Iterable[str], instead: str = "") -> Callable[[Any], Any]:
@@ -152,7 +160,7 @@ def mistakes_of(error: ValidationError | Faults, root: type[BaseModel], tables: 
     misspelt: set[Location] = set()
     for detail in error.errors():
         inner = detail.get("ctx", {}).get("error")
-        at = tuple(key for key in detail["loc"] if not (isinstance(key, str) and re.fullmatch("<.*>", key)))
+        at = tuple(key for key in detail["loc"] if not (isinstance(key, str) and key.startswith(_TAG)))
         if isinstance(inner, Faults | ValidationError):
             mistakes += [((*at, *below), message) for below, message in mistakes_of(inner, root, value_at(tables, at))]
         elif detail["type"] != "default_factory_not_called":  # it depends on a field that is wrong
@@ -218,8 +226,6 @@ def _message(detail: Any, value: Any, root: type[BaseModel]) -> str:
 def _instead(location: tuple[Any, ...], root: type[BaseModel]) -> str:
     """What to write in place of a key that is not known."""
     key, owner = str(location[-1]), _owner(location, root)
-    if meant := near(key, owner.model_fields):
-        return f"did you mean {meant}?"
     for name, field in root.model_fields.items():
         tables = tables_in(field.annotation)
         if others := [table.model_fields for table in tables if key in table.model_fields]:
@@ -227,7 +233,9 @@ def _instead(location: tuple[Any, ...], root: type[BaseModel]) -> str:
                 return f"it belongs to {header_of((name,), root)}"
             kinds = [(kind, one[kind]) for one in others for kind in ("shape", "model") if kind in one]
             with_these = dict.fromkeys(f'{kind} = "{get_args(field.annotation)[0]}"' for kind, field in kinds)
-            return f"it goes with {' or '.join(with_these)}"
+            return f"it goes with {' or '.join(with_these) or 'mesh, without a shape'}"
+    if meant := near(key, owner.model_fields):
+        return f"did you mean {meant}?"
     if owner is root and tables_in(next(iter(root.model_fields.values())).annotation):
         return "the file has " + ", ".join(filter(None, (header_of((name,), root) for name in root.model_fields)))
     return f"{header_of(location[:-1], root) or 'it'} has {', '.join(owner.model_fields)}"

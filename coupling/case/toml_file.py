@@ -70,14 +70,14 @@ def parse(path: str | os.PathLike[str]) -> TomlFile:
     """The file at `path`; CaseError, with the line of the first mistake, if it cannot be read as TOML."""
     name = os.fspath(path)
     line: int | None = None
+    if unfit := unfit_name(Path(path).stem):
+        raise CaseError(name, [Problem(None, "", unfit)])
     try:
         data = contents(path, MAX_TEXT)
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE, _HDF5)) or b"\0" in data[:1000]:
             shown = f"; `active-surface view {name}` shows a result" if data.startswith(_HDF5) else ""
             raise CaseError(name, [Problem(None, "", f"is not text in UTF-8, as a case, study or aim is{shown}")])
         text = data.decode("utf-8-sig")
-        if unfit := unfit_name(Path(path).stem):
-            raise CaseError(name, [Problem(None, "", unfit)])
         return TomlFile(name, text, _within_depth(tomllib.loads(text)))
     except CaseError:
         raise
@@ -111,7 +111,7 @@ def _sentence(reason: str) -> str:
 
 def _hint(text: str, line: int | None, reason: str) -> str:
     """What is most often wrong there: a table in single brackets, or a value with a unit and no quotes."""
-    if reason.startswith("Cannot declare") and "twice" in reason:
+    if re.match(r"Cannot declare .*'(actuators|segments|axes)'", reason):
         return "; a table that comes again needs double brackets, as [[actuators]]"
     bare = re.search(r"=\s*([+-]?[\d.]+\s*[A-Za-z][\w/^*]*)\s*(?:#.*)?$", text.split("\n")[(line or 1) - 1])
     return f'; a value with a unit needs quotes: "{bare[1]}"' if bare else ""

@@ -13,7 +13,9 @@ _TEXT: Final = r'"""(?:\\.|[^\\])*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:\\.|[^"\\])*"|\'[
 _NAME: Final = rf"(?:{_TEXT}|[\w-]+)"
 _KEY: Final = re.compile(rf"{_NAME}(?:[ \t]*\.[ \t]*{_NAME})*", re.DOTALL)
 _HEADER: Final = re.compile(rf"\[\[?[ \t]*{_KEY.pattern}[ \t]*\]\]?", re.DOTALL)
-_VALUE: Final = re.compile(rf"{_TEXT}|[^\s,\]}}#]+", re.DOTALL)  # but for lists and tables
+_VALUE: Final = re.compile(
+    rf"{_TEXT}|\d{{4}}-\d\d-\d\d \d\d:[^\s,\]}}#]+|[^\s,\]}}#]+", re.DOTALL
+)  # but for lists and tables
 _SPACE: Final = re.compile(r"(?:\s|#[^\n]*)*")
 _LINE: Final = re.compile(r"[^\n]*\n?")
 

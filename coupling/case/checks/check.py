@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from coupling.case.actuators import SAME_PLACE, ActuatorCase, Place, actuators_of, gaps, half_size, must_be_inside
 from coupling.case.checks.theories import check_theory, cycles_fault
@@ -19,9 +19,6 @@ from coupling.suggestion import near
 
 if TYPE_CHECKING:
     from meshes import PlateMesh
-
-MAY_MOVE: Final = "may_move"
-"""The key of a context in which supports and actuators may leave a plate free to move as a whole."""
 
 
 def build(tables: CaseTables, may_move: bool = False) -> dict[str, Any]:

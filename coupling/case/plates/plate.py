@@ -7,7 +7,16 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import Discriminator, Field, PlainValidator, StrictBool, StrictFloat, Tag, ValidationInfo, field_validator
+from pydantic import (
+    Discriminator,
+    Field,
+    StrictBool,
+    StrictFloat,
+    Tag,
+    ValidationInfo,
+    WrapValidator,
+    field_validator,
+)
 
 from coupling.case.table import Contradictions, Faults, Table, tag
 from coupling.case.values import (
@@ -56,7 +65,7 @@ _RATIOS: Final = Expected(
 _FREQUENCY: Final = Quantity("Hz", "300 Hz")
 
 
-def _ratios(value: object, info: ValidationInfo) -> float | tuple[tuple[float, float], ...]:
+def _ratios(value: object, _: object, info: ValidationInfo) -> float | tuple[tuple[float, float], ...]:
     """A damping ratio, or pairs of a frequency and the ratio there."""
     if _is_ratio(value):
         return float(value)  # type: ignore[arg-type]
@@ -80,7 +89,7 @@ def _is_ratio(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1
 
 
-DampingRatios = Annotated[float | tuple[tuple[Frequency, float], ...], PlainValidator(_ratios, float | list), _RATIOS]
+DampingRatios = Annotated[StrictFloat | tuple[tuple[Frequency, StrictFloat], ...], WrapValidator(_ratios), _RATIOS]
 
 
 class PlateCase(Table, ABC):

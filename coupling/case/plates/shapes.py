@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import math
 import os
 from abc import abstractmethod
@@ -232,6 +233,8 @@ class MeshCase(PlateCase):
     def coarse_mesh(self) -> PlateMesh:
         import meshes
 
+        if "\0" in self.mesh:
+            raise OSError(errno.EINVAL, "its name has a null character in it", self.mesh)
         os.stat(self.mesh)  # raises FileNotFoundError as for other files, with the name
         return meshes.read(self.mesh, self.mesh_unit)
 

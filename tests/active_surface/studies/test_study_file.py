@@ -147,7 +147,7 @@ def test_a_file_without_axes_and_one_without_a_case_are_told(tmp_path):
     (told,) = mistakes(tmp_path, '[study]\ncase = "nowhere.toml"\n' + STROKE)
     assert "2 study.case must be the file of a case; " in told and "nowhere.toml" in told
     (told,) = mistakes(tmp_path, '[study]\ncase = "a\\u0000"\n' + STROKE)
-    assert "2 study.case must be the file of a case; " in told and "its name has a null character in it" in told
+    assert "2 study.case must be the file of a case; " in told and "must have a name that can be printed" in told
 
 
 def test_missing_keys_are_told_with_what_they_must_be(tmp_path):

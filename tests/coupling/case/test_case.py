@@ -158,6 +158,7 @@ def test_the_lattice_of_a_file_is_varied_until_its_actuators_are_those_of_the_ca
 def test_damping_is_a_ratio_or_pairs(tmp_path: Path, written: str, damping: object) -> None:
     case = read(tmp_path, TEXTS["vibrating"].replace("inertia = true", f"inertia = true\ndamping = {written}"))
     assert case.plate.inertia is True and case.plate.damping == damping
+    assert case.plate.model_validate_json(case.plate.model_dump_json()).damping == damping  # warnings are errors
     assert read(tmp_path, TEXTS["vibrating"] + 'start = "steady"\n').run.start == "steady"
 
 
