@@ -94,7 +94,7 @@ duration = "1 ms"
 def test_responses_of_a_free_disc_that_rides_on_its_actuator(tmp_path):
     """Its two tilts are left; a run of it is refused, its response is not."""
     (tmp_path / "free.toml").write_text(FREE)
-    with pytest.raises(ValueError, match=r"plate\.supports +leave the plate free to move as a whole"):
+    with pytest.raises(ValueError, match=r"plate\.supports +must not leave the plate free to move as a whole"):
         read_case(tmp_path / "free.toml")
     case, exact, radii = (
         read_case(tmp_path / "free.toml", may_move=True),

@@ -88,7 +88,7 @@ class Expression:
         except RecursionError:
             raise ValueError("is nested too deeply") from None
         except (InvalidExpression, TypeError):
-            raise ValueError("has a function of too few or too many values, or what is no number") from None
+            raise ValueError("has a function with the wrong number of arguments, or what is no number") from None
         except ValueError:  # What `math` says differs between versions of Python.
             raise ValueError("has no real value") from None
 

@@ -85,7 +85,7 @@ def test_the_command_aims_the_next_leg_from_where_the_part_was_measured(case, tm
     assert done.exit_code == 0 and "no way-point is left" in done.stdout
     file.write_text("x [um], y\n-20, 20.5\n")
     done = CliRunner().invoke(main, [*words, "-o", str(out)])
-    assert done.exit_code == 2 and "must give the unit of y" in done.output
+    assert done.exit_code == 2 and "must give y in a unit of length" in done.output
 
 
 def test_a_leg_without_a_place_is_refused(tmp_path):

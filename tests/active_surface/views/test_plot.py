@@ -276,7 +276,7 @@ def test_what_is_no_result_is_refused_with_one_message(folder, tmp_path):
         ([two, "--x", "stroke", "--y", "stroke"], "must be another axis than x; got stroke for both"),
         ([one, "--y", "frequency"], "must not be given where there is but one axis"),
         ([folder / "case", "--width", "10"], "--width must be from 50 to 500 mm; got 10"),
-        ([folder / "case", "--format", "gif"], '--format must be pdf, svg or png; got "gif"'),
+        ([folder / "case", "--format", "gif"], "'gif' is not one of 'pdf', 'svg', 'png'"),
     ]
     for arguments, said in others:
         done = CliRunner().invoke(main, ["plot", *map(str, arguments), "-o", str(tmp_path / "new")])

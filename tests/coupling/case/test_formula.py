@@ -62,7 +62,7 @@ REFUSED = [
     ("row " + "+ row " * 500 + "ms", ": it is longer than 500 characters"),
 ]
 NO_VALUE = [
-    ("sqrt(row, 2) ms", "has a function of too few or too many values, or what is no number"),
+    ("sqrt(row, 2) ms", "has a function with the wrong number of arguments, or what is no number"),
     ("min(row) ms", "has a function"),
     ("sqrt + 1 ms", "has a function"),
     ("pi(2) ms", "has a function"),
