@@ -27,8 +27,8 @@ def extremes(
     """The largest slope, deflection [m] and curvature [1/m] over the time asked for, wherever the run ended.
 
     They are those at the mesh's points and on circles around the actuators, where the slope is largest. Curvatures are
-    principal ones, `off` [m] or farther from the sharp points (k, 2) [m], where they are infinite. Of very many
-    actuators, slope and deflection over the neighbourhood of those where they must be.
+    principal ones, `off` [m] or farther from the sharp points (k, 2) [m], where they are infinite; None where no point
+    is as far. Of very many actuators, slope and deflection over the neighbourhood of those where they must be.
     """
     heights = stroke_heights(drives, moments(drives, end))
     if isinstance(shapes, PatchedShapes):
@@ -41,7 +41,7 @@ def extremes(
     slope = max(float(np.hypot(*np.einsum("i,nid->dn", h, gradient)).max()) for h in heights)
     far = cKDTree(sharp).query(points)[0] >= off * (1 - SAME_PLACE)
     rows = np.stack([hessian[far, :, 0, 0], hessian[far, :, 0, 1], hessian[far, :, 1, 1]])
-    curvature = max(float(_principal(*(rows @ h)).max()) for h in heights)
+    curvature = max(float(_principal(*(rows @ h)).max()) for h in heights) if far.any() else None
     return slope, float(np.abs(heights @ value.T).max()), curvature
 
 

@@ -254,6 +254,13 @@ def test_strain_has_that_of_a_residual_tension(more, modulus):
     assert s.largest_strain == pytest.approx(1e3 / 10e-6 / modulus, rel=1e-3)
 
 
+def test_a_plate_thicker_than_wide_has_a_summary_without_a_strain():
+    """All of it is nearer to an actuator than half its thickness, where strains of thin plates mean nothing."""
+    drive = ActuatorCase(position=(0.0, 0.0), stroke=1e-9, frequency=1000)
+    s = summary_with(drive, plate=DISC | {"thickness": 1e-3})
+    assert s.largest_strain is None and s.largest_slope > 0
+
+
 def test_of_a_plate_that_stretches_the_summary_has_errors_and_strain():
     s = summary_with(ActuatorCase(position=(0.0, 0.0), stroke=5e-6, frequency=1000))
     error = StretchError(mesh=2e-4, reduction=3e-5, pieces=4e-6)
