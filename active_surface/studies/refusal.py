@@ -11,13 +11,11 @@ from active_surface.studies.study import Study
 from active_surface.studies.variants import Variants
 from coupling import friction_law
 from coupling.case import (
-    SAME_PLACE,
     Case,
     FrictionCase,
     InputError,
     PlateCase,
     gaps,
-    half_size,
     must_be_inside,
 )
 from particle.friction import Contact
@@ -78,8 +76,7 @@ def start_faults(case: Case, starts: FloatArray) -> list[list[str]]:
     if not isinstance(case.plate, PlateCase):
         return [[] for _ in starts]
     mesh = case.plate.coarse_mesh
-    least = SAME_PLACE * half_size(mesh)
     return [
-        [] if gap > least else [f"part.position {must_be_inside(gap, mesh)}"]
+        [] if gap > mesh.least_gap else [f"part.position {must_be_inside(gap, mesh)}"]
         for gap in gaps(mesh, [(x, y) for x, y in starts.tolist()])
     ]

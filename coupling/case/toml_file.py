@@ -113,7 +113,9 @@ def _hint(text: str, line: int | None, reason: str) -> str:
     """What is most often wrong there: a table in single brackets, or a value with a unit and no quotes."""
     if re.match(r"Cannot declare .*'(actuators|segments|axes)'", reason):
         return "; a table that comes again needs double brackets, as [[actuators]]"
-    bare = re.search(r"=\s*([+-]?[\d.]+\s*[A-Za-z][\w/^*]*)\s*(?:#.*)?$", text.split("\n")[(line or 1) - 1])
+    if re.search(r"=\s*[+-]?\d+,\d+\s*(?:#.*)?$", line_text := text.split("\n")[(line or 1) - 1]):
+        return "; decimals are written with a point"
+    bare = re.search(r"=\s*([+-]?[\d.]+\s*[A-Za-z][\w/^*]*)\s*(?:#.*)?$", line_text)
     return f'; a value with a unit needs quotes: "{bare[1]}"' if bare else ""
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, NamedTuple
 
-from pydantic import AfterValidator, Field, StrictInt, ValidationError
+from pydantic import AfterValidator, Field, StrictInt, ValidationError, WrapValidator
 
 from coupling.case.actuators.drive import (
     MAX_PASSES,
@@ -50,8 +50,8 @@ MAX_PLACES: Final = 100_000  # actuators
 AMOUNTS: Final = {
     "stroke": Amount("m", "150 um"),
     "force": Amount("N", "2 uN"),
-    "stiffness": Amount("N/m", "1e4 N/m"),
-    "frequency": Amount("Hz", "300 Hz"),
+    "stiffness": Amount("N/m", "1e4 N/m", positive=True),
+    "frequency": Amount("Hz", "300 Hz", positive=True),
     "dwell": Amount("s", "50 ms"),
     "delay": Amount("s", "50 ms"),
     "phase": Amount("rad", "90 deg"),
@@ -65,6 +65,23 @@ def _apart(pitch: Any) -> Any:
     if (least := min(pitch if isinstance(pitch, tuple) else (pitch,))) <= 0:
         raise ValueError(f"must be greater than 0; got {length_text(least)}")
     return pitch
+
+
+def _positive(value: object, handler: Callable[[object], Any]) -> Any:
+    amount = handler(value)
+    if isinstance(amount, float) and amount <= 0:
+        raise ValueError(f"must be greater than 0; got {quoted(value)}")
+    return amount
+
+
+def _not_negative(value: object, handler: Callable[[object], Any]) -> Any:
+    amount = handler(value)
+    if isinstance(amount, float) and amount < 0:
+        raise ValueError(f"must be at least 0; got {quoted(value)}")
+    return amount
+
+
+_ABOVE_0, _FROM_0 = WrapValidator(_positive), WrapValidator(_not_negative)
 
 
 class LatticeCase(Driven):
@@ -99,17 +116,17 @@ class LatticeCase(Driven):
     """An expression of row, column, x and y that is true where there is an actuator."""
     force: Annotated[float | Formula, AMOUNTS["force"]] | None = Field(default=None, examples=["1 mN"])
     """As of an actuator, or an expression and its unit."""
-    stiffness: Annotated[float | Formula, AMOUNTS["stiffness"]] | None = None
+    stiffness: Annotated[float | Formula, AMOUNTS["stiffness"], _ABOVE_0] | None = None
     """As of an actuator, or an expression and its unit."""
     stroke: Annotated[float | Formula, AMOUNTS["stroke"]] | None = Field(default=None, examples=["5 um"])
     """As of an actuator, or an expression and its unit."""
-    frequency: Annotated[float | Formula, AMOUNTS["frequency"]] | None = None
+    frequency: Annotated[float | Formula, AMOUNTS["frequency"], _ABOVE_0] | None = None
     """As of an actuator, or an expression and its unit."""
     cycle: Cycle = "up-down"
     """As of an actuator, the same for all."""
     cycles: StrictInt | None = Field(default=None, ge=1, le=MAX_PASSES, examples=[5])
     """As of an actuator, the same for all."""
-    dwell: Annotated[float | Formula, AMOUNTS["dwell"]] = 0.0
+    dwell: Annotated[float | Formula, AMOUNTS["dwell"], _FROM_0] = 0.0
     """As of an actuator, or an expression and its unit."""
     phase: Annotated[float | Formula, AMOUNTS["phase"]] = Field(default=0.0, examples=["60 * column deg"])
     """As of an actuator, or an expression and its unit: a wave over the lattice."""
@@ -125,7 +142,9 @@ class LatticeCase(Driven):
     """As of an actuator, the same for all."""
     max_force: PositiveForce | None = Field(default=None, gt=0, examples=["100 mN"])
     """As of an actuator, the same for all."""
-    delay: Annotated[float | Formula, AMOUNTS["delay"]] = Field(default=0.0, examples=["0.05 * (row + column) ms"])
+    delay: Annotated[float | Formula, AMOUNTS["delay"], _FROM_0] = Field(
+        default=0.0, examples=["0.05 * (row + column) ms"]
+    )
     """As of an actuator, or an expression and its unit."""
 
     @classmethod
@@ -137,9 +156,6 @@ class LatticeCase(Driven):
         if count > MAX_PLACES:
             shorter, longer = sorted(("rows", "columns"), key=given.__getitem__)
             yield longer, f"must make at most {MAX_PLACES} actuators with {shorter} = {given[shorter]}; got {count}"
-        for key in AMOUNTS.keys() & given.keys():
-            if isinstance(given[key], float) and (rule := _broken_rule(key, given[key])):
-                yield key, f"must be {rule}; got {given[key]:g} {AMOUNTS[key].unit}"
 
     def spots(self) -> list[Spot]:
         """All its places, row by row from the lowest, each from the left."""

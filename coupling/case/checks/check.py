@@ -106,7 +106,7 @@ def _places(tables: CaseTables, plate: PlateCase, mesh: PlateMesh, made: Sequenc
     places |= {("part", "position"): tables.part.position}
     least = SAME_PLACE * half_size(mesh)
     for at, gap in zip(places, gaps(mesh, list(places.values())), strict=True):
-        if gap <= (least if at[0] == "part" else mesh.least_gap):
+        if gap <= mesh.least_gap:
             yield at, must_be_inside(gap, mesh)
     for one, other in _shared(list(places.values())[:-1], least):
         first = location_text(("actuators", one, "position"))

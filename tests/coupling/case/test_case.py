@@ -175,6 +175,8 @@ def test_a_field_is_found_by_its_path() -> None:
     with pytest.raises(ValueError, match="a ratio from 0 to below 1"):
         field.read(1.5)
     pairs = python_case(plate=plate(density="2330 kg/m^3", inertia=True, damping=[["20 kHz", 0.02], ["80 kHz", 0.01]]))
+    ratio = find_field(pairs, None, "plate.damping.*.1")
+    assert (ratio.unit, ratio.read(0.05)) == ("1", 0.05)
     for path, said in {
         "plate.damping": "must be a single value; got plate.damping, which is a list or table; name one in it",
         "plate.shape": "cannot be varied: plate.shape selects which other keys exist",

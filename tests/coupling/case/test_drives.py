@@ -92,7 +92,7 @@ def test_what_comes_after_the_end_of_a_run_does_not_count(tmp_path, drive):
 @pytest.mark.parametrize(
     ("what", "gap", "inside"),
     [
-        *(("part", 2e-9, True), ("part", 5e-10, False), ("part", 0, False)),
+        *(("part", 7e-4, True), ("part", 5e-4, False), ("part", 0, False)),  # a run refuses it there
         *(("actuator", 7e-4, True), ("actuator", 5e-4, False), ("actuator", 0, False)),
     ],
 )

@@ -181,6 +181,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         "tset.toml": rf"no such file or directory; did you mean {tmp_path}/test.toml\?$",
         "": "is a folder; name a file in it$",
         "a\0b": "must have a name that can be printed",
+        "\ud800": "must have a name that can be printed",
     }.items():
         with pytest.raises(CaseError, match=said):
             read_case(tmp_path / path)
