@@ -40,28 +40,29 @@ FIGURES: Final = (
 def model_warnings(study: Study) -> tuple[str, ...]:
     """The warnings of a run, each with the worst figure of the base case and a few corners of the study's axes.
 
-    Points that cannot be run are left out, and so are warnings about a run's files and the digits of its path. A rigid
-    platform has no warnings.
+    Points that a sweep refuses are left out, and so are warnings about a run's files and the digits of its path. One
+    that cannot be checked is a warning of its own. A rigid platform has no warnings.
     """
     if isinstance(study.case.plate, PlatformCase):
         return ()
-    summaries, plates = [], SolvedPlates(keep=1)
+    summaries, plates, unchecked = [], SolvedPlates(keep=1), dict[str, None]()
     # Many small systems: BLAS threads would only wait for each other.
     with threadpool_limits(limits=1, user_api="blas"):
         for case in _cases(study):
             try:
                 summary = quick_summary(case, plates.scene(case))
-            except FAILURES:
+            except FAILURES as error:
+                unchecked[f"The model could not be checked at a corner of the axes: {error}."] = None
                 continue
             if isinstance(summary, PlateSummary):
                 summaries.append(summary)
     if not summaries:
-        return ()
+        return tuple(unchecked)
     known = {name: [value for one in summaries if (value := getattr(one, name)) is not None] for name in FIGURES}
     worst: dict[str, Any] = {name: max(values, default=None) for name, values in known.items()}
     stretched = [one.stretch_error for one in summaries if one.stretch_error]
     worst["stretch_error"] = max(stretched, key=lambda error: error.largest, default=None)
-    return tuple(report.warnings(replace(summaries[0], frames_per_cycle=None, **worst)))
+    return (*report.warnings(replace(summaries[0], frames_per_cycle=None, **worst)), *unchecked)
 
 
 def _cases(study: Study) -> Iterator[Case]:

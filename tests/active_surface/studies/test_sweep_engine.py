@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from sweeps import LATTICE, PLATE, PLATFORM, written
 
 from active_surface.cli.program import main
-from active_surface.studies import engine, read_study, run_study
+from active_surface.studies import engine, read_study, run_study, validity
 from active_surface.studies.engine import Engine
 from active_surface.studies.validity import corners
 
@@ -140,6 +140,16 @@ def test_the_command_warns_where_the_model_stops_holding(tmp_path):
     done = CliRunner().invoke(main, ["sweep", str(written(tmp_path, SOFT, case)), "-o", str(tmp_path / "out")])
     assert f"warning     {warning}\n" in done.output
     assert run_study(read_study(written(tmp_path, SOFT.replace('"1 um", "60 um"', '"0.2 um"'), case))).warnings == []
+
+
+def test_a_corner_that_cannot_be_checked_is_a_warning(tmp_path, monkeypatch):
+    def fails(case, scene):
+        raise ValueError("its numbers are too far apart")
+
+    study = read_study(written(tmp_path, SOFT, PLATE))
+    monkeypatch.setattr(validity, "quick_summary", fails)
+    (warning,) = validity.model_warnings(study)
+    assert warning == "The model could not be checked at a corner of the axes: its numbers are too far apart."
 
 
 @pytest.mark.parametrize(
