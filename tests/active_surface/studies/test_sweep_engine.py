@@ -15,6 +15,7 @@ from active_surface.cli.program import main
 from active_surface.studies import engine, read_study, run_study, validity
 from active_surface.studies.engine import Engine
 from active_surface.studies.validity import corners
+from coupling import report
 
 
 @pytest.mark.parametrize("failure", [ValueError, ZeroDivisionError, RuntimeError])
@@ -142,13 +143,18 @@ def test_the_command_warns_where_the_model_stops_holding(tmp_path):
     assert run_study(read_study(written(tmp_path, SOFT.replace('"1 um", "60 um"', '"0.2 um"'), case))).warnings == []
 
 
-def test_a_corner_that_cannot_be_checked_is_a_warning(tmp_path, monkeypatch):
+@pytest.mark.compiled
+@pytest.mark.parametrize("highest", [1e-6, 1.0])
+def test_a_corner_that_cannot_be_checked_is_a_warning(tmp_path, monkeypatch, ran, highest):
     def fails(case, scene):
-        raise ValueError("its numbers are too far apart")
+        if case.actuators[0].stroke < highest:
+            raise ValueError("its numbers are too far apart")
+        return ran("linear").summary
 
     study = read_study(written(tmp_path, SOFT, PLATE))
     monkeypatch.setattr(validity, "quick_summary", fails)
-    (warning,) = validity.model_warnings(study)
+    *_, warning = warnings = validity.model_warnings(study)
+    assert len(warnings) == (1 if highest == 1.0 else 1 + len(report.warnings(ran("linear").summary)))
     assert warning == "The model could not be checked at a corner of the axes: its numbers are too far apart."
 
 

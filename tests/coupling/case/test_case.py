@@ -20,6 +20,7 @@ from coupling.case import (
     KogutEtsionCase,
     PartCase,
     RunCase,
+    common_period,
     find_field,
 )
 from coupling.scene import damping_of
@@ -166,6 +167,11 @@ def test_a_table_of_damping_goes_on_beyond_its_ends() -> None:
     pairs = python_case().plate.model_copy(update={"damping": ((20e3, 0.02), (80e3, 0.01))})
     ratios = damping_of(pairs)(np.array([1e3, 20e3, 50e3, 80e3, 1e6]))
     assert ratios == pytest.approx([0.02, 0.02, 0.015, 0.01, 0.01], rel=1e-12)
+
+
+def test_periods_that_differ_by_a_billionth_have_no_common_one() -> None:
+    assert common_period(5e-4, 1e-3 / 3) == pytest.approx(1e-3, rel=1e-15)
+    assert common_period(5e-4, 5e-4 * (1 + 1e-9)) == np.inf
 
 
 def test_a_field_is_found_by_its_path() -> None:
