@@ -93,7 +93,7 @@ def friction_logic(bench: Bench) -> Found:
         curves.insert(0, Curve(times, velocity, {"color": GREY, "linewidth": 1.0, "label": "platform"}))
         curves.insert(1, Curve(times, part, {"color": GREEN, "linestyle": "-.", "linewidth": 1.2, "label": "part"}))
         grey = [("x", SLIP, SLIP, GREY), ("x", STICK, STICK, GREY), ("y", 0.0, 0.0, GREY)]
-        panels.append(Panel("time [s]", "velocity [m/s]", curves, f"figure 4: {platform.name}", grey))
+        panels.append(Panel("time [s]", "velocity [m/s]", curves, f"figure 4: platform with {platform.name}", grey))
     return numbers, [panels]
 
 
@@ -249,7 +249,7 @@ def deceleration(bench: Bench) -> Found:
     }
     end = MILLI / drive.frequency
     panels = [
-        Panel("time [ms]", "velocity [m/s]", own, f"figure {name}", [("x", end, end, GREY)], legend=name == "13")
+        Panel("time [ms]", "velocity [m/s]", own, f"figure {name}", [("x", end, end, GREY)], legend=False)
         for name, own in zip(("13", "14"), curves, strict=True)
     ]
     return {"13, 14": numbers, "13, 14 (Table 1)": {PAPER: by_table}}, [panels]
