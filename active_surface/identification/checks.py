@@ -7,9 +7,10 @@ from typing import get_args
 
 import numpy as np
 
-from active_surface.identification.parameters import Bounds, Parameter, parameters_of
+from active_surface.identification.parameters import Bounds, parameters_of
 from active_surface.identification.track import Track
 from active_surface.identification.trials import Loss
+from active_surface.parameter import Parameter
 from coupling.case import Case
 
 

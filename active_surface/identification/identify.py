@@ -14,12 +14,13 @@ from threadpoolctl import threadpool_limits
 from active_surface.identification.checks import checked
 from active_surface.identification.estimate import Estimate
 from active_surface.identification.fit import TrackFit
-from active_surface.identification.parameters import FREE, Parameter, case_with
+from active_surface.identification.parameters import FREE, case_with
 from active_surface.identification.profiles import profiled, spread_of
 from active_surface.identification.result import Identified, case_names, names_of
 from active_surface.identification.search import search
 from active_surface.identification.track import Track
 from active_surface.identification.trials import Loss, Recording, Trials
+from active_surface.parameter import Parameter
 from coupling import Progress, build_friction, build_surface, follow_part, silent
 from coupling.case import Case, plain_case
 from particle import SurfaceMotion, interruptible

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 
 from active_surface.arrays import FloatArray
+from active_surface.parameter import Parameter
 from coupling.case import Case, Field, find_field, quoted
 
 FACTOR: Final = 10.0  # either way, of usual bounds
@@ -16,21 +17,6 @@ FREE: Final = ("part", "friction")  # tables whose fields one moving surface ser
 PLACES: Final = ("part.position.", "part.velocity.")  # of which a factor says nothing
 
 Bounds = Mapping[str, Sequence[Any]]
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A field between two bounds [SI]; its share of them is in logarithms where both are positive."""
-
-    field: Field
-    low: float
-    high: float
-
-    def value(self, share: float | FloatArray) -> Any:
-        """The value at a share of the bounds, from 0 to 1."""
-        if self.low > 0:
-            return self.low * (self.high / self.low) ** share
-        return self.low + (self.high - self.low) * share
 
 
 def parameters_of(
@@ -53,7 +39,7 @@ def parameters_of(
         raise ValueError("\n".join(f"Input {name} of identify {mistake}" for name, mistake in wrong))
     for path in free:
         low, high = min(one.low for one in columns[path]), max(one.high for one in columns[path])
-        columns[path] = [replace(one, low=low, high=high) for one in columns[path]]
+        columns[path] = [replace(one, low=low, high=high, logarithmic=low > 0) for one in columns[path]]
     return [list(row) for row in zip(*(columns[path] for path in (*free, *own)), strict=True)]
 
 
@@ -110,7 +96,7 @@ def _bounded(field: Field, given: Sequence[Any] | None) -> Parameter:
         low, high = (_read(field, value) for value in given)
     if not low < high:
         raise ValueError(f"must increase; got {low:g} and {high:g} in SI units")
-    return Parameter(field, low, high)
+    return Parameter(field, low, high, logarithmic=low > 0)
 
 
 def _read(field: Field, value: Any) -> float:

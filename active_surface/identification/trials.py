@@ -9,8 +9,9 @@ import numpy as np
 
 from active_surface.arrays import FloatArray
 from active_surface.identification.blocks import Blocks
-from active_surface.identification.parameters import Parameter, case_with
+from active_surface.identification.parameters import case_with
 from active_surface.identification.track import Track
+from active_surface.parameter import Parameter
 from coupling import build_friction, build_part
 from coupling.case import Case
 from particle import Micropart, SurfaceMotion, Trajectory, simulate_many
