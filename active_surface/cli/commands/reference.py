@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 NAME = "active-surface"
 VARIABLE = "_ACTIVE_SURFACE_COMPLETE"  # by which click is asked, when the command is called so
-NEXT = {"case": "active-surface run {}", "study": "active-surface sweep {}", "aim": "active-surface aim {} --help"}
-"""What to do next with an example."""
 MODELS = {
     "case": "coupling.case:CaseTables",
     "study": "active_surface.studies:StudyTables",
@@ -35,7 +33,7 @@ def example(name: str | None = None) -> Answer:
 
     No file is replaced.
     """
-    from active_surface.examples import example_names, kind_of, write_example
+    from active_surface.examples import example_names, next_command, write_example
 
     if name is None:
         names = example_names()
@@ -43,7 +41,7 @@ def example(name: str | None = None) -> Answer:
         return Answer({"examples": names}, [(f"{one:{width}}", f"  {about}") for one, about in names.items()])
     name = name.removesuffix(".toml")
     files = {path.as_posix(): new for path, new in write_example(name, Path()).items()}
-    following = NEXT[kind_of(name)].format(next(iter(files)))
+    following = next_command(name)
     lines = [("wrote" if new else "is there", path) for path, new in files.items()]
     return Answer({"files": files, "next": following}, [*lines, ("next", following)])
 
@@ -124,7 +122,7 @@ def _print(check: Check) -> None:
 
 @command
 def reproduce(
-    figure: tuple[str, ...] = (),
+    figure: tuple[str, ...],
     full: Annotated[bool, option("Many more starts, and finer steps: takes long.")] = False,
     output: Output = RESULTS,
 ) -> Answer:

@@ -38,6 +38,19 @@ def test_an_example_comes_with_all_that_it_reads(name, tmp_path):
         assert file.read_bytes() == (EXAMPLES / file.relative_to(tmp_path)).read_bytes()
 
 
+@pytest.mark.parametrize(
+    ("name", "command"),
+    [
+        ("transport", "run transport.toml"),
+        ("studies/starts", "sweep studies/starts.toml"),
+        ("aims/to_target", "aim aims/to_target.toml"),
+        ("aims/around_the_corner", "plan aims/around_the_corner.toml --through 230,240 200,240 200,210 200,180"),
+    ],
+)
+def test_the_command_that_an_example_is_for_comes_next(name, command):
+    assert example(name).output.splitlines()[-1] == f"next        active-surface {command}"
+
+
 def test_what_is_there_is_not_replaced(tmp_path):
     assert example("studies/starts", "-q").output == ""
     done = example("studies/jittered_starts")
