@@ -31,7 +31,7 @@ from .outlook import (
     frequency_warnings as frequency_warnings,
     limit_warnings as limit_warnings,
 )
-from . import advice as advice, report as report
+from . import advice as advice, borders as borders, report as report
 from .report import warnings as warnings
 from .part import build_friction as build_friction, build_part as build_part, friction_law as friction_law
 from .results import Output as Output
@@ -53,5 +53,5 @@ from .shared import (
 from .solved_plates import SolvedPlates as SolvedPlates
 from .suggestion import near as near
 from .margins import Margin as Margin
-from .thresholds import FAR as FAR
+from .borders import FAR as FAR
 from .summary import PlateSummary as PlateSummary, Summary as Summary, summary_of as summary_of

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from coupling.borders import Thresholds, thresholds_of
 from coupling.case import Case
 from coupling.display import frame_times
 from coupling.drives import fastest, first_jump
@@ -18,7 +19,6 @@ from coupling.margins import Margins, margins_of
 from coupling.measured import MotionFit
 from coupling.plate_figures import PlateFigures, plate_figures
 from coupling.scene import PlateScene, Scene
-from coupling.thresholds import Thresholds, thresholds_of
 from particle import EventKind, State, Trajectory
 from particle.friction import Contact
 

@@ -5,25 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from coupling.case import Case, PlateCase, friction_scales, more_plastic, ramped_case, with_index
-from coupling.part import build_part, friction_law
+from coupling.borders import FAR, KEPT, LEAST, Factors, at_rest, driven, factors_of, stretches, strokes_alone, why_none
+from coupling.case import PlateCase, friction_scales, more_plastic, ramped_case, with_index
+from coupling.part import build_friction, build_part, friction_law
+from coupling.plate_figures import MAX_SLOPE, MAX_STRAIN
 from coupling.progress import doing, silent
-from coupling.scene import PlateScene, Scene, lifts_of, plate_scene
-from coupling.thresholds import FAR, LEAST, Factors, at_rest, driven, factors_of, stretches, strokes_alone
-from particle import (
-    Micropart,
-    Outcome,
-    PartAtRest,
-    State,
-    SurfaceMotion,
-    interruptible,
-    simulate,
-)
+from coupling.result import Result
+from coupling.scene import PlateScene, lifts_of, plate_scene
+from coupling.summary import PlateSummary, Summary
+from particle import Micropart, State, SurfaceMotion, interruptible, simulate
 from particle.friction import Contact, ScaledFriction
 
 # Factors of the strokes, in the order in which they are tried.
@@ -57,6 +52,33 @@ class Trial:
     ramp: float | None = None  # cycles over which forces grow that begin at once in the case; None: as there
 
 
+def advise(result: Result, largest_stroke: float | None = None) -> Trial | None:
+    """Search for what would have the part of a run move and stay on, by trial runs.
+
+    largest_stroke: the factor of strokes up to which the model holds [that of the summary].
+    None where no trial does, and where `no_advice` says why none is made.
+    """
+    if no_advice(result):
+        return None
+    most = _largest_stroke(result.summary) if largest_stroke is None else largest_stroke
+    return Trials(result, most).best()
+
+
+def no_advice(result: Result) -> str:
+    """Why no trials are made, in a sentence: the part moves already, say; empty where they are."""
+    return why_none(result.case, result.scene, result.trajectory)
+
+
+def _largest_stroke(summary: Summary) -> float:
+    """The factor of strokes up to which slope and strain of a plate stay in bounds; 1 where it stretches."""
+    if not isinstance(summary, PlateSummary):
+        return math.inf
+    if summary.theory != "linear":
+        return 1.0
+    rooms = [(MAX_SLOPE, summary.largest_slope), (MAX_STRAIN, summary.largest_strain or 0.0)]
+    return min((bound / value for bound, value in rooms if value > 0), default=math.inf)
+
+
 class Setting(NamedTuple):
     """What a trial changes besides what its thresholds are of."""
 
@@ -67,48 +89,33 @@ class Setting(NamedTuple):
     pulled: bool = True  # whether the plate may pull at the part where the law bears any load
 
 
-OWN: Final = Setting()
-
-
 class Trials:
-    """Runs of a case with other drives or less friction.
+    """Runs of a result's case with other drives, less friction or from other places.
 
-    largest_stroke: the factor of strokes up to which the model holds.  moved: m, by the case itself.
+    largest_stroke: the factor of strokes up to which the model holds.
     """
 
-    def __init__(
-        self,
-        case: Case,
-        scene: Scene,
-        friction: Contact,
-        largest_stroke: float,
-        moved: float = 0.0,
-    ) -> None:
-        self.case, self.scene, self.friction = case, scene, friction
-        self.least = max(NEAR * scene.surface.size, FARTHER * moved)  # m, by which a trial must move the part
-        self.rings, self.stretches = strokes_alone(scene), stretches(scene)
-        self.largest_stroke, self.part, self.count = largest_stroke, build_part(case), 0
-        self._laws: dict[float, Contact] = {}
-        shortest = float(scene.surface.stroke_times.min(initial=case.run.duration))
+    def __init__(self, result: Result, largest_stroke: float) -> None:
+        self.case, self.scene, self.largest_stroke, self.count = result.case, result.scene, largest_stroke, 0
+        self.friction, self.part = build_friction(self.case), build_part(self.case)
+        path, self.size = result.trajectory, self.scene.surface.size
+        moved = path.distance if path.outcome in KEPT else 0.0
+        self.least = max(NEAR * self.size, FARTHER * moved)  # m, by which a trial must move the part
+        self.rings, self.stretches = strokes_alone(self.scene), stretches(self.scene)
+        shortest = float(self.scene.surface.stroke_times.min(initial=self.case.run.duration))
         # A drive that does not even repeat itself once carries nothing along.
-        self.least_factor = LEAST if self.rings else min(1.0, TURNS * 2 * shortest / case.run.duration)
+        self.least_factor = LEAST if self.rings else min(1.0, TURNS * 2 * shortest / self.case.run.duration)
+        # Tabulating a law takes a while.
+        self.law_of_index = cache(lambda index: friction_law(with_index(self.case.friction, index)))
 
-    @property
-    def level(self) -> bool:
-        """Whether nothing pulls the part aside on a plate."""
-        return isinstance(self.scene, PlateScene) and self._rest(self.part).slip().value < LEVEL
-
-    def _law(self, setting: Setting) -> Contact:
+    def law(self, setting: Setting) -> Contact:
+        """The friction of a setting."""
         if setting.plasticity is None:
             return ScaledFriction(self.friction, setting.friction)
-        if setting.plasticity not in self._laws:  # tabulating one takes a while
-            self._laws[setting.plasticity] = friction_law(with_index(self.case.friction, setting.plasticity))
-        return self._laws[setting.plasticity]
+        return self.law_of_index(setting.plasticity)
 
-    def _rest(self, part: Micropart, setting: Setting = OWN) -> PartAtRest:
-        return at_rest(self.case, self._surface(setting), part, self._law(setting))
-
-    def _surface(self, setting: Setting) -> SurfaceMotion:
+    def surface(self, setting: Setting) -> SurfaceMotion:
+        """The surface of a setting, under the case's own frequencies and strokes."""
         return self.scene.surface if setting.ramp is None else self._ramped or self.scene.surface
 
     @cached_property
@@ -122,9 +129,9 @@ class Trials:
         assert isinstance(case.plate, PlateCase)
         return plate_scene(ramped, case.plate, silent, scene.shapes).surface
 
-    def thresholds(self, part: Micropart, setting: Setting = OWN) -> Factors:
+    def thresholds(self, part: Micropart, setting: Setting) -> Factors:
         """The thresholds of a part that stays at its start."""
-        rest = self._rest(part, setting)
+        rest = at_rest(self.case, self.surface(setting), part, self.law(setting))
         return factors_of(lambda factor: driven(self.scene, rest, factor, setting.stroke))
 
     def best(self) -> Trial | None:
@@ -132,35 +139,40 @@ class Trials:
 
         First from the case's start, unless nothing pulls there, then from places around the nearest actuator.
         """
-        found = list[Trial]()
         groups = [list(self._within()), [Setting(stroke) for stroke in self._strokes(self.largest_stroke, math.inf)]]
         if math.isinf(self.friction.pull_off):
             groups = [[one._replace(pulled=False) for one in group] for group in groups] + groups
+        plate = isinstance(self.scene, PlateScene)
+        level = plate and at_rest(self.case, self.scene.surface, self.part, self.friction).slip().value < LEVEL
+        found = list[Trial]()
         for settings in groups:
-            trial = None if self.level else self._farthest(self.part, settings)
-            if trial is None and isinstance(self.scene, PlateScene):
-                trial = self._elsewhere(self.scene, [*filter(_keeps_friction, settings), *settings[-1:]])
+            trial = None if level else self._farthest(self.part, settings)
+            if trial is None and plate:
+                own = [one for one in settings if one.friction == 1 and one.plasticity is None]
+                trial = self._elsewhere([*own, *settings[-1:]])
             if trial is not None:
                 found.append(trial)
-                if trial.distance > ENOUGH * self.scene.surface.size:
+                if trial.distance > ENOUGH * self.size:
                     return trial
-        return max(found, key=lambda trial: trial.distance, default=None)
+        return _farthest(found)
 
     def _farthest(self, part: Micropart, settings: Sequence[Setting]) -> Trial | None:
         """The trial that goes farthest of the first setting in which one goes far, or of all."""
-        size, doubtful = self.scene.surface.size, list[Trial]()
+        doubtful, most = list[Trial](), self.largest_stroke if self.rings else math.inf
         for setting in settings:
-            thresholds = self.thresholds(part, setting)
-            trials = [
-                self.trial(part, factor, setting) for factor in _between(thresholds, self.least_factor, self._most)
-            ]
-            farthest = max(trials, key=lambda trial: trial.distance, default=None)
+            slips, comes_off = self.thresholds(part, setting)
+            low = max(slips, self.least_factor)
+            high = min(comes_off, WIDE * low, most)
+            if not low < high < math.inf:
+                continue
+            factors = dict.fromkeys(float(f"{low * (high / low) ** share:.3g}") for share in SHARES)
+            farthest = _farthest([self.trial(part, factor, setting) for factor in factors])
             if farthest is None or farthest.distance < self.least:
                 continue
-            if farthest.distance > FAR * size and thresholds.comes_off > ROOM * thresholds.slips:
+            if farthest.distance > FAR * self.size and comes_off > ROOM * slips:
                 return farthest
             doubtful.append(farthest)
-        return max(doubtful, key=lambda trial: trial.distance, default=None)
+        return _farthest(doubtful)
 
     def _strokes(self, above: float, most: float) -> list[float]:
         """Factors of the strokes above one and up to another."""
@@ -178,52 +190,39 @@ class Trials:
             yield from [Setting(stroke, friction) for friction in scales]
             yield from [Setting(stroke, plasticity=index) for index in more_plastic(self.case.friction)]
 
-    @property
-    def _most(self) -> float:
-        """The largest factor of what varies."""
-        return self.largest_stroke if self.rings else math.inf
-
     def trial(self, part: Micropart, factor: float, setting: Setting) -> Trial:
         """A run; its distance is negative where the part is lost."""
         frequency, stroke = (1.0, factor) if self.rings else (factor, setting.stroke)
-        surface, run = self._surface(setting).scaled(frequency, stroke), self.case.run
+        surface, run = self.surface(setting).scaled(frequency, stroke), self.case.run
         duration = min(run.duration, TRIED * float(surface.stroke_times.min(initial=run.duration)))
         self.count += 1
         doing(f"Trial run {self.count}")
-        path = interruptible(simulate, surface, part, self._law(setting), duration, run.gravity, run.tolerance)
-        loads = path.normal_force[path.state != State.FLIGHT]
-        least = float(loads.min()) if len(loads) else 0.0
-        kept = path.outcome in (Outcome.STUCK, Outcome.MOVING) and (setting.pulled or least >= 0)
-        distance = path.distance if kept else -1.0
+        path = interruptible(simulate, surface, part, self.law(setting), duration, run.gravity, run.tolerance)
+        load = float(path.normal_force[path.state != State.FLIGHT].min(initial=math.inf))
+        load = 0.0 if math.isinf(load) else load
+        kept = path.outcome in KEPT and (setting.pulled or load >= 0)
+        place = None if part is self.part else part.position
         return Trial(
-            frequency, stroke, setting.friction, None, distance, duration, least, setting.plasticity, setting.ramp
-        )
+            frequency, stroke, setting.friction, place, path.distance if kept else -1.0, duration, load,
+            setting.plasticity, setting.ramp,
+        )  # fmt: skip
 
-    def _elsewhere(self, scene: PlateScene, settings: Sequence[Setting]) -> Trial | None:
+    def _elsewhere(self, settings: Sequence[Setting]) -> Trial | None:
         """A trial from another place, around the actuator nearest to the start."""
-        points, outline = scene.shapes.points, scene.shapes.outline
+        assert isinstance(self.scene, PlateScene)
+        points, outline, found = self.scene.shapes.points, self.scene.shapes.outline, list[Trial]()
         nearest = points[np.argmin(np.hypot(*(points - self.part.position).T))]
-        gap, found = float(outline.gap(nearest[None])[0]), list[Trial]()
-        for radius in RADII:
-            for angle in ANGLES:
-                x, y = nearest + radius * gap * np.array([math.cos(angle), math.sin(angle)])
-                place = float(f"{x:.3g}"), float(f"{y:.3g}")
-                if outline.gap(np.array([place]))[0] <= 0:  # a rim may be nearer than three digits tell
-                    continue
-                if trial := self._farthest(replace(self.part, position=place), settings):
-                    found.append(replace(trial, place=place))
-                    if trial.distance > FAR * scene.surface.size:
-                        return found[-1]
-        return max(found, key=lambda trial: trial.distance, default=None)
+        gap = float(outline.gap(nearest[None])[0])
+        for x, y in [(r * math.cos(angle), r * math.sin(angle)) for r in RADII for angle in ANGLES]:
+            place = float(f"{nearest[0] + gap * x:.3g}"), float(f"{nearest[1] + gap * y:.3g}")
+            if outline.gap(np.array([place]))[0] <= 0:  # a rim may be nearer than three digits tell
+                continue
+            if trial := self._farthest(replace(self.part, position=place), settings):
+                found.append(trial)
+                if trial.distance > FAR * self.size:
+                    return trial
+        return _farthest(found)
 
 
-def _keeps_friction(setting: Setting) -> bool:
-    return setting.friction == 1 and setting.plasticity is None
-
-
-def _between(thresholds: Factors, least: float, most: float) -> Iterator[float]:
-    """Factors from the least to the largest, of three digits, at which a part at rest slips and does not come off."""
-    low = max(thresholds.slips, least)
-    high = min(thresholds.comes_off, WIDE * low, most)
-    if low < high < math.inf:
-        yield from dict.fromkeys(float(f"{low * (high / low) ** share:.3g}") for share in SHARES)
+def _farthest(trials: Sequence[Trial]) -> Trial | None:
+    return max(trials, key=lambda trial: trial.distance, default=None)

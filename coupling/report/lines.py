@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from common import quantity_text
+from coupling.borders import BEFORE, LEAST, RANGE, Thresholds
 from coupling.case import INERTIA
 from coupling.margins import Margin
 from coupling.measured import MotionFit
@@ -13,7 +14,6 @@ from coupling.plate_figures import StretchError, VibrationFigures
 from coupling.report.warnings import MAX_QUASI_STATIC_SHARE
 from coupling.report.wording import MICRO, MILLI, by_theory, count, in_percent, percent, quantity, unit_of
 from coupling.summary import PlateSummary, Summary
-from coupling.thresholds import BEFORE, LEAST, RANGE, Thresholds
 from particle import Outcome
 
 MAX_LISTED = 8  # jumps of a measured motion

@@ -9,7 +9,7 @@ import pytest
 from sweeps import DISC
 
 from coupling import report, run_case
-from coupling.advice import Setting, Trial, Trials, advise, advised_case, trial_text
+from coupling.advice import Setting, Trial, Trials, advice_text, advise, advised_case, no_advice
 from coupling.case import (
     ActuatorCase,
     Case,
@@ -53,9 +53,9 @@ def case_of(stroke=1e-6, frequency=3000, place=(1e-4, 5e-5), **update):
 
 
 def found(result):
-    """The advice, and the case of its trial run."""
-    advice = advise(result)
-    return advice, advised_case(result.case, advice.trial)
+    """The trial run that advice found, and its case."""
+    trial = advise(result)
+    return trial, advised_case(result.case, trial)
 
 
 @pytest.fixture(scope="module")
@@ -152,18 +152,17 @@ def stuck():
 @pytest.mark.slow
 def test_advice_on_a_part_that_stays_is_what_runs_do(stuck):
     assert stuck.trajectory.outcome is Outcome.STUCK and not stuck.trajectory.events
-    thresholds, (advice, moving) = stuck.summary.thresholds, found(stuck)
+    thresholds, (trial, moving) = stuck.summary.thresholds, found(stuck)
     assert 1 < thresholds.slips_from < thresholds.comes_off_from
     surface, case = stuck.surface, stuck.case
     for factor, slips in ((thresholds.slips_from * 0.9999, False), (thresholds.slips_from * 1.0001, True)):
         path = follow_part(case, surface.scaled(factor), build_friction(case))
         assert (EventKind.SLIPS in [event.kind for event in path.events]) == slips
-    trial = advice.trial
     moved = run_case(moving)
     assert moved.trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
     assert moved.summary.distance == pytest.approx(trial.distance, rel=1e-3)
     assert f"{thresholds.comes_off_from:.4g} times" in dict(report.lines(stuck.summary))["thresholds"]
-    assert f"moves it by {quantity(trial.distance, 'm')} in" in trial_text(stuck.summary, advice)
+    assert f"moves it by {quantity(trial.distance, 'm')} in" in advice_text(stuck, trial)
     assert summary_of(json.loads(json.dumps(stuck.summary.as_dict()))) == stuck.summary
 
 
@@ -180,9 +179,8 @@ def test_advice_on_a_platform_becomes_a_case():
             run=RunCase(duration=0.05),
         )
     )
-    advice, moving = found(still)
-    trial = advice.trial
-    assert still.trajectory.distance == 0 and advice.strokes == (3e-7,)
+    trial, moving = found(still)
+    assert still.trajectory.distance == 0
     axis = moving.plate.motion.x
     assert axis.frequency == pytest.approx(100 * trial.frequency) and axis.stroke == pytest.approx(3e-7 * trial.stroke)
     assert axis.delay == pytest.approx(1e-4 / trial.frequency)
@@ -214,10 +212,9 @@ def test_forces_that_begin_at_once_are_advised_to_grow():
         )
     )
     assert shaken.trajectory.outcome is Outcome.DETACHED
-    advice, moving = found(shaken)
-    trial = advice.trial
+    trial, moving = found(shaken)
     assert trial.ramp == 3 and 0 < shaken.summary.thresholds.comes_off_from < trial.stroke
-    assert "forces that grow over 3 cycles (ramp = 3)" in trial_text(shaken.summary, advice)
+    assert "forces that grow over 3 cycles (ramp = 3)" in advice_text(shaken, trial)
     assert moving.actuators[0].ramp == 3
     moved = run_case(moving)
     assert moved.trajectory.outcome in (Outcome.STUCK, Outcome.MOVING)
@@ -275,30 +272,29 @@ def test_thresholds_state_the_pull_just_before_a_part_comes_off_unslipped():
 def test_advice_on_a_part_that_is_lost_keeps_it():
     lost = run_case(case_of(stroke=4e-6, frequency=20_000))
     assert lost.trajectory.outcome is Outcome.DETACHED
-    trial = found(lost)[0].trial
+    trial = found(lost)[0]
     assert lost.summary.thresholds.comes_off_from < 1 and trial.frequency < 1 and trial.distance > 0
 
 
 @pytest.mark.slow
 def test_trials_beyond_the_bounds_of_the_model_come_last_and_say_so(base):
     free, bounded = advise(base, math.inf), advise(base, 1.0)
-    assert bounded.trial.stroke == 1 or bounded.trial.friction == 1
-    steep = replace(free, trial=replace(free.trial, stroke=30.0))
-    assert "linear theory at 6 times the thickness" in trial_text(base.summary, steep)
+    assert bounded.stroke == 1 or bounded.friction == 1
+    assert "linear theory at 6 times the thickness" in advice_text(base, replace(free, stroke=30.0))
 
 
 @pytest.mark.slow
 def test_less_friction_is_a_trial_with_scaled_limits(stuck):
     case = stuck.case
-    trials = Trials(case, stuck.scene, build_friction(case), largest_stroke=1.0)
+    trials = Trials(stuck, largest_stroke=1.0)
     setting = Setting(0.5, 0.8)
     trial = trials.trial(trials.part, math.sqrt(math.prod(trials.thresholds(trials.part, setting))), setting)
     assert trial.distance > 0
     advised = advised_case(case, trial)
     assert advised.friction.coefficient == pytest.approx(0.8 * case.friction.coefficient)
     assert run_case(advised).summary.distance == pytest.approx(trial.distance, rel=1e-3)
-    said = trial_text(stuck.summary, replace(advise(stuck), trial=trial))
-    assert f"0.8 times the friction (coefficient = {advised.friction.coefficient:.3g})" in said
+    text = advice_text(stuck, trial)
+    assert f"0.8 times the friction (coefficient = {advised.friction.coefficient:.3g})" in text
 
 
 def test_friction_is_scaled_where_a_key_holds_it():
@@ -315,10 +311,9 @@ def test_friction_is_scaled_where_a_key_holds_it():
 @pytest.mark.slow
 def test_kogut_and_etsion_is_led_to_surfaces_that_hold_less():
     sticky = run_case(case_of(stroke=2e-6, frequency=300, friction=KogutEtsionCase()))
-    advice, moving = found(sticky)
-    trial = advice.trial
+    trial, moving = found(sticky)
     assert trial.plasticity_index > sticky.case.friction.plasticity_index
-    assert f"friction.plasticity_index = {trial.plasticity_index:g}" in trial_text(sticky.summary, advice)
+    assert f"friction.plasticity_index = {trial.plasticity_index:g}" in advice_text(sticky, trial)
     assert run_case(moving).summary.distance == pytest.approx(trial.distance, rel=1e-3)
     assert more_plastic(KogutEtsionCase(preset="paper")) == () == more_plastic(CoulombCase(coefficient=0.2))
     with pytest.raises(ValueError, match="got coulomb"):
@@ -331,9 +326,9 @@ def test_advice_on_a_constant_friction_says_where_the_plate_would_pull():
         run_case(case_of(stroke=5e-6, frequency=300, friction=ConstantCase(limit=limit))) for limit in (2e-9, 4e-8)
     )
     held, pulled = advise(light), advise(strong)
-    assert held.trial.smallest_load >= 0 > pulled.trial.smallest_load
-    assert "would have to pull" not in trial_text(light.summary, held)
-    assert f"a load of {quantity(pulled.trial.smallest_load, 'N')}" in trial_text(strong.summary, pulled)
+    assert held.smallest_load >= 0 > pulled.smallest_load
+    assert "would have to pull" not in advice_text(light, held)
+    assert f"a load of {quantity(pulled.smallest_load, 'N')}" in advice_text(strong, pulled)
 
 
 @pytest.mark.slow
@@ -341,9 +336,25 @@ def test_a_part_on_level_ground_is_sent_elsewhere():
     middle = run_case(
         case_of(place=(0.0, 0.0), actuators=[ActuatorCase(position=(0.0, 0.0), stroke=5e-6, frequency=300)])
     )
-    trial = advise(middle).trial
+    trial = advise(middle)
     assert math.hypot(*trial.place) > 1e-5
     assert "nothing pulls the part aside" in dict(report.lines(middle.summary))["margins"]
+
+
+def test_without_trials_it_is_said_why(base):
+    path, farther = base.trajectory, base.trajectory.position + np.linspace(0, 1e-5, len(base.trajectory.time))[:, None]
+    moving = replace(path, outcome=Outcome.MOVING, position=farther)
+    still = replace(base.scene, lifts=[Drive(0.0, 3000)] * 2)
+    pushed = base.case.model_copy(update={"part": base.case.part.model_copy(update={"velocity": (1e-3, 0.0)})})
+    for case, scene, trajectory, why in (
+        (base.case, base.scene, path, ""),
+        (base.case, base.scene, moving, "The part moves already, and stays on."),
+        (base.case, base.scene, replace(path, outcome=Outcome.LEFT_PLATE), Outcome.LEFT_PLATE.sentence),
+        (base.case, still, path, "No drive moves."),
+        (pushed, base.scene, path, "The part is on the move from the start"),
+    ):
+        text = no_advice(replace(base, case=case, scene=scene, trajectory=trajectory))
+        assert text.startswith(why) and bool(text) == bool(why)
 
 
 @pytest.mark.slow
@@ -351,7 +362,7 @@ def test_a_place_that_rounds_off_the_plate_is_not_tried():
     """An actuator 0.2 um from the rim: places around it of three digits lie on the rim."""
     rim = [ActuatorCase(position=(2.998e-4, 0.0), stroke=1e-6, frequency=1000)]
     result = run_case(case_of(place=(1e-5, 0.0), actuators=rim, friction=ConstantCase(limit=1.0)))
-    assert advise(result).trial is None
+    assert advise(result) is None and advice_text(result, None) == "No trial run kept it and carried it along."
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from active_surface.cli.program import main
 from coupling import report, run_case, summary_of
-from coupling.advice import advise, trial_text
+from coupling.advice import advice_text, advise
 from coupling.case import Case, ConstantCase, CoulombCase, PartCase, RunCase
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -146,9 +146,8 @@ def test_advice_on_a_measured_motion_names_no_strokes(tmp_path):
     file = tmp_path / "motion.csv"
     file.write_text("time [ms], x [um]\n" + "".join(f"{k}, {0.1 * math.sin(k)}\n" for k in range(60)))
     result = run_case(case(str(file), {"duration": 5e-2}))
-    advice = advise(result)
     assert "times the stroke" in said(result)
-    assert trial_text(result.summary, advice).startswith("A trial run with ") and advice.measured
+    assert advice_text(result, advise(result)).startswith("A trial run with ")
 
 
 def test_a_measured_motion_is_not_written_over(tmp_path):

@@ -106,21 +106,15 @@ def advise(case: Path, overwrite: Overwrite = False, output: Output = RESULTS) -
     with stages(stage_count(parsed)) as bar:
         result = run_case(parsed, None, bar)
         with bar("Trying other drives"):
-            found = advice.advise(result)
-    thresholds = result.summary.thresholds
-    figures = {"thresholds": thresholds and asdict(thresholds), "trial": found and found.trial and asdict(found.trial)}
+            trial = advice.advise(result)
+    thresholds, text = result.summary.thresholds, advice.advice_text(result, trial)
+    figures = {"thresholds": thresholds and asdict(thresholds), "trial": trial and asdict(trial)}
     lines = [row for row in report.lines(result.summary) if row[0] in ("outcome", "thresholds")]
     files = []
-    if found is None:
-        lines.append(("advice", "The part moves already, or no factor scales what drives it."))
-    else:
-        text = advice.trial_text(result.summary, found)
-        lines.append(("advice", text))
-        if found.trial is not None and not found.measured:
-            moving = advice.advised_case(parsed, found.trial)
-            comment = f"The advice on {case.name}: {text}"
-            files = [write_edited(moving, parsed, case.absolute().parent, file, comment)]
-    return Answer(figures, lines, files=files)
+    if trial is not None and not result.scene.fits:
+        moving, comment = advice.advised_case(parsed, trial), f"The advice on {case.name}: {text}"
+        files = [write_edited(moving, parsed, case.absolute().parent, file, comment)]
+    return Answer(figures, [*lines, ("advice", text)], files=files)
 
 
 @command

@@ -19,7 +19,7 @@ from active_surface.cli.options import (
 )
 from active_surface.cli.refusal import check_kind, read
 
-STAGES = 4  # of the feasibility of a plate that only bends
+STAGES = 3  # of the feasibility of a plate that only bends, without areas
 PICKING = 5  # more of a pick and its run
 RESPONDING = 2  # of a response
 
@@ -63,7 +63,8 @@ def feasibility(
         str | None, option('Smallest stroke of the largest drive, such as "2 um"; of forces in N.', "S")
     ] = None,
     largest: Annotated[str | None, option("Largest stroke of the largest drive.", "S")] = None,
-    across: Annotated[int, option("Places along the plate's longer side.", show_default=True)] = 100,
+    areas: Annotated[bool, option("Also find where on the plate the part slips, over frequency.", "--areas")] = False,
+    across: Annotated[int | None, option("Places along the plate's longer side, of --areas [100].")] = None,
     pick: Annotated[
         str | None, option('Write a case that moves: at "2.4 kHz, 12 um", or at the "best" point.', "F,S")
     ] = None,
@@ -73,13 +74,15 @@ def feasibility(
 ) -> Answer:
     """Show at which frequencies and strokes, and where, the array of CASE moves its part without losing it.
 
-    Writes a map over frequency and stroke of runs from the case's start, a map of the plate, and the area where slip
-    starts while the part stays attached over the drives' frequency. All drives keep their ratios. --pick also writes
-    NAME_picked.toml, a case whose run moves the part.
+    Writes a map over frequency and stroke of runs from the case's start; --areas adds a map of the plate, and the area
+    where slip starts while the part stays attached, over the drives' frequency. All drives keep their ratios. --pick
+    also writes NAME_picked.toml, a case whose run moves the part.
     """
+    if across is not None and not areas:
+        raise ValueError("--across must not be given without --areas, whose places it counts")
     parsed = read(case)
+    from active_surface.studies.feasibility import ACROSS, lines, warnings
     from active_surface.studies.feasibility import feasibility as find
-    from active_surface.studies.feasibility import lines, warnings
     from active_surface.studies.feasibility import pick as pick_case
     from coupling import answers_drives
     from coupling.case import largest_stroke
@@ -91,9 +94,9 @@ def feasibility(
     target = output / f"{parsed.name}_picked.toml"
     if pick is not None:
         check_free(target, overwrite)
-    count = STAGES + answers_drives(parsed) + (PICKING + answers_drives(parsed) if pick is not None else 0)
+    count = STAGES + areas + answers_drives(parsed) + (PICKING + answers_drives(parsed) if pick is not None else 0)
     with stages(count) as bar:
-        result = find(parsed, *ends, across, bar, *strokes, threads)
+        result = find(parsed, *ends, across or ACROSS, bar, *strokes, threads, areas)
         files = result.write(output, point or None)
         picked = None
         if point is not None:

@@ -8,30 +8,29 @@ v = 0). Two areas follow from that, both over one window of time:
 - slipping: places where it slips at that moment and is attached then, whatever happens there at other moments.
 
 Drives that run `factor` times as fast leave shapes and slopes as they are and multiply accelerations by its square,
-unless the plate has mass (`faster`).
+unless the plate has mass: then it moves in another way at each factor, and is driven anew.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from active_surface.arrays import BoolArray, FloatArray
+from active_surface.arrays import BoolArray, FloatArray, IntArray
 from active_surface.studies.feasibility.counting import (
     SHARES,
     SIDE,
     Fields,
-    count_lost,
     count_slips,
     find_held,
     find_responses,
     find_states,
 )
-from active_surface.studies.feasibility.squares import Squares, squares_within
 from meshes import Outline
 from particle import Micropart, SurfaceMotion, part_record
 from particle.drives import DriveTable
@@ -40,7 +39,10 @@ from particle.friction import Contact
 
 ACROSS: Final = 100  # places along the longer side of the plate
 PER_STROKE: Final = 24  # moments in the shortest stroke, at first
-MAX_HALVINGS: Final = 3  # of the time between moments
+MAX_HALVINGS: Final = 3  # of the time between moments, where all factors share them
+PER_PERIOD: Final = 16  # moments in a period of the lowest modes
+LOWEST: Final = 3  # modes whose ringing is resolved
+MAX_FINER: Final = 8  # times as many moments as strokes take
 TOLERANCE: Final = 0.01  # of the areas: what half of that time may change
 FEW: Final = 24  # places along the longer side that tell how many moments are enough
 MAX_STROKES: Final = 85  # of the shortest, in a window
@@ -90,6 +92,39 @@ class Feasible:
     count: int  # moments looked at in the window, between which the surface is taken as linear
 
 
+class Squares(NamedTuple):
+    """What an outline encloses, cut into squares side by side."""
+
+    centres: FloatArray  # (n, 2) m
+    side: float  # m
+    neighbours: IntArray  # (n, 4) those at -x, +x, -y and +y; where there is none the square itself
+
+
+def squares_within(outline: Outline, across: int) -> Squares:
+    """Squares whose centres an outline encloses, so many along its longer side."""
+    low, high = outline.box
+    side = float((high - low).max()) / across
+    counts = np.ceil((high - low) / side - 1e-9).astype(int)
+    along = [middle + side * (np.arange(n) - (n - 1) / 2) for middle, n in zip((low + high) / 2, counts, strict=True)]
+    grid = np.stack(np.meshgrid(*along, indexing="ij"), axis=-1)
+    inside = outline.gap(grid.reshape(-1, 2)).reshape(counts) > 0
+    numbers = np.full(counts + 2, -1)
+    numbers[1:-1, 1:-1][inside] = np.arange(inside.sum())
+    around = [numbers[:-2, 1:-1], numbers[2:, 1:-1], numbers[1:-1, :-2], numbers[1:-1, 2:]]
+    neighbours = np.stack([one[inside] for one in around], axis=1)
+    return Squares(grid[inside], side, np.where(neighbours < 0, np.arange(len(neighbours))[:, None], neighbours))
+
+
+class Place(NamedTuple):
+    """Where a part lies at rest, and under which law and gravity."""
+
+    outline: Outline
+    part: Micropart
+    friction: Contact
+    gravity: float | Sequence[float]
+    across: int  # squares along the outline's longer side
+
+
 def find_feasible(
     surface: SurfaceMotion,
     outline: Outline,
@@ -110,33 +145,61 @@ def find_feasible(
     MAX_PER_STROKE in the shortest stroke.
     """
     stroke_time = float(surface.drives.stroke_time[moving(surface.drives)].min(initial=window))
-    window = min(window, MAX_STROKES * stroke_time)
-    count = max(int(np.ceil(PER_STROKE * window / stroke_time)), PER_STROKE)
-    factors = np.sort(np.asarray(factors, dtype=float))
-    return examine(surface, outline, part, friction, window, count, factors, gravity, across)
+    window, count = min(window, MAX_STROKES * stroke_time), moments_in(window, stroke_time)
+    place = Place(outline, part, friction, gravity, across)
+    return _examine(surface, place, window, count, np.sort(np.asarray(factors, dtype=float)), MAX_HALVINGS)
 
 
-def examine(
-    surface: SurfaceMotion,
-    outline: Outline,
-    part: Micropart,
-    friction: Contact,
+def find_feasible_anew(
+    driven: Callable[[float, float], SurfaceMotion],
+    modes: FloatArray,
+    stroke_time: float,
+    place: Place,
     window: float,
-    count: int,
     factors: FloatArray,
-    gravity: float | Sequence[float],
-    across: int,
-    most: int = MAX_HALVINGS,
 ) -> Feasible:
-    """The same at so many moments of the whole window [s] or, up to `most` times, twice as many; ascending factors."""
+    """The feasible areas of a plate with mass, which is driven anew at each of ascending factors (F,).
+
+    driven: gives the surface under drives that run `factor` times as fast, good up to a time [s].
+    modes: Hz, natural frequencies, ascending.  stroke_time: s, the shortest at a factor of 1.
+    """
+    window, least = min(window, MAX_STROKES * stroke_time), moments_in(window, stroke_time)
+    ringing = window * PER_PERIOD * float(modes[:LOWEST].max(initial=0.0))
+
+    def at(factor: float) -> Feasible:
+        count = int(np.clip(np.ceil(ringing / factor), least, MAX_FINER * least))
+        return _examine(driven(factor, window / factor), place, window / factor, count, np.ones(1), 1)
+
+    own, every = at(1.0), [at(factor) for factor in factors.tolist()]
+    feasible, slipping = (
+        Curves(*(np.array([getattr(getattr(one, name), curve)[0] for one in every]) for curve in Curves._fields))
+        for name in ("feasible", "slipping")
+    )
+    return replace(
+        own, factors=factors, window=window, feasible=feasible, slipping=slipping,
+        lost_area=np.array([one.lost_area[0] for one in every]),
+        errors=Errors(*np.max([one.errors for one in [own, *every]], axis=0).tolist()),
+        count=max(one.count for one in [own, *every]),
+    )  # fmt: skip
+
+
+def moments_in(window: float, stroke_time: float) -> int:
+    """How many moments of a window [s] are looked at at first, where the shortest stroke takes so long [s]."""
+    return max(math.ceil(PER_STROKE * min(window, MAX_STROKES * stroke_time) / stroke_time), PER_STROKE)
+
+
+def _examine(
+    surface: SurfaceMotion, place: Place, window: float, count: int, factors: FloatArray, most: int
+) -> Feasible:
+    """The areas at so many moments of the whole window [s] or, up to `most` times, twice as many; ascending factors."""
     every = np.append(factors, 1.0)
-    resting = part_record(surface, part, friction, gravity)
+    resting = part_record(surface, place.part, place.friction, place.gravity)
 
     def look(squares: Squares, moments: int) -> _Counts:
         return _count(surface, squares, np.linspace(0.0, window, moments + 1), resting, every**2)
 
     # Few squares tell how many moments are enough.
-    few = squares_within(outline, min(across, FEW))
+    few = squares_within(place.outline, min(place.across, FEW))
     coarse, error = look(few, count), np.inf
     for _ in range(most):
         fine = look(few, 2 * count)
@@ -144,7 +207,7 @@ def examine(
         if error <= TOLERANCE:
             break
         coarse, count = fine, 2 * count
-    squares = squares_within(outline, across)
+    squares = squares_within(place.outline, place.across)
     found = look(squares, count)
     areas = found.slips.mean(axis=0) * squares.side**2
     moments = window * (np.arange(areas.shape[2]) + 0.5) / areas.shape[2]
@@ -180,8 +243,9 @@ def _count(surface: SurfaceMotion, squares: Squares, moments: FloatArray, part: 
     held[:] = 0.0, np.inf
     for one in responses():
         find_held(one, neighbours, part, held)
-    lost, first, second = (np.zeros(size, dtype=np.int8) for _ in range(3))
-    count_lost(held, scales, lost)
+    low, high = held[..., :1], held[..., 1:]
+    lost = (~((low <= scales) & (scales <= high))).sum(axis=(1, 2), dtype=np.int8)
+    first, second = np.zeros(size, dtype=np.int8), np.zeros(size, dtype=np.int8)
     slips, counts = np.zeros(size[0]), np.zeros((len(moments) - 1, 2, 2, size[1], SHARES))
     before: FloatArray | None = None
     for k, after in enumerate(responses()):

@@ -1,6 +1,6 @@
 """Feasibility of a case: where, and at which frequencies and strokes, its array moves its part without losing it.
 
-case -> ground (plate, surface) -> chart of borders (slip, single runs) -> validity -> areas over the plate
+case -> ground (plate, surface) -> chart of borders (slip, single runs) -> validity -> areas over the plate, if wanted
 """
 
 from __future__ import annotations
@@ -13,17 +13,29 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.feasibility.area import ACROSS, MAX_STROKES, Feasible, find_feasible, moving
-from active_surface.studies.feasibility.borders import Column, find_column, state_of
-from active_surface.studies.feasibility.chart import Chart, make_chart
-from active_surface.studies.feasibility.faster import find_feasible_anew
+from active_surface.studies.feasibility.area import (
+    ACROSS,
+    MAX_STROKES,
+    Feasible,
+    Place,
+    find_feasible,
+    find_feasible_anew,
+    moving,
+)
+from active_surface.studies.feasibility.chart import (
+    Chart,
+    Column,
+    State,
+    find_column,
+    make_chart,
+    nearest,
+    valid_strokes,
+)
 from active_surface.studies.feasibility.ground import Ground, make_ground
-from active_surface.studies.feasibility.remedy import remedy_of
 from active_surface.studies.feasibility.result import Feasibility
-from active_surface.studies.feasibility.validity import valid_strokes
 from active_surface.studies.frequency_range import range_fault
 from common import quantity_text
-from coupling import Progress, build_drives, build_part, silent
+from coupling import Progress, borders, build_drives, build_part, silent
 from coupling.case import Case, PlateCase, largest_stroke
 from coupling.ringing import RingingModel
 from coupling.vibration import VibrationModel, always_running
@@ -38,7 +50,7 @@ COUNT: Final = 31  # frequencies of the areas
 MAX_CYCLES: Final = 100  # of the case's fastest drive, over which the chart's runs last at most
 COLUMNS, MAX_COLUMNS = 11, 32  # of the chart, at first and at most
 FEW_COLUMNS, MAX_FEW = 6, 12  # where each path takes a motion of the plate
-BORDERS, STAGE = "Looking which strokes move the part", "Looking where the part slips"
+BORDERS, AREAS = "Looking which strokes move the part", "Looking where the part slips"
 
 
 def feasibility(
@@ -50,8 +62,9 @@ def feasibility(
     smallest: float | None = None,
     largest: float | None = None,
     threads: int | None = None,
+    areas: bool = False,
 ) -> Feasibility:
-    """Where the array of a case moves its part, over frequency and stroke, and over the plate.
+    """Where the array of a case moves its part, over frequency and stroke, and if wanted over the plate.
 
     Parameters
     ----------
@@ -62,7 +75,7 @@ def feasibility(
         all times of all drives shrink likewise. Of segments the highest frequency counts, of a table that of strokes as
         short as its shortest, of a drive at rest none.
     across : int
-        Places along the plate's longer side.
+        Places along the plate's longer side, at which areas are looked for.
     progress : Progress, optional
         Reports the progress of a stage.
     smallest, largest : float, optional
@@ -70,15 +83,16 @@ def feasibility(
         default from 1/1024 to 16 times its own, on a plate that stretches to twice its own.
     threads : int, optional
         Number of paths at a time, by default one on each processor; the result is the same for any.
+    areas : bool
+        Also find where on the plate a part slips and stays attached, over frequency, which takes longer than the chart.
 
     Returns
     -------
     feasibility : Feasibility
-        The chart of runs from the case's start, which last as long as the case's, at most MAX_CYCLES; and the areas.
-        Their window is what
-        the drives do until they repeat themselves, at most the run's duration, and of that no more than
-        `active_surface.studies.feasibility.area` looks at. A plate with inertia answers each frequency anew, in the
-        steady state or from rest as `run.start` says; from rest the window is the run's beginning.
+        The chart of runs from the case's start, which last as long as the case's, at most MAX_CYCLES; and the areas, or
+        None. Their window is what the drives do until they repeat themselves, at most the run's duration, and of that
+        no more than `active_surface.studies.feasibility.area` looks at. A plate with inertia answers each frequency
+        anew, in the steady state or from rest as `run.start` says; from rest the window is the run's beginning.
 
     Raises
     ------
@@ -121,13 +135,17 @@ def feasibility(
             case, (min(float(factors[0]), 1.0), max(float(factors[-1]), 1.0)), strokes, duration, end, progress
         )
         chart = _chart(ground, factors, strokes, progress, threads)
-        with progress(STAGE):
-            valid = valid_strokes(ground, np.array([one.frequency for one in chart.columns]), strokes, whole)
-            areas = interruptible(_areas, ground, whole, shortest, factors, across)
-        own = state_of(ground.paths([(1.0, 1.0)], threads)[0])
+        valid = valid_strokes(ground, np.array([one.frequency for one in chart.columns]), strokes, whole)
+        found = None
+        if areas:
+            with progress(AREAS):
+                found = interruptible(_areas, ground, whole, shortest, factors, across)
+        (path,) = ground.paths([(1.0, 1.0)], threads)
         moves = any(one.lost > one.slips * 1.01 for one in chart.columns)
-        remedy = None if moves else remedy_of(ground, chart, areas, threads)
-    return Feasibility(case, own, chart, valid, remedy, areas, frequency, stroke, unit, whole, ground)
+        near = None if moves else nearest(ground, chart)
+    lost = path.outcome in borders.LOST
+    own: State = "lost" if lost else "moves" if path.path_length > 0 else "rest"
+    return Feasibility(case, own, chart, valid, near, found, frequency, stroke, unit, whole, ground)
 
 
 def _chart(
@@ -158,10 +176,10 @@ def _areas(ground: Ground, whole: float, stroke_time: float, factors: FloatArray
         return find_feasible(surface, ground.outline, part, ground.friction, whole, factors, case.run.gravity, across)
     model = getattr(ground.surface, "model", None)
     assert isinstance(model, (VibrationModel, RingingModel))
-    window = min(whole, MAX_STROKES * stroke_time)
+    place = Place(ground.outline, part, ground.friction, case.run.gravity, across)
     return find_feasible_anew(
-        lambda factor: ground.driven(factor, 1.0, window / factor), model.chosen.modes.frequencies, stroke_time,
-        ground.outline, part, ground.friction, whole, factors, case.run.gravity, across,
+        lambda factor, end: ground.driven(factor, 1.0, end), model.chosen.modes.frequencies, stroke_time, place, whole,
+        factors,
     )  # fmt: skip
 
 

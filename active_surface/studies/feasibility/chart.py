@@ -8,13 +8,75 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final, Literal, NamedTuple
 
-from active_surface.studies.feasibility.borders import Column
+import numpy as np
+
+from active_surface.arrays import FloatArray
+from active_surface.studies.feasibility.area import squares_within
+from active_surface.studies.feasibility.ground import Ground
+from coupling import borders
+from coupling.case import PlateCase
 
 State = Literal["rest", "moves", "lost", "either"]
 
+EXACT: Final = 1e-4  # of the stroke: where slip begins
+STRIDE: Final = 0.4  # between the logarithms of strokes tried in search of it
 TOLERANCE: Final = 0.01  # of borders between columns
+BELOW: Final = 0.99  # of the stroke from which the part is lost
 # Ratios of the frequencies of neighbours between which there are no more columns, where so many of them are ragged.
 RAGGED: Final = (1.015, 1.1, 1.2)
+DEFLECTION, SLOPE = 0.2, 0.2  # of the thickness, in linear theory; everywhere: up to these the model is valid
+ACROSS, MOMENTS = 40, 61  # places along the plate's longer side, and moments of the window, where that is seen
+STROKES, FREQUENCIES = 5, 7  # at which a plate that stretches, and one with mass, is looked at
+
+
+@dataclass(frozen=True)
+class Column:
+    """The borders at one factor of frequency, as factors of the strokes; inf: not up to the largest looked at."""
+
+    frequency: float
+    slips: float  # from which the part leaves rest
+    lost: float  # from which some run loses it
+    all_lost: float  # from which all do
+    runs: dict[float, float] = field(repr=False, compare=False, default_factory=dict)
+    """By the factor of strokes: how near a run came to losing the part, from 1 to 0, at which it is lost."""
+
+    @property
+    def ragged(self) -> bool:
+        """Whether strokes that lose the part and others lie side by side."""
+        return self.all_lost > self.lost * borders.CLOSE**2
+
+
+def find_slip(ground: Ground, frequency: float, strokes: tuple[float, float], guess: float = 1.0) -> float:
+    """The factor of strokes from which a part at rest at its start slips, or comes off, at a factor of frequency.
+
+    inf: not up to the largest of `strokes`; their smallest where it slips at that.  guess: where to begin.
+    """
+    if any(ground.case.part.velocity):
+        return strokes[0]  # it is on the move from the start
+    bottom, top = map(math.log, strokes)
+    start = min(max(math.log(guess), bottom), top)
+
+    def excess(x: float) -> float:
+        return borders.excess_pull(ground.rest(frequency, math.exp(x)))
+
+    x = borders.begins(excess, start, (bottom, top), STRIDE, EXACT / 2)
+    return strokes[0] if x == -math.inf else math.exp(x + EXACT / 2)
+
+
+def find_column(
+    ground: Ground, frequency: float, strokes: tuple[float, float], guess: float = 1.0, threads: int | None = None
+) -> Column:
+    """The borders at a factor of frequency, within factors of the strokes; guess: where slip begins."""
+    slips = find_slip(ground, frequency, strokes, guess)
+    if slips > strokes[1]:
+        return Column(frequency, slips, math.inf, math.inf)
+
+    def run(more: Sequence[float]) -> list[float]:
+        paths = ground.paths([(frequency, stroke) for stroke in more], threads)
+        return [borders.margin_of(path, ground.friction, ground.outline) for path in paths]
+
+    first, last, runs = borders.find_losses(run, slips, slips * (1 + 2 * EXACT), strokes[1])
+    return Column(frequency, slips, max(first, slips), last, runs)
 
 
 class Limits(NamedTuple):
@@ -144,3 +206,58 @@ def _difference(one: float, other: float) -> float:
 def _between(a: float, b: float, share: float) -> float:
     """A border between two columns; one that is beyond the largest stroke in either is so between them."""
     return math.inf if math.isinf(a) or math.isinf(b) else a ** (1 - share) * b**share
+
+
+class Nearest(NamedTuple):
+    """Where, just below the borders, a part that no point of a chart moves comes nearest to slipping."""
+
+    frequency: float  # factor of the case's
+    stroke: float  # likewise
+    comes_off: bool  # whether a larger stroke loses the part there
+    share: float  # of the pull over what friction holds
+
+
+def nearest(ground: Ground, chart: Chart) -> Nearest:
+    """Where a part at rest comes nearest to slipping, below the strokes that lose it."""
+    best = Nearest(0.0, 0.0, False, 0.0)
+    for column in chart.columns:
+        comes_off = math.isfinite(column.lost)
+        stroke = BELOW * column.lost if comes_off else chart.strokes[1]
+        share = ground.rest(column.frequency, stroke).slip().value
+        best = max(best, Nearest(column.frequency, stroke, comes_off, share), key=lambda one: one.share)
+    return best
+
+
+def valid_strokes(ground: Ground, frequencies: FloatArray, strokes: tuple[float, float], window: float) -> FloatArray:
+    """The strokes' factors (n,) up to which slopes and, in linear theory, deflections are small, at ascending factors.
+
+    window: s, of the drives' own times.
+    """
+    some = np.geomspace(frequencies[0], frequencies[-1], FREQUENCIES) if not ground.follows else np.ones(1)
+    limits = [_valid_stroke(ground, float(k), strokes, window) for k in some]
+    return np.exp(np.interp(np.log(frequencies), np.log(some), np.log(limits)))
+
+
+def _valid_stroke(ground: Ground, frequency: float, strokes: tuple[float, float], window: float) -> float:
+    tried = np.ones(1) if ground.linear else np.geomspace(strokes[1] / 2**STROKES, strokes[1], STROKES + 1)
+    uses = np.array([_share(ground, frequency, float(stroke), window) for stroke in tried])
+    if ground.linear:
+        return float(1 / max(uses[0], 1e-9))
+    uses = np.maximum.accumulate(np.maximum(uses, 1e-9))
+    return float(math.exp(np.interp(0.0, np.log(uses), np.log(tried), right=np.log(tried[-1]))))
+
+
+def _share(ground: Ground, frequency: float, stroke: float, window: float) -> float:
+    """The largest slope, and in linear theory the largest deflection, over what is valid."""
+    plate = ground.case.plate
+    assert isinstance(plate, PlateCase)
+    end = window if ground.follows else window / frequency
+    surface = ground.driven(1.0 if ground.follows else frequency, stroke, end)
+    points = np.concatenate([squares_within(ground.outline, ACROSS).centres, ground.actuators])
+    share = 0.0
+    for time in np.linspace(0.0, end, MOMENTS).tolist():
+        state = surface.evaluate(points, time)
+        share = max(share, float(np.hypot(*state.gradient.T).max()) / SLOPE)
+        if ground.linear:
+            share = max(share, float(np.abs(state.w).max()) / (DEFLECTION * plate.thickness))
+    return share

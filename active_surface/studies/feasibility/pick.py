@@ -11,12 +11,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from active_surface.arrays import FloatArray
-from active_surface.studies.feasibility.borders import LOST
 from active_surface.studies.feasibility.chart import Chart
 from active_surface.studies.feasibility.ground import Ground
 from active_surface.studies.feasibility.result import Feasibility
 from common import quantity_text
-from coupling import FAR, Progress, Result, run_case, silent
+from coupling import Progress, Result, borders, run_case, silent
 from coupling.case import Case, write_case
 
 ROWS: Final = 7  # strokes tried in a column
@@ -37,15 +36,18 @@ class Picked:
     result: Result
 
     @property
+    def where(self) -> str:
+        """The point."""
+        return f"{quantity_text(self.frequency, 'Hz', 5)} and {quantity_text(self.stroke, self.unit, 5)}"
+
+    @property
     def text(self) -> str:
         """What its drives do, in a sentence."""
         summary = self.result.summary
-        where = f"{quantity_text(self.frequency, 'Hz', 5)} and {quantity_text(self.stroke, self.unit, 5)}"
         far, along = quantity_text(summary.distance, "m", 4), quantity_text(summary.path_length, "m", 4)
         lasting = quantity_text(summary.duration, "s", 4)
-        return (
-            f"At {where} the part ends {far} from its start after {lasting}, on a path of {along}. {summary.sentence}"
-        )
+        ends = f"ends {far} from its start after {lasting}, on a path of {along}"
+        return f"At {self.where} the part {ends}. {summary.sentence}"
 
     def figures(self) -> dict[str, Any]:
         """The figures by name, in SI units."""
@@ -86,23 +88,19 @@ def pick(
                 "Input pick of feasibility must be on a map where the part moves; none of its frequencies and strokes "
                 "moves the part without losing it"
             )
-        frequency, stroke = _rounded(best[0] * found.frequency), _rounded(best[1] * found.stroke)
+        frequency, stroke = (float(f"{value:.3g}") for value in (best[0] * found.frequency, best[1] * found.stroke))
     case = found.at(frequency, stroke)
     result = run_case(case, progress=progress)
     picked = Picked(case, frequency, stroke, found.stroke_unit, result)
-    lost, far = result.trajectory.outcome in LOST, result.summary.distance
-    if lost or not far > FAR * found.ground.surface.size:
-        where = f"{quantity_text(frequency, 'Hz', 5)} and {quantity_text(stroke, found.stroke_unit, 5)}"
-        what = f"is lost after {quantity_text(result.summary.end_time, 's', 3)}" if lost else _at_rest(far)
+    lost, far = result.trajectory.outcome in borders.LOST, result.summary.distance
+    if lost or not far > borders.FAR * found.ground.surface.size:
+        only = f"moves only {quantity_text(far, 'm', 3)}" if far > 0 else "stays at rest"
+        what = f"is lost after {quantity_text(result.summary.end_time, 's', 3)}" if lost else only
         raise ValueError(
-            f"Input pick of feasibility must move the part without losing it; got {where}, where it {what}"
+            f"Input pick of feasibility must move the part without losing it; got {picked.where}, where it {what}"
             + _beside(found, frequency)
         )
     return picked
-
-
-def _at_rest(far: float) -> str:
-    return f"moves only {quantity_text(far, 'm', 3)}" if far > 0 else "stays at rest"
 
 
 def _beside(found: Feasibility, frequency: float) -> str:
@@ -120,10 +118,6 @@ def _beside(found: Feasibility, frequency: float) -> str:
     return f": at that frequency it {' and '.join(texts)}" if texts else ""
 
 
-def _rounded(value: float) -> float:
-    return float(f"{value:.3g}")
-
-
 def best_point(
     ground: Ground, chart: Chart, largest: FloatArray, threads: int | None = None
 ) -> tuple[float, float] | None:
@@ -139,9 +133,9 @@ def best_point(
     clear = np.flatnonzero(rooms >= CLEAR * rooms.max())
     tried = clear[np.argsort(-rooms[clear], kind="stable")[:MAX_TRIED]]
     paths = ground.paths([(float(k), float(s)) for k, s in points[tried]], threads)
-    far = [-1.0 if path.outcome in LOST else path.distance for path in paths]
+    far = [-1.0 if path.outcome in borders.LOST else path.distance for path in paths]
     best = int(np.argmax(far))
-    if not far[best] > FAR * ground.surface.size:
+    if not far[best] > borders.FAR * ground.surface.size:
         return None
     return float(points[tried[best], 0]), float(points[tried[best], 1])
 

@@ -29,12 +29,16 @@ SMALLEST: Final = 1e-6  # m: areas are in the square of this at least
 @draw.register(Feasibility)
 def draw_feasibility(feasibility: Feasibility, picked: tuple[float, float] | None = None) -> Figure:
     """Draw a feasibility, with a picked frequency [Hz] and stroke [m or N]."""
-    figure = Drawing(figsize=(13.0, 9.4))
+    areas = feasibility.areas
+    figure = Drawing(figsize=(6.5, 6.2) if areas is None else (13.0, 9.4))
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
-    grid = figure.add_gridspec(2, 2, height_ratios=(1.9, 1), width_ratios=(1, 1))
-    draw_chart(figure.add_subplot(grid[0, 0]), feasibility, picked)
-    _draw_map(figure, figure.add_subplot(grid[0, 1]), feasibility)
-    _draw_curves(figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1]), feasibility)
+    if areas is None:
+        draw_chart(figure.add_subplot(), feasibility, picked)
+    else:
+        grid = figure.add_gridspec(2, 2, height_ratios=(1.9, 1), width_ratios=(1, 1))
+        draw_chart(figure.add_subplot(grid[0, 0]), feasibility, picked)
+        _draw_map(figure, figure.add_subplot(grid[0, 1]), feasibility, areas)
+        _draw_curves(figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1]), feasibility, areas)
     put_title(
         figure,
         f"{feasibility.case.name}: fastest drive {quantity_text(feasibility.frequency, 'Hz', 4)}, largest stroke "
@@ -43,8 +47,8 @@ def draw_feasibility(feasibility: Feasibility, picked: tuple[float, float] | Non
     return figure
 
 
-def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility) -> None:
-    areas, box = feasibility.areas, feasibility.outline.box
+def _draw_map(figure: Figure, axes: Axes, feasibility: Feasibility, areas: Feasible) -> None:
+    box = feasibility.outline.box
     unit = unit_for(box, "m")
     x, y, share = _grid(areas, np.where(areas.own.lost, np.nan, 100 * areas.own.shares))
     half = areas.spacing / 2
@@ -78,8 +82,8 @@ def _grid(areas: Feasible, values: FloatArray) -> tuple[FloatArray, FloatArray, 
     return x, y, table
 
 
-def _draw_curves(peak: Axes, integral: Axes, feasibility: Feasibility) -> None:
-    areas, frequencies = feasibility.areas, feasibility.frequencies
+def _draw_curves(peak: Axes, integral: Axes, feasibility: Feasibility, areas: Feasible) -> None:
+    frequencies = areas.factors * feasibility.frequency
     unit, side = unit_for(frequencies, "Hz"), unit_for(max(float(areas.slipping.peak.max()) ** 0.5, SMALLEST), "m")
     per_si, area, square = unit.per_si, side.per_si**2, f"{side.name}²"
     across = frequencies * per_si

@@ -17,7 +17,7 @@ STATES = {
 
 def lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
     """Rows (label, text) to print, of `Feasibility.figures`."""
-    return [*_map_lines(figures), *_area_lines(figures)]
+    return [*_map_lines(figures), *(_area_lines(figures) if "window" in figures else [])]
 
 
 def _map_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
@@ -32,13 +32,13 @@ def _map_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
         for slips, lost in zip(found["slips_from"], found["lost_from"], strict=True)
     ]
     best = max(range(len(room)), key=room.__getitem__)
-    if figures["remedy"] is None:
+    if figures["nearest"] is None:
         low, high = found["slips_from"][best], found["lost_from"][best] or found["strokes"][1]
         room_there = range_text(low, high, unit)
         at = _hertz(found["frequencies"][best])
         rows.append(("most room", f"at {at}, from {room_there}, a factor of {room[best]:.3g}"))
     else:
-        rows += _remedy_lines(figures)
+        rows += _nearest_lines(figures)
     return rows
 
 
@@ -57,37 +57,16 @@ def _borders(own: dict[str, Any], found: dict[str, Any], unit: str) -> str:
     return text
 
 
-def _remedy_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
-    remedy, unit = figures["remedy"], figures["stroke_unit"]
-    frequency, stroke = remedy["frequency"] * figures["frequency"], remedy["stroke"] * figures["stroke"]
-    end = "where a larger one loses it" if remedy["comes_off"] else "the largest looked at"
-    rows = [
+def _nearest_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
+    near, unit = figures["nearest"], figures["stroke_unit"]
+    frequency, stroke = near["frequency"] * figures["frequency"], near["stroke"] * figures["stroke"]
+    end = "where a larger one loses it" if near["comes_off"] else "the largest looked at"
+    at = f"{_hertz(frequency)} and {_stroke(stroke, unit)}"
+    return [
         ("nowhere", "no frequency and stroke looked at moves the part without losing it"),
-        (
-            "nearest",
-            f"the pull is {remedy['share']:.3g} of what friction holds at {_hertz(frequency)} and "
-            f"{_stroke(stroke, unit)}, {end}",
-        ),
+        ("nearest", f"the pull is {near['share']:.3g} of what friction holds at {at}, {end}"),
+        ("advice", "`active-surface advise` tries less friction and other starts, too"),
     ]
-    if remedy["friction"] is not None:
-        stroke, moved = remedy["friction_stroke"] * figures["stroke"], quantity_text(remedy["moved"], "m", 4)
-        rows.append(
-            (
-                "would do",
-                f"friction {remedy['friction']:.3g} times as large: at that frequency and {_stroke(stroke, unit)} "
-                f"the part then ends {moved} from its start",
-            )
-        )
-    if remedy["place"] is not None:
-        x, y = (quantity_text(value, "m", 4) for value in remedy["place"])
-        rows.append(
-            (
-                "or",
-                f"a start at ({x}, {y}), where the case's own drives let it slip "
-                f"{100 * remedy['place_share']:.3g} % of the time and never come off",
-            )
-        )
-    return rows
 
 
 def _area_lines(figures: dict[str, Any]) -> list[tuple[str, str]]:
@@ -128,13 +107,17 @@ def _from(between: list[float | None] | None) -> str:
 
 def warnings(figures: dict[str, Any]) -> list[str]:
     """What the figures leave out, in sentences."""
-    part, whole = figures["window"], figures["whole_window"]
     texts = []
     if figures["duration"] < figures["whole_duration"]:
         texts.append(
             f"The map is of runs of {1e3 * figures['duration']:.4g} ms, 100 cycles of the case's fastest drive, in "
             f"place of the case's {1e3 * figures['whole_duration']:.4g} ms."
         )
+    return texts + (_area_warnings(figures) if "window" in figures else []) + _ragged(figures)
+
+
+def _area_warnings(figures: dict[str, Any]) -> list[str]:
+    part, whole, texts = figures["window"], figures["whole_window"], []
     if part < whole:
         texts.append(
             f"Areas are those of the first {1e3 * part:.4g} ms, of {1e3 * whole:.4g} ms until the drives repeat "
@@ -148,7 +131,7 @@ def warnings(figures: dict[str, Any]) -> list[str]:
             f"{100 * figures['areas_change_by']:.2g} %, other squares by "
             f"{100 * figures['areas_differ_by_squares']:.2g} %; --across takes more squares."
         )
-    return texts + _ragged(figures)
+    return texts
 
 
 def _ragged(figures: dict[str, Any]) -> list[str]:

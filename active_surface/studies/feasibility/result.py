@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from active_surface.arrays import BoolArray, FloatArray
-from active_surface.studies.feasibility.area import Curves, Feasible
-from active_surface.studies.feasibility.chart import Chart, State
+from active_surface.studies.feasibility.area import Feasible
+from active_surface.studies.feasibility.chart import Chart, Nearest, State
 from active_surface.studies.feasibility.ground import Ground
-from active_surface.studies.feasibility.remedy import Remedy
 from common import draw
 from coupling import whole_file
 from coupling.case import Case, scaled_case
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Feasibility:
-    """Where the array of a case moves its part, over frequency and stroke and over the plate.
+    """Where the array of a case moves its part, over frequency and stroke and, if wanted, over the plate.
 
     All drives run as many times as fast, whatever they are: times of tables and segments shrink as cycles do. All
     strokes, heights and forces grow as much.
@@ -35,8 +34,8 @@ class Feasibility:
     own: State  # of the case's own run
     chart: Chart  # of runs from the case's start, as long as the case's
     valid: FloatArray  # (columns of the chart,) factors of the strokes up to which the model is valid; inf: all are
-    remedy: Remedy | None  # what would move a part that no point of the chart moves
-    areas: Feasible
+    nearest: Nearest | None  # where a part that no point of the chart moves comes nearest to that
+    areas: Feasible | None  # None: not asked for
     frequency: float  # Hz, of the fastest drive in the case
     stroke: float  # m or N, the largest in the case
     stroke_unit: str  # "m", or "N" where all actuators are forces
@@ -52,11 +51,6 @@ class Feasibility:
     def actuators(self) -> FloatArray:
         """Where they are, (N, 2) m."""
         return self.ground.actuators
-
-    @property
-    def frequencies(self) -> FloatArray:
-        """Hz, of the fastest drive: (F,)."""
-        return self.areas.factors * self.frequency
 
     def at(self, frequency: float, stroke: float) -> Case:
         """The case with its fastest drive at a frequency [Hz] and its largest stroke [m or N], named NAME_picked."""
@@ -77,29 +71,35 @@ class Feasibility:
         return rows[:, 0] * self.frequency, *(self.stroke * rows[:, 1:]).T
 
     def figures(self) -> dict[str, Any]:
-        """The figures by name, in SI units; None: there is no such frequency."""
-        areas = self.areas
+        """The figures by name, in SI units, those of areas where they were asked for; None: there is no such number."""
+        columns = self.chart.columns
         return {
             "frequency": self.frequency,
-            "frequencies": self.frequencies[[0, -1]].tolist(),
+            "frequencies": [columns[0].frequency * self.frequency, columns[-1].frequency * self.frequency],
             "stroke": self.stroke,
             "stroke_unit": self.stroke_unit,
             "duration": self.ground.duration,
             "whole_duration": self.case.run.duration,
             "at_the_case": {"state": self.own} | self._own(),
             "map": self._map(),
-            "remedy": None if self.remedy is None else self.remedy._asdict(),
+            "nearest": None if self.nearest is None else self.nearest._asdict(),
+        } | ({} if self.areas is None else self._areas(self.areas))
+
+    def _areas(self, areas: Feasible) -> dict[str, Any]:
+        peaks, integrals, own = areas.feasible.peak, areas.feasible.integral, areas.own
+        frequencies = areas.factors * self.frequency
+        return {
             "window": areas.window,
             "whole_window": self.whole_window,
-            "peak_area": areas.own.peak,
-            "time_integral": areas.own.integral,
-            "area_where_it_comes_off": areas.own.lost_area,
-            "frequency_of_largest_peak_area": _top(self.frequencies, areas.feasible.peak),
-            "largest_peak_area": float(areas.feasible.peak.max()),
-            "frequency_of_largest_time_integral": _top(self.frequencies, areas.feasible.integral),
-            "largest_time_integral": float(areas.feasible.integral.max()),
-            "moves_it_from_between": _begins(self.frequencies, areas.slipping.peak > 0),
-            "loses_it_from_between": _begins(self.frequencies, areas.lost_area > 0),
+            "peak_area": own.peak,
+            "time_integral": own.integral,
+            "area_where_it_comes_off": own.lost_area,
+            "frequency_of_largest_peak_area": _top(frequencies, peaks),
+            "largest_peak_area": float(peaks.max()),
+            "frequency_of_largest_time_integral": _top(frequencies, integrals),
+            "largest_time_integral": float(integrals.max()),
+            "moves_it_from_between": _begins(frequencies, areas.slipping.peak > 0),
+            "loses_it_from_between": _begins(frequencies, areas.lost_area > 0),
             "areas_change_by": areas.errors.moments,
             "areas_differ_by_squares": areas.errors.squares,
         }
@@ -135,42 +135,39 @@ class Feasibility:
         """All of it with labels."""
         import xarray
 
-        areas, own = self.areas, self.areas.own
         frequencies, *borders = self.borders()
-        names = "slips_from", "lost_from", "all_lost_from"
-        units = {"units": self.stroke_unit}
-        slipping: Curves = areas.slipping
-        return xarray.Dataset(
+        texts = {
+            "slips_from": "stroke from which the part slips",
+            "lost_from": "stroke from which the first run loses it",
+            "all_lost_from": "stroke from which the last does",
+            "valid_to": "up to which the model is valid",
+        }
+        fastest = {"units": "Hz", "long_name": "of the fastest drive"}
+        found = xarray.Dataset(
             {
-                **{
-                    name: ("column", border, units | {"long_name": f"stroke from which the {text}"})
-                    for name, border, text in zip(
-                        names, borders, ("part slips", "first run loses it", "last does"), strict=True
-                    )
-                },
-                "valid_to": (
-                    "column",
-                    self.stroke * self.valid,
-                    units | {"long_name": "up to which the model is valid"},
-                ),
-                "peak_area": ("frequency", areas.feasible.peak, {"units": "m^2"}),
-                "time_integral": ("frequency", areas.feasible.integral, {"units": "m^2 s"}),
-                "slipping_peak_area": ("frequency", slipping.peak, {"units": "m^2"}),
-                "slipping_time_integral": ("frequency", slipping.integral, {"units": "m^2 s"}),
-                "lost_area": ("frequency", areas.lost_area, {"units": "m^2"}),
-                "area": ("time", own.over_time, {"units": "m^2"}),
-                "share": ("place", own.shares, {"units": "1", "long_name": "share of the window in which it slips"}),
-                "lost": ("place", own.lost.astype(np.int8), {"long_name": "whether the part comes off at some time"}),
-                "x": ("place", areas.points[:, 0], {"units": "m"}),
-                "y": ("place", areas.points[:, 1], {"units": "m"}),
+                name: ("column", border, {"units": self.stroke_unit, "long_name": text})
+                for (name, text), border in zip(texts.items(), [*borders, self.stroke * self.valid], strict=True)
             },
-            {
-                "frequency": ("frequency", self.frequencies, {"units": "Hz", "long_name": "of the fastest drive"}),
-                "column": ("column", frequencies, {"units": "Hz", "long_name": "of the fastest drive"}),
-                "time": ("time", areas.moments, {"units": "s"}),
-            },
-            {"case": self.case.source or "", "window": areas.window, "spacing": areas.spacing},
+            {"column": ("column", frequencies, fastest)},
+            {"case": self.case.source or ""},
         )
+        if (areas := self.areas) is None:
+            return found
+        area, integral, own = {"units": "m^2"}, {"units": "m^2 s"}, areas.own
+        return found.assign(
+            peak_area=("frequency", areas.feasible.peak, area),
+            time_integral=("frequency", areas.feasible.integral, integral),
+            slipping_peak_area=("frequency", areas.slipping.peak, area),
+            slipping_time_integral=("frequency", areas.slipping.integral, integral),
+            lost_area=("frequency", areas.lost_area, area),
+            area=("time", own.over_time, area),
+            share=("place", own.shares, {"units": "1", "long_name": "share of the window in which it slips"}),
+            lost=("place", own.lost.astype(np.int8), {"long_name": "whether the part comes off at some time"}),
+            x=("place", areas.points[:, 0], {"units": "m"}),
+            y=("place", areas.points[:, 1], {"units": "m"}),
+            frequency=("frequency", areas.factors * self.frequency, fastest),
+            time=("time", areas.moments, {"units": "s"}),
+        ).assign_attrs(window=areas.window, spacing=areas.spacing)
 
     def write(self, folder: Path, picked: tuple[float, float] | None = None) -> tuple[Path, ...]:
         """Writes NAME.feasibility.nc and NAME.feasibility.png into a folder; returns them.

@@ -206,7 +206,7 @@ def test_nothing_is_advised_where_the_part_moves_already(tmp_path):
     file.write_text(SHAKEN)
     done = CliRunner().invoke(main, ["advise", str(file), "--output", str(tmp_path)])
     assert done.exit_code == 0 and list(tmp_path.iterdir()) == [file]
-    assert "advice      The part moves already, or no factor scales what drives it.\n" in done.output
+    assert "advice      The part moves already, and stays on.\n" in done.output
 
 
 def test_help_loads_no_solver():

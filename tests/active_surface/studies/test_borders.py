@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from numpy.random import default_rng
 
-from active_surface.studies.feasibility.borders import LOST, find_column, find_slip
-from active_surface.studies.feasibility.chart import make_chart
+from active_surface.studies.feasibility.chart import find_column, find_slip, make_chart
 from active_surface.studies.feasibility.ground import make_ground
-from coupling import build_drives, build_friction, build_part, build_scene
+from coupling import borders, build_drives, build_friction, build_part, build_scene
 from coupling.case import (
     ActuatorCase,
     Case,
@@ -148,7 +147,7 @@ def test_slip_begins_at_the_border_and_not_below(charts, kind):
     for column in chart.columns[::3]:
         below, above = ground.paths([(column.frequency, column.slips * (1 + off)) for off in (-3e-4, 3e-4)])
         assert below.path_length == 0 and below.outcome is Outcome.STUCK
-        assert above.path_length > 0 or above.outcome in LOST
+        assert above.path_length > 0 or above.outcome in borders.LOST
 
 
 @pytest.mark.compiled

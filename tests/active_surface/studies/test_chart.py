@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from active_surface.studies.feasibility.borders import Column
-from active_surface.studies.feasibility.chart import TOLERANCE, make_chart
+from active_surface.studies.feasibility.chart import TOLERANCE, Column, make_chart
 from active_surface.studies.feasibility.pick import _candidates, clearances
 
 STROKES = (1e-3, 16.0)

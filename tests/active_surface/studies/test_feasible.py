@@ -9,12 +9,11 @@ from sweeps import PLATE
 
 from active_surface.cli.program import main
 from active_surface.studies.feasibility import area
-from active_surface.studies.feasibility.area import Curves, find_feasible
+from active_surface.studies.feasibility.area import Curves, find_feasible, squares_within
 from active_surface.studies.feasibility.case import feasibility
 from active_surface.studies.feasibility.chart import Chart
 from active_surface.studies.feasibility.pick import pick
 from active_surface.studies.feasibility.report import lines, warnings
-from active_surface.studies.feasibility.squares import squares_within
 from common import quantity_text
 from coupling import read_case, run_case, surface_motion
 from coupling.case import write_case
@@ -150,10 +149,9 @@ def test_the_fastest_drive_is_one_that_moves_of_any_kind(tmp_path, monkeypatch, 
     room = "active_surface.studies.feasibility.case."
     monkeypatch.setattr(room + "_chart", lambda *_: Chart((), (0.1, 10.0), ()))
     monkeypatch.setattr(room + "valid_strokes", lambda *_: None)
-    monkeypatch.setattr(room + "remedy_of", lambda *_: None)
     text = PLATE.replace(FIRST, "FIRST").replace(SECOND, drives[1]).replace("FIRST", drives[0])
     (tmp_path / "base.toml").write_text(text)
-    found = feasibility(read_case(tmp_path / "base.toml"), across=10)
+    found = feasibility(read_case(tmp_path / "base.toml"), across=10, areas=True)
     assert found.frequency == pytest.approx(frequency) and found.areas.factors[0] == pytest.approx(0.25)
     assert found.whole_window == found.areas.window == pytest.approx(whole)
     strokes = 2 * frequency * whole
@@ -247,11 +245,16 @@ def test_command_writes_map_and_labelled_data(tmp_path, coarse):
 
     case = write_case(read_case(CASE).vary({"run.duration": "3.4 ms"}), tmp_path / "case" / "one_actuator.toml")
     tmp_path = tmp_path / "out"
-    options = ["--lowest", "100 Hz", "--highest", "2 kHz", "--across", "30", "--json", "--output", str(tmp_path)]
+    options = ["--lowest", "100 Hz", "--highest", "2 kHz", "--json", "--output", str(tmp_path)]
     options += ["--smallest", "50 um", "--largest", "300 um"]
-    done = CliRunner().invoke(main, ["feasibility", str(case), *options])
-    assert done.exit_code == 0, done.output
+    alone = CliRunner().invoke(main, ["feasibility", str(case), *options])
+    with xarray.open_dataset(tmp_path / "one_actuator.feasibility.nc", engine="h5netcdf") as data:
+        assert set(data.dims) == {"column"} and set(data) == {"slips_from", "lost_from", "all_lost_from", "valid_to"}
+    done = CliRunner().invoke(main, ["feasibility", str(case), "--areas", "--across", "30", *options])
+    assert alone.exit_code == done.exit_code == 0, done.output
     figures = json.loads(done.stdout)
+    map_alone = json.loads(alone.stdout) | {"warnings": figures["warnings"]}  # areas have warnings of their own
+    assert figures | map_alone == figures and "window" not in map_alone
     moves, loses = figures["moves_it_from_between"], figures["loses_it_from_between"]
     assert 100 <= moves[0] < moves[1] <= 300 <= loses[0] < loses[1] <= 2000  # its columns are 100, 300 and 2000 Hz
     assert figures["frequencies"] == pytest.approx([100, 2000])
@@ -273,7 +276,8 @@ def test_command_writes_map_and_labelled_data(tmp_path, coarse):
             ["--lowest", "90 kHz"],
             "--lowest must be positive and below the highest, by default eight times the case's, 2.4 kHz",
         ),
-        (["--across", "3"], "--across must be in [10, 1000]; got 3"),
+        (["--areas", "--across", "3"], "--across must be in [10, 1000]; got 3"),
+        (["--across", "30"], "--across must not be given without --areas, whose places it counts"),
         (
             ["--pick", "600Hz"],
             '--pick must be "best", or a frequency and a stroke such as "2.4 kHz, 12 um"; got "600Hz"',
@@ -292,8 +296,8 @@ def test_command_refuses_what_makes_no_sense(tmp_path, options, said):
 
 @pytest.mark.compiled
 def test_only_the_frequencies_asked_for_are_in_the_curves(coarse):
-    found = feasibility(read_case(CASE).vary(SHORT), 1000.0, 2000.0, 12)
-    assert found.frequencies[[0, -1]] == pytest.approx([1000, 2000]) and len(found.frequencies) == 5
+    found = feasibility(read_case(CASE).vary(SHORT), 1000.0, 2000.0, 12, areas=True)
+    assert found.areas.factors * 300 == pytest.approx(np.geomspace(1000, 2000, 5))
     assert found.figures()["moves_it_from_between"] == [None, pytest.approx(1000)]
     assert found.areas.own.integral > 0
 
@@ -315,20 +319,18 @@ def test_a_picked_case_moves_and_a_point_that_does_not_is_refused_with_its_borde
         assert f"it slips from {quantity_text(slips[0], 'm', 4)} and is lost from" in str(refused.value)
 
 
-@pytest.mark.slow
 @pytest.mark.compiled
-def test_where_nothing_moves_a_run_with_the_friction_stated_does():
+def test_where_nothing_moves_a_run_slips_with_the_share_of_friction_stated_and_not_above(coarse):
     """A law without pull-off that holds everything up to the largest stroke."""
     case = read_case(CASE).vary(SHORT | {"friction": {"model": "constant", "limit": "2 uN"}})
-    found = feasibility(case, 200.0, 400.0, 10, smallest=1e-6, largest=1e-4)
-    remedy = found.remedy
-    assert found.own == "rest" and remedy is not None and remedy.share < 1
-    text = dict(lines(found.figures()))["would do"]
-    assert f"friction {remedy.friction:.3g} times as large" in text
-    weaker = found.at(remedy.frequency * found.frequency, remedy.friction_stroke * found.stroke)
-    limit = f"{2 * remedy.friction} uN"
-    summary = run_case(weaker.vary({"friction": {"model": "constant", "limit": limit}})).summary
-    assert summary.distance == pytest.approx(remedy.moved, rel=1e-6) and summary.distance > 0
+    found = feasibility(case, 200.0, 400.0, smallest=1e-6, largest=1e-4)
+    near = found.nearest
+    assert found.own == "rest" and found.areas is None and near is not None and near.share < 1
+    assert f"the pull is {near.share:.3g} of what friction holds at 400 Hz" in dict(lines(found.figures()))["nearest"]
+    there = found.at(near.frequency * found.frequency, near.stroke * found.stroke)
+    for share, moves in ((0.999, True), (1.001, False)):
+        weaker = there.vary({"friction": {"model": "constant", "limit": f"{2 * share * near.share} uN"}})
+        assert (run_case(weaker).summary.path_length > 0) == moves
 
 
 def test_a_platform_is_refused():

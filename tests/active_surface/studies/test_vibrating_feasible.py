@@ -10,11 +10,9 @@ from radial_vibration import RadialDisc
 from active_surface.cli.program import main
 from active_surface.studies.feasibility import feasibility
 from active_surface.studies.feasibility.case import _areas
-from active_surface.studies.feasibility.faster import faster
 from active_surface.studies.feasibility.ground import make_ground
 from coupling import build_drives
 from coupling.case import ActuatorCase, Case, CoulombCase, PartCase, RunCase
-from particle import Drive, Segment, SegmentDrive, TableDrive
 
 E, NU, DENSITY, THICKNESS, RADIUS, MASS, GRAVITY = 169e9, 0.3, 2330.0, 5e-6, 300e-6, 2e-9, 9.80665
 UNIT = np.sqrt(E * THICKNESS**2 / 12 / (1 - NU**2) / DENSITY) / RADIUS**2  # rad/s
@@ -52,7 +50,7 @@ def lost_rings(frequencies, amplitude):
 def test_the_curve_of_losses_has_the_resonance():
     """Of a steady sine, from half the first frequency to twice that; at FIRST it comes off nearly everywhere."""
     amplitude = 0.3 * (ADHESION / MASS + GRAVITY) / (2 * np.pi * FIRST) ** 2
-    found = feasibility(vibrating(FIRST, 2 * amplitude, cycle="cosine"), 0.5 * FIRST, 2 * FIRST, 40).areas
+    found = feasibility(vibrating(FIRST, 2 * amplitude, cycle="cosine"), 0.5 * FIRST, 2 * FIRST, 40, areas=True).areas
     truth = lost_rings(found.factors * FIRST, amplitude)
     edge = 2 * np.sqrt(np.pi * np.maximum(truth, found.spacing**2))  # cuts squares
     assert (np.abs(found.lost_area - truth) < 0.3 * edge * found.spacing).all()
@@ -79,22 +77,6 @@ def test_without_haste_areas_are_those_of_the_quasi_static_plate():
         mine, its = getattr(slow, name), getattr(static, name)
         assert mine.integral == pytest.approx(its.integral, rel=0.02, abs=0.01 * its.integral.max())
     assert slow.lost_area == pytest.approx(static.lost_area, rel=0.02, abs=12 * slow.spacing**2)
-
-
-DRIVES = [
-    Drive(1e-6, 300.0, delay=1e-3, dwell=1e-4),
-    TableDrive(np.array([0, 1 / 600, 1 / 400, 1 / 200]), [0.0, 1e-6, 5e-7, 0.0]),
-    SegmentDrive((Segment(1e-6, 200.0, dwell=1e-4), Segment(5e-7, 300.0)), delay=1e-3),
-]
-
-
-@pytest.mark.parametrize("drive", DRIVES, ids=["strokes", "table", "segments"])
-def test_a_faster_drive_does_the_same_in_less_time(drive):
-    (fast, again), times = faster([drive, drive], 2.5), np.linspace(0, 0.02, 400)
-    for order, (mine, its) in enumerate(zip(fast.evaluate(times / 2.5), drive.evaluate(times), strict=True)):
-        assert mine == pytest.approx(2.5**order * its, rel=1e-9, abs=1e-9 * 2.5**order * np.abs(its).max())
-    assert fast is again and fast.stroke_time == pytest.approx(drive.stroke_time / 2.5)
-    assert faster([drive], 1.0) == [drive]
 
 
 @pytest.mark.parametrize("plate", ["", 'theory = "von-karman"\n'])
